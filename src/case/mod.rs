@@ -1,0 +1,4 @@
+//! What the user wrote.
+pub mod schema;
+pub mod signals;
+pub mod profile;

@@ -1,0 +1,57 @@
+//! Differential-algebraic systems `F(t, y, y') = 0`, and the beam as one of them. Knows no solver.
+
+pub mod pattern;
+
+pub use pattern::Pattern;
+
+/// Why an evaluation could not be done.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fault {
+    /// A shorter step may succeed: the solver may try again.
+    Recoverable(String),
+    /// No step can succeed.
+    Fatal(String),
+}
+
+/// Which combination of partial derivatives a Jacobian holds: column j is `y[j] ∂F/∂y_j + yp[j] ∂F/∂y'_j`.
+#[derive(Clone, Copy, Debug)]
+pub enum Seeds<'a> {
+    /// `∂F/∂y + c_j ∂F/∂y'`, the matrix of an implicit step.
+    Step {
+        /// IDA's `c_j`, proportional to 1/step.
+        cj: f64,
+    },
+    /// Any factors, one pair a column.
+    Columns {
+        /// Factor of `∂F/∂y_j`.
+        y: &'a [f64],
+        /// Factor of `∂F/∂y'_j`.
+        yp: &'a [f64],
+    },
+}
+
+/// A differential-algebraic system of index one, `F(t, y, y') = 0`, every unknown scaled to order one.
+pub trait Dae {
+    /// Number of unknowns.
+    fn len(&self) -> usize;
+
+    /// True where the unknown's derivative appears (differential), false where it does not (algebraic). Length `len`.
+    fn differential(&self) -> &[bool];
+
+    /// Positions of the Jacobian's stored entries, the same for all times and states.
+    fn pattern(&self) -> &Pattern;
+
+    /// Writes `F(t, y, y')` into `residual`. All slices have length `len`. Allocates nothing.
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Fault>;
+
+    /// Writes the entries of the Jacobian in the order of [`Dae::pattern`] into `values`. Allocates nothing.
+    fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault>;
+
+    /// Name of an unknown, for people: `"u1 [m] of node 3"`.
+    fn name(&self, unknown: usize) -> String;
+
+    /// True when there is nothing to solve.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}

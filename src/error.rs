@@ -1,0 +1,85 @@
+//! What can go wrong, as one enum, and the exit code of each.
+
+use std::path::PathBuf;
+
+/// One fault in a case: what, where, what is allowed, what was probably meant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Violation {
+    /// JSON pointer of the offending value (or of its parent when something is missing), `""` for the whole file.
+    pub pointer: String,
+    /// What is wrong, one sentence.
+    pub what: String,
+    /// What is allowed there.
+    pub allowed: Option<String>,
+    /// Nearest valid name, when a name was not known.
+    pub nearest: Option<String>,
+    /// What to do.
+    pub hint: Option<String>,
+    /// Bytes of the text to point at; filled in by [`crate::case`] from the pointer when absent.
+    pub span: Option<std::ops::Range<usize>>,
+}
+
+/// A case that cannot be used, with all its faults and the text they point into.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseFault {
+    /// Where the text came from.
+    pub path: PathBuf,
+    /// The text.
+    pub text: String,
+    /// All faults found, in the order of the text.
+    pub violations: Vec<Violation>,
+}
+
+/// A run that could not go on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolverFault {
+    /// Simulated time [s] up to which results stand.
+    pub time_s: f64,
+    /// What happened, in words.
+    pub what: String,
+    /// Unknown that is worst, by name and place, when known.
+    pub unknown: Option<String>,
+    /// Likely cause.
+    pub cause: Option<String>,
+    /// What to try.
+    pub hint: Option<String>,
+}
+
+/// Everything that ends a command without success.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The command line makes no sense (exit code 2).
+    #[error("{0}")]
+    Usage(String),
+    /// The case is not valid (exit code 3).
+    #[error("{} fault(s) in {}", .0.violations.len(), .0.path.display())]
+    Case(Box<CaseFault>),
+    /// The solver could not go on (exit code 4).
+    #[error("{}", .0.what)]
+    Solver(Box<SolverFault>),
+    /// A file could not be read or written (exit code 5).
+    #[error("cannot {action} {}: {source}", .path.display())]
+    Output {
+        /// What was tried: "write", "create", "read".
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+}
+
+impl Error {
+    /// Exit code of the process.
+    pub fn exit_code(&self) -> i32 {
+        match self {
+            Self::Usage(_) => 2,
+            Self::Case(_) => 3,
+            Self::Solver(_) => 4,
+            Self::Output { .. } => 5,
+        }
+    }
+}
+
+/// Result with the house's error.
+pub type Result<T> = std::result::Result<T, Error>;

@@ -1,0 +1,138 @@
+//! What a run hands to whoever records it. The run itself prints nothing and writes nothing.
+
+use crate::error::Result;
+
+/// A column of the history: one number an output time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Name without unit, snake case: `tip_u1`.
+    pub name: String,
+    /// Unit: `m`; `1` when dimensionless.
+    pub unit: &'static str,
+    /// One sentence.
+    pub about: String,
+}
+
+/// A fixed coordinate along which a field is sampled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Array name, unit included: `theta_node_m`.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// One sentence.
+    pub about: &'static str,
+    /// Coordinates.
+    pub values: Vec<f64>,
+}
+
+/// An array over time and one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Array name, unit included: `u1_m`.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Name of its [`Axis`].
+    pub axis: &'static str,
+    /// One sentence.
+    pub about: &'static str,
+    /// Length along the axis.
+    pub len: usize,
+}
+
+/// What will be recorded, known before the first step.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Header {
+    /// Columns of the history; the first is `t [s]`.
+    pub columns: Vec<Column>,
+    /// Coordinates.
+    pub axes: Vec<Axis>,
+    /// Fields.
+    pub fields: Vec<Field>,
+}
+
+/// Where the run stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Simulated time [s].
+    pub t: f64,
+    /// Simulated time at the end [s].
+    pub end: f64,
+    /// Accepted steps so far.
+    pub steps: u64,
+    /// Current step [s].
+    pub step: f64,
+    /// Current order.
+    pub order: u8,
+}
+
+/// Whether to go on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Control {
+    /// Go on.
+    Continue,
+    /// Stop here, with a reason; what is recorded stands.
+    Stop(String),
+}
+
+/// Receives what a run produces, in order of time.
+pub trait Recorder {
+    /// Called once, before the first row.
+    fn begin(&mut self, header: &Header) -> Result<()>;
+    /// One row of the history; length of `header.columns`.
+    fn history(&mut self, row: &[f64]) -> Result<()>;
+    /// One instant of all fields, in the order of `header.fields`.
+    fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()>;
+    /// Called after every accepted step; cheap.
+    fn progress(&mut self, progress: &Progress) -> Result<Control>;
+}
+
+/// Keeps everything in memory, for tests and studies.
+#[derive(Clone, Debug, Default)]
+pub struct Memory {
+    /// As begun.
+    pub header: Header,
+    /// Rows of the history.
+    pub rows: Vec<Vec<f64>>,
+    /// Times of the fields.
+    pub field_times: Vec<f64>,
+    /// Fields: `fields[f][time]` is the array of field f.
+    pub fields: Vec<Vec<Vec<f64>>>,
+}
+
+impl Memory {
+    /// One column of the history by name. Panics in tests when there is none.
+    pub fn column(&self, name: &str) -> Option<Vec<f64>> {
+        let k = self.header.columns.iter().position(|c| c.name == name)?;
+        Some(self.rows.iter().map(|r| r[k]).collect())
+    }
+
+    /// One field by name: an array for each recorded time.
+    pub fn field(&self, name: &str) -> Option<&[Vec<f64>]> {
+        let k = self.header.fields.iter().position(|f| f.name == name)?;
+        Some(&self.fields[k])
+    }
+}
+
+impl Recorder for Memory {
+    fn begin(&mut self, header: &Header) -> Result<()> {
+        self.header = header.clone();
+        self.fields = vec![Vec::new(); header.fields.len()];
+        Ok(())
+    }
+    fn history(&mut self, row: &[f64]) -> Result<()> {
+        self.rows.push(row.to_vec());
+        Ok(())
+    }
+    fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()> {
+        self.field_times.push(t);
+        for (kept, array) in self.fields.iter_mut().zip(arrays) {
+            kept.push(array.to_vec());
+        }
+        Ok(())
+    }
+    fn progress(&mut self, _: &Progress) -> Result<Control> {
+        Ok(Control::Continue)
+    }
+}

@@ -1,0 +1,131 @@
+//! The summary of a run: `summary.json`.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// Reached the end time.
+    Finished,
+    /// Stopped for a reason that is not a failure (asked to, or left the model's range).
+    Stopped,
+    /// The solver could not go on.
+    Failed,
+}
+
+/// A quantity over the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Quantity {
+    /// At the last output time.
+    #[serde(rename = "final", skip_serializing_if = "Option::is_none")]
+    pub last: Option<f64>,
+    /// Largest absolute value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_abs: Option<f64>,
+    /// Largest absolute value in the window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window_max_abs: Option<f64>,
+    /// Increment (energies) or ratio of increments (efficiency) over the window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window: Option<f64>,
+}
+
+/// Whether the balances close.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Balances {
+    /// Largest residual of the energy balance over the largest energy seen.
+    pub energy_residual_relative: f64,
+    /// Largest residual of any network's volume balance over its largest volume change or a reference volume.
+    pub volume_residual_relative: f64,
+    /// Largest residual of the momentum balance over the largest momentum or impulse seen.
+    pub momentum_residual_relative: f64,
+    /// Largest residual of the angular momentum balance, likewise.
+    pub angular_momentum_residual_relative: f64,
+    /// Energies and works at the end [J].
+    pub energy_j: BTreeMap<String, f64>,
+}
+
+/// Work done by the integrator.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Counters {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Residuals for the nonlinear solver.
+    pub residual_evaluations: u64,
+    /// Jacobians.
+    pub jacobian_evaluations: u64,
+    /// Numerical factorisations, refactorisations included.
+    pub factorizations: u64,
+    /// Factorisations done anew because the pivots had grown bad.
+    pub pivot_refreshes: u64,
+    /// Steps rejected by the error test.
+    pub error_test_failures: u64,
+    /// Newton iterations that did not converge.
+    pub newton_failures: u64,
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Linear solves.
+    pub linear_solves: u64,
+    /// Restarts (switching times, checkpoints).
+    pub restarts: u64,
+    /// Accepted steps by order, index 0 is order 1.
+    pub steps_by_order: Vec<u64>,
+    /// Highest order allowed.
+    pub max_order: u8,
+}
+
+/// Where wall time went [s].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WallTimes {
+    /// Everything.
+    pub total: f64,
+    /// Residuals.
+    pub residual: f64,
+    /// Jacobians.
+    pub jacobian: f64,
+    /// Factorisations and solves.
+    pub linear_solver: f64,
+    /// Ledgers, sampling and files.
+    pub output: f64,
+}
+
+/// What was chosen, and why.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Chosen {
+    /// The choice: `on`, `off`.
+    pub value: String,
+    /// The number that decided.
+    pub reason: String,
+}
+
+/// `summary.json`; see the README for its keys.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Name of the case.
+    pub case: String,
+    /// How the run ended.
+    pub status: Status,
+    /// Why, when it did not finish.
+    pub reason: Option<String>,
+    /// Simulated time reached [s].
+    pub time_s: f64,
+    /// Number of unknowns.
+    pub unknowns: usize,
+    /// Quantities of interest.
+    pub quantities: BTreeMap<String, Quantity>,
+    /// Balances.
+    pub balances: Balances,
+    /// Integrator.
+    pub solver: Counters,
+    /// Wall time.
+    pub wall_s: WallTimes,
+    /// Effects.
+    pub effects: BTreeMap<String, Chosen>,
+    /// Characteristic numbers.
+    pub characteristic: BTreeMap<String, f64>,
+    /// Everything the user should know before trusting the result.
+    pub warnings: Vec<String>,
+}
