@@ -17,6 +17,40 @@ pub struct Violation {
     pub hint: Option<String>,
     /// Bytes of the text to point at; filled in by [`crate::case`] from the pointer when absent.
     pub span: Option<std::ops::Range<usize>>,
+    /// The `--set` argument the value came from; `span` then points into it instead of the file.
+    pub set: Option<String>,
+}
+
+impl Violation {
+    /// A fault at a JSON pointer.
+    pub fn new(pointer: impl Into<String>, what: impl Into<String>) -> Self {
+        let (pointer, what) = (pointer.into(), what.into());
+        Self {
+            pointer,
+            what,
+            allowed: None,
+            nearest: None,
+            hint: None,
+            span: None,
+            set: None,
+        }
+    }
+
+    /// Says what is allowed there.
+    pub fn allowed(self, allowed: impl Into<String>) -> Self {
+        Self {
+            allowed: Some(allowed.into()),
+            ..self
+        }
+    }
+
+    /// Says what to do.
+    pub fn hint(self, hint: impl Into<String>) -> Self {
+        Self {
+            hint: Some(hint.into()),
+            ..self
+        }
+    }
 }
 
 /// A case that cannot be used, with all its faults and the text they point into.

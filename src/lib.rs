@@ -2,5 +2,10 @@
 
 pub mod error;
 pub mod case;
+pub mod model;
+pub mod discrete;
 pub mod dae;
+pub mod sundials;
 pub mod run;
+pub mod output;
+pub mod cli;

@@ -1,4 +1,34 @@
-//! What the user wrote.
-pub mod schema;
-pub mod signals;
+//! What the user wrote: read, checked as a whole, every fault with its place.
+//!
+//! text -> [`parse`](mod@parse) -> JSON with places -> `--set` -> [`validate`] against the schema -> CSV tables ->
+//! [`schema::Case`] -> [`check`]
+
+mod check;
+mod choices;
+mod curve;
+mod ends;
+mod evaluate;
+mod faults;
+mod jet;
+mod load;
+pub mod locate;
+mod number_or_object;
+mod numbers;
+mod parse;
 pub mod profile;
+mod render;
+pub mod schema;
+mod schema_json;
+mod sets;
+pub mod signals;
+mod tables;
+mod validate;
+
+pub use curve::{Curve, Interpolation};
+pub use ends::{Follower, ResolvedEnd, Rotation, Translation};
+pub use load::{LoadedCase, load, parse};
+pub use profile::Profile;
+pub use render::render;
+pub use schema::Case;
+pub use schema_json::schema_json;
+pub use signals::{Clock, Jet, Signal};

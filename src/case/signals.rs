@@ -1,27 +1,207 @@
-//! Functions of time with exact first and second derivatives.
+//! Functions of time with exact first and second derivatives: what they are and how they are written.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Value of a signal with its first and second time derivative.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Jet {
-    /// Value.
-    pub value: f64,
-    /// First derivative [1/s].
-    pub rate: f64,
-    /// Second derivative [1/s^2].
-    pub acceleration: f64,
+use super::curve::{Curve, Interpolation};
+pub use super::jet::{Clock, Jet};
+use super::number_or_object::number_or_object;
+
+/// A function of time: a number for a constant, else one named form.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Signal {
+    /// Does not change.
+    Constant(f64),
+    /// A sine, with or without a smooth start.
+    Sine(Sine),
+    /// A logistic step.
+    Sigmoid(Sigmoid),
+    /// From one value to another in a given time.
+    Ramp(Ramp),
+    /// A polynomial in time.
+    Polynomial(Polynomial),
+    /// A curve through points.
+    Table(Table),
+    /// Sum of signals.
+    Sum(Vec<Signal>),
+    /// Product of signals.
+    Product(Vec<Signal>),
 }
 
-/// Time, and the smooth interval in which it is looked at.
-///
-/// Signals with kinks or jumps choose their branch by `within`, an instant inside the interval between two
-/// switching times, and evaluate that branch at `t`: inside one interval the model is smooth up to and at both ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clock {
-    /// Time [s].
-    pub t: f64,
-    /// An instant strictly inside the current smooth interval [s].
-    pub within: f64,
+/// The forms of a signal that are objects.
+#[derive(Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub(super) enum NamedSignal {
+    /// `amplitude sin(2 pi f t + phase)`, with a smooth start over the first `ramp_cycles`.
+    Sine(Sine),
+    /// `amplitude/(1 + exp(-steepness (t - midpoint)))`.
+    Sigmoid(Sigmoid),
+    /// From one value to another in a given time, constant before and after.
+    Ramp(Ramp),
+    /// `c0 + c1 t + c2 t^2 + ...`
+    Polynomial(Polynomial),
+    /// A curve through points, constant beyond its ends.
+    Table(Table),
+    /// Sum of signals.
+    Sum(#[schemars(length(min = 1))] Vec<Signal>),
+    /// Product of signals.
+    Product(#[schemars(length(min = 1))] Vec<Signal>),
 }
+
+/// `amplitude r(min(t f/ramp_cycles, 1)) sin(2 pi f t + phase)`, `r(s) = 10 s^3 - 15 s^4 + 6 s^5`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sine {
+    /// Amplitude, in the unit of the quantity.
+    pub amplitude: f64,
+    /// Frequency `f` [Hz].
+    #[schemars(range(min = 0.0))]
+    pub frequency_hz: f64,
+    /// Phase at t = 0 [rad].
+    #[serde(default)]
+    pub phase_rad: f64,
+    /// Cycles over which the sine grows to its amplitude; 0: impulsive start.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub ramp_cycles: f64,
+}
+
+/// `amplitude/(1 + exp(-steepness (t - midpoint)))`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sigmoid {
+    /// Value reached in the end, in the unit of the quantity.
+    pub amplitude: f64,
+    /// Steepness [1/s].
+    pub steepness_per_s: f64,
+    /// When half the amplitude is reached [s].
+    pub midpoint_s: f64,
+}
+
+/// From one value to another in a given time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ramp {
+    /// Value before.
+    #[serde(default)]
+    pub from: f64,
+    /// Value after.
+    pub to: f64,
+    /// When it starts [s].
+    #[serde(default)]
+    pub start_s: f64,
+    /// How long it takes [s]; 0: a step.
+    #[schemars(range(min = 0.0))]
+    pub duration_s: f64,
+    /// Form of the transition.
+    #[serde(default)]
+    pub shape: RampShape,
+}
+
+/// Form of a ramp.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RampShape {
+    /// A straight line: the rate jumps at both ends.
+    Linear,
+    /// `r(s) = 10 s^3 - 15 s^4 + 6 s^5`: rate and acceleration are continuous.
+    #[default]
+    Smooth,
+}
+
+/// `c0 + c1 x + c2 x^2 + ...`
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Polynomial {
+    /// `c0, c1, c2, ...`
+    #[schemars(length(min = 1))]
+    pub coefficients: Vec<f64>,
+}
+
+/// A curve through points, given here or in a CSV file; constant beyond its ends.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(try_from = "TableText", into = "TableText")]
+#[schemars(!try_from, !into, with = "TableText")]
+pub struct Table {
+    /// Times, ascending [s].
+    pub times_s: Vec<f64>,
+    /// Values at these times.
+    pub values: Vec<f64>,
+    /// What happens in between.
+    pub interpolation: Interpolation,
+    pub(super) curve: Curve,
+}
+
+/// A curve through points: either `times_s` and `values`, or a CSV file with a heading for each column.
+#[derive(Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Table")]
+pub(super) struct TableText {
+    /// Times, ascending [s].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    times_s: Vec<f64>,
+    /// Values at these times.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    values: Vec<f64>,
+    /// CSV file to take the points from, relative to the case file.
+    #[serde(default, skip_serializing)]
+    csv: Option<String>,
+    /// Heading of the column with the times [s]; absent: the first column.
+    #[serde(default, skip_serializing)]
+    time_column: Option<String>,
+    /// Heading of the column with the values; absent: the second column.
+    #[serde(default, skip_serializing)]
+    value_column: Option<String>,
+    /// What happens in between.
+    #[serde(default)]
+    interpolation: Interpolation,
+}
+
+impl TryFrom<TableText> for Table {
+    type Error = &'static str;
+    fn try_from(text: TableText) -> Result<Self, Self::Error> {
+        // Files are read with the case, see `tables`.
+        match (text.csv, text.time_column, text.value_column) {
+            (None, None, None) => Ok(Self::new(text.times_s, text.values, text.interpolation)),
+            _ => Err("a table whose CSV file has not been read"),
+        }
+    }
+}
+
+impl From<Table> for TableText {
+    fn from(table: Table) -> Self {
+        let Table {
+            times_s,
+            values,
+            interpolation,
+            ..
+        } = table;
+        Self {
+            times_s,
+            values,
+            csv: None,
+            time_column: None,
+            value_column: None,
+            interpolation,
+        }
+    }
+}
+
+impl Table {
+    /// Points that do not make a curve (not ascending, not as many values as times) make a signal that is zero;
+    /// [`super::check`] refuses them.
+    pub fn new(times_s: Vec<f64>, values: Vec<f64>, interpolation: Interpolation) -> Self {
+        let curve = Curve::through(&times_s, &values, interpolation).unwrap_or_default();
+        Self {
+            times_s,
+            values,
+            interpolation,
+            curve,
+        }
+    }
+}
+
+number_or_object!(Signal, NamedSignal, "a number or a named signal such as {\"sine\": {...}}", {
+    Sine = "sine", Sigmoid = "sigmoid", Ramp = "ramp", Polynomial = "polynomial",
+    Table = "table", Sum = "sum", Product = "product",
+});

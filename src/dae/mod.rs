@@ -1,7 +1,12 @@
 //! Differential-algebraic systems `F(t, y, y') = 0`, and the beam as one of them. Knows no solver.
 
+pub mod beam;
+pub mod colour;
+pub mod dual;
 pub mod pattern;
+pub mod trace;
 
+pub use beam::BeamDae;
 pub use pattern::Pattern;
 
 /// Why an evaluation could not be done.
@@ -46,6 +51,16 @@ pub trait Dae {
 
     /// Writes the entries of the Jacobian in the order of [`Dae::pattern`] into `values`. Allocates nothing.
     fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault>;
+
+    /// Number of integrals that the solver carries along without feedback, `I' = g(t, y, y')`.
+    fn integrals(&self) -> usize {
+        0
+    }
+
+    /// Writes the integrands `g(t, y, y')`; `out` has length [`Dae::integrals`]. Allocates nothing.
+    fn integrands(&mut self, _t: f64, _y: &[f64], _yp: &[f64], _out: &mut [f64]) -> Result<(), Fault> {
+        Ok(())
+    }
 
     /// Name of an unknown, for people: `"u1 [m] of node 3"`.
     fn name(&self, unknown: usize) -> String;

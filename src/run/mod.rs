@@ -1,4 +1,8 @@
 //! Runs: what drives the solver over a model. Emits what happens, prints nothing.
 
+pub mod dynamics;
+pub mod figures;
+pub mod observe;
 pub mod record;
+pub mod schedule;
 pub mod summary;

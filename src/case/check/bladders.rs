@@ -1,0 +1,147 @@
+//! Bladders: what must come with them, whether they fit, the order of their slopes.
+
+use crate::case::faults::Faults;
+use crate::case::schema::{Bladders, Case};
+use crate::error::Violation;
+
+pub(super) fn check(case: &Case, faults: &mut Faults) {
+    match (&case.bladders, &case.fluid) {
+        (Some(bladders), fluid) => {
+            if fluid.is_none() {
+                let fault = Violation::new("/bladders", "bladders without a fluid to fill them");
+                faults.push_at_key(
+                    fault.hint("add \"fluid\", or remove \"bladders\" for a dry beam"),
+                );
+            }
+            fits(case, bladders, faults);
+            slopes(bladders, faults);
+            if bladders.permeability_m4.is_some() && bladders.cross_section.is_some() {
+                two_permeabilities("/bladders", faults);
+            }
+        }
+        (None, _) => dry(case, faults),
+    }
+}
+
+/// What makes sense with bladders only.
+fn dry(case: &Case, faults: &mut Faults) {
+    let present = [
+        ("/fluid", case.fluid.is_some()),
+        ("/tubes", case.tubes.is_some()),
+        ("/network", case.network.is_some()),
+        ("/start/pressures", !case.start.pressures.is_empty()),
+    ];
+    for (pointer, _) in present.iter().filter(|(_, present)| *present) {
+        let key = pointer.rsplit('/').next().unwrap_or_default();
+        let fault = Violation::new(*pointer, format!("\"{key}\" without bladders"));
+        faults.push_at_key(fault.hint("add \"bladders\", or remove this for a dry beam"));
+    }
+}
+
+fn fits(case: &Case, bladders: &Bladders, faults: &mut Faults) {
+    let beam = &case.beam;
+    let mut refuse = |key: &str, what: String, allowed: String| {
+        faults.push(Violation::new(format!("/bladders/{key}"), what).allowed(allowed));
+    };
+    let segment = beam.length_m / bladders.per_row.max(1) as f64;
+    // A part in 1e9 forgives what decimal fractions lose.
+    let exceeds = |size: f64, room: f64| size > room * (1.0 + 1e-9);
+    if exceeds(bladders.width_m, segment) {
+        let what = format!(
+            "{} bladders of width {} m do not fit along the beam",
+            bladders.per_row, bladders.width_m
+        );
+        refuse(
+            "width_m",
+            what,
+            format!("at most {segment} m each, the length of a segment"),
+        );
+    }
+    if exceeds(2.0 * bladders.height_m, beam.height_m) {
+        let what = format!(
+            "two rows of bladders of height {} m do not fit above each other",
+            bladders.height_m
+        );
+        refuse(
+            "height_m",
+            what,
+            format!(
+                "at most {} m, half the height of the beam",
+                beam.height_m / 2.0
+            ),
+        );
+    }
+    if exceeds(bladders.length_m, beam.width_m) {
+        let what = format!(
+            "a bladder of length {} m does not fit across the beam",
+            bladders.length_m
+        );
+        refuse(
+            "length_m",
+            what,
+            format!("at most {} m, the width of the beam", beam.width_m),
+        );
+    }
+    if let Some(segments) = case
+        .mesh
+        .segments
+        .filter(|segments| *segments != bladders.per_row)
+    {
+        let fault = Violation::new(
+            "/mesh/segments",
+            format!(
+                "{segments} segments for {} bladders a row",
+                bladders.per_row
+            ),
+        );
+        faults.push(
+            fault
+                .allowed(bladders.per_row.to_string())
+                .hint("leave it out: it is the number of bladders per row"),
+        );
+    }
+}
+
+fn slopes(bladders: &Bladders, faults: &mut Faults) {
+    let (moment, force) = (
+        &bladders.area_per_moment_m2_per_n_m,
+        &bladders.area_per_force_m2_per_n,
+    );
+    let pairs = [
+        (
+            "/bladders/area_per_moment_m2_per_n_m",
+            "closing",
+            moment.closing,
+            "opening",
+            moment.opening,
+        ),
+        (
+            "/bladders/area_per_force_m2_per_n",
+            "compression",
+            force.compression,
+            "tension",
+            force.tension,
+        ),
+    ];
+    for (pointer, large_key, large, small_key, small) in pairs {
+        if large < small {
+            let what =
+                format!("the slope {large_key} ({large}) is smaller than {small_key} ({small})");
+            let fault = Violation::new(format!("{pointer}/{large_key}"), what);
+            faults.push(
+                fault
+                    .allowed(format!("at least {small}"))
+                    .hint("closing stiffens a bladder; are the two exchanged?"),
+            );
+        }
+    }
+}
+
+/// A permeability and a cross-section that would give another one.
+pub(super) fn two_permeabilities(pointer: &str, faults: &mut Faults) {
+    let fault = Violation::new(
+        format!("{pointer}/cross_section"),
+        "a permeability and a cross-section to compute it from",
+    );
+    faults.push_at_key(fault.hint("keep \"permeability_m4\" or \"cross_section\""));
+}

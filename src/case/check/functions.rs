@@ -1,0 +1,256 @@
+//! Functions of time and place: tables that make a curve, values in range, no jumps where something moves.
+
+use crate::case::faults::Faults;
+use crate::case::locate::child;
+use crate::case::profile::Profile;
+use crate::case::schema::{Case, ChainEnd};
+use crate::case::signals::{Clock, Signal};
+use crate::error::Violation;
+
+/// What a signal is used for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Role {
+    Motion,
+    Opening,
+    Other,
+}
+
+pub(super) fn check(case: &Case, faults: &mut Faults) {
+    for (pointer, role, signal) in signals(case) {
+        let known = faults.count();
+        signal_tables(&pointer, signal, faults);
+        if faults.count() == known {
+            values(&pointer, role, signal, case.time.end_s, faults);
+        }
+    }
+    for (pointer, profile) in profiles(case) {
+        let known = faults.count();
+        profile_tables(&pointer, profile, faults);
+        let place = (0..=100)
+            .map(|i| f64::from(i) / 100.0)
+            .find(|x| !profile.value(*x).is_finite());
+        if let Some(x) = place.filter(|_| faults.count() == known) {
+            faults.push(Violation::new(
+                pointer,
+                format!("not a finite number at {x} of the length"),
+            ));
+        }
+    }
+}
+
+/// All signals of a case with their pointers.
+fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
+    let mut all = vec![];
+    for (end, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
+        let (form, given) = end.form();
+        for (key, signal) in given.given() {
+            let role = if ["u1_m", "u3_m", "slope_rad"].contains(&key) {
+                Role::Motion
+            } else {
+                Role::Other
+            };
+            all.push((format!("/ends/{name}/{form}/{key}"), role, signal));
+        }
+    }
+    for (i, load) in case.loads.iter().enumerate() {
+        if let Some((key, load)) = load.distributed() {
+            all.push((
+                format!("/loads/{i}/{key}/signal"),
+                Role::Other,
+                &load.signal,
+            ));
+        }
+    }
+    let Some(network) = &case.network else {
+        return all;
+    };
+    for (i, chain) in network.chains.iter().enumerate() {
+        all.push((
+            format!("/network/chains/{i}/opening"),
+            Role::Opening,
+            &chain.opening,
+        ));
+        for (k, end) in chain.ends.iter().enumerate() {
+            let (key, signal) = match end {
+                ChainEnd::PressurePa(signal) => ("pressure_pa", signal),
+                ChainEnd::FlowM3S(signal) => ("flow_m3_s", signal),
+                ChainEnd::Sealed | ChainEnd::Connected => continue,
+            };
+            all.push((
+                format!("/network/chains/{i}/ends/{k}/{key}"),
+                Role::Other,
+                signal,
+            ));
+        }
+    }
+    for (i, tube) in network.tubes.iter().enumerate() {
+        all.push((
+            format!("/network/tubes/{i}/opening"),
+            Role::Opening,
+            &tube.opening,
+        ));
+    }
+    for (i, port) in network.ports.iter().enumerate() {
+        for (key, signal) in [
+            ("pressure_pa", &port.pressure_pa),
+            ("flow_m3_s", &port.flow_m3_s),
+        ] {
+            all.extend(
+                signal
+                    .iter()
+                    .map(|signal| (format!("/network/ports/{i}/{key}"), Role::Other, signal)),
+            );
+        }
+    }
+    all
+}
+
+/// All profiles of a case with their pointers.
+fn profiles(case: &Case) -> Vec<(String, &Profile)> {
+    let mut all = vec![];
+    for (i, load) in case.loads.iter().enumerate() {
+        if let Some((key, load)) = load.distributed() {
+            all.push((format!("/loads/{i}/{key}/profile"), &load.profile));
+        }
+    }
+    let start = &case.start;
+    let fields = [
+        ("u1_m", &start.u1_m),
+        ("u3_m", &start.u3_m),
+        ("u1_rate_m_s", &start.u1_rate_m_s),
+        ("u3_rate_m_s", &start.u3_rate_m_s),
+    ];
+    for (key, profile) in fields {
+        all.extend(
+            profile
+                .iter()
+                .map(|profile| (format!("/start/{key}"), profile)),
+        );
+    }
+    for (i, some) in start.pressures.iter().enumerate() {
+        all.push((
+            format!("/start/pressures/{i}/pressure_pa"),
+            &some.pressure_pa,
+        ));
+    }
+    all
+}
+
+fn signal_tables(pointer: &str, signal: &Signal, faults: &mut Faults) {
+    match signal {
+        Signal::Table(table) if !table.is_sound() => {
+            table_fault(
+                &child(pointer, "table"),
+                "times_s",
+                &table.times_s,
+                &table.values,
+                faults,
+            );
+        }
+        Signal::Sum(parts) | Signal::Product(parts) => {
+            let name = if matches!(signal, Signal::Sum(_)) {
+                "sum"
+            } else {
+                "product"
+            };
+            for (i, part) in parts.iter().enumerate() {
+                signal_tables(&format!("{pointer}/{name}/{i}"), part, faults);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn profile_tables(pointer: &str, profile: &Profile, faults: &mut Faults) {
+    match profile {
+        Profile::Table(table) if !table.is_sound() => {
+            table_fault(
+                &child(pointer, "table"),
+                "positions",
+                &table.positions,
+                &table.values,
+                faults,
+            );
+        }
+        Profile::Sum(parts) | Profile::Product(parts) => {
+            let name = if matches!(profile, Profile::Sum(_)) {
+                "sum"
+            } else {
+                "product"
+            };
+            for (i, part) in parts.iter().enumerate() {
+                profile_tables(&format!("{pointer}/{name}/{i}"), part, faults);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mut Faults) {
+    let fault = if at.is_empty() {
+        Violation::new(pointer, "a table without points")
+            .hint(format!("give \"{key}\" and \"values\""))
+    } else if at.len() != values.len() {
+        let what = format!("{} {key} but {} values", at.len(), values.len());
+        Violation::new(child(pointer, "values"), what)
+            .allowed(format!("{} values, one for each of {key}", at.len()))
+    } else if let Some(i) = at.windows(2).position(|w| w[0] >= w[1]) {
+        let what = format!("{} comes after {}", at[i + 1], at[i]);
+        Violation::new(format!("{pointer}/{key}/{}", i + 1), what)
+            .allowed("strictly ascending order")
+    } else {
+        Violation::new(pointer, "a table with numbers that are not finite")
+    };
+    faults.push(fault);
+}
+
+/// Looks at a signal over the run: both ends of every smooth interval and many instants inside.
+fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Faults) {
+    let mut last: Option<f64> = None;
+    for (start, stop) in signal.smooth_intervals(end) {
+        let within = 0.5 * (start + stop);
+        let at = |t: f64| signal.jet(Clock { t, within });
+        let first = at(start).value;
+        if let Some(before) = last.filter(|_| role == Role::Motion) {
+            if (first - before).abs() > 1e-9 * (first.abs() + before.abs()) {
+                let what = format!(
+                    "the motion jumps from {before} to {first} at {start} s: infinite velocity"
+                );
+                faults.push(
+                    Violation::new(pointer, what)
+                        .hint("use a ramp with a duration and a smooth shape"),
+                );
+                return;
+            }
+        }
+        last = Some(at(stop).value);
+        for t in instants(signal, start, stop) {
+            let jet = at(t);
+            if !(jet.value.is_finite() && jet.rate.is_finite() && jet.acceleration.is_finite()) {
+                faults.push(Violation::new(
+                    pointer,
+                    format!("not a finite number at {t} s"),
+                ));
+                return;
+            }
+            if role == Role::Opening && !(-1e-9..=1.0 + 1e-9).contains(&jet.value) {
+                let what = format!("an opening of {} at {t} s", jet.value);
+                faults.push(Violation::new(pointer, what).allowed("0 (closed) to 1 (open)"));
+                return;
+            }
+        }
+    }
+}
+
+/// Instants close enough to see every extremum of the signal nearly.
+fn instants(signal: &Signal, start: f64, stop: f64) -> impl Iterator<Item = f64> {
+    let periods = signal
+        .fastest_period_s()
+        .map_or(0.0, |period| (stop - start) / period);
+    let count = if signal.is_constant() {
+        1
+    } else {
+        (40.0 * periods).clamp(64.0, 1e5) as usize
+    };
+    (0..=count).map(move |i| start + (stop - start) * i as f64 / count as f64)
+}

@@ -1,0 +1,55 @@
+//! The rules that the schema cannot say, all faults at once.
+
+mod bladders;
+mod ends;
+mod functions;
+mod junctions;
+mod network;
+mod plausible;
+mod start;
+mod time;
+
+use super::faults::Faults;
+use super::schema::Case;
+use crate::error::Violation;
+
+/// A group of rules.
+type Rule = fn(&Case, &mut Faults);
+
+/// All rules, each with the sections of the case that it compares.
+const RULES: [(Rule, &[&str]); 9] = [
+    (name, &[]),
+    (plausible::sizes, &[]),
+    (plausible::proportions, &["beam", "tubes", "network"]),
+    (
+        bladders::check,
+        &[
+            "beam", "fluid", "bladders", "tubes", "network", "start", "mesh",
+        ],
+    ),
+    (network::check, &["bladders", "tubes", "network", "time"]),
+    (ends::check, &[]),
+    (functions::check, &["time"]),
+    (start::check, &["beam", "bladders", "ends", "start", "time"]),
+    (time::check, &[]),
+];
+
+/// Every rule on one case, but those that compare a broken section with others.
+pub fn check(case: &Case, broken: &[String], faults: &mut Faults) {
+    for (rule, _) in RULES.iter().filter(|(_, reads)| {
+        !broken
+            .iter()
+            .any(|section| reads.contains(&section.as_str()))
+    }) {
+        rule(case, faults);
+    }
+}
+
+/// The name becomes a folder.
+fn name(case: &Case, faults: &mut Faults) {
+    let good = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    if case.name.is_empty() || case.name.starts_with('.') || !case.name.chars().all(good) {
+        let fault = Violation::new("/name", "a name that cannot be that of a folder");
+        faults.push(fault.allowed("letters, digits, `-`, `_` and `.`, not starting with `.`"));
+    }
+}

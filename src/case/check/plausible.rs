@@ -1,0 +1,260 @@
+//! Sizes that no such device has: almost always a unit.
+
+use crate::case::faults::Faults;
+use crate::case::numbers::plain;
+use crate::case::schema::{Case, CrossSection};
+use crate::error::Violation;
+
+const MILLIMETRES: &str = "lengths are in metres; is this in millimetres?";
+
+/// What is accepted, and what to suspect beyond it.
+struct Range {
+    low: f64,
+    high: f64,
+    unit: &'static str,
+    hint: &'static str,
+}
+
+const BEAM_LENGTH: Range = Range {
+    low: 1e-6,
+    high: 1e3,
+    unit: "m",
+    hint: MILLIMETRES,
+};
+const SECTION: Range = Range {
+    low: 1e-7,
+    high: 10.0,
+    unit: "m",
+    hint: MILLIMETRES,
+};
+const BLADDER: Range = Range {
+    low: 1e-8,
+    high: 10.0,
+    unit: "m",
+    hint: MILLIMETRES,
+};
+const TUBE_LENGTH: Range = Range {
+    low: 1e-7,
+    high: 1e3,
+    unit: "m",
+    hint: MILLIMETRES,
+};
+const RADIUS: Range = Range {
+    low: 1e-9,
+    high: 0.5,
+    unit: "m",
+    hint: MILLIMETRES,
+};
+const MODULUS: Range = Range {
+    low: 1e2,
+    high: 1e13,
+    unit: "Pa",
+    hint: "moduli are in Pa; is this in MPa or GPa?",
+};
+const SOLID_DENSITY: Range = Range {
+    low: 0.1,
+    high: 3e4,
+    unit: "kg/m^3",
+    hint: "is this in g/cm^3?",
+};
+const FLUID_DENSITY: Range = Range {
+    low: 0.0,
+    high: 3e4,
+    unit: "kg/m^3",
+    hint: "densities are in kg/m^3",
+};
+const VISCOSITY: Range = Range {
+    low: 1e-7,
+    high: 1e5,
+    unit: "Pa s",
+    hint: "is this in mPa s? water has 1e-3 Pa s",
+};
+const PERMEABILITY: Range = Range {
+    low: 1e-36,
+    high: 10.0,
+    unit: "m^4",
+    hint: "a circle has pi r^4/8, r in metres",
+};
+const SOFTNESS: Range = Range {
+    low: 1e-25,
+    high: 1e-3,
+    unit: "m^2/Pa",
+    hint: "area in m^2 per pressure in Pa; is this per MPa or in mm^2?",
+};
+const FACTOR: Range = Range {
+    low: 1e-6,
+    high: 1e3,
+    unit: "1",
+    hint: "a ratio to the full section, near 1",
+};
+const DURATION: Range = Range {
+    low: 1e-9,
+    high: 1e7,
+    unit: "s",
+    hint: "times are in seconds",
+};
+
+/// Longest beam, in heights.
+const MOST_SLENDER: f64 = 4000.0;
+/// Longest tube, in lengths of the beam.
+const LONGEST_TUBE: f64 = 100.0;
+
+/// Sizes of everything that has a size.
+pub(super) fn sizes(case: &Case, faults: &mut Faults) {
+    let mut look = |pointer: &str, value: f64, range: &Range| {
+        if !(range.low..=range.high).contains(&value) && !faults.has(pointer) {
+            let fault = Violation::new(
+                pointer,
+                format!("{} {} is not a plausible size", plain(value), unit(range)),
+            );
+            let allowed = format!(
+                "{} to {} {}",
+                plain(range.low),
+                plain(range.high),
+                unit(range)
+            );
+            faults.push(fault.allowed(allowed.trim_end()).hint(range.hint));
+        }
+    };
+    let beam = &case.beam;
+    look("/beam/length_m", beam.length_m, &BEAM_LENGTH);
+    look("/beam/height_m", beam.height_m, &SECTION);
+    look("/beam/width_m", beam.width_m, &SECTION);
+    look("/beam/young_modulus_pa", beam.young_modulus_pa, &MODULUS);
+    look("/beam/density_kg_m3", beam.density_kg_m3, &SOLID_DENSITY);
+    look(
+        "/beam/axial_stiffness_factor",
+        beam.axial_stiffness_factor,
+        &FACTOR,
+    );
+    look(
+        "/beam/bending_stiffness_factor",
+        beam.bending_stiffness_factor,
+        &FACTOR,
+    );
+    look(
+        "/beam/mass_factor",
+        beam.mass_factor.unwrap_or(1.0),
+        &FACTOR,
+    );
+    look("/time/end_s", case.time.end_s, &DURATION);
+    if let Some(fluid) = &case.fluid {
+        look("/fluid/density_kg_m3", fluid.density_kg_m3, &FLUID_DENSITY);
+        look("/fluid/viscosity_pa_s", fluid.viscosity_pa_s, &VISCOSITY);
+    }
+    if let Some(bladders) = &case.bladders {
+        look("/bladders/length_m", bladders.length_m, &BLADDER);
+        look("/bladders/height_m", bladders.height_m, &BLADDER);
+        look("/bladders/width_m", bladders.width_m, &BLADDER);
+        look(
+            "/bladders/area_per_pressure_m2_per_pa",
+            bladders.area_per_pressure_m2_per_pa,
+            &SOFTNESS,
+        );
+        if let Some(permeability) = bladders.permeability_m4 {
+            look("/bladders/permeability_m4", permeability, &PERMEABILITY);
+        }
+        for (key, size) in bladders.cross_section.iter().flat_map(sides) {
+            look(&format!("/bladders/cross_section/{key}"), size, &BLADDER);
+        }
+    }
+    if let Some(tubes) = &case.tubes {
+        look("/tubes/length_m", tubes.length_m, &TUBE_LENGTH);
+        look("/tubes/radius_m", tubes.radius_m, &RADIUS);
+        if let Some(permeability) = tubes.permeability_m4 {
+            look("/tubes/permeability_m4", permeability, &PERMEABILITY);
+        }
+    }
+    for (i, tube) in case
+        .network
+        .iter()
+        .flat_map(|network| &network.tubes)
+        .enumerate()
+    {
+        let tube_at = format!("/network/tubes/{i}");
+        if let Some(length) = tube.length_m {
+            look(&format!("{tube_at}/length_m"), length, &TUBE_LENGTH);
+        }
+        if let Some(permeability) = tube.permeability_m4 {
+            look(
+                &format!("{tube_at}/permeability_m4"),
+                permeability,
+                &PERMEABILITY,
+            );
+        }
+        for (key, size) in tube.cross_section.iter().flat_map(sides) {
+            look(&format!("{tube_at}/cross_section/{key}"), size, &RADIUS);
+        }
+    }
+}
+
+/// Lengths that do not go together.
+pub(super) fn proportions(case: &Case, faults: &mut Faults) {
+    let beam = &case.beam;
+    let slenderness = beam.length_m / beam.height_m;
+    if slenderness > MOST_SLENDER && !faults.has("/beam/length_m") && !faults.has("/beam/height_m")
+    {
+        let what = format!("a beam {} times as long as it is high", slenderness.round());
+        let fault = Violation::new("/beam/length_m", what);
+        faults.push(
+            fault
+                .allowed(format!("up to {MOST_SLENDER} times the height"))
+                .hint(MILLIMETRES),
+        );
+    }
+    let shared = case
+        .tubes
+        .iter()
+        .map(|tubes| ("/tubes/length_m".to_owned(), tubes.length_m));
+    let single = case
+        .network
+        .iter()
+        .flat_map(|network| &network.tubes)
+        .enumerate();
+    let single =
+        single.filter_map(|(i, t)| Some((format!("/network/tubes/{i}/length_m"), t.length_m?)));
+    for (pointer, length) in shared.chain(single) {
+        let longest = LONGEST_TUBE * beam.length_m;
+        if length > longest && !faults.has(&pointer) {
+            let fault = Violation::new(
+                pointer,
+                format!(
+                    "a tube of {} m on a beam of {} m",
+                    plain(length),
+                    plain(beam.length_m)
+                ),
+            );
+            faults.push(
+                fault
+                    .allowed(format!("up to {} m", plain(longest)))
+                    .hint(MILLIMETRES),
+            );
+        }
+    }
+}
+
+fn unit(range: &Range) -> &'static str {
+    if range.unit == "1" { "" } else { range.unit }
+}
+
+fn sides(section: &CrossSection) -> Vec<(&'static str, f64)> {
+    match *section {
+        CrossSection::Circle { radius_m } => vec![("circle/radius_m", radius_m)],
+        CrossSection::Rectangle { height_m, width_m } => {
+            vec![
+                ("rectangle/height_m", height_m),
+                ("rectangle/width_m", width_m),
+            ]
+        }
+        CrossSection::Ellipse {
+            semi_axis_a_m,
+            semi_axis_b_m,
+        } => {
+            vec![
+                ("ellipse/semi_axis_a_m", semi_axis_a_m),
+                ("ellipse/semi_axis_b_m", semi_axis_b_m),
+            ]
+        }
+        CrossSection::Triangle { side_m } => vec![("triangle/side_m", side_m)],
+    }
+}

@@ -1,0 +1,107 @@
+//! The state at t = 0: bladders that exist, and agreement with what holds the ends.
+
+use std::collections::HashMap;
+
+use crate::case::ends::{Rotation, Translation};
+use crate::case::faults::Faults;
+use crate::case::locate::child;
+use crate::case::profile::Profile;
+use crate::case::schema::{Case, End};
+use crate::case::signals::{Clock, Signal};
+use crate::error::Violation;
+
+pub(super) fn check(case: &Case, faults: &mut Faults) {
+    pressures(case, faults);
+    agreement(&case.ends.root, "root", 0.0, case, faults);
+    agreement(&case.ends.tip, "tip", 1.0, case, faults);
+}
+
+fn pressures(case: &Case, faults: &mut Faults) {
+    let Some(bladders) = &case.bladders else {
+        return;
+    };
+    let mut known = HashMap::new();
+    for (i, some) in case.start.pressures.iter().enumerate() {
+        for (k, &index) in some.bladders.iter().enumerate() {
+            let pointer = format!("/start/pressures/{i}/bladders/{k}");
+            if super::network::exists(index, bladders.per_row, &pointer, faults) {
+                if let Some(first) = known.insert(index, pointer.clone()) {
+                    let what =
+                        format!("the pressure of bladder {index} is given twice, first at {first}");
+                    faults.push(Violation::new(pointer, what));
+                }
+            }
+        }
+    }
+}
+
+/// Displacement and slope at an end as the start has them and as the end is driven.
+fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Faults) {
+    let (form, given) = end.form();
+    let length = case.beam.length_m;
+    let resolved = end.resolve();
+    let mut compare = |key: &str,
+                       start_key: &str,
+                       starts: f64,
+                       signal: &Signal,
+                       tolerance: f64,
+                       unit: &str| {
+        let driven = signal.at_start(case.time.end_s);
+        if (starts - driven).abs() > tolerance {
+            let by_hand = given.given().any(|(k, _)| k == key);
+            let pointer = if by_hand {
+                child(&format!("/ends/{name}/{form}"), key)
+            } else {
+                format!("/start/{start_key}")
+            };
+            let what = format!(
+                "at t = 0 the {name} is driven to {key} = {driven} {unit}, but the start has {starts} {unit}"
+            );
+            let hint = format!("let the signal begin at {starts}, or change /start/{start_key}");
+            faults.push(
+                Violation::new(pointer, what)
+                    .allowed(format!("agreement within {tolerance:.1e} {unit}"))
+                    .hint(hint),
+            );
+        }
+    };
+    let value = |profile: &Option<Profile>| profile.as_ref().map_or(0.0, |p| p.value(x));
+    let rate = |profile: &Option<Profile>| profile.as_ref().map_or(0.0, |p| p.slope(x) / length);
+    if let Translation::Displacement(signal) = &resolved.transverse {
+        compare(
+            "u1_m",
+            "u1_m",
+            value(&case.start.u1_m),
+            signal,
+            1e-6 * length,
+            "m",
+        );
+    }
+    if let Translation::Displacement(signal) = &resolved.axial {
+        compare(
+            "u3_m",
+            "u3_m",
+            value(&case.start.u3_m),
+            signal,
+            1e-6 * length,
+            "m",
+        );
+    }
+    if let Rotation::Slope(signal) = &resolved.rotation {
+        // Looser: a table of measured points has no exact slope at its end.
+        let slope = rate(&case.start.u1_m).atan2(1.0 + rate(&case.start.u3_m));
+        compare("slope_rad", "u1_m", slope, signal, 1e-3, "rad");
+    }
+}
+
+impl Signal {
+    /// Value at t = 0 as the first smooth interval has it.
+    fn at_start(&self, end: f64) -> f64 {
+        let (_, stop) = self.smooth_intervals(end)[0];
+        self.jet(Clock {
+            t: 0.0,
+            within: 0.5 * stop,
+        })
+        .value
+    }
+}

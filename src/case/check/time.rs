@@ -1,0 +1,36 @@
+//! Run and output times.
+
+use crate::case::faults::Faults;
+use crate::case::schema::Case;
+use crate::error::Violation;
+
+pub(super) fn check(case: &Case, faults: &mut Faults) {
+    let time = &case.time;
+    let mut refuse = |key: &str, what: String, allowed: String| {
+        faults.push(Violation::new(format!("/time/{key}"), what).allowed(allowed));
+    };
+    let intervals = [
+        ("output_interval_s", time.output_interval_s),
+        ("fields_interval_s", time.fields_interval_s),
+        ("window_s", time.window_s),
+    ];
+    for (key, interval) in intervals {
+        if let Some(interval) = interval.filter(|interval| *interval > time.end_s * (1.0 + 1e-9)) {
+            let what = format!("{interval} s is longer than the run of {} s", time.end_s);
+            refuse(key, what, format!("at most {} s", time.end_s));
+        }
+    }
+    let output = time.output_interval();
+    if let Some(fields) = time.fields_interval_s {
+        let ratio = fields / output;
+        if ratio < 1.0 - 1e-6 || (ratio - ratio.round()).abs() > 1e-6 * ratio {
+            let what = format!("{fields} s is not a multiple of the output interval of {output} s");
+            let below = (ratio.floor().max(1.0)) * output;
+            refuse(
+                "fields_interval_s",
+                what,
+                format!("multiples of {output} s, such as {below} s"),
+            );
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! How `effects` and `max_order` are written: a word, or something more precise.
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{MapAccess, Unexpected, Visitor, value::MapAccessDeserializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::schema::{EffectChoices, Effects, MaxOrder};
+
+impl Serialize for Effects {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Auto => serializer.serialize_str("auto"),
+            Self::Full => serializer.serialize_str("full"),
+            Self::Chosen(choices) => choices.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Effects {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+        impl<'de> Visitor<'de> for Reader {
+            type Value = Effects;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("\"auto\", \"full\" or an object of named choices")
+            }
+            fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<Effects, E> {
+                match word {
+                    "auto" => Ok(Effects::Auto),
+                    "full" => Ok(Effects::Full),
+                    _ => Err(E::invalid_value(Unexpected::Str(word), &self)),
+                }
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Effects, A::Error> {
+                EffectChoices::deserialize(MapAccessDeserializer::new(map)).map(Effects::Chosen)
+            }
+        }
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+impl JsonSchema for Effects {
+    fn schema_name() -> Cow<'static, str> {
+        "Effects".into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let choices = generator.subschema_for::<EffectChoices>();
+        json_schema!({ "anyOf": [
+            { "type": "string", "const": "auto", "description": "The program chooses and says why." },
+            { "type": "string", "const": "full", "description": "Everything the case describes." },
+            choices
+        ]})
+    }
+}
+
+impl Serialize for MaxOrder {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Auto => serializer.serialize_str("auto"),
+            Self::Order(order) => serializer.serialize_u8(*order),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for MaxOrder {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+        impl Visitor<'_> for Reader {
+            type Value = MaxOrder;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("\"auto\" or an order from 1 to 5")
+            }
+            fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<MaxOrder, E> {
+                match word {
+                    "auto" => Ok(MaxOrder::Auto),
+                    _ => Err(E::invalid_value(Unexpected::Str(word), &self)),
+                }
+            }
+            fn visit_u64<E: serde::de::Error>(self, order: u64) -> Result<MaxOrder, E> {
+                match u8::try_from(order) {
+                    Ok(order @ 1..=5) => Ok(MaxOrder::Order(order)),
+                    _ => Err(E::invalid_value(Unexpected::Unsigned(order), &self)),
+                }
+            }
+        }
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+impl JsonSchema for MaxOrder {
+    fn schema_name() -> Cow<'static, str> {
+        "MaxOrder".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "description": "Highest BDF order.", "anyOf": [
+            { "type": "string", "const": "auto", "description": "2 with undamped inertia, 5 without inertia." },
+            { "type": "integer", "minimum": 1, "maximum": 5, "description": "As given." }
+        ]})
+    }
+}

@@ -1,0 +1,191 @@
+//! Values, derivatives, switching times and time scales of signals.
+
+use std::f64::consts::TAU;
+
+use super::curve::Interpolation;
+use super::signals::{Clock, Jet, Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine, Table};
+
+impl Signal {
+    /// Value with first and second derivative; does not allocate.
+    pub fn jet(&self, clock: Clock) -> Jet {
+        match self {
+            Self::Constant(value) => Jet::constant(*value),
+            Self::Sine(sine) => sine.jet(clock.t),
+            Self::Sigmoid(sigmoid) => sigmoid.jet(clock.t),
+            Self::Ramp(ramp) => ramp.jet(clock),
+            Self::Polynomial(polynomial) => polynomial.jet(clock.t),
+            Self::Table(table) => table.curve.jet(clock.t, clock.within, table.interpolation),
+            Self::Sum(terms) => terms
+                .iter()
+                .fold(Jet::default(), |sum, term| sum + term.jet(clock)),
+            Self::Product(factors) => factors
+                .iter()
+                .fold(Jet::constant(1.0), |product, f| product * f.jet(clock)),
+        }
+    }
+
+    /// Value at an instant that is not a switching time.
+    pub fn value(&self, t: f64) -> f64 {
+        self.jet(Clock { t, within: t }).value
+    }
+
+    /// Appends the times [s] at which the signal or one of its first three derivatives jumps. Left out are joins
+    /// that are twice continuously differentiable and of no harm to an integrator: inner knots of cubic tables,
+    /// the end of a sine's smooth start.
+    pub fn breaks(&self, out: &mut Vec<f64>) {
+        match self {
+            Self::Constant(_) | Self::Sine(_) | Self::Sigmoid(_) | Self::Polynomial(_) => {}
+            Self::Ramp(ramp) if ramp.duration_s > 0.0 => {
+                out.extend([ramp.start_s, ramp.start_s + ramp.duration_s])
+            }
+            Self::Ramp(ramp) => out.push(ramp.start_s),
+            Self::Table(table) if table.times_s.len() < 2 => {}
+            Self::Table(table) if table.interpolation == Interpolation::Linear => {
+                out.extend(&table.times_s)
+            }
+            Self::Table(table) => out.extend(
+                table
+                    .times_s
+                    .first()
+                    .into_iter()
+                    .chain(table.times_s.last()),
+            ),
+            Self::Sum(parts) | Self::Product(parts) => {
+                parts.iter().for_each(|part| part.breaks(out))
+            }
+        }
+    }
+
+    /// The intervals of `[0, end]` between switching times, in order; at least one.
+    pub fn smooth_intervals(&self, end: f64) -> Vec<(f64, f64)> {
+        let mut times = vec![0.0, end];
+        self.breaks(&mut times);
+        times.retain(|t| (0.0..=end).contains(t));
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        if times.len() < 2 {
+            return vec![(0.0, end)];
+        }
+        times.windows(2).map(|w| (w[0], w[1])).collect()
+    }
+
+    /// Shortest time scale [s]: period of a sine, duration of a ramp, `4/steepness` of a sigmoid, smallest spacing
+    /// of a table. The frequencies of the factors of a product add.
+    pub fn fastest_period_s(&self) -> Option<f64> {
+        let scale = match self {
+            _ if self.is_constant() => None,
+            Self::Constant(_) | Self::Polynomial(_) => None,
+            Self::Sine(sine) => Some(1.0 / sine.frequency_hz),
+            Self::Sigmoid(sigmoid) => Some(4.0 / sigmoid.steepness_per_s.abs()),
+            Self::Ramp(ramp) => Some(ramp.duration_s),
+            Self::Table(table) => table.curve.smallest_spacing(),
+            Self::Sum(terms) => terms
+                .iter()
+                .filter_map(Self::fastest_period_s)
+                .reduce(f64::min),
+            Self::Product(factors) => {
+                let frequency: f64 = factors
+                    .iter()
+                    .filter_map(Self::fastest_period_s)
+                    .map(f64::recip)
+                    .sum();
+                Some(frequency.recip())
+            }
+        };
+        scale.filter(|s| s.is_finite() && *s > 0.0)
+    }
+
+    /// Never changes.
+    pub fn is_constant(&self) -> bool {
+        match self {
+            Self::Constant(_) => true,
+            Self::Sine(sine) => sine.amplitude == 0.0 || sine.frequency_hz == 0.0,
+            Self::Sigmoid(sigmoid) => sigmoid.amplitude == 0.0 || sigmoid.steepness_per_s == 0.0,
+            Self::Ramp(ramp) => ramp.from == ramp.to,
+            Self::Polynomial(polynomial) => {
+                polynomial.coefficients.iter().skip(1).all(|c| *c == 0.0)
+            }
+            Self::Table(table) => table.curve.is_constant(),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().all(Self::is_constant),
+        }
+    }
+}
+
+impl Sine {
+    fn jet(&self, t: f64) -> Jet {
+        let w = TAU * self.frequency_hz;
+        let (sin, cos) = (w * t + self.phase_rad).sin_cos();
+        let a = self.amplitude;
+        let sine = Jet {
+            value: a * sin,
+            rate: a * w * cos,
+            acceleration: -a * w * w * sin,
+        };
+        let s = t * self.frequency_hz / self.ramp_cycles;
+        if self.ramp_cycles <= 0.0 || s >= 1.0 {
+            sine
+        } else if s <= 0.0 {
+            Jet::default()
+        } else {
+            sine * Jet::smooth_step(t, 0.0, self.ramp_cycles / self.frequency_hz)
+        }
+    }
+}
+
+impl Sigmoid {
+    /// `y = A g`, `y' = A k g h`, `y'' = A k^2 g h (h - g)` with `g = 1/(1 + e^-z)`, `h = 1 - g`, `z = k (t - t0)`;
+    /// only `e^-|z|` is formed, which cannot overflow.
+    fn jet(&self, t: f64) -> Jet {
+        let (a, k) = (self.amplitude, self.steepness_per_s);
+        let z = k * (t - self.midpoint_s);
+        let small = (-z.abs()).exp();
+        let (near, far) = (1.0 / (1.0 + small), small / (1.0 + small));
+        let (g, h) = if z >= 0.0 { (near, far) } else { (far, near) };
+        Jet {
+            value: a * g,
+            rate: a * k * g * h,
+            acceleration: a * k * k * g * h * (h - g),
+        }
+    }
+}
+
+impl Ramp {
+    fn jet(&self, clock: Clock) -> Jet {
+        if clock.within <= self.start_s && (self.duration_s > 0.0 || clock.within < self.start_s) {
+            return Jet::constant(self.from);
+        }
+        if clock.within >= self.start_s + self.duration_s {
+            return Jet::constant(self.to);
+        }
+        let part = match self.shape {
+            RampShape::Smooth => Jet::smooth_step(clock.t, self.start_s, self.duration_s),
+            RampShape::Linear => Jet {
+                value: (clock.t - self.start_s) / self.duration_s,
+                rate: 1.0 / self.duration_s,
+                acceleration: 0.0,
+            },
+        };
+        Jet::constant(self.from) + part.scaled(self.to - self.from)
+    }
+}
+
+impl Polynomial {
+    /// Horner's rule for value and derivatives at once.
+    pub(super) fn jet(&self, x: f64) -> Jet {
+        self.coefficients
+            .iter()
+            .rev()
+            .fold(Jet::default(), |p, &c| Jet {
+                value: p.value * x + c,
+                rate: p.rate * x + p.value,
+                acceleration: p.acceleration * x + 2.0 * p.rate,
+            })
+    }
+}
+
+impl Table {
+    /// Whether the points make a curve.
+    pub fn is_sound(&self) -> bool {
+        self.curve != super::curve::Curve::default()
+    }
+}

@@ -1,0 +1,205 @@
+//! Faults as they are collected: by pointer first, placed in the text at the end.
+
+use serde_json::Value;
+
+use super::locate::{Node, Place, tokens};
+use crate::error::Violation;
+
+/// What a fault points at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mark {
+    Value,
+    Key,
+}
+
+/// All faults found so far.
+#[derive(Debug, Default)]
+pub struct Faults {
+    list: Vec<(Violation, Mark)>,
+    unknown_keys: Vec<String>,
+}
+
+impl Faults {
+    /// Adds a fault in a value.
+    pub fn push(&mut self, violation: Violation) {
+        self.list.push((violation, Mark::Value));
+    }
+
+    /// Adds a fault in the key of a value, or in something missing from it.
+    pub fn push_at_key(&mut self, violation: Violation) {
+        self.list.push((violation, Mark::Key));
+    }
+
+    /// Adds the fault that a key is not known.
+    pub fn push_unknown_key(&mut self, violation: Violation) {
+        self.unknown_keys.push(violation.pointer.clone());
+        self.push_at_key(violation);
+    }
+
+    /// Takes the members with unknown keys out of the value, so that the rest can be looked at.
+    pub fn remove_unknown_keys(&self, value: &mut Value) {
+        for pointer in &self.unknown_keys {
+            let Some((parent, _)) = pointer.rsplit_once('/') else {
+                continue;
+            };
+            if let (Some(Value::Object(members)), Some(key)) =
+                (value.pointer_mut(parent), tokens(pointer).last())
+            {
+                members.shift_remove(&key);
+            }
+        }
+    }
+
+    /// Whether something was found at a pointer.
+    pub fn has(&self, pointer: &str) -> bool {
+        self.list.iter().any(|(fault, _)| fault.pointer == pointer)
+    }
+
+    /// How many were found.
+    pub fn count(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Nothing found.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Drops faults at or below the given pointers: those already have one.
+    pub fn drop_below(&mut self, pointers: &[String]) {
+        self.list
+            .retain(|(fault, _)| !pointers.iter().any(|p| is_below(&fault.pointer, p)));
+    }
+
+    /// All faults with their places, in the order of the text.
+    pub fn placed(self, source: &Source) -> Vec<Violation> {
+        let mut placed: Vec<_> = self
+            .list
+            .into_iter()
+            .map(|(fault, mark)| source.place(fault, mark))
+            .collect();
+        sort(&mut placed);
+        placed.dedup();
+        placed
+    }
+}
+
+/// Orders faults as the text does; those in `--set` arguments last.
+pub fn sort(faults: &mut [Violation]) {
+    faults.sort_by_key(|fault| {
+        (
+            fault.set.is_some(),
+            fault.span.as_ref().map_or(0, |span| span.start),
+        )
+    });
+}
+
+/// Whether `pointer` leads to what `ancestor` leads to, or into it.
+pub fn is_below(pointer: &str, ancestor: &str) -> bool {
+    pointer
+        .strip_prefix(ancestor)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+}
+
+/// A value set on the command line.
+#[derive(Clone, Debug)]
+pub struct SetValue {
+    /// The argument, `POINTER=JSON`.
+    pub argument: String,
+    /// The pointer; for a value added to the end of an array, with its index.
+    pub pointer: String,
+    /// Bytes of the argument at which the JSON text starts.
+    pub json_at: usize,
+    /// The value with places in the JSON text; none when the member is removed.
+    pub node: Option<Node>,
+}
+
+/// Where the parts of a case were written: in the file or on the command line.
+#[derive(Clone, Debug, Default)]
+pub struct Source {
+    /// The file.
+    pub file: Option<Node>,
+    /// The `--set` arguments in order.
+    pub sets: Vec<SetValue>,
+}
+
+impl Source {
+    /// Fills in the place of a fault from its pointer.
+    pub fn locate(&self, fault: Violation) -> Violation {
+        self.place(fault, Mark::Value)
+    }
+
+    fn place(&self, fault: Violation, mark: Mark) -> Violation {
+        if fault.span.is_some() {
+            return fault;
+        }
+        let span_of = |place: Place| match (mark, place.key) {
+            (Mark::Key, Some(key)) => key,
+            // An object or array is shown by its opening bracket only.
+            (Mark::Key, None) => place.value.start..place.value.start + 1,
+            (Mark::Value, _) => place.value,
+        };
+        // The last argument that set the value, or something around it, has it.
+        if let Some(set) = self
+            .sets
+            .iter()
+            .rev()
+            .find(|set| is_below(&fault.pointer, &set.pointer))
+        {
+            let inner = set
+                .node
+                .as_ref()
+                .and_then(|node| node.place(&fault.pointer[set.pointer.len()..]));
+            let span = match inner {
+                Some(place) if fault.pointer != set.pointer || mark == Mark::Value => {
+                    let span = span_of(place);
+                    set.json_at + span.start..set.json_at + span.end
+                }
+                _ => 0..set.json_at.saturating_sub(1),
+            };
+            return Violation {
+                set: Some(set.argument.clone()),
+                span: Some(span),
+                ..fault
+            };
+        }
+        let mut pointer = fault.pointer.as_str();
+        loop {
+            if let Some(place) = self.file.as_ref().and_then(|node| node.place(pointer)) {
+                let exact = pointer == fault.pointer;
+                let span = if exact {
+                    span_of(place)
+                } else {
+                    place.key.unwrap_or(place.value)
+                };
+                return Violation {
+                    span: Some(span),
+                    ..fault
+                };
+            }
+            // Not in the file: an object that a `--set` argument made.
+            if let Some(set) = self
+                .sets
+                .iter()
+                .rev()
+                .find(|set| is_below(&set.pointer, pointer))
+            {
+                let span = Some(0..set.json_at.saturating_sub(1));
+                return Violation {
+                    set: Some(set.argument.clone()),
+                    span,
+                    ..fault
+                };
+            }
+            match pointer.rfind('/') {
+                Some(end) => pointer = &pointer[..end],
+                None => {
+                    return Violation {
+                        span: Some(0..0),
+                        ..fault
+                    };
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Value, first and second derivative in time as one quantity, with the rules of calculus.
+
+/// Value of a signal with its first and second time derivative.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Jet {
+    /// Value.
+    pub value: f64,
+    /// First derivative [1/s].
+    pub rate: f64,
+    /// Second derivative [1/s^2].
+    pub acceleration: f64,
+}
+
+impl Jet {
+    /// A value that does not change.
+    pub fn constant(value: f64) -> Self {
+        Self {
+            value,
+            rate: 0.0,
+            acceleration: 0.0,
+        }
+    }
+
+    /// `factor` times this.
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            value: factor * self.value,
+            rate: factor * self.rate,
+            acceleration: factor * self.acceleration,
+        }
+    }
+
+    /// `r(s) = 10 s^3 - 15 s^4 + 6 s^5` of `s = (t - start)/duration`, continued beyond [0, 1] by the same formula.
+    pub fn smooth_step(t: f64, start: f64, duration: f64) -> Self {
+        let (s, n) = ((t - start) / duration, 1.0 / duration);
+        Self {
+            value: s * s * s * (10.0 + s * (6.0 * s - 15.0)),
+            rate: n * 30.0 * s * s * (1.0 - s) * (1.0 - s),
+            acceleration: n * n * 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s),
+        }
+    }
+}
+
+impl std::ops::Add for Jet {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            rate: self.rate + other.rate,
+            acceleration: self.acceleration + other.acceleration,
+        }
+    }
+}
+
+/// Leibniz: `(a b)' = a' b + a b'`, `(a b)'' = a'' b + 2 a' b' + a b''`.
+impl std::ops::Mul for Jet {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self {
+            value: self.value * other.value,
+            rate: self.rate * other.value + self.value * other.rate,
+            acceleration: self.acceleration * other.value
+                + 2.0 * self.rate * other.rate
+                + self.value * other.acceleration,
+        }
+    }
+}
+
+/// Time, and the smooth interval in which it is looked at.
+///
+/// Signals with kinks or jumps choose their branch by `within`, an instant inside the interval between two
+/// switching times, and evaluate that branch at `t`: inside one interval the model is smooth up to and at both ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clock {
+    /// Time [s].
+    pub t: f64,
+    /// An instant strictly inside the current smooth interval [s].
+    pub within: f64,
+}

@@ -1,0 +1,181 @@
+//! From a file to a checked case.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::faults::{Faults, Source, sort};
+use super::schema::Case;
+use super::{check, parse as json, schema_json, sets, tables, validate};
+use crate::error::{CaseFault, Error, Result, Violation};
+
+/// Largest case file that is read.
+const LARGEST: u64 = 64 << 20;
+
+/// A checked case with the text it came from.
+#[derive(Clone, Debug)]
+pub struct LoadedCase {
+    /// The case.
+    pub case: Case,
+    /// The text.
+    pub text: String,
+    /// The file.
+    pub path: PathBuf,
+    source: Source,
+}
+
+/// Reads and checks a case file; `sets` are `POINTER=JSON` arguments.
+///
+/// # Errors
+/// [`Error::Usage`] when the file cannot be read or an argument makes no sense, [`Error::Case`] with all faults.
+pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase> {
+    let unreadable = |e| Error::Usage(format!("cannot read the case {}: {e}", path.display()));
+    let size = std::fs::metadata(path).map_err(unreadable)?.len();
+    if size > LARGEST {
+        let what = format!("the file has {} MB", size >> 20);
+        return Err(fault(
+            path,
+            "",
+            vec![Violation::new("", what).allowed("case files of up to 64 MB")],
+        ));
+    }
+    let bytes = std::fs::read(path).map_err(unreadable)?;
+    let text = match String::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(e) => return Err(not_utf8(path, e.as_bytes(), e.utf8_error().valid_up_to())),
+    };
+    parse(&text, path, path.parent().unwrap_or(Path::new("")), sets)
+}
+
+/// Reads and checks a case from text; files that it names are looked for in `base`.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<LoadedCase> {
+    let (file, mut violations) = json::parse(text);
+    let Some(file) = file else {
+        return Err(fault(path, text, violations));
+    };
+    let mut value = file.to_value();
+    let source = Source {
+        sets: sets::apply(&mut value, sets)?,
+        file: Some(file),
+    };
+    // Numbers that are none have their fault already; `null` stands for them.
+    let told = violations.iter().map(|v| v.pointer.clone());
+    let told: Vec<String> = told
+        .filter(|p| value.pointer(p).is_some_and(Value::is_null))
+        .collect();
+
+    let mut faults = Faults::default();
+    validate::validate(&value, &schema_json::CASE, &mut faults);
+    faults.drop_below(&told);
+    let case = match value.is_object() {
+        true => build(value, base, &mut faults, violations.is_empty()),
+        false => None,
+    };
+    violations.extend(faults.placed(&source));
+    match case {
+        Some(case) if violations.is_empty() => Ok(LoadedCase {
+            case,
+            text: text.to_owned(),
+            path: path.to_owned(),
+            source,
+        }),
+        _ => {
+            sort(&mut violations);
+            Err(fault(path, text, violations))
+        }
+    }
+}
+
+/// The case, with the rules checked as far as its structure allows: unknown keys are left out, and a section that
+/// cannot be read stands aside while the others are looked at, so that one run tells all faults.
+fn build(mut value: Value, base: &Path, faults: &mut Faults, sound: bool) -> Option<Case> {
+    faults.remove_unknown_keys(&mut value);
+    tables::resolve(&mut value, base, "", faults);
+    match serde_json::from_value(value.clone()) {
+        Ok(case) => {
+            check::check(&case, &[], faults);
+            Some(case)
+        }
+        Err(e) => {
+            if sound && faults.is_empty() {
+                faults.push(Violation::new("", format!("not a case: {e}")));
+            }
+            let (case, broken) = readable_part(&value)?;
+            check::check(&case, &broken, faults);
+            None
+        }
+    }
+}
+
+/// The sections that can be read, others as in an empty case, and the names of those others.
+fn readable_part(value: &Value) -> Option<(Case, Vec<String>)> {
+    let empty = serde_json::json!({
+        "name": "empty",
+        "beam": { "length_m": 0.1, "height_m": 0.02, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 950 },
+        "ends": { "root": "free", "tip": "free" },
+        "time": { "end_s": 1 }
+    });
+    let given = value.as_object()?;
+    let with = |case: &Value, section: &str| {
+        let mut case = case.clone();
+        case[section] = given[section].clone();
+        case
+    };
+    let reads = |section: &&String| serde_json::from_value::<Case>(with(&empty, section)).is_ok();
+    let (sound, mut broken): (Vec<_>, Vec<_>) = given.keys().partition(reads);
+    let missing = empty
+        .as_object()?
+        .keys()
+        .filter(|section| !given.contains_key(*section));
+    broken.extend(missing);
+    let part = sound
+        .into_iter()
+        .fold(empty.clone(), |case, section| with(&case, section));
+    Some((
+        serde_json::from_value(part).ok()?,
+        broken.into_iter().cloned().collect(),
+    ))
+}
+
+impl LoadedCase {
+    /// A fault found later, placed in the text.
+    pub fn violation(&self, violation: Violation) -> Violation {
+        self.source.locate(violation)
+    }
+
+    /// The error that reports such faults.
+    pub fn fault(&self, violations: Vec<Violation>) -> Error {
+        let mut violations: Vec<_> = violations.into_iter().map(|v| self.violation(v)).collect();
+        sort(&mut violations);
+        fault(&self.path, &self.text, violations)
+    }
+}
+
+fn fault(path: &Path, text: &str, violations: Vec<Violation>) -> Error {
+    Error::Case(Box::new(CaseFault {
+        path: path.to_owned(),
+        text: text.to_owned(),
+        violations,
+    }))
+}
+
+fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> Error {
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(valid + 200)]).into_owned();
+    let end = text[valid..]
+        .chars()
+        .next()
+        .map_or(valid, |c| valid + c.len_utf8());
+    let hint = match bytes {
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "the file is UTF-16; save it as UTF-8",
+        _ => "save it as UTF-8",
+    };
+    let what = format!("byte {valid} of the file is not UTF-8 text");
+    let violation = Violation {
+        span: Some(valid..end),
+        ..Violation::new("", what).hint(hint)
+    };
+    fault(path, &text, vec![violation])
+}

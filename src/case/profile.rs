@@ -1,0 +1,185 @@
+//! Functions of place, `x = theta/l_s` along the beam or `s/l_b` along a bladder.
+
+use std::f64::consts::TAU;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::curve::{Curve, Interpolation};
+use super::jet::Jet;
+use super::number_or_object::number_or_object;
+use super::signals::Polynomial;
+
+/// A function of place `x` in [0, 1]: a number for a uniform one, else one named form.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Profile {
+    /// The same everywhere.
+    Constant(f64),
+    /// `amplitude cos(2 pi waves x + phase)`.
+    Cosine(Wave),
+    /// `amplitude sin(2 pi waves x + phase)`.
+    Sine(Wave),
+    /// A polynomial in x.
+    Polynomial(Polynomial),
+    /// A curve through points.
+    Table(PlaceTable),
+    /// Sum of profiles.
+    Sum(Vec<Profile>),
+    /// Product of profiles.
+    Product(Vec<Profile>),
+}
+
+/// The forms of a profile that are objects.
+#[derive(Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+enum NamedProfile {
+    /// `amplitude cos(2 pi waves x + phase)`.
+    Cosine(Wave),
+    /// `amplitude sin(2 pi waves x + phase)`.
+    Sine(Wave),
+    /// `c0 + c1 x + c2 x^2 + ...`
+    Polynomial(Polynomial),
+    /// A curve through points, constant beyond its ends.
+    Table(PlaceTable),
+    /// Sum of profiles.
+    Sum(#[schemars(length(min = 1))] Vec<Profile>),
+    /// Product of profiles.
+    Product(#[schemars(length(min = 1))] Vec<Profile>),
+}
+
+/// A wave along the beam.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wave {
+    /// Amplitude, in the unit of the quantity.
+    #[serde(default = "one")]
+    pub amplitude: f64,
+    /// Waves along the whole length.
+    pub waves: f64,
+    /// Phase at x = 0 [rad].
+    #[serde(default)]
+    pub phase_rad: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// A curve through points, constant beyond its ends.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(from = "PlaceTableText", into = "PlaceTableText")]
+#[schemars(!from, !into, with = "PlaceTableText")]
+pub struct PlaceTable {
+    /// Places in [0, 1], ascending.
+    pub positions: Vec<f64>,
+    /// Values there.
+    pub values: Vec<f64>,
+    /// What happens in between.
+    pub interpolation: Interpolation,
+    curve: Curve,
+}
+
+/// A curve through points, constant beyond its ends.
+#[derive(Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "PlaceTable")]
+struct PlaceTableText {
+    /// Places in [0, 1], ascending.
+    #[schemars(length(min = 1), inner(range(min = 0.0, max = 1.0)))]
+    positions: Vec<f64>,
+    /// Values there.
+    #[schemars(length(min = 1))]
+    values: Vec<f64>,
+    /// What happens in between.
+    #[serde(default)]
+    interpolation: Interpolation,
+}
+
+impl From<PlaceTableText> for PlaceTable {
+    fn from(text: PlaceTableText) -> Self {
+        let PlaceTableText {
+            positions,
+            values,
+            interpolation,
+        } = text;
+        let curve = Curve::through(&positions, &values, interpolation).unwrap_or_default();
+        Self {
+            positions,
+            values,
+            interpolation,
+            curve,
+        }
+    }
+}
+
+impl From<PlaceTable> for PlaceTableText {
+    fn from(table: PlaceTable) -> Self {
+        Self {
+            positions: table.positions,
+            values: table.values,
+            interpolation: table.interpolation,
+        }
+    }
+}
+
+impl PlaceTable {
+    /// Whether the points make a curve.
+    pub fn is_sound(&self) -> bool {
+        self.curve != Curve::default()
+    }
+}
+
+number_or_object!(Profile, NamedProfile, "a number or a named profile such as {\"cosine\": {...}}", {
+    Cosine = "cosine", Sine = "sine", Polynomial = "polynomial", Table = "table", Sum = "sum", Product = "product",
+});
+
+impl Profile {
+    /// Value at `x`.
+    pub fn value(&self, x: f64) -> f64 {
+        self.jet(x).value
+    }
+
+    /// Derivative by `x` at `x`.
+    pub fn slope(&self, x: f64) -> f64 {
+        self.jet(x).rate
+    }
+
+    /// Value, first and second derivative by `x`.
+    pub fn jet(&self, x: f64) -> Jet {
+        match self {
+            Self::Constant(value) => Jet::constant(*value),
+            Self::Cosine(wave) => wave.cosine(x),
+            Self::Sine(wave) => wave.sine(x),
+            Self::Polynomial(polynomial) => polynomial.jet(x),
+            Self::Table(table) => table.curve.at(x),
+            Self::Sum(terms) => terms
+                .iter()
+                .fold(Jet::default(), |sum, term| sum + term.jet(x)),
+            Self::Product(factors) => factors
+                .iter()
+                .fold(Jet::constant(1.0), |product, f| product * f.jet(x)),
+        }
+    }
+}
+
+impl Wave {
+    fn sine(&self, x: f64) -> Jet {
+        let (a, k) = (self.amplitude, TAU * self.waves);
+        let (sin, cos) = (k * x + self.phase_rad).sin_cos();
+        Jet {
+            value: a * sin,
+            rate: a * k * cos,
+            acceleration: -a * k * k * sin,
+        }
+    }
+
+    fn cosine(&self, x: f64) -> Jet {
+        let (a, k) = (self.amplitude, TAU * self.waves);
+        let (sin, cos) = (k * x + self.phase_rad).sin_cos();
+        Jet {
+            value: a * cos,
+            rate: -a * k * sin,
+            acceleration: -a * k * k * cos,
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! Faults as text: what, where with the line and a caret, what is allowed, what was probably meant, what to do.
+
+use std::fmt::Write;
+use std::ops::Range;
+
+use crate::error::{CaseFault, Violation};
+
+/// Faults that are shown in full.
+const SHOWN: usize = 50;
+
+/// Escape sequences, or none.
+struct Paint(bool);
+
+impl Paint {
+    fn bold_red(&self, text: &str) -> String {
+        self.wrap("1;31", text)
+    }
+    fn blue(&self, text: &str) -> String {
+        self.wrap("34", text)
+    }
+    fn bold(&self, text: &str) -> String {
+        self.wrap("1", text)
+    }
+    fn wrap(&self, code: &str, text: &str) -> String {
+        if self.0 {
+            format!("\x1b[{code}m{text}\x1b[0m")
+        } else {
+            text.to_owned()
+        }
+    }
+}
+
+/// All faults of a case, for a terminal of `width` columns.
+pub fn render(fault: &CaseFault, colour: bool, width: usize) -> String {
+    let paint = Paint(colour);
+    let width = width.clamp(40, 400);
+    let mut out = String::new();
+    for violation in fault.violations.iter().take(SHOWN) {
+        one(fault, violation, &paint, width, &mut out);
+    }
+    let count = fault.violations.len();
+    if count > SHOWN {
+        let _ = writeln!(out, "and {} more", count - SHOWN);
+    }
+    let _ = writeln!(
+        out,
+        "{count} {} in {}",
+        if count == 1 { "fault" } else { "faults" },
+        fault.path.display()
+    );
+    out
+}
+
+fn one(fault: &CaseFault, violation: &Violation, paint: &Paint, width: usize, out: &mut String) {
+    let _ = writeln!(
+        out,
+        "{} {}",
+        paint.bold_red("fault:"),
+        paint.bold(&violation.what)
+    );
+    let text = violation.set.as_deref().unwrap_or(&fault.text);
+    let span = violation.span.clone().filter(|span| span.end <= text.len());
+    let excerpt = span
+        .filter(|_| !text.is_empty())
+        .map(|span| Excerpt::cut(text, span, width));
+    let name = match &violation.set {
+        Some(_) => "--set".to_owned(),
+        None => fault.path.display().to_string(),
+    };
+    let at = if violation.pointer.is_empty() {
+        String::new()
+    } else {
+        format!(" at {}", clipped(&violation.pointer, width))
+    };
+    let margin = excerpt.as_ref().map_or(1, |e| e.line.to_string().len());
+    let bar = paint.blue("|");
+    match &excerpt {
+        Some(e) => {
+            let place = match violation.set {
+                Some(_) => name,
+                None => format!("{name}:{}:{}", e.line, e.column),
+            };
+            let _ = writeln!(out, "{:margin$}{} {place}{at}", "", paint.blue("-->"));
+            let _ = writeln!(
+                out,
+                "{} {bar} {}",
+                paint.blue(&format!("{:>margin$}", e.line)),
+                e.text
+            );
+            let carets = "^".repeat(e.carets);
+            let _ = writeln!(
+                out,
+                "{:margin$} {bar} {:indent$}{}",
+                "",
+                "",
+                paint.bold_red(&carets),
+                indent = e.indent
+            );
+        }
+        None => {
+            let _ = writeln!(out, " {} {name}{at}", paint.blue("-->"));
+        }
+    }
+    let meant = violation
+        .nearest
+        .as_ref()
+        .map(|name| format!("did you mean \"{name}\"?"));
+    let notes = [
+        ("allowed", &violation.allowed),
+        ("nearest", &meant),
+        ("hint", &violation.hint),
+    ];
+    for (label, note) in notes {
+        let Some(note) = note else { continue };
+        let head = format!("{:margin$} = {label}: ", "");
+        for (i, line) in wrapped(note, width.saturating_sub(head.len()))
+            .iter()
+            .enumerate()
+        {
+            let start = if i == 0 {
+                head.clone()
+            } else {
+                " ".repeat(head.len())
+            };
+            let _ = writeln!(out, "{start}{line}");
+        }
+    }
+    out.push('\n');
+}
+
+/// A pointer that may be absurdly long.
+fn clipped(pointer: &str, width: usize) -> String {
+    let count = pointer.chars().count();
+    if count <= width {
+        return pointer.to_owned();
+    }
+    let end: String = pointer.chars().skip(count - width / 2).collect();
+    format!("...{end}")
+}
+
+/// Words in lines of at most `width` characters.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let last = lines.len() - 1;
+        let used = lines[last].chars().count();
+        if used == 0 {
+            lines[last].push_str(word);
+        } else if used + 1 + word.chars().count() <= width {
+            lines[last].push(' ');
+            lines[last].push_str(word);
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines
+}
+
+/// Part of a line with the columns to mark.
+struct Excerpt {
+    line: usize,
+    column: usize,
+    text: String,
+    indent: usize,
+    carets: usize,
+}
+
+impl Excerpt {
+    /// The line around `span`, cut to the width with `...` where it goes on.
+    fn cut(text: &str, span: Range<usize>, width: usize) -> Self {
+        let start = floor(text, span.start);
+        let before = &text[..start];
+        let line = 1 + before.bytes().filter(|b| *b == b'\n').count();
+        let line_start = before.rfind('\n').map_or(0, |i| i + 1);
+        let column = 1 + text[line_start..start].chars().count();
+        let room = width.saturating_sub(line.to_string().len() + 3);
+        // Never look further than the eye can see: a line may have megabytes.
+        let reach = 4 * room;
+        let from = floor(text, line_start.max(start.saturating_sub(reach)));
+        let to = floor(text, text.len().min(start + reach));
+        let left: Vec<char> = text[from..start].chars().map(plain).collect();
+        let right: Vec<char> = text[start..to]
+            .chars()
+            .take_while(|c| *c != '\n' && *c != '\r')
+            .map(plain)
+            .collect();
+        let wanted = text[start..floor(text, span.end.min(to)).max(start)]
+            .lines()
+            .next()
+            .unwrap_or("")
+            .chars()
+            .count();
+
+        let keep_left = if left.len() + right.len() <= room {
+            left.len()
+        } else {
+            left.len().min(room / 2)
+        };
+        let cut_left = from > line_start || keep_left < left.len();
+        let keep_right = right.len().min(room - keep_left);
+        let cut_right = keep_right < right.len()
+            || (to < text.len() && right.len() == text[start..to].chars().count());
+        let mut shown: Vec<char> = left[left.len() - keep_left..]
+            .iter()
+            .chain(&right[..keep_right])
+            .copied()
+            .collect();
+        let last = shown.len();
+        if cut_left && keep_left >= 3 {
+            shown[..3].fill('.');
+        }
+        if cut_right && keep_right >= 4 {
+            shown[last - 3..].fill('.');
+        }
+        let carets = wanted.clamp(1, keep_right.max(1));
+        let text: String = shown.into_iter().collect();
+        Self {
+            line,
+            column,
+            text: text.trim_end().to_owned(),
+            indent: keep_left,
+            carets,
+        }
+    }
+}
+
+/// Tabs and control characters take one column.
+fn plain(c: char) -> char {
+    if c == '\t' {
+        ' '
+    } else if c.is_control() {
+        '\u{fffd}'
+    } else {
+        c
+    }
+}
+
+/// The character boundary at or before a byte.
+fn floor(text: &str, mut at: usize) -> usize {
+    at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}

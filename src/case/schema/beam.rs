@@ -1,0 +1,62 @@
+//! The solid.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The elastic beam; stiffness of the honeycomb through two correction factors.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Beam {
+    /// Length `l_s` [m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub length_m: f64,
+    /// Height `h_s` of the cross-section, in the plane of bending [m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub height_m: f64,
+    /// Width `w_s` of the cross-section [m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub width_m: f64,
+    /// Young's modulus `E` [Pa].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub young_modulus_pa: f64,
+    /// Density `rho_s` of the solid material [kg/m^3].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub density_kg_m3: f64,
+    /// `f_e`: axial stiffness over that of the full section, `EA = E h_s w_s f_e`.
+    #[serde(default = "one")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub axial_stiffness_factor: f64,
+    /// `f_i`: bending stiffness over that of the full section, `EI = E w_s h_s^3/12 f_i`.
+    #[serde(default = "one")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub bending_stiffness_factor: f64,
+    /// `f_m`: mass over that of a full section of the solid, `m = rho_s w_s h_s f_m`; absent: from bladders and fluid, 1 when dry.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub mass_factor: Option<f64>,
+    /// Material damping and external drag; absent: undamped.
+    #[serde(default)]
+    pub damping: Damping,
+}
+
+/// Kelvin-Voigt material damping and external drag (not in the paper).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Damping {
+    /// `tau_a`: `N_total = N + EA tau_a d(lambda)/dt` [s].
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub axial_time_s: f64,
+    /// `tau_b`: `M_total = M + EI tau_b d(kappa)/dt` [s].
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub bending_time_s: f64,
+    /// `c`: external force per length `-c v` [N s/m^2].
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub drag_n_s_m2: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}

@@ -1,0 +1,144 @@
+//! The fluid, the bladders and how they couple to the beam; cross-sections of ducts.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Newtonian fluid in creeping flow.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Fluid {
+    /// Density `rho_f` [kg/m^3]; 0 for massless fluid.
+    #[schemars(range(min = 0.0))]
+    pub density_kg_m3: f64,
+    /// Dynamic viscosity `mu` [Pa s].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub viscosity_pa_s: f64,
+}
+
+/// Two rows of equal bladders, `per_row` each: upper `1..=per_row`, lower `-1..=-per_row`, root to tip.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Bladders {
+    /// Bladders in each row, `n/2`.
+    #[schemars(range(min = 1, max = 10000))]
+    pub per_row: usize,
+    /// Length `l_b` of a bladder across the width of the beam, inlet to outlet [m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub length_m: f64,
+    /// Height `h_b` [m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub height_m: f64,
+    /// Width `w_b`, along the beam [m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub width_m: f64,
+    /// Permeability `q1b` in `q = -(q1b/mu) dp/ds` [m^4]; absent: that of `cross_section`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub permeability_m4: Option<f64>,
+    /// Cross-section from which the permeability follows; absent: `height_m` by `width_m`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cross_section: Option<CrossSection>,
+    /// `a_p`: area per pressure [m^2/Pa].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub area_per_pressure_m2_per_pa: f64,
+    /// `aM-` (opening) and `aM+` (closing): area per bending moment.
+    pub area_per_moment_m2_per_n_m: AreaPerMoment,
+    /// `aN-` (tension) and `aN+` (compression): area per normal force.
+    pub area_per_force_m2_per_n: AreaPerForce,
+    /// How pressure strains the beam.
+    #[serde(default)]
+    pub coupling: Coupling,
+    /// Width of the smoothed kink between opening and closing slopes, relative to `EI/l_s` (moment) and `EA` (force).
+    #[serde(default = "default_kink_width")]
+    #[schemars(extend("exclusiveMinimum" = 0), range(max = 1.0))]
+    pub kink_width: f64,
+}
+
+/// Slopes of bladder area against bending moment [m^2/(N m)].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AreaPerMoment {
+    /// `aM-`: where bending opens the bladder.
+    #[schemars(range(min = 0.0))]
+    pub opening: f64,
+    /// `aM+ >= aM-`: where bending closes the bladder.
+    #[schemars(range(min = 0.0))]
+    pub closing: f64,
+}
+
+/// Slopes of bladder area against normal force [m^2/N].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AreaPerForce {
+    /// `aN-`: under tension.
+    #[schemars(range(min = 0.0))]
+    pub tension: f64,
+    /// `aN+ >= aN-`: under compression.
+    #[schemars(range(min = 0.0))]
+    pub compression: f64,
+}
+
+/// How pressure strains the beam.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Coupling {
+    /// Strains and areas from one potential, mean slopes: energy is conserved.
+    #[default]
+    Reciprocal,
+    /// The same potential with the kinked slopes; offered only where it stays convex.
+    ReciprocalKinked,
+    /// The coefficients as the paper gives them, reciprocal or not.
+    Published(PublishedCoupling),
+}
+
+/// Strain of one segment per unit of `pressure/E`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PublishedCoupling {
+    /// `psi'`: slope per unit of `(p_d - p_u)/E` [rad].
+    #[schemars(range(min = 0.0))]
+    pub slope_per_pressure_rad: f64,
+    /// `zeta'`: length per unit of `(p_u + p_d)/E` [m].
+    #[schemars(range(min = 0.0))]
+    pub length_per_pressure_m: f64,
+}
+
+/// Cross-sections with a known permeability `q1` (no slip).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum CrossSection {
+    /// Circle: `pi r^4/8`.
+    Circle {
+        /// Radius [m].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        radius_m: f64,
+    },
+    /// Rectangle (a square when the sides are equal): series solution.
+    Rectangle {
+        /// One side [m].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        height_m: f64,
+        /// The other side [m].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        width_m: f64,
+    },
+    /// Ellipse: `pi a^3 b^3/(4 (a^2 + b^2))`.
+    Ellipse {
+        /// Semi-axis a [m].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        semi_axis_a_m: f64,
+        /// Semi-axis b [m].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        semi_axis_b_m: f64,
+    },
+    /// Equilateral triangle: `sqrt(3) a^4/320`.
+    Triangle {
+        /// Side [m].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        side_m: f64,
+    },
+}
+
+fn default_kink_width() -> f64 {
+    1e-4
+}

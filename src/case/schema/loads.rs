@@ -1,0 +1,148 @@
+//! Distributed loads, conditions at the ends, the state at the start.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::case::profile::Profile;
+use crate::case::signals::Signal;
+
+/// A distributed load.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Load {
+    /// Contact force per length in x (transverse) [N/m].
+    ForceXNM(Distributed),
+    /// Contact force per length in z (axial) [N/m].
+    ForceZNM(Distributed),
+    /// First moment per length, x component `m b1_x` [N]: acts as a couple `m b1_x x'/lambda^2`.
+    MomentXN(Distributed),
+    /// First moment per length, z component `m b1_z` [N]; positive turns in the sense of M.
+    MomentZN(Distributed),
+    /// Body force per mass in x [m/s^2], acting on `m`.
+    BodyXMS2(Distributed),
+    /// Body force per mass in z [m/s^2], acting on `m`.
+    BodyZMS2(Distributed),
+    /// Uniform constant gravity.
+    Gravity {
+        /// x component [m/s^2].
+        #[serde(default)]
+        x_m_s2: f64,
+        /// z component [m/s^2].
+        #[serde(default)]
+        z_m_s2: f64,
+    },
+}
+
+impl Load {
+    /// Name and function of a load that has one.
+    pub fn distributed(&self) -> Option<(&'static str, &Distributed)> {
+        match self {
+            Self::ForceXNM(load) => Some(("force_x_n_m", load)),
+            Self::ForceZNM(load) => Some(("force_z_n_m", load)),
+            Self::MomentXN(load) => Some(("moment_x_n", load)),
+            Self::MomentZN(load) => Some(("moment_z_n", load)),
+            Self::BodyXMS2(load) => Some(("body_x_m_s2", load)),
+            Self::BodyZMS2(load) => Some(("body_z_m_s2", load)),
+            Self::Gravity { .. } => None,
+        }
+    }
+}
+
+/// `signal(t) * profile(theta/l_s)`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Distributed {
+    /// Time function.
+    pub signal: Signal,
+    /// Shape along the beam, a function of `theta/l_s`; absent: 1.
+    #[serde(default = "Profile::one")]
+    pub profile: Profile,
+}
+
+/// Conditions at the two ends (A.49-A.54).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ends {
+    /// theta = 0.
+    pub root: End,
+    /// theta = l_s.
+    pub tip: End,
+}
+
+/// Exactly one of each pair {u1, force x}, {slope, moment}, {u3, force z}.
+/// An end with given forces may add follower forces, which turn with the end angle.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EndConditions {
+    /// Transverse displacement `u1` [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub u1_m: Option<Signal>,
+    /// Force in x on the end, dead [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_x_n: Option<Signal>,
+    /// Slope angle `phi` [rad].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slope_rad: Option<Signal>,
+    /// Bending moment `M` in the section [N m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moment_n_m: Option<Signal>,
+    /// Axial displacement `u3` [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub u3_m: Option<Signal>,
+    /// Force in z on the end, dead [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_z_n: Option<Signal>,
+    /// Section force `N` along the end's tangent (A.54) [N]; needs `force_x_n` and `force_z_n` (or neither named).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub follower_normal_n: Option<Signal>,
+    /// Section force `V` along the end's normal `e_n` (A.53) [N]; likewise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub follower_shear_n: Option<Signal>,
+}
+
+/// Condition of one end, by its usual name or condition by condition.
+/// Each name may stand alone as a string, then with zero motion and load.
+#[derive(Clone, Debug, PartialEq)]
+pub enum End {
+    /// Nothing held: takes `force_x_n`, `force_z_n`, `moment_n_m`, `follower_normal_n`, `follower_shear_n`.
+    Free(EndConditions),
+    /// u1, u3 and slope held or driven: takes `u1_m`, `u3_m`, `slope_rad`.
+    Clamped(EndConditions),
+    /// u1 and u3 held or driven, free to turn: takes `u1_m`, `u3_m`, `moment_n_m`.
+    Pinned(EndConditions),
+    /// Slope held, free to move across: takes `slope_rad`, `force_x_n`, and `u3_m` (held, default) or `force_z_n`.
+    Guided(EndConditions),
+    /// One of each pair, all three given.
+    Conditions(EndConditions),
+}
+
+/// State at t = 0 (A.55-A.58), each a function of `theta/l_s`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Start {
+    /// Transverse displacement [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub u1_m: Option<Profile>,
+    /// Axial displacement [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub u3_m: Option<Profile>,
+    /// Transverse velocity [m/s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub u1_rate_m_s: Option<Profile>,
+    /// Axial velocity [m/s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub u3_rate_m_s: Option<Profile>,
+    /// Pressures; bladders not named start at zero.
+    #[serde(default)]
+    pub pressures: Vec<StartPressure>,
+}
+
+/// Initial pressure of some bladders.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StartPressure {
+    /// Bladder indices `R j`.
+    pub bladders: Vec<i64>,
+    /// Gauge pressure [Pa], a function of `s/l_b` from inlet to outlet.
+    pub pressure_pa: Profile,
+}

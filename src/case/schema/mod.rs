@@ -1,0 +1,97 @@
+//! The case as the user writes it: these structures *are* the JSON (externally tagged enums, unknown
+//! keys refused), every key in SI units with its unit in its name. The JSON Schema that editors use is
+//! generated from these files, doc comments included; `case.json` of a result folder is this structure
+//! written back with every default filled in.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+mod beam;
+mod bladders;
+mod loads;
+mod network;
+mod numerics;
+
+pub use beam::*;
+pub use bladders::*;
+pub use loads::*;
+pub use network::*;
+pub use numerics::*;
+
+/// A case: one beam, its bladders and tubes, what is done to it, and how it is to be solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "slcbeam case")]
+pub struct Case {
+    /// The JSON Schema that describes this file, for editors; not read.
+    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+    pub schema: Option<String>,
+    /// Short name; the default result folder is `out/<name>`. Letters, digits, `-`, `_` and `.`.
+    pub name: String,
+    /// What the case shows and where it comes from.
+    #[serde(default)]
+    pub about: String,
+    /// The solid.
+    pub beam: Beam,
+    /// The fluid that fills bladders and tubes. Absent together with `bladders`: a dry beam.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fluid: Option<Fluid>,
+    /// The two rows of bladders. Absent: a dry beam.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bladders: Option<Bladders>,
+    /// What a tube is unless it says otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tubes: Option<TubeDefaults>,
+    /// How the bladders are joined. Absent: every bladder is sealed singly.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub network: Option<Network>,
+    /// Distributed forces and moments, body force, gravity. They add.
+    #[serde(default)]
+    pub loads: Vec<Load>,
+    /// Conditions at the root (theta = 0) and the tip (theta = length).
+    pub ends: Ends,
+    /// State at t = 0; what is not given is zero.
+    #[serde(default)]
+    pub start: Start,
+    /// Form of the momentum balance.
+    #[serde(default)]
+    pub formulation: Formulation,
+    /// Which physical effects are simulated.
+    #[serde(default)]
+    pub effects: Effects,
+    /// Resolution in space.
+    #[serde(default)]
+    pub mesh: Mesh,
+    /// Simulated time and output times.
+    pub time: Time,
+    /// Time integration.
+    #[serde(default)]
+    pub solver: Solver,
+}
+
+impl Case {
+    /// Segments along the beam: bladders per row, or what the mesh of a dry beam says.
+    pub fn segments(&self) -> usize {
+        self.bladders
+            .as_ref()
+            .map_or(self.mesh.segments.unwrap_or(10), |bladders| {
+                bladders.per_row
+            })
+    }
+
+    /// The case with every default filled in.
+    pub fn resolved(&self) -> Self {
+        let mut case = self.clone();
+        case.time.output_interval_s = Some(self.time.output_interval());
+        case.time.fields_interval_s = Some(self.time.fields_interval());
+        case.time.window_s = Some(self.time.window());
+        case.mesh.segments = Some(self.segments());
+        case
+    }
+
+    /// The case as JSON text with every default filled in; reads back as the same case.
+    pub fn resolved_json(&self) -> String {
+        let value = serde_json::to_value(self.resolved()).unwrap_or_default();
+        format!("{value:#}\n")
+    }
+}

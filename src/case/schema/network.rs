@@ -1,0 +1,224 @@
+//! Tubes, chains, junctions, ports and turbines.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::CrossSection;
+use crate::case::signals::Signal;
+
+/// What a tube is unless it says otherwise: rigid, slender, without storage.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TubeDefaults {
+    /// Length `l_c` [m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub length_m: f64,
+    /// Radius `r_c` [m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub radius_m: f64,
+    /// Permeability `q1c` [m^4]; absent: Hagen-Poiseuille, `pi r_c^4/8`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub permeability_m4: Option<f64>,
+}
+
+/// How the bladders are joined: any graph of tubes between bladder ends and junctions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Network {
+    /// Scales `q1b` and `q1c` of all bladders and tubes (the paper's valves).
+    #[serde(default = "one")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub permeability_factor: f64,
+    /// Rows of bladders joined outlet to inlet by equal tubes.
+    #[serde(default)]
+    pub chains: Vec<Chain>,
+    /// Names of junctions, points without storage where several tubes meet.
+    #[serde(default)]
+    pub junctions: Vec<String>,
+    /// Single tubes between any two points.
+    #[serde(default)]
+    pub tubes: Vec<Tube>,
+    /// Points with prescribed pressure or flow.
+    #[serde(default)]
+    pub ports: Vec<Port>,
+    /// Conductances that harvest energy, between two points.
+    #[serde(default)]
+    pub turbines: Vec<Turbine>,
+}
+
+impl Default for Network {
+    fn default() -> Self {
+        Self {
+            permeability_factor: 1.0,
+            chains: vec![],
+            junctions: vec![],
+            tubes: vec![],
+            ports: vec![],
+            turbines: vec![],
+        }
+    }
+}
+
+/// Bladders joined outlet to inlet in the order given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Chain {
+    /// Bladder indices `R j`: positive upper, negative lower row.
+    #[schemars(length(min = 1))]
+    pub bladders: Vec<i64>,
+    /// Condition at the first bladder's inlet and at the last one's outlet.
+    #[serde(default)]
+    pub ends: [ChainEnd; 2],
+    /// Opening `o(t)` of the valve on each tube of the chain, 0 (closed) to 1 (open).
+    #[serde(default = "Signal::one", skip_serializing_if = "Signal::is_one")]
+    pub opening: Signal,
+}
+
+/// Condition at the end of a chain.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum ChainEnd {
+    /// No flow.
+    #[default]
+    Sealed,
+    /// A tube, port or turbine listed elsewhere is attached here.
+    Connected,
+    /// Prescribed gauge pressure [Pa] behind the half-cell resistance (A.68).
+    PressurePa(Signal),
+    /// Prescribed flow into the network [m^3/s] (A.69).
+    FlowM3S(Signal),
+}
+
+/// A point of the network: `{"bladder": 3, "end": "outlet"}` or `{"junction": "tee"}`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Endpoint {
+    /// Bladder index `R j`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bladder: Option<i64>,
+    /// Which end of that bladder.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub end: Option<BladderEnd>,
+    /// Name of a junction listed under `/network/junctions`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub junction: Option<String>,
+}
+
+/// The two ends of a bladder.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum BladderEnd {
+    /// s = 0.
+    Inlet,
+    /// s = l_b.
+    Outlet,
+}
+
+/// A tube between two points, `q = (q1c/(mu l_c)) (p_from - p_to)`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Tube {
+    /// Where it starts.
+    pub from: Endpoint,
+    /// Where it ends.
+    pub to: Endpoint,
+    /// Length [m]; absent: that of `/tubes`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub length_m: Option<f64>,
+    /// Permeability [m^4]; absent: that of `cross_section`, else of `/tubes`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub permeability_m4: Option<f64>,
+    /// Cross-section from which the permeability follows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cross_section: Option<CrossSection>,
+    /// Opening `o(t)` of its valve, 0 (closed) to 1 (open).
+    #[serde(default = "Signal::one", skip_serializing_if = "Signal::is_one")]
+    pub opening: Signal,
+}
+
+/// A point with prescribed pressure or flow; exactly one of the two.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Port {
+    /// Name in outputs; absent: made from the point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// The point.
+    pub at: Endpoint,
+    /// Gauge pressure [Pa].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure_pa: Option<Signal>,
+    /// Flow into the network [m^3/s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flow_m3_s: Option<Signal>,
+}
+
+/// A turbine: `q = G (p_from - p_to)`, power `G (p_from - p_to)^2`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Turbine {
+    /// Name in outputs; absent: `turbine-<k>`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// One port.
+    pub from: Endpoint,
+    /// The other port.
+    pub to: Endpoint,
+    /// Conductance `G`.
+    pub conductance: TurbineConductance,
+    /// Rectifier in front of the turbine.
+    #[serde(default)]
+    pub rectifier: Rectifier,
+}
+
+/// Conductance of a turbine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum TurbineConductance {
+    /// `G` [m^3/(s Pa)].
+    M3SPa(#[schemars(extend("exclusiveMinimum" = 0))] f64),
+    /// The paper's `kappa_turb`: `G = q1b kappa/(mu l_X)` with `q1b` the unscaled bladder permeability.
+    Kappa {
+        /// `kappa_turb` [1].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        kappa: f64,
+        /// `l_X`, the length that scales the network coordinate [m]; absent: `l_b n + 0.92 l_c n_c`, n_c
+        /// the tubes of all chains (0.92: the paper's tables use 0.0184 m for a tube of 0.020 m).
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        network_length_m: Option<f64>,
+    },
+}
+
+/// Full-wave rectifier in front of a turbine.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Rectifier {
+    /// Ideal check valves: the turbine sees `|p_from - p_to|`; a linear turbine is not changed.
+    #[default]
+    Ideal,
+    /// Four equal real check valves in a bridge.
+    CheckValves {
+        /// Pressure drop at which a valve opens [Pa].
+        #[schemars(range(min = 0.0))]
+        cracking_pressure_pa: f64,
+        /// Conductance of an open valve beyond cracking [m^3/(s Pa)].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        forward_conductance_m3_s_pa: f64,
+        /// Leakage conductance of a closed valve [m^3/(s Pa)].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        reverse_conductance_m3_s_pa: f64,
+        /// Pressure range over which the valve opens smoothly [Pa].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        smoothing_pa: f64,
+    },
+}
+
+fn one() -> f64 {
+    1.0
+}

@@ -1,0 +1,207 @@
+//! What is simulated, how finely, how long and with which accuracy.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Form of the momentum balance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Formulation {
+    /// `m a = b + (N e_t + V e_n + r d1)'`: conserves momentum and energy.
+    #[default]
+    Conservative,
+    /// (A.5) to the letter.
+    Published,
+}
+
+/// Which physical effects are simulated: `"auto"`, `"full"` or choice by choice.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Effects {
+    /// The program chooses and says why.
+    #[default]
+    Auto,
+    /// Everything the case describes.
+    Full,
+    /// Named choices; the others are `auto`.
+    Chosen(EffectChoices),
+}
+
+/// Named effects.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EffectChoices {
+    /// Inertia of the section's rotation, `m y11`.
+    #[serde(default)]
+    pub rotary_inertia: Choice,
+    /// Inertia of the solid; off: quasi-static solid.
+    #[serde(default)]
+    pub solid_inertia: Choice,
+    /// Different opening and closing slopes of the bladder area.
+    #[serde(default)]
+    pub asymmetry: Choice,
+}
+
+/// On, off, or chosen by the program.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Choice {
+    /// Chosen by the program.
+    #[default]
+    Auto,
+    /// Simulated.
+    On,
+    /// Left out.
+    Off,
+}
+
+/// Resolution in space.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mesh {
+    /// `K`: beam cells per segment.
+    #[serde(default = "four")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub cells_per_segment: usize,
+    /// Finite volumes along each bladder.
+    #[serde(default = "two")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub cells_per_bladder: usize,
+    /// Segments of a dry beam; with bladders it is their number per row. Absent: 10.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 100000))]
+    pub segments: Option<usize>,
+}
+
+impl Default for Mesh {
+    fn default() -> Self {
+        Self {
+            cells_per_segment: 4,
+            cells_per_bladder: 2,
+            segments: None,
+        }
+    }
+}
+
+/// Simulated time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Time {
+    /// End of the run [s].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub end_s: f64,
+    /// Interval between rows of `history.csv` [s]; absent: a thousandth of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub output_interval_s: Option<f64>,
+    /// Interval between entries of `fields.npz` [s], a multiple of the output interval; absent: the same.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub fields_interval_s: Option<f64>,
+    /// Last part of the run over which "window" figures are taken [s]; absent: a tenth of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub window_s: Option<f64>,
+}
+
+impl Time {
+    /// Interval between rows of the history [s].
+    pub fn output_interval(&self) -> f64 {
+        self.output_interval_s.unwrap_or(self.end_s / 1000.0)
+    }
+
+    /// Interval between entries of the fields [s].
+    pub fn fields_interval(&self) -> f64 {
+        self.fields_interval_s.unwrap_or(self.output_interval())
+    }
+
+    /// Length of the window at the end of the run [s].
+    pub fn window(&self) -> f64 {
+        self.window_s.unwrap_or(self.end_s / 10.0)
+    }
+}
+
+/// Time integration by IDA.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Solver {
+    /// Tolerance relative to each unknown's scale.
+    #[serde(default = "default_rtol")]
+    #[schemars(range(min = 1e-13, max = 0.1))]
+    pub rtol: f64,
+    /// Highest BDF order.
+    #[serde(default)]
+    pub max_order: MaxOrder,
+    /// IDA's nonlinear convergence coefficient.
+    #[serde(default = "default_nonlinear_coefficient")]
+    #[schemars(extend("exclusiveMinimum" = 0), range(max = 1.0))]
+    pub nonlinear_coefficient: f64,
+    /// Relative change of the step coefficient that asks for a new Jacobian (IDA's `dcj`).
+    #[serde(default = "default_delta_cj")]
+    #[schemars(extend("exclusiveMinimum" = 0), extend("exclusiveMaximum" = 1))]
+    pub delta_cj_setup: f64,
+    /// First step [s]; absent: IDA's choice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub initial_step_s: Option<f64>,
+    /// Largest step [s]; absent: a tenth of the run, at most a 16th of the shortest period among the signals.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub max_step_s: Option<f64>,
+    /// Stop, with everything computed so far, after this many steps.
+    #[serde(default = "default_max_steps")]
+    #[schemars(range(min = 1))]
+    pub max_steps: u64,
+    /// Characteristic transverse displacement [m] to which `rtol` refers; absent: estimated from the case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub transverse_scale_m: Option<f64>,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            rtol: default_rtol(),
+            max_order: MaxOrder::Auto,
+            nonlinear_coefficient: default_nonlinear_coefficient(),
+            delta_cj_setup: default_delta_cj(),
+            initial_step_s: None,
+            max_step_s: None,
+            max_steps: default_max_steps(),
+            transverse_scale_m: None,
+        }
+    }
+}
+
+/// Highest BDF order: `"auto"` or 1 to 5.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MaxOrder {
+    /// Decided from the scene: 2 with undamped inertia, 5 without inertia.
+    #[default]
+    Auto,
+    /// As given.
+    Order(u8),
+}
+
+fn two() -> usize {
+    2
+}
+
+fn four() -> usize {
+    4
+}
+
+fn default_rtol() -> f64 {
+    1e-5
+}
+
+fn default_nonlinear_coefficient() -> f64 {
+    0.33
+}
+
+fn default_delta_cj() -> f64 {
+    0.25
+}
+
+fn default_max_steps() -> u64 {
+    20_000_000
+}

@@ -1,0 +1,122 @@
+//! Tables from CSV files, read when the case is read, so that the resolved case stands alone.
+
+use std::path::Path;
+
+use serde_json::{Map, Value};
+
+use super::faults::Faults;
+use super::locate::child;
+use super::validate::nearest;
+use crate::error::Violation;
+
+/// Replaces `csv` and its columns by `times_s` and `values` in every table below `value`.
+pub fn resolve(value: &mut Value, base: &Path, pointer: &str, faults: &mut Faults) {
+    match value {
+        Value::Array(items) => {
+            for (i, item) in items.iter_mut().enumerate() {
+                resolve(item, base, &child(pointer, i), faults);
+            }
+        }
+        Value::Object(members) => {
+            for (key, inner) in members.iter_mut() {
+                let pointer = child(pointer, key);
+                match inner {
+                    Value::Object(table) if key == "table" && has_csv_keys(table) => {
+                        if let Err(fault) = read(table, base, &pointer) {
+                            faults.push(*fault);
+                        }
+                    }
+                    _ => resolve(inner, base, &pointer, faults),
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+fn has_csv_keys(table: &Map<String, Value>) -> bool {
+    ["csv", "time_column", "value_column"]
+        .iter()
+        .any(|key| table.contains_key(*key))
+}
+
+/// Boxed: a fault is large beside the nothing of success.
+type Read<T> = Result<T, Box<Violation>>;
+
+fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> {
+    let at = |key: &str, what: String| Box::new(Violation::new(child(pointer, key), what));
+    let text = |key: &str| table.get(key).and_then(Value::as_str).map(str::to_owned);
+    let Some(name) = text("csv") else {
+        return Err(Box::new(
+            Violation::new(pointer, "a column is named but no file").hint("add \"csv\""),
+        ));
+    };
+    if table.contains_key("times_s") || table.contains_key("values") {
+        let fault = Violation::new(child(pointer, "csv"), "points given here and in a file");
+        return Err(Box::new(
+            fault.hint("keep \"times_s\" and \"values\", or \"csv\""),
+        ));
+    }
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_path(base.join(&name))
+        .map_err(|e| {
+            at(
+                "csv",
+                format!("cannot read {}: {e}", base.join(&name).display()),
+            )
+        })?;
+    let headings = reader
+        .headers()
+        .map_err(|e| at("csv", format!("cannot read {name}: {e}")))?
+        .clone();
+    let column = |key: &str, default: usize| -> Read<usize> {
+        let Some(wanted) = text(key) else {
+            return match headings.len() > default {
+                true => Ok(default),
+                false => Err(at(
+                    "csv",
+                    format!("{name} has {} columns, not two", headings.len()),
+                )),
+            };
+        };
+        headings
+            .iter()
+            .position(|heading| heading == wanted)
+            .ok_or_else(|| {
+                let fault = Violation::new(
+                    child(pointer, key),
+                    format!("{name} has no column \"{wanted}\""),
+                );
+                let fault = fault.allowed(headings.iter().collect::<Vec<_>>().join(", "));
+                Box::new(Violation {
+                    nearest: nearest(&wanted, headings.iter()),
+                    ..fault
+                })
+            })
+    };
+    let columns = [column("time_column", 0)?, column("value_column", 1)?];
+    let (mut times, mut values) = (vec![], vec![]);
+    for record in reader.records() {
+        let record = record.map_err(|e| at("csv", format!("cannot read {name}: {e}")))?;
+        let line = record.position().map_or(0, csv::Position::line);
+        for (column, out) in columns.iter().zip([&mut times, &mut values]) {
+            let cell = record.get(*column).unwrap_or("");
+            let number = cell.parse::<f64>().ok().filter(|n| n.is_finite());
+            let number = number.ok_or_else(|| {
+                at(
+                    "csv",
+                    format!("{name}, line {line}: \"{cell}\" is not a number"),
+                )
+            })?;
+            out.push(Value::from(number));
+        }
+    }
+    for key in ["csv", "time_column", "value_column"] {
+        table.shift_remove(key);
+    }
+    table.insert("times_s".to_owned(), times.into());
+    table.insert("values".to_owned(), values.into());
+    Ok(())
+}

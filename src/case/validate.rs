@@ -1,0 +1,355 @@
+//! Structure: the JSON value against the generated JSON Schema, all faults at once.
+//!
+//! Knows only the keywords the generator writes (`$ref`, `type`, `properties`, `required`, `additionalProperties: false`,
+//! `oneOf`/`anyOf`, `const`, `enum`, `items`, `minItems`, `maxItems`, bounds of numbers). Of several branches the
+//! one the user meant is chosen by the type of the value and by its single key, so that a message is about that branch.
+
+use serde_json::{Map, Value};
+
+use super::faults::Faults;
+use super::locate::child;
+use super::numbers;
+use super::parse::short;
+use crate::error::Violation;
+
+/// Compares a value with a schema.
+pub fn validate(value: &Value, schema: &Value, faults: &mut Faults) {
+    Walk {
+        root: schema,
+        faults,
+    }
+    .check(value, schema, "");
+}
+
+struct Walk<'a> {
+    root: &'a Value,
+    faults: &'a mut Faults,
+}
+
+impl<'a> Walk<'a> {
+    fn check(&mut self, value: &Value, schema: &'a Value, pointer: &str) {
+        let mut branches = vec![];
+        self.branches(schema, &mut branches);
+        let Some(branch) = self.choose(value, &branches, pointer) else {
+            return;
+        };
+        match value {
+            Value::Object(members) => self.object(members, branch, pointer),
+            Value::Array(items) => self.array(items, branch, pointer),
+            Value::Number(number) => {
+                if let Some(fault) = numbers::fault(number, branch, pointer) {
+                    self.faults.push(fault);
+                }
+            }
+            Value::String(text) if branch.get("minLength").is_some() && text.is_empty() => {
+                self.faults
+                    .push(Violation::new(pointer, "empty text").allowed("at least one character"));
+            }
+            _ => {}
+        }
+    }
+
+    /// The alternatives of a schema, references and nested choices resolved.
+    fn branches(&self, schema: &'a Value, out: &mut Vec<&'a Value>) {
+        if let Some(name) = schema.get("$ref").and_then(Value::as_str) {
+            if let Some(target) = self.root.pointer(name.trim_start_matches('#')) {
+                self.branches(target, out);
+            }
+            return;
+        }
+        match schema
+            .get("anyOf")
+            .or_else(|| schema.get("oneOf"))
+            .and_then(Value::as_array)
+        {
+            Some(several) => several.iter().for_each(|one| self.branches(one, out)),
+            None => out.push(schema),
+        }
+    }
+
+    /// The alternative the user meant; none, with a fault, when there is no such.
+    fn choose(
+        &mut self,
+        value: &Value,
+        branches: &[&'a Value],
+        pointer: &str,
+    ) -> Option<&'a Value> {
+        let fitting: Vec<&'a Value> = branches
+            .iter()
+            .copied()
+            .filter(|b| type_fits(value, b))
+            .collect();
+        match value {
+            Value::String(text) => self.choose_word(text, &fitting, branches, pointer),
+            Value::Object(members) if fitting.iter().any(|b| tag(b).is_some()) => {
+                self.choose_tag(members, &fitting, branches, pointer)
+            }
+            _ => match fitting.first() {
+                Some(branch) => Some(*branch),
+                None => {
+                    let fault = Violation::new(pointer, format!("found {}", found(value)));
+                    let fault = fault.allowed(kinds(branches));
+                    let hint = match value {
+                        Value::Null => Some("leave the key out".to_owned()),
+                        Value::String(text) if text.parse::<f64>().is_ok() => {
+                            Some("numbers have no quotes".to_owned())
+                        }
+                        _ => None,
+                    };
+                    self.faults.push(Violation { hint, ..fault });
+                    None
+                }
+            },
+        }
+    }
+
+    fn choose_word(
+        &mut self,
+        text: &str,
+        fitting: &[&'a Value],
+        all: &[&'a Value],
+        pointer: &str,
+    ) -> Option<&'a Value> {
+        let words: Vec<&str> = fitting.iter().flat_map(|b| words(b)).collect();
+        if let Some(branch) = fitting
+            .iter()
+            .find(|b| words_free(b) || self::words(b).any(|w| w == text))
+        {
+            return Some(branch);
+        }
+        let mut fault = Violation::new(pointer, format!("found {}", found_text(text)));
+        let tags: Vec<&str> = all.iter().filter_map(|b| tag(b)).collect();
+        if tags.contains(&text) {
+            fault.what = format!("\"{text}\" needs more than its name");
+            fault.hint = Some(format!("write {{\"{text}\": ...}}"));
+        } else if !words.is_empty() {
+            fault.what = format!("unknown name \"{}\"", short(text));
+            fault.nearest = nearest(text, words.iter().chain(&tags).copied());
+        } else if text.parse::<f64>().is_ok() {
+            fault.hint = Some("numbers have no quotes".to_owned());
+        }
+        self.faults.push(fault.allowed(kinds(all)));
+        None
+    }
+
+    fn choose_tag(
+        &mut self,
+        members: &Map<String, Value>,
+        fitting: &[&'a Value],
+        all: &[&'a Value],
+        pointer: &str,
+    ) -> Option<&'a Value> {
+        let known = |key: &str| fitting.iter().find(|b| tag(b) == Some(key)).copied();
+        let mut keys = members.keys();
+        let single = keys.next().filter(|_| keys.next().is_none());
+        if let Some(branch) = single.and_then(|key| known(key)) {
+            return Some(branch);
+        }
+        let allowed = kinds(all);
+        let Some(key) = single else {
+            let what = match members.len() {
+                0 => "an empty object".to_owned(),
+                count => format!("{count} keys where one names the form"),
+            };
+            self.faults
+                .push_at_key(Violation::new(pointer, what).allowed(allowed));
+            // What stands under known names is looked at all the same.
+            for (key, value) in members {
+                if let Some(inner) = known(key).and_then(|b| b.pointer("/properties")?.get(key)) {
+                    self.check(value, inner, &child(pointer, key));
+                }
+            }
+            return None;
+        };
+        let what = format!("unknown name \"{}\"", short(key));
+        let fault = Violation::new(child(pointer, key), what).allowed(allowed);
+        let word = all.iter().flat_map(|b| words(b)).any(|word| word == key);
+        let hint = word.then(|| format!("write \"{key}\" without braces"));
+        let nearest = nearest(key, fitting.iter().filter_map(|b| tag(b))).filter(|_| !word);
+        self.faults.push_at_key(Violation {
+            nearest,
+            hint,
+            ..fault
+        });
+        None
+    }
+
+    fn object(&mut self, members: &Map<String, Value>, schema: &'a Value, pointer: &str) {
+        let Some(properties) = schema.get("properties").and_then(Value::as_object) else {
+            return;
+        };
+        let closed = schema.get("additionalProperties") == Some(&Value::Bool(false));
+        let mut misspelt = vec![];
+        for (key, value) in members {
+            match properties.get(key) {
+                Some(inner) => self.check(value, inner, &child(pointer, key)),
+                None if closed => {
+                    misspelt.extend(self.unknown_key(key, members, properties, pointer))
+                }
+                None => {}
+            }
+        }
+        let required = schema
+            .get("required")
+            .and_then(Value::as_array)
+            .into_iter()
+            .flatten();
+        for key in required.filter_map(Value::as_str) {
+            if !members.contains_key(key) && !misspelt.iter().any(|meant| meant == key) {
+                let fault = Violation::new(pointer, format!("the key \"{key}\" is missing"));
+                let meaning = properties
+                    .get(key)
+                    .and_then(|p| p.get("description")?.as_str());
+                let hint = meaning.map(|text| format!("{key}: {text}"));
+                self.faults.push_at_key(Violation { hint, ..fault });
+            }
+        }
+    }
+
+    /// Returns the key that was probably meant.
+    fn unknown_key(
+        &mut self,
+        key: &str,
+        members: &Map<String, Value>,
+        properties: &Map<String, Value>,
+        pointer: &str,
+    ) -> Option<String> {
+        let absent = properties
+            .keys()
+            .map(String::as_str)
+            .filter(|name| !members.contains_key(*name));
+        let nearest = nearest(key, absent);
+        let fault = Violation::new(
+            child(pointer, key),
+            format!("unknown key \"{}\"", short(key)),
+        );
+        let names: Vec<&str> = properties.keys().map(String::as_str).collect();
+        let allowed = if names.is_empty() {
+            "no keys at all".to_owned()
+        } else {
+            names.join(", ")
+        };
+        self.faults.push_unknown_key(Violation {
+            nearest: nearest.clone(),
+            ..fault.allowed(allowed)
+        });
+        nearest
+    }
+
+    fn array(&mut self, items: &[Value], schema: &'a Value, pointer: &str) {
+        if let Some(inner) = schema.get("items") {
+            for (i, item) in items.iter().enumerate() {
+                self.check(item, inner, &child(pointer, i));
+            }
+        }
+        let bound = |key| schema.get(key).and_then(Value::as_u64);
+        let count = items.len() as u64;
+        let allowed = match (bound("minItems"), bound("maxItems")) {
+            (Some(min), Some(max)) if min == max && count != min => format!("exactly {min}"),
+            (Some(min), _) if count < min => format!("at least {min}"),
+            (_, Some(max)) if count > max => format!("at most {max}"),
+            _ => return,
+        };
+        let what = format!(
+            "an array of {count} {}",
+            if count == 1 { "entry" } else { "entries" }
+        );
+        self.faults
+            .push(Violation::new(pointer, what).allowed(allowed));
+    }
+}
+
+/// The single key of an alternative such as `{"sine": ...}`.
+fn tag(branch: &Value) -> Option<&str> {
+    let properties = branch.get("properties")?.as_object()?;
+    let required = branch.get("required")?.as_array()?;
+    let (name, _) = properties.iter().next()?;
+    (properties.len() == 1 && required.len() == 1 && required[0] == name.as_str()).then_some(name)
+}
+
+/// The words a branch for texts allows.
+fn words(branch: &Value) -> impl Iterator<Item = &str> {
+    let several = branch
+        .get("enum")
+        .and_then(Value::as_array)
+        .into_iter()
+        .flatten();
+    several.chain(branch.get("const")).filter_map(Value::as_str)
+}
+
+fn words_free(branch: &Value) -> bool {
+    branch.get("enum").is_none() && branch.get("const").is_none()
+}
+
+fn type_fits(value: &Value, branch: &Value) -> bool {
+    match (value, branch.get("type").and_then(Value::as_str)) {
+        (_, None) => true,
+        (Value::Object(_), Some(kind)) => kind == "object",
+        (Value::Array(_), Some(kind)) => kind == "array",
+        (Value::String(_), Some(kind)) => kind == "string",
+        (Value::Number(_), Some(kind)) => kind == "number" || kind == "integer",
+        (Value::Bool(_), Some(kind)) => kind == "boolean",
+        (Value::Null, Some(kind)) => kind == "null",
+    }
+}
+
+/// What may stand somewhere, in words.
+fn kinds(branches: &[&Value]) -> String {
+    let words: Vec<&str> = branches.iter().flat_map(|b| self::words(b)).collect();
+    let tags: Vec<&str> = branches.iter().filter_map(|b| tag(b)).collect();
+    let mut kinds = vec![];
+    for branch in branches {
+        let kind = match branch.get("type").and_then(Value::as_str) {
+            Some("number") => "a number",
+            Some("integer") => "a whole number",
+            Some("boolean") => "true or false",
+            Some("array") => "an array",
+            Some("string") if words_free(branch) => "a text",
+            Some("object") if tag(branch).is_none() => "an object",
+            _ => continue,
+        };
+        kinds.push(kind.to_owned());
+    }
+    if !words.is_empty() {
+        kinds.push(quoted(&words));
+    }
+    if !tags.is_empty() {
+        kinds.push(format!("an object with one of {}", quoted(&tags)));
+    }
+    kinds.join(" or ")
+}
+
+fn found(value: &Value) -> String {
+    match value {
+        Value::Null => "null".to_owned(),
+        Value::Bool(b) => b.to_string(),
+        Value::Number(n) => format!("the number {n}"),
+        Value::String(s) => found_text(s),
+        Value::Array(_) => "an array".to_owned(),
+        Value::Object(_) => "an object".to_owned(),
+    }
+}
+
+fn found_text(text: &str) -> String {
+    format!("the text \"{}\"", short(text))
+}
+
+fn quoted(names: &[&str]) -> String {
+    names
+        .iter()
+        .map(|name| format!("\"{name}\""))
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+/// The most similar name, if similar enough to be what was meant.
+pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
+    if name.len() > 100 {
+        return None;
+    }
+    let similarity = |known: &str| strsim::jaro_winkler(&name.to_lowercase(), known);
+    let best = names
+        .map(|known| (similarity(known), known))
+        .max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (best.0 > 0.8).then(|| best.1.to_owned())
+}

@@ -1,0 +1,85 @@
+//! What can be asked for.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Elastic beams with fluid-filled bladders joined by slender tubes: dynamics with error control.
+#[derive(Debug, Parser)]
+#[command(name = "slcbeam", version, max_term_width = 100)]
+pub struct Arguments {
+    /// The subcommand.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Simulate a case and write a result folder
+    Run(RunArguments),
+    /// Validate a case; print characteristic numbers, coupling audit and chosen effects; write nothing
+    Check(CheckArguments),
+    /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
+    Mapping(MappingArguments),
+    /// Print the JSON Schema of a case
+    Schema,
+}
+
+/// A case file and changes to it.
+#[derive(Debug, Args)]
+pub struct CaseArguments {
+    /// Case file (JSON)
+    pub case: PathBuf,
+    /// Change a value of the case, repeatable: a JSON pointer and a JSON value, such as /solver/rtol=1e-7
+    #[arg(long = "set", value_name = "POINTER=JSON")]
+    pub sets: Vec<String>,
+}
+
+/// `run`.
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Result folder [default: out/<case name>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// No progress bar
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print summary.json instead of the summary box
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `check`.
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `mapping`.
+#[derive(Debug, Args)]
+pub struct MappingArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Which table [default: both, a blank line between them]
+    #[arg(long)]
+    pub table: Option<Table>,
+}
+
+/// The two maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Table {
+    /// Table A.1.
+    ThetaToXf,
+    /// Table A.2.
+    XfToTheta,
+}

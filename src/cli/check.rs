@@ -1,0 +1,72 @@
+//! `slcbeam check`: what a case is, before anything is run.
+
+use std::fmt::Write as _;
+use std::process::ExitCode;
+
+use serde_json::json;
+
+use super::arguments::CheckArguments;
+use crate::case;
+use crate::discrete::System;
+use crate::error::Result;
+use crate::model::{audit, characteristic};
+use crate::output::numbers::significant;
+use crate::run::dynamics;
+
+/// Prints characteristic numbers, coupling audit, chosen effects and warnings.
+pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
+    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let case = &loaded.case;
+    let system = System::new(case);
+    let numbers = characteristic::numbers(case, &system.model);
+    let findings = audit::coupling(case, &system.model);
+    let warnings = audit::warnings(case, &system.model, &numbers);
+    let (order, why) = dynamics::max_order(case, &system);
+    if asked.json {
+        let audit: Vec<_> = findings
+            .iter()
+            .map(|f| json!({"name": f.name, "value": f.value, "wanted": f.wanted, "good": f.good, "consequence": f.consequence}))
+            .collect();
+        let effects: serde_json::Map<_, _> = system
+            .model
+            .effects
+            .decisions
+            .iter()
+            .map(|d| (d.name.to_string(), json!({"value": if d.on { "on" } else { "off" }, "reason": d.reason})))
+            .collect();
+        let all = json!({
+            "case": case.name, "unknowns": system.layout.len, "characteristic": numbers, "audit": audit,
+            "effects": effects, "max_order": {"value": order, "reason": why}, "warnings": warnings,
+        });
+        super::print(&format!("{all:#}\n"))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut text = format!("{}: valid", case.name);
+    if !case.about.is_empty() {
+        let _ = write!(text, "\n{}", case.about);
+    }
+    text += "\n\ncharacteristic numbers\n";
+    for (name, value) in &numbers {
+        let _ = writeln!(text, "  {name:<38} {}", significant(*value, 6));
+    }
+    if !findings.is_empty() {
+        text += "\ncoupling\n";
+        for f in &findings {
+            let verdict = if f.good { "good" } else { "BAD" };
+            let _ = writeln!(text, "  {:<38} {:<12} wanted {}: {verdict}", f.name, significant(f.value, 5), f.wanted);
+        }
+    }
+    text += "\neffects\n";
+    for d in &system.model.effects.decisions {
+        let _ = writeln!(text, "  {:<16} {:<4} {}", d.name, if d.on { "on" } else { "off" }, d.reason);
+    }
+    let _ = writeln!(text, "\nunknowns {}, highest BDF order {order} ({why})", system.layout.len);
+    if !warnings.is_empty() {
+        text += "\nwarnings\n";
+        for w in &warnings {
+            let _ = writeln!(text, "  - {w}");
+        }
+    }
+    super::print(&text)?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,35 @@
+//! `slcbeam mapping`: the paper's tables A.1 and A.2.
+
+use std::process::ExitCode;
+
+use super::arguments::{MappingArguments, Table};
+use crate::case;
+use crate::error::{Error, Result};
+use crate::model::Model;
+use crate::output::numbers::significant;
+use crate::run::observe::network_coordinate;
+
+/// Prints one or both tables as CSV, six significant digits.
+pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
+    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let model = Model::new(&loaded.case);
+    let Some(wet) = &model.wet else {
+        return Err(Error::Usage("the case has no bladders: there is nothing to map".into()));
+    };
+    let map = network_coordinate(&loaded.case, wet);
+    let table = |heading: &str, rows: Vec<(f64, f64, i64)>| {
+        let mut text = format!("{heading}\n");
+        for (a, b, bladder) in rows {
+            text += &format!("{},{},{bladder}\n", significant(a, 6), significant(b, 6));
+        }
+        text
+    };
+    let theta = || table("theta_r,x_f,bladder", map.theta_to_xf());
+    let xf = || table("x_f,theta,bladder", map.xf_to_theta());
+    super::print(&match asked.table {
+        Some(Table::ThetaToXf) => theta(),
+        Some(Table::XfToTheta) => xf(),
+        None => format!("{}\n{}", theta(), xf()),
+    })?;
+    Ok(ExitCode::SUCCESS)
+}

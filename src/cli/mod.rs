@@ -1,0 +1,59 @@
+//! The command line: one file a subcommand, the only room that prints.
+
+mod arguments;
+mod check;
+mod interrupt;
+mod mapping;
+pub mod progress;
+mod run;
+mod schema;
+pub mod summary_box;
+mod terminal;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::error::{Error, Result};
+use arguments::{Arguments, Command};
+
+/// Reads the arguments, does what they ask, reports what went wrong, and gives the exit code.
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(answer) => {
+            // Help and version are answers, everything else is a usage error; clap prints both.
+            let code = if answer.use_stderr() { 2 } else { 0 };
+            let _ = answer.print();
+            return ExitCode::from(code);
+        }
+    };
+    match act(&arguments.command) {
+        Ok(code) => code,
+        Err(error) => {
+            terminal::report(&error);
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn act(command: &Command) -> Result<ExitCode> {
+    match command {
+        Command::Run(asked) => run::run(asked),
+        Command::Check(asked) => check::check(asked),
+        Command::Mapping(asked) => mapping::mapping(asked),
+        Command::Schema => schema::schema(),
+    }
+}
+
+/// Writes to standard output; a closed pipe ends the output, not the program.
+fn print(text: &str) -> Result<()> {
+    use std::io::Write as _;
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::Output { action: "write", path: "standard output".into(), source: e })
+        }
+        _ => Ok(()),
+    }
+}

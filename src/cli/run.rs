@@ -1,0 +1,55 @@
+//! `slcbeam run`.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use super::arguments::RunArguments;
+use super::progress::Watcher;
+use super::{interrupt, summary_box, terminal};
+use crate::case;
+use crate::error::Result;
+use crate::model::characteristic;
+use crate::output::folder::ResultFolder;
+use crate::output::recorder::{FolderRecorder, Hook, Labels};
+use crate::output::summary;
+use crate::run::dynamics;
+use crate::run::record::Control;
+
+/// Runs a case into a result folder.
+pub fn run(asked: &RunArguments) -> Result<ExitCode> {
+    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let case = &loaded.case;
+    let out = asked.out.clone().unwrap_or_else(|| PathBuf::from("out").join(&case.name));
+    let folder = ResultFolder::create(&out)?;
+    let interrupted = interrupt::flag();
+    let mut watcher = Watcher::new(asked.quiet);
+    let hook: Hook = Box::new(move |progress| {
+        watcher.step(progress);
+        if interrupt::raised(&interrupted) {
+            Control::Stop(format!("interrupted at t = {:.6} s", progress.t))
+        } else {
+            Control::Continue
+        }
+    });
+    let labels = Labels {
+        case_name: case.name.clone(),
+        case_json: case.resolved_json(),
+        frequency_hz: characteristic::forcing_period(case).map(|p| 1.0 / p),
+    };
+    let mut recorder = FolderRecorder::new(folder, labels, hook);
+    let outcome = dynamics::run(case, &mut recorder)?;
+    recorder.finish(&outcome.summary)?;
+    if asked.json {
+        super::print(&summary::to_json(&outcome.summary))?;
+    } else {
+        let box_text = summary_box::render(&outcome.summary, &out, terminal::colour_out(), terminal::width());
+        super::print(&box_text)?;
+    }
+    Ok(match outcome.fault {
+        None => ExitCode::SUCCESS,
+        Some(fault) => {
+            eprintln!("{}", terminal::diagnosis(&fault));
+            ExitCode::from(4)
+        }
+    })
+}

@@ -1,0 +1,276 @@
+//! The box at the end of a run: what matters, in a glance.
+
+use std::path::Path;
+
+use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
+use crate::run::summary::{Quantity, Status, Summary};
+
+/// Warnings shown; the rest is counted.
+const WARNINGS: usize = 3;
+/// Lines a single entry may take; the reason of a failure half as many again.
+const LINES: usize = 2;
+/// Between parts of an entry; stays on the line of what it follows.
+const BETWEEN: &str = "\u{a0}· ";
+/// Width of the names of entries.
+const NAME: usize = 11;
+
+/// How a row is painted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Tone {
+    Plain,
+    Good,
+    Warning,
+    Bad,
+}
+
+impl Tone {
+    fn paint(self, text: &str, colour: bool) -> String {
+        let code = match self {
+            _ if !colour => return text.to_string(),
+            Self::Plain => return text.to_string(),
+            Self::Good => "32",
+            Self::Warning => "33",
+            Self::Bad => "1;31",
+        };
+        format!("\u{1b}[{code}m{text}\u{1b}[0m")
+    }
+}
+
+struct Row {
+    name: &'static str,
+    text: String,
+    tone: Tone,
+}
+
+/// The box, `width` columns wide (at least 40), with a newline at the end; coloured when `colour`.
+pub fn render(summary: &Summary, dir: &Path, colour: bool, width: usize) -> String {
+    let width = width.clamp(40, 100);
+    let (status, tone) = match summary.status {
+        Status::Finished => ("finished", Tone::Good),
+        Status::Stopped => ("stopped", Tone::Warning),
+        Status::Failed => ("FAILED", Tone::Bad),
+    };
+    let room = width - status.chars().count() - 9;
+    let case: String = summary.case.chars().take(room).collect();
+    let rule = "─".repeat(width - case.chars().count() - status.chars().count() - 8);
+    let mut out = format!("╭─ {case} {rule} {} ─╮\n", tone.paint(status, colour));
+    for row in rows(summary, tone) {
+        push_row(&mut out, &row, width, colour);
+    }
+    let files = format!("files in {}", dir.display());
+    let length = files.chars().count();
+    if length + 6 <= width {
+        out.push_str(&format!("╰─ {files} {}╯\n", "─".repeat(width - length - 5)));
+    } else {
+        // A path is to be copied whole.
+        out.push_str(&format!("╰{}╯\n{files}\n", "─".repeat(width - 2)));
+    }
+    out.replace('\u{a0}', " ")
+}
+
+fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
+    let mut rows = Vec::new();
+    let mut add = |name, text: Option<String>, tone| {
+        if let Some(text) = text.filter(|t| !t.is_empty()) {
+            rows.push(Row { name, text, tone });
+        }
+    };
+    add("why", summary.reason.clone(), tone);
+    for warning in summary.warnings.iter().take(WARNINGS) {
+        add("warning", Some(warning.clone()), Tone::Warning);
+    }
+    let more = summary.warnings.len().saturating_sub(WARNINGS);
+    let more = (more > 0).then(|| format!("and {more} more in summary.json"));
+    add("", more, Tone::Warning);
+    add("deflection", deflection(summary), Tone::Plain);
+    add("pressure", pressure(summary), Tone::Plain);
+    add("energy", energy(summary), Tone::Plain);
+    add("balances", Some(balances(summary)), Tone::Plain);
+    add("integrator", Some(integrator(summary)), Tone::Plain);
+    add("time", Some(times(summary)), Tone::Plain);
+    let ended_well = summary.status != Status::Failed;
+    add(
+        "spent on",
+        spent(summary).filter(|_| ended_well),
+        Tone::Plain,
+    );
+    rows
+}
+
+fn push_row(out: &mut String, row: &Row, width: usize, colour: bool) {
+    let room = width - NAME - 5;
+    let mut lines = wrap(&row.text, room);
+    let most = if row.tone == Tone::Bad {
+        LINES + 1
+    } else {
+        LINES
+    };
+    if lines.len() > most {
+        lines.truncate(most);
+        if let Some(last) = lines.last_mut() {
+            *last = last.chars().take(room - 2).chain(" …".chars()).collect();
+        }
+    }
+    for (k, line) in lines.iter().enumerate() {
+        let name = format!("{:<NAME$}", if k == 0 { row.name } else { "" });
+        let name = if colour && row.tone == Tone::Plain {
+            format!("\u{1b}[2m{name}\u{1b}[0m")
+        } else {
+            row.tone.paint(&name, colour)
+        };
+        let pad = " ".repeat(room - line.chars().count());
+        out.push_str(&format!(
+            "│ {name} {}{pad} │\n",
+            row.tone.paint(line, colour)
+        ));
+    }
+}
+
+/// Lines of at most `room` characters, broken between words where that is possible.
+fn wrap(text: &str, room: usize) -> Vec<String> {
+    let mut lines: Vec<String> = vec![String::new()];
+    for word in text.split(' ') {
+        let mut word: Vec<char> = word.chars().collect();
+        let used = lines.last().map_or(0, |l| l.chars().count());
+        if used > 0 && used + 1 + word.len() > room {
+            lines.push(String::new());
+        }
+        while word.len() > room {
+            let rest = word.split_off(room);
+            lines.push(word.into_iter().collect());
+            lines.push(String::new());
+            word = rest;
+        }
+        if let Some(line) = lines.last_mut() {
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.extend(word);
+        }
+    }
+    lines.retain(|l| !l.is_empty());
+    lines
+}
+
+/// Numbers hold together with their units: wrapping knows only blanks.
+fn hold(text: String) -> String {
+    text.replace(' ', "\u{a0}")
+}
+
+fn shown(value: f64, unit: &str) -> String {
+    hold(quantity(value, unit, 3))
+}
+
+fn get<'a>(summary: &'a Summary, name: &str) -> Option<&'a Quantity> {
+    summary.quantities.get(name)
+}
+
+fn deflection(summary: &Summary) -> Option<String> {
+    let tip = [("u₁", "tip_u1_m"), ("u₃", "tip_u3_m")];
+    let parts = tip.into_iter().filter_map(|(symbol, name)| {
+        let largest = get(summary, name)?.max_abs?;
+        Some(hold(format!("{symbol} {}", shown(largest, "m"))))
+    });
+    let parts: Vec<_> = parts.collect();
+    (!parts.is_empty()).then(|| format!("tip, largest: {}", parts.join(BETWEEN)))
+}
+
+fn pressure(summary: &Summary) -> Option<String> {
+    let pressure = get(summary, "max_pressure_pa")?;
+    let largest = shown(pressure.max_abs?, "Pa");
+    let window = pressure.window_max_abs.map_or(String::new(), |p| {
+        format!("{BETWEEN}in the window {}", shown(p, "Pa"))
+    });
+    Some(format!("largest: {largest}{window}"))
+}
+
+fn energy(summary: &Summary) -> Option<String> {
+    let last = |name: &str| get(summary, name)?.last;
+    let parts = [
+        last("input_energy_j").map(|e| format!("put in {}", shown(e, "J"))),
+        last("harvested_energy_j").map(|e| format!("harvested {}", shown(e, "J"))),
+        last("efficiency").map(|e| hold(format!("efficiency {}", percent(e)))),
+        get(summary, "efficiency")
+            .and_then(|q| q.window)
+            .map(|e| hold(format!("in the window {}", percent(e)))),
+    ];
+    Some(
+        parts
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join(BETWEEN),
+    )
+}
+
+fn balances(summary: &Summary) -> String {
+    let b = &summary.balances;
+    let open = |what: &str, x: f64| hold(format!("{what} {}", significant(x, 2)));
+    let parts = [
+        ("energy", b.energy_residual_relative),
+        ("volume", b.volume_residual_relative),
+        ("momentum", b.momentum_residual_relative),
+        ("angular momentum", b.angular_momentum_residual_relative),
+    ];
+    // Exactly zero where a balance does not apply; energy always does.
+    let shown = parts
+        .into_iter()
+        .filter(|(what, x)| *what == "energy" || *x != 0.0);
+    let shown: Vec<_> = shown.map(|(what, x)| open(what, x)).collect();
+    format!("open by (relative): {}", shown.join(BETWEEN))
+}
+
+fn integrator(summary: &Summary) -> String {
+    let c = &summary.solver;
+    let mostly = c
+        .steps_by_order
+        .iter()
+        .enumerate()
+        .max_by_key(|(_, n)| **n)
+        .filter(|(_, n)| **n > 0);
+    let mostly = mostly.map_or(String::new(), |(k, _)| {
+        format!(", mostly of order {}", k + 1)
+    });
+    let failed = c.error_test_failures + c.newton_failures;
+    let parts = [
+        format!("{} steps{mostly}", count(c.steps)),
+        format!("{} rejected", count(failed)),
+        format!("{} unknowns", count(summary.unknowns as u64)),
+    ];
+    parts.map(hold).join(BETWEEN)
+}
+
+fn times(summary: &Summary) -> String {
+    let (simulated, wall) = (summary.time_s, summary.wall_s.total);
+    let simulated_text = hold(trimmed(&quantity(simulated, "s", 4)));
+    let ratio = if simulated > 0.0 && wall > 0.0 {
+        format!(
+            "{BETWEEN}{} for a simulated second",
+            hold(duration(wall / simulated))
+        )
+    } else {
+        String::new()
+    };
+    format!(
+        "{simulated_text} simulated in {}{ratio}",
+        hold(duration(wall))
+    )
+}
+
+fn spent(summary: &Summary) -> Option<String> {
+    let w = &summary.wall_s;
+    if w.total <= 0.0 {
+        return None;
+    }
+    let shares = [
+        ("residual", w.residual),
+        ("Jacobian", w.jacobian),
+        ("linear solver", w.linear_solver),
+        ("output", w.output),
+    ];
+    let share = |(name, s): (&str, f64)| hold(format!("{name} {:.0} %", 100.0 * s / w.total));
+    Some(shares.map(share).join(BETWEEN))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,164 @@
+//! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
+
+use super::dual::Dual;
+use super::{Dae, Fault, Pattern, Seeds, colour, trace};
+use crate::case::signals::Clock;
+use crate::discrete::{Instant, System, Workspace, ledger, recipe};
+
+/// Directions differentiated in one sweep.
+const LANES: usize = 8;
+
+/// `F(t, y, y') = 0` of a [`System`], each unknown and each equation divided by its characteristic size.
+#[derive(Clone, Debug)]
+pub struct BeamDae {
+    system: System,
+    within: f64,
+    now: Instant,
+    pattern: Pattern,
+    sweeps: Vec<Vec<(usize, usize)>>,
+    plain: Buffers<f64>,
+    dual: Buffers<Dual<LANES>>,
+}
+
+#[derive(Clone, Debug)]
+struct Buffers<T> {
+    workspace: Workspace<T>,
+    y: Vec<T>,
+    yp: Vec<T>,
+    residual: Vec<T>,
+}
+
+impl<T: crate::model::Scalar> Buffers<T> {
+    fn new(system: &System) -> Self {
+        let zeros = vec![T::zero(); system.layout.len];
+        Self { workspace: Workspace::new(system), y: zeros.clone(), yp: zeros.clone(), residual: zeros }
+    }
+}
+
+impl BeamDae {
+    /// The system as a DAE; finds the Jacobian's pattern and colours it.
+    pub fn new(system: System) -> Self {
+        let mut now = Instant::new(&system);
+        now.update(&system, Clock { t: 0.0, within: 0.0 });
+        let pattern = trace::pattern(&system, &now);
+        let (colour, count) = colour::colours(&pattern);
+        let mut sweeps = vec![Vec::new(); count.div_ceil(LANES)];
+        for (column, &c) in colour.iter().enumerate() {
+            sweeps[c / LANES].push((column, c % LANES));
+        }
+        let (plain, dual) = (Buffers::new(&system), Buffers::new(&system));
+        Self { system, within: 0.0, now, pattern, sweeps, plain, dual }
+    }
+
+    /// The system that is solved.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// Chooses the smooth interval in which signals are looked at, by an instant inside it [s].
+    pub fn look_within(&mut self, t: f64) {
+        self.within = t;
+    }
+
+    /// The system, and the values of time alone at an instant.
+    pub fn instant(&mut self, t: f64) -> (&System, &Instant) {
+        self.now.update(&self.system, Clock { t, within: self.within });
+        (&self.system, &self.now)
+    }
+
+    /// Evaluates the model at a scaled state and hands out time's values and the workspace, for balances and samples.
+    pub fn evaluate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &Instant, &mut Workspace<f64>) {
+        self.unscale(t, y, yp);
+        let b = &mut self.plain;
+        recipe::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
+        recipe::solid::strain_rates(&self.system, &self.now, &mut b.workspace);
+        (&self.system, &self.now, &mut b.workspace)
+    }
+
+    fn unscale(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+        self.now.update(&self.system, Clock { t, within: self.within });
+        let scales = &self.system.layout.scales;
+        for (k, scale) in scales.iter().enumerate() {
+            self.plain.y[k] = y[k] * scale;
+            self.plain.yp[k] = yp[k] * scale;
+        }
+    }
+}
+
+impl Dae for BeamDae {
+    fn len(&self) -> usize {
+        self.system.layout.len
+    }
+
+    fn differential(&self) -> &[bool] {
+        &self.system.layout.differential
+    }
+
+    fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+        self.unscale(t, y, yp);
+        let b = &mut self.plain;
+        recipe::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
+        for (k, row) in self.system.layout.row_scales.iter().enumerate() {
+            residual[k] = b.residual[k] / row;
+        }
+        Ok(())
+    }
+
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        seeds: Seeds<'_>,
+        values: &mut [f64],
+    ) -> Result<(), Fault> {
+        self.unscale(t, y, yp);
+        let scales = &self.system.layout.scales;
+        let rows = &self.system.layout.row_scales;
+        let b = &mut self.dual;
+        for k in 0..scales.len() {
+            b.y[k] = Dual { value: self.plain.y[k], derivative: [0.0; LANES] };
+            b.yp[k] = Dual { value: self.plain.yp[k], derivative: [0.0; LANES] };
+        }
+        for sweep in &self.sweeps {
+            for &(column, lane) in sweep {
+                let (of_y, of_yp) = match seeds {
+                    Seeds::Step { cj } => (1.0, cj),
+                    Seeds::Columns { y, yp } => (y[column], yp[column]),
+                };
+                b.y[column].derivative[lane] = of_y * scales[column];
+                b.yp[column].derivative[lane] = of_yp * scales[column];
+            }
+            recipe::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
+            for &(column, lane) in sweep {
+                for entry in self.pattern.column(column) {
+                    let row = self.pattern.rows[entry] as usize;
+                    values[entry] = b.residual[row].derivative[lane] / rows[row];
+                }
+                b.y[column].derivative = [0.0; LANES];
+                b.yp[column].derivative = [0.0; LANES];
+            }
+        }
+        Ok(())
+    }
+
+    fn integrals(&self) -> usize {
+        ledger::flow_count(&self.system)
+    }
+
+    fn integrands(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Fault> {
+        self.unscale(t, y, yp);
+        let b = &mut self.plain;
+        recipe::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
+        ledger::flows(&self.system, &self.now, &b.yp, &mut b.workspace, out);
+        Ok(())
+    }
+
+    fn name(&self, unknown: usize) -> String {
+        self.system.layout.name(unknown)
+    }
+}

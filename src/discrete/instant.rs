@@ -1,0 +1,162 @@
+//! Everything that depends on time alone, evaluated once an instant.
+
+use super::System;
+use crate::case::{Rotation, Translation};
+use crate::case::signals::{Clock, Jet, Signal};
+use crate::model::Load;
+use crate::model::loads::LoadKind;
+
+/// A load's shape sampled where it acts: forces at nodes, moments in cells.
+#[derive(Clone, Debug)]
+pub struct SampledLoad {
+    /// What it acts on.
+    pub kind: LoadKind,
+    /// Time function.
+    pub signal: Signal,
+    /// Factor at each node or cell, unit of the load.
+    pub shape: Vec<f64>,
+}
+
+impl SampledLoad {
+    /// Samples a load on a mesh.
+    pub fn new(load: &Load, mesh: &super::Mesh) -> Self {
+        let length = mesh.cells as f64 * mesh.h;
+        let at = |theta: f64| load.factor * load.profile.value(theta / length);
+        let shape = match load.kind {
+            LoadKind::ForceX | LoadKind::ForceZ => (0..mesh.nodes).map(|i| at(mesh.node_coordinate(i))).collect(),
+            LoadKind::MomentX | LoadKind::MomentZ => (0..mesh.cells).map(|c| at(mesh.cell_coordinate(c))).collect(),
+        };
+        Self { kind: load.kind, signal: load.signal.clone(), shape }
+    }
+}
+
+/// Given values at one end of the beam.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EndInstant {
+    /// Prescribed `u1`, when transverse motion is prescribed.
+    pub u1: Option<Jet>,
+    /// Prescribed `u3`, when axial motion is prescribed.
+    pub u3: Option<Jet>,
+    /// Prescribed slope, when the slope is prescribed.
+    pub slope: Option<Jet>,
+    /// Prescribed moment (zero where the slope is prescribed).
+    pub moment: Jet,
+    /// Dead force on the end in x [N].
+    pub force_x: f64,
+    /// Dead force on the end in z [N].
+    pub force_z: f64,
+    /// Section forces N and V along the end's tangent and normal.
+    pub follower: Option<(f64, f64)>,
+}
+
+/// Values at one instant.
+#[derive(Clone, Debug)]
+pub struct Instant {
+    clock: Option<Clock>,
+    /// Root and tip.
+    pub ends: [EndInstant; 2],
+    /// Force per length in x at each node [N/m].
+    pub force_x: Vec<f64>,
+    /// Force per length in z at each node [N/m].
+    pub force_z: Vec<f64>,
+    /// First moment per length, x component, in each cell [N].
+    pub moment_x: Vec<f64>,
+    /// First moment per length, z component, in each cell [N].
+    pub moment_z: Vec<f64>,
+    /// Conductance of each link [m^3/(s Pa)].
+    pub conductance: Vec<f64>,
+    /// Resistance of each link between its half cells, valve included [Pa s/m^3]; infinite when closed.
+    pub resistance: Vec<f64>,
+    /// Prescribed pressure of each port [Pa].
+    pub port_pressure: Vec<f64>,
+    /// Prescribed flow of each source [m^3/s].
+    pub source_flow: Vec<f64>,
+}
+
+impl Instant {
+    /// Room for the values of a system; nothing is evaluated yet.
+    pub fn new(system: &System) -> Self {
+        let (links, ports, sources) = system.model.wet.as_ref().map_or((0, 0, 0), |wet| {
+            (wet.network.links.len(), wet.network.ports.len(), wet.network.sources.len())
+        });
+        Self {
+            clock: None,
+            ends: [EndInstant::default(); 2],
+            force_x: vec![0.0; system.mesh.nodes],
+            force_z: vec![0.0; system.mesh.nodes],
+            moment_x: vec![0.0; system.mesh.cells],
+            moment_z: vec![0.0; system.mesh.cells],
+            conductance: vec![0.0; links],
+            resistance: vec![0.0; links],
+            port_pressure: vec![0.0; ports],
+            source_flow: vec![0.0; sources],
+        }
+    }
+
+    /// Evaluates every signal at `clock`, unless that is where it stands already.
+    pub fn update(&mut self, system: &System, clock: Clock) {
+        if self.clock == Some(clock) {
+            return;
+        }
+        let first = self.clock.is_none();
+        self.clock = Some(clock);
+        for (values, end) in self.ends.iter_mut().zip(&system.model.ends) {
+            let motion = |m: &Translation| match m {
+                Translation::Displacement(s) => (Some(s.jet(clock)), 0.0),
+                Translation::Force(s) => (None, s.jet(clock).value),
+            };
+            (values.u1, values.force_x) = motion(&end.transverse);
+            (values.u3, values.force_z) = motion(&end.axial);
+            (values.slope, values.moment) = match &end.rotation {
+                Rotation::Slope(s) => (Some(s.jet(clock)), Jet::default()),
+                Rotation::Moment(s) => (None, s.jet(clock)),
+            };
+            values.follower = end.follower.as_ref().map(|f| (f.normal.jet(clock).value, f.shear.jet(clock).value));
+        }
+        self.loads(system, clock);
+        self.network(system, clock, first);
+    }
+
+    fn loads(&mut self, system: &System, clock: Clock) {
+        let arrays = [&mut self.force_x, &mut self.force_z, &mut self.moment_x, &mut self.moment_z];
+        for array in arrays {
+            array.fill(0.0);
+        }
+        for load in &system.loads {
+            let factor = load.signal.jet(clock).value;
+            let array = match load.kind {
+                LoadKind::ForceX => &mut self.force_x,
+                LoadKind::ForceZ => &mut self.force_z,
+                LoadKind::MomentX => &mut self.moment_x,
+                LoadKind::MomentZ => &mut self.moment_z,
+            };
+            for (value, shape) in array.iter_mut().zip(&load.shape) {
+                *value += factor * shape;
+            }
+        }
+    }
+
+    fn network(&mut self, system: &System, clock: Clock, first: bool) {
+        let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return };
+        for (k, (link, mesh_link)) in wet.network.links.iter().zip(&fluid.links).enumerate() {
+            match &link.opening {
+                None if !first => {}
+                None => {
+                    self.conductance[k] = 1.0 / (mesh_link.half_cells + mesh_link.resistance);
+                    self.resistance[k] = mesh_link.resistance;
+                }
+                Some(opening) => {
+                    let o = opening.jet(clock).value.clamp(0.0, 1.0);
+                    self.conductance[k] = o / (o * mesh_link.half_cells + mesh_link.resistance);
+                    self.resistance[k] = mesh_link.resistance / o;
+                }
+            }
+        }
+        for (value, port) in self.port_pressure.iter_mut().zip(&wet.network.ports) {
+            *value = port.pressure.jet(clock).value;
+        }
+        for (value, source) in self.source_flow.iter_mut().zip(&wet.network.sources) {
+            *value = source.flow.jet(clock).value;
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Which unknowns there are, in which order, what they are called and how large they are.
+//!
+//! An absent effect is an absent unknown: a driven end has no position, a quasi-static solid no velocities, a dry beam
+//! no fluid. Equation i belongs to unknown i.
+
+use std::ops::Range;
+
+use super::{FluidMesh, Mesh};
+use crate::case::Translation;
+use crate::model::{Model, network};
+
+/// Blocks of unknowns, in this order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    /// Nodes whose `u1` is unknown.
+    pub free_u1: Range<usize>,
+    /// Nodes whose `u3` is unknown.
+    pub free_u3: Range<usize>,
+    /// First `u1`.
+    pub u1: usize,
+    /// First `u3`.
+    pub u3: usize,
+    /// First `v1`; only with solid inertia.
+    pub v1: usize,
+    /// First `v3`; only with solid inertia.
+    pub v3: usize,
+    /// First mean moment `Mbar_j`.
+    pub mean_moment: usize,
+    /// First mean force `Nbar_j`.
+    pub mean_force: usize,
+    /// First stored area.
+    pub area: usize,
+    /// First junction pressure.
+    pub junction: usize,
+    /// First turbine pressure drop behind a real rectifier.
+    pub bridge: usize,
+    /// Number of unknowns.
+    pub len: usize,
+    /// Whether velocities are unknowns.
+    pub inertia: bool,
+    /// Characteristic size of each unknown, in its unit.
+    pub scales: Vec<f64>,
+    /// Characteristic size of each equation.
+    pub row_scales: Vec<f64>,
+    /// Whether each unknown is differential.
+    pub differential: Vec<bool>,
+    names: Vec<Name>,
+    per_row: usize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Name {
+    Node(&'static str, usize),
+    Segment(&'static str, usize),
+    Area(usize, usize),
+    Junction(usize),
+    Bridge(usize),
+}
+
+impl Layout {
+    /// Unknowns of a model on a mesh.
+    pub fn new(model: &Model, mesh: &Mesh, fluid: Option<&FluidMesh>) -> Self {
+        let last = mesh.nodes - 1;
+        let driven = |motion: &Translation| matches!(motion, Translation::Displacement(_));
+        let [root, tip] = &model.ends;
+        let free = |root: &Translation, tip: &Translation| usize::from(driven(root))..mesh.nodes - usize::from(driven(tip));
+        let free_u1 = free(&root.transverse, &tip.transverse);
+        let free_u3 = free(&root.axial, &tip.axial);
+        debug_assert!(free_u1.end >= last && free_u3.end >= last);
+        let inertia = model.effects.solid_inertia;
+        let moving = inertia || model.section.drag > 0.0 || model.section.axial_damping_time > 0.0
+            || model.section.bending_damping_time > 0.0;
+        let s = &model.scales;
+        let cell_mass = model.section.mass_per_length * mesh.h;
+        let mut build = Builder::default();
+
+        let force_1 = s.transverse_force.max(1e-12);
+        let force_3 = s.axial_force.max(1e-12);
+        let u1 = build.nodes("u1 [m]", &free_u1, s.transverse, if inertia { s.transverse_rate } else { force_1 }, moving);
+        let u3 = build.nodes("u3 [m]", &free_u3, s.axial, if inertia { s.axial_rate } else { force_3 }, moving);
+        let (v1, v3) = if inertia {
+            let acceleration = |rate: f64| cell_mass * rate * s.frequency;
+            (
+                build.nodes("v1 [m/s]", &free_u1, s.transverse_rate, acceleration(s.transverse_rate), true),
+                build.nodes("v3 [m/s]", &free_u3, s.axial_rate, acceleration(s.axial_rate), true),
+            )
+        } else {
+            (build.len(), build.len())
+        };
+        let mut mean_moment = build.len();
+        let mut mean_force = mean_moment;
+        let (mut area, mut junction, mut bridge) = (mean_moment, mean_moment, mean_moment);
+        let mut per_row = 0;
+        if let (Some(wet), Some(fluid)) = (&model.wet, fluid) {
+            per_row = wet.per_row;
+            mean_moment = build.segments("mean moment [N m]", mesh.segments, s.moment);
+            mean_force = build.segments("mean normal force [N]", mesh.segments, s.force);
+            let stored = wet.area.per_pressure * s.pressure;
+            area = build.len();
+            for cell in 0..fluid.cells {
+                let name = Name::Area(cell / fluid.cells_per_bladder, cell % fluid.cells_per_bladder);
+                build.push(name, stored, stored * fluid.ds * s.frequency, true);
+            }
+            junction = build.len();
+            for j in 0..wet.network.junctions.len() {
+                build.push(Name::Junction(j), s.pressure, s.pressure * fluid.conductance, false);
+            }
+            bridge = build.len();
+            for (k, b) in wet.network.bridges.iter().enumerate() {
+                let conductance = wet.network.turbines[b.turbine].conductance;
+                build.push(Name::Bridge(k), s.pressure, s.pressure * conductance, false);
+            }
+        }
+        Self {
+            free_u1,
+            free_u3,
+            u1,
+            u3,
+            v1,
+            v3,
+            mean_moment,
+            mean_force,
+            area,
+            junction,
+            bridge,
+            len: build.len(),
+            inertia,
+            scales: build.scales,
+            row_scales: build.row_scales,
+            differential: build.differential,
+            names: build.names,
+            per_row,
+        }
+    }
+
+    /// Name of an unknown with unit and place.
+    pub fn name(&self, unknown: usize) -> String {
+        let bladder = |b: usize| network::bladder_label(b, self.per_row);
+        match self.names[unknown] {
+            Name::Node(what, node) => format!("{what} of node {node}"),
+            Name::Segment(what, segment) => format!("{what} of segment {}", segment + 1),
+            Name::Area(b, cell) => format!("area change [m^2] of bladder {}, cell {}", bladder(b), cell + 1),
+            Name::Junction(j) => format!("pressure [Pa] of junction {}", j + 1),
+            Name::Bridge(k) => format!("pressure drop [Pa] of turbine behind rectifier {}", k + 1),
+        }
+    }
+}
+
+#[derive(Default)]
+struct Builder {
+    scales: Vec<f64>,
+    row_scales: Vec<f64>,
+    differential: Vec<bool>,
+    names: Vec<Name>,
+}
+
+impl Builder {
+    fn len(&self) -> usize {
+        self.scales.len()
+    }
+
+    fn push(&mut self, name: Name, scale: f64, row_scale: f64, differential: bool) {
+        self.scales.push(scale);
+        self.row_scales.push(row_scale);
+        self.differential.push(differential);
+        self.names.push(name);
+    }
+
+    fn nodes(&mut self, what: &'static str, nodes: &Range<usize>, scale: f64, row: f64, differential: bool) -> usize {
+        let first = self.len();
+        for node in nodes.clone() {
+            self.push(Name::Node(what, node), scale, row, differential);
+        }
+        first
+    }
+
+    fn segments(&mut self, what: &'static str, segments: usize, scale: f64) -> usize {
+        let first = self.len();
+        for segment in 0..segments {
+            self.push(Name::Segment(what, segment), scale, scale, false);
+        }
+        first
+    }
+}

@@ -1,0 +1,172 @@
+//! The fluid's part of the balances.
+
+use super::{FLOWS, Flow, add};
+use crate::discrete::fluid_mesh::Place;
+use crate::discrete::recipe::fluid::{bridge_drops, pressure_at};
+use crate::discrete::{Instant, System, Workspace};
+use crate::model::bladder::{kink_curvature, kink_slope};
+use crate::model::network::LinkKind;
+use crate::model::{AreaLaw, Coupling, Wet};
+
+/// Power that a coupling without reciprocity adds, and the rate of `alpha_p` at a node (for ends with given moment).
+///
+/// ```text
+/// P_reciprocity = l_seg Σ_j { Nbar d/dt(φ_b [l_b A_N' - ζ'/E] (p_u + p_d))
+///                           + Mbar d/dt(φ_b [(p_d - p_u)(ψ'/E - l_b am) - l_b dm σ'(Mbar)(p_u + p_d)]) }
+/// ```
+pub fn rates<'a>(
+    system: &'a System,
+    yp: &'a [f64],
+    w: &Workspace<f64>,
+    out: &mut [f64],
+) -> impl Fn(&Workspace<f64>, usize) -> f64 + use<'a> {
+    if let Some(wet) = &system.model.wet {
+        let ratio = wet.bladder_length * wet.per_row as f64 / system.model.length;
+        for j in 0..wet.per_row {
+            let s = SegmentRates::new(system, wet, yp, w, j);
+            let reciprocal = Coupling::Reciprocal { length_ratio: ratio };
+            let (stretch, curvature) = s.strain_rates(&wet.coupling, &wet.area);
+            let (stretch_0, curvature_0) = s.strain_rates(&reciprocal, &wet.area);
+            let power = s.force * (stretch_0 - stretch) + s.moment * (curvature_0 - curvature);
+            add(out, Flow::Reciprocity, system.mesh.segment_length * power);
+        }
+    }
+    move |w, node| {
+        let Some(wet) = &system.model.wet else { return 0.0 };
+        let j = system.mesh.segments_of_node(node).0;
+        SegmentRates::new(system, wet, yp, w, j).strain_rates(&wet.coupling, &wet.area).1
+    }
+}
+
+/// Pressures, means and their rates in one segment.
+struct SegmentRates {
+    moment: f64,
+    force: f64,
+    moment_rate: f64,
+    force_rate: f64,
+    pressure: [f64; 2],
+    pressure_rate: [f64; 2],
+}
+
+impl SegmentRates {
+    fn new(system: &System, wet: &Wet, yp: &[f64], w: &Workspace<f64>, j: usize) -> Self {
+        let (moment, force) = (w.mean_moment[j], w.mean_force[j]);
+        let moment_rate = yp[system.layout.mean_moment + j];
+        let force_rate = yp[system.layout.mean_force + j];
+        let mut pressure = [0.0; 2];
+        let mut pressure_rate = [0.0; 2];
+        for (k, (bladder, row)) in [(j, 1.0), (wet.per_row + j, -1.0)].into_iter().enumerate() {
+            let cells = system.fluid.as_ref().map_or(0..0, |f| f.cells_of(bladder));
+            let count = cells.len() as f64;
+            let area_rate = w.area_rate[cells].iter().sum::<f64>() / count;
+            let imposed = wet.area.moment_slope(moment, row) * moment_rate + wet.area.force_slope(force) * force_rate;
+            pressure[k] = w.mean_pressure[bladder];
+            pressure_rate[k] = (area_rate - imposed) / wet.area.per_pressure;
+        }
+        Self { moment, force, moment_rate, force_rate, pressure, pressure_rate }
+    }
+
+    /// Rates of `lambda_p` and `alpha_p` under a coupling.
+    fn strain_rates(&self, coupling: &Coupling, law: &AreaLaw) -> (f64, f64) {
+        let [pu, pd] = self.pressure;
+        let [pu_t, pd_t] = self.pressure_rate;
+        match *coupling {
+            Coupling::Published { stretch_per_pressure, curvature_per_pressure } => {
+                (stretch_per_pressure * (pu_t + pd_t), curvature_per_pressure * (pu_t - pd_t))
+            }
+            Coupling::Reciprocal { length_ratio } => {
+                let force_kink = kink_curvature(self.force, law.force_width) * self.force_rate;
+                let moment_kink = kink_curvature(self.moment, law.moment_width) * self.moment_rate;
+                let stretch = law.force_slope(self.force) * (pu_t + pd_t)
+                    - law.force_half_difference * force_kink * (pu + pd);
+                let slope = kink_slope(self.moment, law.moment_width);
+                let curvature = law.moment_mean * (pu_t - pd_t)
+                    - law.moment_half_difference * (slope * (pu_t + pd_t) + moment_kink * (pu + pd));
+                (length_ratio * stretch, length_ratio * curvature)
+            }
+        }
+    }
+}
+
+/// Dissipation, harvest, power of ports, and the outflow of every component.
+pub fn flows(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut [f64]) {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return };
+    let network = &wet.network;
+    let k = fluid.cells_per_bladder;
+    for bladder in 0..fluid.bladders {
+        for cell in bladder * k + 1..(bladder + 1) * k {
+            let drop = w.pressure[cell - 1] - w.pressure[cell];
+            add(out, Flow::Bladders, fluid.conductance * drop * drop);
+        }
+    }
+    let component = |place: Place| match place {
+        Place::Cell(c) => Some(network.component_of_bladder[c / k]),
+        Place::Junction(j) => Some(network.component_of_junction[j]),
+        Place::Port(_) => None,
+    };
+    let cross = |from: Place, to: Place, q: f64, out: &mut [f64]| {
+        for (place, outward) in [(from, q), (to, -q)] {
+            match (place, component(place)) {
+                (Place::Port(p), _) => add(out, Flow::Ports, now.port_pressure[p] * outward),
+                (_, Some(c)) if component(from) != component(to) => out[FLOWS.len() + c] += outward,
+                _ => {}
+            }
+        }
+    };
+    for (link, &conductance) in fluid.links.iter().zip(&now.conductance) {
+        let drop = pressure_at(link.from, now, w) - pressure_at(link.to, now, w);
+        let q = conductance * drop;
+        let in_halves = q * q * link.half_cells;
+        add(out, Flow::Bladders, in_halves);
+        let rest = q * drop - in_halves;
+        add(out, if matches!(link.kind, LinkKind::Turbine(_)) { Flow::Turbines } else { Flow::Tubes }, rest);
+        cross(link.from, link.to, q, out);
+    }
+    for (&place, &q) in fluid.sources.iter().zip(&now.source_flow) {
+        let half = if matches!(place, Place::Cell(_)) { 0.5 / fluid.conductance } else { 0.0 };
+        add(out, Flow::Ports, (pressure_at(place, now, w) + half * q) * q);
+        add(out, Flow::Bladders, half * q * q);
+        if let Some(c) = component(place) {
+            out[FLOWS.len() + c] -= q;
+        }
+    }
+    for (b, (bridge, &(from, to))) in network.bridges.iter().zip(&fluid.bridges).enumerate() {
+        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.bridge[b]);
+        let (qf, qb) = (bridge.valve.flow(forward), bridge.valve.flow(backward));
+        let conductance = network.turbines[bridge.turbine].conductance;
+        add(out, Flow::Turbines, conductance * w.bridge[b] * w.bridge[b]);
+        add(out, Flow::Rectifiers, 2.0 * (qf * forward + qb * backward));
+        cross(from, to, qf - qb, out);
+    }
+}
+
+/// Energy stored in the bladders, the same for both couplings:
+///
+/// ```text
+/// l_b Σ_{j,R} [ mean_k(a_p p_k²/2) + pbar (Nbar A_N'(Nbar) + Mbar (R A_M)'(Mbar)) ]
+/// ```
+pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return 0.0 };
+    let mut sum = 0.0;
+    for j in 0..wet.per_row {
+        for (bladder, row) in [(j, 1.0), (wet.per_row + j, -1.0)] {
+            let cells = &w.pressure[fluid.cells_of(bladder)];
+            let squares: f64 = cells.iter().map(|p| p * p).sum();
+            let mixed = w.mean_force[j] * wet.area.force_slope(w.mean_force[j])
+                + w.mean_moment[j] * wet.area.moment_slope(w.mean_moment[j], row);
+            sum += 0.5 * wet.area.per_pressure * squares / cells.len() as f64 + w.mean_pressure[bladder] * mixed;
+        }
+    }
+    wet.bladder_length * sum
+}
+
+/// Volume change stored in each component.
+pub fn volumes(system: &System, w: &Workspace<f64>) -> Vec<f64> {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return vec![] };
+    let mut volumes = vec![0.0; wet.network.components];
+    for bladder in 0..fluid.bladders {
+        let stored: f64 = w.area[fluid.cells_of(bladder)].iter().sum();
+        volumes[wet.network.component_of_bladder[bladder]] += stored * fluid.ds;
+    }
+    volumes
+}

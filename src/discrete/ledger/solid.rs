@@ -1,0 +1,179 @@
+//! The beam's part of the balances.
+
+use super::{Energies, Flow, add};
+use crate::case::schema::Formulation;
+use crate::discrete::recipe::rows::{end_force, published_force};
+use crate::discrete::recipe::solid::node_stretch;
+use crate::discrete::{Instant, System, Workspace};
+
+/// Powers and impulses of loads, ends, damping, and of the published form.
+pub fn flows(
+    system: &System,
+    now: &Instant,
+    curvature_rate: impl Fn(&Workspace<f64>, usize) -> f64,
+    w: &Workspace<f64>,
+    out: &mut [f64],
+) {
+    let (mesh, section, l) = (&system.mesh, &system.model.section, &system.layout);
+    let last = mesh.nodes - 1;
+    let published = system.model.formulation == Formulation::Published;
+    for i in 0..=last {
+        let length = mesh.node_length(i);
+        let (mut fx, mut fz) = (length * now.force_x[i], length * now.force_z[i]);
+        if i == 0 || i == last {
+            let (ex, ez) = end_force(system, now, w, i);
+            fx += ex;
+            fz += ez;
+        }
+        add(out, Flow::Loads, fx * w.v1[i] + fz * w.v3[i]);
+        if published {
+            let (cx, cz) = published_force(system, w, i);
+            add(out, Flow::Formulation, cx * w.v1[i] + cz * w.v3[i]);
+            fx += cx;
+            fz += cz;
+        }
+        if section.drag > 0.0 {
+            let (dx, dz) = (length * section.drag * w.v1[i], length * section.drag * w.v3[i]);
+            add(out, Flow::Damping, dx * w.v1[i] + dz * w.v3[i]);
+            fx -= dx;
+            fz -= dz;
+        }
+        // Reaction of a driven end: what is missing in its momentum balance.
+        let inertia = section.mass_per_length * length;
+        let right = if i < last { (w.sx[i], w.sz[i]) } else { (0.0, 0.0) };
+        let left = if i > 0 { (w.sx[i - 1], w.sz[i - 1]) } else { (0.0, 0.0) };
+        if !l.free_u1.contains(&i) {
+            let reaction = inertia * w.a1[i] - fx - right.0 + left.0;
+            add(out, Flow::Ends, reaction * w.v1[i]);
+            fx += reaction;
+        }
+        if !l.free_u3.contains(&i) {
+            let reaction = inertia * w.a3[i] - fz - right.1 + left.1;
+            add(out, Flow::Ends, reaction * w.v3[i]);
+            fz += reaction;
+        }
+        let (x, z) = (w.u1[i], mesh.node_coordinate(i) + w.u3[i]);
+        add(out, Flow::ImpulseX, fx);
+        add(out, Flow::ImpulseZ, fz);
+        add(out, Flow::AngularImpulse, z * fx - x * fz);
+        bending(system, now, &curvature_rate, w, i, out);
+    }
+    cells(system, now, w, published, out);
+}
+
+/// End moments, viscous moments, and the published curvature measure, at one node.
+fn bending(
+    system: &System,
+    now: &Instant,
+    curvature_rate: &impl Fn(&Workspace<f64>, usize) -> f64,
+    w: &Workspace<f64>,
+    i: usize,
+    out: &mut [f64],
+) {
+    let (mesh, section) = (&system.mesh, &system.model.section);
+    let last = mesh.nodes - 1;
+    let length = mesh.node_length(i);
+    let published = system.model.formulation == Formulation::Published;
+    let end = match i {
+        0 => Some(&now.ends[0]),
+        _ if i == last => Some(&now.ends[1]),
+        _ => None,
+    };
+    let (stretch, stretch_rate) = if published {
+        let (a, b) = (i.saturating_sub(1), i.min(last - 1));
+        (node_stretch(w, i, last), 0.5 * (w.stretch_rate[a] + w.stretch_rate[b]))
+    } else {
+        (1.0, 0.0)
+    };
+    // Where the moment is given, the curvature follows from it.
+    let kappa_rate = match end {
+        Some(e) if e.slope.is_none() => {
+            let alpha_rate = e.moment.rate / section.bending_stiffness + curvature_rate(w, i);
+            (alpha_rate - w.kappa[i] * stretch_rate) / stretch
+        }
+        _ => w.kappa_rate[i],
+    };
+    if let Some(e) = end {
+        let (sign, cell) = if i == 0 { (1.0, 0) } else { (-1.0, last - 1) };
+        let angle_rate = match e.slope {
+            Some(slope) => slope.rate,
+            None => w.angle_rate[cell] + sign * 0.5 * mesh.h * kappa_rate,
+        };
+        let moment = w.moment[i] + w.viscous_moment[i];
+        add(out, Flow::Ends, sign * moment * angle_rate);
+        add(out, Flow::AngularImpulse, sign * moment);
+    }
+    add(out, Flow::Damping, length * w.viscous_moment[i] * kappa_rate);
+    if published {
+        // d/dt (λ κ - κ)
+        let excess_rate = (stretch - 1.0) * kappa_rate + w.kappa[i] * stretch_rate;
+        add(out, Flow::Formulation, length * w.moment[i] * excess_rate);
+    }
+}
+
+/// Distributed moments, viscous forces, and the published rotary term, over the cells.
+fn cells(system: &System, now: &Instant, w: &Workspace<f64>, published: bool, out: &mut [f64]) {
+    let (h, section) = (system.mesh.h, &system.model.section);
+    let rotary = section.mass_per_length * section.gyration_radius_squared;
+    for c in 0..system.mesh.cells {
+        if system.has_moments {
+            let couple = w.d3x[c] * now.moment_x[c] + w.d3z[c] * now.moment_z[c];
+            add(out, Flow::Loads, -h * couple * w.angle_rate[c]);
+            add(out, Flow::AngularImpulse, -h * couple);
+        }
+        add(out, Flow::Damping, h * w.viscous_force[c] * w.stretch_rate[c]);
+        if published && system.model.effects.rotary_inertia {
+            let spurious = rotary * w.stretch[c] * w.stretch_rate[c] * w.angle_rate[c].powi(2);
+            add(out, Flow::Formulation, -h * spurious);
+        }
+    }
+}
+
+/// Kinetic and elastic energy.
+pub fn energies(system: &System, w: &Workspace<f64>) -> Energies {
+    let (mesh, section) = (&system.mesh, &system.model.section);
+    let mut e = Energies::default();
+    for i in 0..mesh.nodes {
+        let length = mesh.node_length(i);
+        if system.layout.inertia {
+            e.kinetic += 0.5 * section.mass_per_length * length * (w.v1[i] * w.v1[i] + w.v3[i] * w.v3[i]);
+        }
+        e.bending += 0.5 * length * w.moment[i] * w.moment[i] / section.bending_stiffness;
+    }
+    for c in 0..mesh.cells {
+        e.axial += 0.5 * mesh.h * w.force[c] * w.force[c] / section.axial_stiffness;
+        if system.model.effects.rotary_inertia {
+            e.rotary += 0.5 * mesh.h * spin(system, w, c) * w.angle_rate[c];
+        }
+    }
+    e
+}
+
+/// Angular momentum of a cell's rotation per length: `m y11 φ_t`, published `m y11 λ² φ_t`.
+fn spin(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
+    let section = &system.model.section;
+    let factor = match system.model.formulation {
+        Formulation::Conservative => 1.0,
+        Formulation::Published => w.stretch[c] * w.stretch[c],
+    };
+    section.mass_per_length * section.gyration_radius_squared * factor * w.angle_rate[c]
+}
+
+/// Momentum (x, z) and angular momentum about the origin.
+pub fn momenta(system: &System, w: &Workspace<f64>) -> ([f64; 2], f64) {
+    let (mesh, section) = (&system.mesh, &system.model.section);
+    let (mut momentum, mut angular) = ([0.0; 2], 0.0);
+    if !system.layout.inertia {
+        return (momentum, angular);
+    }
+    for i in 0..mesh.nodes {
+        let mass = section.mass_per_length * mesh.node_length(i);
+        momentum[0] += mass * w.v1[i];
+        momentum[1] += mass * w.v3[i];
+        angular += mass * ((mesh.node_coordinate(i) + w.u3[i]) * w.v1[i] - w.u1[i] * w.v3[i]);
+    }
+    if system.model.effects.rotary_inertia {
+        angular += (0..mesh.cells).map(|c| mesh.h * spin(system, w, c)).sum::<f64>();
+    }
+    (momentum, angular)
+}

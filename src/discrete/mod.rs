@@ -1,0 +1,55 @@
+//! Space: the mesh, the unknowns, the semi-discrete equations in the paper's order, and their exact balances.
+
+pub mod fluid_mesh;
+pub mod instant;
+pub mod layout;
+pub mod ledger;
+pub mod mesh;
+pub mod recipe;
+pub mod sample;
+pub mod start;
+pub mod workspace;
+
+use crate::case::schema::Case;
+use crate::model::Model;
+use crate::model::loads::LoadKind;
+
+pub use fluid_mesh::FluidMesh;
+pub use instant::{Instant, SampledLoad};
+pub use layout::Layout;
+pub use mesh::Mesh;
+pub use workspace::Workspace;
+
+/// A model on a mesh: everything the residual needs besides time and state.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// Physics.
+    pub model: Model,
+    /// Beam mesh.
+    pub mesh: Mesh,
+    /// Bladder cells and links; absent in a dry beam.
+    pub fluid: Option<FluidMesh>,
+    /// Unknowns and equations.
+    pub layout: Layout,
+    /// Distributed loads, sampled.
+    pub loads: Vec<SampledLoad>,
+    /// Whether any load is a distributed moment.
+    pub has_moments: bool,
+    /// Whether material damping acts.
+    pub damped: bool,
+}
+
+impl System {
+    /// Discretises a checked case.
+    pub fn new(case: &Case) -> Self {
+        let model = Model::new(case);
+        let segments = case.bladders.as_ref().map(|b| b.per_row).or(case.mesh.segments).unwrap_or(10);
+        let mesh = Mesh::new(model.length, segments, case.mesh.cells_per_segment);
+        let fluid = model.wet.as_ref().map(|wet| FluidMesh::new(wet, case.mesh.cells_per_bladder));
+        let layout = Layout::new(&model, &mesh, fluid.as_ref());
+        let loads: Vec<_> = model.loads.iter().map(|load| SampledLoad::new(load, &mesh)).collect();
+        let has_moments = loads.iter().any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ));
+        let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
+        Self { model, mesh, fluid, layout, loads, has_moments, damped }
+    }
+}

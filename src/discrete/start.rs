@@ -1,0 +1,80 @@
+//! The state at t = 0 (A.55-A.58, A.70).
+
+use super::{Instant, System, Workspace, recipe};
+use crate::case::profile::Profile;
+use crate::case::schema::Case;
+use crate::model::network::bladder_index;
+
+/// Scaled unknowns at the start: displacements and rates as given, areas from the given pressures.
+/// Rates and whatever is algebraic are only guessed; a consistent start follows from these.
+pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
+    let l = &system.layout;
+    let mut y = vec![0.0; l.len];
+    let length = system.model.length;
+    let at = |profile: &Option<Profile>, node: usize| {
+        profile.as_ref().map_or(0.0, |p| p.value(system.mesh.node_coordinate(node) / length))
+    };
+    for (k, node) in l.free_u1.clone().enumerate() {
+        y[l.u1 + k] = at(&case.start.u1_m, node);
+        if l.inertia {
+            y[l.v1 + k] = at(&case.start.u1_rate_m_s, node);
+        }
+    }
+    for (k, node) in l.free_u3.clone().enumerate() {
+        y[l.u3 + k] = at(&case.start.u3_m, node);
+        if l.inertia {
+            y[l.v3 + k] = at(&case.start.u3_rate_m_s, node);
+        }
+    }
+    if system.fluid.is_some() {
+        fill_bladders(system, case, now, &mut y);
+    }
+    for (value, scale) in y.iter_mut().zip(&l.scales) {
+        *value /= scale;
+    }
+    y
+}
+
+/// Areas that give the prescribed pressures, with the means that follow from them: a fixed point, exact after one
+/// round unless the coupling depends on the means.
+fn fill_bladders(system: &System, case: &Case, now: &Instant, y: &mut [f64]) {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return };
+    let l = &system.layout;
+    let k = fluid.cells_per_bladder;
+    let mut pressure = vec![0.0; fluid.cells];
+    for start in &case.start.pressures {
+        for &signed in &start.bladders {
+            let bladder = bladder_index(signed, wet.per_row);
+            for cell in 0..k {
+                pressure[bladder * k + cell] = start.pressure_pa.value((cell as f64 + 0.5) / k as f64);
+            }
+        }
+    }
+    let yp = vec![0.0; y.len()];
+    let mut w = Workspace::new(system);
+    let mut residual = vec![0.0; y.len()];
+    for _ in 0..20 {
+        for j in 0..wet.per_row {
+            let (moment, force) = (y[l.mean_moment + j], y[l.mean_force + j]);
+            for (bladder, row) in [(j, 1.0), (wet.per_row + j, -1.0)] {
+                let imposed = wet.area.of_moment(moment, row) + wet.area.of_force(force);
+                for cell in fluid.cells_of(bladder) {
+                    y[l.area + cell] = wet.area.per_pressure * pressure[cell] + imposed;
+                }
+            }
+        }
+        recipe::residual(system, now, y, &yp, &mut w, &mut residual);
+        // The residual of a mean is what it lacks.
+        let means = l.mean_moment..l.area;
+        let worst = means.clone().map(|i| (residual[i] / l.scales[i]).abs()).fold(0.0, f64::max);
+        for i in means {
+            y[i] -= residual[i];
+        }
+        if worst < 1e-15 {
+            break;
+        }
+    }
+    for (junction, value) in y[l.junction..l.bridge].iter_mut().enumerate() {
+        *value = w.junction.get(junction).copied().unwrap_or(0.0);
+    }
+}

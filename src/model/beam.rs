@@ -1,0 +1,58 @@
+//! The cross-section of the beam: mass, stiffness, rotary inertia, damping.
+
+use crate::case::schema::Case;
+
+/// Constants of the cross-section.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// `f_m`: mass over that of the full solid section [1].
+    pub mass_factor: f64,
+    /// `m = rho_s w_s h_s f_m` [kg/m].
+    pub mass_per_length: f64,
+    /// `EA = E h_s w_s f_e` [N] (A.37).
+    pub axial_stiffness: f64,
+    /// `EI = E (w_s h_s^3/12) f_i` [N m^2] (A.38).
+    pub bending_stiffness: f64,
+    /// `y11 = (rho_s/m) (w_s h_s^3/12) f_i` [m^2].
+    pub gyration_radius_squared: f64,
+    /// `tau_a` [s].
+    pub axial_damping_time: f64,
+    /// `tau_b` [s].
+    pub bending_damping_time: f64,
+    /// `c` [N s/m^2].
+    pub drag: f64,
+}
+
+impl Section {
+    /// `[E1]` (2, A.1):
+    ///
+    /// ```text
+    /// f_m = (n w_b h_b l_b ρ_f + (l_s w_s h_s - n w_b h_b l_b) ρ_s)/(l_s w_s h_s ρ_s)
+    /// m = ρ_s w_s h_s f_m    EA = E h_s w_s f_e    EI = E (w_s h_s³/12) f_i    y11 = (ρ_s/m) (w_s h_s³/12) f_i
+    /// ```
+    pub fn new(case: &Case) -> Self {
+        let beam = &case.beam;
+        let solid = beam.length_m * beam.width_m * beam.height_m;
+        let (cavities, fluid_density) = match (&case.bladders, &case.fluid) {
+            (Some(b), Some(f)) => {
+                (2.0 * b.per_row as f64 * b.width_m * b.height_m * b.length_m, f.density_kg_m3)
+            }
+            _ => (0.0, 0.0),
+        };
+        let mass_factor = beam.mass_factor.unwrap_or(
+            (cavities * fluid_density + (solid - cavities) * beam.density_kg_m3) / (solid * beam.density_kg_m3),
+        );
+        let mass_per_length = beam.density_kg_m3 * beam.width_m * beam.height_m * mass_factor;
+        let second_moment = beam.width_m * beam.height_m.powi(3) / 12.0 * beam.bending_stiffness_factor;
+        Self {
+            mass_factor,
+            mass_per_length,
+            axial_stiffness: beam.young_modulus_pa * beam.height_m * beam.width_m * beam.axial_stiffness_factor,
+            bending_stiffness: beam.young_modulus_pa * second_moment,
+            gyration_radius_squared: beam.density_kg_m3 / mass_per_length * second_moment,
+            axial_damping_time: beam.damping.axial_time_s,
+            bending_damping_time: beam.damping.bending_time_s,
+            drag: beam.damping.drag_n_s_m2,
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! One bladder's cross-section: how its area changes with pressure, bending moment and normal force.
+
+use super::{Section, scalar::Scalar};
+use crate::case::schema::{Bladders, Case, Coupling as CouplingChoice};
+
+/// `[E2]` (A.15, A.16) in closed form, R = +1 for the upper row, -1 for the lower:
+///
+/// ```text
+/// a1 = a_p p + R A_M(M) + A_N(N)
+/// R A_M(M) = R am M - dm σ(M)    am = (aM+ + aM-)/2    dm = (aM+ - aM-)/2
+///   A_N(N) =   an N - dn σ(N)    an = (aN+ + aN-)/2    dn = (aN+ - aN-)/2
+/// σ(X) = √(X² + d²) - d                    smooths |X| over the width d
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AreaLaw {
+    /// `a_p` [m^2/Pa].
+    pub per_pressure: f64,
+    /// `am` [m^2/(N m)].
+    pub moment_mean: f64,
+    /// `dm` [m^2/(N m)].
+    pub moment_half_difference: f64,
+    /// `an` [m^2/N].
+    pub force_mean: f64,
+    /// `dn` [m^2/N].
+    pub force_half_difference: f64,
+    /// Width of the kink in M [N m].
+    pub moment_width: f64,
+    /// Width of the kink in N [N].
+    pub force_width: f64,
+}
+
+impl AreaLaw {
+    /// Law of the case's bladders; without `asymmetry` (or with the reciprocal coupling, whose potential is convex
+    /// only with mean slopes) the half differences are zero.
+    pub fn new(case: &Case, bladders: &Bladders, section: &Section, asymmetry: bool) -> Self {
+        let m = &bladders.area_per_moment_m2_per_n_m;
+        let n = &bladders.area_per_force_m2_per_n;
+        let kinked = asymmetry && bladders.coupling != CouplingChoice::Reciprocal;
+        let half = if kinked { 0.5 } else { 0.0 };
+        Self {
+            per_pressure: bladders.area_per_pressure_m2_per_pa,
+            moment_mean: 0.5 * (m.closing + m.opening),
+            moment_half_difference: half * (m.closing - m.opening),
+            force_mean: 0.5 * (n.compression + n.tension),
+            force_half_difference: half * (n.compression - n.tension),
+            moment_width: bladders.kink_width * section.bending_stiffness / case.beam.length_m,
+            force_width: bladders.kink_width * section.axial_stiffness,
+        }
+    }
+
+    /// `A_N(N)` [m^2].
+    #[inline]
+    pub fn of_force<T: Scalar>(&self, force: T) -> T {
+        force * self.force_mean - kink(force, self.force_width) * self.force_half_difference
+    }
+
+    /// `R A_M(M)` [m^2].
+    #[inline]
+    pub fn of_moment<T: Scalar>(&self, moment: T, row: f64) -> T {
+        moment * (row * self.moment_mean) - kink(moment, self.moment_width) * self.moment_half_difference
+    }
+
+    /// `A_N'(N)` [m^2/N].
+    #[inline]
+    pub fn force_slope<T: Scalar>(&self, force: T) -> T {
+        -(kink_slope(force, self.force_width) * self.force_half_difference) + self.force_mean
+    }
+
+    /// `(R A_M)'(M)` [m^2/(N m)].
+    #[inline]
+    pub fn moment_slope<T: Scalar>(&self, moment: T, row: f64) -> T {
+        -(kink_slope(moment, self.moment_width) * self.moment_half_difference) + row * self.moment_mean
+    }
+
+    /// Pressure of a cell with area change `area`, where bending and force already account for `imposed`.
+    #[inline]
+    pub fn pressure<T: Scalar>(&self, area: T, imposed: T) -> T {
+        (area - imposed) * (1.0 / self.per_pressure)
+    }
+}
+
+/// `σ(X) = √(X² + d²) - d`.
+#[inline]
+pub fn kink<T: Scalar>(x: T, width: f64) -> T {
+    (x.squared() + width * width).sqrt() - width
+}
+
+/// `σ'(X) = X/√(X² + d²)`.
+#[inline]
+pub fn kink_slope<T: Scalar>(x: T, width: f64) -> T {
+    x / (x.squared() + width * width).sqrt()
+}
+
+/// `σ''(X) = d²/(X² + d²)^(3/2)`.
+#[inline]
+pub fn kink_curvature(x: f64, width: f64) -> f64 {
+    width * width / (x * x + width * width).powf(1.5)
+}

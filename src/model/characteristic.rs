@@ -1,0 +1,302 @@
+//! Characteristic numbers of a case, printed before anything is run (model section 4.1).
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use faer::{Mat, Side};
+
+use super::network::{Network, Node};
+use super::{Model, Wet};
+use crate::case::schema::Case;
+use crate::case::{Clock, Rotation, Signal, Translation};
+
+/// `κ_1` of the clamped-free beam under axial base acceleration.
+pub const MATHIEU_COUPLING: f64 = 1.570_878_189_99;
+
+/// Parametric excitation of the first bending mode by axial base motion:
+/// `q'' + [ω1² - κ_1 a(t)/l_s] q = 0`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mathieu {
+    /// Amplitude of `a(t)` [m/s^2].
+    pub acceleration: f64,
+    /// Frequency of `a(t)` [Hz].
+    pub frequency: f64,
+    /// `ε = κ_1 a/(l_s ω1²)`.
+    pub modulation: f64,
+    /// Growth rate of the undamped single mode with the bladders drained [1/s]; 0 when stable.
+    pub growth_rate: f64,
+}
+
+/// Numbers of a case by name, SI units in the name.
+pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
+    let mut all = BTreeMap::new();
+    let mut put = |name: &str, value: f64| {
+        if value.is_finite() {
+            all.insert(name.to_string(), value);
+        }
+    };
+    let s = &model.section;
+    let (l, m, ea, ei) = (model.length, s.mass_per_length, s.axial_stiffness, s.bending_stiffness);
+    put("mass_factor", s.mass_factor);
+    put("mass_per_length_kg_m", m);
+    put("axial_stiffness_n", ea);
+    put("bending_stiffness_n_m2", ei);
+    put("gyration_radius_squared_m2", s.gyration_radius_squared);
+    put("slenderness", l / case.beam.height_m);
+    let solid_time = (m * l.powi(4) / ei).sqrt();
+    put("t_s_s", solid_time);
+    let first = first_wave_number(model);
+    if let Some(beta) = first {
+        put("first_bending_frequency_hz", beta * beta / (2.0 * PI * solid_time));
+    }
+    put("first_axial_frequency_hz", axial_wave_number(model) / (2.0 * PI * l) * (ea / m).sqrt());
+    if is_cantilever(model) {
+        put("euler_load_n", PI * PI * ei / (4.0 * l * l));
+        put("self_weight_buckling_load_n_m", 7.837_347_438_94 * ei / l.powi(3));
+    }
+    if let Some(a) = mathieu(case, model) {
+        put("base_acceleration_m_s2", a.acceleration);
+        put("inertial_compression_n_m", m * a.acceleration);
+        put("mathieu_modulation", a.modulation);
+        put("mathieu_frequency_ratio", a.frequency * 2.0 * PI * solid_time / (2.0 * first.unwrap_or(1.875).powi(2)));
+        put("mathieu_growth_rate_per_s", a.growth_rate);
+    }
+    let forcing = forcing_frequency(case);
+    if let Some(f) = forcing {
+        put("forcing_frequency_hz", f);
+    }
+    if let (Some(wet), Some(bladders), Some(fluid)) = (&model.wet, &case.bladders, &case.fluid) {
+        put("bladder_compliance_m3_pa", wet.area.per_pressure * wet.bladder_length);
+        let bladder_resistance = wet.bladder_length / wet.network.bladder_mobility;
+        put("bladder_resistance_pa_s_m3", bladder_resistance);
+        if let Some(tubes) = &case.tubes {
+            let in_one = wet.network.chains.iter().map(|c| c.len() - 1).max().unwrap_or(wet.network.tubes).max(1);
+            let slender = 2.0 * tubes.radius_m / (tubes.length_m * in_one as f64);
+            let fluid_time = fluid.viscosity_pa_s * wet.area.per_pressure
+                / (PI * tubes.radius_m * tubes.radius_m * slender * slender);
+            put("t_f_s", fluid_time);
+            put("t_s_over_t_f", solid_time / fluid_time);
+            if let Some(f) = forcing {
+                put("f_u", f * fluid_time);
+                put("womersley", tubes.radius_m * (2.0 * PI * f * fluid.density_kg_m3 / fluid.viscosity_pa_s).sqrt());
+            }
+            let flow = model.scales.frequency * wet.area.per_pressure * wet.bladder_length * model.scales.pressure;
+            put("reynolds_estimate", 2.0 * fluid.density_kg_m3 * flow / (PI * fluid.viscosity_pa_s * tubes.radius_m));
+            let tube = wet.network.links.iter().find(|k| k.kind == super::network::LinkKind::Tube);
+            if let Some(tube) = tube {
+                put("tube_resistance_pa_s_m3", tube.resistance);
+                put(
+                    "bladder_tube_time_s",
+                    wet.area.per_pressure * wet.bladder_length * (bladder_resistance + tube.resistance),
+                );
+            }
+        }
+        for (k, time) in slowest_times(wet).into_iter().enumerate() {
+            if let Some(time) = time {
+                put(&format!("slowest_time_of_network_{}_s", k + 1), time);
+            }
+        }
+        put("bladder_fill", 2.0 * bladders.per_row as f64 * bladders.width_m / (2.0 * l));
+        let closing = wet.area.per_pressure * model.scales.pressure / wet.area_at_rest;
+        put("area_change_estimate", closing);
+    }
+    put("force_scale_n", model.scales.force);
+    put("largest_strain_estimate", {
+        let bending = model.scales.moment / ei * 0.5 * case.beam.height_m;
+        model.scales.force / ea + bending
+    });
+    all
+}
+
+/// Whether the root is clamped and the tip free.
+fn is_cantilever(model: &Model) -> bool {
+    let kind = |k: usize| end_kind(model, k);
+    kind(0) == (true, true) && kind(1) == (false, false)
+}
+
+/// Transverse motion held? Slope held?
+fn end_kind(model: &Model, end: usize) -> (bool, bool) {
+    let e = &model.ends[end];
+    (matches!(e.transverse, Translation::Displacement(_)), matches!(e.rotation, Rotation::Slope(_)))
+}
+
+/// `β l_s` of the first bending mode with a frequency above zero.
+fn first_wave_number(model: &Model) -> Option<f64> {
+    let (a, b) = (end_kind(model, 0), end_kind(model, 1));
+    let clamped = (true, true);
+    let pinned = (true, false);
+    let guided = (false, true);
+    let free = (false, false);
+    Some(match (a, b) {
+        (x, y) if (x, y) == (clamped, free) || (x, y) == (free, clamped) => 1.875_104_068_712,
+        (x, y) if x == y && (x == clamped || x == free) => 4.730_040_744_862_7,
+        (x, y) if x == y => PI,
+        (x, y) if [(clamped, pinned), (pinned, clamped), (free, pinned), (pinned, free)].contains(&(x, y)) => {
+            3.926_602_312_047_9
+        }
+        (x, y) if [(clamped, guided), (guided, clamped), (free, guided), (guided, free)].contains(&(x, y)) => {
+            2.365_020_372_431_4
+        }
+        _ => 0.5 * PI,
+    })
+}
+
+/// `k l_s` of the first axial mode.
+fn axial_wave_number(model: &Model) -> f64 {
+    let held = |k: usize| matches!(model.ends[k].axial, Translation::Displacement(_));
+    if held(0) == held(1) { PI } else { 0.5 * PI }
+}
+
+/// Highest frequency among the sines of the case.
+fn forcing_frequency(case: &Case) -> Option<f64> {
+    let mut highest: Option<f64> = None;
+    let mut hear = |s: &Signal| {
+        if let Signal::Sine(sine) = s {
+            highest = Some(highest.map_or(sine.frequency_hz, |h| h.max(sine.frequency_hz)));
+        }
+    };
+    for end in [case.ends.root.resolve(), case.ends.tip.resolve()] {
+        for motion in [&end.transverse, &end.axial] {
+            match motion {
+                Translation::Displacement(s) | Translation::Force(s) => hear(s),
+            }
+        }
+        match &end.rotation {
+            Rotation::Slope(s) | Rotation::Moment(s) => hear(s),
+        }
+    }
+    for load in &case.loads {
+        use crate::case::schema::Load;
+        match load {
+            Load::ForceXNM(d)
+            | Load::ForceZNM(d)
+            | Load::MomentXN(d)
+            | Load::MomentZN(d)
+            | Load::BodyXMS2(d)
+            | Load::BodyZMS2(d) => hear(&d.signal),
+            Load::Gravity { .. } => {}
+        }
+    }
+    highest
+}
+
+/// Shortest period of the case's forcing [s], when there is a sine.
+pub fn forcing_period(case: &Case) -> Option<f64> {
+    forcing_frequency(case).filter(|f| *f > 0.0).map(|f| 1.0 / f)
+}
+
+/// Mathieu's parameters when a cantilever's root is shaken along its axis by a sine.
+pub fn mathieu(case: &Case, model: &Model) -> Option<Mathieu> {
+    if !is_cantilever(model) || !model.effects.solid_inertia {
+        return None;
+    }
+    let Translation::Displacement(Signal::Sine(sine)) = &model.ends[0].axial else { return None };
+    let omega = 2.0 * PI * sine.frequency_hz;
+    let acceleration = sine.amplitude.abs() * omega * omega;
+    if acceleration == 0.0 {
+        return None;
+    }
+    let s = &model.section;
+    let first = 1.875_104_068_712_f64.powi(2) / (model.length * model.length)
+        * (s.bending_stiffness / s.mass_per_length).sqrt();
+    let _ = case;
+    Some(Mathieu {
+        acceleration,
+        frequency: sine.frequency_hz,
+        modulation: MATHIEU_COUPLING * acceleration / (model.length * first * first),
+        growth_rate: mathieu_growth(first * first, MATHIEU_COUPLING * acceleration / model.length, omega),
+    })
+}
+
+/// Growth rate of `q'' + [w2 - a sin(Ω t)] q = 0` from its monodromy matrix, by the classical Runge-Kutta method.
+pub fn mathieu_growth(w2: f64, a: f64, omega: f64) -> f64 {
+    const STEPS: u32 = 4000;
+    let period = 2.0 * PI / omega;
+    let h = period / f64::from(STEPS);
+    let advance = |mut q: f64, mut v: f64| {
+        let f = |t: f64, q: f64| -(w2 - a * (omega * t).sin()) * q;
+        for k in 0..STEPS {
+            let t = h * f64::from(k);
+            let (k1q, k1v) = (v, f(t, q));
+            let (k2q, k2v) = (v + 0.5 * h * k1v, f(t + 0.5 * h, q + 0.5 * h * k1q));
+            let (k3q, k3v) = (v + 0.5 * h * k2v, f(t + 0.5 * h, q + 0.5 * h * k2q));
+            let (k4q, k4v) = (v + h * k3v, f(t + h, q + h * k3q));
+            q += h / 6.0 * (k1q + 2.0 * k2q + 2.0 * k3q + k4q);
+            v += h / 6.0 * (k1v + 2.0 * k2v + 2.0 * k3v + k4v);
+        }
+        (q, v)
+    };
+    let (a11, _) = advance(1.0, 0.0);
+    let (_, a22) = advance(0.0, 1.0);
+    let half_trace = 0.5 * (a11 + a22).abs();
+    if half_trace <= 1.0 + 1e-9 { 0.0 } else { half_trace.acosh() / period }
+}
+
+/// `[E20]` Slowest relaxation time of each component of the network [s], each bladder one volume; `None` for a
+/// single sealed bladder and where the component is too large for a dense eigenvalue problem.
+///
+/// ```text
+/// C dp/dt = -L p    L the graph Laplacian of the conductances, ports grounded, junctions eliminated
+/// ```
+pub fn slowest_times(wet: &Wet) -> Vec<Option<f64>> {
+    (0..wet.network.components).map(|c| slowest_time(wet, c)).collect()
+}
+
+fn slowest_time(wet: &Wet, component: usize) -> Option<f64> {
+    const LARGEST: usize = 400;
+    let network: &Network = &wet.network;
+    let bladders: Vec<usize> =
+        (0..2 * wet.per_row).filter(|&b| network.component_of_bladder[b] == component).collect();
+    let junctions: Vec<usize> =
+        (0..network.junctions.len()).filter(|&j| network.component_of_junction[j] == component).collect();
+    let (nb, nj) = (bladders.len(), junctions.len());
+    if nb == 0 || nb + nj > LARGEST {
+        return None;
+    }
+    let half = 0.5 * wet.bladder_length / network.bladder_mobility;
+    let slot = |node: Node| match node {
+        Node::Cell { bladder, .. } => bladders.iter().position(|&b| b == bladder),
+        Node::Junction(j) => junctions.iter().position(|&k| k == j).map(|k| nb + k),
+        Node::Port(_) => None,
+    };
+    let mut laplacian = Mat::<f64>::zeros(nb + nj, nb + nj);
+    let clock = Clock { t: 0.0, within: 0.0 };
+    let mut grounded = false;
+    for link in &network.links {
+        let (a, b) = (slot(link.from), slot(link.to));
+        if a.is_none() && b.is_none() {
+            continue;
+        }
+        let cells = [link.from, link.to].iter().filter(|n| matches!(n, Node::Cell { .. })).count() as f64;
+        let opening = link.opening.as_ref().map_or(1.0, |o| o.jet(clock).value);
+        let g = opening / (opening * half * cells + link.resistance);
+        grounded |= a.is_none() || b.is_none();
+        for (i, j) in [(a, b), (b, a)] {
+            if let Some(i) = i {
+                laplacian[(i, i)] += g;
+                if let Some(j) = j {
+                    laplacian[(i, j)] -= g;
+                }
+            }
+        }
+    }
+    // Eliminate junctions one by one (Schur complement).
+    for k in (nb..nb + nj).rev() {
+        let pivot = laplacian[(k, k)];
+        if pivot <= 0.0 {
+            return None;
+        }
+        for i in 0..k {
+            for j in 0..k {
+                let change = laplacian[(i, k)] * laplacian[(k, j)] / pivot;
+                laplacian[(i, j)] -= change;
+            }
+        }
+    }
+    let reduced = laplacian.submatrix(0, 0, nb, nb).to_owned();
+    let mut values = reduced.self_adjoint_eigenvalues(Side::Lower).ok()?;
+    values.sort_by(f64::total_cmp);
+    let slowest = values.get(usize::from(!grounded)).copied()?;
+    let largest = values.last().copied()?;
+    (slowest > 1e-12 * largest).then(|| wet.area.per_pressure * wet.bladder_length / slowest)
+}

@@ -1,0 +1,64 @@
+//! How pressure strains the beam.
+
+use super::{AreaLaw, scalar::Scalar};
+use crate::case::schema::{Bladders, Case, Coupling as Choice};
+
+/// `[E3]` Stretch and curvature due to pressure (A.22-A.26), `p_u` and `p_d` the means over upper and lower bladder:
+///
+/// ```text
+/// published    λ_p =  φ_b ζ' (p_u + p_d)/E              α_p = -φ_b ψ' (p_d - p_u)/E
+/// reciprocal   λ_p =  φ_b l_b A_N'(N) (p_u + p_d)       α_p =  φ_b l_b [am (p_u - p_d) - dm σ'(M) (p_u + p_d)]
+/// ```
+///
+/// The second follows from one potential g*(N, M, p) together with the areas: energy is conserved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Coupling {
+    /// The paper's coefficients.
+    Published {
+        /// `φ_b ζ'/E` [1/Pa].
+        stretch_per_pressure: f64,
+        /// `φ_b ψ'/E` [1/(m Pa)].
+        curvature_per_pressure: f64,
+    },
+    /// From the potential; `φ_b l_b` [1].
+    Reciprocal {
+        /// `φ_b l_b` [1].
+        length_ratio: f64,
+    },
+}
+
+impl Coupling {
+    /// Coupling of the case's bladders.
+    pub fn new(case: &Case, bladders: &Bladders) -> Self {
+        let density = bladders.per_row as f64 / case.beam.length_m;
+        match &bladders.coupling {
+            Choice::Published(c) => Self::Published {
+                stretch_per_pressure: density * c.length_per_pressure_m / case.beam.young_modulus_pa,
+                curvature_per_pressure: density * c.slope_per_pressure_rad / case.beam.young_modulus_pa,
+            },
+            Choice::Reciprocal | Choice::ReciprocalKinked => {
+                Self::Reciprocal { length_ratio: density * bladders.length_m }
+            }
+        }
+    }
+
+    /// `λ_p` [1].
+    #[inline]
+    pub fn stretch<T: Scalar>(&self, law: &AreaLaw, force: T, upper: T, lower: T) -> T {
+        match *self {
+            Self::Published { stretch_per_pressure, .. } => (upper + lower) * stretch_per_pressure,
+            Self::Reciprocal { length_ratio } => law.force_slope(force) * (upper + lower) * length_ratio,
+        }
+    }
+
+    /// `α_p` [1/m].
+    #[inline]
+    pub fn curvature<T: Scalar>(&self, law: &AreaLaw, moment: T, upper: T, lower: T) -> T {
+        match *self {
+            Self::Published { curvature_per_pressure, .. } => (upper - lower) * curvature_per_pressure,
+            Self::Reciprocal { length_ratio } => {
+                (law.moment_slope(moment, 1.0) * upper + law.moment_slope(moment, -1.0) * lower) * length_ratio
+            }
+        }
+    }
+}

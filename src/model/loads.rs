@@ -1,0 +1,58 @@
+//! Distributed loads.
+
+use crate::case::profile::Profile;
+use crate::case::schema::{Distributed, Load as Written};
+use crate::case::signals::Signal;
+
+/// What a load acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoadKind {
+    /// Force per length in x [N/m].
+    ForceX,
+    /// Force per length in z [N/m].
+    ForceZ,
+    /// First moment per length `m b1_x` [N].
+    MomentX,
+    /// First moment per length `m b1_z` [N].
+    MomentZ,
+}
+
+/// `factor signal(t) profile(θ/l_s)`.
+#[derive(Clone, Debug)]
+pub struct Load {
+    /// What it acts on.
+    pub kind: LoadKind,
+    /// Constant factor: 1 for contact loads, `m` for body forces.
+    pub factor: f64,
+    /// Time function.
+    pub signal: Signal,
+    /// Shape along the beam.
+    pub profile: Profile,
+}
+
+impl Load {
+    /// `[E5]` (A.6, A.7) with `b` in N/m: contact loads as given, body forces and gravity times `m`.
+    pub fn resolve(written: &Written, mass_per_length: f64) -> Vec<Self> {
+        let one = |kind, factor, d: &Distributed| {
+            vec![Self { kind, factor, signal: d.signal.clone(), profile: d.profile.clone() }]
+        };
+        match written {
+            Written::ForceXNM(d) => one(LoadKind::ForceX, 1.0, d),
+            Written::ForceZNM(d) => one(LoadKind::ForceZ, 1.0, d),
+            Written::MomentXN(d) => one(LoadKind::MomentX, 1.0, d),
+            Written::MomentZN(d) => one(LoadKind::MomentZ, 1.0, d),
+            Written::BodyXMS2(d) => one(LoadKind::ForceX, mass_per_length, d),
+            Written::BodyZMS2(d) => one(LoadKind::ForceZ, mass_per_length, d),
+            Written::Gravity { x_m_s2, z_m_s2 } => [(LoadKind::ForceX, *x_m_s2), (LoadKind::ForceZ, *z_m_s2)]
+                .into_iter()
+                .filter(|(_, g)| *g != 0.0)
+                .map(|(kind, g)| Self {
+                    kind,
+                    factor: mass_per_length * g,
+                    signal: Signal::one(),
+                    profile: Profile::one(),
+                })
+                .collect(),
+        }
+    }
+}

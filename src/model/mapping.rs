@@ -1,0 +1,93 @@
+//! The paper's coordinate of the network, `X_f`, and its maps to and from the beam (A.59-A.61, tables A.1 and A.2).
+
+use super::network::{Network, bladder_label};
+
+/// The paper's tables use a tube of 0.0184 m where its text says 0.020 m.
+pub const TABLE_TUBE_RATIO: f64 = 0.92;
+
+/// Gap between separate arrays in table A.2.
+const GAP: f64 = 0.001;
+
+/// Where each bladder lies along `X_f`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NetworkCoordinate {
+    /// Bladders in a row.
+    pub per_row: usize,
+    /// Bladder and tube length over the total length `l_b n + l_c n_c` (A.60).
+    pub bladder: f64,
+    /// Start and end of each bladder, table A.2.
+    pub spans: Vec<(f64, f64)>,
+    /// Centre of each bladder, table A.1 (no gaps between arrays).
+    pub centres: Vec<f64>,
+    /// Bladders in the order of `X_f`, array by array; unconnected ones are arrays of one.
+    pub arrays: Vec<Vec<usize>>,
+}
+
+impl NetworkCoordinate {
+    /// Coordinate of a network whose tubes have length `tube_length` [m] in the tables.
+    pub fn new(network: &Network, per_row: usize, bladder_length: f64, tube_length: f64) -> Self {
+        let n = 2 * per_row;
+        let mut arrays = network.chains.clone();
+        let mut seen = vec![false; n];
+        for &b in arrays.iter().flatten() {
+            seen[b] = true;
+        }
+        arrays.extend((0..n).filter(|&b| !seen[b]).map(|b| vec![b]));
+        let chain_tubes: usize = network.chains.iter().map(|c| c.len() - 1).sum();
+        let total = bladder_length * n as f64 + tube_length * chain_tubes as f64;
+        let (bladder, tube) = (bladder_length / total, tube_length / total);
+        let mut spans = vec![(0.0, 0.0); n];
+        let mut centres = vec![0.0; n];
+        let (mut at, mut centre) = (0.0, 0.5 * bladder);
+        for (k, array) in arrays.iter().enumerate() {
+            if k > 0 {
+                at += GAP;
+            }
+            for (i, &b) in array.iter().enumerate() {
+                if i > 0 {
+                    at += tube;
+                    centre += tube;
+                }
+                spans[b] = (at, at + bladder);
+                centres[b] = centre;
+                at += bladder;
+                centre += bladder;
+            }
+        }
+        Self { per_row, bladder, spans, centres, arrays }
+    }
+
+    /// Table A.1: rows `(Theta R, X_f, R j)`, two for each bladder, in the order of `Theta R` (A.59).
+    pub fn theta_to_xf(&self) -> Vec<(f64, f64, i64)> {
+        let m = self.per_row as f64;
+        let epsilon = 0.1 / m;
+        let mut rows = Vec::with_capacity(4 * self.per_row);
+        for j in (1..=self.per_row).rev() {
+            let x = self.centres[self.per_row + j - 1];
+            // The paper ends bladder -1 at -0.001, all others at epsilon.
+            let end = if j == 1 { 0.1 * epsilon } else { (j - 1) as f64 / m + epsilon };
+            rows.push((-(j as f64) / m, x, -(j as i64)));
+            rows.push((-end, x, -(j as i64)));
+        }
+        for j in 1..=self.per_row {
+            let x = self.centres[j - 1];
+            let start = if j == 1 { 0.0 } else { (j - 1) as f64 / m + epsilon };
+            rows.push((start, x, j as i64));
+            rows.push((j as f64 / m, x, j as i64));
+        }
+        rows
+    }
+
+    /// Table A.2: rows `(X_f, Theta, R j)`, two for each bladder, upper row first (A.61).
+    pub fn xf_to_theta(&self) -> Vec<(f64, f64, i64)> {
+        let n = 2.0 * self.per_row as f64;
+        (0..self.spans.len())
+            .flat_map(|b| {
+                let label = bladder_label(b, self.per_row);
+                let theta = (2.0 * label.abs() as f64 - 1.0) / n * label.signum() as f64;
+                let (start, end) = self.spans[b];
+                [(start, theta, label), (end, theta, label)]
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,61 @@
+//! Numbers in which the equations are written: `f64` for the residual, dual numbers for its derivatives,
+//! and a tracer for its pattern.
+
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// A real number or something that behaves like one.
+pub trait Scalar:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// A constant.
+    fn constant(value: f64) -> Self;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Angle of the vector `(x, self)`.
+    fn atan2(self, x: Self) -> Self;
+    /// Sine and cosine.
+    fn sin_cos(self) -> (Self, Self);
+    /// `ln(1 + e^self)`, the smooth ramp.
+    fn softplus(self) -> Self;
+    /// Zero.
+    fn zero() -> Self {
+        Self::constant(0.0)
+    }
+    /// Square.
+    fn squared(self) -> Self {
+        self * self
+    }
+}
+
+impl Scalar for f64 {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        f64::atan2(self, x)
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        f64::sin_cos(self)
+    }
+    #[inline(always)]
+    fn softplus(self) -> Self {
+        self.max(0.0) + (-self.abs()).exp().ln_1p()
+    }
+}

@@ -1,0 +1,174 @@
+//! Characteristic sizes of the unknowns, estimated from what the case does to the beam.
+
+use std::f64::consts::PI;
+
+use super::{Section, Wet};
+use crate::case::{ResolvedEnd, Rotation, Translation};
+use crate::case::schema::{Case, Load};
+use crate::case::signals::{Clock, Signal};
+
+/// Sizes to which tolerances are relative; SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// Transverse displacement [m].
+    pub transverse: f64,
+    /// Axial displacement [m].
+    pub axial: f64,
+    /// Transverse velocity [m/s].
+    pub transverse_rate: f64,
+    /// Axial velocity [m/s].
+    pub axial_rate: f64,
+    /// Transverse force on a cell [N].
+    pub transverse_force: f64,
+    /// Axial force on a cell [N].
+    pub axial_force: f64,
+    /// Bending moment [N m].
+    pub moment: f64,
+    /// Normal force [N].
+    pub force: f64,
+    /// Pressure [Pa].
+    pub pressure: f64,
+    /// Angular frequency [1/s].
+    pub frequency: f64,
+}
+
+/// Largest absolute value, rate and acceleration of a signal over the run, sampled.
+pub fn largest(signal: &Signal, end: f64) -> (f64, f64, f64) {
+    const SAMPLES: u32 = 2000;
+    (0..=SAMPLES).fold((0.0, 0.0, 0.0), |(v, r, a): (f64, f64, f64), k| {
+        let t = end * f64::from(k) / f64::from(SAMPLES);
+        let jet = signal.jet(Clock { t, within: t });
+        (v.max(jet.value.abs()), r.max(jet.rate.abs()), a.max(jet.acceleration.abs()))
+    })
+}
+
+fn profile_size(profile: &crate::case::profile::Profile) -> f64 {
+    (0..=64).fold(0.0_f64, |m, k| m.max(profile.value(f64::from(k) / 64.0).abs()))
+}
+
+/// What acts on the beam, as magnitudes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Drive {
+    transverse_load: f64,
+    axial_load: f64,
+    transverse_force: f64,
+    axial_force: f64,
+    moment: f64,
+    transverse_motion: f64,
+    axial_motion: f64,
+    axial_acceleration: f64,
+    slope: f64,
+    pressure: f64,
+    frequency: f64,
+}
+
+impl Drive {
+    fn of(case: &Case, section: &Section, ends: &[ResolvedEnd; 2]) -> Self {
+        let end = case.time.end_s;
+        let length = case.beam.length_m;
+        let mut d = Self::default();
+        let size = |s: &Signal| largest(s, end).0;
+        for load in &case.loads {
+            let m = section.mass_per_length;
+            let dist = |l: &crate::case::schema::Distributed| size(&l.signal) * profile_size(&l.profile);
+            match load {
+                Load::ForceXNM(l) => d.transverse_load += dist(l),
+                Load::ForceZNM(l) => d.axial_load += dist(l),
+                Load::MomentXN(l) | Load::MomentZN(l) => d.moment += dist(l) * length,
+                Load::BodyXMS2(l) => d.transverse_load += m * dist(l),
+                Load::BodyZMS2(l) => d.axial_load += m * dist(l),
+                Load::Gravity { x_m_s2, z_m_s2 } => {
+                    d.transverse_load += m * x_m_s2.abs();
+                    d.axial_load += m * z_m_s2.abs();
+                }
+            }
+            if let Load::ForceXNM(l) | Load::ForceZNM(l) | Load::MomentZN(l) = load {
+                d.hear(&l.signal);
+            }
+        }
+        for e in ends {
+            match &e.transverse {
+                Translation::Displacement(s) => {
+                    d.transverse_motion = d.transverse_motion.max(size(s));
+                    d.hear(s);
+                }
+                Translation::Force(s) => d.transverse_force += size(s),
+            }
+            match &e.axial {
+                Translation::Displacement(s) => {
+                    let (value, _, acceleration) = largest(s, end);
+                    d.axial_motion = d.axial_motion.max(value);
+                    d.axial_acceleration = d.axial_acceleration.max(acceleration);
+                    d.hear(s);
+                }
+                Translation::Force(s) => d.axial_force += size(s),
+            }
+            match &e.rotation {
+                Rotation::Slope(s) => d.slope = d.slope.max(size(s)),
+                Rotation::Moment(s) => d.moment += size(s),
+            }
+            if let Some(f) = &e.follower {
+                d.axial_force += size(&f.normal);
+                d.transverse_force += size(&f.shear);
+            }
+        }
+        for start in &case.start.pressures {
+            d.pressure = d.pressure.max(profile_size(&start.pressure_pa));
+        }
+        d
+    }
+
+    fn hear(&mut self, signal: &Signal) {
+        if let Some(period) = signal.fastest_period_s() {
+            self.frequency = self.frequency.max(2.0 * PI / period);
+        }
+    }
+}
+
+impl Scales {
+    /// Estimates every size: motions from loads by the linear cantilever, pressures from forces by the sealed bladder,
+    /// deflections from pressures; never below a small fraction of the largest sensible size.
+    pub fn estimate(case: &Case, section: &Section, wet: Option<&Wet>) -> Self {
+        let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
+        let mut d = Drive::of(case, section, &ends);
+        let l = case.beam.length_m;
+        let (ea, ei, m) = (section.axial_stiffness, section.bending_stiffness, section.mass_per_length);
+        let size = |p: &Option<crate::case::profile::Profile>| p.as_ref().map_or(0.0, profile_size);
+        let first_mode = 3.516 / (l * l) * (ei / m).sqrt();
+
+        let force = (d.axial_force + d.axial_load * l + m * l * d.axial_acceleration + size(&case.start.u3_rate_m_s) * (ea * m).sqrt())
+            .max(1e-6 * ea);
+        let moment_of_loads = d.moment + d.transverse_force * l + 0.5 * d.transverse_load * l * l + d.slope * ei / l;
+        if let Some(wet) = wet {
+            for port in &wet.network.ports {
+                d.pressure = d.pressure.max(largest(&port.pressure, case.time.end_s).0);
+            }
+            let sealed = (wet.area.force_mean * force + wet.area.moment_mean * moment_of_loads) / wet.area.per_pressure;
+            d.pressure = d.pressure.max(sealed).max(1e-7 * case.beam.young_modulus_pa);
+        }
+        let by_pressure = wet.map_or(0.0, |wet| {
+            let alpha = wet.coupling.curvature(&wet.area, 0.0, d.pressure, 0.0).abs();
+            0.5 * alpha * l * l
+        });
+        let by_load = moment_of_loads * l * l / (3.0 * ei);
+        let started = size(&case.start.u1_m).max(size(&case.start.u1_rate_m_s) / first_mode);
+        let transverse = case
+            .solver
+            .transverse_scale_m
+            .unwrap_or((d.transverse_motion + by_load + by_pressure + started).clamp(1e-5 * l, l));
+        let axial = (d.axial_motion + force * l / ea + size(&case.start.u3_m)).clamp(1e-6 * l, 10.0 * l);
+        let frequency = first_mode.max(d.frequency);
+        Self {
+            transverse,
+            axial,
+            transverse_rate: transverse * frequency,
+            axial_rate: axial * frequency,
+            transverse_force: (ei * transverse / l.powi(3)).max(1e-9 * ei / (l * l)),
+            axial_force: force,
+            moment: (ei * transverse / (l * l)).max(moment_of_loads).max(1e-6 * ei / l),
+            force,
+            pressure: d.pressure.max(f64::MIN_POSITIVE),
+            frequency,
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! `fields.npz`: each field streams into a raw file of its own; at the end all are packed. Memory stays flat.
+//!
+//! While a run is under way `fields.part/NAME.f64` holds little-endian doubles, time after time, and
+//! `fields.part/t_fields_s.f64` the times; what a killed run leaves there `numpy.fromfile` reads.
+
+use std::fs::{self, File};
+use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use npyz::WriterBuilder;
+use npyz::npz::NpzWriter;
+use npyz::zip::CompressionMethod;
+use npyz::zip::write::FileOptions;
+
+use super::folder::{fault, part_of};
+use super::history::FLUSH;
+use crate::error::Result;
+use crate::run::record::{Axis, Field, Header};
+
+/// Name of the array of times.
+pub const TIMES: &str = "t_fields_s";
+
+/// Streams fields into raw files and packs them.
+#[derive(Debug)]
+pub struct ArraysWriter {
+    dir: PathBuf,
+    axes: Vec<Axis>,
+    fields: Vec<Field>,
+    times: RawFile,
+    raw: Vec<RawFile>,
+    instants: u64,
+    flushed: Instant,
+}
+
+impl ArraysWriter {
+    /// Opens the raw files in `dir`, which is made.
+    pub fn create(dir: &Path, header: &Header) -> Result<Self> {
+        fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
+        let raw = header.fields.iter().map(|f| RawFile::create(dir, f.name));
+        Ok(Self {
+            dir: dir.to_path_buf(),
+            axes: header.axes.clone(),
+            fields: header.fields.clone(),
+            times: RawFile::create(dir, TIMES)?,
+            raw: raw.collect::<Result<_>>()?,
+            instants: 0,
+            flushed: Instant::now(),
+        })
+    }
+
+    /// Appends one instant of all fields, in the order of the header.
+    pub fn append(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()> {
+        let fits = arrays.len() == self.fields.len()
+            && arrays
+                .iter()
+                .zip(&self.fields)
+                .all(|(a, f)| a.len() == f.len);
+        if !fits {
+            let why = "the arrays do not have the lengths announced";
+            return Err(fault(
+                "write",
+                &self.dir,
+                io::Error::new(io::ErrorKind::InvalidInput, why),
+            ));
+        }
+        for (raw, array) in self.raw.iter_mut().zip(arrays) {
+            raw.append(array)?;
+        }
+        self.times.append(&[t])?;
+        self.instants += 1;
+        if self.flushed.elapsed() >= FLUSH {
+            self.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Brings everything to the disk.
+    pub fn flush(&mut self) -> Result<()> {
+        self.flushed = Instant::now();
+        for raw in &mut self.raw {
+            raw.flush()?;
+        }
+        self.times.flush()
+    }
+
+    /// Number of instants.
+    pub fn instants(&self) -> u64 {
+        self.instants
+    }
+
+    /// All times [s].
+    pub fn times(&mut self) -> Result<Vec<f64>> {
+        self.times.flush()?;
+        self.times.read(0, self.instants as usize)
+    }
+
+    /// Coordinates of an axis.
+    pub fn axis(&self, name: &str) -> Option<&[f64]> {
+        self.axes
+            .iter()
+            .find(|a| a.name == name)
+            .map(|a| a.values.as_slice())
+    }
+
+    /// One field at chosen instants, read back from disk; `None` when there is no such field.
+    pub fn read(&mut self, name: &str, instants: &[usize]) -> Result<Option<Vec<Vec<f64>>>> {
+        let Some(k) = self.fields.iter().position(|f| f.name == name) else {
+            return Ok(None);
+        };
+        let len = self.fields[k].len;
+        let raw = &mut self.raw[k];
+        raw.flush()?;
+        let arrays = instants.iter().map(|&i| raw.read((i * len) as u64, len));
+        arrays.collect::<Result<_>>().map(Some)
+    }
+
+    /// Packs axes, times and fields into `target` and removes the raw files.
+    ///
+    /// Arrays are stored, not deflated: doubles of a simulation hardly shrink, and stored ones load at once.
+    pub fn finish(mut self, target: &Path) -> Result<()> {
+        self.flush()?;
+        let part = part_of(target);
+        let packed = self.pack(&part).and_then(|()| fs::rename(&part, target));
+        packed.map_err(|e| {
+            let _ = fs::remove_file(&part);
+            fault("write", target, e)
+        })?;
+        let dir = self.dir.clone();
+        drop(self);
+        fs::remove_dir_all(&dir).map_err(|e| fault("remove", &dir, e))
+    }
+
+    fn pack(&self, path: &Path) -> io::Result<()> {
+        let mut npz = NpzWriter::create(path)?;
+        for axis in &self.axes {
+            let shape = [axis.values.len() as u64];
+            write_array(
+                &mut npz,
+                axis.name,
+                &shape,
+                axis.values.iter().map(|&x| Ok(x)),
+            )?;
+        }
+        write_array(&mut npz, TIMES, &[self.instants], self.times.stream()?)?;
+        for (field, raw) in self.fields.iter().zip(&self.raw) {
+            write_array(
+                &mut npz,
+                field.name,
+                &[self.instants, field.len as u64],
+                raw.stream()?,
+            )?;
+        }
+        let mut file = npz.zip_writer().finish().map_err(io::Error::from)?;
+        file.flush()
+    }
+}
+
+fn write_array(
+    npz: &mut NpzWriter<BufWriter<File>>,
+    name: &str,
+    shape: &[u64],
+    values: impl Iterator<Item = io::Result<f64>>,
+) -> io::Result<()> {
+    // Beyond 4 GiB the format needs its larger headers.
+    let large = shape.iter().product::<u64>() * 8 > u64::from(u32::MAX) / 2;
+    let options = FileOptions::default()
+        .compression_method(CompressionMethod::Stored)
+        .large_file(large);
+    let mut array = npz
+        .array::<f64>(name, options)?
+        .default_dtype()
+        .shape(shape)
+        .begin_nd()?;
+    for value in values {
+        array.push(&value?)?;
+    }
+    array.finish()
+}
+
+/// Little-endian doubles in a file, appended and read back.
+#[derive(Debug)]
+struct RawFile {
+    path: PathBuf,
+    out: BufWriter<File>,
+    bytes: Vec<u8>,
+}
+
+impl RawFile {
+    fn create(dir: &Path, name: &str) -> Result<Self> {
+        let path = dir.join(format!("{name}.f64"));
+        let file = File::create(&path).map_err(|e| fault("create", &path, e))?;
+        Ok(Self {
+            path,
+            out: BufWriter::with_capacity(1 << 16, file),
+            bytes: Vec::new(),
+        })
+    }
+
+    fn append(&mut self, values: &[f64]) -> Result<()> {
+        self.bytes.clear();
+        self.bytes
+            .extend(values.iter().flat_map(|x| x.to_le_bytes()));
+        self.out
+            .write_all(&self.bytes)
+            .map_err(|e| fault("write", &self.path, e))
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        self.out.flush().map_err(|e| fault("write", &self.path, e))
+    }
+
+    /// `len` values from position `start`, counted in values.
+    fn read(&self, start: u64, len: usize) -> Result<Vec<f64>> {
+        let get = || -> io::Result<Vec<f64>> {
+            let mut file = File::open(&self.path)?;
+            file.seek(SeekFrom::Start(8 * start))?;
+            let mut bytes = vec![0; 8 * len];
+            file.read_exact(&mut bytes)?;
+            let double = |b: &[u8]| {
+                b.iter()
+                    .rev()
+                    .fold(0u64, |bits, &b| bits << 8 | u64::from(b))
+            };
+            Ok(bytes
+                .chunks_exact(8)
+                .map(|b| f64::from_bits(double(b)))
+                .collect())
+        };
+        get().map_err(|e| fault("read", &self.path, e))
+    }
+
+    /// All values, one after the other.
+    fn stream(&self) -> io::Result<impl Iterator<Item = io::Result<f64>>> {
+        let mut input = BufReader::with_capacity(1 << 16, File::open(&self.path)?);
+        Ok(std::iter::from_fn(move || {
+            let mut bytes = [0; 8];
+            match input.read_exact(&mut bytes) {
+                Ok(()) => Some(Ok(f64::from_le_bytes(bytes))),
+                Err(e) if e.kind() == io::ErrorKind::UnexpectedEof => None,
+                Err(e) => Some(Err(e)),
+            }
+        }))
+    }
+}

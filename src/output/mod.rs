@@ -1,0 +1,26 @@
+//! Results as files: history, arrays, summary and pictures of a run. Nothing here prints.
+//!
+//! ```text
+//! folder    which folder, and how files get into it without ever being half written
+//! history   history.csv, row by row
+//! envelope  a history of any length, read back in bounded memory
+//! arrays    fields.npz, streamed through raw files
+//! recorder  the Recorder that ties them together
+//! summary   summary.json, there and back
+//! pictures  from recorded files to the data of each picture
+//! plot      one picture a file, from plain data to SVG text
+//! numbers   numbers as people read them
+//! ```
+
+pub mod arrays;
+pub mod envelope;
+pub mod folder;
+pub mod history;
+pub mod numbers;
+pub mod pictures;
+pub mod plot;
+pub mod recorder;
+pub mod summary;
+
+pub use folder::ResultFolder;
+pub use recorder::{FolderRecorder, Hook, Labels};

@@ -1,0 +1,227 @@
+//! Numbers as people read them: SI prefixes, significant digits, durations; and as machines do, shortest and exact.
+
+/// SI prefixes by power of a thousand, from pico to giga.
+const PREFIXES: [&str; 8] = ["p", "n", "µ", "m", "", "k", "M", "G"];
+/// Index of the empty prefix.
+const PLAIN: i32 = 4;
+
+/// Whether a unit takes an SI prefix in front of its first letter.
+fn takes_prefix(unit: &str) -> bool {
+    matches!(
+        unit,
+        "m" | "s" | "Pa" | "J" | "W" | "N" | "N m" | "Hz" | "rad" | "m/s"
+    )
+}
+
+/// Factor and prefixed unit in which a magnitude reads as 1 to 1000: `(1e-3, "mm")` for 0.012 m.
+///
+/// Units that take no prefix get a power of ten: `(1e-6, "10⁻⁶ m³/s")`; dimensionless ones only that power.
+pub fn scaled_unit(magnitude: f64, unit: &str) -> (f64, String) {
+    let thousands = thousands(magnitude);
+    if takes_prefix(unit) {
+        // Kiloseconds and megametres are not what people say.
+        let top = if matches!(unit, "s" | "rad") { 0 } else { 3 };
+        let k = thousands.clamp(-PLAIN, top);
+        let prefix = PREFIXES[(k + PLAIN) as usize];
+        return (10f64.powi(3 * k), format!("{prefix}{unit}"));
+    }
+    let unit = pretty_unit(unit);
+    // Up to four digits in front of the point, or one zero behind it, need no power of ten.
+    let k = if (0.1..1e4).contains(&magnitude.abs()) || magnitude == 0.0 || !magnitude.is_finite() {
+        0
+    } else {
+        thousands
+    };
+    let power = if k == 0 {
+        String::new()
+    } else {
+        format!("10{}", superscript(3 * k))
+    };
+    let joined = match (power.is_empty(), unit.is_empty()) {
+        (true, _) => unit,
+        (false, true) => power,
+        (false, false) => format!("{power} {unit}"),
+    };
+    (10f64.powi(3 * k), joined)
+}
+
+/// A unit with raised exponents: `m³/s` for `m^3/s`; nothing for `1`.
+pub fn pretty_unit(unit: &str) -> String {
+    if unit == "1" {
+        return String::new();
+    }
+    let mut out = String::new();
+    let mut raised = false;
+    for c in unit.chars() {
+        match c {
+            '^' => raised = true,
+            '0'..='9' | '-' if raised => out.push(raise(c)),
+            _ => {
+                raised = false;
+                out.push(c);
+            }
+        }
+    }
+    out
+}
+
+/// An integer as superscript: `⁻⁶`.
+pub fn superscript(n: i32) -> String {
+    n.to_string().chars().map(raise).collect()
+}
+
+fn raise(c: char) -> char {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    c.to_digit(10).map_or('⁻', |d| DIGITS[d as usize])
+}
+
+/// Power of a thousand of a magnitude, 0 for zero and for what is not finite.
+fn thousands(magnitude: f64) -> i32 {
+    let magnitude = magnitude.abs();
+    if magnitude == 0.0 || !magnitude.is_finite() {
+        return 0;
+    }
+    // A hair more, so that 1e-3, whose logarithm may fall short of -3, stays a thousandth.
+    (magnitude.log10() / 3.0 + 1e-12).floor() as i32
+}
+
+/// A quantity with unit and SI prefix: `12.3 mm`, `−4.07 kPa`; an en dash when it is not finite.
+pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
+    if !value.is_finite() {
+        return "–".to_string();
+    }
+    let (factor, unit) = scaled_unit(value, unit);
+    let number = significant(value / factor, digits);
+    if unit.is_empty() {
+        number
+    } else if let Some(power) = unit.strip_prefix("10").filter(|p| !p.is_empty()) {
+        format!("{number}·10{power}")
+    } else {
+        format!("{number} {unit}")
+    }
+}
+
+/// Without zeros behind the point that say nothing: `450 ms` for `450.0 ms`.
+pub fn trimmed(quantity: &str) -> String {
+    let (number, rest) = quantity.split_once(' ').unwrap_or((quantity, ""));
+    let number = match number.contains('.') {
+        true => number.trim_end_matches('0').trim_end_matches('.'),
+        false => number,
+    };
+    format!("{number} {rest}").trim_end().to_string()
+}
+
+/// A number with so many significant digits: `0.0123`, `4070`, `1.2·10⁻⁷`, with a true minus sign.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".to_string();
+    }
+    if !value.is_finite() {
+        return "–".to_string();
+    }
+    let digits = digits.max(1);
+    let scientific = format!("{:.*e}", digits - 1, value);
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let text = if (-3..6).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{mantissa}·10{}", superscript(exponent))
+    };
+    text.replacen('-', "−", 1)
+}
+
+/// A share as percent: `4.2 %`.
+pub fn percent(share: f64) -> String {
+    format!("{} %", significant(100.0 * share, 3))
+}
+
+/// A count with its thousands set apart: `1 234 567`.
+pub fn count(n: u64) -> String {
+    let digits = n.to_string();
+    let mut out = String::with_capacity(digits.len() + digits.len() / 3);
+    for (k, c) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k) % 3 == 0 {
+            out.push(' ');
+        }
+        out.push(c);
+    }
+    out
+}
+
+/// A time span by the clock: `850 ms`, `12.3 s`, `3 min 20 s`, `2 h 05 min`.
+pub fn duration(seconds: f64) -> String {
+    if !seconds.is_finite() || seconds < 0.0 {
+        return "–".to_string();
+    }
+    if seconds < 59.95 {
+        return quantity(seconds, "s", 3);
+    }
+    let whole = seconds.round() as u64;
+    let (hours, minutes, rest) = (whole / 3600, whole / 60 % 60, whole % 60);
+    match hours {
+        0 => format!("{minutes} min {rest:02} s"),
+        1..48 => format!("{hours} h {minutes:02} min"),
+        _ => format!("{} d {:02} h", hours / 24, hours % 24),
+    }
+}
+
+/// The shortest text that reads back as the same number, without long rows of zeros.
+pub fn shortest(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude == 0.0 || (1e-4..1e15).contains(&magnitude) {
+        format!("{value}")
+    } else if value.is_nan() {
+        "nan".to_string()
+    } else if value.is_infinite() {
+        if value > 0.0 { "inf" } else { "-inf" }.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantities_read_well() {
+        assert_eq!(quantity(0.0123, "m", 3), "12.3 mm");
+        assert_eq!(quantity(-4070.0, "Pa", 3), "−4.07 kPa");
+        assert_eq!(quantity(1e-3, "s", 3), "1.00 ms");
+        assert_eq!(quantity(0.0, "J", 3), "0 J");
+        assert_eq!(quantity(f64::NAN, "J", 3), "–");
+        assert_eq!(quantity(2.5e-7, "m^3/s", 2), "250·10⁻⁹ m³/s");
+        assert_eq!(quantity(0.25, "1", 2), "0.25");
+        assert_eq!(trimmed("450.0 ms"), "450 ms");
+        assert_eq!(trimmed("400"), "400");
+    }
+
+    #[test]
+    fn durations_and_counts_read_well() {
+        assert_eq!(duration(0.85), "850 ms");
+        assert_eq!(duration(200.0), "3 min 20 s");
+        assert_eq!(duration(7500.0), "2 h 05 min");
+        assert_eq!(duration(f64::INFINITY), "–");
+        assert_eq!(count(1234567), "1 234 567");
+        assert_eq!(count(123), "123");
+    }
+
+    #[test]
+    fn shortest_reads_back_as_the_same_number() {
+        for x in [
+            0.0,
+            -0.0,
+            0.1,
+            1e-300,
+            -2.5e22,
+            1.0 / 3.0,
+            f64::MIN_POSITIVE,
+        ] {
+            let back: f64 = shortest(x).parse().expect("a number");
+            assert_eq!(back.to_bits(), x.to_bits(), "{}", shortest(x));
+            assert!(shortest(x).len() < 26);
+        }
+    }
+}

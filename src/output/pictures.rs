@@ -1,0 +1,87 @@
+//! From recorded files to the data of each picture.
+
+use super::arrays::ArraysWriter;
+use super::envelope::Envelope;
+use super::plot::{self, Curve, Deflection, Energy, History, Pressure};
+use crate::error::Result;
+
+/// Curves in a picture over space.
+const CURVES: usize = 24;
+/// Stretches of time kept of a history; more than there are pixels across.
+pub const STRETCHES: usize = 1200;
+
+/// Name of a picture and its text.
+pub type Picture = (&'static str, String);
+
+/// `history.svg` and `energy.svg`, as far as their columns are there.
+pub fn over_time(case: &str, history: &Envelope) -> Vec<Picture> {
+    let mut shown = History {
+        case: case.to_string(),
+        ..History::default()
+    };
+    let mut ledger = Energy {
+        case: case.to_string(),
+        ..Energy::default()
+    };
+    for (k, (name, unit)) in history.names().iter().enumerate() {
+        let curve = || Curve {
+            name: name.clone(),
+            unit: unit.clone(),
+            points: history.points(k),
+        };
+        if plot::history::belongs(name) {
+            shown.curves.push(curve());
+        }
+        if plot::energy::belongs(name, unit) {
+            ledger.curves.push(curve());
+        }
+    }
+    let pictures = [
+        ("history.svg", plot::history::draw(&shown)),
+        ("energy.svg", plot::energy::draw(&ledger)),
+    ];
+    present(pictures)
+}
+
+/// `deflection.svg` and `pressure.svg` over the last cycle of the drive, or over the whole run without one.
+pub fn over_space(
+    case: &str,
+    frequency_hz: Option<f64>,
+    arrays: &mut ArraysWriter,
+) -> Result<Vec<Picture>> {
+    let all = arrays.times()?;
+    let (span, instants) = plot::instants(&all, frequency_hz, CURVES);
+    let times: Vec<f64> = instants.iter().map(|&i| all[i]).collect();
+    let axis = |arrays: &ArraysWriter, name: &str| {
+        arrays.axis(name).map(<[f64]>::to_vec).unwrap_or_default()
+    };
+    let integers = |x: Vec<f64>| x.into_iter().map(|x| x.round() as i64).collect();
+    let deflection = Deflection {
+        case: case.to_string(),
+        span,
+        times: times.clone(),
+        theta: axis(arrays, "theta_node_m"),
+        u1: arrays.read("u1_m", &instants)?.unwrap_or_default(),
+        u3: arrays.read("u3_m", &instants)?.unwrap_or_default(),
+    };
+    let pressure = Pressure {
+        case: case.to_string(),
+        span,
+        times,
+        x_f: axis(arrays, "x_f"),
+        bladder: integers(axis(arrays, "bladder")),
+        network: integers(axis(arrays, "array")),
+        pressure: arrays.read("pressure_pa", &instants)?.unwrap_or_default(),
+    };
+    Ok(present([
+        ("deflection.svg", plot::deflection::draw(&deflection)),
+        ("pressure.svg", plot::pressure::draw(&pressure)),
+    ]))
+}
+
+fn present<const N: usize>(pictures: [(&'static str, Option<String>); N]) -> Vec<Picture> {
+    pictures
+        .into_iter()
+        .filter_map(|(name, text)| Some((name, text?)))
+        .collect()
+}

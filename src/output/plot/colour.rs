@@ -1,0 +1,42 @@
+//! Colours.
+
+use plotters::style::RGBColor;
+
+/// Dark blue to dark red, evenly in lightness up to a light middle that still shows on white.
+const TIME: [(f64, [u8; 3]); 7] = [
+    (0.0, [0x0b, 0x24, 0x6b]),
+    (0.18, [0x1f, 0x5f, 0xb4]),
+    (0.36, [0x6f, 0xa6, 0xd8]),
+    (0.5, [0xbd, 0xbb, 0xc4]),
+    (0.64, [0xe8, 0x9a, 0x7d]),
+    (0.82, [0xc9, 0x3a, 0x32]),
+    (1.0, [0x6e, 0x08, 0x1b]),
+];
+
+/// Colour of a time, `s` from 0 (dark blue) to 1 (dark red).
+pub fn of_time(s: f64) -> RGBColor {
+    let s = s.clamp(0.0, 1.0);
+    let k = TIME
+        .iter()
+        .skip(1)
+        .position(|(at, _)| s <= *at)
+        .unwrap_or(TIME.len() - 2);
+    let ((a, from), (b, to)) = (TIME[k], TIME[k + 1]);
+    let w = (s - a) / (b - a);
+    let mix = |i: usize| (f64::from(from[i]) * (1.0 - w) + f64::from(to[i]) * w).round() as u8;
+    RGBColor(mix(0), mix(1), mix(2))
+}
+
+/// Lines told apart by every eye: Okabe and Ito's colours without yellow, which white swallows, and three of Tol's.
+pub const PALETTE: [RGBColor; 10] = [
+    RGBColor(0x00, 0x72, 0xb2),
+    RGBColor(0xd5, 0x5e, 0x00),
+    RGBColor(0x00, 0x9e, 0x73),
+    RGBColor(0xcc, 0x79, 0xa7),
+    RGBColor(0xe6, 0x9f, 0x00),
+    RGBColor(0x56, 0xb4, 0xe9),
+    RGBColor(0x33, 0x22, 0x88),
+    RGBColor(0x88, 0x22, 0x55),
+    RGBColor(0x99, 0x99, 0x33),
+    RGBColor(0x44, 0x44, 0x44),
+];

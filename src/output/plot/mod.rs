@@ -1,0 +1,112 @@
+//! Pictures of a run: plain data in, SVG text out. One picture a file; data that is absent makes no picture.
+//!
+//! ```text
+//! canvas      lines, rectangles and words, in points, onto plotters' SVG backend
+//! colour      blue to red over time, and a palette every eye can tell apart
+//! ticks       round numbers along an axis, with SI prefixes
+//! panel       a frame with grid, ticks and curves
+//! deflection, pressure, history, energy   the pictures
+//! ```
+
+mod canvas;
+mod colour;
+mod panel;
+mod ticks;
+
+pub mod deflection;
+pub mod energy;
+pub mod history;
+pub mod pressure;
+
+use super::numbers;
+
+pub use deflection::Deflection;
+pub use energy::Energy;
+pub use history::History;
+pub use pressure::Pressure;
+
+/// A named line over time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curve {
+    /// Column name, without unit.
+    pub name: String,
+    /// Unit as in the column.
+    pub unit: String,
+    /// Time [s] and value, in order of time; not finite where there is none.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Curve {
+    /// Largest magnitude, 0 when there is none.
+    pub fn max_abs(&self) -> f64 {
+        let finite = self
+            .points
+            .iter()
+            .map(|p| p.1.abs())
+            .filter(|y| y.is_finite());
+        finite.fold(0.0, f64::max)
+    }
+}
+
+/// Part of a run from which pictures over space are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Span {
+    /// The last cycle of the drive.
+    LastCycle,
+    /// Everything.
+    WholeRun,
+}
+
+impl Span {
+    fn label(self) -> &'static str {
+        match self {
+            Self::LastCycle => "last cycle",
+            Self::WholeRun => "whole run",
+        }
+    }
+}
+
+/// Instants for a picture over space: about `count` of them, evenly spread over the last cycle, or over the whole run
+/// when there is no frequency or less than a cycle was run. Returns indices into `times`.
+pub fn instants(times: &[f64], frequency_hz: Option<f64>, count: usize) -> (Span, Vec<usize>) {
+    let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
+        return (Span::WholeRun, Vec::new());
+    };
+    let cycle = frequency_hz.filter(|f| *f > 0.0).map(f64::recip);
+    let (span, start) = match cycle {
+        Some(cycle) if last - first >= cycle => (Span::LastCycle, last - cycle),
+        _ => (Span::WholeRun, first),
+    };
+    let nearest = |t: f64| {
+        let after = times.partition_point(|&x| x < t).min(times.len() - 1);
+        if after > 0 && t - times[after - 1] < times[after] - t {
+            after - 1
+        } else {
+            after
+        }
+    };
+    let steps = count.max(2) - 1;
+    let wanted = (0..=steps).map(|k| start + (last - start) * k as f64 / steps as f64);
+    let mut chosen: Vec<usize> = wanted.map(nearest).collect();
+    chosen.dedup();
+    (span, chosen)
+}
+
+/// Least and largest finite value, `None` when there is none.
+fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    values
+        .filter(|x| x.is_finite())
+        .fold(None, |so_far, x| match so_far {
+            None => Some((x, x)),
+            Some((lo, hi)) => Some((f64::min(lo, x), f64::max(hi, x))),
+        })
+}
+
+/// What part of the run a picture shows, in words.
+fn about(span: Span, from: f64, to: f64) -> String {
+    let time = |t: f64| numbers::trimmed(&numbers::quantity(t, "s", 4));
+    if from == to {
+        return format!("at {}", time(to));
+    }
+    format!("{}, {} to {}", span.label(), time(from), time(to))
+}

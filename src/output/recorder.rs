@@ -1,0 +1,121 @@
+//! The recorder that fills a result folder.
+
+use std::path::PathBuf;
+
+use super::arrays::ArraysWriter;
+use super::envelope::Envelope;
+use super::folder::{CASE, FIELDS, HISTORY, RAW_FIELDS, ResultFolder};
+use super::history::HistoryWriter;
+use super::pictures::{self, STRETCHES};
+use super::summary;
+use crate::error::Result;
+use crate::run::record::{Control, Header, Progress, Recorder};
+use crate::run::summary::Summary;
+
+/// Called after every step; decides whether to go on.
+pub type Hook = Box<dyn FnMut(&Progress) -> Control>;
+
+/// What is recorded besides the run itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Labels {
+    /// Name of the case, for the pictures.
+    pub case_name: String,
+    /// The case as resolved, the text of `case.json`.
+    pub case_json: String,
+    /// Frequency of the drive [Hz]: pictures over space then show its last cycle.
+    pub frequency_hz: Option<f64>,
+}
+
+/// Streams a run into a folder.
+///
+/// An older result in the folder stands until [`Recorder::begin`]: a run that cannot start destroys nothing. Dropped
+/// without [`FolderRecorder::finish`], it leaves `history.csv` and the raw arrays as far as they were written.
+pub struct FolderRecorder {
+    folder: ResultFolder,
+    labels: Labels,
+    hook: Hook,
+    open: Option<(HistoryWriter, ArraysWriter)>,
+}
+
+impl FolderRecorder {
+    /// Into this folder, asking `hook` after every step.
+    pub fn new(folder: ResultFolder, labels: Labels, hook: Hook) -> Self {
+        Self {
+            folder,
+            labels,
+            hook,
+            open: None,
+        }
+    }
+
+    /// Completes the folder however the run ended: arrays packed, pictures drawn, summary last. Returns the files.
+    ///
+    /// A run that failed before it began leaves an older result alone, and otherwise case and summary only.
+    pub fn finish(mut self, summary: &Summary) -> Result<Vec<PathBuf>> {
+        let mut files = Vec::new();
+        let completed = match self.open.take() {
+            Some((history, arrays)) => self.complete(history, arrays, &mut files),
+            None if self.folder.holds_older() => return Ok(files),
+            None => Ok(()),
+        };
+        // The summary matters most: it is tried even when arrays or pictures could not be written.
+        let case = self.labels.case_json.as_bytes();
+        files.push(self.folder.write(CASE, case)?);
+        files.push(summary::write(&self.folder, summary)?);
+        completed?;
+        Ok(files)
+    }
+
+    fn complete(
+        &self,
+        mut history: HistoryWriter,
+        mut arrays: ArraysWriter,
+        files: &mut Vec<PathBuf>,
+    ) -> Result<()> {
+        history.flush()?;
+        drop(history);
+        let path = self.folder.path(HISTORY);
+        let case = &self.labels.case_name;
+        let mut drawn = pictures::over_time(case, &Envelope::read(&path, STRETCHES)?);
+        files.push(path);
+        drawn.extend(pictures::over_space(
+            case,
+            self.labels.frequency_hz,
+            &mut arrays,
+        )?);
+        let path = self.folder.path(FIELDS);
+        arrays.finish(&path)?;
+        files.push(path);
+        for (name, text) in drawn {
+            files.push(self.folder.write(name, text.as_bytes())?);
+        }
+        Ok(())
+    }
+}
+
+impl Recorder for FolderRecorder {
+    fn begin(&mut self, header: &Header) -> Result<()> {
+        self.folder.clear()?;
+        let history = HistoryWriter::create(&self.folder.path(HISTORY), &header.columns)?;
+        let arrays = ArraysWriter::create(&self.folder.path(RAW_FIELDS), header)?;
+        self.folder.write(CASE, self.labels.case_json.as_bytes())?;
+        self.open = Some((history, arrays));
+        Ok(())
+    }
+
+    fn history(&mut self, row: &[f64]) -> Result<()> {
+        self.open
+            .as_mut()
+            .map_or(Ok(()), |(history, _)| history.row(row))
+    }
+
+    fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()> {
+        self.open
+            .as_mut()
+            .map_or(Ok(()), |(_, writer)| writer.append(t, arrays))
+    }
+
+    fn progress(&mut self, progress: &Progress) -> Result<Control> {
+        Ok((self.hook)(progress))
+    }
+}

@@ -1,0 +1,248 @@
+//! What a run looks at on its way: samples, balances, and whether the model still holds.
+
+use crate::case::schema::Case;
+use crate::dae::BeamDae;
+use crate::discrete::ledger::{self, FLOWS, Flow, Invariants};
+use crate::discrete::{System, sample};
+use crate::error::Result;
+use crate::model::audit;
+use crate::model::mapping::{NetworkCoordinate, TABLE_TUBE_RATIO};
+
+use super::figures::Figures;
+use super::record::{Axis, Column, Field, Header, Recorder};
+
+/// Largest residuals and references seen.
+#[derive(Clone, Debug, Default)]
+pub struct Residuals {
+    energy: f64,
+    energy_seen: f64,
+    volume: Vec<f64>,
+    volume_seen: Vec<f64>,
+    momentum: f64,
+    momentum_seen: f64,
+    angular: f64,
+    angular_seen: f64,
+}
+
+impl Residuals {
+    fn relative(residual: f64, seen: f64) -> f64 {
+        if seen > 0.0 { residual / seen } else { residual }
+    }
+
+    /// Energy residual over the largest energy stored or put in.
+    pub fn energy_relative(&self) -> f64 {
+        Self::relative(self.energy, self.energy_seen)
+    }
+
+    /// Worst volume residual over the largest volume displaced in the same component.
+    pub fn volume_relative(&self) -> f64 {
+        self.volume.iter().zip(&self.volume_seen).map(|(r, s)| Self::relative(*r, *s)).fold(0.0, f64::max)
+    }
+
+    /// Momentum residual over the largest momentum or impulse.
+    pub fn momentum_relative(&self) -> f64 {
+        Self::relative(self.momentum, self.momentum_seen)
+    }
+
+    /// Angular momentum residual over the largest angular momentum or angular impulse.
+    pub fn angular_relative(&self) -> f64 {
+        Self::relative(self.angular, self.angular_seen)
+    }
+}
+
+/// Limits of the model's range met on the way, with time and place.
+#[derive(Clone, Debug, Default)]
+struct Range {
+    strain: Option<(f64, f64, usize)>,
+    convexity: Option<(f64, f64)>,
+}
+
+/// Samples a run for its recorder and keeps what the summary needs.
+pub struct Observer {
+    half_height: f64,
+    cell_order: Vec<usize>,
+    fields_every: u64,
+    start: Option<(f64, Invariants)>,
+    row: Vec<f64>,
+    range: Range,
+    convex_up_to: f64,
+    /// Balances.
+    pub residuals: Residuals,
+    /// Quantities of interest.
+    pub figures: Figures,
+    /// Integrals at the last sample.
+    pub integrals: Vec<f64>,
+    /// Stored energies at the last sample.
+    pub stored: ledger::Energies,
+}
+
+impl Observer {
+    /// Observer of a case; `interval` is the output interval [s].
+    pub fn new(case: &Case, system: &System, interval: f64) -> Self {
+        let (cell_order, convex_up_to) = system.model.wet.as_ref().map_or((vec![], f64::INFINITY), |wet| {
+            let map = network_coordinate(case, wet);
+            let (bending, stretch) = audit::convex_up_to(&system.model, wet);
+            (sample::cell_order(system, &map), bending.min(stretch))
+        });
+        let fields_every = case.time.fields_interval_s.map_or(1, |f| (f / interval).round().max(1.0) as u64);
+        let components = system.model.wet.as_ref().map_or(0, |w| w.network.components);
+        let columns: Vec<&str> = sample::columns(system).iter().map(|c| c.0).collect();
+        Self {
+            half_height: 0.5 * case.beam.height_m,
+            cell_order,
+            fields_every,
+            start: None,
+            row: Vec::new(),
+            range: Range::default(),
+            convex_up_to,
+            residuals: Residuals {
+                volume: vec![0.0; components],
+                volume_seen: vec![0.0; components],
+                ..Residuals::default()
+            },
+            figures: Figures::new(case, &columns),
+            integrals: vec![0.0; ledger::flow_count(system)],
+            stored: ledger::Energies::default(),
+        }
+    }
+
+    /// What will be recorded.
+    pub fn header(case: &Case, system: &System) -> Header {
+        let tube = case.tubes.as_ref().map_or(0.0, |t| t.length_m);
+        let axes: Vec<Axis> = sample::axes(system, tube)
+            .into_iter()
+            .map(|(name, unit, about, values)| Axis { name, unit, about, values })
+            .collect();
+        let (nodes, cells) = (system.mesh.nodes, system.mesh.cells);
+        let mut fields = vec![
+            field("u1_m", "m", "theta_node_m", "transverse displacement", nodes),
+            field("u3_m", "m", "theta_node_m", "axial displacement", nodes),
+            field("v1_m_s", "m/s", "theta_node_m", "transverse velocity", nodes),
+            field("v3_m_s", "m/s", "theta_node_m", "axial velocity", nodes),
+            field("curvature_1_m", "1/m", "theta_node_m", "curvature, positive with the +x fibre in tension", nodes),
+            field("moment_n_m", "N m", "theta_node_m", "bending moment", nodes),
+            field("normal_force_n", "N", "theta_cell_m", "normal force", cells),
+        ];
+        if let Some(fluid) = &system.fluid {
+            fields.push(field("pressure_pa", "Pa", "x_f", "pressure of the bladder cells", fluid.cells));
+            fields.push(field("area_change_m2", "m^2", "x_f", "area change of the bladder cells", fluid.cells));
+        }
+        let columns = sample::columns(system)
+            .into_iter()
+            .map(|(name, unit, about)| Column { name: name.into(), unit, about: about.into() })
+            .collect();
+        Header { columns, axes, fields }
+    }
+
+    /// Takes the sample number `number` at a scaled state. Returns why the run must end here, if it must.
+    #[allow(clippy::too_many_arguments)]
+    pub fn sample(
+        &mut self,
+        dae: &mut BeamDae,
+        number: u64,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        integrals: &[f64],
+        recorder: &mut dyn Recorder,
+    ) -> Result<Option<String>> {
+        let (system, now, w) = dae.evaluate(t, y, yp);
+        let stored = ledger::energies(system, w);
+        let invariants = ledger::invariants(system, w);
+        let total = stored.total();
+        let (at_start, first) = self.start.get_or_insert_with(|| (total, invariants.clone()));
+        let balance = sample::energy_balance(stored, *at_start, integrals);
+        let r = &mut self.residuals;
+        r.energy = r.energy.max(balance.residual.abs());
+        let put_in = [Flow::Loads, Flow::Ends, Flow::Ports].map(|f| integrals[f as usize].abs());
+        r.energy_seen = put_in.into_iter().fold(r.energy_seen.max(total.abs()), f64::max);
+        for c in 0..invariants.volumes.len() {
+            let lost = invariants.volumes[c] - first.volumes[c] + integrals[FLOWS.len() + c];
+            r.volume[c] = r.volume[c].max(lost.abs());
+        }
+        displaced(system, &w.area, &mut r.volume_seen);
+        let impulse = [integrals[Flow::ImpulseX as usize], integrals[Flow::ImpulseZ as usize]];
+        if system.layout.inertia {
+            for (k, gained) in impulse.into_iter().enumerate() {
+                let lost = invariants.momentum[k] - first.momentum[k] - gained;
+                r.momentum = r.momentum.max(lost.abs());
+                r.momentum_seen = r.momentum_seen.max(invariants.momentum[k].abs()).max(gained.abs());
+            }
+            let gained = integrals[Flow::AngularImpulse as usize];
+            r.angular = r.angular.max((invariants.angular_momentum - first.angular_momentum - gained).abs());
+            r.angular_seen = r.angular_seen.max(invariants.angular_momentum.abs()).max(gained.abs());
+        }
+        sample::row(system, now, t, w, &balance, integrals, &mut self.row);
+        recorder.history(&self.row)?;
+        self.figures.take(&self.row);
+        self.integrals.copy_from_slice(integrals);
+        self.stored = stored;
+
+        let (strain, node) = sample::largest_strain(system, self.half_height, w);
+        if self.range.strain.is_none_or(|(s, ..)| strain > s) {
+            self.range.strain = Some((strain, t, node));
+        }
+        let opening = sample::least_opening(system, w);
+        let sum = (0..w.mean_force.len())
+            .map(|j| w.mean_pressure[j] + w.mean_pressure[w.mean_force.len() + j])
+            .fold(f64::NEG_INFINITY, f64::max);
+        if sum > self.convex_up_to && self.range.convexity.is_none() {
+            self.range.convexity = Some((sum, t));
+        }
+        if number.is_multiple_of(self.fields_every) {
+            let along = |values: &[f64]| -> Vec<f64> { self.cell_order.iter().map(|&c| values[c]).collect() };
+            let (pressure, area) = (along(&w.pressure), along(&w.area));
+            let mut arrays: Vec<&[f64]> = vec![&w.u1, &w.u3, &w.v1, &w.v3, &w.kappa, &w.moment, &w.force];
+            if system.fluid.is_some() {
+                arrays.extend([pressure.as_slice(), area.as_slice()]);
+            }
+            recorder.fields(t, &arrays)?;
+        }
+        Ok((opening <= 0.0).then(|| {
+            format!("a bladder is closed at t = {t:.6} s: its cross-section h_b w_b + a1 has reached zero, where the model ends")
+        }))
+    }
+
+    /// Limits of the model's range that were passed.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        if let Some((strain, t, node)) = self.range.strain
+            && strain > 0.5
+        {
+            all.push(format!(
+                "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 reached {strain:.2} at \
+                 t = {t:.4} s, node {node}; strains are meant to be small"
+            ));
+        }
+        if let Some((sum, t)) = self.range.convexity {
+            all.push(format!(
+                "the kinked reciprocal potential lost convexity: p_u + p_d reached {sum:.3e} Pa at t = {t:.4} s, \
+                 above {:.3e} Pa; results from then on are not to be trusted (use \"reciprocal\" or a larger kink_width)",
+                self.convex_up_to
+            ));
+        }
+        all
+    }
+}
+
+fn field(name: &'static str, unit: &'static str, axis: &'static str, about: &'static str, len: usize) -> Field {
+    Field { name, unit, axis, about, len }
+}
+
+/// The network's coordinate as the paper's tables have it.
+pub fn network_coordinate(case: &Case, wet: &crate::model::Wet) -> NetworkCoordinate {
+    let tube = case.tubes.as_ref().map_or(0.0, |t| t.length_m);
+    NetworkCoordinate::new(&wet.network, wet.per_row, wet.bladder_length, TABLE_TUBE_RATIO * tube)
+}
+
+/// Raises the largest volume displaced in each component, `Σ |a1| ds`.
+fn displaced(system: &System, area: &[f64], seen: &mut [f64]) {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return };
+    let mut now = vec![0.0; seen.len()];
+    for (cell, a) in area.iter().enumerate() {
+        now[wet.network.component_of_bladder[cell / fluid.cells_per_bladder]] += a.abs() * fluid.ds;
+    }
+    for (s, n) in seen.iter_mut().zip(now) {
+        *s = s.max(n);
+    }
+}

@@ -1,0 +1,160 @@
+//! What SUNDIALS calls: residual, Jacobian and error weights of a [`Dae`].
+//!
+//! Codes: 0 done, +1 try a shorter step, -1 stop. The first fatal fault or panic is kept in the [`Bridge`].
+
+use std::any::Any;
+use std::ffi::{c_int, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::{Duration, Instant};
+
+use sundials_sys::{N_Vector, SUNMatrix};
+
+use super::kernels;
+use super::linear_solver::system_of;
+use super::vector::{entries, entries_mut};
+use crate::dae::{Dae, Fault, Seeds};
+
+/// What ended an integration from inside a callback.
+pub(super) enum Stop {
+    /// [`Fault::Fatal`].
+    Fatal(String),
+    /// A panic, with its payload.
+    Panic(Box<dyn Any + Send>),
+}
+
+/// The system of equations as C sees it: what `user_data` points to.
+pub(super) struct Bridge<D> {
+    /// The equations.
+    pub dae: D,
+    /// Relative tolerance.
+    pub relative: f64,
+    /// Absolute tolerances, one for each unknown.
+    pub absolute: Vec<f64>,
+    /// Why to stop.
+    pub stop: Option<Stop>,
+    /// Last recoverable fault.
+    pub recoverable: Option<String>,
+    /// Residuals evaluated.
+    pub residuals: u64,
+    /// Jacobians evaluated.
+    pub jacobians: u64,
+    /// Wall time of residuals.
+    pub residual_wall: Duration,
+    /// Wall time of Jacobians.
+    pub jacobian_wall: Duration,
+    /// Wall time of integrands.
+    pub integrand_wall: Duration,
+}
+
+impl<D: Dae> Bridge<D> {
+    /// Runs the equations: faults and panics become codes and are kept.
+    pub(super) fn call(&mut self, act: impl FnOnce(&mut D) -> Result<(), Fault>) -> c_int {
+        let dae = &mut self.dae;
+        match catch_unwind(AssertUnwindSafe(|| act(dae))) {
+            Ok(Ok(())) => 0,
+            Ok(Err(Fault::Recoverable(what))) => {
+                self.recoverable = Some(what);
+                1
+            }
+            Ok(Err(Fault::Fatal(what))) => {
+                self.stop.get_or_insert(Stop::Fatal(what));
+                -1
+            }
+            Err(payload) => {
+                self.stop.get_or_insert(Stop::Panic(payload));
+                -1
+            }
+        }
+    }
+}
+
+/// `IDAResFn` with a [`Bridge`] as user data.
+pub(super) unsafe extern "C" fn residual<D: Dae>(
+    t: f64,
+    y: N_Vector,
+    yp: N_Vector,
+    out: N_Vector,
+    data: *mut c_void,
+) -> c_int {
+    // SAFETY: user data is the bridge, borrowed by nobody else while C runs; the vectors are different serial ones.
+    let (bridge, y, yp, out) = unsafe {
+        (
+            &mut *data.cast::<Bridge<D>>(),
+            entries(y),
+            entries(yp),
+            entries_mut(out),
+        )
+    };
+    let begin = Instant::now();
+    let code = bridge.call(|dae| {
+        dae.residual(t, y, yp, out)?;
+        match kernels::first_not_finite(out) {
+            None => Ok(()),
+            Some(i) => Err(Fault::Recoverable(format!(
+                "the equation of {} gives {} at t = {t:.6e} s",
+                dae.name(i),
+                out[i]
+            ))),
+        }
+    });
+    bridge.residuals += 1;
+    bridge.residual_wall += begin.elapsed();
+    code
+}
+
+/// `IDALsJacFn` with a [`Bridge`] as user data; writes into the system behind the matrix.
+#[allow(clippy::too_many_arguments)] // SUNDIALS' signature
+pub(super) unsafe extern "C" fn jacobian<D: Dae>(
+    t: f64,
+    cj: f64,
+    y: N_Vector,
+    yp: N_Vector,
+    _: N_Vector,
+    matrix: SUNMatrix,
+    data: *mut c_void,
+    _: N_Vector,
+    _: N_Vector,
+    _: N_Vector,
+) -> c_int {
+    // SAFETY: user data is the bridge and the matrix holds the linear system, both borrowed by nobody else while C
+    // runs; the vectors are only read.
+    let (bridge, y, yp, system) = unsafe {
+        (
+            &mut *data.cast::<Bridge<D>>(),
+            entries(y),
+            entries(yp),
+            system_of(matrix),
+        )
+    };
+    let begin = Instant::now();
+    let code = bridge.call(|dae| {
+        dae.jacobian(t, y, yp, Seeds::Step { cj }, &mut system.values)?;
+        match kernels::first_not_finite(&system.values) {
+            None => Ok(()),
+            Some(entry) => Err(Fault::Recoverable(not_finite(dae, entry, t))),
+        }
+    });
+    bridge.jacobians += 1;
+    bridge.jacobian_wall += begin.elapsed();
+    code
+}
+
+/// Says which derivative is not finite; `entry` is a position in the pattern.
+pub(super) fn not_finite<D: Dae>(dae: &D, entry: usize, t: f64) -> String {
+    let pattern = dae.pattern();
+    let column = pattern.starts.partition_point(|&start| start as usize <= entry) - 1;
+    let row = pattern.rows[entry] as usize;
+    let (equation, unknown) = (dae.name(row), dae.name(column));
+    format!("the derivative of the equation of {equation} by {unknown} is not finite at t = {t:.6e} s")
+}
+
+/// `IDAEwtFn` with a [`Bridge`] as user data: `wᵢ = 1 / (relative |yᵢ| + absoluteᵢ)`.
+pub(super) unsafe extern "C" fn weights<D: Dae>(y: N_Vector, w: N_Vector, data: *mut c_void) -> c_int {
+    // SAFETY: user data is the bridge, borrowed by nobody else while C runs; w is another vector than y.
+    let (bridge, y, w) = unsafe { (&*data.cast::<Bridge<D>>(), entries(y), entries_mut(w)) };
+    if kernels::error_weights(y, bridge.relative, &bridge.absolute, w) {
+        0
+    } else {
+        -1
+    }
+}

@@ -1,0 +1,45 @@
+//! What an integrator has done, and where the time went.
+
+use std::time::Duration;
+
+/// Work done since the integrator was created, over all restarts.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Residuals.
+    pub residual_evaluations: u64,
+    /// Jacobians.
+    pub jacobian_evaluations: u64,
+    /// Numerical factorisations, refactorisations with old pivots included.
+    pub factorizations: u64,
+    /// Factorisations done anew because the old pivots had grown bad.
+    pub pivot_refreshes: u64,
+    /// Steps rejected by the error test.
+    pub error_test_failures: u64,
+    /// Newton iterations that did not converge.
+    pub newton_failures: u64,
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Linear solves.
+    pub linear_solves: u64,
+    /// Restarts.
+    pub restarts: u64,
+    /// Accepted steps by order, index 0 is order 1.
+    pub steps_by_order: Vec<u64>,
+    /// Highest order allowed.
+    pub max_order: u8,
+}
+
+/// Wall time spent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wall {
+    /// Residuals.
+    pub residual: Duration,
+    /// Jacobians.
+    pub jacobian: Duration,
+    /// Factorisations and solves.
+    pub linear_solver: Duration,
+    /// Integrands of the integrals carried along.
+    pub integrands: Duration,
+}

@@ -1,0 +1,351 @@
+//! IDA (SUNDIALS' IDAS without sensitivities): variable-order backward differentiation formulas, step by step.
+
+use std::ffi::{c_int, c_long, c_void};
+use std::time::Duration;
+
+use sundials_sys as s;
+
+use super::callbacks::{self, Bridge};
+use super::context::{Context, Messages, keep};
+use super::counters::{Counters, Wall};
+use super::failure::{IdaFailure, meaning};
+use super::integrals;
+use super::klu::{Klu, KluFault};
+use super::linear_solver::LinearSolver;
+use super::options::{Absolute, IdaOptions};
+use super::shared::Shared;
+use super::vector::Vector;
+use crate::dae::Dae;
+
+/// An accepted step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Time at its end [s].
+    pub time: f64,
+    /// Its size [s].
+    pub size: f64,
+    /// Its order.
+    pub order: u8,
+    /// True when the stop time is reached; `time` then equals it.
+    pub stopped: bool,
+}
+
+/// IDA's memory, freed before everything it points to.
+pub(super) struct Memory(pub *mut c_void);
+
+impl Drop for Memory {
+    fn drop(&mut self) {
+        // SAFETY: made by `IDACreate` (or null, which is accepted), freed once.
+        unsafe { s::IDAFree(&mut self.0) };
+    }
+}
+
+/// Integrator of a system `F(t, y, y') = 0`.
+///
+/// Fields are in the order in which they must be dropped.
+pub struct Ida<D: Dae> {
+    pub(super) memory: Memory,
+    pub(super) solver: LinearSolver,
+    y: Vector,
+    yp: Vector,
+    pub(super) scratch: Vector,
+    pub(super) quadratures: Option<Vector>,
+    pub(super) messages: Shared<Messages>,
+    pub(super) bridge: Shared<Bridge<D>>,
+    _context: Context,
+    pub(super) time: f64,
+    pub(super) stepped: bool,
+    base: Counters,
+}
+
+impl<D: Dae> Ida<D> {
+    /// An integrator at time `t0` [s] with consistent values `y0` and derivatives `yp0`, both of length `dae.len()`.
+    pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &IdaOptions) -> Result<Self, Box<IdaFailure>> {
+        let n = dae.len();
+        let refuse = |message: String| IdaFailure::request(message, t0);
+        if n == 0 || dae.pattern().columns() != n || dae.differential().len() != n {
+            return Err(refuse(format!(
+                "{n} unknowns do not fit the pattern or the kinds of unknowns"
+            )));
+        }
+        if y0.len() != n || yp0.len() != n {
+            return Err(refuse(format!(
+                "{} values and {} derivatives stand for {n} unknowns",
+                y0.len(),
+                yp0.len()
+            )));
+        }
+        options.check(n).map_err(refuse)?;
+        let klu = Klu::new(dae.pattern()).map_err(|fault| match fault {
+            KluFault::Singular { column } => refuse(format!("no equation can be solved for {}", dae.name(column))),
+            KluFault::Package { status } => refuse(format!("KLU cannot analyse the pattern (status {status})")),
+        })?;
+        let context = Context::new().map_err(refuse)?;
+        let vector = |entries: &[f64]| Vector::new(entries, context.raw()).map_err(refuse);
+        let id: Vec<f64> = dae
+            .differential()
+            .iter()
+            .map(|&differential| f64::from(u8::from(differential)))
+            .collect();
+        let (y, yp, mut scratch) = (vector(y0)?, vector(yp0)?, vector(&id)?);
+        let integrals = dae.integrals();
+        let quadratures = if integrals == 0 { None } else { Some(vector(&vec![0.0; integrals])?) };
+        let solver = LinearSolver::new(klu, context.raw()).map_err(refuse)?;
+        let bridge = Shared::new(Bridge {
+            dae,
+            relative: options.relative,
+            absolute: match &options.absolute {
+                Absolute::Same(value) => vec![*value; n],
+                Absolute::Each(values) => values.clone(),
+            },
+            stop: None,
+            recoverable: None,
+            residuals: 0,
+            jacobians: 0,
+            residual_wall: Duration::ZERO,
+            jacobian_wall: Duration::ZERO,
+            integrand_wall: Duration::ZERO,
+        });
+        let messages = Shared::new(Messages::default());
+        // SAFETY: the context is alive; null is checked.
+        let raw = unsafe { s::IDACreate(context.raw()) };
+        let memory = Memory(raw);
+        if raw.is_null() {
+            return Err(refuse("no memory for the integrator".to_owned()));
+        }
+        // SAFETY: all pointers are alive and stay so until `memory` is dropped; IDA copies the vectors y, yp and id.
+        let flags = unsafe {
+            [
+                s::IDASetErrHandlerFn(raw, Some(keep), messages.pointer().cast()),
+                s::IDASetMaxOrd(raw, options.max_order.into()),
+                s::IDASetUserData(raw, bridge.pointer().cast()),
+                s::IDAInit(raw, Some(callbacks::residual::<D>), t0, y.raw(), yp.raw()),
+                s::IDAWFtolerances(raw, Some(callbacks::weights::<D>)),
+                s::IDASetLinearSolver(raw, solver.solver(), solver.matrix()),
+                s::IDASetJacFn(raw, Some(callbacks::jacobian::<D>)),
+                s::IDASetId(raw, scratch.raw()),
+                s::IDASetSuppressAlg(raw, options.suppress_algebraic.into()),
+                s::IDASetNonlinConvCoef(raw, options.nonlinear_coefficient),
+                s::IDASetDeltaCjLSetup(raw, options.delta_cj_setup),
+                s::IDASetInitStep(raw, options.initial_step.unwrap_or(0.0)),
+                s::IDASetMaxStep(raw, options.max_step.unwrap_or(0.0)),
+                s::IDASetMaxConvFails(raw, options.max_newton_failures.into()),
+                s::IDASetMaxNonlinIters(raw, options.max_newton_iterations.into()),
+                s::IDASetMaxErrTestFails(raw, options.max_error_test_failures.into()),
+                s::IDASetMaxNumSteps(raw, -1),
+                integrals::begin::<D>(raw, quadratures.as_ref()),
+            ]
+        };
+        if let Some(&code) = flags.iter().find(|&&flag| flag != s::IDA_SUCCESS) {
+            let mut failure = refuse(messages.get().take());
+            (failure.code, failure.meaning) = (code, meaning(code));
+            return Err(failure);
+        }
+        scratch.entries_mut().fill(0.0);
+        let base = Counters {
+            steps_by_order: vec![0; options.max_order.into()],
+            max_order: options.max_order,
+            ..Counters::default()
+        };
+        Ok(Self {
+            memory,
+            solver,
+            y,
+            yp,
+            scratch,
+            quadratures,
+            messages,
+            bridge,
+            _context: context,
+            time: t0,
+            stepped: false,
+            base,
+        })
+    }
+
+    /// One accepted step, which does not pass `stop` [s]. A stop closer than round-off counts as reached.
+    ///
+    /// Panics of the equations go on here.
+    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IdaFailure>> {
+        let round_off = 100.0 * f64::EPSILON * (self.time.abs() + stop.abs());
+        if stop.is_nan() || stop < self.time - round_off {
+            let message = format!("the stop time {stop:e} s lies behind");
+            return Err(IdaFailure::request(message, self.time));
+        }
+        if stop - self.time <= round_off {
+            self.time = stop;
+            return Ok(Step {
+                time: stop,
+                size: 0.0,
+                order: self.last_order(),
+                stopped: true,
+            });
+        }
+        let memory = self.memory.0;
+        let before = self.number(s::IDAGetNumSteps);
+        self.bridge.get_mut().recoverable = None;
+        let mut time = self.time;
+        // SAFETY: everything IDA points to is alive, and no reference into it is held during the call.
+        let flag = unsafe {
+            match s::IDASetStopTime(memory, stop) {
+                s::IDA_SUCCESS => s::IDASolve(memory, stop, &mut time, self.y.raw(), self.yp.raw(), s::IDA_ONE_STEP),
+                refused => refused,
+            }
+        };
+        self.raise_panic();
+        if flag < 0 {
+            return Err(self.failure(flag));
+        }
+        self.time = time;
+        self.stepped = true;
+        let order = self.last_order();
+        let taken = self.number(s::IDAGetNumSteps) - before;
+        if let Some(count) = self.base.steps_by_order.get_mut(usize::from(order).wrapping_sub(1)) {
+            *count += taken;
+        }
+        let size = if taken == 0 { 0.0 } else { self.last_step() };
+        Ok(Step {
+            time,
+            size,
+            order,
+            stopped: flag == s::IDA_TSTOP_RETURN,
+        })
+    }
+
+    /// Present time [s].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Unknowns at the present time.
+    pub fn y(&self) -> &[f64] {
+        self.y.entries()
+    }
+
+    /// Their derivatives at the present time [1/s].
+    pub fn yp(&self) -> &[f64] {
+        self.yp.entries()
+    }
+
+    /// Derivative number `k` of the unknowns at a time [s] within the last step, from IDA's own polynomial.
+    ///
+    /// `k` is at most the order of the last step; panics when `out` has another length than the unknowns.
+    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
+        if !self.stepped {
+            let message = "nothing can be interpolated before the first step".to_owned();
+            return Err(IdaFailure::request(message, self.time));
+        }
+        // SAFETY: IDA and the vector are alive.
+        let flag = unsafe { s::IDAGetDky(self.memory.0, time, k.into(), self.scratch.raw()) };
+        if flag < 0 {
+            return Err(self.failure(flag));
+        }
+        out.copy_from_slice(self.scratch.entries());
+        Ok(())
+    }
+
+    /// Goes on from consistent values at time `t` [s], forgetting the past; costs about a dozen short steps.
+    ///
+    /// Panics when a slice has another length than the unknowns.
+    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IdaFailure>> {
+        let counters = self.counters();
+        let kept = self.keep_integrals();
+        if kept < 0 {
+            return Err(self.failure(kept));
+        }
+        self.y.entries_mut().copy_from_slice(y);
+        self.yp.entries_mut().copy_from_slice(yp);
+        // SAFETY: IDA and the vectors, which it copies, are alive.
+        let flag = unsafe { s::IDAReInit(self.memory.0, t, self.y.raw(), self.yp.raw()) };
+        if flag < 0 {
+            return Err(self.failure(flag));
+        }
+        // IDA's counters stand at zero now, ours go on
+        self.base = Counters {
+            restarts: counters.restarts + 1,
+            ..counters
+        };
+        self.time = t;
+        self.stepped = false;
+        Ok(())
+    }
+
+    /// First step [s] after the next restart; IDA's guess when absent.
+    pub fn set_initial_step(&mut self, step: Option<f64>) -> Result<(), Box<IdaFailure>> {
+        // SAFETY: IDA is alive.
+        let flag = unsafe { s::IDASetInitStep(self.memory.0, step.unwrap_or(0.0)) };
+        if flag < 0 { Err(self.failure(flag)) } else { Ok(()) }
+    }
+
+    /// Accepted steps since the integrator was created.
+    pub fn steps(&self) -> u64 {
+        self.base.steps + self.number(s::IDAGetNumSteps)
+    }
+
+    /// Work done since the integrator was created.
+    pub fn counters(&self) -> Counters {
+        let (bridge, system) = (self.bridge.get(), self.solver.system());
+        Counters {
+            steps: self.steps(),
+            residual_evaluations: bridge.residuals,
+            jacobian_evaluations: bridge.jacobians,
+            factorizations: system.klu.factorizations,
+            pivot_refreshes: system.klu.pivot_refreshes,
+            error_test_failures: self.base.error_test_failures + self.number(s::IDAGetNumErrTestFails),
+            newton_failures: self.base.newton_failures + self.number(s::IDAGetNumNonlinSolvConvFails),
+            newton_iterations: self.base.newton_iterations + self.number(s::IDAGetNumNonlinSolvIters),
+            linear_solves: system.solves,
+            ..self.base.clone()
+        }
+    }
+
+    /// Wall time spent in the equations and the linear solver.
+    pub fn wall(&self) -> Wall {
+        let bridge = self.bridge.get();
+        Wall {
+            residual: bridge.residual_wall,
+            jacobian: bridge.jacobian_wall,
+            linear_solver: self.solver.system().wall,
+            integrands: bridge.integrand_wall,
+        }
+    }
+
+    /// The equations.
+    pub fn dae(&self) -> &D {
+        &self.bridge.get().dae
+    }
+
+    /// The equations; after changing what they mean, [`Ida::restart`].
+    pub fn dae_mut(&mut self) -> &mut D {
+        &mut self.bridge.get_mut().dae
+    }
+
+    /// Gives the equations back.
+    pub fn into_dae(self) -> D {
+        let Self { memory, bridge, .. } = self;
+        drop(memory);
+        bridge.into_inner().dae
+    }
+
+    /// One of IDA's counters; zero when IDA does not tell.
+    fn number(&self, get: unsafe extern "C" fn(*mut c_void, *mut c_long) -> c_int) -> u64 {
+        let mut number: c_long = 0;
+        // SAFETY: IDA is alive, and all functions passed write one number.
+        unsafe { get(self.memory.0, &mut number) };
+        u64::try_from(number).unwrap_or(0)
+    }
+
+    pub(super) fn last_order(&self) -> u8 {
+        let mut order = 0;
+        // SAFETY: IDA is alive.
+        unsafe { s::IDAGetLastOrder(self.memory.0, &mut order) };
+        u8::try_from(order).unwrap_or(0)
+    }
+
+    fn last_step(&self) -> f64 {
+        let mut step = 0.0;
+        // SAFETY: IDA is alive.
+        unsafe { s::IDAGetLastStep(self.memory.0, &mut step) };
+        step
+    }
+}

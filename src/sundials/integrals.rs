@@ -1,0 +1,81 @@
+//! Integrals carried along by IDA's own formula (IDAS' quadratures): no feedback, no error control.
+
+use std::ffi::{c_int, c_void};
+
+use sundials_sys as s;
+
+use super::callbacks::Bridge;
+use super::failure::IdaFailure;
+use super::ida::Ida;
+use super::vector::{Vector, entries, entries_mut};
+use crate::dae::Dae;
+
+/// `IDAQuadRhsFn` with a [`Bridge`] as user data.
+pub(super) unsafe extern "C" fn integrands<D: Dae>(
+    t: f64,
+    y: s::N_Vector,
+    yp: s::N_Vector,
+    out: s::N_Vector,
+    data: *mut c_void,
+) -> c_int {
+    // SAFETY: user data is the bridge, borrowed by nobody else while C runs; the vectors are different serial ones.
+    let (bridge, y, yp, out) =
+        unsafe { (&mut *data.cast::<Bridge<D>>(), entries(y), entries(yp), entries_mut(out)) };
+    let begin = std::time::Instant::now();
+    let code = bridge.call(|dae| dae.integrands(t, y, yp, out));
+    bridge.integrand_wall += begin.elapsed();
+    code
+}
+
+/// Starts the integrals of a new integrator at zero; `none` when the system has none.
+pub(super) fn begin<D: Dae>(memory: *mut c_void, zeros: Option<&Vector>) -> c_int {
+    match zeros {
+        None => s::IDA_SUCCESS,
+        // SAFETY: IDA and the vector, which it copies, are alive.
+        Some(zeros) => match unsafe { s::IDAQuadInit(memory, Some(integrands::<D>), zeros.raw()) } {
+            s::IDA_SUCCESS => unsafe { s::IDASetQuadErrCon(memory, 0) },
+            refused => refused,
+        },
+    }
+}
+
+impl<D: Dae> Ida<D> {
+    /// The integrals `∫ g dt` since the integrator was created: at the present time, or at a time [s] within the last
+    /// step. `out` has length `dae.integrals()`.
+    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
+        let Some(quadratures) = &mut self.quadratures else { return Ok(()) };
+        if self.stepped {
+            let mut reached = self.time;
+            // SAFETY: IDA and the vector are alive.
+            let flag = unsafe {
+                match time {
+                    Some(t) => s::IDAGetQuadDky(self.memory.0, t, 0, quadratures.raw()),
+                    None => s::IDAGetQuad(self.memory.0, &mut reached, quadratures.raw()),
+                }
+            };
+            if flag < 0 {
+                return Err(self.failure(flag));
+            }
+        }
+        if let Some(quadratures) = &self.quadratures {
+            out.copy_from_slice(quadratures.entries());
+        }
+        Ok(())
+    }
+
+    /// Carries the integrals over a restart.
+    pub(super) fn keep_integrals(&mut self) -> c_int {
+        let Some(quadratures) = &mut self.quadratures else { return s::IDA_SUCCESS };
+        if !self.stepped {
+            return s::IDA_SUCCESS;
+        }
+        let mut reached = self.time;
+        // SAFETY: IDA and the vector are alive.
+        unsafe {
+            match s::IDAGetQuad(self.memory.0, &mut reached, quadratures.raw()) {
+                s::IDA_SUCCESS => s::IDAQuadReInit(self.memory.0, quadratures.raw()),
+                refused => refused,
+            }
+        }
+    }
+}

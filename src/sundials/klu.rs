@@ -1,0 +1,259 @@
+//! Sparse LU factors by KLU (Davis & Natarajan, Algorithm 907), with a guard against pivots that have gone stale.
+//!
+//! Factoring again with the old pivot order costs less than half of factoring anew, but the old pivots may be bad for
+//! the new values, and KLU does not tell: `[1 1; 1 2]` and then `[1e-16 1; 1 2]` gives x = (0, 2) instead of (1, 2),
+//! flags and condition estimate in order. What shows it is the growth of the factors, `min_j max_i |aᵢⱼ| / max_i |uᵢⱼ|`,
+//! by which the rounding error is enlarged. When it falls below [`Klu::smallest_growth`] the pivots are chosen anew.
+
+use std::ptr;
+
+use crate::dae::Pattern;
+
+use super::c;
+
+/// How rows are scaled before factoring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowScaling {
+    /// Not at all.
+    None,
+    /// By the sum of the absolute entries.
+    Sum,
+    /// By the largest absolute entry.
+    Max,
+}
+
+/// Why a matrix could not be factored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KluFault {
+    /// No pivot is left in this column.
+    Singular {
+        /// Column of the matrix as given.
+        column: usize,
+    },
+    /// KLU ran out of memory or indices; its status.
+    Package {
+        /// -2 memory, -3 invalid input, -4 too large.
+        status: i64,
+    },
+}
+
+/// Factors of matrices that share a pattern.
+pub struct Klu {
+    starts: Vec<i64>,
+    rows: Vec<i64>,
+    common: Box<c::klu_l_common>,
+    symbolic: *mut c::klu_l_symbolic,
+    numeric: *mut c::klu_l_numeric,
+    growth_when_fresh: f64,
+    /// Growth below which old pivots are dropped; 0 turns the guard off.
+    ///
+    /// At the default 1e-6 the factors still stand for a matrix within about ε / 1e-6 = 2e-10 of the given one, which
+    /// Newton's iteration does not notice; over the runs of `tests/sundials` the growth stays between 0.5 and 1.
+    pub smallest_growth: f64,
+    /// Numerical factorisations, refactorisations included.
+    pub factorizations: u64,
+    /// Factorisations done anew because old pivots were bad.
+    pub pivot_refreshes: u64,
+}
+
+impl Klu {
+    /// Analyses a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
+    pub fn new(pattern: &Pattern) -> Result<Self, KluFault> {
+        Self::with_scaling(pattern, RowScaling::Max)
+    }
+
+    /// Analyses a square pattern.
+    pub fn with_scaling(pattern: &Pattern, scaling: RowScaling) -> Result<Self, KluFault> {
+        let n = pattern.columns();
+        // all of it is relied upon by the C code
+        let sound = pattern.starts[0] == 0
+            && pattern.starts.windows(2).all(|pair| pair[0] <= pair[1])
+            && pattern.starts[n] as usize == pattern.rows.len()
+            && pattern.rows.iter().all(|&row| row >= 0 && (row as usize) < n);
+        if !sound {
+            return Err(KluFault::Package {
+                status: c::KLU_INVALID.into(),
+            });
+        }
+        // SAFETY: plain numbers and pointers, for which zero is a value; `klu_l_defaults` then sets them.
+        let mut common: Box<c::klu_l_common> = Box::new(unsafe { std::mem::zeroed() });
+        // SAFETY: the structure is valid for writing.
+        unsafe { c::klu_l_defaults(&mut *common) };
+        common.ordering = 0; // AMD: fills less than COLAMD where a few rows are dense
+        common.scale = match scaling {
+            RowScaling::None => 0,
+            RowScaling::Sum => 1,
+            RowScaling::Max => 2,
+        };
+        let (mut starts, mut rows) = (pattern.starts.clone(), pattern.rows.clone());
+        // SAFETY: the pattern has been checked above; the arrays are only read.
+        let symbolic = unsafe { c::klu_l_analyze(n as i64, starts.as_mut_ptr(), rows.as_mut_ptr(), &mut *common) };
+        let klu = Self {
+            starts,
+            rows,
+            common,
+            symbolic,
+            numeric: ptr::null_mut(),
+            growth_when_fresh: 1.0,
+            smallest_growth: 1e-6,
+            factorizations: 0,
+            pivot_refreshes: 0,
+        };
+        if symbolic.is_null() { Err(klu.fault()) } else { Ok(klu) }
+    }
+
+    /// Number of unknowns.
+    pub fn columns(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Number of stored entries.
+    pub fn entries(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Factors the matrix whose entries, in the order of the pattern, are `values`; with the old pivots while they last.
+    ///
+    /// After a fault there are no factors. Panics when the number of values is not that of the pattern.
+    pub fn factor(&mut self, values: &[f64]) -> Result<(), KluFault> {
+        assert_eq!(values.len(), self.entries(), "values of another pattern");
+        if !self.numeric.is_null() {
+            if self.refactor(values) {
+                return Ok(());
+            }
+            self.pivot_refreshes += 1;
+        }
+        self.factor_anew(values)
+    }
+
+    /// Factors with the old pivots; false when they are bad.
+    fn refactor(&mut self, values: &[f64]) -> bool {
+        self.factorizations += 1;
+        // SAFETY: pattern, symbolic and numeric belong together, values has the pattern's length; KLU only reads them.
+        let done = unsafe {
+            c::klu_l_refactor(
+                self.starts.as_mut_ptr(),
+                self.rows.as_mut_ptr(),
+                values.as_ptr().cast_mut(),
+                self.symbolic,
+                self.numeric,
+                &mut *self.common,
+            )
+        };
+        if done == 0 || self.common.status != i64::from(c::KLU_OK) {
+            return false;
+        }
+        if self.smallest_growth <= 0.0 {
+            return true;
+        }
+        // factors that grow with fresh pivots too are not improved by fresh pivots
+        let limit = self.smallest_growth.min(0.1 * self.growth_when_fresh);
+        self.growth(values) >= limit
+    }
+
+    /// Factors with pivots chosen for these values.
+    fn factor_anew(&mut self, values: &[f64]) -> Result<(), KluFault> {
+        self.free_numeric();
+        self.factorizations += 1;
+        // SAFETY: pattern and symbolic belong together, values has the pattern's length; KLU only reads them.
+        self.numeric = unsafe {
+            c::klu_l_factor(
+                self.starts.as_mut_ptr(),
+                self.rows.as_mut_ptr(),
+                values.as_ptr().cast_mut(),
+                self.symbolic,
+                &mut *self.common,
+            )
+        };
+        if self.numeric.is_null() || self.common.status != i64::from(c::KLU_OK) {
+            let fault = self.fault();
+            self.free_numeric();
+            return Err(fault);
+        }
+        if self.smallest_growth > 0.0 {
+            self.growth_when_fresh = self.growth(values);
+        }
+        Ok(())
+    }
+
+    /// `min_j max_i |aᵢⱼ| / max_i |uᵢⱼ|` of the present factors: 1 is good, ε is useless.
+    fn growth(&mut self, values: &[f64]) -> f64 {
+        // SAFETY: as in `refactor`.
+        unsafe {
+            c::klu_l_rgrowth(
+                self.starts.as_mut_ptr(),
+                self.rows.as_mut_ptr(),
+                values.as_ptr().cast_mut(),
+                self.symbolic,
+                self.numeric,
+                &mut *self.common,
+            );
+        }
+        self.common.rgrowth
+    }
+
+    /// Estimate of the condition number (1-norm) of the matrix last factored, given by its `values`.
+    ///
+    /// None without factors. Panics when the number of values is not that of the pattern.
+    pub fn condition(&mut self, values: &[f64]) -> Option<f64> {
+        assert_eq!(values.len(), self.entries(), "values of another pattern");
+        if self.numeric.is_null() {
+            return None;
+        }
+        // SAFETY: as in `refactor`.
+        let done = unsafe {
+            c::klu_l_condest(
+                self.starts.as_mut_ptr(),
+                values.as_ptr().cast_mut(),
+                self.symbolic,
+                self.numeric,
+                &mut *self.common,
+            )
+        };
+        (done != 0).then_some(self.common.condest)
+    }
+
+    /// Replaces `b` by the solution of `A x = b`; false without factors. Panics when `b` has another length.
+    pub fn solve(&mut self, b: &mut [f64]) -> bool {
+        assert_eq!(b.len(), self.columns(), "right-hand side of another size");
+        if self.numeric.is_null() {
+            return false;
+        }
+        let n = b.len() as i64;
+        // SAFETY: symbolic and numeric belong together and b has n entries.
+        unsafe { c::klu_l_solve(self.symbolic, self.numeric, n, 1, b.as_mut_ptr(), &mut *self.common) != 0 }
+    }
+
+    /// What KLU last complained about.
+    fn fault(&self) -> KluFault {
+        let column = self.common.singular_col;
+        if self.common.status == i64::from(c::KLU_SINGULAR) {
+            KluFault::Singular {
+                column: usize::try_from(column)
+                    .unwrap_or(0)
+                    .min(self.columns().saturating_sub(1)),
+            }
+        } else {
+            KluFault::Package {
+                status: self.common.status,
+            }
+        }
+    }
+
+    fn free_numeric(&mut self) {
+        if !self.numeric.is_null() {
+            // SAFETY: made by `klu_l_factor`; KLU sets the pointer to null.
+            unsafe { c::klu_l_free_numeric(&mut self.numeric, &mut *self.common) };
+        }
+    }
+}
+
+impl Drop for Klu {
+    fn drop(&mut self) {
+        self.free_numeric();
+        if !self.symbolic.is_null() {
+            // SAFETY: made by `klu_l_analyze`, freed once.
+            unsafe { c::klu_l_free_symbolic(&mut self.symbolic, &mut *self.common) };
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! What can be asked of the integrator.
+
+/// Absolute tolerances, in the unit of the unknowns.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Absolute {
+    /// The same for all unknowns.
+    Same(f64),
+    /// One for each unknown.
+    Each(Vec<f64>),
+}
+
+/// Settings of [`super::Ida`]. Weights of the error norm are `1 / (relative |yᵢ| + absoluteᵢ)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IdaOptions {
+    /// Relative tolerance, > 0.
+    pub relative: f64,
+    /// Absolute tolerances, > 0.
+    pub absolute: Absolute,
+    /// Highest order of the backward differentiation formula, 1 to 5. From 3 on it is unstable for undamped waves.
+    pub max_order: u8,
+    /// Safety factor of Newton's convergence test; IDA's own is 0.33.
+    pub nonlinear_coefficient: f64,
+    /// Relative change of `c_j` that asks for a new Jacobian; IDA's own is 0.25.
+    pub delta_cj_setup: f64,
+    /// First step [s]; IDA's guess when absent.
+    pub initial_step: Option<f64>,
+    /// Largest step [s].
+    pub max_step: Option<f64>,
+    /// Newton failures allowed in one step; IDA's own is 10.
+    pub max_newton_failures: u16,
+    /// Newton iterations allowed in one solve; IDA's own is 4.
+    pub max_newton_iterations: u16,
+    /// Error-test failures allowed in one step; IDA's own is 10.
+    pub max_error_test_failures: u16,
+    /// Leaves algebraic unknowns out of the error test.
+    ///
+    /// Worth a try where algebraic unknowns are rates of differential ones (currents, reactions): their error is of one
+    /// order less and jumps with each change of step, which can keep IDA at order 1, every other attempt rejected.
+    pub suppress_algebraic: bool,
+}
+
+impl Default for IdaOptions {
+    fn default() -> Self {
+        Self {
+            relative: 1e-4,
+            absolute: Absolute::Same(1e-6),
+            max_order: 2,
+            nonlinear_coefficient: 0.33,
+            delta_cj_setup: 0.25,
+            initial_step: None,
+            max_step: None,
+            max_newton_failures: 10,
+            max_newton_iterations: 4,
+            max_error_test_failures: 10,
+            suppress_algebraic: false,
+        }
+    }
+}
+
+impl IdaOptions {
+    /// Checks the settings for a system of `n` unknowns; the error names the first that cannot be.
+    pub fn check(&self, n: usize) -> Result<(), String> {
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        if !positive(self.relative) {
+            return Err(format!(
+                "the relative tolerance must be positive, it is {}",
+                self.relative
+            ));
+        }
+        match &self.absolute {
+            Absolute::Same(value) if !positive(*value) => {
+                return Err(format!("the absolute tolerance must be positive, it is {value}"));
+            }
+            Absolute::Each(values) if values.len() != n => {
+                return Err(format!("{} absolute tolerances stand for {n} unknowns", values.len()));
+            }
+            Absolute::Each(values) => {
+                if let Some(i) = values.iter().position(|&value| !positive(value)) {
+                    return Err(format!(
+                        "the absolute tolerance of unknown {i} must be positive, it is {}",
+                        values[i]
+                    ));
+                }
+            }
+            Absolute::Same(_) => {}
+        }
+        if !(1..=5).contains(&self.max_order) {
+            return Err(format!("the highest order must be 1 to 5, it is {}", self.max_order));
+        }
+        if !positive(self.nonlinear_coefficient) {
+            return Err(format!(
+                "the coefficient of Newton's test must be positive, it is {}",
+                self.nonlinear_coefficient
+            ));
+        }
+        if !(0.0..1.0).contains(&self.delta_cj_setup) {
+            return Err(format!(
+                "the change of c_j for a new Jacobian must be in [0, 1), it is {}",
+                self.delta_cj_setup
+            ));
+        }
+        for (step, what) in [(self.initial_step, "first"), (self.max_step, "largest")] {
+            if let Some(value) = step.filter(|&value| !positive(value)) {
+                return Err(format!("the {what} step must be positive, it is {value}"));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,327 @@
+//! Consistent initial values by Newton's iteration.
+
+use std::fmt;
+
+use super::callbacks::not_finite;
+use super::kernels;
+use super::klu::{Klu, KluFault};
+use crate::dae::{Dae, Fault, Seeds};
+
+/// Settings of [`consistent_start`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct StartOptions {
+    /// Correction, relative to 1 + |unknown|, below which the values count as consistent.
+    pub tolerance: f64,
+    /// Newton steps allowed.
+    pub max_iterations: u16,
+    /// Smallest damping factor.
+    pub smallest_damping: f64,
+}
+
+impl Default for StartOptions {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-13,
+            max_iterations: 100,
+            smallest_damping: 1e-8,
+        }
+    }
+}
+
+/// How consistent values were found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Newton steps.
+    pub iterations: u16,
+    /// Residuals evaluated.
+    pub residual_evaluations: u64,
+    /// Last correction, largest relative to 1 + |unknown|.
+    pub correction: f64,
+    /// Largest residual left.
+    pub residual: f64,
+}
+
+/// Why no consistent values were found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StartFailure {
+    /// What happened.
+    pub what: String,
+    /// Unknown that is worst, by position and name.
+    pub worst: Option<(usize, String)>,
+    /// Newton steps done.
+    pub iterations: u16,
+}
+
+impl fmt::Display for StartFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "no consistent start: {}", self.what)?;
+        match &self.worst {
+            Some((_, name)) => write!(f, "; worst is {name}, after {} iterations", self.iterations),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for StartFailure {}
+
+/// Solves `F(t, y, y') = 0` for the algebraic unknowns and the derivatives of the differential ones.
+///
+/// Differential unknowns in `y` are kept, the other entries are first guesses; derivatives of algebraic unknowns are set
+/// to 0. Newton's iteration is damped by the natural monotonicity test (Deuflhard): a step is taken when the correction
+/// that would follow with the same matrix is smaller, which does not depend on how equations are scaled. It ends when
+/// corrections are below the tolerance, or small and no longer decreasing because round-off is reached.
+///
+/// On failure `y` and `yp` hold the last iterate. Panics when they have another length than `dae.len()`.
+pub fn consistent_start<D: Dae>(
+    dae: &mut D,
+    t: f64,
+    y: &mut [f64],
+    yp: &mut [f64],
+    options: &StartOptions,
+) -> Result<Start, StartFailure> {
+    Newton::new(dae, t, y, yp)?.solve(options)
+}
+
+/// Corrections this small that decrease no more are round-off.
+const ROUND_OFF: f64 = 1e-8;
+
+/// The iteration: unknowns z are y where algebraic, y' where differential.
+struct Newton<'a, D: Dae> {
+    dae: &'a mut D,
+    t: f64,
+    y: &'a mut [f64],
+    yp: &'a mut [f64],
+    differential: Vec<bool>,
+    y_seeds: Vec<f64>,
+    yp_seeds: Vec<f64>,
+    values: Vec<f64>,
+    klu: Klu,
+    residual: Vec<f64>,
+    residuals: u64,
+    iterations: u16,
+}
+
+impl<'a, D: Dae> Newton<'a, D> {
+    fn new(dae: &'a mut D, t: f64, y: &'a mut [f64], yp: &'a mut [f64]) -> Result<Self, StartFailure> {
+        let n = dae.len();
+        assert!(y.len() == n && yp.len() == n, "values of another system");
+        let differential = dae.differential().to_vec();
+        let seed = |kind: bool| differential.iter().map(|&d| f64::from(u8::from(d == kind))).collect();
+        let (y_seeds, yp_seeds) = (seed(false), seed(true));
+        let klu = Klu::new(dae.pattern()).map_err(|fault| singular(dae, fault, 0))?;
+        for (yp, _) in yp.iter_mut().zip(&differential).filter(|(_, d)| !**d) {
+            *yp = 0.0;
+        }
+        let (values, residual) = (vec![0.0; klu.entries()], vec![0.0; n]);
+        Ok(Self {
+            dae,
+            t,
+            y,
+            yp,
+            differential,
+            y_seeds,
+            yp_seeds,
+            values,
+            klu,
+            residual,
+            residuals: 0,
+            iterations: 0,
+        })
+    }
+
+    fn solve(mut self, options: &StartOptions) -> Result<Start, StartFailure> {
+        self.evaluate().map_err(|fault| self.give_up(text(fault), None))?;
+        let mut damping: f64 = 1.0;
+        let mut last = f64::INFINITY;
+        loop {
+            let correction = self.correction()?;
+            let size = self.size(&correction);
+            let worst = largest(&self.relative(&correction));
+            if size <= options.tolerance || (size <= ROUND_OFF && size > 0.5 * last) {
+                return self.finish(&correction, size);
+            }
+            if self.iterations == options.max_iterations {
+                return Err(self.give_up(format!("corrections of {size:.1e} are left"), worst));
+            }
+            last = size;
+            self.iterations += 1;
+            damping = self.damped_step(&correction, size, (4.0 * damping).min(1.0), options)?;
+        }
+    }
+
+    /// Goes the longest fraction of the correction that passes the monotonicity test; returns the fraction.
+    fn damped_step(
+        &mut self,
+        correction: &[f64],
+        size: f64,
+        first: f64,
+        options: &StartOptions,
+    ) -> Result<f64, StartFailure> {
+        let from = self.unknowns();
+        let mut damping = first;
+        let mut fault = None;
+        loop {
+            self.go(&from, correction, damping);
+            match self.evaluate() {
+                Ok(()) => {
+                    let mut next = self.residual.clone();
+                    let small = self.klu.solve(&mut next)
+                        && self.norm(&next, &from) <= (1.0 - 0.25 * damping) * self.norm(correction, &from);
+                    // near the end round-off decides the test, not the direction
+                    if small || size <= ROUND_OFF {
+                        return Ok(damping);
+                    }
+                }
+                Err(Fault::Fatal(what)) => return Err(self.give_up(what, None)),
+                Err(Fault::Recoverable(what)) => fault = Some(what),
+            }
+            damping *= 0.5;
+            if damping < options.smallest_damping {
+                let worst = largest(&self.relative(correction));
+                self.go(&from, correction, 0.0);
+                let what = fault.unwrap_or_else(|| "no step along Newton's direction comes closer".to_owned());
+                return Err(self.give_up(what, worst));
+            }
+        }
+    }
+
+    /// Takes the last correction too and reports.
+    fn finish(mut self, correction: &[f64], size: f64) -> Result<Start, StartFailure> {
+        let from = self.unknowns();
+        let before = kernels::max_abs(&self.residual);
+        self.go(&from, correction, 1.0);
+        self.evaluate().map_err(|fault| self.give_up(text(fault), None))?;
+        let mut after = kernels::max_abs(&self.residual);
+        if after > before {
+            self.go(&from, correction, 0.0);
+            after = before;
+        }
+        Ok(Start {
+            iterations: self.iterations,
+            residual_evaluations: self.residuals,
+            correction: size,
+            residual: after,
+        })
+    }
+
+    fn evaluate(&mut self) -> Result<(), Fault> {
+        self.residuals += 1;
+        self.dae.residual(self.t, self.y, self.yp, &mut self.residual)?;
+        match kernels::first_not_finite(&self.residual) {
+            None => Ok(()),
+            Some(i) => Err(Fault::Recoverable(format!(
+                "the equation of {} gives {}",
+                self.dae.name(i),
+                self.residual[i]
+            ))),
+        }
+    }
+
+    /// Newton's correction, to be subtracted: `J dz = F`.
+    fn correction(&mut self) -> Result<Vec<f64>, StartFailure> {
+        let seeds = Seeds::Columns {
+            y: &self.y_seeds,
+            yp: &self.yp_seeds,
+        };
+        if let Err(fault) = self.dae.jacobian(self.t, self.y, self.yp, seeds, &mut self.values) {
+            return Err(self.give_up(text(fault), None));
+        }
+        if let Some(entry) = kernels::first_not_finite(&self.values) {
+            return Err(self.give_up(not_finite(self.dae, entry, self.t), None));
+        }
+        self.klu
+            .factor(&self.values)
+            .map_err(|fault| singular(self.dae, fault, self.iterations))?;
+        let mut correction = self.residual.clone();
+        self.klu.solve(&mut correction);
+        match kernels::first_not_finite(&correction) {
+            None => Ok(correction),
+            Some(i) => Err(self.give_up("the matrix is singular to working precision".to_owned(), Some(i))),
+        }
+    }
+
+    /// The present z.
+    fn unknowns(&self) -> Vec<f64> {
+        let pick = |i: usize| if self.differential[i] { self.yp[i] } else { self.y[i] };
+        (0..self.differential.len()).map(pick).collect()
+    }
+
+    /// Sets z to `from - damping * correction`.
+    fn go(&mut self, from: &[f64], correction: &[f64], damping: f64) {
+        for i in 0..from.len() {
+            let z = if self.differential[i] {
+                &mut self.yp[i]
+            } else {
+                &mut self.y[i]
+            };
+            *z = from[i] - damping * correction[i];
+        }
+    }
+
+    /// A correction relative to 1 + |z|.
+    fn relative(&self, correction: &[f64]) -> Vec<f64> {
+        self.unknowns()
+            .iter()
+            .zip(correction)
+            .map(|(z, c)| c / (1.0 + z.abs()))
+            .collect()
+    }
+
+    /// Largest relative correction.
+    fn size(&self, correction: &[f64]) -> f64 {
+        kernels::max_abs(&self.relative(correction))
+    }
+
+    /// Root mean square of a correction, relative to 1 + |z| at `from`.
+    fn norm(&self, correction: &[f64], from: &[f64]) -> f64 {
+        let weights: Vec<f64> = from.iter().map(|z| 1.0 / (1.0 + z.abs())).collect();
+        (kernels::weighted_square(correction, &weights) / from.len() as f64).sqrt()
+    }
+
+    fn give_up(&self, what: String, worst: Option<usize>) -> StartFailure {
+        let worst = worst.map(|i| (i, self.name(i)));
+        StartFailure {
+            what,
+            worst,
+            iterations: self.iterations,
+        }
+    }
+
+    fn name(&self, i: usize) -> String {
+        let name = self.dae.name(i);
+        if self.differential[i] {
+            format!("the rate of {name}")
+        } else {
+            name
+        }
+    }
+}
+
+/// Position of the largest entry by absolute value.
+fn largest(x: &[f64]) -> Option<usize> {
+    x.iter()
+        .enumerate()
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+        .map(|(i, _)| i)
+}
+
+fn text(fault: Fault) -> String {
+    match fault {
+        Fault::Recoverable(what) | Fault::Fatal(what) => what,
+    }
+}
+
+fn singular<D: Dae>(dae: &D, fault: KluFault, iterations: u16) -> StartFailure {
+    match fault {
+        KluFault::Singular { column } => StartFailure {
+            what: "no equation is left to determine an unknown".to_owned(),
+            worst: Some((column, dae.name(column))),
+            iterations,
+        },
+        KluFault::Package { status } => StartFailure {
+            what: format!("KLU cannot go on (status {status})"),
+            worst: None,
+            iterations,
+        },
+    }
+}

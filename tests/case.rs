@@ -1,0 +1,223 @@
+//! The cases that ship, the schema, and what the command line puts into a case.
+
+use std::path::{Path, PathBuf};
+
+use slcbeam::case::schema::{Case, MaxOrder};
+use slcbeam::case::{self, LoadedCase, Rotation, Translation};
+use slcbeam::error::Error;
+
+fn shipped() -> Vec<PathBuf> {
+    let entries = std::fs::read_dir("cases")
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let json = entries.filter(|path| {
+        path.extension().is_some_and(|e| e == "json") && !path.ends_with("schema.json")
+    });
+    let mut paths: Vec<_> = json.collect();
+    paths.sort();
+    assert!(paths.len() >= 20);
+    paths
+}
+
+fn load(path: &Path, sets: &[&str]) -> LoadedCase {
+    let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+    match case::load(path, &sets) {
+        Ok(loaded) => loaded,
+        Err(Error::Case(fault)) => panic!("{}", case::render(&fault, false, 100)),
+        Err(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn every_shipped_case_is_valid_and_named_as_its_file() {
+    for path in shipped() {
+        let case = load(&path, &[]).case;
+        assert_eq!(
+            Some(case.name.as_str()),
+            path.file_stem().and_then(|stem| stem.to_str())
+        );
+        assert!(!case.about.is_empty());
+    }
+}
+
+#[test]
+fn every_shipped_case_fits_the_schema() {
+    let schema: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string("cases/schema.json").unwrap()).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    for path in shipped() {
+        let value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        if let Err(error) = validator.validate(&value) {
+            panic!("{}: {error} at {}", path.display(), error.instance_path());
+        }
+        let resolved = serde_json::from_str(&load(&path, &[]).case.resolved_json()).unwrap();
+        assert!(
+            validator.is_valid(&resolved),
+            "{} as resolved",
+            path.display()
+        );
+    }
+}
+
+/// Regenerate with `slcbeam schema > cases/schema.json`.
+#[test]
+fn the_committed_schema_is_the_generated_one() {
+    let committed = std::fs::read_to_string("cases/schema.json").unwrap();
+    assert_eq!(committed.trim_end(), format!("{:#}", case::schema_json()));
+}
+
+#[test]
+fn the_readme_of_the_cases_names_each() {
+    let readme = std::fs::read_to_string("cases/README.md").unwrap();
+    for path in shipped() {
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        assert!(
+            readme.contains(&format!("`{name}`")),
+            "{name} is not in cases/README.md"
+        );
+    }
+}
+
+#[test]
+fn a_resolved_case_reads_back_as_itself_and_needs_no_other_file() {
+    for path in shipped() {
+        let resolved = load(&path, &[]).case.resolved();
+        let text = resolved.resolved_json();
+        let again = case::parse(&text, Path::new("case.json"), Path::new("/nowhere"), &[]).unwrap();
+        assert_eq!(again.case, resolved);
+    }
+}
+
+#[test]
+fn defaults_are_filled_in() {
+    let case = load(Path::new("cases/two-bladders.json"), &[])
+        .case
+        .resolved();
+    assert_eq!(case.solver.max_order, MaxOrder::Auto);
+    assert_eq!(case.mesh.segments, Some(1));
+    assert_eq!(case.time.window_s, Some(2e-4));
+    let value: serde_json::Value = serde_json::from_str(&case.resolved_json()).unwrap();
+    for pointer in [
+        "/solver/rtol",
+        "/beam/damping/drag_n_s_m2",
+        "/network/permeability_factor",
+        "/effects",
+        "/loads",
+    ] {
+        assert!(value.pointer(pointer).is_some(), "{pointer}");
+    }
+}
+
+#[test]
+fn values_from_the_command_line_win() {
+    let path = Path::new("cases/valves-open.json");
+    let sets = [
+        "/solver/rtol=1e-7",
+        "/network/permeability_factor=0.5",
+        "/bladders/coupling=\"reciprocal\"",
+        "/network/chains/0/ends/1={\"pressure_pa\": 10}",
+        "/loads/-={\"gravity\": {\"x_m_s2\": 9.81}}",
+        "/time/window_s=null",
+    ];
+    let case = load(path, &sets).case;
+    assert_eq!(case.solver.rtol, 1e-7);
+    assert_eq!(case.network.unwrap().permeability_factor, 0.5);
+    assert_eq!(case.loads.len(), 1);
+    assert_eq!(case.time.window_s, None);
+}
+
+#[test]
+fn arguments_that_make_no_sense_are_usage_errors() {
+    let path = Path::new("cases/valves-open.json");
+    let arguments = [
+        ("/name", "expected POINTER=JSON"),
+        ("name=1", "starts with `/`"),
+        ("/name=foo", "'/name=\"foo\"'"),
+        ("/solver/rtol=NaN", "not a finite number"),
+        ("/ends/tip/free/force_x_n=1", "/ends/tip is \"free\""),
+        ("/network/chains/7/opening=1", "array of 1"),
+    ];
+    for (argument, wanted) in arguments {
+        let error = case::load(path, &[argument.to_owned()]).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{argument}");
+        assert!(error.to_string().contains(wanted), "{argument}: {error}");
+    }
+    assert_eq!(
+        case::load(Path::new("cases/no-such.json"), &[])
+            .unwrap_err()
+            .exit_code(),
+        2
+    );
+}
+
+#[test]
+fn names_of_ends_stand_for_their_conditions() {
+    let read = |json: &str| serde_json::from_str::<slcbeam::case::schema::End>(json).unwrap();
+    let free = read("\"free\"").resolve();
+    assert!(matches!(
+        (free.transverse, free.rotation, free.axial),
+        (
+            Translation::Force(_),
+            Rotation::Moment(_),
+            Translation::Force(_)
+        )
+    ));
+    let pinned = read("{\"pinned\": {\"moment_n_m\": 2}}").resolve();
+    assert!(matches!(pinned.transverse, Translation::Displacement(_)));
+    assert_eq!(
+        pinned.rotation,
+        Rotation::Moment(case::Signal::constant(2.0))
+    );
+    let guided = read("\"guided\"").resolve();
+    assert!(matches!(
+        (guided.transverse, guided.rotation, guided.axial),
+        (
+            Translation::Force(_),
+            Rotation::Slope(_),
+            Translation::Displacement(_)
+        )
+    ));
+    let sliding = read("{\"guided\": {\"force_z_n\": 1}}").resolve();
+    assert_eq!(
+        sliding.axial,
+        Translation::Force(case::Signal::constant(1.0))
+    );
+    let follower = read("{\"free\": {\"follower_shear_n\": 3}}")
+        .resolve()
+        .follower
+        .unwrap();
+    assert_eq!(
+        (follower.normal, follower.shear),
+        (case::Signal::constant(0.0), case::Signal::constant(3.0))
+    );
+    for text in ["\"free\"", "\"guided\"", "{\"clamped\":{\"u3_m\":1.0}}"] {
+        assert_eq!(serde_json::to_string(&read(text)).unwrap(), text);
+    }
+    assert!(
+        serde_json::from_str::<slcbeam::case::schema::End>("{\"clamped\": {\"force_x_n\": 1}}")
+            .is_err()
+    );
+}
+
+/// The paper's beam as `model.md` section 7 gives it, in every case of a figure.
+#[test]
+fn the_cases_of_the_figures_share_the_papers_beam() {
+    let of_figure = |case: &&Case| case.about.starts_with("Fig.");
+    let cases: Vec<Case> = shipped().iter().map(|path| load(path, &[]).case).collect();
+    assert_eq!(cases.iter().filter(of_figure).count(), 15);
+    for case in cases.iter().filter(of_figure) {
+        let beam = &case.beam;
+        assert_eq!(
+            (beam.length_m, beam.height_m, beam.width_m),
+            (0.1, 0.0216, 0.05)
+        );
+        assert_eq!(
+            (beam.axial_stiffness_factor, beam.bending_stiffness_factor),
+            (0.53, 0.60)
+        );
+        assert_eq!(
+            case.formulation,
+            slcbeam::case::schema::Formulation::Published
+        );
+    }
+}

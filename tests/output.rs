@@ -1,0 +1,559 @@
+//! A made-up run through the recorder: a standing wave in a beam with two networks of ten bladders.
+
+use std::f64::consts::PI;
+use std::fs;
+use std::path::Path;
+
+use slcbeam::output::{FolderRecorder, Labels, ResultFolder, folder, plot, summary};
+use slcbeam::run::record::{Axis, Column, Control, Field, Header, Progress, Recorder};
+use slcbeam::run::summary::{Quantity, Status, Summary};
+
+const FREQUENCY: f64 = 20.0;
+const LENGTH: f64 = 0.1;
+const COLUMNS: [(&str, &str); 13] = [
+    ("t", "s"),
+    ("tip_u1", "m"),
+    ("tip_u3", "m"),
+    ("max_pressure", "Pa"),
+    ("min_pressure", "Pa"),
+    ("kinetic_energy", "J"),
+    ("elastic_energy", "J"),
+    ("work_ends", "J"),
+    ("dissipated_bladders", "J"),
+    ("dissipated_tubes", "J"),
+    ("harvested", "J"),
+    ("energy_residual", "J"),
+    ("turbine_power", "W"),
+];
+
+fn header() -> Header {
+    let theta: Vec<f64> = (0..=40).map(|k| LENGTH * f64::from(k) / 40.0).collect();
+    // Two cells a bladder, tubes of 0.02 m between bladders of 0.046 m, none between the networks.
+    let (mut x, mut x_f, mut bladder) = (0.0, Vec::new(), Vec::new());
+    for row in [1.0, -1.0] {
+        for j in 1..=10 {
+            x_f.extend([x + 0.0115, x + 0.0345]);
+            bladder.extend([row * f64::from(j); 2]);
+            x += if j < 10 { 0.066 } else { 0.046 };
+        }
+    }
+    x_f.iter_mut().for_each(|v| *v /= x);
+    let axis = |name, unit, values| Axis {
+        name,
+        unit,
+        about: "",
+        values,
+    };
+    let field = |name, unit, axis, len| Field {
+        name,
+        unit,
+        axis,
+        about: "",
+        len,
+    };
+    Header {
+        columns: COLUMNS
+            .map(|(name, unit)| Column {
+                name: name.into(),
+                unit,
+                about: String::new(),
+            })
+            .to_vec(),
+        axes: vec![
+            axis("theta_node_m", "m", theta),
+            axis("x_f", "1", x_f),
+            axis("bladder", "1", bladder),
+        ],
+        fields: vec![
+            field("u1_m", "m", "theta_node_m", 41),
+            field("u3_m", "m", "theta_node_m", 41),
+            field("pressure_pa", "Pa", "x_f", 40),
+        ],
+    }
+}
+
+fn u1(theta: f64, t: f64) -> f64 {
+    let s = theta / LENGTH;
+    let second_mode =
+        (4.694 * s).cosh() - (4.694 * s).cos() - 1.0185 * ((4.694 * s).sinh() - (4.694 * s).sin());
+    1e-4 * second_mode * (2.0 * PI * FREQUENCY * t).sin() * (1.0 - (-8.0 * t).exp())
+}
+
+fn u3(theta: f64, t: f64) -> f64 {
+    let w = 2.0 * PI * FREQUENCY;
+    0.0012 * (w * t).sin() * (1.0 + 0.3 * (0.5 * PI * theta / LENGTH).sin() * (w * t).cos())
+}
+
+fn pressure(bladder: f64, x: f64, t: f64) -> f64 {
+    let w = 2.0 * PI * FREQUENCY;
+    if bladder > 0.0 {
+        9.0e3 * (w * t).sin() * (1.0 + 0.15 * (2.0 * PI * x).cos())
+    } else {
+        3.0e3 * (w * t).sin() * (2.0 * PI * (x - 0.5)).sin().abs()
+    }
+}
+
+/// One row of the history and one instant of the fields.
+fn sample(recorder: &mut dyn Recorder, header: &Header, t: f64, scale: f64) {
+    let w = 2.0 * PI * FREQUENCY;
+    let (s2, c2) = ((w * t).sin().powi(2), (w * t).cos().powi(2));
+    let row = [
+        t,
+        scale * u1(LENGTH, t),
+        scale * u3(LENGTH, t),
+        9e3 * s2,
+        -7e3 * c2,
+        2e-3 * c2,
+        1.7e-3 * s2 + 1e-4,
+        2.1e-3 + 0.02 * t,
+        0.011 * t,
+        0.005 * t,
+        0.004 * t,
+        3e-10 * (5.0 * t).sin() + 2e-10 * t,
+        0.008 * s2,
+    ];
+    recorder.history(&row).expect("a row is written");
+    let along = |f: fn(f64, f64) -> f64| {
+        header.axes[0]
+            .values
+            .iter()
+            .map(|&x| scale * f(x, t))
+            .collect::<Vec<f64>>()
+    };
+    let cells = header.axes[1].values.iter().zip(&header.axes[2].values);
+    let p: Vec<f64> = cells.map(|(&x, &b)| pressure(b, x, t)).collect();
+    recorder
+        .fields(t, &[&along(u1), &along(u3), &p])
+        .expect("fields are written");
+}
+
+fn recorder(dir: &Path) -> FolderRecorder {
+    let labels = Labels {
+        case_name: "wiring-3 <&>".to_string(),
+        case_json: "{\"name\": \"wiring-3\"}\n".to_string(),
+        frequency_hz: Some(FREQUENCY),
+    };
+    let folder = ResultFolder::create(dir).expect("a folder");
+    FolderRecorder::new(folder, labels, Box::new(|_| Control::Continue))
+}
+
+fn summary_of(status: Status) -> Summary {
+    Summary {
+        case: "wiring-3".to_string(),
+        status,
+        reason: None,
+        time_s: 0.5,
+        unknowns: 371,
+        quantities: [(
+            "tip_u1_m".to_string(),
+            Quantity {
+                last: Some(1e-4),
+                max_abs: Some(f64::NAN),
+                ..Quantity::default()
+            },
+        )]
+        .into(),
+        balances: Default::default(),
+        solver: Default::default(),
+        wall_s: Default::default(),
+        effects: Default::default(),
+        characteristic: [
+            ("f_u".to_string(), f64::INFINITY),
+            ("t_s_s".to_string(), 0.0457),
+        ]
+        .into(),
+        warnings: Vec::new(),
+    }
+}
+
+/// Records `count` instants, a thousand to half a second.
+fn record(dir: &Path, count: u32, scale: f64) -> FolderRecorder {
+    let header = header();
+    let mut recorder = recorder(dir);
+    recorder.begin(&header).expect("it begins");
+    for k in 0..count {
+        sample(&mut recorder, &header, 0.5 * f64::from(k) / 1000.0, scale);
+    }
+    recorder
+}
+
+fn read(dir: &Path, name: &str) -> String {
+    fs::read_to_string(dir.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+/// Tags close in the order in which they opened, attributes are quoted, and no bare `&` or `<` is left.
+fn is_well_formed(xml: &str) -> bool {
+    let mut open = Vec::new();
+    for piece in xml.split('<').skip(1) {
+        let Some((tag, text)) = piece.split_once('>') else {
+            return false;
+        };
+        let bare = text.split('&').skip(1).any(|rest| {
+            !["amp;", "lt;", "gt;", "quot;", "apos;"]
+                .iter()
+                .any(|e| rest.starts_with(e))
+        });
+        if bare || tag.matches('"').count() % 2 != 0 {
+            return false;
+        }
+        match tag.strip_prefix('/') {
+            Some(name) => {
+                if open.pop() != Some(name) {
+                    return false;
+                }
+            }
+            None if tag.ends_with('/') => {}
+            None => open.push(tag.split_whitespace().next().unwrap_or_default()),
+        }
+    }
+    open.is_empty()
+}
+
+#[test]
+fn a_run_makes_all_files_of_a_result() {
+    let dir = tempfile::tempdir().expect("a place");
+    let out = dir.path().join("out/wiring-3");
+    let files = record(&out, 1001, 1.0)
+        .finish(&summary_of(Status::Finished))
+        .expect("it finishes");
+    let mut names: Vec<_> = fs::read_dir(&out)
+        .expect("a folder")
+        .map(|e| e.expect("a file").file_name())
+        .collect();
+    names.sort();
+    let expected = [
+        "case.json",
+        "deflection.svg",
+        "energy.svg",
+        "fields.npz",
+        "history.csv",
+        "history.svg",
+        "pressure.svg",
+        "summary.json",
+    ];
+    assert_eq!(names, expected, "no temporary files are left");
+    assert_eq!(files.len(), expected.len());
+}
+
+#[test]
+fn the_history_reads_back_exactly() {
+    let dir = tempfile::tempdir().expect("a place");
+    record(dir.path(), 101, 1.0)
+        .finish(&summary_of(Status::Finished))
+        .expect("it finishes");
+    let mut reader = csv::Reader::from_path(dir.path().join("history.csv")).expect("a table");
+    assert_eq!(
+        reader
+            .headers()
+            .expect("names")
+            .iter()
+            .take(2)
+            .collect::<Vec<_>>(),
+        ["t [s]", "tip_u1 [m]"]
+    );
+    let rows: Vec<Vec<f64>> = reader
+        .deserialize()
+        .collect::<Result<_, _>>()
+        .expect("numbers");
+    assert_eq!(rows.len(), 101);
+    for row in &rows {
+        // Shortest round trip: not one bit is lost.
+        assert_eq!(row[1].to_bits(), u1(LENGTH, row[0]).to_bits());
+    }
+}
+
+#[test]
+fn the_arrays_read_back_exactly() {
+    let dir = tempfile::tempdir().expect("a place");
+    record(dir.path(), 57, 1.0)
+        .finish(&summary_of(Status::Finished))
+        .expect("it finishes");
+    let mut npz = npyz::npz::NpzArchive::open(dir.path().join("fields.npz")).expect("an archive");
+    let mut get = |name: &str| {
+        let array = npz
+            .by_name(name)
+            .expect("readable")
+            .unwrap_or_else(|| panic!("no {name}"));
+        (
+            array.shape().to_vec(),
+            array.into_vec::<f64>().expect("doubles"),
+        )
+    };
+    let (shape, times) = get("t_fields_s");
+    assert_eq!((shape, times.len()), (vec![57], 57));
+    let (_, theta) = get("theta_node_m");
+    assert_eq!(theta, header().axes[0].values);
+    assert_eq!(get("bladder").1, header().axes[2].values);
+    let (shape, values) = get("u1_m");
+    assert_eq!(shape, [57, 41]);
+    assert_eq!(
+        values[41 * 50 + 40].to_bits(),
+        u1(LENGTH, times[50]).to_bits()
+    );
+    assert_eq!(get("pressure_pa").0, [57, 40]);
+}
+
+#[test]
+fn numbers_that_are_not_finite_stay_out_of_json() {
+    let dir = tempfile::tempdir().expect("a place");
+    let mut failed = summary_of(Status::Failed);
+    failed.balances.energy_residual_relative = f64::NAN;
+    record(dir.path(), 3, 1.0)
+        .finish(&failed)
+        .expect("it finishes");
+    let text = read(dir.path(), "summary.json");
+    assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert!(value["balances"]["energy_residual_relative"].is_null());
+    assert!(value["characteristic"].get("f_u").is_none());
+    assert_eq!(
+        value["quantities"]["tip_u1_m"],
+        serde_json::json!({"final": 1e-4})
+    );
+    let back = summary::read(dir.path()).expect("it reads back");
+    assert!(back.balances.energy_residual_relative.is_nan());
+    assert_eq!(back.status, Status::Failed);
+}
+
+#[test]
+fn an_interrupted_run_stays_readable() {
+    let dir = tempfile::tempdir().expect("a place");
+    drop(record(dir.path(), 40, 1.0));
+    let rows = csv::Reader::from_path(dir.path().join("history.csv"))
+        .expect("a table")
+        .into_records()
+        .count();
+    assert_eq!(rows, 40);
+    let times = fs::read(dir.path().join("fields.part/t_fields_s.f64")).expect("raw times");
+    let u1 = fs::read(dir.path().join("fields.part/u1_m.f64")).expect("a raw field");
+    assert_eq!((times.len(), u1.len()), (40 * 8, 40 * 41 * 8));
+    assert!(!dir.path().join("summary.json").exists());
+    // And the next run takes the folder over.
+    record(dir.path(), 5, 1.0)
+        .finish(&summary_of(Status::Finished))
+        .expect("it finishes");
+    assert!(!dir.path().join("fields.part").exists());
+}
+
+#[test]
+fn a_run_without_a_single_instant_finishes_too() {
+    let dir = tempfile::tempdir().expect("a place");
+    record(dir.path(), 0, 1.0)
+        .finish(&summary_of(Status::Failed))
+        .expect("it finishes");
+    assert!(dir.path().join("fields.npz").exists());
+    assert!(!dir.path().join("deflection.svg").exists());
+    assert_eq!(
+        summary::read(dir.path()).expect("a summary").status,
+        Status::Failed
+    );
+}
+
+#[test]
+fn a_run_that_does_not_begin_leaves_an_older_result_alone() {
+    let dir = tempfile::tempdir().expect("a place");
+    record(dir.path(), 20, 1.0)
+        .finish(&summary_of(Status::Finished))
+        .expect("it finishes");
+    let (history, text) = (
+        read(dir.path(), "history.csv"),
+        read(dir.path(), "summary.json"),
+    );
+    recorder(dir.path())
+        .finish(&summary_of(Status::Failed))
+        .expect("it finishes");
+    assert_eq!(
+        (history, text),
+        (
+            read(dir.path(), "history.csv"),
+            read(dir.path(), "summary.json")
+        )
+    );
+    // In a new folder the failure is on record.
+    let new = dir.path().join("new");
+    recorder(&new)
+        .finish(&summary_of(Status::Failed))
+        .expect("it finishes");
+    assert_eq!(
+        summary::read(&new).expect("a summary").status,
+        Status::Failed
+    );
+}
+
+#[test]
+fn folders_with_other_files_are_refused() {
+    let dir = tempfile::tempdir().expect("a place");
+    fs::write(dir.path().join("case.json"), "{\"name\": \"mine\"}").expect("a file");
+    let refused = ResultFolder::create(dir.path()).expect_err("not a result");
+    assert_eq!(refused.exit_code(), 5);
+    assert!(refused.to_string().contains("--out"), "{refused}");
+    assert_eq!(read(dir.path(), "case.json"), "{\"name\": \"mine\"}");
+    // Nor does a file make a folder.
+    assert!(ResultFolder::create(&dir.path().join("case.json")).is_err());
+}
+
+#[test]
+fn a_new_result_replaces_an_older_one_and_nothing_else() {
+    let dir = tempfile::tempdir().expect("a place");
+    record(dir.path(), 20, 1.0)
+        .finish(&summary_of(Status::Finished))
+        .expect("it finishes");
+    fs::write(dir.path().join("checkpoint.bin"), "kept").expect("a file");
+    fs::write(dir.path().join(folder::REPORT), "stale").expect("a file");
+    record(dir.path(), 10, 1.0)
+        .finish(&summary_of(Status::Finished))
+        .expect("it finishes");
+    assert_eq!(read(dir.path(), "checkpoint.bin"), "kept");
+    assert!(!dir.path().join(folder::REPORT).exists());
+    assert_eq!(read(dir.path(), "history.csv").lines().count(), 11);
+}
+
+#[test]
+fn the_hook_decides_whether_to_go_on() {
+    let dir = tempfile::tempdir().expect("a place");
+    let folder = ResultFolder::create(dir.path()).expect("a folder");
+    let labels = Labels {
+        case_name: "x".into(),
+        case_json: "{}".into(),
+        frequency_hz: None,
+    };
+    let stop = Control::Stop("enough".into());
+    let answer = stop.clone();
+    let mut recorder = FolderRecorder::new(folder, labels, Box::new(move |_| answer.clone()));
+    let progress = Progress {
+        t: 0.1,
+        end: 0.5,
+        steps: 3,
+        step: 1e-3,
+        order: 2,
+    };
+    assert_eq!(recorder.progress(&progress).expect("an answer"), stop);
+}
+
+#[test]
+fn pictures_are_well_formed_and_labelled() {
+    let dir = tempfile::tempdir().expect("a place");
+    // Large displacements, so that the shape is drawn too.
+    record(dir.path(), 1001, 60.0)
+        .finish(&summary_of(Status::Finished))
+        .expect("it finishes");
+    let labels: [(&str, &[&str]); 4] = [
+        (
+            "deflection.svg",
+            &[
+                "transverse u₁ [mm]",
+                "axial u₃ [mm]",
+                "shape: z = θ + u₃ [mm]",
+                "last cycle",
+                "t [ms]",
+            ],
+        ),
+        (
+            "pressure.svg",
+            &["pressure p [kPa]", "[1]", "[10]", "[−1]", "[−10]", "t [ms]"],
+        ),
+        (
+            "history.svg",
+            &[
+                "tip u₁ [mm]",
+                "tip u₃ [mm]",
+                "max, min p [kPa]",
+                "turbine power [mW]",
+                "time t [ms]",
+            ],
+        ),
+        (
+            "energy.svg",
+            &[
+                "energy [mJ]",
+                "kinetic energy",
+                "work of ends",
+                "lost in tubes",
+                "harvested",
+                "residual [10⁻⁹]",
+            ],
+        ),
+    ];
+    for (name, expected) in labels {
+        let svg = read(dir.path(), name);
+        assert!(is_well_formed(&svg), "{name}");
+        assert!(
+            svg.contains("wiring-3 &lt;&amp;&gt;"),
+            "{name} names its case"
+        );
+        for label in expected {
+            assert!(
+                svg.contains(&format!("\n{label}")) || svg.contains(label),
+                "{name} lacks {label}"
+            );
+        }
+        assert!(!svg.contains("NaN"), "{name}");
+    }
+}
+
+#[test]
+fn pressure_curves_break_between_networks() {
+    let x_f: Vec<f64> = header().axes[1].values.clone();
+    let data = plot::Pressure {
+        case: "two".into(),
+        span: plot::Span::WholeRun,
+        times: vec![0.0, 1.0],
+        bladder: header().axes[2].values.iter().map(|&b| b as i64).collect(),
+        network: Vec::new(),
+        pressure: vec![x_f.clone(), vec![0.5; x_f.len()]],
+        x_f,
+    };
+    let lines = |svg: &str, colour: &str| svg.matches(&format!("stroke=\"{colour}\"")).count();
+    let guessed = plot::pressure::draw(&data).expect("a picture");
+    // Dark blue and dark red: a piece for each of the two networks.
+    assert_eq!(
+        (lines(&guessed, "#0B246B"), lines(&guessed, "#6E081B")),
+        (2, 2)
+    );
+    let told = plot::Pressure {
+        network: vec![7; data.x_f.len()],
+        ..data
+    };
+    assert_eq!(
+        lines(&plot::pressure::draw(&told).expect("a picture"), "#0B246B"),
+        1
+    );
+}
+
+#[test]
+fn absent_data_make_no_picture() {
+    assert_eq!(plot::history::draw(&plot::History::default()), None);
+    assert_eq!(plot::energy::draw(&plot::Energy::default()), None);
+    let dry = Header {
+        columns: vec![Column {
+            name: "t".into(),
+            unit: "s",
+            about: String::new(),
+        }],
+        ..Header::default()
+    };
+    let dir = tempfile::tempdir().expect("a place");
+    let mut recorder = recorder(dir.path());
+    recorder.begin(&dry).expect("it begins");
+    recorder.history(&[0.0]).expect("a row");
+    recorder
+        .finish(&summary_of(Status::Finished))
+        .expect("it finishes");
+    for name in folder::PICTURES {
+        assert!(!dir.path().join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn instants_cover_the_last_cycle_or_everything() {
+    let times: Vec<f64> = (0..=1000).map(|k| 5e-4 * f64::from(k)).collect();
+    let (span, cycle) = plot::instants(&times, Some(20.0), 24);
+    assert_eq!((span, cycle.len()), (plot::Span::LastCycle, 24));
+    assert_eq!((cycle[0], cycle[23]), (900, 1000));
+    let (span, all) = plot::instants(&times, None, 24);
+    assert_eq!((span, all[0], all[23]), (plot::Span::WholeRun, 0, 1000));
+    let (span, _) = plot::instants(&times, Some(0.5), 24);
+    assert_eq!(span, plot::Span::WholeRun, "less than a cycle was run");
+    assert_eq!(plot::instants(&times[..3], None, 24).1, [0, 1, 2]);
+    assert!(plot::instants(&[], None, 24).1.is_empty());
+}
