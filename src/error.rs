@@ -105,7 +105,7 @@ pub enum Error {
 
 impl Error {
     /// Exit code of the process.
-    pub fn exit_code(&self) -> i32 {
+    pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) => 2,
             Self::Case(_) => 3,

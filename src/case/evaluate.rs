@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::curve::Interpolation;
-use super::signals::{Clock, Jet, Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine, Table};
+use super::signals::{Clock, Jet, Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine};
 
 impl Signal {
     /// Value with first and second derivative; does not allocate.
@@ -180,12 +180,5 @@ impl Polynomial {
                 rate: p.rate * x + p.value,
                 acceleration: p.acceleration * x + 2.0 * p.rate,
             })
-    }
-}
-
-impl Table {
-    /// Whether the points make a curve.
-    pub fn is_sound(&self) -> bool {
-        self.curve != super::curve::Curve::default()
     }
 }

@@ -23,6 +23,7 @@ mod sets;
 pub mod signals;
 mod tables;
 mod validate;
+mod wording;
 
 pub use curve::{Curve, Interpolation};
 pub use ends::{Follower, ResolvedEnd, Rotation, Translation};

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use super::locate::{Kind, Member, Node, child};
+use super::wording::short;
 use crate::error::Violation;
 
 /// Deepest nesting that is read; a case needs about ten.
@@ -343,16 +344,5 @@ impl Parser<'_> {
             .iter()
             .filter(|b| **b == b'\n')
             .count()
-    }
-}
-
-/// At most 40 characters of what the user wrote.
-pub fn short(text: &str) -> String {
-    let mut chars = text.chars();
-    let start: String = chars.by_ref().take(40).collect();
-    if chars.next().is_some() {
-        start + "..."
-    } else {
-        start
     }
 }

@@ -4,7 +4,8 @@ use serde_json::{Map, Value};
 
 use super::faults::SetValue;
 use super::locate::{child, tokens};
-use super::parse::{parse, short};
+use super::parse::parse;
+use super::wording::short;
 use crate::error::{Error, Result};
 
 /// Puts the arguments into `value`, in order; `null` removes a member.

@@ -199,6 +199,11 @@ impl Table {
             curve,
         }
     }
+
+    /// Whether the points make a curve.
+    pub fn is_sound(&self) -> bool {
+        self.curve != Curve::default()
+    }
 }
 
 number_or_object!(Signal, NamedSignal, "a number or a named signal such as {\"sine\": {...}}", {

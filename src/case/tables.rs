@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use super::faults::Faults;
 use super::locate::child;
-use super::validate::nearest;
+use super::wording::nearest;
 use crate::error::Violation;
 
 /// Replaces `csv` and its columns by `times_s` and `values` in every table below `value`.

@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 use super::faults::Faults;
 use super::locate::child;
 use super::numbers;
-use super::parse::short;
+use super::wording::{found, found_text, nearest, quoted, short};
 use crate::error::Violation;
 
 /// Compares a value with a schema.
@@ -317,39 +317,4 @@ fn kinds(branches: &[&Value]) -> String {
         kinds.push(format!("an object with one of {}", quoted(&tags)));
     }
     kinds.join(" or ")
-}
-
-fn found(value: &Value) -> String {
-    match value {
-        Value::Null => "null".to_owned(),
-        Value::Bool(b) => b.to_string(),
-        Value::Number(n) => format!("the number {n}"),
-        Value::String(s) => found_text(s),
-        Value::Array(_) => "an array".to_owned(),
-        Value::Object(_) => "an object".to_owned(),
-    }
-}
-
-fn found_text(text: &str) -> String {
-    format!("the text \"{}\"", short(text))
-}
-
-fn quoted(names: &[&str]) -> String {
-    names
-        .iter()
-        .map(|name| format!("\"{name}\""))
-        .collect::<Vec<_>>()
-        .join(", ")
-}
-
-/// The most similar name, if similar enough to be what was meant.
-pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
-    if name.len() > 100 {
-        return None;
-    }
-    let similarity = |known: &str| strsim::jaro_winkler(&name.to_lowercase(), known);
-    let best = names
-        .map(|known| (similarity(known), known))
-        .max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best.0 > 0.8).then(|| best.1.to_owned())
 }

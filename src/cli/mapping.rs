@@ -6,7 +6,7 @@ use super::arguments::{MappingArguments, Table};
 use crate::case;
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::output::numbers::significant;
+use crate::output::numbers::{significant, trimmed};
 use crate::run::observe::network_coordinate;
 
 /// Prints one or both tables as CSV, six significant digits.
@@ -20,7 +20,7 @@ pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
     let table = |heading: &str, rows: Vec<(f64, f64, i64)>| {
         let mut text = format!("{heading}\n");
         for (a, b, bladder) in rows {
-            text += &format!("{},{},{bladder}\n", significant(a, 6), significant(b, 6));
+            text += &format!("{},{},{bladder}\n", trimmed(&significant(a, 6)), trimmed(&significant(b, 6)));
         }
         text
     };

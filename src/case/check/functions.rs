@@ -2,10 +2,14 @@
 
 use crate::case::faults::Faults;
 use crate::case::locate::child;
+use crate::case::numbers::plain;
 use crate::case::profile::Profile;
 use crate::case::schema::{Case, ChainEnd};
 use crate::case::signals::{Clock, Signal};
 use crate::error::Violation;
+
+/// Beyond this a beam does not move [Hz].
+const HIGHEST_FREQUENCY: f64 = 1e6;
 
 /// What a signal is used for.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -18,7 +22,7 @@ enum Role {
 pub(super) fn check(case: &Case, faults: &mut Faults) {
     for (pointer, role, signal) in signals(case) {
         let known = faults.count();
-        signal_tables(&pointer, signal, faults);
+        signal_parts(&pointer, signal, faults);
         if faults.count() == known {
             values(&pointer, role, signal, case.time.end_s, faults);
         }
@@ -136,8 +140,16 @@ fn profiles(case: &Case) -> Vec<(String, &Profile)> {
     all
 }
 
-fn signal_tables(pointer: &str, signal: &Signal, faults: &mut Faults) {
+fn signal_parts(pointer: &str, signal: &Signal, faults: &mut Faults) {
     match signal {
+        Signal::Sine(sine) if sine.frequency_hz > HIGHEST_FREQUENCY => {
+            let what = format!(
+                "{} Hz is not a plausible frequency",
+                plain(sine.frequency_hz)
+            );
+            let fault = Violation::new(format!("{pointer}/sine/frequency_hz"), what);
+            faults.push(fault.allowed(format!("up to {} Hz", plain(HIGHEST_FREQUENCY))));
+        }
         Signal::Table(table) if !table.is_sound() => {
             table_fault(
                 &child(pointer, "table"),
@@ -154,7 +166,7 @@ fn signal_tables(pointer: &str, signal: &Signal, faults: &mut Faults) {
                 "product"
             };
             for (i, part) in parts.iter().enumerate() {
-                signal_tables(&format!("{pointer}/{name}/{i}"), part, faults);
+                signal_parts(&format!("{pointer}/{name}/{i}"), part, faults);
             }
         }
         _ => {}
@@ -207,7 +219,9 @@ fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mu
 /// Looks at a signal over the run: both ends of every smooth interval and many instants inside.
 fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Faults) {
     let mut last: Option<f64> = None;
-    for (start, stop) in signal.smooth_intervals(end) {
+    let intervals = signal.smooth_intervals(end);
+    let most = MOST_INSTANTS / intervals.len() as f64;
+    for (start, stop) in intervals {
         let within = 0.5 * (start + stop);
         let at = |t: f64| signal.jet(Clock { t, within });
         let first = at(start).value;
@@ -224,7 +238,7 @@ fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Fau
             }
         }
         last = Some(at(stop).value);
-        for t in instants(signal, start, stop) {
+        for t in instants(signal, start, stop, most) {
             let jet = at(t);
             if !(jet.value.is_finite() && jet.rate.is_finite() && jet.acceleration.is_finite()) {
                 faults.push(Violation::new(
@@ -242,15 +256,19 @@ fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Fau
     }
 }
 
+/// Instants at which one signal is looked at, at most.
+const MOST_INSTANTS: f64 = 2e5;
+
 /// Instants close enough to see every extremum of the signal nearly.
-fn instants(signal: &Signal, start: f64, stop: f64) -> impl Iterator<Item = f64> {
+fn instants(signal: &Signal, start: f64, stop: f64, most: f64) -> impl Iterator<Item = f64> {
     let periods = signal
         .fastest_period_s()
         .map_or(0.0, |period| (stop - start) / period);
-    let count = if signal.is_constant() {
-        1
+    let wanted = if signal.is_constant() {
+        1.0
     } else {
-        (40.0 * periods).clamp(64.0, 1e5) as usize
+        (40.0 * periods).max(64.0)
     };
+    let count = wanted.min(most).max(2.0) as usize;
     (0..=count).map(move |i| start + (stop - start) * i as f64 / count as f64)
 }

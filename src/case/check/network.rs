@@ -6,7 +6,7 @@ use super::bladders::two_permeabilities;
 use super::junctions;
 use crate::case::faults::Faults;
 use crate::case::schema::{BladderEnd, Case, ChainEnd, Endpoint, Network};
-use crate::case::validate::nearest;
+use crate::case::wording::nearest;
 use crate::error::Violation;
 
 /// A point of the network.

@@ -79,9 +79,10 @@ impl Case {
             })
     }
 
-    /// The case with every default filled in.
+    /// The case with every default filled in; without the editor's schema, which is not where results are.
     pub fn resolved(&self) -> Self {
         let mut case = self.clone();
+        case.schema = None;
         case.time.output_interval_s = Some(self.time.output_interval());
         case.time.fields_interval_s = Some(self.time.fields_interval());
         case.time.window_s = Some(self.time.window());
