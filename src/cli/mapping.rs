@@ -6,7 +6,6 @@ use super::arguments::{MappingArguments, Table};
 use crate::case;
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::output::numbers::{significant, trimmed};
 use crate::run::observe::network_coordinate;
 
 /// Prints one or both tables as CSV, six significant digits.
@@ -20,7 +19,7 @@ pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
     let table = |heading: &str, rows: Vec<(f64, f64, i64)>| {
         let mut text = format!("{heading}\n");
         for (a, b, bladder) in rows {
-            text += &format!("{},{},{bladder}\n", trimmed(&significant(a, 6)), trimmed(&significant(b, 6)));
+            text += &format!("{},{},{bladder}\n", six_digits(a), six_digits(b));
         }
         text
     };
@@ -32,4 +31,9 @@ pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
         None => format!("{}\n{}", theta(), xf()),
     })?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Six significant digits without trailing zeros, as the tables print them.
+fn six_digits(value: f64) -> String {
+    format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string()
 }

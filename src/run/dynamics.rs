@@ -303,6 +303,7 @@ impl Run<'_> {
         let b = &mut s.balances;
         b.energy_residual_relative = o.residuals.energy_relative();
         b.volume_residual_relative = o.residuals.volume_relative();
+        b.closed_volume_residual_relative = o.residuals.closed_volume_relative();
         b.momentum_residual_relative = o.residuals.momentum_relative();
         b.angular_momentum_residual_relative = o.residuals.angular_relative();
         let names = [

@@ -38,8 +38,11 @@ pub struct Quantity {
 pub struct Balances {
     /// Largest residual of the energy balance over the largest energy seen.
     pub energy_residual_relative: f64,
-    /// Largest residual of any network's volume balance over its largest volume change or a reference volume.
+    /// Largest residual of any network's volume balance over the largest volume displaced in it.
     pub volume_residual_relative: f64,
+    /// The same for networks without ports alone: these close to round-off at any tolerance.
+    #[serde(default)]
+    pub closed_volume_residual_relative: f64,
     /// Largest residual of the momentum balance over the largest momentum or impulse seen.
     pub momentum_residual_relative: f64,
     /// Largest residual of the angular momentum balance, likewise.
