@@ -18,7 +18,14 @@ pub(super) static CASE: LazyLock<Value> = LazyLock::new(|| {
     let settings = SchemaSettings::draft2020_12();
     let mut schema = settings.into_generator().into_root_schema_for::<Case>();
     RecursiveTransform(tidy).transform(&mut schema);
-    schema.to_value()
+    let mut rest = std::mem::take(schema.ensure_object());
+    let head = ["$schema", "title", "description"];
+    let mut ordered: serde_json::Map<_, _> = head
+        .into_iter()
+        .filter_map(|key| rest.shift_remove_entry(key))
+        .collect();
+    ordered.extend(rest);
+    Value::Object(ordered)
 });
 
 /// What serde would take but a case does not: `null` for an absent key. And formats, which only repeat Rust's types.

@@ -45,6 +45,12 @@ pub struct RunArguments {
     /// Result folder [default: out/<case name>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Go on from the last checkpoint in the result folder (needs /time/checkpoint_interval_s in the case)
+    #[arg(long)]
+    pub resume: bool,
+    /// Stop after so many seconds of wall time, with everything so far written
+    #[arg(long, value_name = "SECONDS")]
+    pub max_wall: Option<f64>,
     /// No progress bar
     #[arg(long)]
     pub quiet: bool,

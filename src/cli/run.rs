@@ -2,13 +2,15 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
 use super::arguments::RunArguments;
 use super::progress::Watcher;
 use super::{interrupt, summary_box, terminal};
 use crate::case;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::characteristic;
+use crate::output::checkpoint;
 use crate::output::folder::ResultFolder;
 use crate::output::recorder::{FolderRecorder, Hook, Labels};
 use crate::output::summary;
@@ -23,10 +25,13 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
     let folder = ResultFolder::create(&out)?;
     let interrupted = interrupt::flag();
     let mut watcher = Watcher::new(asked.quiet);
+    let deadline = asked.max_wall.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds.clamp(0.0, 1e9)));
     let hook: Hook = Box::new(move |progress| {
         watcher.step(progress);
         if interrupt::raised(&interrupted) {
             Control::Stop(format!("interrupted at t = {:.6} s", progress.t))
+        } else if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+            Control::Stop(format!("the wall time allowed is used up at t = {:.6} s", progress.t))
         } else {
             Control::Continue
         }
@@ -36,8 +41,18 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
         case_json: case.resolved_json(),
         frequency_hz: characteristic::forcing_period(case).map(|p| 1.0 / p),
     };
-    let mut recorder = FolderRecorder::new(folder, labels, hook);
-    let outcome = dynamics::run(case, &mut recorder)?;
+    let (recorder, outcome) = if asked.resume {
+        let saved = checkpoint::read(&out)?.ok_or_else(|| {
+            Error::Usage(format!("{} holds no checkpoint to resume from", out.display()))
+        })?;
+        let mut recorder = FolderRecorder::resume(folder, labels, hook, &saved, &dynamics::header(case))?;
+        let outcome = dynamics::resume(case, &saved.run, &mut recorder)?;
+        (recorder, outcome)
+    } else {
+        let mut recorder = FolderRecorder::new(folder, labels, hook);
+        let outcome = dynamics::run(case, &mut recorder)?;
+        (recorder, outcome)
+    };
     recorder.finish(&outcome.summary)?;
     if asked.json {
         super::print(&summary::to_json(&outcome.summary))?;

@@ -3,6 +3,8 @@
 mod fluid;
 mod solid;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Instant, System, Workspace, recipe};
 
 /// Rates that are integrated along the run, and what they add up to.
@@ -65,7 +67,7 @@ impl Flow {
 }
 
 /// Stored energies [J].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
     /// `Σ h_i m |v_i|²/2`.
     pub kinetic: f64,
@@ -87,7 +89,7 @@ impl Energies {
 }
 
 /// Momentum, angular momentum and stored volumes: what else is conserved.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Invariants {
     /// `Σ h_i m v` in x and z [kg m/s].
     pub momentum: [f64; 2],

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use npyz::WriterBuilder;
 use npyz::npz::NpzWriter;
-use npyz::zip::CompressionMethod;
+use npyz::zip::{CompressionMethod, DateTime};
 use npyz::zip::write::FileOptions;
 
 use super::folder::{fault, part_of};
@@ -47,6 +47,29 @@ impl ArraysWriter {
             instants: 0,
             flushed: Instant::now(),
         })
+    }
+
+    /// Opens the raw files of an interrupted run and drops what came after the first `instants`.
+    pub fn reopen(dir: &Path, header: &Header, instants: u64) -> Result<Self> {
+        let raw = header.fields.iter().map(|f| RawFile::reopen(dir, f.name, instants * f.len as u64));
+        Ok(Self {
+            dir: dir.to_path_buf(),
+            axes: header.axes.clone(),
+            fields: header.fields.clone(),
+            times: RawFile::reopen(dir, TIMES, instants)?,
+            raw: raw.collect::<Result<_>>()?,
+            instants,
+            flushed: Instant::now(),
+        })
+    }
+
+    /// Number of instants so far, all of them safe on disk.
+    pub fn secure(&mut self) -> Result<u64> {
+        self.flush()?;
+        for raw in self.raw.iter().chain([&self.times]) {
+            raw.out.get_ref().sync_data().map_err(|e| fault("write", &raw.path, e))?;
+        }
+        Ok(self.instants)
     }
 
     /// Appends one instant of all fields, in the order of the header.
@@ -115,10 +138,10 @@ impl ArraysWriter {
         arrays.collect::<Result<_>>().map(Some)
     }
 
-    /// Packs axes, times and fields into `target` and removes the raw files.
+    /// Packs axes, times and fields into `target`; removes the raw files unless they are to be `kept`.
     ///
     /// Arrays are stored, not deflated: doubles of a simulation hardly shrink, and stored ones load at once.
-    pub fn finish(mut self, target: &Path) -> Result<()> {
+    pub fn finish(mut self, target: &Path, kept: bool) -> Result<()> {
         self.flush()?;
         let part = part_of(target);
         let packed = self.pack(&part).and_then(|()| fs::rename(&part, target));
@@ -126,6 +149,9 @@ impl ArraysWriter {
             let _ = fs::remove_file(&part);
             fault("write", target, e)
         })?;
+        if kept {
+            return Ok(());
+        }
         let dir = self.dir.clone();
         drop(self);
         fs::remove_dir_all(&dir).map_err(|e| fault("remove", &dir, e))
@@ -166,6 +192,8 @@ fn write_array(
     let large = shape.iter().product::<u64>() * 8 > u64::from(u32::MAX) / 2;
     let options = FileOptions::default()
         .compression_method(CompressionMethod::Stored)
+        // The same run gives the same file, whenever it is run.
+        .last_modified_time(DateTime::default())
         .large_file(large);
     let mut array = npz
         .array::<f64>(name, options)?
@@ -190,6 +218,23 @@ impl RawFile {
     fn create(dir: &Path, name: &str) -> Result<Self> {
         let path = dir.join(format!("{name}.f64"));
         let file = File::create(&path).map_err(|e| fault("create", &path, e))?;
+        Ok(Self {
+            path,
+            out: BufWriter::with_capacity(1 << 16, file),
+            bytes: Vec::new(),
+        })
+    }
+
+    /// Opens a file and keeps its first `values`.
+    fn reopen(dir: &Path, name: &str, values: u64) -> Result<Self> {
+        let path = dir.join(format!("{name}.f64"));
+        let open = || -> io::Result<File> {
+            let mut file = File::options().write(true).open(&path)?;
+            file.set_len(8 * values)?;
+            file.seek(SeekFrom::End(0))?;
+            Ok(file)
+        };
+        let file = open().map_err(|e| fault("open", &path, e))?;
         Ok(Self {
             path,
             out: BufWriter::with_capacity(1 << 16, file),

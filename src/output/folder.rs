@@ -16,6 +16,8 @@ pub const HISTORY: &str = "history.csv";
 pub const FIELDS: &str = "fields.npz";
 /// Raw arrays while a run is under way.
 pub const RAW_FIELDS: &str = "fields.part";
+/// Where an interrupted run goes on.
+pub const CHECKPOINT: &str = "checkpoint.json";
 /// The page made by `slcbeam report`.
 pub const REPORT: &str = "report.html";
 /// Pictures.
@@ -76,6 +78,7 @@ impl ResultFolder {
         let put = || -> io::Result<()> {
             let mut file = File::create(&part)?;
             file.write_all(contents)?;
+            file.sync_all()?;
             drop(file);
             fs::rename(&part, &target)
         };
@@ -86,10 +89,15 @@ impl ResultFolder {
         Ok(target)
     }
 
-    /// Removes the files of an older result, by name; checkpoints and whatever else lies there stay.
+    /// Removes one file, if it is there.
+    pub fn remove(&self, name: &str) -> Result<()> {
+        remove(&self.path(name))
+    }
+
+    /// Removes the files of an older result, by name; whatever else lies there stays.
     pub fn clear(&mut self) -> Result<()> {
         // The summary goes first: without it the rest does not pass for a finished run.
-        for name in [SUMMARY, REPORT, FIELDS, HISTORY]
+        for name in [SUMMARY, CHECKPOINT, REPORT, FIELDS, HISTORY]
             .into_iter()
             .chain(PICTURES)
         {

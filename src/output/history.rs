@@ -1,7 +1,7 @@
 //! `history.csv`: written row by row, read back as envelopes of bounded size.
 
 use std::fs::File;
-use std::io;
+use std::io::{self, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -37,6 +37,34 @@ impl HistoryWriter {
         writer.settle(written)?;
         writer.flush()?;
         Ok(writer)
+    }
+
+    /// Opens the file of an interrupted run and drops what came after its first `bytes`.
+    pub fn reopen(path: &Path, columns: usize, bytes: u64) -> Result<Self> {
+        let open = || -> io::Result<File> {
+            let mut file = File::options().write(true).open(path)?;
+            file.set_len(bytes)?;
+            file.seek(SeekFrom::End(0))?;
+            Ok(file)
+        };
+        let file = open().map_err(|e| fault("open", path, e))?;
+        Ok(Self {
+            path: path.to_path_buf(),
+            out: csv::Writer::from_writer(file),
+            columns,
+            flushed: Instant::now(),
+        })
+    }
+
+    /// Size of the file so far, all of it safe on disk.
+    pub fn secure(&mut self) -> Result<u64> {
+        self.flush()?;
+        let measure = || -> io::Result<u64> {
+            let file = self.out.get_ref();
+            file.sync_data()?;
+            Ok(file.metadata()?.len())
+        };
+        measure().map_err(|e| fault("write", &self.path, e))
     }
 
     /// Appends a row; as many numbers as columns.

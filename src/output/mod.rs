@@ -5,6 +5,7 @@
 //! history   history.csv, row by row
 //! envelope  a history of any length, read back in bounded memory
 //! arrays    fields.npz, streamed through raw files
+//! checkpoint  where an interrupted run goes on
 //! recorder  the Recorder that ties them together
 //! summary   summary.json, there and back
 //! pictures  from recorded files to the data of each picture
@@ -13,6 +14,7 @@
 //! ```
 
 pub mod arrays;
+pub mod checkpoint;
 pub mod envelope;
 pub mod folder;
 pub mod history;

@@ -4,13 +4,15 @@ use std::path::PathBuf;
 
 use super::arrays::ArraysWriter;
 use super::envelope::Envelope;
-use super::folder::{CASE, FIELDS, HISTORY, RAW_FIELDS, ResultFolder};
+use super::checkpoint::{self, Saved};
+use super::folder::{CASE, CHECKPOINT, FIELDS, HISTORY, RAW_FIELDS, ResultFolder, SUMMARY};
 use super::history::HistoryWriter;
 use super::pictures::{self, STRETCHES};
 use super::summary;
 use crate::error::Result;
 use crate::run::record::{Control, Header, Progress, Recorder};
-use crate::run::summary::Summary;
+use crate::run::checkpoint::Checkpoint;
+use crate::run::summary::{Status, Summary};
 
 /// Called after every step; decides whether to go on.
 pub type Hook = Box<dyn FnMut(&Progress) -> Control>;
@@ -48,13 +50,27 @@ impl FolderRecorder {
         }
     }
 
+    /// Goes on in the folder of an interrupted run; what was recorded after its checkpoint is dropped.
+    pub fn resume(folder: ResultFolder, labels: Labels, hook: Hook, saved: &Saved, header: &Header) -> Result<Self> {
+        folder.remove(SUMMARY)?;
+        let history = HistoryWriter::reopen(&folder.path(HISTORY), header.columns.len(), saved.history_bytes)?;
+        let arrays = ArraysWriter::reopen(&folder.path(RAW_FIELDS), header, saved.instants)?;
+        Ok(Self {
+            open: Some((history, arrays)),
+            ..Self::new(folder, labels, hook)
+        })
+    }
+
     /// Completes the folder however the run ended: arrays packed, pictures drawn, summary last. Returns the files.
     ///
     /// A run that failed before it began leaves an older result alone, and otherwise case and summary only.
     pub fn finish(mut self, summary: &Summary) -> Result<Vec<PathBuf>> {
         let mut files = Vec::new();
         let completed = match self.open.take() {
-            Some((history, arrays)) => self.complete(history, arrays, &mut files),
+            Some((history, arrays)) => {
+                let resumable = summary.status != Status::Finished && self.folder.path(CHECKPOINT).exists();
+                self.complete(history, arrays, resumable, &mut files)
+            }
             None if self.folder.holds_older() => return Ok(files),
             None => Ok(()),
         };
@@ -70,6 +86,7 @@ impl FolderRecorder {
         &self,
         mut history: HistoryWriter,
         mut arrays: ArraysWriter,
+        resumable: bool,
         files: &mut Vec<PathBuf>,
     ) -> Result<()> {
         history.flush()?;
@@ -84,12 +101,12 @@ impl FolderRecorder {
             &mut arrays,
         )?);
         let path = self.folder.path(FIELDS);
-        arrays.finish(&path)?;
+        arrays.finish(&path, resumable)?;
         files.push(path);
         for (name, text) in drawn {
             files.push(self.folder.write(name, text.as_bytes())?);
         }
-        Ok(())
+        if resumable { Ok(()) } else { self.folder.remove(CHECKPOINT) }
     }
 }
 
@@ -117,5 +134,15 @@ impl Recorder for FolderRecorder {
 
     fn progress(&mut self, progress: &Progress) -> Result<Control> {
         Ok((self.hook)(progress))
+    }
+
+    fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<()> {
+        let Some((history, arrays)) = self.open.as_mut() else { return Ok(()) };
+        let saved = Saved {
+            history_bytes: history.secure()?,
+            instants: arrays.secure()?,
+            run: checkpoint.clone(),
+        };
+        checkpoint::write(&self.folder, &saved)
     }
 }

@@ -2,17 +2,18 @@
 
 use std::time::Instant;
 
+use super::checkpoint::{Checkpoint, VERSION};
 use super::observe::Observer;
-use super::record::{Control, Progress, Recorder};
-use super::schedule::{self, Outputs};
+use super::record::{Control, Header, Progress, Recorder};
+use super::schedule::{self, Outputs, Stop};
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
 use crate::case::schema::{Case, MaxOrder};
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::ledger::FLOWS;
 use crate::discrete::{System, start};
-use crate::error::{Result, SolverFault};
+use crate::error::{Error, Result, SolverFault};
 use crate::model::{audit, characteristic};
-use crate::sundials::{Absolute, Ida, IdaFailure, IdaOptions, StartOptions, consistent_start};
+use crate::sundials::{Absolute, Ida, IdaFailure, IdaOptions, StartFailure, StartOptions, consistent_start};
 
 /// A run that ended, in whatever way; everything up to its end is recorded.
 #[derive(Clone, Debug)]
@@ -26,7 +27,21 @@ pub struct Outcome {
 /// Runs a checked case. An error means that the recorder failed; a failing solver is an [`Outcome`].
 pub fn run(case: &Case, recorder: &mut dyn Recorder) -> Result<Outcome> {
     let (run, dae) = Run::new(case);
-    run.go(dae, recorder)
+    run.go(dae, None, recorder)
+}
+
+/// What a run of the case records.
+pub fn header(case: &Case) -> Header {
+    Observer::header(case, &System::new(case))
+}
+
+/// Goes on from a checkpoint of the same case; the recorder holds what was recorded before it.
+pub fn resume(case: &Case, checkpoint: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
+    if checkpoint.case != case.resolved_json() || checkpoint.version != VERSION {
+        return Err(Error::Usage("the checkpoint belongs to another case or another version of the program".into()));
+    }
+    let (run, dae) = Run::new(case);
+    run.go(dae, Some(checkpoint), recorder)
 }
 
 /// Highest BDF order for a case, and why.
@@ -52,7 +67,7 @@ struct Run<'a> {
     case: &'a Case,
     observer: Observer,
     outputs: Outputs,
-    stops: Vec<f64>,
+    stops: Vec<Stop>,
     summary: Summary,
     options: IdaOptions,
     begin: Instant,
@@ -60,6 +75,10 @@ struct Run<'a> {
     state: Vec<f64>,
     rates: Vec<f64>,
     integrals: Vec<f64>,
+    /// Integrals up to the last restart.
+    carried: Vec<f64>,
+    /// Work before the checkpoint from which this run goes on.
+    earlier: Counters,
 }
 
 /// How a run left its loop.
@@ -73,7 +92,7 @@ impl<'a> Run<'a> {
     fn new(case: &'a Case) -> (Self, BeamDae) {
         let begin = Instant::now();
         let system = System::new(case);
-        let interval = case.time.output_interval_s.unwrap_or(1e-3 * case.time.end_s);
+        let interval = case.time.output_interval();
         let characteristic = characteristic::numbers(case, &system.model);
         let warnings = audit::warnings(case, &system.model, &characteristic);
         let decisions = &system.model.effects.decisions;
@@ -118,33 +137,47 @@ impl<'a> Run<'a> {
             state: vec![],
             rates: vec![],
             integrals: vec![],
+            carried: vec![],
+            earlier: Counters::default(),
         };
         (run, BeamDae::new(system))
     }
 }
 
 impl Run<'_> {
-    fn go(mut self, mut dae: BeamDae, recorder: &mut dyn Recorder) -> Result<Outcome> {
-        let run = &mut self;
-        recorder.begin(&Observer::header(run.case, dae.system()))?;
-        run.rates = vec![0.0; dae.len()];
-        run.integrals = vec![0.0; dae.integrals()];
-        dae.look_within(0.5 * run.stops[0]);
-        let (system, now) = dae.instant(0.0);
-        run.state = start::state(system, run.case, now);
-        let end = match consistent_start(&mut dae, 0.0, &mut run.state, &mut run.rates, &StartOptions::default()) {
-            Err(failure) => End::Failed(SolverFault {
-                time_s: 0.0,
-                what: format!("no consistent start: {failure}"),
-                unknown: failure.worst.map(|(_, name)| name),
-                cause: Some("start values that contradict each other, or a model without a unique state".into()),
-                hint: Some("look at `slcbeam check`, and at /start and /ends of the case".into()),
-            }),
-            Ok(_) => match Ida::new(dae, 0.0, &run.state, &run.rates, &run.options) {
+    fn go(mut self, mut dae: BeamDae, from: Option<&Checkpoint>, recorder: &mut dyn Recorder) -> Result<Outcome> {
+        self.rates = vec![0.0; dae.len()];
+        self.integrals = vec![0.0; dae.integrals()];
+        self.carried = vec![0.0; dae.integrals()];
+        let (t, first_stop) = match from {
+            None => {
+                recorder.begin(&Observer::header(self.case, dae.system()))?;
+                dae.look_within(0.5 * self.stops[0].t);
+                let (system, now) = dae.instant(0.0);
+                self.state = start::state(system, self.case, now);
+                (0.0, 0)
+            }
+            Some(checkpoint) => {
+                self.take_up(checkpoint);
+                (checkpoint.t, checkpoint.stop + 1)
+            }
+        };
+        let consistent = if from.is_none_or(|c| self.stops[c.stop].switches) {
+            dae.look_within(0.5 * (t + self.stops[first_stop].t));
+            consistent_start(&mut dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
+                .map_err(|failure| inconsistent(t, &failure))
+                .err()
+        } else {
+            dae.look_within(0.5 * (t + self.stops[first_stop].t));
+            None
+        };
+        let end = match consistent {
+            Some(fault) => End::Failed(fault),
+            None => match Ida::new(dae, t, &self.state, &self.rates, &self.options) {
                 Err(failure) => End::Failed(fault(&failure)),
                 Ok(mut ida) => {
-                    let end = run.integrate(&mut ida, recorder)?;
-                    run.count(&ida);
+                    let end = self.integrate(&mut ida, first_stop, recorder)?;
+                    self.count(&ida);
                     end
                 }
             },
@@ -152,14 +185,24 @@ impl Run<'_> {
         Ok(self.finish(end))
     }
 
-    fn integrate(&mut self, ida: &mut Ida<BeamDae>, recorder: &mut dyn Recorder) -> Result<End> {
+    fn take_up(&mut self, checkpoint: &Checkpoint) {
+        self.state.clone_from(&checkpoint.y);
+        self.rates.clone_from(&checkpoint.yp);
+        self.carried.clone_from(&checkpoint.integrals);
+        self.earlier.clone_from(&checkpoint.counters);
+        self.observer.seen.clone_from(&checkpoint.observed);
+        self.outputs.go_on(checkpoint.next_output);
+    }
+
+    fn integrate(&mut self, ida: &mut Ida<BeamDae>, first: usize, recorder: &mut dyn Recorder) -> Result<End> {
         if let Some(reason) = self.sample(ida, recorder, true)? {
             return Ok(End::Stopped(reason));
         }
-        for interval in 0..self.stops.len() {
-            let stop = self.stops[interval];
+        let mut pace = Pace::new(ida.time());
+        for k in first..self.stops.len() {
+            let stop = self.stops[k];
             loop {
-                let step = match ida.step(stop) {
+                let step = match ida.step(stop.t) {
                     Ok(step) => step,
                     Err(failure) => return Ok(End::Failed(fault(&failure))),
                 };
@@ -167,25 +210,29 @@ impl Run<'_> {
                 if let Some(reason) = self.sample(ida, recorder, false)? {
                     return Ok(End::Stopped(reason));
                 }
+                let steps = ida.steps();
                 let progress = Progress {
                     t: step.time,
                     end: self.case.time.end_s,
-                    steps: ida.steps(),
+                    steps: self.earlier.steps + steps,
                     step: step.size,
                     order: step.order,
                 };
                 if let Control::Stop(reason) = recorder.progress(&progress)? {
                     return Ok(End::Stopped(reason));
                 }
-                if ida.steps() >= self.case.solver.max_steps {
+                if progress.steps >= self.case.solver.max_steps {
                     return Ok(End::Failed(too_many_steps(step.time, step.size)));
+                }
+                if pace.stalled(steps, step.time, self.case.time.end_s) {
+                    return Ok(End::Failed(stalled(step.time, step.size)));
                 }
                 if step.stopped {
                     break;
                 }
             }
-            if let Some(&next) = self.stops.get(interval + 1)
-                && let Some(fault) = self.switch(ida, stop, next)
+            if let Some(next) = self.stops.get(k + 1).copied()
+                && let Some(fault) = self.pass(ida, k, next.t, recorder)?
             {
                 return Ok(End::Failed(fault));
             }
@@ -193,25 +240,48 @@ impl Run<'_> {
         Ok(End::Finished)
     }
 
-    /// Passes a switching time: the next smooth branch of every signal, a consistent state, a fresh start of the
-    /// integrator.
-    fn switch(&mut self, ida: &mut Ida<BeamDae>, now: f64, next: f64) -> Option<SolverFault> {
+    /// Passes a stop: the next smooth branch of every signal, a consistent state, a checkpoint if one is due, a fresh
+    /// start of the integrator.
+    fn pass(
+        &mut self,
+        ida: &mut Ida<BeamDae>,
+        stop: usize,
+        next: f64,
+        recorder: &mut dyn Recorder,
+    ) -> Result<Option<SolverFault>> {
+        let Stop { t, switches, checkpoint } = self.stops[stop];
         self.state.copy_from_slice(ida.y());
         self.rates.copy_from_slice(ida.yp());
-        let dae = ida.dae_mut();
-        dae.look_within(0.5 * (now + next));
-        if let Err(failure) =
-            consistent_start(dae, now, &mut self.state, &mut self.rates, &StartOptions::default())
-        {
-            return Some(SolverFault {
-                time_s: now,
-                what: format!("no consistent state after the switching time {now:.6} s: {failure}"),
-                unknown: failure.worst.map(|(_, name)| name),
-                cause: Some("what switches leaves the equations without a unique state".into()),
-                hint: Some("switch more slowly (a ramp with a duration)".into()),
-            });
+        if let Err(failure) = ida.integrals(None, &mut self.integrals) {
+            return Ok(Some(fault(&failure)));
         }
-        ida.restart(now, &self.state, &self.rates).err().map(|failure| fault(&failure))
+        for (carried, more) in self.carried.iter_mut().zip(&self.integrals) {
+            *carried += more;
+        }
+        if checkpoint {
+            self.count(ida);
+            recorder.checkpoint(&Checkpoint {
+                version: VERSION.into(),
+                case: self.case.resolved_json(),
+                t,
+                stop,
+                y: self.state.clone(),
+                yp: self.rates.clone(),
+                integrals: self.carried.clone(),
+                next_output: self.outputs.next(),
+                counters: Counters { restarts: self.summary.solver.restarts + 1, ..self.summary.solver.clone() },
+                observed: self.observer.seen.clone(),
+            })?;
+        }
+        let dae = ida.dae_mut();
+        dae.look_within(0.5 * (t + next));
+        if switches
+            && let Err(failure) =
+                consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
+        {
+            return Ok(Some(inconsistent(t, &failure)));
+        }
+        Ok(ida.restart(t, &self.state, &self.rates).err().map(|failure| fault(&failure)))
     }
 
     /// Takes every sample that is due, from the integrator's own polynomial.
@@ -234,6 +304,9 @@ impl Run<'_> {
             };
             if let Err(failure) = read {
                 return Ok(Some(format!("the state at t = {t:.6} s could not be read: {failure}")));
+            }
+            for (total, carried) in self.integrals.iter_mut().zip(&self.carried) {
+                *total += carried;
             }
             let ended = self.observer.sample(
                 ida.dae_mut(),
@@ -270,6 +343,7 @@ impl Run<'_> {
             steps_by_order: c.steps_by_order,
             max_order: c.max_order,
         };
+        self.summary.solver.add(&self.earlier);
         let wall = ida.wall();
         self.summary.wall_s = WallTimes {
             total: 0.0,
@@ -298,7 +372,7 @@ impl Run<'_> {
                 Some(fault)
             }
         };
-        let o = &self.observer;
+        let o = &self.observer.seen;
         s.quantities = o.figures.quantities();
         let b = &mut s.balances;
         b.energy_residual_relative = o.residuals.energy_relative();
@@ -331,7 +405,7 @@ impl Run<'_> {
         ] {
             b.energy_j.insert(name.into(), value);
         }
-        s.warnings.extend(o.warnings());
+        s.warnings.extend(self.observer.warnings());
         s.wall_s.total = self.begin.elapsed().as_secs_f64();
         Outcome { summary: self.summary, fault }
     }
@@ -362,5 +436,64 @@ fn too_many_steps(t: f64, step: f64) -> SolverFault {
         unknown: None,
         cause: Some("fast waves that the tolerance asks to follow".into()),
         hint: Some("raise /solver/max_steps, or loosen /solver/rtol".into()),
+    }
+}
+
+fn inconsistent(t: f64, failure: &StartFailure) -> SolverFault {
+    let (what, cause, hint) = if t == 0.0 {
+        (
+            "no consistent start".to_string(),
+            "start values that contradict each other, or a model without a unique state",
+            "look at `slcbeam check`, and at /start and /ends of the case",
+        )
+    } else {
+        (
+            format!("no consistent state after the switching time {t:.6} s"),
+            "what switches leaves the equations without a unique state",
+            "switch more slowly (a ramp with a duration)",
+        )
+    };
+    SolverFault {
+        time_s: t,
+        what: format!("{what}: {failure}"),
+        unknown: failure.worst.as_ref().map(|(_, name)| name.clone()),
+        cause: Some(cause.into()),
+        hint: Some(hint.into()),
+    }
+}
+
+fn stalled(t: f64, step: f64) -> SolverFault {
+    SolverFault {
+        time_s: t,
+        what: format!("no progress: {STALL_STEPS} steps have hardly moved the time on from t = {t:.9} s (step {step:.2e} s)"),
+        unknown: None,
+        cause: Some("the solution changes ever faster towards this time: a closing bladder, an instability, a jump".into()),
+        hint: Some("look at the fields just before this time; damping or a smoother signal may help".into()),
+    }
+}
+
+/// Steps over which progress is judged.
+const STALL_STEPS: u64 = 20_000;
+
+/// Notices when steps no longer move the time on.
+struct Pace {
+    steps: u64,
+    t: f64,
+}
+
+impl Pace {
+    fn new(t: f64) -> Self {
+        Self { steps: 0, t }
+    }
+
+    /// True when the last [`STALL_STEPS`] steps advanced by less than 1e-8 of the run: the rest would take more than
+    /// 10^12 steps.
+    fn stalled(&mut self, steps: u64, t: f64, end: f64) -> bool {
+        if steps < self.steps + STALL_STEPS {
+            return false;
+        }
+        let stalled = t - self.t < 1e-8 * end;
+        (self.steps, self.t) = (steps, t);
+        stalled
     }
 }

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::summary::Quantity;
 use crate::case::schema::Case;
 
 /// Largest and last value of one number.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Track {
     last: f64,
     max_abs: f64,
@@ -30,11 +32,11 @@ impl Track {
 }
 
 /// Follows the history as it is written.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     window_start: f64,
-    columns: BTreeMap<&'static str, usize>,
-    values: [(&'static str, Track); 3],
+    columns: BTreeMap<String, usize>,
+    values: [(String, Track); 3],
     pressure: Option<Track>,
     input: Track,
     harvested: Option<Track>,
@@ -43,13 +45,13 @@ pub struct Figures {
 impl Figures {
     /// For a case whose history has the given columns.
     pub fn new(case: &Case, columns: &[&'static str]) -> Self {
-        let window = case.time.window_s.unwrap_or(0.1 * case.time.end_s);
+        let window = case.time.window();
         let wet = columns.contains(&"max_pressure");
         let turbines = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
         Self {
             window_start: case.time.end_s - window * (1.0 + 1e-9),
-            columns: columns.iter().enumerate().map(|(k, c)| (*c, k)).collect(),
-            values: [("tip_u1", Track::default()), ("tip_u3", Track::default()), ("tip_angle", Track::default())],
+            columns: columns.iter().enumerate().map(|(k, c)| (c.to_string(), k)).collect(),
+            values: ["tip_u1", "tip_u3", "tip_angle"].map(|name| (name.to_string(), Track::default())),
             pressure: wet.then(Track::default),
             input: Track::default(),
             harvested: turbines.then(Track::default),
@@ -61,7 +63,7 @@ impl Figures {
         let at = |name: &str| row[self.columns[name]];
         let in_window = row[0] >= self.window_start;
         for (name, track) in &mut self.values {
-            track.take(row[self.columns[name]], in_window);
+            track.take(row[self.columns[name.as_str()]], in_window);
         }
         if let Some(track) = &mut self.pressure {
             track.take(at("max_pressure").abs().max(at("min_pressure").abs()), in_window);

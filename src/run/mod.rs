@@ -1,5 +1,6 @@
 //! Runs: what drives the solver over a model. Emits what happens, prints nothing.
 
+pub mod checkpoint;
 pub mod dynamics;
 pub mod figures;
 pub mod observe;

@@ -8,11 +8,13 @@ use crate::error::Result;
 use crate::model::audit;
 use crate::model::mapping::{NetworkCoordinate, TABLE_TUBE_RATIO};
 
+use serde::{Deserialize, Serialize};
+
 use super::figures::Figures;
 use super::record::{Axis, Column, Field, Header, Recorder};
 
 /// Largest residuals and references seen.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
     energy: f64,
     energy_seen: f64,
@@ -58,21 +60,18 @@ impl Residuals {
 }
 
 /// Limits of the model's range met on the way, with time and place.
-#[derive(Clone, Debug, Default)]
-struct Range {
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Range {
     strain: Option<(f64, f64, usize)>,
     convexity: Option<(f64, f64)>,
 }
 
-/// Samples a run for its recorder and keeps what the summary needs.
-pub struct Observer {
-    half_height: f64,
-    cell_order: Vec<usize>,
-    fields_every: u64,
+/// What has been seen so far; a checkpoint keeps it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Observed {
+    /// Energy and invariants at the start.
     start: Option<(f64, Invariants)>,
-    row: Vec<f64>,
     range: Range,
-    convex_up_to: f64,
     /// Balances.
     pub residuals: Residuals,
     /// Quantities of interest.
@@ -83,6 +82,17 @@ pub struct Observer {
     pub stored: ledger::Energies,
 }
 
+/// Samples a run for its recorder and keeps what the summary needs.
+pub struct Observer {
+    half_height: f64,
+    cell_order: Vec<usize>,
+    fields_every: u64,
+    row: Vec<f64>,
+    convex_up_to: f64,
+    /// What has been seen so far.
+    pub seen: Observed,
+}
+
 impl Observer {
     /// Observer of a case; `interval` is the output interval [s].
     pub fn new(case: &Case, system: &System, interval: f64) -> Self {
@@ -91,30 +101,31 @@ impl Observer {
             let (bending, stretch) = audit::convex_up_to(&system.model, wet);
             (sample::cell_order(system, &map), bending.min(stretch))
         });
-        let fields_every = case.time.fields_interval_s.map_or(1, |f| (f / interval).round().max(1.0) as u64);
+        let fields_every = (case.time.fields_interval() / interval).round().max(1.0) as u64;
         let closed: Vec<bool> = system
             .model
             .wet
             .as_ref()
             .map_or(vec![], |w| (0..w.network.components).map(|c| w.network.is_closed(c)).collect());
         let columns: Vec<&str> = sample::columns(system).iter().map(|c| c.0).collect();
+        let residuals = Residuals {
+            volume: vec![0.0; closed.len()],
+            volume_seen: vec![0.0; closed.len()],
+            closed,
+            ..Residuals::default()
+        };
         Self {
             half_height: 0.5 * case.beam.height_m,
             cell_order,
             fields_every,
-            start: None,
             row: Vec::new(),
-            range: Range::default(),
             convex_up_to,
-            residuals: Residuals {
-                volume: vec![0.0; closed.len()],
-                volume_seen: vec![0.0; closed.len()],
-                closed,
-                ..Residuals::default()
+            seen: Observed {
+                residuals,
+                figures: Figures::new(case, &columns),
+                integrals: vec![0.0; ledger::flow_count(system)],
+                ..Observed::default()
             },
-            figures: Figures::new(case, &columns),
-            integrals: vec![0.0; ledger::flow_count(system)],
-            stored: ledger::Energies::default(),
         }
     }
 
@@ -162,9 +173,9 @@ impl Observer {
         let stored = ledger::energies(system, w);
         let invariants = ledger::invariants(system, w);
         let total = stored.total();
-        let (at_start, first) = self.start.get_or_insert_with(|| (total, invariants.clone()));
+        let (at_start, first) = self.seen.start.get_or_insert_with(|| (total, invariants.clone()));
         let balance = sample::energy_balance(stored, *at_start, integrals);
-        let r = &mut self.residuals;
+        let r = &mut self.seen.residuals;
         r.energy = r.energy.max(balance.residual.abs());
         let put_in = [Flow::Loads, Flow::Ends, Flow::Ports].map(|f| integrals[f as usize].abs());
         r.energy_seen = put_in.into_iter().fold(r.energy_seen.max(total.abs()), f64::max);
@@ -186,20 +197,20 @@ impl Observer {
         }
         sample::row(system, now, t, w, &balance, integrals, &mut self.row);
         recorder.history(&self.row)?;
-        self.figures.take(&self.row);
-        self.integrals.copy_from_slice(integrals);
-        self.stored = stored;
+        self.seen.figures.take(&self.row);
+        self.seen.integrals.copy_from_slice(integrals);
+        self.seen.stored = stored;
 
         let (strain, node) = sample::largest_strain(system, self.half_height, w);
-        if self.range.strain.is_none_or(|(s, ..)| strain > s) {
-            self.range.strain = Some((strain, t, node));
+        if self.seen.range.strain.is_none_or(|(s, ..)| strain > s) {
+            self.seen.range.strain = Some((strain, t, node));
         }
         let opening = sample::least_opening(system, w);
         let sum = (0..w.mean_force.len())
             .map(|j| w.mean_pressure[j] + w.mean_pressure[w.mean_force.len() + j])
             .fold(f64::NEG_INFINITY, f64::max);
-        if sum > self.convex_up_to && self.range.convexity.is_none() {
-            self.range.convexity = Some((sum, t));
+        if sum > self.convex_up_to && self.seen.range.convexity.is_none() {
+            self.seen.range.convexity = Some((sum, t));
         }
         if number.is_multiple_of(self.fields_every) {
             let along = |values: &[f64]| -> Vec<f64> { self.cell_order.iter().map(|&c| values[c]).collect() };
@@ -218,7 +229,7 @@ impl Observer {
     /// Limits of the model's range that were passed.
     pub fn warnings(&self) -> Vec<String> {
         let mut all = Vec::new();
-        if let Some((strain, t, node)) = self.range.strain
+        if let Some((strain, t, node)) = self.seen.range.strain
             && strain > 0.5
         {
             all.push(format!(
@@ -226,7 +237,7 @@ impl Observer {
                  t = {t:.4} s, node {node}; strains are meant to be small"
             ));
         }
-        if let Some((sum, t)) = self.range.convexity {
+        if let Some((sum, t)) = self.seen.range.convexity {
             all.push(format!(
                 "the kinked reciprocal potential lost convexity: p_u + p_d reached {sum:.3e} Pa at t = {t:.4} s, \
                  above {:.3e} Pa; results from then on are not to be trusted (use \"reciprocal\" or a larger kink_width)",

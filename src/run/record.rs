@@ -1,5 +1,6 @@
 //! What a run hands to whoever records it. The run itself prints nothing and writes nothing.
 
+use super::checkpoint::Checkpoint;
 use crate::error::Result;
 
 /// A column of the history: one number an output time.
@@ -86,6 +87,10 @@ pub trait Recorder {
     fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()>;
     /// Called after every accepted step; cheap.
     fn progress(&mut self, progress: &Progress) -> Result<Control>;
+    /// Called at every checkpoint time; everything before it must be safe when this returns.
+    fn checkpoint(&mut self, _: &Checkpoint) -> Result<()> {
+        Ok(())
+    }
 }
 
 /// Keeps everything in memory, for tests and studies.
@@ -99,6 +104,8 @@ pub struct Memory {
     pub field_times: Vec<f64>,
     /// Fields: `fields[f][time]` is the array of field f.
     pub fields: Vec<Vec<Vec<f64>>>,
+    /// Checkpoints.
+    pub checkpoints: Vec<Checkpoint>,
 }
 
 impl Memory {
@@ -134,5 +141,9 @@ impl Recorder for Memory {
     }
     fn progress(&mut self, _: &Progress) -> Result<Control> {
         Ok(Control::Continue)
+    }
+    fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<()> {
+        self.checkpoints.push(checkpoint.clone());
+        Ok(())
     }
 }

@@ -4,17 +4,41 @@ use crate::case::schema::Case;
 use crate::case::{Rotation, Signal, Translation};
 use crate::model::Model;
 
-/// Ends of the smooth intervals of a run, the end of the run last: every time at which a signal kinks or jumps.
-pub fn stops(case: &Case, model: &Model) -> Vec<f64> {
-    let mut times = Vec::new();
-    each_signal(model, |s| s.breaks(&mut times));
+/// A time at which the integrator stops and starts afresh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// When [s].
+    pub t: f64,
+    /// A signal kinks or jumps here.
+    pub switches: bool,
+    /// A checkpoint is due here.
+    pub checkpoint: bool,
+}
+
+/// All stops of a run in order, its end last.
+pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
     let end = case.time.end_s;
     let closest = 1e-9 * end;
-    times.retain(|t| *t > closest && *t < end - closest);
-    times.sort_by(f64::total_cmp);
-    times.dedup_by(|a, b| *a - *b < closest);
-    times.push(end);
-    times
+    let mut switches = Vec::new();
+    each_signal(model, |s| s.breaks(&mut switches));
+    let mut all: Vec<Stop> =
+        switches.into_iter().map(|t| Stop { t, switches: true, checkpoint: false }).collect();
+    if let Some(interval) = case.time.checkpoint_interval_s {
+        let count = (end / interval).ceil() as u64;
+        all.extend((1..count).map(|k| Stop { t: k as f64 * interval, switches: false, checkpoint: true }));
+    }
+    all.retain(|s| s.t > closest && s.t < end - closest);
+    all.sort_by(|a, b| a.t.total_cmp(&b.t));
+    all.dedup_by(|next, kept| {
+        let same = next.t - kept.t < closest;
+        if same {
+            kept.switches |= next.switches;
+            kept.checkpoint |= next.checkpoint;
+        }
+        same
+    });
+    all.push(Stop { t: end, switches: false, checkpoint: false });
+    all
 }
 
 /// Shortest time scale of any signal [s].
@@ -66,6 +90,16 @@ impl Outputs {
     /// Times from zero.
     pub fn new(interval: f64, end: f64) -> Self {
         Self { interval, end, next: 0, last: (end / interval * (1.0 + 1e-12)).floor() as u64 }
+    }
+
+    /// Number of the next output.
+    pub fn next(&self) -> u64 {
+        self.next
+    }
+
+    /// Goes on with the output of this number.
+    pub fn go_on(&mut self, next: u64) {
+        self.next = next;
     }
 
     /// Next output time not after `t`, and its number.

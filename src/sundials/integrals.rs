@@ -33,6 +33,7 @@ pub(super) fn begin<D: Dae>(memory: *mut c_void, zeros: Option<&Vector>) -> c_in
         None => s::IDA_SUCCESS,
         // SAFETY: IDA and the vector, which it copies, are alive.
         Some(zeros) => match unsafe { s::IDAQuadInit(memory, Some(integrands::<D>), zeros.raw()) } {
+            // SAFETY: IDA is alive.
             s::IDA_SUCCESS => unsafe { s::IDASetQuadErrCon(memory, 0) },
             refused => refused,
         },
@@ -40,7 +41,7 @@ pub(super) fn begin<D: Dae>(memory: *mut c_void, zeros: Option<&Vector>) -> c_in
 }
 
 impl<D: Dae> Ida<D> {
-    /// The integrals `∫ g dt` since the integrator was created: at the present time, or at a time [s] within the last
+    /// The integrals `∫ g dt` since the last restart: at the present time, or at a time [s] within the last
     /// step. `out` has length `dae.integrals()`.
     pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
         let Some(quadratures) = &mut self.quadratures else { return Ok(()) };
@@ -63,19 +64,11 @@ impl<D: Dae> Ida<D> {
         Ok(())
     }
 
-    /// Carries the integrals over a restart.
-    pub(super) fn keep_integrals(&mut self) -> c_int {
+    /// Sets the integrals back to zero at a restart.
+    pub(super) fn reset_integrals(&mut self) -> c_int {
         let Some(quadratures) = &mut self.quadratures else { return s::IDA_SUCCESS };
-        if !self.stepped {
-            return s::IDA_SUCCESS;
-        }
-        let mut reached = self.time;
-        // SAFETY: IDA and the vector are alive.
-        unsafe {
-            match s::IDAGetQuad(self.memory.0, &mut reached, quadratures.raw()) {
-                s::IDA_SUCCESS => s::IDAQuadReInit(self.memory.0, quadratures.raw()),
-                refused => refused,
-            }
-        }
+        quadratures.entries_mut().fill(0.0);
+        // SAFETY: IDA and the vector, which it copies, are alive.
+        unsafe { s::IDAQuadReInit(self.memory.0, quadratures.raw()) }
     }
 }

@@ -126,6 +126,12 @@ impl Klu {
         self.factor_anew(values)
     }
 
+    /// Forgets the factors: the next ones get pivots of their own.
+    pub fn forget(&mut self) {
+        self.free_numeric();
+        self.growth_when_fresh = 1.0;
+    }
+
     /// Factors with the old pivots; false when they are bad.
     fn refactor(&mut self, values: &[f64]) -> bool {
         self.factorizations += 1;

@@ -95,7 +95,7 @@ const DURATION: Range = Range {
 };
 
 /// Longest beam, in heights.
-const MOST_SLENDER: f64 = 4000.0;
+const MOST_SLENDER: f64 = 1e5;
 /// Longest tube, in lengths of the beam.
 const LONGEST_TUBE: f64 = 100.0;
 

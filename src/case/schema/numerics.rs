@@ -101,6 +101,11 @@ pub struct Time {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub window_s: Option<f64>,
+    /// Interval between checkpoints [s], from which `run --resume` goes on; the integrator starts afresh at each.
+    /// Absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub checkpoint_interval_s: Option<f64>,
 }
 
 impl Time {
