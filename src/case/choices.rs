@@ -60,17 +60,25 @@ impl Serialize for MaxOrder {
         match self {
             Self::Auto => serializer.serialize_str("auto"),
             Self::Order(order) => serializer.serialize_u8(*order),
+            Self::Forced(order) => Forced { forced: *order }.serialize(serializer),
         }
     }
+}
+
+/// The form that skips the check of stability.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Forced {
+    forced: u8,
 }
 
 impl<'de> Deserialize<'de> for MaxOrder {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Reader;
-        impl Visitor<'_> for Reader {
+        impl<'de> Visitor<'de> for Reader {
             type Value = MaxOrder;
             fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                f.write_str("\"auto\" or an order from 1 to 5")
+                f.write_str("\"auto\", an order from 1 to 5, or {\"forced\": order}")
             }
             fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<MaxOrder, E> {
                 match word {
@@ -84,6 +92,13 @@ impl<'de> Deserialize<'de> for MaxOrder {
                     _ => Err(E::invalid_value(Unexpected::Unsigned(order), &self)),
                 }
             }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<MaxOrder, A::Error> {
+                let Forced { forced } = Forced::deserialize(MapAccessDeserializer::new(map))?;
+                match forced {
+                    1..=5 => Ok(MaxOrder::Forced(forced)),
+                    _ => Err(serde::de::Error::invalid_value(Unexpected::Unsigned(forced.into()), &self)),
+                }
+            }
         }
         deserializer.deserialize_any(Reader)
     }
@@ -95,8 +110,13 @@ impl JsonSchema for MaxOrder {
     }
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({ "description": "Highest BDF order.", "anyOf": [
-            { "type": "string", "const": "auto", "description": "2 with undamped inertia, 5 without inertia." },
-            { "type": "integer", "minimum": 1, "maximum": 5, "description": "As given." }
+            { "type": "string", "const": "auto",
+              "description": "2 with undamped inertia, 5 without inertia; else from the damping ratios." },
+            { "type": "integer", "minimum": 1, "maximum": 5,
+              "description": "As given; 3 and 4 are refused where hardly damped waves make them unstable." },
+            { "type": "object", "properties": { "forced": { "type": "integer", "minimum": 1, "maximum": 5 } },
+              "required": ["forced"], "additionalProperties": false,
+              "description": "As given, whatever the stability." }
         ]})
     }
 }

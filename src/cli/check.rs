@@ -11,17 +11,18 @@ use crate::discrete::System;
 use crate::error::Result;
 use crate::model::{audit, characteristic};
 use crate::output::numbers::significant;
-use crate::run::dynamics;
+use crate::run::order;
 
 /// Prints characteristic numbers, coupling audit, chosen effects and warnings.
 pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     let loaded = case::load(&asked.case.case, &asked.case.sets)?;
     let case = &loaded.case;
     let system = System::new(case);
+    super::refuse(&loaded, &system)?;
     let numbers = characteristic::numbers(case, &system.model);
     let findings = audit::coupling(case, &system.model);
     let warnings = audit::warnings(case, &system.model, &numbers);
-    let (order, why) = dynamics::max_order(case, &system);
+    let order::OrderChoice { order, reason: why } = order::choose(case, &system);
     if asked.json {
         let audit: Vec<_> = findings
             .iter()

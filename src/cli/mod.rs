@@ -14,7 +14,11 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+use crate::case::LoadedCase;
+use crate::discrete::System;
 use crate::error::{Error, Result};
+use crate::model::audit;
+use crate::run::order;
 use arguments::{Arguments, Command};
 
 /// Reads the arguments, does what they ask, reports what went wrong, and gives the exit code.
@@ -44,6 +48,16 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Schema => schema::schema(),
     }
+}
+
+/// Faults of a valid case that only its model shows, with their places.
+fn refuse(loaded: &LoadedCase, system: &System) -> Result<()> {
+    let mut violations: Vec<_> = order::refusal(&loaded.case, system).into_iter().collect();
+    violations.extend(audit::refusals(&loaded.case, &system.model));
+    if violations.is_empty() {
+        return Ok(());
+    }
+    Err(loaded.fault(violations.into_iter().map(|v| loaded.violation(v)).collect()))
 }
 
 /// Writes to standard output; a closed pipe ends the output, not the program.

@@ -8,6 +8,7 @@ use super::arguments::RunArguments;
 use super::progress::Watcher;
 use super::{interrupt, summary_box, terminal};
 use crate::case;
+use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::model::characteristic;
 use crate::output::checkpoint;
@@ -21,6 +22,7 @@ use crate::run::record::Control;
 pub fn run(asked: &RunArguments) -> Result<ExitCode> {
     let loaded = case::load(&asked.case.case, &asked.case.sets)?;
     let case = &loaded.case;
+    super::refuse(&loaded, &System::new(case))?;
     let out = asked.out.clone().unwrap_or_else(|| PathBuf::from("out").join(&case.name));
     let folder = ResultFolder::create(&out)?;
     let interrupted = interrupt::flag();

@@ -131,6 +131,17 @@ fn turbine_power(system: &System, now: &Instant, w: &Workspace<f64>) -> f64 {
     power
 }
 
+/// Largest flow through a tube [m^3/s] and the tube's number among the tubes.
+pub fn largest_flow(system: &System, now: &Instant, w: &Workspace<f64>) -> Option<(f64, usize)> {
+    let fluid = system.fluid.as_ref()?;
+    let tubes = fluid.links.iter().zip(&now.conductance).filter(|(link, _)| link.kind == LinkKind::Tube);
+    tubes
+        .map(|(link, g)| (g * (pressure_at(link.from, now, w) - pressure_at(link.to, now, w))).abs())
+        .enumerate()
+        .map(|(k, q)| (q, k))
+        .reduce(|a, b| if b.0 > a.0 { b } else { a })
+}
+
 /// Smallest `(h_b w_b + a1)/(h_b w_b)`.
 pub fn least_opening(system: &System, w: &Workspace<f64>) -> f64 {
     let Some(wet) = &system.model.wet else { return 1.0 };

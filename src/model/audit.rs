@@ -1,6 +1,7 @@
 //! Audit of the coupling and of the range in which the model holds, when a case is read (model section 4.2).
 
 use super::{Coupling, Model, Wet};
+use crate::error::Violation;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
 
 /// One audited number.
@@ -129,6 +130,24 @@ fn convexity(model: &Model, bladders: &Bladders, wet: &Wet) -> Vec<Finding> {
                  equations lose index one; widen bladders/kink_width (now {:.1e}) or use \"reciprocal\"",
                 bladders.kink_width
             ),
+        })
+        .collect()
+}
+
+/// Why a case is refused although its text is valid: a kinked reciprocal potential that loses convexity at the
+/// pressures expected.
+pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
+    let (Some(bladders), Some(wet)) = (&case.bladders, &model.wet) else { return vec![] };
+    if bladders.coupling != Choice::ReciprocalKinked || !model.effects.asymmetry {
+        return vec![];
+    }
+    convexity(model, bladders, wet)
+        .into_iter()
+        .filter(|f| !f.good)
+        .map(|f| {
+            Violation::new("/bladders/coupling", format!("the kinked potential is {}: {:.3e}", f.name, f.value))
+                .allowed(f.wanted)
+                .hint(f.consequence)
         })
         .collect()
 }

@@ -54,7 +54,7 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
         put("euler_load_n", PI * PI * ei / (4.0 * l * l));
         put("self_weight_buckling_load_n_m", 7.837_347_438_94 * ei / l.powi(3));
     }
-    if let Some(a) = mathieu(case, model) {
+    if let Some(a) = mathieu(model) {
         put("base_acceleration_m_s2", a.acceleration);
         put("inertial_compression_n_m", m * a.acceleration);
         put("mathieu_modulation", a.modulation);
@@ -186,7 +186,7 @@ pub fn forcing_period(case: &Case) -> Option<f64> {
 }
 
 /// Mathieu's parameters when a cantilever's root is shaken along its axis by a sine.
-pub fn mathieu(case: &Case, model: &Model) -> Option<Mathieu> {
+pub fn mathieu(model: &Model) -> Option<Mathieu> {
     if !is_cantilever(model) || !model.effects.solid_inertia {
         return None;
     }
@@ -199,7 +199,6 @@ pub fn mathieu(case: &Case, model: &Model) -> Option<Mathieu> {
     let s = &model.section;
     let first = 1.875_104_068_712_f64.powi(2) / (model.length * model.length)
         * (s.bending_stiffness / s.mass_per_length).sqrt();
-    let _ = case;
     Some(Mathieu {
         acceleration,
         frequency: sine.frequency_hz,

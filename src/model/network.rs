@@ -35,7 +35,7 @@ pub enum LinkKind {
     Turbine(usize),
 }
 
-/// Two points and what lies between them: `[E6]` (A.13, A.67) and a valve of opening `o`:
+/// `[E6]` Two points and what lies between them (A.13, A.67), a valve of opening `o` included:
 ///
 /// ```text
 /// q = g (p_a - p_b)    g = o/(o (R_half,a + R_half,b) + R)    R = μ l_c/q1c

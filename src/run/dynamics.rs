@@ -3,11 +3,13 @@
 use std::time::Instant;
 
 use super::checkpoint::{Checkpoint, VERSION};
+use super::growth::Linear;
 use super::observe::Observer;
+use super::order;
 use super::record::{Control, Header, Progress, Recorder};
 use super::schedule::{self, Outputs, Stop};
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
-use crate::case::schema::{Case, MaxOrder};
+use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::ledger::FLOWS;
 use crate::discrete::{System, start};
@@ -44,17 +46,6 @@ pub fn resume(case: &Case, checkpoint: &Checkpoint, recorder: &mut dyn Recorder)
     run.go(dae, Some(checkpoint), recorder)
 }
 
-/// Highest BDF order for a case, and why.
-pub fn max_order(case: &Case, system: &System) -> (u8, &'static str) {
-    match case.solver.max_order {
-        MaxOrder::Order(order) => (order, "as given"),
-        MaxOrder::Auto if system.layout.inertia => {
-            (2, "the solid has inertia: BDF beyond order 2 is unstable for its waves")
-        }
-        MaxOrder::Auto => (5, "no solid inertia: nothing oscillates freely"),
-    }
-}
-
 /// Largest step [s]: as given, or a 16th of the shortest time scale of the signals, at most a tenth of the run.
 pub fn max_step(case: &Case, system: &System) -> f64 {
     case.solver.max_step_s.unwrap_or_else(|| {
@@ -70,6 +61,8 @@ struct Run<'a> {
     stops: Vec<Stop>,
     summary: Summary,
     options: IdaOptions,
+    linear: Linear,
+    held: Option<String>,
     begin: Instant,
     output_wall: f64,
     state: Vec<f64>,
@@ -96,7 +89,9 @@ impl<'a> Run<'a> {
         let characteristic = characteristic::numbers(case, &system.model);
         let warnings = audit::warnings(case, &system.model, &characteristic);
         let decisions = &system.model.effects.decisions;
-        let (order, _) = max_order(case, &system);
+        let order = order::choose(case, &system);
+        let mathieu = characteristic::mathieu(&system.model);
+        let linear = Linear { mathieu, euler_load: characteristic.get("euler_load_n").copied() };
         let run = Self {
             case,
             observer: Observer::new(case, &system, interval),
@@ -118,20 +113,24 @@ impl<'a> Run<'a> {
                         let value = if d.on { "on" } else { "off" }.to_string();
                         (d.name.to_string(), Chosen { value, reason: d.reason.clone() })
                     })
+                    .chain([("max_order".into(), Chosen { value: order.order.to_string(), reason: order.reason })])
                     .collect(),
+                growth: None,
                 characteristic,
                 warnings,
             },
             options: IdaOptions {
                 relative: case.solver.rtol,
                 absolute: Absolute::Same(case.solver.rtol),
-                max_order: order,
+                max_order: order.order,
                 nonlinear_coefficient: case.solver.nonlinear_coefficient,
                 delta_cj_setup: case.solver.delta_cj_setup,
                 initial_step: case.solver.initial_step_s,
                 max_step: Some(max_step(case, &system)),
                 ..IdaOptions::default()
             },
+            linear,
+            held: None,
             begin,
             output_wall: 0.0,
             state: vec![],
@@ -344,6 +343,14 @@ impl Run<'_> {
             max_order: c.max_order,
         };
         self.summary.solver.add(&self.earlier);
+        let s = &self.summary.solver;
+        self.held = order::held_by_stability(
+            ida.dae().system(),
+            s.max_order,
+            self.summary.time_s,
+            s.steps,
+            s.error_test_failures,
+        );
         let wall = ida.wall();
         self.summary.wall_s = WallTimes {
             total: 0.0,
@@ -405,6 +412,9 @@ impl Run<'_> {
         ] {
             b.energy_j.insert(name.into(), value);
         }
+        s.growth = o.growth.judge(self.case.beam.length_m, &self.linear);
+        s.warnings.extend(s.growth.as_ref().map(|g| g.warning()));
+        s.warnings.extend(self.held);
         s.warnings.extend(self.observer.warnings());
         s.wall_s.total = self.begin.elapsed().as_secs_f64();
         Outcome { summary: self.summary, fault }

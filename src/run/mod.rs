@@ -3,7 +3,9 @@
 pub mod checkpoint;
 pub mod dynamics;
 pub mod figures;
+pub mod growth;
 pub mod observe;
+pub mod order;
 pub mod record;
 pub mod schedule;
 pub mod summary;

@@ -11,6 +11,7 @@ use crate::model::mapping::{NetworkCoordinate, TABLE_TUBE_RATIO};
 use serde::{Deserialize, Serialize};
 
 use super::figures::Figures;
+use super::growth::Growth;
 use super::record::{Axis, Column, Field, Header, Recorder};
 
 /// Largest residuals and references seen.
@@ -64,6 +65,7 @@ impl Residuals {
 pub struct Range {
     strain: Option<(f64, f64, usize)>,
     convexity: Option<(f64, f64)>,
+    reynolds: Option<(f64, f64, usize)>,
 }
 
 /// What has been seen so far; a checkpoint keeps it.
@@ -76,6 +78,8 @@ pub struct Observed {
     pub residuals: Residuals,
     /// Quantities of interest.
     pub figures: Figures,
+    /// Growth of the response.
+    pub growth: Growth,
     /// Integrals at the last sample.
     pub integrals: Vec<f64>,
     /// Stored energies at the last sample.
@@ -89,6 +93,8 @@ pub struct Observer {
     fields_every: u64,
     row: Vec<f64>,
     convex_up_to: f64,
+    /// `2 ρ/(π μ r_c)`: Reynolds number of a tube over its flow [s/m^3].
+    reynolds_per_flow: f64,
     /// What has been seen so far.
     pub seen: Observed,
 }
@@ -120,9 +126,14 @@ impl Observer {
             fields_every,
             row: Vec::new(),
             convex_up_to,
+            reynolds_per_flow: match (&case.fluid, &case.tubes) {
+                (Some(f), Some(t)) => 2.0 * f.density_kg_m3 / (std::f64::consts::PI * f.viscosity_pa_s * t.radius_m),
+                _ => 0.0,
+            },
             seen: Observed {
                 residuals,
                 figures: Figures::new(case, &columns),
+                growth: Growth::new(case.time.end_s),
                 integrals: vec![0.0; ledger::flow_count(system)],
                 ..Observed::default()
             },
@@ -195,6 +206,15 @@ impl Observer {
             r.angular = r.angular.max((invariants.angular_momentum - first.angular_momentum - gained).abs());
             r.angular_seen = r.angular_seen.max(invariants.angular_momentum.abs()).max(gained.abs());
         }
+        let deflection = w.u1.iter().fold(0.0_f64, |d, u| d.max((u - w.u1[0]).abs()));
+        let least_force = w.force.iter().copied().fold(f64::INFINITY, f64::min);
+        self.seen.growth.take(t, deflection, stored.bending, least_force, integrals, balance.residual);
+        let reynolds = sample::largest_flow(system, now, w).map(|(q, place)| (q * self.reynolds_per_flow, t, place));
+        if let Some(r) = reynolds
+            && self.seen.range.reynolds.as_ref().is_none_or(|(largest, ..)| r.0 > *largest)
+        {
+            self.seen.range.reynolds = Some(r);
+        }
         sample::row(system, now, t, w, &balance, integrals, &mut self.row);
         recorder.history(&self.row)?;
         self.seen.figures.take(&self.row);
@@ -235,6 +255,15 @@ impl Observer {
             all.push(format!(
                 "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 reached {strain:.2} at \
                  t = {t:.4} s, node {node}; strains are meant to be small"
+            ));
+        }
+        if let Some((reynolds, t, tube)) = self.seen.range.reynolds
+            && reynolds > 100.0
+        {
+            all.push(format!(
+                "range of the model: the Reynolds number reached {reynolds:.0} at t = {t:.4} s in tube {}; flow is meant to \
+                 creep",
+                tube + 1
             ));
         }
         if let Some((sum, t)) = self.seen.range.convexity {

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::growth::Growing;
+
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -129,6 +131,9 @@ pub struct Summary {
     pub effects: BTreeMap<String, Chosen>,
     /// Characteristic numbers.
     pub characteristic: BTreeMap<String, f64>,
+    /// Growth of the response and what drives it, when it grows.
+    #[serde(default)]
+    pub growth: Option<Growing>,
     /// Everything the user should know before trusting the result.
     pub warnings: Vec<String>,
 }

@@ -183,8 +183,10 @@ pub enum MaxOrder {
     /// Decided from the scene: 2 with undamped inertia, 5 without inertia.
     #[default]
     Auto,
-    /// As given.
+    /// As given; 3 and 4 are refused where hardly damped waves make them unstable.
     Order(u8),
+    /// As given, whatever the stability.
+    Forced(u8),
 }
 
 fn two() -> usize {
