@@ -101,12 +101,12 @@
 //! | P, D | powers put in, powers dissipated or harvested | W | E19 |
 //! | t_s*, t_f*, F_u | time of solid and fluid, forcing frequency times t_f* | s, s, 1 | E20 |
 
-pub mod error;
 pub mod case;
-pub mod model;
-pub mod discrete;
-pub mod dae;
-pub mod sundials;
-pub mod run;
-pub mod output;
 pub mod cli;
+pub mod dae;
+pub mod discrete;
+pub mod error;
+pub mod model;
+pub mod output;
+pub mod run;
+pub mod sundials;

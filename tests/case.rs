@@ -7,12 +7,8 @@ use slcbeam::case::{self, LoadedCase, Rotation, Translation};
 use slcbeam::error::Error;
 
 fn shipped() -> Vec<PathBuf> {
-    let entries = std::fs::read_dir("cases")
-        .unwrap()
-        .map(|entry| entry.unwrap().path());
-    let json = entries.filter(|path| {
-        path.extension().is_some_and(|e| e == "json") && !path.ends_with("schema.json")
-    });
+    let entries = std::fs::read_dir("cases").unwrap().map(|entry| entry.unwrap().path());
+    let json = entries.filter(|path| path.extension().is_some_and(|e| e == "json") && !path.ends_with("schema.json"));
     let mut paths: Vec<_> = json.collect();
     paths.sort();
     assert!(paths.len() >= 20);
@@ -51,11 +47,7 @@ fn every_shipped_case_fits_the_schema() {
             panic!("{}: {error} at {}", path.display(), error.instance_path());
         }
         let resolved = serde_json::from_str(&load(&path, &[]).case.resolved_json()).unwrap();
-        assert!(
-            validator.is_valid(&resolved),
-            "{} as resolved",
-            path.display()
-        );
+        assert!(validator.is_valid(&resolved), "{} as resolved", path.display());
     }
 }
 
@@ -90,9 +82,7 @@ fn a_resolved_case_reads_back_as_itself_and_needs_no_other_file() {
 
 #[test]
 fn defaults_are_filled_in() {
-    let case = load(Path::new("cases/two-bladders.json"), &[])
-        .case
-        .resolved();
+    let case = load(Path::new("cases/two-bladders.json"), &[]).case.resolved();
     assert_eq!(case.solver.max_order, MaxOrder::Auto);
     assert_eq!(case.mesh.segments, Some(1));
     assert_eq!(case.time.window_s, Some(2e-4));
@@ -156,32 +146,18 @@ fn names_of_ends_stand_for_their_conditions() {
     let free = read("\"free\"").resolve();
     assert!(matches!(
         (free.transverse, free.rotation, free.axial),
-        (
-            Translation::Force(_),
-            Rotation::Moment(_),
-            Translation::Force(_)
-        )
+        (Translation::Force(_), Rotation::Moment(_), Translation::Force(_))
     ));
     let pinned = read("{\"pinned\": {\"moment_n_m\": 2}}").resolve();
     assert!(matches!(pinned.transverse, Translation::Displacement(_)));
-    assert_eq!(
-        pinned.rotation,
-        Rotation::Moment(case::Signal::constant(2.0))
-    );
+    assert_eq!(pinned.rotation, Rotation::Moment(case::Signal::constant(2.0)));
     let guided = read("\"guided\"").resolve();
     assert!(matches!(
         (guided.transverse, guided.rotation, guided.axial),
-        (
-            Translation::Force(_),
-            Rotation::Slope(_),
-            Translation::Displacement(_)
-        )
+        (Translation::Force(_), Rotation::Slope(_), Translation::Displacement(_))
     ));
     let sliding = read("{\"guided\": {\"force_z_n\": 1}}").resolve();
-    assert_eq!(
-        sliding.axial,
-        Translation::Force(case::Signal::constant(1.0))
-    );
+    assert_eq!(sliding.axial, Translation::Force(case::Signal::constant(1.0)));
     let follower = read("{\"free\": {\"follower_shear_n\": 3}}")
         .resolve()
         .follower
@@ -193,10 +169,7 @@ fn names_of_ends_stand_for_their_conditions() {
     for text in ["\"free\"", "\"guided\"", "{\"clamped\":{\"u3_m\":1.0}}"] {
         assert_eq!(serde_json::to_string(&read(text)).unwrap(), text);
     }
-    assert!(
-        serde_json::from_str::<slcbeam::case::schema::End>("{\"clamped\": {\"force_x_n\": 1}}")
-            .is_err()
-    );
+    assert!(serde_json::from_str::<slcbeam::case::schema::End>("{\"clamped\": {\"force_x_n\": 1}}").is_err());
 }
 
 /// The paper's beam as `model.md` section 7 gives it, in every case of a figure.
@@ -207,17 +180,11 @@ fn the_cases_of_the_figures_share_the_papers_beam() {
     assert_eq!(cases.iter().filter(of_figure).count(), 15);
     for case in cases.iter().filter(of_figure) {
         let beam = &case.beam;
-        assert_eq!(
-            (beam.length_m, beam.height_m, beam.width_m),
-            (0.1, 0.0216, 0.05)
-        );
+        assert_eq!((beam.length_m, beam.height_m, beam.width_m), (0.1, 0.0216, 0.05));
         assert_eq!(
             (beam.axial_stiffness_factor, beam.bending_stiffness_factor),
             (0.53, 0.60)
         );
-        assert_eq!(
-            case.formulation,
-            slcbeam::case::schema::Formulation::Published
-        );
+        assert_eq!(case.formulation, slcbeam::case::schema::Formulation::Published);
     }
 }

@@ -11,10 +11,7 @@ use slcbeam::error::Error;
 
 #[test]
 fn a_wrong_key_names_the_nearest() {
-    let fault = fault_of(&replaced(
-        WIRING,
-        &[("\"viscosity_pa_s\"", "\"viscousity_pa_s\"")],
-    ));
+    let fault = fault_of(&replaced(WIRING, &[("\"viscosity_pa_s\"", "\"viscousity_pa_s\"")]));
     insta::assert_snapshot!(case::render(&fault, false, 100), @r#"
     fault: unknown key "viscousity_pa_s"
      --> bad.json:9:36 at /fluid/viscousity_pa_s
@@ -30,31 +27,11 @@ fn a_wrong_key_names_the_nearest() {
 #[test]
 fn numbers_out_of_range() {
     let at = "/fluid/viscosity_pa_s";
-    assert_fault(
-        one(&[("8.68e-4", "-8.68e-4")]),
-        at,
-        "-8.68e-4",
-        "out of range",
-    );
+    assert_fault(one(&[("8.68e-4", "-8.68e-4")]), at, "-8.68e-4", "out of range");
     assert_fault(one(&[("8.68e-4", "NaN")]), at, "NaN", "not a finite number");
-    assert_fault(
-        one(&[("8.68e-4", "-Infinity")]),
-        at,
-        "-Infinity",
-        "not a finite number",
-    );
-    assert_fault(
-        one(&[("8.68e-4", "1e999")]),
-        at,
-        "1e999",
-        "not a finite number",
-    );
-    assert_fault(
-        one(&[("8.68e-4", "\"8.68e-4\"")]),
-        at,
-        "\"8.68e-4\"",
-        "found the text",
-    );
+    assert_fault(one(&[("8.68e-4", "-Infinity")]), at, "-Infinity", "not a finite number");
+    assert_fault(one(&[("8.68e-4", "1e999")]), at, "1e999", "not a finite number");
+    assert_fault(one(&[("8.68e-4", "\"8.68e-4\"")]), at, "\"8.68e-4\"", "found the text");
     assert_fault(
         one(&[("\"per_row\": 10", "\"per_row\": 10.5")]),
         "/bladders/per_row",
@@ -76,18 +53,11 @@ fn all_faults_at_once_in_the_order_of_the_text() {
                 "\"tip\": \"free\"",
                 "\"tip\": {\"conditions\": {\"u1_m\": 0, \"force_x_n\": 1, \"slope_rad\": 0}}",
             ),
-            (
-                "\"formulation\": \"published\"",
-                "\"formulation\": \"publishd\"",
-            ),
+            ("\"formulation\": \"published\"", "\"formulation\": \"publishd\""),
             ("\"end_s\": 0.5", "\"end_s\": \"0.5\""),
         ],
     ));
-    let pointers: Vec<&str> = fault
-        .violations
-        .iter()
-        .map(|v| v.pointer.as_str())
-        .collect();
+    let pointers: Vec<&str> = fault.violations.iter().map(|v| v.pointer.as_str()).collect();
     let wanted = [
         "/beam/lenght_m",
         "/fluid/viscosity_pa_s",
@@ -97,10 +67,7 @@ fn all_faults_at_once_in_the_order_of_the_text() {
         "/formulation",
         "/time/end_s",
     ];
-    assert!(
-        wanted.iter().all(|pointer| pointers.contains(pointer)),
-        "{pointers:?}"
-    );
+    assert!(wanted.iter().all(|pointer| pointers.contains(pointer)), "{pointers:?}");
     assert!(
         fault
             .violations
@@ -199,13 +166,8 @@ fn files_that_are_not_text() {
 
 #[test]
 fn a_fault_of_an_argument_is_shown_in_the_argument() {
-    let sets = [
-        "/fluid/viscosity_pa_s=-1".to_owned(),
-        "/slover/rtol=1e-3".to_owned(),
-    ];
-    let Err(Error::Case(fault)) =
-        case::parse(WIRING, Path::new("w.json"), Path::new("cases"), &sets)
-    else {
+    let sets = ["/fluid/viscosity_pa_s=-1".to_owned(), "/slover/rtol=1e-3".to_owned()];
+    let Err(Error::Case(fault)) = case::parse(WIRING, Path::new("w.json"), Path::new("cases"), &sets) else {
         panic!()
     };
     insta::assert_snapshot!(case::render(&fault, false, 100), @r#"

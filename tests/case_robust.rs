@@ -17,12 +17,7 @@ fn read(text: &str, sets: &[String]) -> Result<()> {
     let answer = case::parse(text, Path::new("x.json"), Path::new("cases"), sets);
     if let Err(Error::Case(fault)) = &answer {
         assert!(!fault.violations.is_empty());
-        assert!(
-            fault
-                .violations
-                .iter()
-                .all(|violation| violation.span.is_some())
-        );
+        assert!(fault.violations.iter().all(|violation| violation.span.is_some()));
         let _ = case::render(fault, true, 80);
     }
     answer.map(drop)

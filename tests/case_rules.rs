@@ -50,12 +50,7 @@ fn bladders_and_tubes_lead_somewhere() {
         "4",
         "bladder 4 is used twice, first at /network/chains/0/bladders/3",
     );
-    assert_fault(
-        one(&[("4, 5, 6", "4, 0, 6")]),
-        at,
-        "0",
-        "there is no bladder 0",
-    );
+    assert_fault(one(&[("4, 5, 6", "4, 0, 6")]), at, "0", "there is no bladder 0");
     assert_fault(
         one(&[("-10]", "-11]")]),
         "/network/chains/1/bladders/9",
@@ -75,10 +70,7 @@ fn bladders_and_tubes_lead_somewhere() {
     let tube = "\"from\": {\"bladder\": 3, \"end\": \"outlet\"}";
     let looped = [
         (tube, "\"from\": {\"junction\": \"tee\"}"),
-        (
-            "[\"connected\", \"connected\"]",
-            "[\"connected\", \"sealed\"]",
-        ),
+        ("[\"connected\", \"connected\"]", "[\"connected\", \"sealed\"]"),
     ];
     assert_fault(
         only(&replaced(TOUR, &looped)),
@@ -99,7 +91,8 @@ fn bladders_and_tubes_lead_somewhere() {
 
 #[test]
 fn a_tube_to_nowhere() {
-    let tubes = "\"tubes\": [{\"from\": {\"bladder\": 1, \"end\": \"inlet\"}, \"to\": {\"bladder\": 12, \"end\": \"inlet\"}}]";
+    let tubes =
+        "\"tubes\": [{\"from\": {\"bladder\": 1, \"end\": \"inlet\"}, \"to\": {\"bladder\": 12, \"end\": \"inlet\"}}]";
     let text = replaced(
         WIRING,
         &[
@@ -118,26 +111,10 @@ fn a_tube_to_nowhere() {
 #[test]
 fn junctions_chain_ends_and_ports() {
     let tour = |changes: &[(&str, &str)]| only(&replaced(TOUR, changes));
-    let declared = (
-        "\"junctions\": [\"tee\"]",
-        "\"junctions\": [\"tee\", \"tee\"]",
-    );
-    assert_fault(
-        tour(&[declared]),
-        "/network/junctions/1",
-        "\"tee\"",
-        "declared twice",
-    );
-    let unused = (
-        "\"junctions\": [\"tee\"]",
-        "\"junctions\": [\"tee\", \"lost\"]",
-    );
-    assert_fault(
-        tour(&[unused]),
-        "/network/junctions/1",
-        "\"lost\"",
-        "not used",
-    );
+    let declared = ("\"junctions\": [\"tee\"]", "\"junctions\": [\"tee\", \"tee\"]");
+    assert_fault(tour(&[declared]), "/network/junctions/1", "\"tee\"", "declared twice");
+    let unused = ("\"junctions\": [\"tee\"]", "\"junctions\": [\"tee\", \"lost\"]");
+    assert_fault(tour(&[unused]), "/network/junctions/1", "\"lost\"", "not used");
     assert_fault(
         tour(&[(
             "\"ends\": [\"connected\", \"sealed\"]",
@@ -166,25 +143,18 @@ fn junctions_chain_ends_and_ports() {
         "{\"bladder\": 1, \"end\": \"inlet\"}",
     )]);
     assert_eq!(pointer, "/network/ports/1/at");
-    assert!(
-        what.contains("a second port at the inlet of bladder 1"),
-        "{what}"
-    );
+    assert!(what.contains("a second port at the inlet of bladder 1"), "{what}");
 }
 
 #[test]
 fn a_junction_that_is_cut_off_is_dead() {
-    let valve =
-        "\"opening\": {\"ramp\": {\"from\": 1, \"to\": 0, \"start_s\": 0.15, \"duration_s\": 0.1}}";
+    let valve = "\"opening\": {\"ramp\": {\"from\": 1, \"to\": 0, \"start_s\": 0.15, \"duration_s\": 0.1}}";
     let closing = format!("\"to\": {{\"junction\": \"tee\"}}, {valve}");
     let text = replaced(
         TOUR,
         &[
             ("\"to\": {\"junction\": \"tee\"}", &closing),
-            (
-                "\"length_m\": 0.01}",
-                &format!("\"length_m\": 0.01, {valve}}}"),
-            ),
+            ("\"length_m\": 0.01}", &format!("\"length_m\": 0.01, {valve}}}")),
         ],
     );
     assert_fault(
@@ -221,16 +191,8 @@ fn ends_have_one_of_each_pair() {
         "\"follower_normal_n\"",
         "acts on an end that u1_m holds",
     );
-    let clamped = one(&[(
-        "\"tip\": \"free\"",
-        "\"tip\": {\"clamped\": {\"force_x_n\": 1}}",
-    )]);
-    assert_fault(
-        clamped,
-        "/ends/tip/clamped/force_x_n",
-        "\"force_x_n\"",
-        "unknown key",
-    );
+    let clamped = one(&[("\"tip\": \"free\"", "\"tip\": {\"clamped\": {\"force_x_n\": 1}}")]);
+    assert_fault(clamped, "/ends/tip/clamped/force_x_n", "\"force_x_n\"", "unknown key");
 }
 
 #[test]
@@ -238,19 +200,11 @@ fn motions_do_not_jump_and_agree_with_the_start() {
     let u3 = "{\"sine\": {\"amplitude\": 0.012, \"frequency_hz\": 20}}";
     let at = "/ends/root/clamped/u3_m";
     let step = "{\"ramp\": {\"to\": 0.01, \"start_s\": 0.1, \"duration_s\": 0}}";
-    assert_fault(
-        one(&[(u3, step)]),
-        at,
-        step,
-        "jumps from 0 to 0.01 at 0.1 s",
-    );
+    assert_fault(one(&[(u3, step)]), at, step, "jumps from 0 to 0.01 at 0.1 s");
     assert_fault(one(&[(u3, "0.01")]), at, "0.01", "but the start has 0 m");
     let table = "{\"table\": {\"times_s\": [0, 1, 1], \"values\": [0, 1, 2]}}";
     let (pointer, marked, _) = one(&[(u3, table)]);
-    assert_eq!(
-        (pointer, marked),
-        (format!("{at}/table/times_s/2"), "1".to_owned())
-    );
+    assert_eq!((pointer, marked), (format!("{at}/table/times_s/2"), "1".to_owned()));
     let table = "{\"table\": {\"times_s\": [0, 1, 2], \"values\": [0, 1]}}";
     assert_fault(
         one(&[(u3, table)]),
@@ -286,10 +240,7 @@ fn what_belongs_together() {
         "do not fit",
     );
     assert_fault(
-        one(&[(
-            "\"fields_interval_s\": 0.001",
-            "\"fields_interval_s\": 0.0012",
-        )]),
+        one(&[("\"fields_interval_s\": 0.001", "\"fields_interval_s\": 0.0012")]),
         "/time/fields_interval_s",
         "0.0012",
         "not a multiple",

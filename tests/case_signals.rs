@@ -26,7 +26,13 @@ fn simple() -> BoxedStrategy<Signal> {
         )),
         prop::collection::vec(-2.0..2.0, 1..5).prop_map(|c| format!(r#"{{"polynomial":{{"coefficients":{c:?}}}}}"#)),
         (prop::collection::vec((0.05..0.5, -1.0..1.0), 1..7), any::<bool>()).prop_map(|(points, cubic)| {
-            let times: Vec<f64> = points.iter().scan(0.0, |t, p| { *t += p.0; Some(*t) }).collect();
+            let times: Vec<f64> = points
+                .iter()
+                .scan(0.0, |t, p| {
+                    *t += p.0;
+                    Some(*t)
+                })
+                .collect();
             let values: Vec<f64> = points.iter().map(|p| p.1).collect();
             let kind = if cubic { "cubic" } else { "linear" };
             format!(r#"{{"table":{{"times_s":{times:?},"values":{values:?},"interpolation":"{kind}"}}}}"#)
@@ -87,10 +93,7 @@ fn a_smooth_start_joins_twice_differentiably() {
     let sine = signal(r#"{"sine":{"amplitude":2,"frequency_hz":4,"ramp_cycles":2}}"#);
     assert_eq!(jet(&sine, 0.0), Jet::default());
     let (left, right) = (jet(&sine, 0.5 - 1e-9), jet(&sine, 0.5 + 1e-9));
-    assert!(
-        (left.rate - right.rate).abs() < 1e-4
-            && (left.acceleration - right.acceleration).abs() < 1e-2
-    );
+    assert!((left.rate - right.rate).abs() < 1e-4 && (left.acceleration - right.acceleration).abs() < 1e-2);
     let impulsive = signal(r#"{"sine":{"amplitude":2,"frequency_hz":4}}"#);
     assert_eq!(jet(&impulsive, 0.0).rate, 2.0 * std::f64::consts::TAU * 4.0);
 }
@@ -98,42 +101,11 @@ fn a_smooth_start_joins_twice_differentiably() {
 #[test]
 fn a_branch_is_chosen_by_the_interval_not_by_the_instant() {
     let step = signal(r#"{"ramp":{"to":3,"start_s":0.5,"duration_s":0}}"#);
-    assert_eq!(
-        step.jet(Clock {
-            t: 0.5,
-            within: 0.4
-        })
-        .value,
-        0.0
-    );
-    assert_eq!(
-        step.jet(Clock {
-            t: 0.5,
-            within: 0.6
-        })
-        .value,
-        3.0
-    );
-    let zigzag =
-        signal(r#"{"table":{"times_s":[0,1,2],"values":[0,1,0],"interpolation":"linear"}}"#);
-    assert_eq!(
-        zigzag
-            .jet(Clock {
-                t: 1.0,
-                within: 0.5
-            })
-            .rate,
-        1.0
-    );
-    assert_eq!(
-        zigzag
-            .jet(Clock {
-                t: 1.0,
-                within: 1.5
-            })
-            .rate,
-        -1.0
-    );
+    assert_eq!(step.jet(Clock { t: 0.5, within: 0.4 }).value, 0.0);
+    assert_eq!(step.jet(Clock { t: 0.5, within: 0.6 }).value, 3.0);
+    let zigzag = signal(r#"{"table":{"times_s":[0,1,2],"values":[0,1,0],"interpolation":"linear"}}"#);
+    assert_eq!(zigzag.jet(Clock { t: 1.0, within: 0.5 }).rate, 1.0);
+    assert_eq!(zigzag.jet(Clock { t: 1.0, within: 1.5 }).rate, -1.0);
     assert_eq!(zigzag.smooth_intervals(1.5), [(0.0, 1.0), (1.0, 1.5)]);
 }
 
@@ -163,10 +135,7 @@ fn a_cubic_table_is_the_natural_spline() {
 fn the_shortest_time_scale() {
     let period = |json: &str| signal(json).fastest_period_s();
     assert_eq!(period("2"), None);
-    assert_eq!(
-        period(r#"{"sine":{"amplitude":1,"frequency_hz":4}}"#),
-        Some(0.25)
-    );
+    assert_eq!(period(r#"{"sine":{"amplitude":1,"frequency_hz":4}}"#), Some(0.25));
     assert_eq!(period(r#"{"sine":{"amplitude":0,"frequency_hz":4}}"#), None);
     assert_eq!(
         period(r#"{"sigmoid":{"amplitude":1,"steepness_per_s":-8,"midpoint_s":1}}"#),
@@ -177,8 +146,7 @@ fn the_shortest_time_scale() {
         period(r#"{"table":{"times_s":[0,0.5,0.75],"values":[0,1,0]}}"#),
         Some(0.25)
     );
-    let two =
-        r#"[{"sine":{"amplitude":1,"frequency_hz":4}},{"sine":{"amplitude":1,"frequency_hz":1}}]"#;
+    let two = r#"[{"sine":{"amplitude":1,"frequency_hz":4}},{"sine":{"amplitude":1,"frequency_hz":1}}]"#;
     assert_eq!(period(&format!(r#"{{"sum":{two}}}"#)), Some(0.25));
     assert_eq!(period(&format!(r#"{{"product":{two}}}"#)), Some(0.2));
 }
@@ -207,8 +175,5 @@ fn profiles_and_their_slopes() {
     assert_eq!(read(r#"{"cosine":{"waves":0}}"#).value(0.3), 1.0);
     assert_eq!(Profile::one().value(0.3), 1.0);
     // The slope at an end is that of the curve, not of the constant beyond.
-    assert_eq!(
-        read(r#"{"table":{"positions":[0,1],"values":[0,2]}}"#).slope(0.0),
-        2.0
-    );
+    assert_eq!(read(r#"{"table":{"positions":[0,1],"values":[0,2]}}"#).slope(0.0), 2.0);
 }

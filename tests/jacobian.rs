@@ -37,16 +37,18 @@ fn worst_difference(dae: &mut BeamDae, seed: u64, size: f64) -> f64 {
         let step = 2e-5 * size;
         for (r, k) in residual.iter_mut().zip([-2.0, -1.0, 1.0, 2.0]) {
             let shifted = |v: &[f64], factor: f64| -> Vec<f64> {
-                v.iter().zip(&colour).map(|(x, &of)| if of == c { x + k * step * factor } else { *x }).collect()
+                v.iter()
+                    .zip(&colour)
+                    .map(|(x, &of)| if of == c { x + k * step * factor } else { *x })
+                    .collect()
             };
             dae.residual(t, &shifted(&y, 1.0), &shifted(&yp, cj), r).unwrap();
         }
         for j in (0..n).filter(|&j| colour[j] == c) {
             for entry in pattern.column(j) {
                 let i = pattern.rows[entry] as usize;
-                differenced[entry] = (residual[0][i] - 8.0 * residual[1][i] + 8.0 * residual[2][i]
-                    - residual[3][i])
-                    / (12.0 * step);
+                differenced[entry] =
+                    (residual[0][i] - 8.0 * residual[1][i] + 8.0 * residual[2][i] - residual[3][i]) / (12.0 * step);
             }
         }
     }
@@ -78,7 +80,11 @@ fn jacobian_agrees_with_coloured_differences_on_every_case() {
     files.sort();
     assert!(!files.is_empty());
     for path in files {
-        for sets in [vec![], vec!["/formulation=\"conservative\"".to_string()], vec!["/formulation=\"published\"".to_string()]] {
+        for sets in [
+            vec![],
+            vec!["/formulation=\"conservative\"".to_string()],
+            vec!["/formulation=\"published\"".to_string()],
+        ] {
             let loaded = case::load(&path, &sets).unwrap();
             let mut dae = BeamDae::new(System::new(&loaded.case));
             for (seed, size) in [(1, 1.0), (2, 0.3), (3, 0.03)] {

@@ -74,8 +74,7 @@ fn header() -> Header {
 
 fn u1(theta: f64, t: f64) -> f64 {
     let s = theta / LENGTH;
-    let second_mode =
-        (4.694 * s).cosh() - (4.694 * s).cos() - 1.0185 * ((4.694 * s).sinh() - (4.694 * s).sin());
+    let second_mode = (4.694 * s).cosh() - (4.694 * s).cos() - 1.0185 * ((4.694 * s).sinh() - (4.694 * s).sin());
     1e-4 * second_mode * (2.0 * PI * FREQUENCY * t).sin() * (1.0 - (-8.0 * t).exp())
 }
 
@@ -157,11 +156,7 @@ fn summary_of(status: Status) -> Summary {
         solver: Default::default(),
         wall_s: Default::default(),
         effects: Default::default(),
-        characteristic: [
-            ("f_u".to_string(), f64::INFINITY),
-            ("t_s_s".to_string(), 0.0457),
-        ]
-        .into(),
+        characteristic: [("f_u".to_string(), f64::INFINITY), ("t_s_s".to_string(), 0.0457)].into(),
         warnings: Vec::new(),
     }
 }
@@ -243,18 +238,10 @@ fn the_history_reads_back_exactly() {
         .expect("it finishes");
     let mut reader = csv::Reader::from_path(dir.path().join("history.csv")).expect("a table");
     assert_eq!(
-        reader
-            .headers()
-            .expect("names")
-            .iter()
-            .take(2)
-            .collect::<Vec<_>>(),
+        reader.headers().expect("names").iter().take(2).collect::<Vec<_>>(),
         ["t [s]", "tip_u1 [m]"]
     );
-    let rows: Vec<Vec<f64>> = reader
-        .deserialize()
-        .collect::<Result<_, _>>()
-        .expect("numbers");
+    let rows: Vec<Vec<f64>> = reader.deserialize().collect::<Result<_, _>>().expect("numbers");
     assert_eq!(rows.len(), 101);
     for row in &rows {
         // Shortest round trip: not one bit is lost.
@@ -274,10 +261,7 @@ fn the_arrays_read_back_exactly() {
             .by_name(name)
             .expect("readable")
             .unwrap_or_else(|| panic!("no {name}"));
-        (
-            array.shape().to_vec(),
-            array.into_vec::<f64>().expect("doubles"),
-        )
+        (array.shape().to_vec(), array.into_vec::<f64>().expect("doubles"))
     };
     let (shape, times) = get("t_fields_s");
     assert_eq!((shape, times.len()), (vec![57], 57));
@@ -286,10 +270,7 @@ fn the_arrays_read_back_exactly() {
     assert_eq!(get("bladder").1, header().axes[2].values);
     let (shape, values) = get("u1_m");
     assert_eq!(shape, [57, 41]);
-    assert_eq!(
-        values[41 * 50 + 40].to_bits(),
-        u1(LENGTH, times[50]).to_bits()
-    );
+    assert_eq!(values[41 * 50 + 40].to_bits(), u1(LENGTH, times[50]).to_bits());
     assert_eq!(get("pressure_pa").0, [57, 40]);
 }
 
@@ -298,18 +279,13 @@ fn numbers_that_are_not_finite_stay_out_of_json() {
     let dir = tempfile::tempdir().expect("a place");
     let mut failed = summary_of(Status::Failed);
     failed.balances.energy_residual_relative = f64::NAN;
-    record(dir.path(), 3, 1.0)
-        .finish(&failed)
-        .expect("it finishes");
+    record(dir.path(), 3, 1.0).finish(&failed).expect("it finishes");
     let text = read(dir.path(), "summary.json");
     assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
     let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert!(value["balances"]["energy_residual_relative"].is_null());
     assert!(value["characteristic"].get("f_u").is_none());
-    assert_eq!(
-        value["quantities"]["tip_u1_m"],
-        serde_json::json!({"final": 1e-4})
-    );
+    assert_eq!(value["quantities"]["tip_u1_m"], serde_json::json!({"final": 1e-4}));
     let back = summary::read(dir.path()).expect("it reads back");
     assert!(back.balances.energy_residual_relative.is_nan());
     assert_eq!(back.status, Status::Failed);
@@ -343,10 +319,7 @@ fn a_run_without_a_single_instant_finishes_too() {
         .expect("it finishes");
     assert!(dir.path().join("fields.npz").exists());
     assert!(!dir.path().join("deflection.svg").exists());
-    assert_eq!(
-        summary::read(dir.path()).expect("a summary").status,
-        Status::Failed
-    );
+    assert_eq!(summary::read(dir.path()).expect("a summary").status, Status::Failed);
 }
 
 #[test]
@@ -355,29 +328,18 @@ fn a_run_that_does_not_begin_leaves_an_older_result_alone() {
     record(dir.path(), 20, 1.0)
         .finish(&summary_of(Status::Finished))
         .expect("it finishes");
-    let (history, text) = (
-        read(dir.path(), "history.csv"),
-        read(dir.path(), "summary.json"),
-    );
+    let (history, text) = (read(dir.path(), "history.csv"), read(dir.path(), "summary.json"));
     recorder(dir.path())
         .finish(&summary_of(Status::Failed))
         .expect("it finishes");
     assert_eq!(
         (history, text),
-        (
-            read(dir.path(), "history.csv"),
-            read(dir.path(), "summary.json")
-        )
+        (read(dir.path(), "history.csv"), read(dir.path(), "summary.json"))
     );
     // In a new folder the failure is on record.
     let new = dir.path().join("new");
-    recorder(&new)
-        .finish(&summary_of(Status::Failed))
-        .expect("it finishes");
-    assert_eq!(
-        summary::read(&new).expect("a summary").status,
-        Status::Failed
-    );
+    recorder(&new).finish(&summary_of(Status::Failed)).expect("it finishes");
+    assert_eq!(summary::read(&new).expect("a summary").status, Status::Failed);
 }
 
 #[test]
@@ -477,10 +439,7 @@ fn pictures_are_well_formed_and_labelled() {
     for (name, expected) in labels {
         let svg = read(dir.path(), name);
         assert!(is_well_formed(&svg), "{name}");
-        assert!(
-            svg.contains("wiring-3 &lt;&amp;&gt;"),
-            "{name} names its case"
-        );
+        assert!(svg.contains("wiring-3 &lt;&amp;&gt;"), "{name} names its case");
         for label in expected {
             assert!(
                 svg.contains(&format!("\n{label}")) || svg.contains(label),
@@ -506,18 +465,12 @@ fn pressure_curves_break_between_networks() {
     let lines = |svg: &str, colour: &str| svg.matches(&format!("stroke=\"{colour}\"")).count();
     let guessed = plot::pressure::draw(&data).expect("a picture");
     // Dark blue and dark red: a piece for each of the two networks.
-    assert_eq!(
-        (lines(&guessed, "#0B246B"), lines(&guessed, "#6E081B")),
-        (2, 2)
-    );
+    assert_eq!((lines(&guessed, "#0B246B"), lines(&guessed, "#6E081B")), (2, 2));
     let told = plot::Pressure {
         network: vec![7; data.x_f.len()],
         ..data
     };
-    assert_eq!(
-        lines(&plot::pressure::draw(&told).expect("a picture"), "#0B246B"),
-        1
-    );
+    assert_eq!(lines(&plot::pressure::draw(&told).expect("a picture"), "#0B246B"), 1);
 }
 
 #[test]
@@ -536,9 +489,7 @@ fn absent_data_make_no_picture() {
     let mut recorder = recorder(dir.path());
     recorder.begin(&dry).expect("it begins");
     recorder.history(&[0.0]).expect("a row");
-    recorder
-        .finish(&summary_of(Status::Finished))
-        .expect("it finishes");
+    recorder.finish(&summary_of(Status::Finished)).expect("it finishes");
     for name in folder::PICTURES {
         assert!(!dir.path().join(name).exists(), "{name}");
     }

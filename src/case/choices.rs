@@ -96,7 +96,10 @@ impl<'de> Deserialize<'de> for MaxOrder {
                 let Forced { forced } = Forced::deserialize(MapAccessDeserializer::new(map))?;
                 match forced {
                     1..=5 => Ok(MaxOrder::Forced(forced)),
-                    _ => Err(serde::de::Error::invalid_value(Unexpected::Unsigned(forced.into()), &self)),
+                    _ => Err(serde::de::Error::invalid_value(
+                        Unexpected::Unsigned(forced.into()),
+                        &self,
+                    )),
                 }
             }
         }

@@ -66,9 +66,7 @@ impl Curve {
     /// Value and derivatives at `x`; at the ends those of the curve, not of the constant beyond.
     pub fn at(&self, x: f64) -> Jet {
         match (self.at.first(), self.at.last()) {
-            (Some(&first), Some(_)) if x < first || self.at.len() == 1 => {
-                Jet::constant(self.values[0])
-            }
+            (Some(&first), Some(_)) if x < first || self.at.len() == 1 => Jet::constant(self.values[0]),
             (Some(_), Some(&last)) if x > last => Jet::constant(self.values[self.at.len() - 1]),
             (Some(_), Some(_)) => self.piece(self.piece_of(x), x),
             _ => Jet::default(),
@@ -76,10 +74,7 @@ impl Curve {
     }
 
     fn piece_of(&self, x: f64) -> usize {
-        self.at
-            .partition_point(|&knot| knot <= x)
-            .clamp(1, self.at.len() - 1)
-            - 1
+        self.at.partition_point(|&knot| knot <= x).clamp(1, self.at.len() - 1) - 1
     }
 
     /// The cubic of piece `i`: with `a = (x1 - x)/h`, `b = (x - x0)/h`,

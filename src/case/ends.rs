@@ -127,11 +127,7 @@ impl End {
             "clamped" => (true, true, true),
             "pinned" => (true, false, true),
             "guided" => (false, true, given.force_z_n.is_none()),
-            _ => (
-                given.u1_m.is_some(),
-                given.slope_rad.is_some(),
-                given.u3_m.is_some(),
-            ),
+            _ => (given.u1_m.is_some(), given.slope_rad.is_some(), given.u3_m.is_some()),
         };
         let translation = |holds, displacement, force| match holds {
             true => Translation::Displacement(or_zero(displacement)),
@@ -199,16 +195,12 @@ impl<'de> Visitor<'de> for EndReader {
 
     fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<End, E> {
         let alone = FORMS[..ALONE].iter().any(|form| form.0 == name);
-        let end = alone
-            .then(|| End::from_form(name, EndConditions::default()))
-            .flatten();
+        let end = alone.then(|| End::from_form(name, EndConditions::default())).flatten();
         end.ok_or_else(|| E::invalid_value(serde::de::Unexpected::Str(name), &self))
     }
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<End, A::Error> {
-        let named = std::collections::BTreeMap::<String, EndConditions>::deserialize(
-            MapAccessDeserializer::new(map),
-        )?;
+        let named = std::collections::BTreeMap::<String, EndConditions>::deserialize(MapAccessDeserializer::new(map))?;
         let mut forms = named.into_iter();
         let (Some((name, given)), None) = (forms.next(), forms.next()) else {
             return Err(A::Error::custom("exactly one form of end must be given"));
@@ -240,10 +232,7 @@ impl JsonSchema for End {
                 .unwrap_or_default()
         };
         let object = |(name, description, keys): &(&str, &str, &[&str])| {
-            let properties: serde_json::Map<_, _> = keys
-                .iter()
-                .map(|key| ((*key).to_owned(), property(key)))
-                .collect();
+            let properties: serde_json::Map<_, _> = keys.iter().map(|key| ((*key).to_owned(), property(key))).collect();
             let given = json_schema!({ "type": "object", "properties": properties, "additionalProperties": false });
             json_schema!({
                 "type": "object", "description": description, "properties": { *name: given },

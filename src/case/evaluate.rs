@@ -15,9 +15,7 @@ impl Signal {
             Self::Ramp(ramp) => ramp.jet(clock),
             Self::Polynomial(polynomial) => polynomial.jet(clock.t),
             Self::Table(table) => table.curve.jet(clock.t, clock.within, table.interpolation),
-            Self::Sum(terms) => terms
-                .iter()
-                .fold(Jet::default(), |sum, term| sum + term.jet(clock)),
+            Self::Sum(terms) => terms.iter().fold(Jet::default(), |sum, term| sum + term.jet(clock)),
             Self::Product(factors) => factors
                 .iter()
                 .fold(Jet::constant(1.0), |product, f| product * f.jet(clock)),
@@ -35,24 +33,12 @@ impl Signal {
     pub fn breaks(&self, out: &mut Vec<f64>) {
         match self {
             Self::Constant(_) | Self::Sine(_) | Self::Sigmoid(_) | Self::Polynomial(_) => {}
-            Self::Ramp(ramp) if ramp.duration_s > 0.0 => {
-                out.extend([ramp.start_s, ramp.start_s + ramp.duration_s])
-            }
+            Self::Ramp(ramp) if ramp.duration_s > 0.0 => out.extend([ramp.start_s, ramp.start_s + ramp.duration_s]),
             Self::Ramp(ramp) => out.push(ramp.start_s),
             Self::Table(table) if table.times_s.len() < 2 => {}
-            Self::Table(table) if table.interpolation == Interpolation::Linear => {
-                out.extend(&table.times_s)
-            }
-            Self::Table(table) => out.extend(
-                table
-                    .times_s
-                    .first()
-                    .into_iter()
-                    .chain(table.times_s.last()),
-            ),
-            Self::Sum(parts) | Self::Product(parts) => {
-                parts.iter().for_each(|part| part.breaks(out))
-            }
+            Self::Table(table) if table.interpolation == Interpolation::Linear => out.extend(&table.times_s),
+            Self::Table(table) => out.extend(table.times_s.first().into_iter().chain(table.times_s.last())),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.breaks(out)),
         }
     }
 
@@ -79,16 +65,9 @@ impl Signal {
             Self::Sigmoid(sigmoid) => Some(4.0 / sigmoid.steepness_per_s.abs()),
             Self::Ramp(ramp) => Some(ramp.duration_s),
             Self::Table(table) => table.curve.smallest_spacing(),
-            Self::Sum(terms) => terms
-                .iter()
-                .filter_map(Self::fastest_period_s)
-                .reduce(f64::min),
+            Self::Sum(terms) => terms.iter().filter_map(Self::fastest_period_s).reduce(f64::min),
             Self::Product(factors) => {
-                let frequency: f64 = factors
-                    .iter()
-                    .filter_map(Self::fastest_period_s)
-                    .map(f64::recip)
-                    .sum();
+                let frequency: f64 = factors.iter().filter_map(Self::fastest_period_s).map(f64::recip).sum();
                 Some(frequency.recip())
             }
         };
@@ -102,9 +81,7 @@ impl Signal {
             Self::Sine(sine) => sine.amplitude == 0.0 || sine.frequency_hz == 0.0,
             Self::Sigmoid(sigmoid) => sigmoid.amplitude == 0.0 || sigmoid.steepness_per_s == 0.0,
             Self::Ramp(ramp) => ramp.from == ramp.to,
-            Self::Polynomial(polynomial) => {
-                polynomial.coefficients.iter().skip(1).all(|c| *c == 0.0)
-            }
+            Self::Polynomial(polynomial) => polynomial.coefficients.iter().skip(1).all(|c| *c == 0.0),
             Self::Table(table) => table.curve.is_constant(),
             Self::Sum(parts) | Self::Product(parts) => parts.iter().all(Self::is_constant),
         }
@@ -172,13 +149,10 @@ impl Ramp {
 impl Polynomial {
     /// Horner's rule for value and derivatives at once.
     pub(super) fn jet(&self, x: f64) -> Jet {
-        self.coefficients
-            .iter()
-            .rev()
-            .fold(Jet::default(), |p, &c| Jet {
-                value: p.value * x + c,
-                rate: p.rate * x + p.value,
-                acceleration: p.acceleration * x + 2.0 * p.rate,
-            })
+        self.coefficients.iter().rev().fold(Jet::default(), |p, &c| Jet {
+            value: p.value * x + c,
+            rate: p.rate * x + p.value,
+            acceleration: p.acceleration * x + 2.0 * p.rate,
+        })
     }
 }

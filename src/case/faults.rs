@@ -42,9 +42,7 @@ impl Faults {
             let Some((parent, _)) = pointer.rsplit_once('/') else {
                 continue;
             };
-            if let (Some(Value::Object(members)), Some(key)) =
-                (value.pointer_mut(parent), tokens(pointer).last())
-            {
+            if let (Some(Value::Object(members)), Some(key)) = (value.pointer_mut(parent), tokens(pointer).last()) {
                 members.shift_remove(&key);
             }
         }
@@ -86,12 +84,7 @@ impl Faults {
 
 /// Orders faults as the text does; those in `--set` arguments last.
 pub fn sort(faults: &mut [Violation]) {
-    faults.sort_by_key(|fault| {
-        (
-            fault.set.is_some(),
-            fault.span.as_ref().map_or(0, |span| span.start),
-        )
-    });
+    faults.sort_by_key(|fault| (fault.set.is_some(), fault.span.as_ref().map_or(0, |span| span.start)));
 }
 
 /// Whether `pointer` leads to what `ancestor` leads to, or into it.
@@ -178,12 +171,7 @@ impl Source {
                 };
             }
             // Not in the file: an object that a `--set` argument made.
-            if let Some(set) = self
-                .sets
-                .iter()
-                .rev()
-                .find(|set| is_below(&set.pointer, pointer))
-            {
+            if let Some(set) = self.sets.iter().rev().find(|set| is_below(&set.pointer, pointer)) {
                 let span = Some(0..set.json_at.saturating_sub(1));
                 return Violation {
                     set: Some(set.argument.clone()),

@@ -63,9 +63,7 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Lo
     };
     // Numbers that are none have their fault already; `null` stands for them.
     let told = violations.iter().map(|v| v.pointer.clone());
-    let told: Vec<String> = told
-        .filter(|p| value.pointer(p).is_some_and(Value::is_null))
-        .collect();
+    let told: Vec<String> = told.filter(|p| value.pointer(p).is_some_and(Value::is_null)).collect();
 
     let mut faults = Faults::default();
     validate::validate(&value, &schema_json::CASE, &mut faults);
@@ -164,10 +162,7 @@ fn fault(path: &Path, text: &str, violations: Vec<Violation>) -> Error {
 
 fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> Error {
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(valid + 200)]).into_owned();
-    let end = text[valid..]
-        .chars()
-        .next()
-        .map_or(valid, |c| valid + c.len_utf8());
+    let end = text[valid..].chars().next().map_or(valid, |c| valid + c.len_utf8());
     let hint = match bytes {
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "the file is UTF-16; save it as UTF-8",
         _ => "save it as UTF-8",

@@ -103,8 +103,5 @@ pub fn tokens(pointer: &str) -> impl Iterator<Item = String> {
 
 /// The pointer of a member or item of what `pointer` leads to.
 pub fn child(pointer: &str, token: impl std::fmt::Display) -> String {
-    format!(
-        "{pointer}/{}",
-        token.to_string().replace('~', "~0").replace('/', "~1")
-    )
+    format!("{pointer}/{}", token.to_string().replace('~', "~0").replace('/', "~1"))
 }

@@ -10,8 +10,7 @@ pub fn fault(number: &Number, schema: &Value, pointer: &str) -> Option<Violation
     if whole && !(number.is_i64() || number.is_u64()) {
         let fault = Violation::new(pointer, format!("{number} is not a whole number"));
         let value = number.as_f64().unwrap_or(f64::NAN);
-        let hint =
-            (value.fract() == 0.0 && value.abs() < 1e15).then(|| format!("write {value:.0}"));
+        let hint = (value.fract() == 0.0 && value.abs() < 1e15).then(|| format!("write {value:.0}"));
         return Some(Violation {
             hint,
             ..fault.allowed(range(schema))
@@ -23,19 +22,12 @@ pub fn fault(number: &Number, schema: &Value, pointer: &str) -> Option<Violation
         && bound("maximum").is_none_or(|b| value <= b)
         && bound("exclusiveMinimum").is_none_or(|b| value > b)
         && bound("exclusiveMaximum").is_none_or(|b| value < b);
-    (!inside).then(|| {
-        Violation::new(pointer, format!("{number} is out of range")).allowed(range(schema))
-    })
+    (!inside).then(|| Violation::new(pointer, format!("{number} is out of range")).allowed(range(schema)))
 }
 
 /// The range of a number, in words.
 fn range(schema: &Value) -> String {
-    let bound = |key: &str, words: &str| {
-        schema
-            .get(key)?
-            .as_f64()
-            .map(|b| format!("{words} {}", plain(b)))
-    };
+    let bound = |key: &str, words: &str| schema.get(key)?.as_f64().map(|b| format!("{words} {}", plain(b)));
     let low = bound("minimum", "at least").or_else(|| bound("exclusiveMinimum", "greater than"));
     let high = bound("maximum", "at most").or_else(|| bound("exclusiveMaximum", "less than"));
     let kind = match schema.get("type").and_then(Value::as_str) {

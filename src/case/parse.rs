@@ -78,10 +78,7 @@ impl Parser<'_> {
     fn nested(&mut self, read: fn(&mut Self, usize) -> Option<Kind>) -> Option<Kind> {
         let start = self.at;
         if self.depth == DEEPEST {
-            let fault = self.fault(
-                self.here(),
-                format!("more than {DEEPEST} brackets inside each other"),
-            );
+            let fault = self.fault(self.here(), format!("more than {DEEPEST} brackets inside each other"));
             return self.fail(fault);
         }
         self.depth += 1;
@@ -134,11 +131,7 @@ impl Parser<'_> {
             };
             self.pointer.truncate(length);
             if first == key_start {
-                members.push(Member {
-                    key,
-                    key_span,
-                    value,
-                });
+                members.push(Member { key, key_span, value });
             }
             if self.closes(b'}', start, "`,` or `}`")? {
                 return Some(Kind::Object(members));
@@ -206,10 +199,7 @@ impl Parser<'_> {
         match serde_json::from_str(&self.text[start..self.at]) {
             Ok(text) => Some(text),
             Err(_) => {
-                let fault = self.fault(
-                    start..self.at,
-                    "text with an escape that JSON does not know",
-                );
+                let fault = self.fault(start..self.at, "text with an escape that JSON does not know");
                 self.fail(fault.hint("a backslash itself is written `\\\\`"))
             }
         }
@@ -244,16 +234,10 @@ impl Parser<'_> {
                 )
                 .hint(format!("write {number:?}")),
             Ok(_) => self
-                .fault(
-                    start..self.at,
-                    format!("{} is not a finite number", short(word)),
-                )
+                .fault(start..self.at, format!("{} is not a finite number", short(word)))
                 .allowed("finite numbers of magnitude up to 1.797e308"),
             Err(_) => {
-                let fault = self.fault(
-                    start..self.at,
-                    format!("`{}` is not a JSON value", short(word)),
-                );
+                let fault = self.fault(start..self.at, format!("`{}` is not a JSON value", short(word)));
                 return self.fail(fault.hint("text needs double quotes"));
             }
         };
@@ -262,10 +246,7 @@ impl Parser<'_> {
     }
 
     fn unexpected<T>(&mut self, wanted: &str) -> Option<T> {
-        let fault = self.fault(
-            self.here(),
-            format!("expected {wanted}, found {}", self.found()),
-        );
+        let fault = self.fault(self.here(), format!("expected {wanted}, found {}", self.found()));
         let fault = match self.peek() {
             Some(b'/') | Some(b'#') => fault.hint("JSON has no comments; use \"about\""),
             Some(b'\'') => fault.hint("text needs double quotes"),
@@ -289,10 +270,7 @@ impl Parser<'_> {
             Some(b'"') => format!("the text that starts in line {}", self.line(start)),
             _ => format!("the value that starts in line {}", self.line(start)),
         };
-        let fault = self.fault(
-            end..end,
-            format!("the text ends inside {inside}: expected {wanted}"),
-        );
+        let fault = self.fault(end..end, format!("the text ends inside {inside}: expected {wanted}"));
         self.fail(fault.hint("the file is cut off, or a closing bracket or quote is missing"))
     }
 
@@ -324,10 +302,7 @@ impl Parser<'_> {
     }
 
     fn here(&self) -> Range<usize> {
-        let length = self.text[self.at..]
-            .chars()
-            .next()
-            .map_or(0, char::len_utf8);
+        let length = self.text[self.at..].chars().next().map_or(0, char::len_utf8);
         self.at..self.at + length
     }
 
@@ -340,9 +315,6 @@ impl Parser<'_> {
     }
 
     fn line(&self, at: usize) -> usize {
-        1 + self.text.as_bytes()[..at]
-            .iter()
-            .filter(|b| **b == b'\n')
-            .count()
+        1 + self.text.as_bytes()[..at].iter().filter(|b| **b == b'\n').count()
     }
 }

@@ -152,12 +152,8 @@ impl Profile {
             Self::Sine(wave) => wave.sine(x),
             Self::Polynomial(polynomial) => polynomial.jet(x),
             Self::Table(table) => table.curve.at(x),
-            Self::Sum(terms) => terms
-                .iter()
-                .fold(Jet::default(), |sum, term| sum + term.jet(x)),
-            Self::Product(factors) => factors
-                .iter()
-                .fold(Jet::constant(1.0), |product, f| product * f.jet(x)),
+            Self::Sum(terms) => terms.iter().fold(Jet::default(), |sum, term| sum + term.jet(x)),
+            Self::Product(factors) => factors.iter().fold(Jet::constant(1.0), |product, f| product * f.jet(x)),
         }
     }
 }

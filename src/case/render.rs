@@ -52,12 +52,7 @@ pub fn render(fault: &CaseFault, colour: bool, width: usize) -> String {
 }
 
 fn one(fault: &CaseFault, violation: &Violation, paint: &Paint, width: usize, out: &mut String) {
-    let _ = writeln!(
-        out,
-        "{} {}",
-        paint.bold_red("fault:"),
-        paint.bold(&violation.what)
-    );
+    let _ = writeln!(out, "{} {}", paint.bold_red("fault:"), paint.bold(&violation.what));
     let text = violation.set.as_deref().unwrap_or(&fault.text);
     let span = violation.span.clone().filter(|span| span.end <= text.len());
     let excerpt = span
@@ -81,12 +76,7 @@ fn one(fault: &CaseFault, violation: &Violation, paint: &Paint, width: usize, ou
                 None => format!("{name}:{}:{}", e.line, e.column),
             };
             let _ = writeln!(out, "{:margin$}{} {place}{at}", "", paint.blue("-->"));
-            let _ = writeln!(
-                out,
-                "{} {bar} {}",
-                paint.blue(&format!("{:>margin$}", e.line)),
-                e.text
-            );
+            let _ = writeln!(out, "{} {bar} {}", paint.blue(&format!("{:>margin$}", e.line)), e.text);
             let carets = "^".repeat(e.carets);
             let _ = writeln!(
                 out,
@@ -113,15 +103,8 @@ fn one(fault: &CaseFault, violation: &Violation, paint: &Paint, width: usize, ou
     for (label, note) in notes {
         let Some(note) = note else { continue };
         let head = format!("{:margin$} = {label}: ", "");
-        for (i, line) in wrapped(note, width.saturating_sub(head.len()))
-            .iter()
-            .enumerate()
-        {
-            let start = if i == 0 {
-                head.clone()
-            } else {
-                " ".repeat(head.len())
-            };
+        for (i, line) in wrapped(note, width.saturating_sub(head.len())).iter().enumerate() {
+            let start = if i == 0 { head.clone() } else { " ".repeat(head.len()) };
             let _ = writeln!(out, "{start}{line}");
         }
     }
@@ -198,8 +181,7 @@ impl Excerpt {
         };
         let cut_left = from > line_start || keep_left < left.len();
         let keep_right = right.len().min(room - keep_left);
-        let cut_right = keep_right < right.len()
-            || (to < text.len() && right.len() == text[start..to].chars().count());
+        let cut_right = keep_right < right.len() || (to < text.len() && right.len() == text[start..to].chars().count());
         let mut shown: Vec<char> = left[left.len() - keep_left..]
             .iter()
             .chain(&right[..keep_right])

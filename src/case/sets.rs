@@ -10,10 +10,7 @@ use crate::error::{Error, Result};
 
 /// Puts the arguments into `value`, in order; `null` removes a member.
 pub fn apply(value: &mut Value, arguments: &[String]) -> Result<Vec<SetValue>> {
-    arguments
-        .iter()
-        .map(|argument| apply_one(value, argument))
-        .collect()
+    arguments.iter().map(|argument| apply_one(value, argument)).collect()
 }
 
 fn apply_one(value: &mut Value, argument: &str) -> Result<SetValue> {
@@ -91,11 +88,7 @@ fn insert(value: &mut Value, pointer: &str, given: Value) -> std::result::Result
             }
             Value::Array(items) => {
                 let count = items.len();
-                let index = if token == "-" {
-                    Some(count)
-                } else {
-                    token.parse().ok()
-                };
+                let index = if token == "-" { Some(count) } else { token.parse().ok() };
                 let Some(index) = index.filter(|i| *i <= count) else {
                     return Err(format!(
                         "{here} is an array of {count}; `{token}` is not one of its places (0 to {count}, or `-` to add)"

@@ -53,20 +53,13 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
     };
     if table.contains_key("times_s") || table.contains_key("values") {
         let fault = Violation::new(child(pointer, "csv"), "points given here and in a file");
-        return Err(Box::new(
-            fault.hint("keep \"times_s\" and \"values\", or \"csv\""),
-        ));
+        return Err(Box::new(fault.hint("keep \"times_s\" and \"values\", or \"csv\"")));
     }
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
         .from_path(base.join(&name))
-        .map_err(|e| {
-            at(
-                "csv",
-                format!("cannot read {}: {e}", base.join(&name).display()),
-            )
-        })?;
+        .map_err(|e| at("csv", format!("cannot read {}: {e}", base.join(&name).display())))?;
     let headings = reader
         .headers()
         .map_err(|e| at("csv", format!("cannot read {name}: {e}")))?
@@ -75,26 +68,17 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         let Some(wanted) = text(key) else {
             return match headings.len() > default {
                 true => Ok(default),
-                false => Err(at(
-                    "csv",
-                    format!("{name} has {} columns, not two", headings.len()),
-                )),
+                false => Err(at("csv", format!("{name} has {} columns, not two", headings.len()))),
             };
         };
-        headings
-            .iter()
-            .position(|heading| heading == wanted)
-            .ok_or_else(|| {
-                let fault = Violation::new(
-                    child(pointer, key),
-                    format!("{name} has no column \"{wanted}\""),
-                );
-                let fault = fault.allowed(headings.iter().collect::<Vec<_>>().join(", "));
-                Box::new(Violation {
-                    nearest: nearest(&wanted, headings.iter()),
-                    ..fault
-                })
+        headings.iter().position(|heading| heading == wanted).ok_or_else(|| {
+            let fault = Violation::new(child(pointer, key), format!("{name} has no column \"{wanted}\""));
+            let fault = fault.allowed(headings.iter().collect::<Vec<_>>().join(", "));
+            Box::new(Violation {
+                nearest: nearest(&wanted, headings.iter()),
+                ..fault
             })
+        })
     };
     let columns = [column("time_column", 0)?, column("value_column", 1)?];
     let (mut times, mut values) = (vec![], vec![]);
@@ -104,12 +88,7 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         for (column, out) in columns.iter().zip([&mut times, &mut values]) {
             let cell = record.get(*column).unwrap_or("");
             let number = cell.parse::<f64>().ok().filter(|n| n.is_finite());
-            let number = number.ok_or_else(|| {
-                at(
-                    "csv",
-                    format!("{name}, line {line}: \"{cell}\" is not a number"),
-                )
-            })?;
+            let number = number.ok_or_else(|| at("csv", format!("{name}, line {line}: \"{cell}\" is not a number")))?;
             out.push(Value::from(number));
         }
     }

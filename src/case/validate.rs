@@ -14,11 +14,7 @@ use crate::error::Violation;
 
 /// Compares a value with a schema.
 pub fn validate(value: &Value, schema: &Value, faults: &mut Faults) {
-    Walk {
-        root: schema,
-        faults,
-    }
-    .check(value, schema, "");
+    Walk { root: schema, faults }.check(value, schema, "");
 }
 
 struct Walk<'a> {
@@ -68,17 +64,8 @@ impl<'a> Walk<'a> {
     }
 
     /// The alternative the user meant; none, with a fault, when there is no such.
-    fn choose(
-        &mut self,
-        value: &Value,
-        branches: &[&'a Value],
-        pointer: &str,
-    ) -> Option<&'a Value> {
-        let fitting: Vec<&'a Value> = branches
-            .iter()
-            .copied()
-            .filter(|b| type_fits(value, b))
-            .collect();
+    fn choose(&mut self, value: &Value, branches: &[&'a Value], pointer: &str) -> Option<&'a Value> {
+        let fitting: Vec<&'a Value> = branches.iter().copied().filter(|b| type_fits(value, b)).collect();
         match value {
             Value::String(text) => self.choose_word(text, &fitting, branches, pointer),
             Value::Object(members) if fitting.iter().any(|b| tag(b).is_some()) => {
@@ -91,9 +78,7 @@ impl<'a> Walk<'a> {
                     let fault = fault.allowed(kinds(branches));
                     let hint = match value {
                         Value::Null => Some("leave the key out".to_owned()),
-                        Value::String(text) if text.parse::<f64>().is_ok() => {
-                            Some("numbers have no quotes".to_owned())
-                        }
+                        Value::String(text) if text.parse::<f64>().is_ok() => Some("numbers have no quotes".to_owned()),
                         _ => None,
                     };
                     self.faults.push(Violation { hint, ..fault });
@@ -151,8 +136,7 @@ impl<'a> Walk<'a> {
                 0 => "an empty object".to_owned(),
                 count => format!("{count} keys where one names the form"),
             };
-            self.faults
-                .push_at_key(Violation::new(pointer, what).allowed(allowed));
+            self.faults.push_at_key(Violation::new(pointer, what).allowed(allowed));
             // What stands under known names is looked at all the same.
             for (key, value) in members {
                 if let Some(inner) = known(key).and_then(|b| b.pointer("/properties")?.get(key)) {
@@ -166,11 +150,7 @@ impl<'a> Walk<'a> {
         let word = all.iter().flat_map(|b| words(b)).any(|word| word == key);
         let hint = word.then(|| format!("write \"{key}\" without braces"));
         let nearest = nearest(key, fitting.iter().filter_map(|b| tag(b))).filter(|_| !word);
-        self.faults.push_at_key(Violation {
-            nearest,
-            hint,
-            ..fault
-        });
+        self.faults.push_at_key(Violation { nearest, hint, ..fault });
         None
     }
 
@@ -183,23 +163,15 @@ impl<'a> Walk<'a> {
         for (key, value) in members {
             match properties.get(key) {
                 Some(inner) => self.check(value, inner, &child(pointer, key)),
-                None if closed => {
-                    misspelt.extend(self.unknown_key(key, members, properties, pointer))
-                }
+                None if closed => misspelt.extend(self.unknown_key(key, members, properties, pointer)),
                 None => {}
             }
         }
-        let required = schema
-            .get("required")
-            .and_then(Value::as_array)
-            .into_iter()
-            .flatten();
+        let required = schema.get("required").and_then(Value::as_array).into_iter().flatten();
         for key in required.filter_map(Value::as_str) {
             if !members.contains_key(key) && !misspelt.iter().any(|meant| meant == key) {
                 let fault = Violation::new(pointer, format!("the key \"{key}\" is missing"));
-                let meaning = properties
-                    .get(key)
-                    .and_then(|p| p.get("description")?.as_str());
+                let meaning = properties.get(key).and_then(|p| p.get("description")?.as_str());
                 let hint = meaning.map(|text| format!("{key}: {text}"));
                 self.faults.push_at_key(Violation { hint, ..fault });
             }
@@ -219,10 +191,7 @@ impl<'a> Walk<'a> {
             .map(String::as_str)
             .filter(|name| !members.contains_key(*name));
         let nearest = nearest(key, absent);
-        let fault = Violation::new(
-            child(pointer, key),
-            format!("unknown key \"{}\"", short(key)),
-        );
+        let fault = Violation::new(child(pointer, key), format!("unknown key \"{}\"", short(key)));
         let names: Vec<&str> = properties.keys().map(String::as_str).collect();
         let allowed = if names.is_empty() {
             "no keys at all".to_owned()
@@ -250,12 +219,8 @@ impl<'a> Walk<'a> {
             (_, Some(max)) if count > max => format!("at most {max}"),
             _ => return,
         };
-        let what = format!(
-            "an array of {count} {}",
-            if count == 1 { "entry" } else { "entries" }
-        );
-        self.faults
-            .push(Violation::new(pointer, what).allowed(allowed));
+        let what = format!("an array of {count} {}", if count == 1 { "entry" } else { "entries" });
+        self.faults.push(Violation::new(pointer, what).allowed(allowed));
     }
 }
 
@@ -269,11 +234,7 @@ fn tag(branch: &Value) -> Option<&str> {
 
 /// The words a branch for texts allows.
 fn words(branch: &Value) -> impl Iterator<Item = &str> {
-    let several = branch
-        .get("enum")
-        .and_then(Value::as_array)
-        .into_iter()
-        .flatten();
+    let several = branch.get("enum").and_then(Value::as_array).into_iter().flatten();
     several.chain(branch.get("const")).filter_map(Value::as_str)
 }
 

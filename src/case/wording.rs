@@ -18,11 +18,7 @@ pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<S
 pub fn short(text: &str) -> String {
     let mut chars = text.chars();
     let start: String = chars.by_ref().take(40).collect();
-    if chars.next().is_some() {
-        start + "..."
-    } else {
-        start
-    }
+    if chars.next().is_some() { start + "..." } else { start }
 }
 
 /// What was found where something else should stand.

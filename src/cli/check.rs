@@ -33,7 +33,12 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
             .effects
             .decisions
             .iter()
-            .map(|d| (d.name.to_string(), json!({"value": if d.on { "on" } else { "off" }, "reason": d.reason})))
+            .map(|d| {
+                (
+                    d.name.to_string(),
+                    json!({"value": if d.on { "on" } else { "off" }, "reason": d.reason}),
+                )
+            })
             .collect();
         let all = json!({
             "case": case.name, "unknowns": system.layout.len, "characteristic": numbers, "audit": audit,
@@ -54,14 +59,30 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         text += "\ncoupling\n";
         for f in &findings {
             let verdict = if f.good { "good" } else { "BAD" };
-            let _ = writeln!(text, "  {:<38} {:<12} wanted {}: {verdict}", f.name, significant(f.value, 5), f.wanted);
+            let _ = writeln!(
+                text,
+                "  {:<38} {:<12} wanted {}: {verdict}",
+                f.name,
+                significant(f.value, 5),
+                f.wanted
+            );
         }
     }
     text += "\neffects\n";
     for d in &system.model.effects.decisions {
-        let _ = writeln!(text, "  {:<16} {:<4} {}", d.name, if d.on { "on" } else { "off" }, d.reason);
+        let _ = writeln!(
+            text,
+            "  {:<16} {:<4} {}",
+            d.name,
+            if d.on { "on" } else { "off" },
+            d.reason
+        );
     }
-    let _ = writeln!(text, "\nunknowns {}, highest BDF order {order} ({why})", system.layout.len);
+    let _ = writeln!(
+        text,
+        "\nunknowns {}, highest BDF order {order} ({why})",
+        system.layout.len
+    );
     if !warnings.is_empty() {
         text += "\nwarnings\n";
         for w in &warnings {

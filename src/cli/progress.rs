@@ -93,8 +93,7 @@ impl Watcher {
             return;
         }
         self.shown = now;
-        self.left
-            .update((now - self.begun).as_secs_f64(), progress.t);
+        self.left.update((now - self.begun).as_secs_f64(), progress.t);
         self.show(progress);
     }
 

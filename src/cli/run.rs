@@ -23,11 +23,16 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
     let loaded = case::load(&asked.case.case, &asked.case.sets)?;
     let case = &loaded.case;
     super::refuse(&loaded, &System::new(case))?;
-    let out = asked.out.clone().unwrap_or_else(|| PathBuf::from("out").join(&case.name));
+    let out = asked
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("out").join(&case.name));
     let folder = ResultFolder::create(&out)?;
     let interrupted = interrupt::flag();
     let mut watcher = Watcher::new(asked.quiet);
-    let deadline = asked.max_wall.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds.clamp(0.0, 1e9)));
+    let deadline = asked
+        .max_wall
+        .map(|seconds| Instant::now() + Duration::from_secs_f64(seconds.clamp(0.0, 1e9)));
     let hook: Hook = Box::new(move |progress| {
         watcher.step(progress);
         if interrupt::raised(&interrupted) {
@@ -44,9 +49,8 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
         frequency_hz: characteristic::forcing_period(case).map(|p| 1.0 / p),
     };
     let (recorder, outcome) = if asked.resume {
-        let saved = checkpoint::read(&out)?.ok_or_else(|| {
-            Error::Usage(format!("{} holds no checkpoint to resume from", out.display()))
-        })?;
+        let saved = checkpoint::read(&out)?
+            .ok_or_else(|| Error::Usage(format!("{} holds no checkpoint to resume from", out.display())))?;
         let mut recorder = FolderRecorder::resume(folder, labels, hook, &saved, &dynamics::header(case))?;
         let outcome = dynamics::resume(case, &saved.run, &mut recorder)?;
         (recorder, outcome)

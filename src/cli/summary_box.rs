@@ -89,22 +89,14 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     add("integrator", Some(integrator(summary)), Tone::Plain);
     add("time", Some(times(summary)), Tone::Plain);
     let ended_well = summary.status != Status::Failed;
-    add(
-        "spent on",
-        spent(summary).filter(|_| ended_well),
-        Tone::Plain,
-    );
+    add("spent on", spent(summary).filter(|_| ended_well), Tone::Plain);
     rows
 }
 
 fn push_row(out: &mut String, row: &Row, width: usize, colour: bool) {
     let room = width - NAME - 5;
     let mut lines = wrap(&row.text, room);
-    let most = if row.tone == Tone::Bad {
-        LINES + 1
-    } else {
-        LINES
-    };
+    let most = if row.tone == Tone::Bad { LINES + 1 } else { LINES };
     if lines.len() > most {
         lines.truncate(most);
         if let Some(last) = lines.last_mut() {
@@ -119,10 +111,7 @@ fn push_row(out: &mut String, row: &Row, width: usize, colour: bool) {
             row.tone.paint(&name, colour)
         };
         let pad = " ".repeat(room - line.chars().count());
-        out.push_str(&format!(
-            "│ {name} {}{pad} │\n",
-            row.tone.paint(line, colour)
-        ));
+        out.push_str(&format!("│ {name} {}{pad} │\n", row.tone.paint(line, colour)));
     }
 }
 
@@ -178,9 +167,9 @@ fn deflection(summary: &Summary) -> Option<String> {
 fn pressure(summary: &Summary) -> Option<String> {
     let pressure = get(summary, "max_pressure_pa")?;
     let largest = shown(pressure.max_abs?, "Pa");
-    let window = pressure.window_max_abs.map_or(String::new(), |p| {
-        format!("{BETWEEN}in the window {}", shown(p, "Pa"))
-    });
+    let window = pressure
+        .window_max_abs
+        .map_or(String::new(), |p| format!("{BETWEEN}in the window {}", shown(p, "Pa")));
     Some(format!("largest: {largest}{window}"))
 }
 
@@ -194,13 +183,7 @@ fn energy(summary: &Summary) -> Option<String> {
             .and_then(|q| q.window)
             .map(|e| hold(format!("in the window {}", percent(e)))),
     ];
-    Some(
-        parts
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join(BETWEEN),
-    )
+    Some(parts.into_iter().flatten().collect::<Vec<_>>().join(BETWEEN))
 }
 
 fn balances(summary: &Summary) -> String {
@@ -213,9 +196,7 @@ fn balances(summary: &Summary) -> String {
         ("angular momentum", b.angular_momentum_residual_relative),
     ];
     // Exactly zero where a balance does not apply; energy always does.
-    let shown = parts
-        .into_iter()
-        .filter(|(what, x)| *what == "energy" || *x != 0.0);
+    let shown = parts.into_iter().filter(|(what, x)| *what == "energy" || *x != 0.0);
     let shown: Vec<_> = shown.map(|(what, x)| open(what, x)).collect();
     format!("open by (relative): {}", shown.join(BETWEEN))
 }
@@ -228,9 +209,7 @@ fn integrator(summary: &Summary) -> String {
         .enumerate()
         .max_by_key(|(_, n)| **n)
         .filter(|(_, n)| **n > 0);
-    let mostly = mostly.map_or(String::new(), |(k, _)| {
-        format!(", mostly of order {}", k + 1)
-    });
+    let mostly = mostly.map_or(String::new(), |(k, _)| format!(", mostly of order {}", k + 1));
     let failed = c.error_test_failures + c.newton_failures;
     let parts = [
         format!("{} steps{mostly}", count(c.steps)),
@@ -244,17 +223,11 @@ fn times(summary: &Summary) -> String {
     let (simulated, wall) = (summary.time_s, summary.wall_s.total);
     let simulated_text = hold(trimmed(&quantity(simulated, "s", 4)));
     let ratio = if simulated > 0.0 && wall > 0.0 {
-        format!(
-            "{BETWEEN}{} for a simulated second",
-            hold(duration(wall / simulated))
-        )
+        format!("{BETWEEN}{} for a simulated second", hold(duration(wall / simulated)))
     } else {
         String::new()
     };
-    format!(
-        "{simulated_text} simulated in {}{ratio}",
-        hold(duration(wall))
-    )
+    format!("{simulated_text} simulated in {}{ratio}", hold(duration(wall)))
 }
 
 fn spent(summary: &Summary) -> Option<String> {

@@ -16,7 +16,10 @@ fn wants_colour() -> bool {
 
 /// Columns of the terminal.
 pub fn width() -> usize {
-    std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok()).unwrap_or(100)
+    std::env::var("COLUMNS")
+        .ok()
+        .and_then(|c| c.parse().ok())
+        .unwrap_or(100)
 }
 
 /// Prints an error to standard error.
@@ -31,8 +34,15 @@ pub fn report(error: &Error) {
 
 /// A failed run in words.
 pub fn diagnosis(fault: &SolverFault) -> String {
-    let mut lines = vec![format!("slcbeam: the run failed at t = {:.6e} s: {}", fault.time_s, fault.what)];
-    for (what, text) in [("worst unknown", &fault.unknown), ("likely cause", &fault.cause), ("try", &fault.hint)] {
+    let mut lines = vec![format!(
+        "slcbeam: the run failed at t = {:.6e} s: {}",
+        fault.time_s, fault.what
+    )];
+    for (what, text) in [
+        ("worst unknown", &fault.unknown),
+        ("likely cause", &fault.cause),
+        ("try", &fault.hint),
+    ] {
         if let Some(text) = text {
             lines.push(format!("  {what}: {text}"));
         }

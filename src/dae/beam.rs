@@ -31,7 +31,12 @@ struct Buffers<T> {
 impl<T: crate::model::Scalar> Buffers<T> {
     fn new(system: &System) -> Self {
         let zeros = vec![T::zero(); system.layout.len];
-        Self { workspace: Workspace::new(system), y: zeros.clone(), yp: zeros.clone(), residual: zeros }
+        Self {
+            workspace: Workspace::new(system),
+            y: zeros.clone(),
+            yp: zeros.clone(),
+            residual: zeros,
+        }
     }
 }
 
@@ -47,7 +52,15 @@ impl BeamDae {
             sweeps[c / LANES].push((column, c % LANES));
         }
         let (plain, dual) = (Buffers::new(&system), Buffers::new(&system));
-        Self { system, within: 0.0, now, pattern, sweeps, plain, dual }
+        Self {
+            system,
+            within: 0.0,
+            now,
+            pattern,
+            sweeps,
+            plain,
+            dual,
+        }
     }
 
     /// The system that is solved.
@@ -108,21 +121,20 @@ impl Dae for BeamDae {
         Ok(())
     }
 
-    fn jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        seeds: Seeds<'_>,
-        values: &mut [f64],
-    ) -> Result<(), Fault> {
+    fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
         self.unscale(t, y, yp);
         let scales = &self.system.layout.scales;
         let rows = &self.system.layout.row_scales;
         let b = &mut self.dual;
         for k in 0..scales.len() {
-            b.y[k] = Dual { value: self.plain.y[k], derivative: [0.0; LANES] };
-            b.yp[k] = Dual { value: self.plain.yp[k], derivative: [0.0; LANES] };
+            b.y[k] = Dual {
+                value: self.plain.y[k],
+                derivative: [0.0; LANES],
+            };
+            b.yp[k] = Dual {
+                value: self.plain.yp[k],
+                derivative: [0.0; LANES],
+            };
         }
         for sweep in &self.sweeps {
             for &(column, lane) in sweep {

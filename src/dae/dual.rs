@@ -128,7 +128,10 @@ impl<const L: usize> SubAssign for Dual<L> {
 impl<const L: usize> Scalar for Dual<L> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        Self { value, derivative: [0.0; L] }
+        Self {
+            value,
+            derivative: [0.0; L],
+        }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

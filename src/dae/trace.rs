@@ -57,8 +57,11 @@ pub fn pattern(system: &System, now: &Instant) -> Pattern {
         sets.push(Vec::new());
     });
     let y: Vec<Trace> = (0..n).map(Trace::unknown).collect();
-    let yp: Vec<Trace> =
-        y.iter().zip(&system.layout.differential).map(|(&t, &d)| if d { t } else { NOTHING }).collect();
+    let yp: Vec<Trace> = y
+        .iter()
+        .zip(&system.layout.differential)
+        .map(|(&t, &d)| if d { t } else { NOTHING })
+        .collect();
     let mut residual = vec![NOTHING; n];
     let mut workspace = Workspace::new(system);
     recipe::residual(system, now, &y, &yp, &mut workspace, &mut residual);

@@ -90,7 +90,12 @@ impl FluidMesh {
             conductance,
             links,
             sources: wet.network.sources.iter().map(|s| place(s.into)).collect(),
-            bridges: wet.network.bridges.iter().map(|b| (place(b.from), place(b.to))).collect(),
+            bridges: wet
+                .network
+                .bridges
+                .iter()
+                .map(|b| (place(b.from), place(b.to)))
+                .collect(),
         }
     }
 

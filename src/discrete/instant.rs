@@ -1,8 +1,8 @@
 //! Everything that depends on time alone, evaluated once an instant.
 
 use super::System;
-use crate::case::{Rotation, Translation};
 use crate::case::signals::{Clock, Jet, Signal};
+use crate::case::{Rotation, Translation};
 use crate::model::Load;
 use crate::model::loads::LoadKind;
 
@@ -26,7 +26,11 @@ impl SampledLoad {
             LoadKind::ForceX | LoadKind::ForceZ => (0..mesh.nodes).map(|i| at(mesh.node_coordinate(i))).collect(),
             LoadKind::MomentX | LoadKind::MomentZ => (0..mesh.cells).map(|c| at(mesh.cell_coordinate(c))).collect(),
         };
-        Self { kind: load.kind, signal: load.signal.clone(), shape }
+        Self {
+            kind: load.kind,
+            signal: load.signal.clone(),
+            shape,
+        }
     }
 }
 
@@ -77,7 +81,11 @@ impl Instant {
     /// Room for the values of a system; nothing is evaluated yet.
     pub fn new(system: &System) -> Self {
         let (links, ports, sources) = system.model.wet.as_ref().map_or((0, 0, 0), |wet| {
-            (wet.network.links.len(), wet.network.ports.len(), wet.network.sources.len())
+            (
+                wet.network.links.len(),
+                wet.network.ports.len(),
+                wet.network.sources.len(),
+            )
         });
         Self {
             clock: None,
@@ -111,14 +119,22 @@ impl Instant {
                 Rotation::Slope(s) => (Some(s.jet(clock)), Jet::default()),
                 Rotation::Moment(s) => (None, s.jet(clock)),
             };
-            values.follower = end.follower.as_ref().map(|f| (f.normal.jet(clock).value, f.shear.jet(clock).value));
+            values.follower = end
+                .follower
+                .as_ref()
+                .map(|f| (f.normal.jet(clock).value, f.shear.jet(clock).value));
         }
         self.loads(system, clock);
         self.network(system, clock, first);
     }
 
     fn loads(&mut self, system: &System, clock: Clock) {
-        let arrays = [&mut self.force_x, &mut self.force_z, &mut self.moment_x, &mut self.moment_z];
+        let arrays = [
+            &mut self.force_x,
+            &mut self.force_z,
+            &mut self.moment_x,
+            &mut self.moment_z,
+        ];
         for array in arrays {
             array.fill(0.0);
         }
@@ -137,7 +153,9 @@ impl Instant {
     }
 
     fn network(&mut self, system: &System, clock: Clock, first: bool) {
-        let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return };
+        let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+            return;
+        };
         for (k, (link, mesh_link)) in wet.network.links.iter().zip(&fluid.links).enumerate() {
             match &link.opening {
                 None if !first => {}

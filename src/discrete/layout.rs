@@ -63,12 +63,15 @@ impl Layout {
         let last = mesh.nodes - 1;
         let driven = |motion: &Translation| matches!(motion, Translation::Displacement(_));
         let [root, tip] = &model.ends;
-        let free = |root: &Translation, tip: &Translation| usize::from(driven(root))..mesh.nodes - usize::from(driven(tip));
+        let free =
+            |root: &Translation, tip: &Translation| usize::from(driven(root))..mesh.nodes - usize::from(driven(tip));
         let free_u1 = free(&root.transverse, &tip.transverse);
         let free_u3 = free(&root.axial, &tip.axial);
         debug_assert!(free_u1.end >= last && free_u3.end >= last);
         let inertia = model.effects.solid_inertia;
-        let moving = inertia || model.section.drag > 0.0 || model.section.axial_damping_time > 0.0
+        let moving = inertia
+            || model.section.drag > 0.0
+            || model.section.axial_damping_time > 0.0
             || model.section.bending_damping_time > 0.0;
         let s = &model.scales;
         let cell_mass = model.section.mass_per_length * mesh.h;
@@ -76,12 +79,30 @@ impl Layout {
 
         let force_1 = s.transverse_force.max(1e-12);
         let force_3 = s.axial_force.max(1e-12);
-        let u1 = build.nodes("u1 [m]", &free_u1, s.transverse, if inertia { s.transverse_rate } else { force_1 }, moving);
-        let u3 = build.nodes("u3 [m]", &free_u3, s.axial, if inertia { s.axial_rate } else { force_3 }, moving);
+        let u1 = build.nodes(
+            "u1 [m]",
+            &free_u1,
+            s.transverse,
+            if inertia { s.transverse_rate } else { force_1 },
+            moving,
+        );
+        let u3 = build.nodes(
+            "u3 [m]",
+            &free_u3,
+            s.axial,
+            if inertia { s.axial_rate } else { force_3 },
+            moving,
+        );
         let (v1, v3) = if inertia {
             let acceleration = |rate: f64| cell_mass * rate * s.frequency;
             (
-                build.nodes("v1 [m/s]", &free_u1, s.transverse_rate, acceleration(s.transverse_rate), true),
+                build.nodes(
+                    "v1 [m/s]",
+                    &free_u1,
+                    s.transverse_rate,
+                    acceleration(s.transverse_rate),
+                    true,
+                ),
                 build.nodes("v3 [m/s]", &free_u3, s.axial_rate, acceleration(s.axial_rate), true),
             )
         } else {

@@ -130,7 +130,11 @@ pub fn energies(system: &System, w: &Workspace<f64>) -> Energies {
 /// Invariants at the state in the workspace; needs the strain rates of [`flows`].
 pub fn invariants(system: &System, w: &Workspace<f64>) -> Invariants {
     let (momentum, angular_momentum) = solid::momenta(system, w);
-    Invariants { momentum, angular_momentum, volumes: fluid::volumes(system, w) }
+    Invariants {
+        momentum,
+        angular_momentum,
+        volumes: fluid::volumes(system, w),
+    }
 }
 
 /// Adds `value` to a flow.

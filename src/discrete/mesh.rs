@@ -34,7 +34,11 @@ impl Mesh {
     /// Length that belongs to a node: `h`, at the ends `h/2`.
     #[inline]
     pub fn node_length(&self, node: usize) -> f64 {
-        if node == 0 || node + 1 == self.nodes { 0.5 * self.h } else { self.h }
+        if node == 0 || node + 1 == self.nodes {
+            0.5 * self.h
+        } else {
+            self.h
+        }
     }
 
     /// Weight of a node in its segment's mean moment: trapezoid `(1/2, 1, .., 1, 1/2)/K`.
@@ -48,7 +52,11 @@ impl Mesh {
     #[inline]
     pub fn segments_of_node(&self, node: usize) -> (usize, usize) {
         let right = (node / self.cells_per_segment).min(self.segments - 1);
-        let left = if node == 0 { 0 } else { (node - 1) / self.cells_per_segment };
+        let left = if node == 0 {
+            0
+        } else {
+            (node - 1) / self.cells_per_segment
+        };
         (left, right)
     }
 

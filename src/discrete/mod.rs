@@ -43,13 +43,31 @@ impl System {
     /// Discretises a checked case.
     pub fn new(case: &Case) -> Self {
         let model = Model::new(case);
-        let segments = case.bladders.as_ref().map(|b| b.per_row).or(case.mesh.segments).unwrap_or(10);
+        let segments = case
+            .bladders
+            .as_ref()
+            .map(|b| b.per_row)
+            .or(case.mesh.segments)
+            .unwrap_or(10);
         let mesh = Mesh::new(model.length, segments, case.mesh.cells_per_segment);
-        let fluid = model.wet.as_ref().map(|wet| FluidMesh::new(wet, case.mesh.cells_per_bladder));
+        let fluid = model
+            .wet
+            .as_ref()
+            .map(|wet| FluidMesh::new(wet, case.mesh.cells_per_bladder));
         let layout = Layout::new(&model, &mesh, fluid.as_ref());
         let loads: Vec<_> = model.loads.iter().map(|load| SampledLoad::new(load, &mesh)).collect();
-        let has_moments = loads.iter().any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ));
+        let has_moments = loads
+            .iter()
+            .any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ));
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
-        Self { model, mesh, fluid, layout, loads, has_moments, damped }
+        Self {
+            model,
+            mesh,
+            fluid,
+            layout,
+            loads,
+            has_moments,
+            damped,
+        }
     }
 }

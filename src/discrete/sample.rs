@@ -15,7 +15,11 @@ const BEAM: [ColumnText; 4] = [
     ("t", "s", "time"),
     ("tip_u1", "m", "transverse displacement of the tip"),
     ("tip_u3", "m", "axial displacement of the tip"),
-    ("tip_angle", "rad", "slope angle phi of the tip, counted over full turns"),
+    (
+        "tip_angle",
+        "rad",
+        "slope angle phi of the tip, counted over full turns",
+    ),
 ];
 
 /// Columns of the fluid.
@@ -23,7 +27,11 @@ const FLUID: [ColumnText; 4] = [
     ("max_pressure", "Pa", "pressure of the cell with the highest pressure"),
     ("min_pressure", "Pa", "pressure of the cell with the lowest pressure"),
     ("turbine_power", "W", "power of all turbines"),
-    ("least_opening", "1", "smallest bladder cross-section over that at rest; 0 is closed"),
+    (
+        "least_opening",
+        "1",
+        "smallest bladder cross-section over that at rest; 0 is closed",
+    ),
 ];
 
 /// Columns of the balances.
@@ -41,9 +49,21 @@ const BALANCE: [ColumnText; 16] = [
     ("harvested", "J", "harvested by the turbines"),
     ("dissipated_rectifiers", "J", "dissipated in check valves"),
     ("dissipated_damping", "J", "dissipated by material damping and drag"),
-    ("work_formulation", "J", "energy that the published momentum balance adds"),
-    ("work_reciprocity", "J", "energy that a coupling without reciprocity adds"),
-    ("energy_residual", "J", "energy now less energy at the start less all of the above: the integrator's error"),
+    (
+        "work_formulation",
+        "J",
+        "energy that the published momentum balance adds",
+    ),
+    (
+        "work_reciprocity",
+        "J",
+        "energy that a coupling without reciprocity adds",
+    ),
+    (
+        "energy_residual",
+        "J",
+        "energy now less energy at the start less all of the above: the integrator's error",
+    ),
 ];
 
 /// All columns of a system's history.
@@ -68,7 +88,10 @@ pub struct EnergyBalance {
 /// Energy now, less at the start, less all that came in and went out (`integrals` of [`FLOWS`]).
 pub fn energy_balance(stored: Energies, at_start: f64, integrals: &[f64]) -> EnergyBalance {
     let passed: f64 = FLOWS.iter().map(|f| f.energy_sign() * integrals[*f as usize]).sum();
-    EnergyBalance { stored, residual: stored.total() - at_start - passed }
+    EnergyBalance {
+        stored,
+        residual: stored.total() - at_start - passed,
+    }
 }
 
 /// One row of the history. The workspace holds the evaluated state.
@@ -117,7 +140,9 @@ fn tip_angle(system: &System, w: &Workspace<f64>) -> f64 {
 }
 
 fn turbine_power(system: &System, now: &Instant, w: &Workspace<f64>) -> f64 {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return 0.0 };
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return 0.0;
+    };
     let mut power = 0.0;
     for (link, &conductance) in fluid.links.iter().zip(&now.conductance) {
         if matches!(link.kind, LinkKind::Turbine(_)) {
@@ -134,7 +159,11 @@ fn turbine_power(system: &System, now: &Instant, w: &Workspace<f64>) -> f64 {
 /// Largest flow through a tube [m^3/s] and the tube's number among the tubes.
 pub fn largest_flow(system: &System, now: &Instant, w: &Workspace<f64>) -> Option<(f64, usize)> {
     let fluid = system.fluid.as_ref()?;
-    let tubes = fluid.links.iter().zip(&now.conductance).filter(|(link, _)| link.kind == LinkKind::Tube);
+    let tubes = fluid
+        .links
+        .iter()
+        .zip(&now.conductance)
+        .filter(|(link, _)| link.kind == LinkKind::Tube);
     tubes
         .map(|(link, g)| (g * (pressure_at(link.from, now, w) - pressure_at(link.to, now, w))).abs())
         .enumerate()
@@ -153,7 +182,12 @@ pub fn least_opening(system: &System, w: &Workspace<f64>) -> f64 {
 pub fn largest_strain(system: &System, half_height: f64, w: &Workspace<f64>) -> (f64, usize) {
     let last = system.mesh.nodes - 1;
     (0..=last)
-        .map(|i| ((node_stretch(w, i, last) - 1.0).abs() + w.kappa[i].abs() * half_height, i))
+        .map(|i| {
+            (
+                (node_stretch(w, i, last) - 1.0).abs() + w.kappa[i].abs() * half_height,
+                i,
+            )
+        })
         .fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a })
 }
 
@@ -191,12 +225,20 @@ pub fn axes(system: &System, tube_length: f64) -> Vec<AxisText> {
             start + (end - start) * ((cell % k) as f64 + 0.5) / k as f64
         };
         let array_of = |bladder: usize| map.arrays.iter().position(|a| a.contains(&bladder)).unwrap_or(0) as f64;
-        all.push(("x_f", "1", "network coordinate of the bladder cells, array by array", order.iter().map(|&c| x(c)).collect()));
+        all.push((
+            "x_f",
+            "1",
+            "network coordinate of the bladder cells, array by array",
+            order.iter().map(|&c| x(c)).collect(),
+        ));
         all.push((
             "bladder",
             "1",
             "bladder index R j of each cell along x_f",
-            order.iter().map(|&c| bladder_label(c / k, wet.per_row) as f64).collect(),
+            order
+                .iter()
+                .map(|&c| bladder_label(c / k, wet.per_row) as f64)
+                .collect(),
         ));
         all.push((
             "array",
@@ -211,5 +253,9 @@ pub fn axes(system: &System, tube_length: f64) -> Vec<AxisText> {
 /// Cells in the order of `X_f`.
 pub fn cell_order(system: &System, map: &NetworkCoordinate) -> Vec<usize> {
     let Some(fluid) = &system.fluid else { return vec![] };
-    map.arrays.iter().flatten().flat_map(|&bladder| fluid.cells_of(bladder)).collect()
+    map.arrays
+        .iter()
+        .flatten()
+        .flat_map(|&bladder| fluid.cells_of(bladder))
+        .collect()
 }

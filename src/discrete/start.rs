@@ -12,7 +12,9 @@ pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
     let mut y = vec![0.0; l.len];
     let length = system.model.length;
     let at = |profile: &Option<Profile>, node: usize| {
-        profile.as_ref().map_or(0.0, |p| p.value(system.mesh.node_coordinate(node) / length))
+        profile
+            .as_ref()
+            .map_or(0.0, |p| p.value(system.mesh.node_coordinate(node) / length))
     };
     for (k, node) in l.free_u1.clone().enumerate() {
         y[l.u1 + k] = at(&case.start.u1_m, node);
@@ -38,7 +40,9 @@ pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
 /// Areas that give the prescribed pressures, with the means that follow from them: a fixed point, exact after one
 /// round unless the coupling depends on the means.
 fn fill_bladders(system: &System, case: &Case, now: &Instant, y: &mut [f64]) {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return };
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
     let l = &system.layout;
     let k = fluid.cells_per_bladder;
     let mut pressure = vec![0.0; fluid.cells];
@@ -66,7 +70,10 @@ fn fill_bladders(system: &System, case: &Case, now: &Instant, y: &mut [f64]) {
         recipe::residual(system, now, y, &yp, &mut w, &mut residual);
         // The residual of a mean is what it lacks.
         let means = l.mean_moment..l.area;
-        let worst = means.clone().map(|i| (residual[i] / l.scales[i]).abs()).fold(0.0, f64::max);
+        let worst = means
+            .clone()
+            .map(|i| (residual[i] / l.scales[i]).abs())
+            .fold(0.0, f64::max);
         for i in means {
             y[i] -= residual[i];
         }

@@ -87,10 +87,17 @@ impl<T: Scalar> Workspace<T> {
     pub fn new(system: &System) -> Self {
         let zeros = |n: usize| vec![T::zero(); n];
         let (n, c) = (system.mesh.nodes, system.mesh.cells);
-        let s = if system.fluid.is_some() { system.mesh.segments } else { 0 };
+        let s = if system.fluid.is_some() {
+            system.mesh.segments
+        } else {
+            0
+        };
         let (cells, bladders) = system.fluid.as_ref().map_or((0, 0), |f| (f.cells, f.bladders));
-        let (junctions, bridges) =
-            system.model.wet.as_ref().map_or((0, 0), |w| (w.network.junctions.len(), w.network.bridges.len()));
+        let (junctions, bridges) = system
+            .model
+            .wet
+            .as_ref()
+            .map_or((0, 0), |w| (w.network.junctions.len(), w.network.bridges.len()));
         Self {
             u1: zeros(n),
             u3: zeros(n),

@@ -1,8 +1,8 @@
 //! Audit of the coupling and of the range in which the model holds, when a case is read (model section 4.2).
 
 use super::{Coupling, Model, Wet};
-use crate::error::Violation;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
+use crate::error::Violation;
 
 /// One audited number.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,9 @@ pub struct Finding {
 /// d_M ≥ EI φ_b l_b dm p_max/(1 - 2 EI φ_b l_b am²/a_p)                   kinked potential convex
 /// ```
 pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
-    let (Some(bladders), Some(wet)) = (&case.bladders, &model.wet) else { return vec![] };
+    let (Some(bladders), Some(wet)) = (&case.bladders, &model.wet) else {
+        return vec![];
+    };
     let (m, n) = (&bladders.area_per_moment_m2_per_n_m, &bladders.area_per_force_m2_per_n);
     let (am, an) = (0.5 * (m.opening + m.closing), 0.5 * (n.tension + n.compression));
     let (ea, ei) = (model.section.axial_stiffness, model.section.bending_stiffness);
@@ -43,12 +45,30 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
         found.push(reciprocity("l_b an E/zeta'", force, "stretch"));
     }
     for (name, large, small) in [("dm/am", m.closing, m.opening), ("dn/an", n.compression, n.tension)] {
-        let value = if large + small > 0.0 { (large - small) / (large + small) } else { 0.0 };
-        found.push(Finding { name, value, wanted: "0 or more, below 1", good: (0.0..1.0).contains(&value), consequence: "the closing slope must be the larger one".into() });
+        let value = if large + small > 0.0 {
+            (large - small) / (large + small)
+        } else {
+            0.0
+        };
+        found.push(Finding {
+            name,
+            value,
+            wanted: "0 or more, below 1",
+            good: (0.0..1.0).contains(&value),
+            consequence: "the closing slope must be the larger one".into(),
+        });
     }
     for (name, value, what) in [
-        ("a_p/(2 EA phi_b l_b aN+^2)", ap / (2.0 * ea * ratio * n.compression.powi(2)), "axial"),
-        ("a_p/(EI phi_b l_b (aM+^2 + aM-^2))", ap / (ei * ratio * (m.closing.powi(2) + m.opening.powi(2))), "bending"),
+        (
+            "a_p/(2 EA phi_b l_b aN+^2)",
+            ap / (2.0 * ea * ratio * n.compression.powi(2)),
+            "axial",
+        ),
+        (
+            "a_p/(EI phi_b l_b (aM+^2 + aM-^2))",
+            ap / (ei * ratio * (m.closing.powi(2) + m.opening.powi(2))),
+            "bending",
+        ),
     ] {
         if value.is_finite() {
             found.push(Finding {
@@ -56,7 +76,9 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
                 value,
                 wanted: "above 1",
                 good: value > 1.0,
-                consequence: format!("the sealed {what} stiffness is negative: the coupling is not passive and any state grows"),
+                consequence: format!(
+                    "the sealed {what} stiffness is negative: the coupling is not passive and any state grows"
+                ),
             });
         }
     }
@@ -81,11 +103,23 @@ fn reciprocity(name: &'static str, value: f64, what: &str) -> Finding {
 }
 
 fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, found: &mut Vec<Finding>) {
-    let Coupling::Published { stretch_per_pressure, curvature_per_pressure } = wet.coupling else { return };
+    let Coupling::Published {
+        stretch_per_pressure,
+        curvature_per_pressure,
+    } = wet.coupling
+    else {
+        return;
+    };
     let (ea, ei) = (model.section.axial_stiffness, model.section.bending_stiffness);
     for (name, value) in [
-        ("1 - 2 EI phi_b psi' am/(E a_p)", 1.0 - 2.0 * ei * curvature_per_pressure * am / ap),
-        ("1 - 2 EA phi_b zeta' aN+/(E a_p)", 1.0 - 2.0 * ea * stretch_per_pressure * compression / ap),
+        (
+            "1 - 2 EI phi_b psi' am/(E a_p)",
+            1.0 - 2.0 * ei * curvature_per_pressure * am / ap,
+        ),
+        (
+            "1 - 2 EA phi_b zeta' aN+/(E a_p)",
+            1.0 - 2.0 * ea * stretch_per_pressure * compression / ap,
+        ),
     ] {
         found.push(Finding {
             name,
@@ -99,7 +133,9 @@ fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, fou
 
 /// Sum of pressures `p_u + p_d` up to which the kinked potential stays convex in bending and in stretch [Pa].
 pub fn convex_up_to(model: &Model, wet: &Wet) -> (f64, f64) {
-    let Coupling::Reciprocal { length_ratio } = wet.coupling else { return (f64::INFINITY, f64::INFINITY) };
+    let Coupling::Reciprocal { length_ratio } = wet.coupling else {
+        return (f64::INFINITY, f64::INFINITY);
+    };
     let law = &wet.area;
     let limit = |width: f64, stiffness: f64, half_difference: f64, mean: f64| {
         let scale = stiffness * length_ratio;
@@ -110,34 +146,49 @@ pub fn convex_up_to(model: &Model, wet: &Wet) -> (f64, f64) {
         }
     };
     (
-        limit(law.moment_width, model.section.bending_stiffness, law.moment_half_difference, law.moment_mean),
-        limit(law.force_width, model.section.axial_stiffness, law.force_half_difference, law.force_mean),
+        limit(
+            law.moment_width,
+            model.section.bending_stiffness,
+            law.moment_half_difference,
+            law.moment_mean,
+        ),
+        limit(
+            law.force_width,
+            model.section.axial_stiffness,
+            law.force_half_difference,
+            law.force_mean,
+        ),
     )
 }
 
 fn convexity(model: &Model, bladders: &Bladders, wet: &Wet) -> Vec<Finding> {
     let (bending, stretch) = convex_up_to(model, wet);
     let expected = 2.0 * model.scales.pressure;
-    [("convex in bending up to p_u + p_d [Pa]", bending), ("convex in stretch up to p_u + p_d [Pa]", stretch)]
-        .into_iter()
-        .map(|(name, value)| Finding {
-            name,
-            value,
-            wanted: "above the pressures expected",
-            good: value > expected,
-            consequence: format!(
-                "expected p_u + p_d is {expected:.3e} Pa: the kinked potential loses convexity there and the \
+    [
+        ("convex in bending up to p_u + p_d [Pa]", bending),
+        ("convex in stretch up to p_u + p_d [Pa]", stretch),
+    ]
+    .into_iter()
+    .map(|(name, value)| Finding {
+        name,
+        value,
+        wanted: "above the pressures expected",
+        good: value > expected,
+        consequence: format!(
+            "expected p_u + p_d is {expected:.3e} Pa: the kinked potential loses convexity there and the \
                  equations lose index one; widen bladders/kink_width (now {:.1e}) or use \"reciprocal\"",
-                bladders.kink_width
-            ),
-        })
-        .collect()
+            bladders.kink_width
+        ),
+    })
+    .collect()
 }
 
 /// Why a case is refused although its text is valid: a kinked reciprocal potential that loses convexity at the
 /// pressures expected.
 pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
-    let (Some(bladders), Some(wet)) = (&case.bladders, &model.wet) else { return vec![] };
+    let (Some(bladders), Some(wet)) = (&case.bladders, &model.wet) else {
+        return vec![];
+    };
     if bladders.coupling != Choice::ReciprocalKinked || !model.effects.asymmetry {
         return vec![];
     }
@@ -145,9 +196,12 @@ pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
         .into_iter()
         .filter(|f| !f.good)
         .map(|f| {
-            Violation::new("/bladders/coupling", format!("the kinked potential is {}: {:.3e}", f.name, f.value))
-                .allowed(f.wanted)
-                .hint(f.consequence)
+            Violation::new(
+                "/bladders/coupling",
+                format!("the kinked potential is {}: {:.3e}", f.name, f.value),
+            )
+            .allowed(f.wanted)
+            .hint(f.consequence)
         })
         .collect()
 }
@@ -157,16 +211,27 @@ pub fn warnings(case: &Case, model: &Model, numbers: &std::collections::BTreeMap
     let mut all: Vec<String> = coupling(case, model)
         .into_iter()
         .filter(|f| !f.good)
-        .map(|f| format!("coupling: {} = {:.4}, wanted {}: {}", f.name, f.value, f.wanted, f.consequence))
+        .map(|f| {
+            format!(
+                "coupling: {} = {:.4}, wanted {}: {}",
+                f.name, f.value, f.wanted, f.consequence
+            )
+        })
         .collect();
     let mut over = |name: &str, limit: f64, what: &str| {
         if let Some(&value) = numbers.get(name)
             && value > limit
         {
-            all.push(format!("range of the model: {name} = {value:.3} is above {limit}: {what}"));
+            all.push(format!(
+                "range of the model: {name} = {value:.3} is above {limit}: {what}"
+            ));
         }
     };
-    over("womersley", 1.0, "oscillating flow in the tubes is not creeping; their inertia is left out");
+    over(
+        "womersley",
+        1.0,
+        "oscillating flow in the tubes is not creeping; their inertia is left out",
+    );
     over("reynolds_estimate", 100.0, "flow in the tubes may not be creeping");
     over("largest_strain_estimate", 0.5, "local strains may not be small");
     if let Some(&rate) = numbers.get("mathieu_growth_rate_per_s")
@@ -180,7 +245,9 @@ pub fn warnings(case: &Case, model: &Model, numbers: &std::collections::BTreeMap
     if let Some(&slender) = numbers.get("slenderness")
         && slender < 4.0
     {
-        all.push(format!("range of the model: length over height is {slender:.2}; a rod model wants 5 or more"));
+        all.push(format!(
+            "range of the model: length over height is {slender:.2}; a rod model wants 5 or more"
+        ));
     }
     all
 }

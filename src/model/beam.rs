@@ -34,9 +34,10 @@ impl Section {
         let beam = &case.beam;
         let solid = beam.length_m * beam.width_m * beam.height_m;
         let (cavities, fluid_density) = match (&case.bladders, &case.fluid) {
-            (Some(b), Some(f)) => {
-                (2.0 * b.per_row as f64 * b.width_m * b.height_m * b.length_m, f.density_kg_m3)
-            }
+            (Some(b), Some(f)) => (
+                2.0 * b.per_row as f64 * b.width_m * b.height_m * b.length_m,
+                f.density_kg_m3,
+            ),
             _ => (0.0, 0.0),
         };
         let mass_factor = beam.mass_factor.unwrap_or(

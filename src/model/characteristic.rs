@@ -49,7 +49,10 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
     if let Some(beta) = first {
         put("first_bending_frequency_hz", beta * beta / (2.0 * PI * solid_time));
     }
-    put("first_axial_frequency_hz", axial_wave_number(model) / (2.0 * PI * l) * (ea / m).sqrt());
+    put(
+        "first_axial_frequency_hz",
+        axial_wave_number(model) / (2.0 * PI * l) * (ea / m).sqrt(),
+    );
     if is_cantilever(model) {
         put("euler_load_n", PI * PI * ei / (4.0 * l * l));
         put("self_weight_buckling_load_n_m", 7.837_347_438_94 * ei / l.powi(3));
@@ -58,7 +61,10 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
         put("base_acceleration_m_s2", a.acceleration);
         put("inertial_compression_n_m", m * a.acceleration);
         put("mathieu_modulation", a.modulation);
-        put("mathieu_frequency_ratio", a.frequency * 2.0 * PI * solid_time / (2.0 * first.unwrap_or(1.875).powi(2)));
+        put(
+            "mathieu_frequency_ratio",
+            a.frequency * 2.0 * PI * solid_time / (2.0 * first.unwrap_or(1.875).powi(2)),
+        );
         put("mathieu_growth_rate_per_s", a.growth_rate);
     }
     let forcing = forcing_frequency(case);
@@ -70,7 +76,14 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
         let bladder_resistance = wet.bladder_length / wet.network.bladder_mobility;
         put("bladder_resistance_pa_s_m3", bladder_resistance);
         if let Some(tubes) = &case.tubes {
-            let in_one = wet.network.chains.iter().map(|c| c.len() - 1).max().unwrap_or(wet.network.tubes).max(1);
+            let in_one = wet
+                .network
+                .chains
+                .iter()
+                .map(|c| c.len() - 1)
+                .max()
+                .unwrap_or(wet.network.tubes)
+                .max(1);
             let slender = 2.0 * tubes.radius_m / (tubes.length_m * in_one as f64);
             let fluid_time = fluid.viscosity_pa_s * wet.area.per_pressure
                 / (PI * tubes.radius_m * tubes.radius_m * slender * slender);
@@ -78,11 +91,21 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
             put("t_s_over_t_f", solid_time / fluid_time);
             if let Some(f) = forcing {
                 put("f_u", f * fluid_time);
-                put("womersley", tubes.radius_m * (2.0 * PI * f * fluid.density_kg_m3 / fluid.viscosity_pa_s).sqrt());
+                put(
+                    "womersley",
+                    tubes.radius_m * (2.0 * PI * f * fluid.density_kg_m3 / fluid.viscosity_pa_s).sqrt(),
+                );
             }
             let flow = model.scales.frequency * wet.area.per_pressure * wet.bladder_length * model.scales.pressure;
-            put("reynolds_estimate", 2.0 * fluid.density_kg_m3 * flow / (PI * fluid.viscosity_pa_s * tubes.radius_m));
-            let tube = wet.network.links.iter().find(|k| k.kind == super::network::LinkKind::Tube);
+            put(
+                "reynolds_estimate",
+                2.0 * fluid.density_kg_m3 * flow / (PI * fluid.viscosity_pa_s * tubes.radius_m),
+            );
+            let tube = wet
+                .network
+                .links
+                .iter()
+                .find(|k| k.kind == super::network::LinkKind::Tube);
             if let Some(tube) = tube {
                 put("tube_resistance_pa_s_m3", tube.resistance);
                 put(
@@ -96,7 +119,10 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
                 put(&format!("slowest_time_of_network_{}_s", k + 1), time);
             }
         }
-        put("bladder_fill", 2.0 * bladders.per_row as f64 * bladders.width_m / (2.0 * l));
+        put(
+            "bladder_fill",
+            2.0 * bladders.per_row as f64 * bladders.width_m / (2.0 * l),
+        );
         let closing = wet.area.per_pressure * model.scales.pressure / wet.area_at_rest;
         put("area_change_estimate", closing);
     }
@@ -117,7 +143,10 @@ fn is_cantilever(model: &Model) -> bool {
 /// Transverse motion held? Slope held?
 fn end_kind(model: &Model, end: usize) -> (bool, bool) {
     let e = &model.ends[end];
-    (matches!(e.transverse, Translation::Displacement(_)), matches!(e.rotation, Rotation::Slope(_)))
+    (
+        matches!(e.transverse, Translation::Displacement(_)),
+        matches!(e.rotation, Rotation::Slope(_)),
+    )
 }
 
 /// `β l_s` of the first bending mode with a frequency above zero.
@@ -190,7 +219,9 @@ pub fn mathieu(model: &Model) -> Option<Mathieu> {
     if !is_cantilever(model) || !model.effects.solid_inertia {
         return None;
     }
-    let Translation::Displacement(Signal::Sine(sine)) = &model.ends[0].axial else { return None };
+    let Translation::Displacement(Signal::Sine(sine)) = &model.ends[0].axial else {
+        return None;
+    };
     let omega = 2.0 * PI * sine.frequency_hz;
     let acceleration = sine.amplitude.abs() * omega * omega;
     if acceleration == 0.0 {
@@ -228,7 +259,11 @@ pub fn mathieu_growth(w2: f64, a: f64, omega: f64) -> f64 {
     let (a11, _) = advance(1.0, 0.0);
     let (_, a22) = advance(0.0, 1.0);
     let half_trace = 0.5 * (a11 + a22).abs();
-    if half_trace <= 1.0 + 1e-9 { 0.0 } else { half_trace.acosh() / period }
+    if half_trace <= 1.0 + 1e-9 {
+        0.0
+    } else {
+        half_trace.acosh() / period
+    }
 }
 
 /// `[E20]` Slowest relaxation time of each component of the network [s], each bladder one volume; `None` for a
@@ -244,10 +279,12 @@ pub fn slowest_times(wet: &Wet) -> Vec<Option<f64>> {
 fn slowest_time(wet: &Wet, component: usize) -> Option<f64> {
     const LARGEST: usize = 400;
     let network: &Network = &wet.network;
-    let bladders: Vec<usize> =
-        (0..2 * wet.per_row).filter(|&b| network.component_of_bladder[b] == component).collect();
-    let junctions: Vec<usize> =
-        (0..network.junctions.len()).filter(|&j| network.component_of_junction[j] == component).collect();
+    let bladders: Vec<usize> = (0..2 * wet.per_row)
+        .filter(|&b| network.component_of_bladder[b] == component)
+        .collect();
+    let junctions: Vec<usize> = (0..network.junctions.len())
+        .filter(|&j| network.component_of_junction[j] == component)
+        .collect();
     let (nb, nj) = (bladders.len(), junctions.len());
     if nb == 0 || nb + nj > LARGEST {
         return None;
@@ -266,7 +303,10 @@ fn slowest_time(wet: &Wet, component: usize) -> Option<f64> {
         if a.is_none() && b.is_none() {
             continue;
         }
-        let cells = [link.from, link.to].iter().filter(|n| matches!(n, Node::Cell { .. })).count() as f64;
+        let cells = [link.from, link.to]
+            .iter()
+            .filter(|n| matches!(n, Node::Cell { .. }))
+            .count() as f64;
         let opening = link.opening.as_ref().map_or(1.0, |o| o.jet(clock).value);
         let g = opening / (opening * half * cells + link.resistance);
         grounded |= a.is_none() || b.is_none();

@@ -36,9 +36,9 @@ impl Coupling {
                 stretch_per_pressure: density * c.length_per_pressure_m / case.beam.young_modulus_pa,
                 curvature_per_pressure: density * c.slope_per_pressure_rad / case.beam.young_modulus_pa,
             },
-            Choice::Reciprocal | Choice::ReciprocalKinked => {
-                Self::Reciprocal { length_ratio: density * bladders.length_m }
-            }
+            Choice::Reciprocal | Choice::ReciprocalKinked => Self::Reciprocal {
+                length_ratio: density * bladders.length_m,
+            },
         }
     }
 
@@ -46,7 +46,9 @@ impl Coupling {
     #[inline]
     pub fn stretch<T: Scalar>(&self, law: &AreaLaw, force: T, upper: T, lower: T) -> T {
         match *self {
-            Self::Published { stretch_per_pressure, .. } => (upper + lower) * stretch_per_pressure,
+            Self::Published {
+                stretch_per_pressure, ..
+            } => (upper + lower) * stretch_per_pressure,
             Self::Reciprocal { length_ratio } => law.force_slope(force) * (upper + lower) * length_ratio,
         }
     }
@@ -55,7 +57,9 @@ impl Coupling {
     #[inline]
     pub fn curvature<T: Scalar>(&self, law: &AreaLaw, moment: T, upper: T, lower: T) -> T {
         match *self {
-            Self::Published { curvature_per_pressure, .. } => (upper - lower) * curvature_per_pressure,
+            Self::Published {
+                curvature_per_pressure, ..
+            } => (upper - lower) * curvature_per_pressure,
             Self::Reciprocal { length_ratio } => {
                 (law.moment_slope(moment, 1.0) * upper + law.moment_slope(moment, -1.0) * lower) * length_ratio
             }

@@ -14,9 +14,10 @@ pub fn permeability(section: &CrossSection) -> f64 {
     match *section {
         CrossSection::Circle { radius_m } => circle(radius_m),
         CrossSection::Rectangle { height_m, width_m } => rectangle(height_m, width_m),
-        CrossSection::Ellipse { semi_axis_a_m: a, semi_axis_b_m: b } => {
-            PI * (a * b).powi(3) / (4.0 * (a * a + b * b))
-        }
+        CrossSection::Ellipse {
+            semi_axis_a_m: a,
+            semi_axis_b_m: b,
+        } => PI * (a * b).powi(3) / (4.0 * (a * a + b * b)),
         CrossSection::Triangle { side_m } => 3.0_f64.sqrt() * side_m.powi(4) / 320.0,
     }
 }

@@ -35,13 +35,23 @@ impl EffectSet {
     pub fn choose(case: &Case, section: &Section) -> Self {
         let choices = match &case.effects {
             Effects::Auto => EffectChoices::default(),
-            Effects::Full => {
-                EffectChoices { rotary_inertia: Choice::On, solid_inertia: Choice::On, asymmetry: Choice::On }
-            }
+            Effects::Full => EffectChoices {
+                rotary_inertia: Choice::On,
+                solid_inertia: Choice::On,
+                asymmetry: Choice::On,
+            },
             Effects::Chosen(choices) => choices.clone(),
         };
         let full = case.effects == Effects::Full;
-        let asked = |choice: Choice| if full { "full model asked for" } else if choice == Choice::On { "asked for" } else { "left out as asked" };
+        let asked = |choice: Choice| {
+            if full {
+                "full model asked for"
+            } else if choice == Choice::On {
+                "asked for"
+            } else {
+                "left out as asked"
+            }
+        };
         let mut decisions = Vec::new();
         let mut decide = |name, choice: Choice, auto: (bool, String), possible: Result<(), &str>| {
             let (on, reason) = match (possible, choice) {
@@ -57,7 +67,15 @@ impl EffectSet {
         decide(
             "fluid",
             Choice::Auto,
-            (fluid, if fluid { "bladders and fluid are given" } else { "no bladders, no fluid" }.into()),
+            (
+                fluid,
+                if fluid {
+                    "bladders and fluid are given"
+                } else {
+                    "no bladders, no fluid"
+                }
+                .into(),
+            ),
             Ok(()),
         );
         let solid_inertia = decide(
@@ -80,7 +98,10 @@ impl EffectSet {
             ),
             if solid_inertia { Ok(()) } else { Err("no solid inertia") },
         );
-        let kinked = case.bladders.as_ref().is_some_and(|b| b.coupling != Coupling::Reciprocal);
+        let kinked = case
+            .bladders
+            .as_ref()
+            .is_some_and(|b| b.coupling != Coupling::Reciprocal);
         let possible = if !fluid {
             Err("no fluid")
         } else if !kinked {
@@ -88,28 +109,37 @@ impl EffectSet {
         } else {
             Ok(())
         };
-        let asymmetry = decide(
-            "asymmetry",
-            choices.asymmetry,
-            (true, asymmetry_reason(case)),
-            possible,
-        );
+        let asymmetry = decide("asymmetry", choices.asymmetry, (true, asymmetry_reason(case)), possible);
         let damping = &case.beam.damping;
         let damped = damping.axial_time_s > 0.0 || damping.bending_time_s > 0.0 || damping.drag_n_s_m2 > 0.0;
         decide(
             "damping",
             Choice::Auto,
-            (damped, if damped { "damping is given" } else { "no damping given" }.into()),
+            (
+                damped,
+                if damped { "damping is given" } else { "no damping given" }.into(),
+            ),
             Ok(()),
         );
-        Self { rotary_inertia, solid_inertia, asymmetry, decisions }
+        Self {
+            rotary_inertia,
+            solid_inertia,
+            asymmetry,
+            decisions,
+        }
     }
 }
 
 fn asymmetry_reason(case: &Case) -> String {
     case.bladders.as_ref().map_or_else(String::new, |b| {
         let (m, n) = (&b.area_per_moment_m2_per_n_m, &b.area_per_force_m2_per_n);
-        let ratio = |large: f64, small: f64| if large + small > 0.0 { (large - small) / (large + small) } else { 0.0 };
+        let ratio = |large: f64, small: f64| {
+            if large + small > 0.0 {
+                (large - small) / (large + small)
+            } else {
+                0.0
+            }
+        };
         format!(
             "slopes differ by dm/am = {:.3}, dn/an = {:.3}",
             ratio(m.closing, m.opening),

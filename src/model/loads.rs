@@ -34,7 +34,12 @@ impl Load {
     /// `[E5]` (A.6, A.7) with `b` in N/m: contact loads as given, body forces and gravity times `m`.
     pub fn resolve(written: &Written, mass_per_length: f64) -> Vec<Self> {
         let one = |kind, factor, d: &Distributed| {
-            vec![Self { kind, factor, signal: d.signal.clone(), profile: d.profile.clone() }]
+            vec![Self {
+                kind,
+                factor,
+                signal: d.signal.clone(),
+                profile: d.profile.clone(),
+            }]
         };
         match written {
             Written::ForceXNM(d) => one(LoadKind::ForceX, 1.0, d),

@@ -54,7 +54,13 @@ impl NetworkCoordinate {
                 centre += bladder;
             }
         }
-        Self { per_row, bladder, spans, centres, arrays }
+        Self {
+            per_row,
+            bladder,
+            spans,
+            centres,
+            arrays,
+        }
     }
 
     /// Table A.1: rows `(Theta R, X_f, R j)`, two for each bladder, in the order of `Theta R` (A.59).
@@ -65,7 +71,11 @@ impl NetworkCoordinate {
         for j in (1..=self.per_row).rev() {
             let x = self.centres[self.per_row + j - 1];
             // The paper ends bladder -1 at -0.001, all others at epsilon.
-            let end = if j == 1 { 0.1 * epsilon } else { (j - 1) as f64 / m + epsilon };
+            let end = if j == 1 {
+                0.1 * epsilon
+            } else {
+                (j - 1) as f64 / m + epsilon
+            };
             rows.push((-(j as f64) / m, x, -(j as i64)));
             rows.push((-end, x, -(j as i64)));
         }

@@ -70,15 +70,23 @@ impl Model {
     pub fn new(case: &Case) -> Self {
         let section = Section::new(case);
         let effects = EffectSet::choose(case, &section);
-        let wet = case.fluid.as_ref().zip(case.bladders.as_ref()).map(|(fluid, bladders)| Wet {
-            per_row: bladders.per_row,
-            bladder_length: bladders.length_m,
-            area_at_rest: bladders.height_m * bladders.width_m,
-            area: AreaLaw::new(case, bladders, &section, effects.asymmetry),
-            coupling: Coupling::new(case, bladders),
-            network: Network::new(case, fluid, bladders),
-        });
-        let loads = case.loads.iter().flat_map(|load| Load::resolve(load, section.mass_per_length)).collect();
+        let wet = case
+            .fluid
+            .as_ref()
+            .zip(case.bladders.as_ref())
+            .map(|(fluid, bladders)| Wet {
+                per_row: bladders.per_row,
+                bladder_length: bladders.length_m,
+                area_at_rest: bladders.height_m * bladders.width_m,
+                area: AreaLaw::new(case, bladders, &section, effects.asymmetry),
+                coupling: Coupling::new(case, bladders),
+                network: Network::new(case, fluid, bladders),
+            });
+        let loads = case
+            .loads
+            .iter()
+            .flat_map(|load| Load::resolve(load, section.mass_per_length))
+            .collect();
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
         let scales = Scales::estimate(case, &section, wet.as_ref());
         Self {

@@ -162,7 +162,11 @@ pub fn bladder_index(signed: i64, per_row: usize) -> usize {
 
 /// `R j` of a bladder index.
 pub fn bladder_label(index: usize, per_row: usize) -> i64 {
-    if index < per_row { index as i64 + 1 } else { -((index - per_row) as i64 + 1) }
+    if index < per_row {
+        index as i64 + 1
+    } else {
+        -((index - per_row) as i64 + 1)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -172,10 +176,22 @@ enum Point {
 }
 
 enum Attachment<'a> {
-    Tube { other: Point, resistance: f64, opening: &'a Signal },
-    Turbine { other: Point, index: usize },
-    Pressure { port: usize },
-    Flow { name: String, flow: &'a Signal },
+    Tube {
+        other: Point,
+        resistance: f64,
+        opening: &'a Signal,
+    },
+    Turbine {
+        other: Point,
+        index: usize,
+    },
+    Pressure {
+        port: usize,
+    },
+    Flow {
+        name: String,
+        flow: &'a Signal,
+    },
 }
 
 impl Network {
@@ -215,10 +231,12 @@ fn tube_resistance(viscosity: f64, length: f64, permeability: f64) -> f64 {
 
 /// Unscaled permeability `q1b` of the bladders [m^4].
 pub fn bladder_permeability(bladders: &Bladders) -> f64 {
-    bladders.permeability_m4.unwrap_or_else(|| match &bladders.cross_section {
-        Some(section) => duct::permeability(section),
-        None => duct::rectangle(bladders.height_m, bladders.width_m),
-    })
+    bladders
+        .permeability_m4
+        .unwrap_or_else(|| match &bladders.cross_section {
+            Some(section) => duct::permeability(section),
+            None => duct::rectangle(bladders.height_m, bladders.width_m),
+        })
 }
 
 struct Builder<'a> {
@@ -250,9 +268,13 @@ impl<'a> Builder<'a> {
 
     fn point(&self, endpoint: &Endpoint) -> Point {
         match (&endpoint.junction, endpoint.bladder, endpoint.end) {
-            (Some(name), ..) => {
-                Point::Junction(self.written.junctions.iter().position(|j| j == name).unwrap_or(usize::MAX))
-            }
+            (Some(name), ..) => Point::Junction(
+                self.written
+                    .junctions
+                    .iter()
+                    .position(|j| j == name)
+                    .unwrap_or(usize::MAX),
+            ),
             (None, bladder, end) => Point::Bladder(
                 bladder_index(bladder.unwrap_or(1), self.per_row),
                 end.unwrap_or(BladderEnd::Inlet),
@@ -274,8 +296,16 @@ impl<'a> Builder<'a> {
 
     fn pressure(&mut self, point: Point, name: Option<&String>, pressure: &Signal) {
         let name = name.cloned().unwrap_or_else(|| self.label(point));
-        self.ports.push(PressurePort { pressure: pressure.clone(), name });
-        self.attach(point, Attachment::Pressure { port: self.ports.len() - 1 });
+        self.ports.push(PressurePort {
+            pressure: pressure.clone(),
+            name,
+        });
+        self.attach(
+            point,
+            Attachment::Pressure {
+                port: self.ports.len() - 1,
+            },
+        );
     }
 
     fn flow(&mut self, point: Point, name: Option<&String>, flow: &'a Signal) {
@@ -285,7 +315,10 @@ impl<'a> Builder<'a> {
 
     fn default_tube(&self) -> (f64, f64) {
         self.case.tubes.as_ref().map_or((1.0, 1.0), |t| {
-            (t.length_m, t.permeability_m4.unwrap_or_else(|| duct::circle(t.radius_m)))
+            (
+                t.length_m,
+                t.permeability_m4.unwrap_or_else(|| duct::circle(t.radius_m)),
+            )
         })
     }
 
@@ -300,7 +333,14 @@ impl<'a> Builder<'a> {
             for pair in row.windows(2) {
                 let from = Point::Bladder(pair[0], BladderEnd::Outlet);
                 let other = Point::Bladder(pair[1], BladderEnd::Inlet);
-                self.attach(from, Attachment::Tube { other, resistance, opening: &chain.opening });
+                self.attach(
+                    from,
+                    Attachment::Tube {
+                        other,
+                        resistance,
+                        opening: &chain.opening,
+                    },
+                );
                 tubes += 1;
             }
             let first = Point::Bladder(row[0], BladderEnd::Inlet);
@@ -321,14 +361,23 @@ impl<'a> Builder<'a> {
         let factor = self.written.permeability_factor;
         let (length, permeability) = self.default_tube();
         for tube in &self.written.tubes {
-            let own = tube.permeability_m4.or_else(|| tube.cross_section.as_ref().map(duct::permeability));
+            let own = tube
+                .permeability_m4
+                .or_else(|| tube.cross_section.as_ref().map(duct::permeability));
             let resistance = tube_resistance(
                 self.viscosity,
                 tube.length_m.unwrap_or(length),
                 own.unwrap_or(permeability) * factor,
             );
             let (from, other) = (self.point(&tube.from), self.point(&tube.to));
-            self.attach(from, Attachment::Tube { other, resistance, opening: &tube.opening });
+            self.attach(
+                from,
+                Attachment::Tube {
+                    other,
+                    resistance,
+                    opening: &tube.opening,
+                },
+            );
         }
         for port in &self.written.ports {
             let point = self.point(&port.at);
@@ -341,11 +390,13 @@ impl<'a> Builder<'a> {
         for (index, turbine) in self.written.turbines.iter().enumerate() {
             let conductance = match turbine.conductance {
                 TurbineConductance::M3SPa(g) => g,
-                TurbineConductance::Kappa { kappa, network_length_m } => {
+                TurbineConductance::Kappa {
+                    kappa,
+                    network_length_m,
+                } => {
                     let tube = self.case.tubes.as_ref().map_or(0.0, |t| t.length_m);
-                    let length = network_length_m.unwrap_or(
-                        self.bladder_length * 2.0 * self.per_row as f64 + 0.92 * tube * chain_tubes as f64,
-                    );
+                    let length = network_length_m
+                        .unwrap_or(self.bladder_length * 2.0 * self.per_row as f64 + 0.92 * tube * chain_tubes as f64);
                     self.permeability * kappa / (self.viscosity * length)
                 }
             };
@@ -450,7 +501,11 @@ impl<'a> Builder<'a> {
     fn join(&self, network: &mut Network, nodes: &BTreeMap<Point, Node>, point: Point, attachment: &Attachment<'a>) {
         let from = nodes[&point];
         match attachment {
-            Attachment::Tube { other, resistance, opening } => network.links.push(Link {
+            Attachment::Tube {
+                other,
+                resistance,
+                opening,
+            } => network.links.push(Link {
                 from,
                 to: nodes[other],
                 resistance: *resistance,
@@ -497,7 +552,11 @@ impl<'a> Builder<'a> {
                 }
             }
             Attachment::Flow { name, flow } => {
-                network.sources.push(Source { into: from, flow: (*flow).clone(), name: name.clone() });
+                network.sources.push(Source {
+                    into: from,
+                    flow: (*flow).clone(),
+                    name: name.clone(),
+                });
             }
         }
     }
@@ -519,7 +578,11 @@ fn components(network: &mut Network, bladders: usize) {
         Node::Junction(j) => Some(bladders + j),
         Node::Port(_) => None,
     };
-    let pairs = network.links.iter().map(|l| (l.from, l.to)).chain(network.bridges.iter().map(|b| (b.from, b.to)));
+    let pairs = network
+        .links
+        .iter()
+        .map(|l| (l.from, l.to))
+        .chain(network.bridges.iter().map(|b| (b.from, b.to)));
     for (from, to) in pairs {
         if let (Some(a), Some(b)) = (slot(from), slot(to)) {
             let (a, b) = (root(&mut parent, a), root(&mut parent, b));

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use super::{Section, Wet};
-use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::case::schema::{Case, Load};
 use crate::case::signals::{Clock, Signal};
+use crate::case::{ResolvedEnd, Rotation, Translation};
 
 /// Sizes to which tolerances are relative; SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,11 @@ pub fn largest(signal: &Signal, end: f64) -> (f64, f64, f64) {
     (0..=SAMPLES).fold((0.0, 0.0, 0.0), |(v, r, a): (f64, f64, f64), k| {
         let t = end * f64::from(k) / f64::from(SAMPLES);
         let jet = signal.jet(Clock { t, within: t });
-        (v.max(jet.value.abs()), r.max(jet.rate.abs()), a.max(jet.acceleration.abs()))
+        (
+            v.max(jet.value.abs()),
+            r.max(jet.rate.abs()),
+            a.max(jet.acceleration.abs()),
+        )
     })
 }
 
@@ -132,12 +136,19 @@ impl Scales {
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
         let mut d = Drive::of(case, section, &ends);
         let l = case.beam.length_m;
-        let (ea, ei, m) = (section.axial_stiffness, section.bending_stiffness, section.mass_per_length);
+        let (ea, ei, m) = (
+            section.axial_stiffness,
+            section.bending_stiffness,
+            section.mass_per_length,
+        );
         let size = |p: &Option<crate::case::profile::Profile>| p.as_ref().map_or(0.0, profile_size);
         let first_mode = 3.516 / (l * l) * (ei / m).sqrt();
 
-        let force = (d.axial_force + d.axial_load * l + m * l * d.axial_acceleration + size(&case.start.u3_rate_m_s) * (ea * m).sqrt())
-            .max(1e-6 * ea);
+        let force = (d.axial_force
+            + d.axial_load * l
+            + m * l * d.axial_acceleration
+            + size(&case.start.u3_rate_m_s) * (ea * m).sqrt())
+        .max(1e-6 * ea);
         let moment_of_loads = d.moment + d.transverse_force * l + 0.5 * d.transverse_load * l * l + d.slope * ei / l;
         if let Some(wet) = wet {
             for port in &wet.network.ports {

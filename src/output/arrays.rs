@@ -10,8 +10,8 @@ use std::time::Instant;
 
 use npyz::WriterBuilder;
 use npyz::npz::NpzWriter;
-use npyz::zip::{CompressionMethod, DateTime};
 use npyz::zip::write::FileOptions;
+use npyz::zip::{CompressionMethod, DateTime};
 
 use super::folder::{fault, part_of};
 use super::history::FLUSH;
@@ -51,7 +51,10 @@ impl ArraysWriter {
 
     /// Opens the raw files of an interrupted run and drops what came after the first `instants`.
     pub fn reopen(dir: &Path, header: &Header, instants: u64) -> Result<Self> {
-        let raw = header.fields.iter().map(|f| RawFile::reopen(dir, f.name, instants * f.len as u64));
+        let raw = header
+            .fields
+            .iter()
+            .map(|f| RawFile::reopen(dir, f.name, instants * f.len as u64));
         Ok(Self {
             dir: dir.to_path_buf(),
             axes: header.axes.clone(),
@@ -67,18 +70,17 @@ impl ArraysWriter {
     pub fn secure(&mut self) -> Result<u64> {
         self.flush()?;
         for raw in self.raw.iter().chain([&self.times]) {
-            raw.out.get_ref().sync_data().map_err(|e| fault("write", &raw.path, e))?;
+            raw.out
+                .get_ref()
+                .sync_data()
+                .map_err(|e| fault("write", &raw.path, e))?;
         }
         Ok(self.instants)
     }
 
     /// Appends one instant of all fields, in the order of the header.
     pub fn append(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()> {
-        let fits = arrays.len() == self.fields.len()
-            && arrays
-                .iter()
-                .zip(&self.fields)
-                .all(|(a, f)| a.len() == f.len);
+        let fits = arrays.len() == self.fields.len() && arrays.iter().zip(&self.fields).all(|(a, f)| a.len() == f.len);
         if !fits {
             let why = "the arrays do not have the lengths announced";
             return Err(fault(
@@ -120,10 +122,7 @@ impl ArraysWriter {
 
     /// Coordinates of an axis.
     pub fn axis(&self, name: &str) -> Option<&[f64]> {
-        self.axes
-            .iter()
-            .find(|a| a.name == name)
-            .map(|a| a.values.as_slice())
+        self.axes.iter().find(|a| a.name == name).map(|a| a.values.as_slice())
     }
 
     /// One field at chosen instants, read back from disk; `None` when there is no such field.
@@ -161,21 +160,11 @@ impl ArraysWriter {
         let mut npz = NpzWriter::create(path)?;
         for axis in &self.axes {
             let shape = [axis.values.len() as u64];
-            write_array(
-                &mut npz,
-                axis.name,
-                &shape,
-                axis.values.iter().map(|&x| Ok(x)),
-            )?;
+            write_array(&mut npz, axis.name, &shape, axis.values.iter().map(|&x| Ok(x)))?;
         }
         write_array(&mut npz, TIMES, &[self.instants], self.times.stream()?)?;
         for (field, raw) in self.fields.iter().zip(&self.raw) {
-            write_array(
-                &mut npz,
-                field.name,
-                &[self.instants, field.len as u64],
-                raw.stream()?,
-            )?;
+            write_array(&mut npz, field.name, &[self.instants, field.len as u64], raw.stream()?)?;
         }
         let mut file = npz.zip_writer().finish().map_err(io::Error::from)?;
         file.flush()
@@ -244,8 +233,7 @@ impl RawFile {
 
     fn append(&mut self, values: &[f64]) -> Result<()> {
         self.bytes.clear();
-        self.bytes
-            .extend(values.iter().flat_map(|x| x.to_le_bytes()));
+        self.bytes.extend(values.iter().flat_map(|x| x.to_le_bytes()));
         self.out
             .write_all(&self.bytes)
             .map_err(|e| fault("write", &self.path, e))
@@ -262,15 +250,8 @@ impl RawFile {
             file.seek(SeekFrom::Start(8 * start))?;
             let mut bytes = vec![0; 8 * len];
             file.read_exact(&mut bytes)?;
-            let double = |b: &[u8]| {
-                b.iter()
-                    .rev()
-                    .fold(0u64, |bits, &b| bits << 8 | u64::from(b))
-            };
-            Ok(bytes
-                .chunks_exact(8)
-                .map(|b| f64::from_bits(double(b)))
-                .collect())
+            let double = |b: &[u8]| b.iter().rev().fold(0u64, |bits, &b| bits << 8 | u64::from(b));
+            Ok(bytes.chunks_exact(8).map(|b| f64::from_bits(double(b))).collect())
         };
         get().map_err(|e| fault("read", &self.path, e))
     }

@@ -33,6 +33,8 @@ pub fn read(dir: &Path) -> Result<Option<Saved>> {
     match fs::read(&path) {
         Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(e) => Err(fault("read", &path, e)),
-        Ok(text) => serde_json::from_slice(&text).map(Some).map_err(|e| fault("read", &path, e.into())),
+        Ok(text) => serde_json::from_slice(&text)
+            .map(Some)
+            .map_err(|e| fault("read", &path, e.into())),
     }
 }

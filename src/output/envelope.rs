@@ -69,12 +69,7 @@ impl Envelope {
             .flexible(true)
             .from_path(path)
             .map_err(failed)?;
-        let names = reader
-            .headers()
-            .map_err(failed)?
-            .iter()
-            .map(split_name)
-            .collect();
+        let names = reader.headers().map_err(failed)?.iter().map(split_name).collect();
         let mut envelope = Self::new(names, most);
         let mut record = csv::StringRecord::new();
         let mut row = Vec::new();
@@ -138,12 +133,7 @@ impl Envelope {
     /// Times and values of a column, extremes in the order in which they occurred.
     pub fn points(&self, column: usize) -> Vec<(f64, f64)> {
         let mut points = Vec::new();
-        for e in self
-            .stretches
-            .iter()
-            .skip(column)
-            .step_by(self.names.len().max(1))
-        {
+        for e in self.stretches.iter().skip(column).step_by(self.names.len().max(1)) {
             let (first, second) = if e.least.0 <= e.largest.0 {
                 (e.least, e.largest)
             } else {
@@ -160,11 +150,7 @@ impl Envelope {
 
 /// `tip_u1 [m]` into name and unit.
 fn split_name(heading: &str) -> (String, String) {
-    match heading
-        .trim()
-        .strip_suffix(']')
-        .and_then(|h| h.rsplit_once(" ["))
-    {
+    match heading.trim().strip_suffix(']').and_then(|h| h.rsplit_once(" [")) {
         Some((name, unit)) => (name.to_string(), unit.to_string()),
         None => (heading.trim().to_string(), "1".to_string()),
     }
@@ -176,35 +162,22 @@ mod tests {
 
     #[test]
     fn no_extreme_is_lost_and_memory_is_bounded() {
-        let names = vec![
-            ("t".to_string(), "s".to_string()),
-            ("y".to_string(), "m".to_string()),
-        ];
+        let names = vec![("t".to_string(), "s".to_string()), ("y".to_string(), "m".to_string())];
         let mut envelope = Envelope::new(names, 101);
         for k in 0..12_345 {
-            let y = if k == 7_777 {
-                5.0
-            } else {
-                (f64::from(k) * 0.7).sin()
-            };
+            let y = if k == 7_777 { 5.0 } else { (f64::from(k) * 0.7).sin() };
             envelope.push(&[f64::from(k), y]);
         }
         let points = envelope.points(1);
         assert!(points.len() <= 202, "{}", points.len());
         assert!(points.contains(&(7777.0, 5.0)));
-        assert!(
-            points.windows(2).all(|w| w[0].0 < w[1].0),
-            "in order of time"
-        );
+        assert!(points.windows(2).all(|w| w[0].0 < w[1].0), "in order of time");
         assert_eq!(envelope.points(0).last(), Some(&(12_344.0, 12_344.0)));
     }
 
     #[test]
     fn a_short_history_is_kept_as_it_is() {
-        let names = vec![
-            ("t".to_string(), "s".to_string()),
-            ("y".to_string(), "m".to_string()),
-        ];
+        let names = vec![("t".to_string(), "s".to_string()), ("y".to_string(), "m".to_string())];
         let mut envelope = Envelope::new(names, 100);
         envelope.push(&[0.0, 1.0]);
         envelope.push(&[1.0, f64::NAN]);

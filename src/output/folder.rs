@@ -21,12 +21,7 @@ pub const CHECKPOINT: &str = "checkpoint.json";
 /// The page made by `slcbeam report`.
 pub const REPORT: &str = "report.html";
 /// Pictures.
-pub const PICTURES: [&str; 4] = [
-    "deflection.svg",
-    "pressure.svg",
-    "history.svg",
-    "energy.svg",
-];
+pub const PICTURES: [&str; 4] = ["deflection.svg", "pressure.svg", "history.svg", "energy.svg"];
 
 /// A folder that holds one result, or will.
 #[derive(Clone, Debug)]
@@ -44,11 +39,7 @@ impl ResultFolder {
         let holds_older = is_result(dir);
         if !holds_older && has_files(dir)? {
             let why = "it holds files but no slcbeam result; name another folder with --out";
-            return Err(fault(
-                "use",
-                dir,
-                io::Error::new(io::ErrorKind::AlreadyExists, why),
-            ));
+            return Err(fault("use", dir, io::Error::new(io::ErrorKind::AlreadyExists, why)));
         }
         Ok(Self {
             dir: dir.to_path_buf(),
@@ -114,10 +105,7 @@ impl ResultFolder {
 
 /// The name under which a file grows before it takes its own.
 pub(crate) fn part_of(target: &Path) -> PathBuf {
-    let name = target
-        .file_name()
-        .map(|n| n.to_string_lossy())
-        .unwrap_or_default();
+    let name = target.file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
     target.with_file_name(format!(".{name}.part"))
 }
 

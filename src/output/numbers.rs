@@ -7,10 +7,7 @@ const PLAIN: i32 = 4;
 
 /// Whether a unit takes an SI prefix in front of its first letter.
 fn takes_prefix(unit: &str) -> bool {
-    matches!(
-        unit,
-        "m" | "s" | "Pa" | "J" | "W" | "N" | "N m" | "Hz" | "rad" | "m/s"
-    )
+    matches!(unit, "m" | "s" | "Pa" | "J" | "W" | "N" | "N m" | "Hz" | "rad" | "m/s")
 }
 
 /// Factor and prefixed unit in which a magnitude reads as 1 to 1000: `(1e-3, "mm")` for 0.012 m.
@@ -210,15 +207,7 @@ mod tests {
 
     #[test]
     fn shortest_reads_back_as_the_same_number() {
-        for x in [
-            0.0,
-            -0.0,
-            0.1,
-            1e-300,
-            -2.5e22,
-            1.0 / 3.0,
-            f64::MIN_POSITIVE,
-        ] {
+        for x in [0.0, -0.0, 0.1, 1e-300, -2.5e22, 1.0 / 3.0, f64::MIN_POSITIVE] {
             let back: f64 = shortest(x).parse().expect("a number");
             assert_eq!(back.to_bits(), x.to_bits(), "{}", shortest(x));
             assert!(shortest(x).len() < 26);

@@ -44,17 +44,11 @@ pub fn over_time(case: &str, history: &Envelope) -> Vec<Picture> {
 }
 
 /// `deflection.svg` and `pressure.svg` over the last cycle of the drive, or over the whole run without one.
-pub fn over_space(
-    case: &str,
-    frequency_hz: Option<f64>,
-    arrays: &mut ArraysWriter,
-) -> Result<Vec<Picture>> {
+pub fn over_space(case: &str, frequency_hz: Option<f64>, arrays: &mut ArraysWriter) -> Result<Vec<Picture>> {
     let all = arrays.times()?;
     let (span, instants) = plot::instants(&all, frequency_hz, CURVES);
     let times: Vec<f64> = instants.iter().map(|&i| all[i]).collect();
-    let axis = |arrays: &ArraysWriter, name: &str| {
-        arrays.axis(name).map(<[f64]>::to_vec).unwrap_or_default()
-    };
+    let axis = |arrays: &ArraysWriter, name: &str| arrays.axis(name).map(<[f64]>::to_vec).unwrap_or_default();
     let integers = |x: Vec<f64>| x.into_iter().map(|x| x.round() as i64).collect();
     let deflection = Deflection {
         case: case.to_string(),

@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 
 use super::arrays::ArraysWriter;
-use super::envelope::Envelope;
 use super::checkpoint::{self, Saved};
+use super::envelope::Envelope;
 use super::folder::{CASE, CHECKPOINT, FIELDS, HISTORY, RAW_FIELDS, ResultFolder, SUMMARY};
 use super::history::HistoryWriter;
 use super::pictures::{self, STRETCHES};
 use super::summary;
 use crate::error::Result;
-use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::checkpoint::Checkpoint;
+use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::summary::{Status, Summary};
 
 /// Called after every step; decides whether to go on.
@@ -95,18 +95,18 @@ impl FolderRecorder {
         let case = &self.labels.case_name;
         let mut drawn = pictures::over_time(case, &Envelope::read(&path, STRETCHES)?);
         files.push(path);
-        drawn.extend(pictures::over_space(
-            case,
-            self.labels.frequency_hz,
-            &mut arrays,
-        )?);
+        drawn.extend(pictures::over_space(case, self.labels.frequency_hz, &mut arrays)?);
         let path = self.folder.path(FIELDS);
         arrays.finish(&path, resumable)?;
         files.push(path);
         for (name, text) in drawn {
             files.push(self.folder.write(name, text.as_bytes())?);
         }
-        if resumable { Ok(()) } else { self.folder.remove(CHECKPOINT) }
+        if resumable {
+            Ok(())
+        } else {
+            self.folder.remove(CHECKPOINT)
+        }
     }
 }
 
@@ -121,9 +121,7 @@ impl Recorder for FolderRecorder {
     }
 
     fn history(&mut self, row: &[f64]) -> Result<()> {
-        self.open
-            .as_mut()
-            .map_or(Ok(()), |(history, _)| history.row(row))
+        self.open.as_mut().map_or(Ok(()), |(history, _)| history.row(row))
     }
 
     fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()> {
@@ -137,7 +135,9 @@ impl Recorder for FolderRecorder {
     }
 
     fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<()> {
-        let Some((history, arrays)) = self.open.as_mut() else { return Ok(()) };
+        let Some((history, arrays)) = self.open.as_mut() else {
+            return Ok(());
+        };
         let saved = Saved {
             history_bytes: history.secure()?,
             instants: arrays.secure()?,

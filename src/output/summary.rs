@@ -54,9 +54,7 @@ fn from_json(text: &str) -> serde_json::Result<Summary> {
             "energy_residual_relative" => balances.energy_residual_relative = f64::NAN,
             "volume_residual_relative" => balances.volume_residual_relative = f64::NAN,
             "momentum_residual_relative" => balances.momentum_residual_relative = f64::NAN,
-            "angular_momentum_residual_relative" => {
-                balances.angular_momentum_residual_relative = f64::NAN
-            }
+            "angular_momentum_residual_relative" => balances.angular_momentum_residual_relative = f64::NAN,
             _ => {}
         }
     }

@@ -40,7 +40,9 @@ pub fn header(case: &Case) -> Header {
 /// Goes on from a checkpoint of the same case; the recorder holds what was recorded before it.
 pub fn resume(case: &Case, checkpoint: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
     if checkpoint.case != case.resolved_json() || checkpoint.version != VERSION {
-        return Err(Error::Usage("the checkpoint belongs to another case or another version of the program".into()));
+        return Err(Error::Usage(
+            "the checkpoint belongs to another case or another version of the program".into(),
+        ));
     }
     let (run, dae) = Run::new(case);
     run.go(dae, Some(checkpoint), recorder)
@@ -91,7 +93,10 @@ impl<'a> Run<'a> {
         let decisions = &system.model.effects.decisions;
         let order = order::choose(case, &system);
         let mathieu = characteristic::mathieu(&system.model);
-        let linear = Linear { mathieu, euler_load: characteristic.get("euler_load_n").copied() };
+        let linear = Linear {
+            mathieu,
+            euler_load: characteristic.get("euler_load_n").copied(),
+        };
         let run = Self {
             case,
             observer: Observer::new(case, &system, interval),
@@ -111,9 +116,21 @@ impl<'a> Run<'a> {
                     .iter()
                     .map(|d| {
                         let value = if d.on { "on" } else { "off" }.to_string();
-                        (d.name.to_string(), Chosen { value, reason: d.reason.clone() })
+                        (
+                            d.name.to_string(),
+                            Chosen {
+                                value,
+                                reason: d.reason.clone(),
+                            },
+                        )
                     })
-                    .chain([("max_order".into(), Chosen { value: order.order.to_string(), reason: order.reason })])
+                    .chain([(
+                        "max_order".into(),
+                        Chosen {
+                            value: order.order.to_string(),
+                            reason: order.reason,
+                        },
+                    )])
                     .collect(),
                 growth: None,
                 characteristic,
@@ -248,7 +265,11 @@ impl Run<'_> {
         next: f64,
         recorder: &mut dyn Recorder,
     ) -> Result<Option<SolverFault>> {
-        let Stop { t, switches, checkpoint } = self.stops[stop];
+        let Stop {
+            t,
+            switches,
+            checkpoint,
+        } = self.stops[stop];
         self.state.copy_from_slice(ida.y());
         self.rates.copy_from_slice(ida.yp());
         if let Err(failure) = ida.integrals(None, &mut self.integrals) {
@@ -268,23 +289,33 @@ impl Run<'_> {
                 yp: self.rates.clone(),
                 integrals: self.carried.clone(),
                 next_output: self.outputs.next(),
-                counters: Counters { restarts: self.summary.solver.restarts + 1, ..self.summary.solver.clone() },
+                counters: Counters {
+                    restarts: self.summary.solver.restarts + 1,
+                    ..self.summary.solver.clone()
+                },
                 observed: self.observer.seen.clone(),
             })?;
         }
         let dae = ida.dae_mut();
         dae.look_within(0.5 * (t + next));
         if switches
-            && let Err(failure) =
-                consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
+            && let Err(failure) = consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
         {
             return Ok(Some(inconsistent(t, &failure)));
         }
-        Ok(ida.restart(t, &self.state, &self.rates).err().map(|failure| fault(&failure)))
+        Ok(ida
+            .restart(t, &self.state, &self.rates)
+            .err()
+            .map(|failure| fault(&failure)))
     }
 
     /// Takes every sample that is due, from the integrator's own polynomial.
-    fn sample(&mut self, ida: &mut Ida<BeamDae>, recorder: &mut dyn Recorder, at_start: bool) -> Result<Option<String>> {
+    fn sample(
+        &mut self,
+        ida: &mut Ida<BeamDae>,
+        recorder: &mut dyn Recorder,
+        at_start: bool,
+    ) -> Result<Option<String>> {
         let now = ida.time();
         let mut begin = None;
         while let Some((number, t)) = self.outputs.due(now) {
@@ -417,7 +448,10 @@ impl Run<'_> {
         s.warnings.extend(self.held);
         s.warnings.extend(self.observer.warnings());
         s.wall_s.total = self.begin.elapsed().as_secs_f64();
-        Outcome { summary: self.summary, fault }
+        Outcome {
+            summary: self.summary,
+            fault,
+        }
     }
 }
 
@@ -475,9 +509,13 @@ fn inconsistent(t: f64, failure: &StartFailure) -> SolverFault {
 fn stalled(t: f64, step: f64) -> SolverFault {
     SolverFault {
         time_s: t,
-        what: format!("no progress: {STALL_STEPS} steps have hardly moved the time on from t = {t:.9} s (step {step:.2e} s)"),
+        what: format!(
+            "no progress: {STALL_STEPS} steps have hardly moved the time on from t = {t:.9} s (step {step:.2e} s)"
+        ),
         unknown: None,
-        cause: Some("the solution changes ever faster towards this time: a closing bladder, an instability, a jump".into()),
+        cause: Some(
+            "the solution changes ever faster towards this time: a closing bladder, an instability, a jump".into(),
+        ),
         hint: Some("look at the fields just before this time; damping or a smoother signal may help".into()),
     }
 }

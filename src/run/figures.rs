@@ -68,7 +68,8 @@ impl Figures {
         if let Some(track) = &mut self.pressure {
             track.take(at("max_pressure").abs().max(at("min_pressure").abs()), in_window);
         }
-        self.input.take(at("work_loads") + at("work_ends") + at("work_ports"), in_window);
+        self.input
+            .take(at("work_loads") + at("work_ends") + at("work_ports"), in_window);
         if let Some(track) = &mut self.harvested {
             track.take(at("harvested"), in_window);
         }
@@ -90,7 +91,11 @@ impl Figures {
         if let Some(p) = &self.pressure {
             all.insert("max_pressure_pa".into(), size(p));
         }
-        let energy = |t: &Track| Quantity { last: Some(t.last), window: Some(t.increment()), ..Quantity::default() };
+        let energy = |t: &Track| Quantity {
+            last: Some(t.last),
+            window: Some(t.increment()),
+            ..Quantity::default()
+        };
         all.insert("input_energy_j".into(), energy(&self.input));
         if let Some(h) = &self.harvested {
             all.insert("harvested_energy_j".into(), energy(h));

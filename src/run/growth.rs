@@ -60,7 +60,11 @@ pub struct Linear {
 impl Growth {
     /// For a run until `end` [s].
     pub fn new(end: f64) -> Self {
-        Self { end, windows: vec![Window::default(); WINDOWS], compression: 0.0 }
+        Self {
+            end,
+            windows: vec![Window::default(); WINDOWS],
+            compression: 0.0,
+        }
     }
 
     /// Takes a sample: deflection relative to the root [m], bending energy [J], most negative normal force [N].
@@ -92,18 +96,26 @@ impl Growth {
         let factor = last.deflection / late[0].deflection.max(f64::MIN_POSITIVE);
         let quarter = late.len() / 3;
         let largest = |part: &[&Window]| part.iter().map(|w| w.deflection).fold(0.0, f64::max);
-        let still = largest(&late[late.len() - quarter..]) / largest(&late[late.len() - 2 * quarter..late.len() - quarter]);
+        let still =
+            largest(&late[late.len() - quarter..]) / largest(&late[late.len() - 2 * quarter..late.len() - quarter]);
         // A factor of 3 over the span, along a straight line in the logarithm, and still going on.
         if factor < 3.0 || straight < 0.6 || still < 1.2 || rate <= 0.0 {
             return None;
         }
-        Some(Growing { rate_per_s: rate, factor, drivers: self.drivers(late, rate, linear) })
+        Some(Growing {
+            rate_per_s: rate,
+            factor,
+            drivers: self.drivers(late, rate, linear),
+        })
     }
 
     fn drivers(&self, late: &[&Window], rate: f64, linear: &Linear) -> Vec<Driver> {
         let (first, last) = (late[0], late[late.len() - 1]);
         let gained = (last.bending_energy - first.bending_energy).max(f64::MIN_POSITIVE);
-        let driver = |name: &str, evidence: String| Driver { name: name.into(), evidence };
+        let driver = |name: &str, evidence: String| Driver {
+            name: name.into(),
+            evidence,
+        };
         let mut all = Vec::new();
         let parametric = linear.mathieu.filter(|m| m.growth_rate > 0.0);
         if let Some(m) = parametric {
@@ -122,13 +134,28 @@ impl Growth {
         {
             all.push(driver(
                 "buckling",
-                format!("compression reached {:.3e} N, above Euler's load {euler:.3e} N", self.compression),
+                format!(
+                    "compression reached {:.3e} N, above Euler's load {euler:.3e} N",
+                    self.compression
+                ),
             ));
         }
         for (name, work, what) in [
-            ("coupling", last.reciprocity - first.reciprocity, "the coupling without reciprocity (P_reciprocity)"),
-            ("formulation", last.formulation - first.formulation, "the published momentum balance (P_formulation)"),
-            ("integrator", last.residual - first.residual, "the integrator (energy residual)"),
+            (
+                "coupling",
+                last.reciprocity - first.reciprocity,
+                "the coupling without reciprocity (P_reciprocity)",
+            ),
+            (
+                "formulation",
+                last.formulation - first.formulation,
+                "the published momentum balance (P_formulation)",
+            ),
+            (
+                "integrator",
+                last.residual - first.residual,
+                "the integrator (energy residual)",
+            ),
         ] {
             if work > 0.3 * gained {
                 all.push(driver(
@@ -138,7 +165,10 @@ impl Growth {
             }
         }
         if all.is_empty() {
-            all.push(driver("loads", "no instability is known: loads and driven ends do the work".into()));
+            all.push(driver(
+                "loads",
+                "no instability is known: loads and driven ends do the work".into(),
+            ));
         }
         all
     }
@@ -167,7 +197,11 @@ fn fit(windows: &[&Window], width: f64) -> Option<(f64, f64)> {
 impl Growing {
     /// As one warning.
     pub fn warning(&self) -> String {
-        let drivers: Vec<String> = self.drivers.iter().map(|d| format!("{} ({})", d.name, d.evidence)).collect();
+        let drivers: Vec<String> = self
+            .drivers
+            .iter()
+            .map(|d| format!("{} ({})", d.name, d.evidence))
+            .collect();
         format!(
             "the deflection grows at {:.3} 1/s, by a factor {:.3} over the later three quarters of the run; driven by: {}",
             self.rate_per_s,

@@ -40,12 +40,21 @@ impl Residuals {
 
     /// Worst volume residual over the largest volume displaced in the same component.
     pub fn volume_relative(&self) -> f64 {
-        self.volume.iter().zip(&self.volume_seen).map(|(r, s)| Self::relative(*r, *s)).fold(0.0, f64::max)
+        self.volume
+            .iter()
+            .zip(&self.volume_seen)
+            .map(|(r, s)| Self::relative(*r, *s))
+            .fold(0.0, f64::max)
     }
 
     /// The same for networks without ports alone: these close to round-off.
     pub fn closed_volume_relative(&self) -> f64 {
-        let closed = self.volume.iter().zip(&self.volume_seen).zip(&self.closed).filter(|(_, closed)| **closed);
+        let closed = self
+            .volume
+            .iter()
+            .zip(&self.volume_seen)
+            .zip(&self.closed)
+            .filter(|(_, closed)| **closed);
         closed.map(|((r, s), _)| Self::relative(*r, *s)).fold(0.0, f64::max)
     }
 
@@ -108,11 +117,9 @@ impl Observer {
             (sample::cell_order(system, &map), bending.min(stretch))
         });
         let fields_every = (case.time.fields_interval() / interval).round().max(1.0) as u64;
-        let closed: Vec<bool> = system
-            .model
-            .wet
-            .as_ref()
-            .map_or(vec![], |w| (0..w.network.components).map(|c| w.network.is_closed(c)).collect());
+        let closed: Vec<bool> = system.model.wet.as_ref().map_or(vec![], |w| {
+            (0..w.network.components).map(|c| w.network.is_closed(c)).collect()
+        });
         let columns: Vec<&str> = sample::columns(system).iter().map(|c| c.0).collect();
         let residuals = Residuals {
             volume: vec![0.0; closed.len()],
@@ -145,7 +152,12 @@ impl Observer {
         let tube = case.tubes.as_ref().map_or(0.0, |t| t.length_m);
         let axes: Vec<Axis> = sample::axes(system, tube)
             .into_iter()
-            .map(|(name, unit, about, values)| Axis { name, unit, about, values })
+            .map(|(name, unit, about, values)| Axis {
+                name,
+                unit,
+                about,
+                values,
+            })
             .collect();
         let (nodes, cells) = (system.mesh.nodes, system.mesh.cells);
         let mut fields = vec![
@@ -153,17 +165,39 @@ impl Observer {
             field("u3_m", "m", "theta_node_m", "axial displacement", nodes),
             field("v1_m_s", "m/s", "theta_node_m", "transverse velocity", nodes),
             field("v3_m_s", "m/s", "theta_node_m", "axial velocity", nodes),
-            field("curvature_1_m", "1/m", "theta_node_m", "curvature, positive with the +x fibre in tension", nodes),
+            field(
+                "curvature_1_m",
+                "1/m",
+                "theta_node_m",
+                "curvature, positive with the +x fibre in tension",
+                nodes,
+            ),
             field("moment_n_m", "N m", "theta_node_m", "bending moment", nodes),
             field("normal_force_n", "N", "theta_cell_m", "normal force", cells),
         ];
         if let Some(fluid) = &system.fluid {
-            fields.push(field("pressure_pa", "Pa", "x_f", "pressure of the bladder cells", fluid.cells));
-            fields.push(field("area_change_m2", "m^2", "x_f", "area change of the bladder cells", fluid.cells));
+            fields.push(field(
+                "pressure_pa",
+                "Pa",
+                "x_f",
+                "pressure of the bladder cells",
+                fluid.cells,
+            ));
+            fields.push(field(
+                "area_change_m2",
+                "m^2",
+                "x_f",
+                "area change of the bladder cells",
+                fluid.cells,
+            ));
         }
         let columns = sample::columns(system)
             .into_iter()
-            .map(|(name, unit, about)| Column { name: name.into(), unit, about: about.into() })
+            .map(|(name, unit, about)| Column {
+                name: name.into(),
+                unit,
+                about: about.into(),
+            })
             .collect();
         Header { columns, axes, fields }
     }
@@ -203,15 +237,24 @@ impl Observer {
                 r.momentum_seen = r.momentum_seen.max(invariants.momentum[k].abs()).max(gained.abs());
             }
             let gained = integrals[Flow::AngularImpulse as usize];
-            r.angular = r.angular.max((invariants.angular_momentum - first.angular_momentum - gained).abs());
+            r.angular = r
+                .angular
+                .max((invariants.angular_momentum - first.angular_momentum - gained).abs());
             r.angular_seen = r.angular_seen.max(invariants.angular_momentum.abs()).max(gained.abs());
         }
         let deflection = w.u1.iter().fold(0.0_f64, |d, u| d.max((u - w.u1[0]).abs()));
         let least_force = w.force.iter().copied().fold(f64::INFINITY, f64::min);
-        self.seen.growth.take(t, deflection, stored.bending, least_force, integrals, balance.residual);
+        self.seen
+            .growth
+            .take(t, deflection, stored.bending, least_force, integrals, balance.residual);
         let reynolds = sample::largest_flow(system, now, w).map(|(q, place)| (q * self.reynolds_per_flow, t, place));
         if let Some(r) = reynolds
-            && self.seen.range.reynolds.as_ref().is_none_or(|(largest, ..)| r.0 > *largest)
+            && self
+                .seen
+                .range
+                .reynolds
+                .as_ref()
+                .is_none_or(|(largest, ..)| r.0 > *largest)
         {
             self.seen.range.reynolds = Some(r);
         }
@@ -278,7 +321,13 @@ impl Observer {
 }
 
 fn field(name: &'static str, unit: &'static str, axis: &'static str, about: &'static str, len: usize) -> Field {
-    Field { name, unit, axis, about, len }
+    Field {
+        name,
+        unit,
+        axis,
+        about,
+        len,
+    }
 }
 
 /// The network's coordinate as the paper's tables have it.
@@ -289,7 +338,9 @@ pub fn network_coordinate(case: &Case, wet: &crate::model::Wet) -> NetworkCoordi
 
 /// Raises the largest volume displaced in each component, `Σ |a1| ds`.
 fn displaced(system: &System, area: &[f64], seen: &mut [f64]) {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return };
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
     let mut now = vec![0.0; seen.len()];
     for (cell, a) in area.iter().enumerate() {
         now[wet.network.component_of_bladder[cell / fluid.cells_per_bladder]] += a.abs() * fluid.ds;

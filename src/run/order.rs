@@ -28,20 +28,34 @@ pub fn choose(case: &Case, system: &System) -> OrderChoice {
         MaxOrder::Forced(order) => chosen(order, "forced".into()),
         MaxOrder::Auto if !system.layout.inertia => chosen(5, "no solid inertia: nothing oscillates freely".into()),
         MaxOrder::Auto => match least_damping_ratio(system) {
-            0.0 => chosen(2, "undamped inertia: BDF beyond order 2 is unstable for its waves".into()),
+            0.0 => chosen(
+                2,
+                "undamped inertia: BDF beyond order 2 is unstable for its waves".into(),
+            ),
             ratio if ratio < ENOUGH => chosen(
                 2,
-                format!("the least damped wave has a damping ratio of {ratio:.1e} < {ENOUGH}: BDF beyond order 2 is unstable for it"),
+                format!(
+                    "the least damped wave has a damping ratio of {ratio:.1e} < {ENOUGH}: BDF beyond order 2 is unstable for it"
+                ),
             ),
-            ratio => chosen(5, format!("every wave has a damping ratio of {ratio:.1e} >= {ENOUGH} or more")),
+            ratio => chosen(
+                5,
+                format!("every wave has a damping ratio of {ratio:.1e} >= {ENOUGH} or more"),
+            ),
         },
     }
 }
 
 /// Why the order asked for is refused, if it is: 3 and 4 on a scene with hardly damped waves.
 pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
-    let MaxOrder::Order(order @ (3 | 4)) = case.solver.max_order else { return None };
-    let ratio = if system.layout.inertia { least_damping_ratio(system) } else { return None };
+    let MaxOrder::Order(order @ (3 | 4)) = case.solver.max_order else {
+        return None;
+    };
+    let ratio = if system.layout.inertia {
+        least_damping_ratio(system)
+    } else {
+        return None;
+    };
     (ratio < ENOUGH).then(|| {
         Violation::new(
             "/solver/max_order",
@@ -62,7 +76,11 @@ pub fn least_damping_ratio(system: &System) -> f64 {
     let bending = (s.bending_stiffness / m).sqrt();
     let axial = (s.axial_stiffness / m).sqrt();
     let families = [
-        (s.bending_damping_time, 3.516 * bending / (l * l), 4.0 * bending / (h * h)),
+        (
+            s.bending_damping_time,
+            3.516 * bending / (l * l),
+            4.0 * bending / (h * h),
+        ),
         (s.axial_damping_time, 1.571 * axial / l, 2.0 * axial / h),
     ];
     let mut least = f64::INFINITY;

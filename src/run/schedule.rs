@@ -21,11 +21,21 @@ pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
     let closest = 1e-9 * end;
     let mut switches = Vec::new();
     each_signal(model, |s| s.breaks(&mut switches));
-    let mut all: Vec<Stop> =
-        switches.into_iter().map(|t| Stop { t, switches: true, checkpoint: false }).collect();
+    let mut all: Vec<Stop> = switches
+        .into_iter()
+        .map(|t| Stop {
+            t,
+            switches: true,
+            checkpoint: false,
+        })
+        .collect();
     if let Some(interval) = case.time.checkpoint_interval_s {
         let count = (end / interval).ceil() as u64;
-        all.extend((1..count).map(|k| Stop { t: k as f64 * interval, switches: false, checkpoint: true }));
+        all.extend((1..count).map(|k| Stop {
+            t: k as f64 * interval,
+            switches: false,
+            checkpoint: true,
+        }));
     }
     all.retain(|s| s.t > closest && s.t < end - closest);
     all.sort_by(|a, b| a.t.total_cmp(&b.t));
@@ -37,7 +47,11 @@ pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
         }
         same
     });
-    all.push(Stop { t: end, switches: false, checkpoint: false });
+    all.push(Stop {
+        t: end,
+        switches: false,
+        checkpoint: false,
+    });
     all
 }
 
@@ -71,7 +85,11 @@ fn each_signal(model: &Model, mut visit: impl FnMut(&Signal)) {
         visit(&load.signal);
     }
     if let Some(wet) = &model.wet {
-        wet.network.links.iter().filter_map(|l| l.opening.as_ref()).for_each(&mut visit);
+        wet.network
+            .links
+            .iter()
+            .filter_map(|l| l.opening.as_ref())
+            .for_each(&mut visit);
         wet.network.ports.iter().map(|p| &p.pressure).for_each(&mut visit);
         wet.network.sources.iter().map(|s| &s.flow).for_each(&mut visit);
     }
@@ -89,7 +107,12 @@ pub struct Outputs {
 impl Outputs {
     /// Times from zero.
     pub fn new(interval: f64, end: f64) -> Self {
-        Self { interval, end, next: 0, last: (end / interval * (1.0 + 1e-12)).floor() as u64 }
+        Self {
+            interval,
+            end,
+            next: 0,
+            last: (end / interval * (1.0 + 1e-12)).floor() as u64,
+        }
     }
 
     /// Number of the next output.

@@ -89,7 +89,11 @@ impl<D: Dae> Ida<D> {
             .collect();
         let (y, yp, mut scratch) = (vector(y0)?, vector(yp0)?, vector(&id)?);
         let integrals = dae.integrals();
-        let quadratures = if integrals == 0 { None } else { Some(vector(&vec![0.0; integrals])?) };
+        let quadratures = if integrals == 0 {
+            None
+        } else {
+            Some(vector(&vec![0.0; integrals])?)
+        };
         let solver = LinearSolver::new(klu, context.raw()).map_err(refuse)?;
         let bridge = Shared::new(Bridge {
             dae,

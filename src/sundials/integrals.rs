@@ -19,8 +19,14 @@ pub(super) unsafe extern "C" fn integrands<D: Dae>(
     data: *mut c_void,
 ) -> c_int {
     // SAFETY: user data is the bridge, borrowed by nobody else while C runs; the vectors are different serial ones.
-    let (bridge, y, yp, out) =
-        unsafe { (&mut *data.cast::<Bridge<D>>(), entries(y), entries(yp), entries_mut(out)) };
+    let (bridge, y, yp, out) = unsafe {
+        (
+            &mut *data.cast::<Bridge<D>>(),
+            entries(y),
+            entries(yp),
+            entries_mut(out),
+        )
+    };
     let begin = std::time::Instant::now();
     let code = bridge.call(|dae| dae.integrands(t, y, yp, out));
     bridge.integrand_wall += begin.elapsed();
@@ -44,7 +50,9 @@ impl<D: Dae> Ida<D> {
     /// The integrals `∫ g dt` since the last restart: at the present time, or at a time [s] within the last
     /// step. `out` has length `dae.integrals()`.
     pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
-        let Some(quadratures) = &mut self.quadratures else { return Ok(()) };
+        let Some(quadratures) = &mut self.quadratures else {
+            return Ok(());
+        };
         if self.stepped {
             let mut reached = self.time;
             // SAFETY: IDA and the vector are alive.
@@ -66,7 +74,9 @@ impl<D: Dae> Ida<D> {
 
     /// Sets the integrals back to zero at a restart.
     pub(super) fn reset_integrals(&mut self) -> c_int {
-        let Some(quadratures) = &mut self.quadratures else { return s::IDA_SUCCESS };
+        let Some(quadratures) = &mut self.quadratures else {
+            return s::IDA_SUCCESS;
+        };
         quadratures.entries_mut().fill(0.0);
         // SAFETY: IDA and the vector, which it copies, are alive.
         unsafe { s::IDAQuadReInit(self.memory.0, quadratures.raw()) }

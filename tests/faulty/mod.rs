@@ -43,12 +43,7 @@ pub fn one(changes: &[(&str, &str)]) -> (String, String, String) {
 }
 
 #[track_caller]
-pub fn assert_fault(
-    (pointer, marked, what): (String, String, String),
-    at: &str,
-    mark: &str,
-    says: &str,
-) {
+pub fn assert_fault((pointer, marked, what): (String, String, String), at: &str, mark: &str, says: &str) {
     assert_eq!((pointer.as_str(), marked.as_str()), (at, mark), "{what}");
     assert!(what.contains(says), "{what}");
 }

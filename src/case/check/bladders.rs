@@ -9,9 +9,7 @@ pub(super) fn check(case: &Case, faults: &mut Faults) {
         (Some(bladders), fluid) => {
             if fluid.is_none() {
                 let fault = Violation::new("/bladders", "bladders without a fluid to fill them");
-                faults.push_at_key(
-                    fault.hint("add \"fluid\", or remove \"bladders\" for a dry beam"),
-                );
+                faults.push_at_key(fault.hint("add \"fluid\", or remove \"bladders\" for a dry beam"));
             }
             fits(case, bladders, faults);
             slopes(bladders, faults);
@@ -65,10 +63,7 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Faults) {
         refuse(
             "height_m",
             what,
-            format!(
-                "at most {} m, half the height of the beam",
-                beam.height_m / 2.0
-            ),
+            format!("at most {} m, half the height of the beam", beam.height_m / 2.0),
         );
     }
     if exceeds(bladders.length_m, beam.width_m) {
@@ -82,17 +77,10 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Faults) {
             format!("at most {} m, the width of the beam", beam.width_m),
         );
     }
-    if let Some(segments) = case
-        .mesh
-        .segments
-        .filter(|segments| *segments != bladders.per_row)
-    {
+    if let Some(segments) = case.mesh.segments.filter(|segments| *segments != bladders.per_row) {
         let fault = Violation::new(
             "/mesh/segments",
-            format!(
-                "{segments} segments for {} bladders a row",
-                bladders.per_row
-            ),
+            format!("{segments} segments for {} bladders a row", bladders.per_row),
         );
         faults.push(
             fault
@@ -103,10 +91,7 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Faults) {
 }
 
 fn slopes(bladders: &Bladders, faults: &mut Faults) {
-    let (moment, force) = (
-        &bladders.area_per_moment_m2_per_n_m,
-        &bladders.area_per_force_m2_per_n,
-    );
+    let (moment, force) = (&bladders.area_per_moment_m2_per_n_m, &bladders.area_per_force_m2_per_n);
     let pairs = [
         (
             "/bladders/area_per_moment_m2_per_n_m",
@@ -125,8 +110,7 @@ fn slopes(bladders: &Bladders, faults: &mut Faults) {
     ];
     for (pointer, large_key, large, small_key, small) in pairs {
         if large < small {
-            let what =
-                format!("the slope {large_key} ({large}) is smaller than {small_key} ({small})");
+            let what = format!("the slope {large_key} ({large}) is smaller than {small_key} ({small})");
             let fault = Violation::new(format!("{pointer}/{large_key}"), what);
             faults.push(
                 fault

@@ -9,18 +9,14 @@ const PAIRS: [[&str; 2]; 3] = [
     ["slope_rad", "moment_n_m"],
     ["u3_m", "force_z_n"],
 ];
-const ALLOWED: &str =
-    "exactly one of each pair: u1_m or force_x_n, slope_rad or moment_n_m, u3_m or force_z_n";
+const ALLOWED: &str = "exactly one of each pair: u1_m or force_x_n, slope_rad or moment_n_m, u3_m or force_z_n";
 
 pub(super) fn check(case: &Case, faults: &mut Faults) {
     for (end, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
         let (form, given) = end.form();
         let pointer = format!("/ends/{name}/{form}");
         let keys: Vec<&str> = given.given().map(|(key, _)| key).collect();
-        for pair in PAIRS
-            .iter()
-            .filter(|pair| pair.iter().all(|key| keys.contains(key)))
-        {
+        for pair in PAIRS.iter().filter(|pair| pair.iter().all(|key| keys.contains(key))) {
             let what = format!(
                 "the {name} is over-determined: {} and {} are both given",
                 pair[0], pair[1]
@@ -43,10 +39,7 @@ fn complete(name: &str, pointer: &str, given: &EndConditions, keys: &[&str], fau
         .into_iter()
         .find(|key| keys.contains(key));
     let instead = follower.is_some() && given.force_x_n.is_none() && given.force_z_n.is_none();
-    for pair in PAIRS
-        .iter()
-        .filter(|pair| !pair.iter().any(|key| keys.contains(key)))
-    {
+    for pair in PAIRS.iter().filter(|pair| !pair.iter().any(|key| keys.contains(key))) {
         if instead && pair[0] != "slope_rad" {
             continue;
         }
@@ -64,9 +57,7 @@ fn complete(name: &str, pointer: &str, given: &EndConditions, keys: &[&str], fau
         if let Some(follower) = follower {
             let what = format!("{follower} acts on an end that {key} holds");
             let fault = Violation::new(format!("{pointer}/{follower}"), what);
-            faults.push_at_key(fault.hint(format!(
-                "remove {follower}, or give a force instead of {key}"
-            )));
+            faults.push_at_key(fault.hint(format!("remove {follower}, or give a force instead of {key}")));
         }
     }
 }

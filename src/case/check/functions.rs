@@ -58,47 +58,28 @@ fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
     }
     for (i, load) in case.loads.iter().enumerate() {
         if let Some((key, load)) = load.distributed() {
-            all.push((
-                format!("/loads/{i}/{key}/signal"),
-                Role::Other,
-                &load.signal,
-            ));
+            all.push((format!("/loads/{i}/{key}/signal"), Role::Other, &load.signal));
         }
     }
     let Some(network) = &case.network else {
         return all;
     };
     for (i, chain) in network.chains.iter().enumerate() {
-        all.push((
-            format!("/network/chains/{i}/opening"),
-            Role::Opening,
-            &chain.opening,
-        ));
+        all.push((format!("/network/chains/{i}/opening"), Role::Opening, &chain.opening));
         for (k, end) in chain.ends.iter().enumerate() {
             let (key, signal) = match end {
                 ChainEnd::PressurePa(signal) => ("pressure_pa", signal),
                 ChainEnd::FlowM3S(signal) => ("flow_m3_s", signal),
                 ChainEnd::Sealed | ChainEnd::Connected => continue,
             };
-            all.push((
-                format!("/network/chains/{i}/ends/{k}/{key}"),
-                Role::Other,
-                signal,
-            ));
+            all.push((format!("/network/chains/{i}/ends/{k}/{key}"), Role::Other, signal));
         }
     }
     for (i, tube) in network.tubes.iter().enumerate() {
-        all.push((
-            format!("/network/tubes/{i}/opening"),
-            Role::Opening,
-            &tube.opening,
-        ));
+        all.push((format!("/network/tubes/{i}/opening"), Role::Opening, &tube.opening));
     }
     for (i, port) in network.ports.iter().enumerate() {
-        for (key, signal) in [
-            ("pressure_pa", &port.pressure_pa),
-            ("flow_m3_s", &port.flow_m3_s),
-        ] {
+        for (key, signal) in [("pressure_pa", &port.pressure_pa), ("flow_m3_s", &port.flow_m3_s)] {
             all.extend(
                 signal
                     .iter()
@@ -125,17 +106,10 @@ fn profiles(case: &Case) -> Vec<(String, &Profile)> {
         ("u3_rate_m_s", &start.u3_rate_m_s),
     ];
     for (key, profile) in fields {
-        all.extend(
-            profile
-                .iter()
-                .map(|profile| (format!("/start/{key}"), profile)),
-        );
+        all.extend(profile.iter().map(|profile| (format!("/start/{key}"), profile)));
     }
     for (i, some) in start.pressures.iter().enumerate() {
-        all.push((
-            format!("/start/pressures/{i}/pressure_pa"),
-            &some.pressure_pa,
-        ));
+        all.push((format!("/start/pressures/{i}/pressure_pa"), &some.pressure_pa));
     }
     all
 }
@@ -143,10 +117,7 @@ fn profiles(case: &Case) -> Vec<(String, &Profile)> {
 fn signal_parts(pointer: &str, signal: &Signal, faults: &mut Faults) {
     match signal {
         Signal::Sine(sine) if sine.frequency_hz > HIGHEST_FREQUENCY => {
-            let what = format!(
-                "{} Hz is not a plausible frequency",
-                plain(sine.frequency_hz)
-            );
+            let what = format!("{} Hz is not a plausible frequency", plain(sine.frequency_hz));
             let fault = Violation::new(format!("{pointer}/sine/frequency_hz"), what);
             faults.push(fault.allowed(format!("up to {} Hz", plain(HIGHEST_FREQUENCY))));
         }
@@ -200,16 +171,13 @@ fn profile_tables(pointer: &str, profile: &Profile, faults: &mut Faults) {
 
 fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mut Faults) {
     let fault = if at.is_empty() {
-        Violation::new(pointer, "a table without points")
-            .hint(format!("give \"{key}\" and \"values\""))
+        Violation::new(pointer, "a table without points").hint(format!("give \"{key}\" and \"values\""))
     } else if at.len() != values.len() {
         let what = format!("{} {key} but {} values", at.len(), values.len());
-        Violation::new(child(pointer, "values"), what)
-            .allowed(format!("{} values, one for each of {key}", at.len()))
+        Violation::new(child(pointer, "values"), what).allowed(format!("{} values, one for each of {key}", at.len()))
     } else if let Some(i) = at.windows(2).position(|w| w[0] >= w[1]) {
         let what = format!("{} comes after {}", at[i + 1], at[i]);
-        Violation::new(format!("{pointer}/{key}/{}", i + 1), what)
-            .allowed("strictly ascending order")
+        Violation::new(format!("{pointer}/{key}/{}", i + 1), what).allowed("strictly ascending order")
     } else {
         Violation::new(pointer, "a table with numbers that are not finite")
     };
@@ -227,13 +195,8 @@ fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Fau
         let first = at(start).value;
         if let Some(before) = last.filter(|_| role == Role::Motion) {
             if (first - before).abs() > 1e-9 * (first.abs() + before.abs()) {
-                let what = format!(
-                    "the motion jumps from {before} to {first} at {start} s: infinite velocity"
-                );
-                faults.push(
-                    Violation::new(pointer, what)
-                        .hint("use a ramp with a duration and a smooth shape"),
-                );
+                let what = format!("the motion jumps from {before} to {first} at {start} s: infinite velocity");
+                faults.push(Violation::new(pointer, what).hint("use a ramp with a duration and a smooth shape"));
                 return;
             }
         }
@@ -241,10 +204,7 @@ fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Fau
         for t in instants(signal, start, stop, most) {
             let jet = at(t);
             if !(jet.value.is_finite() && jet.rate.is_finite() && jet.acceleration.is_finite()) {
-                faults.push(Violation::new(
-                    pointer,
-                    format!("not a finite number at {t} s"),
-                ));
+                faults.push(Violation::new(pointer, format!("not a finite number at {t} s")));
                 return;
             }
             if role == Role::Opening && !(-1e-9..=1.0 + 1e-9).contains(&jet.value) {
@@ -261,9 +221,7 @@ const MOST_INSTANTS: f64 = 2e5;
 
 /// Instants close enough to see every extremum of the signal nearly.
 fn instants(signal: &Signal, start: f64, stop: f64, most: f64) -> impl Iterator<Item = f64> {
-    let periods = signal
-        .fastest_period_s()
-        .map_or(0.0, |period| (stop - start) / period);
+    let periods = signal.fastest_period_s().map_or(0.0, |period| (stop - start) / period);
     let wanted = if signal.is_constant() {
         1.0
     } else {

@@ -20,12 +20,7 @@ struct Branch<'a> {
     opening: Option<&'a Signal>,
 }
 
-pub(super) fn check(
-    case: &Case,
-    network: &Network,
-    attached: &BTreeMap<Point, Vec<String>>,
-    faults: &mut Faults,
-) {
+pub(super) fn check(case: &Case, network: &Network, attached: &BTreeMap<Point, Vec<String>>, faults: &mut Faults) {
     let branches = branches(network);
     let held: BTreeSet<Point> = network
         .ports
@@ -35,12 +30,7 @@ pub(super) fn check(
         .collect();
     let names: BTreeSet<&String> = network.junctions.iter().collect();
     let used = |name: &str| attached.contains_key(&Point::Junction(name.to_owned()));
-    for (i, name) in network
-        .junctions
-        .iter()
-        .enumerate()
-        .filter(|(_, name)| !used(name))
-    {
+    for (i, name) in network.junctions.iter().enumerate().filter(|(_, name)| !used(name)) {
         let fault = Violation::new(
             format!("/network/junctions/{i}"),
             format!("junction \"{name}\" is not used"),
@@ -59,15 +49,12 @@ pub(super) fn check(
         }
     }
     for (name, t) in dead {
-        let i = network
-            .junctions
-            .iter()
-            .position(|n| n == name)
-            .unwrap_or_default();
-        let what =
-            format!("junction \"{name}\" reaches neither a bladder nor a pressure port at {t} s");
+        let i = network.junctions.iter().position(|n| n == name).unwrap_or_default();
+        let what = format!("junction \"{name}\" reaches neither a bladder nor a pressure port at {t} s");
         let fault = Violation::new(format!("/network/junctions/{i}"), what);
-        faults.push(fault.hint("open a branch or attach a bladder: a junction stores nothing, so its pressure is undefined"));
+        faults.push(
+            fault.hint("open a branch or attach a bladder: a junction stores nothing, so its pressure is undefined"),
+        );
     }
 }
 
@@ -91,10 +78,7 @@ fn branches(network: &Network) -> Vec<Branch<'_>> {
 
 fn point(endpoint: &Endpoint) -> Option<Point> {
     match (endpoint.bladder, &endpoint.junction) {
-        (Some(index), None) => Some(Point::Bladder(
-            index,
-            endpoint.end.unwrap_or(BladderEnd::Inlet),
-        )),
+        (Some(index), None) => Some(Point::Bladder(index, endpoint.end.unwrap_or(BladderEnd::Inlet))),
         (None, Some(name)) => Some(Point::Junction(name.clone())),
         _ => None,
     }
@@ -126,10 +110,7 @@ fn instants(branches: &[Branch], end: f64) -> Vec<f64> {
 fn reached(branches: &[Branch], held: &BTreeSet<Point>, t: f64) -> BTreeSet<Point> {
     let mut reached = held.clone();
     let ends = branches.iter().flat_map(|branch| &branch.points);
-    reached.extend(
-        ends.filter(|point| matches!(point, Point::Bladder(..)))
-            .cloned(),
-    );
+    reached.extend(ends.filter(|point| matches!(point, Point::Bladder(..))).cloned());
     let open: Vec<_> = branches
         .iter()
         .filter(|b| b.opening.is_none_or(|o| o.value(t) > CLOSED))

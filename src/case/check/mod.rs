@@ -23,9 +23,7 @@ const RULES: [(Rule, &[&str]); 9] = [
     (plausible::proportions, &["beam", "tubes", "network"]),
     (
         bladders::check,
-        &[
-            "beam", "fluid", "bladders", "tubes", "network", "start", "mesh",
-        ],
+        &["beam", "fluid", "bladders", "tubes", "network", "start", "mesh"],
     ),
     (network::check, &["bladders", "tubes", "network", "time"]),
     (ends::check, &[]),
@@ -36,11 +34,10 @@ const RULES: [(Rule, &[&str]); 9] = [
 
 /// Every rule on one case, but those that compare a broken section with others.
 pub fn check(case: &Case, broken: &[String], faults: &mut Faults) {
-    for (rule, _) in RULES.iter().filter(|(_, reads)| {
-        !broken
-            .iter()
-            .any(|section| reads.contains(&section.as_str()))
-    }) {
+    for (rule, _) in RULES
+        .iter()
+        .filter(|(_, reads)| !broken.iter().any(|section| reads.contains(&section.as_str())))
+    {
         rule(case, faults);
     }
 }

@@ -73,9 +73,7 @@ impl Rules<'_> {
         let mut known = HashMap::new();
         for (i, name) in self.network.junctions.iter().enumerate() {
             if let Some(first) = known.insert(name, i) {
-                let what = format!(
-                    "junction \"{name}\" is declared twice, first at /network/junctions/{first}"
-                );
+                let what = format!("junction \"{name}\" is declared twice, first at /network/junctions/{first}");
                 self.faults
                     .push(Violation::new(format!("/network/junctions/{i}"), what));
             }
@@ -86,11 +84,7 @@ impl Rules<'_> {
     fn point(&mut self, endpoint: &Endpoint, pointer: &str, owner: &str) -> Option<Point> {
         let point = self.named(endpoint, pointer);
         match &point {
-            Some(point) => self
-                .attached
-                .entry(point.clone())
-                .or_default()
-                .push(owner.to_owned()),
+            Some(point) => self.attached.entry(point.clone()).or_default().push(owner.to_owned()),
             None => self.lost = true,
         }
         point
@@ -116,8 +110,7 @@ impl Rules<'_> {
             (None, None, None) => "a point that is neither a bladder end nor a junction",
         };
         let form = "{\"bladder\": 3, \"end\": \"outlet\"} or {\"junction\": \"name\"}";
-        self.faults
-            .push_at_key(Violation::new(pointer, what).allowed(form));
+        self.faults.push_at_key(Violation::new(pointer, what).allowed(form));
         None
     }
 
@@ -158,7 +151,8 @@ impl Rules<'_> {
                     pointer,
                     format!("a tube without {missing}, and no /tubes to take it from"),
                 );
-                self.faults.push(fault.hint("add \"tubes\" to the case, or \"length_m\" and \"permeability_m4\" to the tube"));
+                self.faults
+                    .push(fault.hint("add \"tubes\" to the case, or \"length_m\" and \"permeability_m4\" to the tube"));
             }
         }
     }
@@ -168,10 +162,7 @@ impl Rules<'_> {
         for (i, chain) in self.network.chains.iter().enumerate() {
             for (k, end) in chain.ends.iter().enumerate() {
                 if matches!(end, ChainEnd::PressurePa(_) | ChainEnd::FlowM3S(_)) {
-                    known.extend(
-                        end_point(&chain.bladders, k)
-                            .map(|p| (p, format!("/network/chains/{i}/ends/{k}"))),
-                    );
+                    known.extend(end_point(&chain.bladders, k).map(|p| (p, format!("/network/chains/{i}/ends/{k}"))));
                 }
             }
         }
@@ -192,8 +183,7 @@ impl Rules<'_> {
             };
             if let Some(first) = known.get(&point) {
                 let what = format!("a second port at {point}, the first is {first}");
-                self.faults
-                    .push(Violation::new(format!("{pointer}/at"), what));
+                self.faults.push(Violation::new(format!("{pointer}/at"), what));
             }
             known.entry(point).or_insert(pointer);
         }
@@ -201,12 +191,7 @@ impl Rules<'_> {
 
     fn turbines(&mut self) {
         for (i, turbine) in self.network.turbines.iter().enumerate() {
-            self.two_points(
-                &turbine.from,
-                &turbine.to,
-                &format!("/network/turbines/{i}"),
-                "turbine",
-            );
+            self.two_points(&turbine.from, &turbine.to, &format!("/network/turbines/{i}"), "turbine");
         }
     }
 
@@ -220,9 +205,8 @@ impl Rules<'_> {
                 }
                 if let Some(first) = used.get(&index) {
                     let what = format!("bladder {index} is used twice, first at {first}");
-                    self.faults.push(
-                        Violation::new(pointer, what).allowed("every bladder in one chain at most"),
-                    );
+                    self.faults
+                        .push(Violation::new(pointer, what).allowed("every bladder in one chain at most"));
                 } else {
                     used.insert(index, pointer);
                 }
@@ -242,12 +226,9 @@ impl Rules<'_> {
                 let pointer = format!("/network/chains/{i}/ends/{k}");
                 match (end, self.attached.get(&point)) {
                     (ChainEnd::Sealed, Some(owners)) => {
-                        let what =
-                            format!("{point} is sealed, but {} is attached there", owners[0]);
-                        self.faults.push(
-                            Violation::new(pointer, what)
-                                .hint("write \"connected\" instead of \"sealed\""),
-                        );
+                        let what = format!("{point} is sealed, but {} is attached there", owners[0]);
+                        self.faults
+                            .push(Violation::new(pointer, what).hint("write \"connected\" instead of \"sealed\""));
                     }
                     (ChainEnd::Connected, None) if !self.lost => {
                         let what = format!("nothing is connected to {point}");
@@ -264,11 +245,7 @@ impl Rules<'_> {
 /// The point at the first (0) or second (1) end of a chain.
 pub(super) fn end_point(bladders: &[i64], end: usize) -> Option<Point> {
     match end {
-        0 => bladders
-            .first()
-            .map(|index| Point::Bladder(*index, BladderEnd::Inlet)),
-        _ => bladders
-            .last()
-            .map(|index| Point::Bladder(*index, BladderEnd::Outlet)),
+        0 => bladders.first().map(|index| Point::Bladder(*index, BladderEnd::Inlet)),
+        _ => bladders.last().map(|index| Point::Bladder(*index, BladderEnd::Outlet)),
     }
 }

@@ -107,12 +107,7 @@ pub(super) fn sizes(case: &Case, faults: &mut Faults) {
                 pointer,
                 format!("{} {} is not a plausible size", plain(value), unit(range)),
             );
-            let allowed = format!(
-                "{} to {} {}",
-                plain(range.low),
-                plain(range.high),
-                unit(range)
-            );
+            let allowed = format!("{} to {} {}", plain(range.low), plain(range.high), unit(range));
             faults.push(fault.allowed(allowed.trim_end()).hint(range.hint));
         }
     };
@@ -122,21 +117,9 @@ pub(super) fn sizes(case: &Case, faults: &mut Faults) {
     look("/beam/width_m", beam.width_m, &SECTION);
     look("/beam/young_modulus_pa", beam.young_modulus_pa, &MODULUS);
     look("/beam/density_kg_m3", beam.density_kg_m3, &SOLID_DENSITY);
-    look(
-        "/beam/axial_stiffness_factor",
-        beam.axial_stiffness_factor,
-        &FACTOR,
-    );
-    look(
-        "/beam/bending_stiffness_factor",
-        beam.bending_stiffness_factor,
-        &FACTOR,
-    );
-    look(
-        "/beam/mass_factor",
-        beam.mass_factor.unwrap_or(1.0),
-        &FACTOR,
-    );
+    look("/beam/axial_stiffness_factor", beam.axial_stiffness_factor, &FACTOR);
+    look("/beam/bending_stiffness_factor", beam.bending_stiffness_factor, &FACTOR);
+    look("/beam/mass_factor", beam.mass_factor.unwrap_or(1.0), &FACTOR);
     look("/time/end_s", case.time.end_s, &DURATION);
     if let Some(fluid) = &case.fluid {
         look("/fluid/density_kg_m3", fluid.density_kg_m3, &FLUID_DENSITY);
@@ -165,22 +148,13 @@ pub(super) fn sizes(case: &Case, faults: &mut Faults) {
             look("/tubes/permeability_m4", permeability, &PERMEABILITY);
         }
     }
-    for (i, tube) in case
-        .network
-        .iter()
-        .flat_map(|network| &network.tubes)
-        .enumerate()
-    {
+    for (i, tube) in case.network.iter().flat_map(|network| &network.tubes).enumerate() {
         let tube_at = format!("/network/tubes/{i}");
         if let Some(length) = tube.length_m {
             look(&format!("{tube_at}/length_m"), length, &TUBE_LENGTH);
         }
         if let Some(permeability) = tube.permeability_m4 {
-            look(
-                &format!("{tube_at}/permeability_m4"),
-                permeability,
-                &PERMEABILITY,
-            );
+            look(&format!("{tube_at}/permeability_m4"), permeability, &PERMEABILITY);
         }
         for (key, size) in tube.cross_section.iter().flat_map(sides) {
             look(&format!("{tube_at}/cross_section/{key}"), size, &RADIUS);
@@ -192,8 +166,7 @@ pub(super) fn sizes(case: &Case, faults: &mut Faults) {
 pub(super) fn proportions(case: &Case, faults: &mut Faults) {
     let beam = &case.beam;
     let slenderness = beam.length_m / beam.height_m;
-    if slenderness > MOST_SLENDER && !faults.has("/beam/length_m") && !faults.has("/beam/height_m")
-    {
+    if slenderness > MOST_SLENDER && !faults.has("/beam/length_m") && !faults.has("/beam/height_m") {
         let what = format!("a beam {} times as long as it is high", slenderness.round());
         let fault = Violation::new("/beam/length_m", what);
         faults.push(
@@ -206,29 +179,16 @@ pub(super) fn proportions(case: &Case, faults: &mut Faults) {
         .tubes
         .iter()
         .map(|tubes| ("/tubes/length_m".to_owned(), tubes.length_m));
-    let single = case
-        .network
-        .iter()
-        .flat_map(|network| &network.tubes)
-        .enumerate();
-    let single =
-        single.filter_map(|(i, t)| Some((format!("/network/tubes/{i}/length_m"), t.length_m?)));
+    let single = case.network.iter().flat_map(|network| &network.tubes).enumerate();
+    let single = single.filter_map(|(i, t)| Some((format!("/network/tubes/{i}/length_m"), t.length_m?)));
     for (pointer, length) in shared.chain(single) {
         let longest = LONGEST_TUBE * beam.length_m;
         if length > longest && !faults.has(&pointer) {
             let fault = Violation::new(
                 pointer,
-                format!(
-                    "a tube of {} m on a beam of {} m",
-                    plain(length),
-                    plain(beam.length_m)
-                ),
+                format!("a tube of {} m on a beam of {} m", plain(length), plain(beam.length_m)),
             );
-            faults.push(
-                fault
-                    .allowed(format!("up to {} m", plain(longest)))
-                    .hint(MILLIMETRES),
-            );
+            faults.push(fault.allowed(format!("up to {} m", plain(longest))).hint(MILLIMETRES));
         }
     }
 }
@@ -241,10 +201,7 @@ fn sides(section: &CrossSection) -> Vec<(&'static str, f64)> {
     match *section {
         CrossSection::Circle { radius_m } => vec![("circle/radius_m", radius_m)],
         CrossSection::Rectangle { height_m, width_m } => {
-            vec![
-                ("rectangle/height_m", height_m),
-                ("rectangle/width_m", width_m),
-            ]
+            vec![("rectangle/height_m", height_m), ("rectangle/width_m", width_m)]
         }
         CrossSection::Ellipse {
             semi_axis_a_m,

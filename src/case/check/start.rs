@@ -26,8 +26,7 @@ fn pressures(case: &Case, faults: &mut Faults) {
             let pointer = format!("/start/pressures/{i}/bladders/{k}");
             if super::network::exists(index, bladders.per_row, &pointer, faults) {
                 if let Some(first) = known.insert(index, pointer.clone()) {
-                    let what =
-                        format!("the pressure of bladder {index} is given twice, first at {first}");
+                    let what = format!("the pressure of bladder {index} is given twice, first at {first}");
                     faults.push(Violation::new(pointer, what));
                 }
             }
@@ -40,12 +39,7 @@ fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Faults) {
     let (form, given) = end.form();
     let length = case.beam.length_m;
     let resolved = end.resolve();
-    let mut compare = |key: &str,
-                       start_key: &str,
-                       starts: f64,
-                       signal: &Signal,
-                       tolerance: f64,
-                       unit: &str| {
+    let mut compare = |key: &str, start_key: &str, starts: f64, signal: &Signal, tolerance: f64, unit: &str| {
         let driven = signal.at_start(case.time.end_s);
         if (starts - driven).abs() > tolerance {
             let by_hand = given.given().any(|(k, _)| k == key);
@@ -54,9 +48,8 @@ fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Faults) {
             } else {
                 format!("/start/{start_key}")
             };
-            let what = format!(
-                "at t = 0 the {name} is driven to {key} = {driven} {unit}, but the start has {starts} {unit}"
-            );
+            let what =
+                format!("at t = 0 the {name} is driven to {key} = {driven} {unit}, but the start has {starts} {unit}");
             let hint = format!("let the signal begin at {starts}, or change /start/{start_key}");
             faults.push(
                 Violation::new(pointer, what)
@@ -68,24 +61,10 @@ fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Faults) {
     let value = |profile: &Option<Profile>| profile.as_ref().map_or(0.0, |p| p.value(x));
     let rate = |profile: &Option<Profile>| profile.as_ref().map_or(0.0, |p| p.slope(x) / length);
     if let Translation::Displacement(signal) = &resolved.transverse {
-        compare(
-            "u1_m",
-            "u1_m",
-            value(&case.start.u1_m),
-            signal,
-            1e-6 * length,
-            "m",
-        );
+        compare("u1_m", "u1_m", value(&case.start.u1_m), signal, 1e-6 * length, "m");
     }
     if let Translation::Displacement(signal) = &resolved.axial {
-        compare(
-            "u3_m",
-            "u3_m",
-            value(&case.start.u3_m),
-            signal,
-            1e-6 * length,
-            "m",
-        );
+        compare("u3_m", "u3_m", value(&case.start.u3_m), signal, 1e-6 * length, "m");
     }
     if let Rotation::Slope(signal) = &resolved.rotation {
         // Looser: a table of measured points has no exact slope at its end.

@@ -74,9 +74,7 @@ impl Case {
     pub fn segments(&self) -> usize {
         self.bladders
             .as_ref()
-            .map_or(self.mesh.segments.unwrap_or(10), |bladders| {
-                bladders.per_row
-            })
+            .map_or(self.mesh.segments.unwrap_or(10), |bladders| bladders.per_row)
     }
 
     /// The case with every default filled in; without the editor's schema, which is not where results are.

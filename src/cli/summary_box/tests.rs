@@ -48,12 +48,7 @@ fn is_a_box(text: &str, width: usize) -> bool {
 
 #[test]
 fn a_finished_run_in_a_glance() {
-    let text = render(
-        &summary(Status::Finished),
-        Path::new("out/wiring-2"),
-        false,
-        76,
-    );
+    let text = render(&summary(Status::Finished), Path::new("out/wiring-2"), false, 76);
     insta::assert_snapshot!(text, @r"
     ╭─ wiring-2 ──────────────────────────────────────────────────── finished ─╮
     │ deflection  tip, largest: u₁ 123 µm · u₃ 1.25 mm                         │

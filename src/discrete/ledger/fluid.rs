@@ -34,7 +34,9 @@ pub fn rates<'a>(
     move |w, node| {
         let Some(wet) = &system.model.wet else { return 0.0 };
         let j = system.mesh.segments_of_node(node).0;
-        SegmentRates::new(system, wet, yp, w, j).strain_rates(&wet.coupling, &wet.area).1
+        SegmentRates::new(system, wet, yp, w, j)
+            .strain_rates(&wet.coupling, &wet.area)
+            .1
     }
 }
 
@@ -63,7 +65,14 @@ impl SegmentRates {
             pressure[k] = w.mean_pressure[bladder];
             pressure_rate[k] = (area_rate - imposed) / wet.area.per_pressure;
         }
-        Self { moment, force, moment_rate, force_rate, pressure, pressure_rate }
+        Self {
+            moment,
+            force,
+            moment_rate,
+            force_rate,
+            pressure,
+            pressure_rate,
+        }
     }
 
     /// Rates of `lambda_p` and `alpha_p` under a coupling.
@@ -71,14 +80,18 @@ impl SegmentRates {
         let [pu, pd] = self.pressure;
         let [pu_t, pd_t] = self.pressure_rate;
         match *coupling {
-            Coupling::Published { stretch_per_pressure, curvature_per_pressure } => {
-                (stretch_per_pressure * (pu_t + pd_t), curvature_per_pressure * (pu_t - pd_t))
-            }
+            Coupling::Published {
+                stretch_per_pressure,
+                curvature_per_pressure,
+            } => (
+                stretch_per_pressure * (pu_t + pd_t),
+                curvature_per_pressure * (pu_t - pd_t),
+            ),
             Coupling::Reciprocal { length_ratio } => {
                 let force_kink = kink_curvature(self.force, law.force_width) * self.force_rate;
                 let moment_kink = kink_curvature(self.moment, law.moment_width) * self.moment_rate;
-                let stretch = law.force_slope(self.force) * (pu_t + pd_t)
-                    - law.force_half_difference * force_kink * (pu + pd);
+                let stretch =
+                    law.force_slope(self.force) * (pu_t + pd_t) - law.force_half_difference * force_kink * (pu + pd);
                 let slope = kink_slope(self.moment, law.moment_width);
                 let curvature = law.moment_mean * (pu_t - pd_t)
                     - law.moment_half_difference * (slope * (pu_t + pd_t) + moment_kink * (pu + pd));
@@ -90,7 +103,9 @@ impl SegmentRates {
 
 /// Dissipation, harvest, power of ports, and the outflow of every component.
 pub fn flows(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut [f64]) {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return };
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
     let network = &wet.network;
     let k = fluid.cells_per_bladder;
     for bladder in 0..fluid.bladders {
@@ -119,11 +134,23 @@ pub fn flows(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut [f64]
         let in_halves = q * q * link.half_cells;
         add(out, Flow::Bladders, in_halves);
         let rest = q * drop - in_halves;
-        add(out, if matches!(link.kind, LinkKind::Turbine(_)) { Flow::Turbines } else { Flow::Tubes }, rest);
+        add(
+            out,
+            if matches!(link.kind, LinkKind::Turbine(_)) {
+                Flow::Turbines
+            } else {
+                Flow::Tubes
+            },
+            rest,
+        );
         cross(link.from, link.to, q, out);
     }
     for (&place, &q) in fluid.sources.iter().zip(&now.source_flow) {
-        let half = if matches!(place, Place::Cell(_)) { 0.5 / fluid.conductance } else { 0.0 };
+        let half = if matches!(place, Place::Cell(_)) {
+            0.5 / fluid.conductance
+        } else {
+            0.0
+        };
         add(out, Flow::Ports, (pressure_at(place, now, w) + half * q) * q);
         add(out, Flow::Bladders, half * q * q);
         if let Some(c) = component(place) {
@@ -146,7 +173,9 @@ pub fn flows(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut [f64]
 /// l_b Σ_{j,R} [ mean_k(a_p p_k²/2) + pbar (Nbar A_N'(Nbar) + Mbar (R A_M)'(Mbar)) ]
 /// ```
 pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return 0.0 };
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return 0.0;
+    };
     let mut sum = 0.0;
     for j in 0..wet.per_row {
         for (bladder, row) in [(j, 1.0), (wet.per_row + j, -1.0)] {
@@ -162,7 +191,9 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
 
 /// Volume change stored in each component.
 pub fn volumes(system: &System, w: &Workspace<f64>) -> Vec<f64> {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return vec![] };
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return vec![];
+    };
     let mut volumes = vec![0.0; wet.network.components];
     for bladder in 0..fluid.bladders {
         let stored: f64 = w.area[fluid.cells_of(bladder)].iter().sum();

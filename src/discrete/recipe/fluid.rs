@@ -10,7 +10,9 @@ use crate::model::Scalar;
 /// p = (a1 - R A_M(Mbar_j) - A_N(Nbar_j))/a_p
 /// ```
 pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return };
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
     let law = &wet.area;
     let share = 1.0 / fluid.cells_per_bladder as f64;
     for j in 0..wet.per_row {
@@ -54,7 +56,9 @@ pub fn pressure_at<T: Scalar>(place: Place, now: &Instant, w: &Workspace<T>) -> 
 /// q = -(q1b/μ) dp/ds inside a bladder, q = g (p_a - p_b) along a link, prescribed at a source
 /// ```
 pub fn flows<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return };
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
     let k = fluid.cells_per_bladder;
     w.inflow.fill(T::zero());
     w.junction_inflow.fill(T::zero());

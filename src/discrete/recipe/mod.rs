@@ -23,14 +23,7 @@ pub fn evaluate<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w:
 }
 
 /// The residual `F(t, y, y')`, one equation an unknown, in SI units.
-pub fn residual<T: Scalar>(
-    system: &System,
-    now: &Instant,
-    y: &[T],
-    yp: &[T],
-    w: &mut Workspace<T>,
-    r: &mut [T],
-) {
+pub fn residual<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w: &mut Workspace<T>, r: &mut [T]) {
     evaluate(system, now, y, yp, w);
     rows::momentum(system, now, w, r);
     rows::motion(system, y, yp, r);

@@ -80,7 +80,10 @@ pub fn end_tangent<T: Scalar>(system: &System, now: &Instant, w: &Workspace<T>, 
     let cell = if at_tip { last - 1 } else { 0 };
     let half = if at_tip { -0.5 } else { 0.5 } * system.mesh.h;
     let (sine, cosine) = (w.kappa[node] * half).sin_cos();
-    (w.tx[cell] * cosine + w.tz[cell] * sine, w.tz[cell] * cosine - w.tx[cell] * sine)
+    (
+        w.tx[cell] * cosine + w.tz[cell] * sine,
+        w.tz[cell] * cosine - w.tx[cell] * sine,
+    )
 }
 
 /// `[E15]` What the published form adds to the conservative one at a node:
@@ -106,8 +109,8 @@ pub fn published_force<T: Scalar>(system: &System, w: &Workspace<T>, i: usize) -
         normal += (w.viscous_force[a] + w.viscous_force[b]) * 0.5;
     }
     let shear = (w.shear[a] + w.shear[b]) * 0.5;
-    let excess = (w.kappa[i] - w.moment[i] * (1.0 / system.model.section.bending_stiffness))
-        * system.mesh.node_length(i);
+    let excess =
+        (w.kappa[i] - w.moment[i] * (1.0 / system.model.section.bending_stiffness)) * system.mesh.node_length(i);
     (excess * (shear * tx + normal * tz), excess * (shear * tz - normal * tx))
 }
 
@@ -167,7 +170,9 @@ pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
 /// `[E18]` What flows through the valves of a bridge flows through its turbine:
 /// `q_v((d - w)/2) + q_v((-d - w)/2) = G w`.
 pub fn bridges<T: Scalar>(system: &System, now: &Instant, w: &Workspace<T>, r: &mut [T]) {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else { return };
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
     for (k, (bridge, &(from, to))) in wet.network.bridges.iter().zip(&fluid.bridges).enumerate() {
         let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.bridge[k]);
         let through = w.bridge[k] * wet.network.turbines[bridge.turbine].conductance;

@@ -97,7 +97,11 @@ pub fn resultants<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T
     let wet = system.fluid.is_some();
     let k = system.mesh.cells_per_segment;
     for c in 0..system.mesh.cells {
-        let elastic = if wet { w.strain[c] - w.pressure_stretch[c / k] } else { w.strain[c] };
+        let elastic = if wet {
+            w.strain[c] - w.pressure_stretch[c / k]
+        } else {
+            w.strain[c]
+        };
         w.force[c] = elastic * ea;
     }
     let published = system.model.formulation == Formulation::Published;
@@ -109,7 +113,11 @@ pub fn resultants<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T
             _ if i == last && now.ends[1].slope.is_none() => Some(now.ends[1].moment.value),
             _ => None,
         };
-        let stretch = if published { node_stretch(w, i, last) } else { T::constant(1.0) };
+        let stretch = if published {
+            node_stretch(w, i, last)
+        } else {
+            T::constant(1.0)
+        };
         match given {
             Some(moment) => {
                 w.moment[i] = T::constant(moment);
@@ -183,7 +191,11 @@ pub fn section_forces<T: Scalar>(system: &System, now: &Instant, w: &mut Workspa
     let damped = section.axial_damping_time > 0.0;
     for c in 0..system.mesh.cells {
         let (tx, tz) = (w.tx[c], w.tz[c]);
-        let normal = if damped { w.force[c] + w.viscous_force[c] } else { w.force[c] };
+        let normal = if damped {
+            w.force[c] + w.viscous_force[c]
+        } else {
+            w.force[c]
+        };
         w.sx[c] = normal * tx - w.shear[c] * tz;
         w.sz[c] = normal * tz + w.shear[c] * tx;
     }

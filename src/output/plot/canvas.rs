@@ -118,9 +118,7 @@ impl Canvas<'_> {
         for piece in points.split(|p| !(p.0.is_finite() && p.1.is_finite())) {
             match stroke.dash {
                 None => self.unbroken(piece, stroke),
-                Some(dash) => dashes(piece, dash)
-                    .iter()
-                    .for_each(|d| self.unbroken(d, stroke)),
+                Some(dash) => dashes(piece, dash).iter().for_each(|d| self.unbroken(d, stroke)),
             }
         }
     }
@@ -149,10 +147,7 @@ impl Canvas<'_> {
             filled: true,
             stroke_width: 0,
         };
-        settle(
-            self.backend
-                .draw_rect(fine_point(a), fine_point(b), &style, true),
-        );
+        settle(self.backend.draw_rect(fine_point(a), fine_point(b), &style, true));
     }
 
     /// The outline of a rectangle.
@@ -167,11 +162,7 @@ impl Canvas<'_> {
         } else {
             FontTransform::None
         };
-        let weight = if words.bold {
-            FontStyle::Bold
-        } else {
-            FontStyle::Normal
-        };
+        let weight = if words.bold { FontStyle::Bold } else { FontStyle::Normal };
         let font = (FONT, words.size * FINE * FONT_SCALE)
             .into_font()
             .style(weight)
@@ -226,10 +217,7 @@ fn dashes(points: &[(f64, f64)], (dash, gap): (f64, f64)) -> Vec<Vec<(f64, f64)>
         let mut done = 0.0;
         while length - done > left {
             done += left;
-            let at = (
-                x0 + (x1 - x0) * done / length,
-                y0 + (y1 - y0) * done / length,
-            );
+            let at = (x0 + (x1 - x0) * done / length, y0 + (y1 - y0) * done / length);
             if drawing {
                 piece.push(at);
                 pieces.push(std::mem::take(&mut piece));

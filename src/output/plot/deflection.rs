@@ -70,11 +70,7 @@ pub fn draw(data: &Deflection) -> Option<String> {
             &format!("{} · deflection", data.case),
             &super::about(data.span, from, to),
         );
-        for (k, (name, u, y)) in panels
-            .into_iter()
-            .filter(|(_, u, _)| !u.is_empty())
-            .enumerate()
-        {
+        for (k, (name, u, y)) in panels.into_iter().filter(|(_, u, _)| !u.is_empty()).enumerate() {
             let top = TOP + k as f64 * (HEIGHT + GAP);
             let place = Place {
                 left: LEFT,
@@ -82,14 +78,8 @@ pub fn draw(data: &Deflection) -> Option<String> {
                 width: WIDTH,
                 height: HEIGHT,
             };
-            let panel = Panel {
-                place,
-                x: x.clone(),
-                y,
-            };
-            let curves = u
-                .iter()
-                .map(|u| data.theta.iter().copied().zip(u.iter().copied()));
+            let panel = Panel { place, x: x.clone(), y };
+            let curves = u.iter().map(|u| data.theta.iter().copied().zip(u.iter().copied()));
             draw_over_time(canvas, &panel, &data.times, curves);
             let x_name = (k + 1 == drawn).then_some("material coordinate θ");
             panel.axes(canvas, x_name, name);
@@ -142,12 +132,7 @@ impl Shape {
         let height = ((hi - lo) * 1.1 / per_point).clamp(60.0, 420.0);
         let half = 0.5 * height * per_point;
         let middle = 0.5 * (lo + hi);
-        let x = Scale::exact(
-            middle - half,
-            middle + half,
-            "m",
-            ((height / 30.0) as usize).max(3),
-        );
+        let x = Scale::exact(middle - half, middle + half, "m", ((height / 30.0) as usize).max(3));
         Some(Self { x, z, height })
     }
 }
@@ -163,10 +148,6 @@ pub(super) fn draw_over_time<C: Iterator<Item = (f64, f64)>>(
     let (from, to) = (times[0], times[times.len() - 1]);
     let range = if to > from { to - from } else { 1.0 };
     for (t, curve) in times.iter().zip(curves) {
-        panel.curve(
-            canvas,
-            curve,
-            Stroke::solid(colour::of_time((t - from) / range), 1.3),
-        );
+        panel.curve(canvas, curve, Stroke::solid(colour::of_time((t - from) / range), 1.3));
     }
 }

@@ -47,10 +47,7 @@ pub fn draw(data: &Energy) -> Option<String> {
     let (from, to) = extent(lines.iter().flat_map(|c| c.points.iter().map(|p| p.0)))?;
     let x = Scale::exact(from, to, "s", 9);
     let largest = lines.iter().map(|c| c.max_abs()).fold(0.0, f64::max);
-    let residual = data
-        .curves
-        .iter()
-        .find(|c| c.name == RESIDUAL && !c.points.is_empty());
+    let residual = data.curves.iter().find(|c| c.name == RESIDUAL && !c.points.is_empty());
     let last = TOP + HEIGHT;
     let bottom = if residual.is_some() {
         last + GAP + RESIDUAL_HEIGHT
@@ -72,11 +69,7 @@ pub fn draw(data: &Energy) -> Option<String> {
             "J",
             7,
         );
-        let panel = Panel {
-            place,
-            x: x.clone(),
-            y,
-        };
+        let panel = Panel { place, x: x.clone(), y };
         panel.grid(canvas);
         for (k, curve) in lines.iter().enumerate() {
             panel.curve(canvas, curve.points.iter().copied(), stroke(k, curve));
@@ -102,13 +95,8 @@ fn entries(data: &Energy) -> Vec<&Curve> {
         "bending_energy" | "axial_energy" | "bladder_energy" => has("elastic_energy"),
         _ => false,
     };
-    let all = data
-        .curves
-        .iter()
-        .filter(|c| is_stored(&c.name) || is_flow(&c.name));
-    let mut lines: Vec<_> = all
-        .filter(|c| !part(&c.name) && !c.points.is_empty())
-        .collect();
+    let all = data.curves.iter().filter(|c| is_stored(&c.name) || is_flow(&c.name));
+    let mut lines: Vec<_> = all.filter(|c| !part(&c.name) && !c.points.is_empty()).collect();
     let largest = lines.iter().map(|c| c.max_abs()).fold(0.0, f64::max);
     if largest > 0.0 {
         lines.retain(|c| c.max_abs() > NEGLIGIBLE * largest);
@@ -134,11 +122,7 @@ fn legend(canvas: &mut Canvas, k: usize, curve: &Curve) {
             ..stroke(k, curve)
         },
     );
-    canvas.text(
-        (left + 33.0, y),
-        &human(&curve.name),
-        Words::new(12.0, Anchor::Left),
-    );
+    canvas.text((left + 33.0, y), &human(&curve.name), Words::new(12.0, Anchor::Left));
 }
 
 fn human(name: &str) -> String {

@@ -24,12 +24,7 @@ struct Row {
     optional: bool,
 }
 
-const fn row(
-    columns: &'static [&'static str],
-    name: &'static str,
-    floor: f64,
-    optional: bool,
-) -> Row {
+const fn row(columns: &'static [&'static str], name: &'static str, floor: f64, optional: bool) -> Row {
     Row {
         columns,
         name,
@@ -87,20 +82,12 @@ pub fn draw(data: &History) -> Option<String> {
             };
             let values = curves.iter().flat_map(|c| c.points.iter().map(|p| p.1));
             let y = Scale::around(extent(values), row.floor, &curves[0].unit, 4);
-            let panel = Panel {
-                place,
-                x: x.clone(),
-                y,
-            };
+            let panel = Panel { place, x: x.clone(), y };
             panel.grid(canvas);
             for (c, curve) in curves.iter().enumerate() {
                 // The second curve of a panel in the palette's other half.
                 let colour = PALETTE[(k + 5 * c) % PALETTE.len()];
-                panel.curve(
-                    canvas,
-                    curve.points.iter().copied(),
-                    Stroke::solid(colour, 1.2),
-                );
+                panel.curve(canvas, curve.points.iter().copied(), Stroke::solid(colour, 1.2));
             }
             panel.axes(canvas, (k + 1 == shown.len()).then_some("time t"), row.name);
         }
@@ -108,13 +95,7 @@ pub fn draw(data: &History) -> Option<String> {
 }
 
 fn curves<'a>(data: &'a History, row: &Row) -> Vec<&'a Curve> {
-    let named = |name: &&str| {
-        data.curves
-            .iter()
-            .find(|c| c.name == *name && !c.points.is_empty())
-    };
+    let named = |name: &&str| data.curves.iter().find(|c| c.name == *name && !c.points.is_empty());
     let found = row.columns.iter().filter_map(named);
-    found
-        .filter(|c| !row.optional || c.max_abs() > 0.0)
-        .collect()
+    found.filter(|c| !row.optional || c.max_abs() > 0.0).collect()
 }

@@ -39,11 +39,7 @@ pub struct Curve {
 impl Curve {
     /// Largest magnitude, 0 when there is none.
     pub fn max_abs(&self) -> f64 {
-        let finite = self
-            .points
-            .iter()
-            .map(|p| p.1.abs())
-            .filter(|y| y.is_finite());
+        let finite = self.points.iter().map(|p| p.1.abs()).filter(|y| y.is_finite());
         finite.fold(0.0, f64::max)
     }
 }
@@ -94,12 +90,10 @@ pub fn instants(times: &[f64], frequency_hz: Option<f64>, count: usize) -> (Span
 
 /// Least and largest finite value, `None` when there is none.
 fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    values
-        .filter(|x| x.is_finite())
-        .fold(None, |so_far, x| match so_far {
-            None => Some((x, x)),
-            Some((lo, hi)) => Some((f64::min(lo, x), f64::max(hi, x))),
-        })
+    values.filter(|x| x.is_finite()).fold(None, |so_far, x| match so_far {
+        None => Some((x, x)),
+        Some((lo, hi)) => Some((f64::min(lo, x), f64::max(hi, x))),
+    })
 }
 
 /// What part of the run a picture shows, in words.

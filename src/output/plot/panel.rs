@@ -77,40 +77,22 @@ impl Panel {
     /// Frame, ticks and names; after the curves. No name of x, no labels below: for stacked panels.
     pub fn axes(&self, canvas: &mut Canvas, x_name: Option<&str>, y_name: &str) {
         let p = self.place;
-        canvas.frame(
-            (p.left, p.top),
-            (p.right(), p.bottom()),
-            Stroke::solid(FRAME, 0.8),
-        );
+        canvas.frame((p.left, p.top), (p.right(), p.bottom()), Stroke::solid(FRAME, 0.8));
         for (y, label) in &self.y.ticks {
             let at = self.at((self.x.lo, *y)).1;
-            canvas.line(
-                &[(p.left - 4.0, at), (p.left, at)],
-                Stroke::solid(FRAME, 0.8),
-            );
+            canvas.line(&[(p.left - 4.0, at), (p.left, at)], Stroke::solid(FRAME, 0.8));
             canvas.text((p.left - 7.0, at), label, Words::new(SMALL, Anchor::Right));
         }
         let words = Words {
             upright: true,
             ..Words::new(NORMAL, Anchor::Centre)
         };
-        canvas.text(
-            (p.left - 52.0, p.top + 0.5 * p.height),
-            &self.y.named(y_name),
-            words,
-        );
+        canvas.text((p.left - 52.0, p.top + 0.5 * p.height), &self.y.named(y_name), words);
         for (x, label) in &self.x.ticks {
             let at = self.at((*x, self.y.lo)).0;
-            canvas.line(
-                &[(at, p.bottom()), (at, p.bottom() + 4.0)],
-                Stroke::solid(FRAME, 0.8),
-            );
+            canvas.line(&[(at, p.bottom()), (at, p.bottom() + 4.0)], Stroke::solid(FRAME, 0.8));
             if x_name.is_some() {
-                canvas.text(
-                    (at, p.bottom() + 13.0),
-                    label,
-                    Words::new(SMALL, Anchor::Centre),
-                );
+                canvas.text((at, p.bottom() + 13.0), label, Words::new(SMALL, Anchor::Centre));
             }
         }
         if let Some(name) = x_name {
@@ -120,12 +102,7 @@ impl Panel {
     }
 
     /// A curve of values.
-    pub fn curve(
-        &self,
-        canvas: &mut Canvas,
-        points: impl Iterator<Item = (f64, f64)>,
-        stroke: Stroke,
-    ) {
+    pub fn curve(&self, canvas: &mut Canvas, points: impl Iterator<Item = (f64, f64)>, stroke: Stroke) {
         let points: Vec<_> = points.map(|p| self.at(p)).collect();
         canvas.line(&points, stroke);
     }
@@ -168,11 +145,7 @@ pub fn time_bar(canvas: &mut Canvas, place: Place, from: f64, to: f64) {
             &[(place.right(), at), (place.right() + 4.0, at)],
             Stroke::solid(FRAME, 0.8),
         );
-        canvas.text(
-            (place.right() + 7.0, at),
-            label,
-            Words::new(SMALL, Anchor::Left),
-        );
+        canvas.text((place.right() + 7.0, at), label, Words::new(SMALL, Anchor::Left));
     }
     let at = (place.left - 4.0, place.top - 14.0);
     canvas.text(at, &scale.named("t"), Words::new(NORMAL, Anchor::Left));

@@ -42,12 +42,7 @@ pub fn draw(data: &Pressure) -> Option<String> {
     if n == 0 || data.pressure.iter().any(|p| p.len() != n) {
         return None;
     }
-    let y = Scale::around(
-        extent(data.pressure.iter().flatten().copied()),
-        1e-3,
-        "Pa",
-        6,
-    );
+    let y = Scale::around(extent(data.pressure.iter().flatten().copied()), 1e-3, "Pa", 6);
     let bladders = runs(n, |k| data.bladder.get(k).copied().unwrap_or(0));
     let networks = networks(data, &bladders);
     let margin = 0.5 * least_step(&data.x_f).unwrap_or(1.0);
@@ -127,16 +122,8 @@ fn networks(data: &Pressure, bladders: &[(usize, usize)]) -> Vec<(usize, usize)>
         return runs(n, |k| data.network[k]);
     }
     let gap = |k: usize| data.x_f[k] - data.x_f[k - 1];
-    let inside = bladders
-        .iter()
-        .flat_map(|b| b.0 + 1..b.1)
-        .map(gap)
-        .fold(0.0, f64::max);
-    let between = bladders
-        .iter()
-        .skip(1)
-        .map(|b| gap(b.0))
-        .fold(0.0, f64::max);
+    let inside = bladders.iter().flat_map(|b| b.0 + 1..b.1).map(gap).fold(0.0, f64::max);
+    let between = bladders.iter().skip(1).map(|b| gap(b.0)).fold(0.0, f64::max);
     let least = if inside > 0.0 {
         0.5 * (inside + between)
     } else {
@@ -156,25 +143,14 @@ fn networks(data: &Pressure, bladders: &[(usize, usize)]) -> Vec<(usize, usize)>
 fn broken(x: &[f64], y: &[f64], networks: &[(usize, usize)]) -> Vec<(f64, f64)> {
     let mut points = Vec::with_capacity(x.len() + networks.len());
     for &(start, end) in networks {
-        points.extend(
-            x[start..end]
-                .iter()
-                .copied()
-                .zip(y[start..end].iter().copied()),
-        );
+        points.extend(x[start..end].iter().copied().zip(y[start..end].iter().copied()));
         points.push((f64::NAN, f64::NAN));
     }
     points
 }
 
 /// Bladders as bands behind the curves; what lies between are tubes.
-fn bands(
-    canvas: &mut Canvas,
-    panel: &Panel,
-    data: &Pressure,
-    bladders: &[(usize, usize)],
-    margin: f64,
-) {
+fn bands(canvas: &mut Canvas, panel: &Panel, data: &Pressure, bladders: &[(usize, usize)], margin: f64) {
     for &(start, end) in bladders {
         let left = panel.at((data.x_f[start] - margin, panel.y.hi));
         let right = panel.at((data.x_f[end - 1] + margin, panel.y.lo));
@@ -193,9 +169,7 @@ fn labels(canvas: &mut Canvas, panel: &Panel, data: &Pressure, bladders: &[(usiz
         let text = format!("[{bladder}]").replace('-', "−");
         // Brackets are half as wide as digits.
         let half = 3.0 * (text.chars().count() - 1) as f64;
-        let at = panel
-            .at((0.5 * (data.x_f[start] + data.x_f[end - 1]), 0.0))
-            .0;
+        let at = panel.at((0.5 * (data.x_f[start] + data.x_f[end - 1]), 0.0)).0;
         if at - half >= free_from {
             canvas.text((at, bottom + 12.0), &text, Words::new(10.5, Anchor::Centre));
             free_from = at + half + 3.0;

@@ -18,11 +18,7 @@ pub struct Scale {
 impl Scale {
     /// Exactly from `lo` to `hi`, with at most `count` ticks.
     pub fn exact(lo: f64, hi: f64, unit: &str, count: usize) -> Self {
-        let (lo, hi) = if hi > lo {
-            (lo, hi)
-        } else {
-            (lo - 0.5, lo + 0.5)
-        };
+        let (lo, hi) = if hi > lo { (lo, hi) } else { (lo - 0.5, lo + 0.5) };
         let (factor, shown_unit) = scaled_unit(lo.abs().max(hi.abs()), unit);
         let step = round_step((hi - lo) / factor, count);
         let decimals = decimals(step);
@@ -44,9 +40,7 @@ impl Scale {
     /// quantity that is zero shows as a flat line.
     pub fn around(extent: Option<(f64, f64)>, floor: f64, unit: &str, count: usize) -> Self {
         let (lo, hi) = extent.unwrap_or((0.0, 0.0));
-        let half = (0.53 * (hi - lo))
-            .max(floor)
-            .max(1e-12 * lo.abs().max(hi.abs()));
+        let half = (0.53 * (hi - lo)).max(floor).max(1e-12 * lo.abs().max(hi.abs()));
         let half = if half > 0.0 { half } else { 1.0 };
         let middle = 0.5 * (lo + hi);
         let mut scale = Self::exact(middle - half, middle + half, unit, count);

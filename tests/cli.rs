@@ -1,0 +1,449 @@
+//! The program from outside: exit codes, streams, files. Cases are small: the tests are about the command line.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Two bladders and a tube, a millisecond.
+const SMALL: &str = "cases/two-bladders.json";
+
+/// The program with arguments.
+fn slcbeam(arguments: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("slcbeam").unwrap();
+    command.args(arguments);
+    command
+}
+
+/// What a finished program said.
+struct Said {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+fn say(arguments: &[&str]) -> Said {
+    let output = slcbeam(arguments).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Said {
+        code: output.status.code().unwrap(),
+        out: text(output.stdout),
+        err: text(output.stderr),
+    }
+}
+
+/// `run` of the small case into a folder, with more arguments.
+fn run(folder: &Path, more: &[&str]) -> Said {
+    let mut arguments = vec!["run", SMALL, "--out", folder.to_str().unwrap(), "--quiet"];
+    arguments.extend(more);
+    say(&arguments)
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+#[test]
+fn a_run_fills_a_result_folder() {
+    let dir = TempDir::new().unwrap();
+    let folder = dir.path().join("deep/result");
+    let said = run(&folder, &[]);
+    assert_eq!((said.code, said.err.as_str()), (0, ""), "quiet means silent");
+    assert!(
+        said.out.contains("two-bladders") && said.out.contains("finished"),
+        "{}",
+        said.out
+    );
+    assert!(
+        said.out.contains(folder.to_str().unwrap()),
+        "the box says where the files are: {}",
+        said.out
+    );
+    let files = [
+        "case.json",
+        "deflection.svg",
+        "energy.svg",
+        "fields.npz",
+        "history.csv",
+        "history.svg",
+        "pressure.svg",
+        "summary.json",
+    ];
+    assert_eq!(names(&folder), files);
+
+    let summary = json(&folder.join("summary.json"));
+    for key in [
+        "case",
+        "status",
+        "reason",
+        "time_s",
+        "unknowns",
+        "quantities",
+        "balances",
+        "solver",
+        "wall_s",
+        "effects",
+        "characteristic",
+        "warnings",
+    ] {
+        assert!(summary.get(key).is_some(), "summary.json lacks {key}");
+    }
+    assert_eq!(
+        (&summary["case"], &summary["status"]),
+        (&"two-bladders".into(), &"finished".into())
+    );
+    assert_eq!(summary["time_s"].as_f64(), Some(0.002));
+    for quantity in ["tip_u1_m", "tip_u3_m", "max_pressure_pa"] {
+        assert_eq!(
+            keys(&summary["quantities"][quantity]),
+            ["final", "max_abs", "window_max_abs"],
+            "{quantity}"
+        );
+    }
+    assert_eq!(keys(&summary["quantities"]["input_energy_j"]), ["final", "window"]);
+    for key in ["energy_residual_relative", "volume_residual_relative", "energy_j"] {
+        assert!(!summary["balances"][key].is_null(), "balances lack {key}");
+    }
+    let counters = [
+        "steps",
+        "residual_evaluations",
+        "jacobian_evaluations",
+        "factorizations",
+        "pivot_refreshes",
+        "error_test_failures",
+        "newton_failures",
+        "max_order",
+    ];
+    for key in counters {
+        assert!(summary["solver"][key].is_u64(), "solver lacks {key}");
+    }
+    let by_order: u64 = summary["solver"]["steps_by_order"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(Value::as_u64)
+        .sum();
+    assert_eq!(by_order, summary["solver"]["steps"].as_u64().unwrap());
+    for key in ["total", "residual", "jacobian", "linear_solver", "output"] {
+        assert!(summary["wall_s"][key].is_f64(), "wall_s lacks {key}");
+    }
+    assert!(
+        summary["effects"]
+            .as_object()
+            .unwrap()
+            .values()
+            .all(|e| e["value"].is_string() && e["reason"].is_string())
+    );
+
+    let history = fs::read_to_string(folder.join("history.csv")).unwrap();
+    assert!(
+        history.starts_with("t [s],tip_u1 [m],"),
+        "{}",
+        history.lines().next().unwrap()
+    );
+    // 0 to 2 ms in steps of 2 us, both ends included.
+    assert_eq!(history.lines().count(), 1 + 1001);
+}
+
+#[test]
+fn a_resolved_case_runs_to_the_same_result() {
+    let dir = TempDir::new().unwrap();
+    let (first, second) = (dir.path().join("first"), dir.path().join("second"));
+    assert_eq!(run(&first, &["--set", "/time/end_s=0.0005"]).code, 0);
+    let resolved = first.join("case.json");
+    let said = say(&[
+        "run",
+        resolved.to_str().unwrap(),
+        "--out",
+        second.to_str().unwrap(),
+        "--quiet",
+    ]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let history = |folder: &Path| fs::read_to_string(folder.join("history.csv")).unwrap();
+    assert_eq!(history(&first), history(&second));
+}
+
+#[test]
+fn json_on_request() {
+    let dir = TempDir::new().unwrap();
+    let folder = dir.path().join("result");
+    let said = run(&folder, &["--json", "--set", "/time/end_s=0.0002"]);
+    let printed: Value = serde_json::from_str(&said.out).unwrap();
+    assert_eq!(printed, json(&folder.join("summary.json")));
+    let checked: Value = serde_json::from_str(&say(&["check", SMALL, "--json"]).out).unwrap();
+    for key in [
+        "case",
+        "unknowns",
+        "characteristic",
+        "audit",
+        "effects",
+        "max_order",
+        "warnings",
+    ] {
+        assert!(checked.get(key).is_some(), "check --json lacks {key}");
+    }
+}
+
+#[test]
+fn check_prints_and_writes_nothing() {
+    let dir = TempDir::new().unwrap();
+    let case = fs::canonicalize("cases/wiring-2.json").unwrap();
+    let output = slcbeam(&["check", case.to_str().unwrap()])
+        .current_dir(dir.path())
+        .output()
+        .unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && text.starts_with("wiring-2: valid"), "{text}");
+    for part in [
+        "characteristic numbers",
+        "coupling",
+        "effects",
+        "warnings",
+        "t_f_s",
+        "124.08",
+    ] {
+        assert!(text.contains(part), "check lacks {part}: {text}");
+    }
+    assert!(names(dir.path()).is_empty());
+}
+
+#[test]
+fn mapping_prints_the_tables() {
+    let tables = say(&["mapping", "cases/wiring-3.json"]);
+    assert_eq!(tables.code, 0, "{}", tables.err);
+    let (first, second) = tables.out.split_once("\n\n").expect("a blank line between the tables");
+    for (table, heading, name) in [
+        (first, "theta_r,x_f,bladder", "theta-to-xf"),
+        (second, "x_f,theta,bladder", "xf-to-theta"),
+    ] {
+        assert_eq!(table.lines().next(), Some(heading));
+        // Two rows for each of 20 bladders.
+        assert_eq!(table.trim_end().lines().count(), 1 + 40, "{name}");
+        assert_eq!(
+            say(&["mapping", "cases/wiring-3.json", "--table", name]).out.trim_end(),
+            table.trim_end()
+        );
+    }
+    let dry = say(&["mapping", "cases/bend-dry.json"]);
+    assert_eq!(dry.code, 2, "there is nothing to map in a dry beam");
+}
+
+#[test]
+fn the_schema_is_the_committed_one() {
+    let said = say(&["schema"]);
+    assert_eq!(said.code, 0);
+    assert_eq!(
+        said.out,
+        fs::read_to_string("cases/schema.json").unwrap(),
+        "slcbeam schema > cases/schema.json"
+    );
+}
+
+#[test]
+fn usage_errors() {
+    for arguments in [
+        &["fly"][..],
+        &[],
+        &["run"],
+        &["run", SMALL, "--no-such"],
+        &["run", SMALL, "--set", "rtol"],
+    ] {
+        let said = say(arguments);
+        assert_eq!(said.code, 2, "{arguments:?}: {}", said.err);
+        assert!(said.out.is_empty() && !said.err.is_empty(), "{arguments:?}");
+    }
+    assert_eq!(say(&["--help"]).code, 0);
+    assert_eq!(
+        say(&["--version"]).out.trim(),
+        concat!("slcbeam ", env!("CARGO_PKG_VERSION"))
+    );
+}
+
+#[test]
+fn an_invalid_case_is_explained_and_leaves_no_trace() {
+    let dir = TempDir::new().unwrap();
+    let folder = dir.path().join("result");
+    let said = run(&folder, &["--set", "/beam/length_m=-1"]);
+    assert_eq!(said.code, 3, "{}", said.err);
+    assert!(said.err.contains("length_m") && said.out.is_empty(), "{}", said.err);
+    assert!(!folder.exists());
+
+    let file = dir.path().join("wrong.json");
+    fs::write(&file, "{\"name\": \"wrong\", \"beem\": {}}").unwrap();
+    let said = say(&["run", file.to_str().unwrap(), "--out", folder.to_str().unwrap()]);
+    assert_eq!(said.code, 3, "{}", said.err);
+    assert!(
+        said.err.contains("beem") && said.err.contains("beam"),
+        "the nearest key is named: {}",
+        said.err
+    );
+    assert!(!folder.exists());
+
+    let missing = say(&["check", "no-such-file.json"]);
+    assert!(
+        missing.code != 0 && missing.err.contains("no-such-file.json"),
+        "{}",
+        missing.err
+    );
+}
+
+#[test]
+fn values_are_set_from_the_command_line() {
+    let dir = TempDir::new().unwrap();
+    let folder = dir.path().join("result");
+    let said = run(
+        &folder,
+        &[
+            "--set",
+            "/solver/rtol=1e-4",
+            "--set",
+            "/time/end_s=0.0003",
+            "--set",
+            "/name=\"other\"",
+        ],
+    );
+    assert_eq!(said.code, 0, "{}", said.err);
+    let resolved = json(&folder.join("case.json"));
+    assert_eq!(
+        (resolved["solver"]["rtol"].as_f64(), resolved["time"]["end_s"].as_f64()),
+        (Some(1e-4), Some(0.0003))
+    );
+    assert_eq!(json(&folder.join("summary.json"))["case"], "other");
+}
+
+#[test]
+fn the_default_folder_has_the_name_of_the_case() {
+    let dir = TempDir::new().unwrap();
+    let case = fs::canonicalize(SMALL).unwrap();
+    let said = slcbeam(&["run", case.to_str().unwrap(), "--quiet", "--set", "/time/end_s=0.0001"])
+        .current_dir(dir.path())
+        .output()
+        .unwrap();
+    assert!(said.status.success());
+    assert!(dir.path().join("out/two-bladders/summary.json").is_file());
+}
+
+#[test]
+fn a_second_run_replaces_the_first() {
+    let dir = TempDir::new().unwrap();
+    let folder = dir.path().join("result");
+    assert_eq!(run(&folder, &[]).code, 0);
+    let note = folder.join("note.txt");
+    fs::write(&note, "mine").unwrap();
+    assert_eq!(run(&folder, &["--set", "/time/end_s=0.001"]).code, 0);
+    assert_eq!(json(&folder.join("summary.json"))["time_s"].as_f64(), Some(0.001));
+    assert_eq!(
+        fs::read_to_string(note).unwrap(),
+        "mine",
+        "what the program did not write stays"
+    );
+}
+
+#[test]
+fn a_folder_with_other_files_is_refused() {
+    let dir = TempDir::new().unwrap();
+    fs::write(dir.path().join("thesis.tex"), "years of work").unwrap();
+    let said = run(dir.path(), &[]);
+    assert_eq!(said.code, 5, "{}", said.err);
+    assert!(said.err.contains("--out"), "says what to do: {}", said.err);
+    assert_eq!(names(dir.path()), ["thesis.tex"]);
+
+    let file = dir.path().join("thesis.tex");
+    assert_eq!(run(&file, &[]).code, 5, "a file is no folder");
+}
+
+#[test]
+fn a_run_stops_where_a_bladder_closes() {
+    // 60.84 mm^2 at rest less 1.75e-10 m^2/Pa times 400 kPa would leave nothing.
+    let dir = TempDir::new().unwrap();
+    let folder = dir.path().join("result");
+    let pump = r#"/network/ports=[{"name": "pump", "at": {"bladder": 1, "end": "inlet"}, "pressure_pa": {"ramp": {"to": -400000, "duration_s": 0.01}}}]"#;
+    let said = run(
+        &folder,
+        &[
+            "--set",
+            "/start={}",
+            "--set",
+            "/time/end_s=0.02",
+            "--set",
+            pump,
+            "--set",
+            "/solver/rtol=1e-4",
+        ],
+    );
+    assert_eq!(said.code, 0, "{}", said.err);
+    let summary = json(&folder.join("summary.json"));
+    assert_eq!(summary["status"], "stopped", "{summary:#}");
+    assert!(
+        summary["reason"].as_str().unwrap().contains("closed"),
+        "{}",
+        summary["reason"]
+    );
+    let t = summary["time_s"].as_f64().unwrap();
+    assert!(0.0 < t && t < 0.02, "{t}");
+    let history = fs::read_to_string(folder.join("history.csv")).unwrap();
+    assert!(history.lines().count() > 10 && folder.join("fields.npz").is_file());
+}
+
+#[test]
+fn a_failing_solver_leaves_the_result_so_far() {
+    let dir = TempDir::new().unwrap();
+    let folder = dir.path().join("result");
+    let said = run(&folder, &["--set", "/solver/max_steps=50"]);
+    assert_eq!(said.code, 4, "{}", said.err);
+    assert!(
+        said.err.contains("failed at t = ") && said.err.contains("/solver/max_steps"),
+        "{}",
+        said.err
+    );
+    let summary = json(&folder.join("summary.json"));
+    assert_eq!(summary["status"], "failed");
+    assert_eq!(summary["solver"]["steps"], 50);
+    let reached = summary["time_s"].as_f64().unwrap();
+    let history = fs::read_to_string(folder.join("history.csv")).unwrap();
+    let last: f64 = history
+        .lines()
+        .last()
+        .unwrap()
+        .split(',')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    // The last row is the last output time, a multiple of 2 us, that was passed.
+    assert!(
+        reached > 0.0 && last <= reached && reached - last < 2e-6,
+        "{last} {reached}"
+    );
+    assert!(folder.join("fields.npz").is_file());
+}
+
+#[test]
+fn a_wall_time_limit_stops_with_what_there_is() {
+    let dir = TempDir::new().unwrap();
+    let folder = dir.path().join("result");
+    let said = run(&folder, &["--max-wall", "0"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let summary = json(&folder.join("summary.json"));
+    assert_eq!(summary["status"], "stopped");
+    assert!(
+        summary["reason"].as_str().unwrap().contains("wall time"),
+        "{}",
+        summary["reason"]
+    );
+}

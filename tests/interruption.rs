@@ -1,0 +1,224 @@
+//! Runs that are interrupted: killed, asked to stop, out of wall time, out of disk, or stuck.
+//!
+//! Goal: everything computed so far is on disk, and a resumed run repeats the uninterrupted one bit for bit. Nothing
+//! here has a tolerance: files are equal or they are not.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use slcbeam::case;
+use slcbeam::run::{dynamics, record::Memory};
+
+const CASE: &str = "cases/wiring-2.json";
+const SETS: [&str; 5] = [
+    "/time/checkpoint_interval_s=0.03",
+    "/time/end_s=0.15",
+    "/solver/rtol=1e-5",
+    "/mesh/cells_per_segment=2",
+    "/mesh/cells_per_bladder=1",
+];
+
+fn program() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_slcbeam"));
+    command
+        .arg("run")
+        .arg(CASE)
+        .arg("--quiet")
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    for set in SETS {
+        command.arg("--set").arg(set);
+    }
+    command
+}
+
+fn summary(dir: &Path) -> serde_json::Value {
+    serde_json::from_str(&fs::read_to_string(dir.join("summary.json")).unwrap()).unwrap()
+}
+
+fn without_wall(mut summary: serde_json::Value) -> serde_json::Value {
+    summary.as_object_mut().unwrap().remove("wall_s");
+    summary
+}
+
+#[test]
+fn resumed_run_repeats_the_uninterrupted_one_in_memory() {
+    let sets: Vec<String> = SETS.iter().map(|s| s.to_string()).collect();
+    let case = case::load(Path::new(CASE), &sets).unwrap().case;
+    let mut whole = Memory::default();
+    let whole_outcome = dynamics::run(&case, &mut whole).unwrap();
+    assert_eq!(whole.checkpoints.len(), 4);
+    for checkpoint in &whole.checkpoints {
+        let mut rest = Memory::default();
+        let outcome = dynamics::resume(&case, checkpoint, &mut rest).unwrap();
+        let from = checkpoint.next_output as usize;
+        assert_eq!(whole.rows[from..], rest.rows[..], "from t = {}", checkpoint.t);
+        assert_eq!(whole_outcome.summary.balances, outcome.summary.balances);
+        assert_eq!(whole_outcome.summary.solver, outcome.summary.solver);
+    }
+}
+
+#[test]
+fn checkpoint_of_another_case_is_refused() {
+    let sets: Vec<String> = SETS.iter().map(|s| s.to_string()).collect();
+    let case = case::load(Path::new(CASE), &sets).unwrap().case;
+    let mut recorded = Memory::default();
+    dynamics::run(&case, &mut recorded).unwrap();
+    let mut other = case.clone();
+    other.beam.young_modulus_pa *= 1.01;
+    let refused = dynamics::resume(&other, &recorded.checkpoints[0], &mut Memory::default());
+    assert_eq!(refused.unwrap_err().exit_code(), 2);
+}
+
+#[test]
+fn killed_run_loses_at_most_one_interval_and_resumes_bit_for_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, killed) = (folder.path().join("whole"), folder.path().join("killed"));
+    assert!(program().arg("--out").arg(&whole).status().unwrap().success());
+    let mut child = program().arg("--out").arg(&killed).spawn().unwrap();
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !killed.join("checkpoint.json").exists() && child.try_wait().unwrap().is_none() {
+        assert!(Instant::now() < deadline, "no checkpoint within a minute");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    if !killed.join("checkpoint.json").exists() {
+        // The machine was faster than the kill: the run is whole and there is nothing to resume.
+        assert_eq!(summary(&killed)["status"], "finished");
+        return;
+    }
+    assert!(
+        program()
+            .arg("--resume")
+            .arg("--out")
+            .arg(&killed)
+            .status()
+            .unwrap()
+            .success()
+    );
+    for name in ["history.csv", "fields.npz", "case.json"] {
+        assert_eq!(
+            fs::read(whole.join(name)).unwrap(),
+            fs::read(killed.join(name)).unwrap(),
+            "{name} differs"
+        );
+    }
+    assert_eq!(without_wall(summary(&whole)), without_wall(summary(&killed)));
+    assert!(
+        !killed.join("checkpoint.json").exists(),
+        "a finished run leaves no checkpoint"
+    );
+}
+
+#[test]
+fn resume_without_checkpoint_is_a_usage_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let status = program()
+        .arg("--resume")
+        .arg("--out")
+        .arg(folder.path().join("none"))
+        .status()
+        .unwrap();
+    assert_eq!(status.code(), Some(2));
+}
+
+#[test]
+fn wall_time_limit_stops_with_everything_written_and_can_be_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("limited");
+    let long = ["--set", "/time/end_s=200", "--set", "/time/checkpoint_interval_s=0.05"];
+    let status = program()
+        .args(long)
+        .args(["--max-wall", "1"])
+        .arg("--out")
+        .arg(&out)
+        .status()
+        .unwrap();
+    assert_eq!(status.code(), Some(0));
+    let first = summary(&out);
+    assert_eq!(first["status"], "stopped");
+    assert!(first["reason"].as_str().unwrap().contains("wall time"));
+    assert!(out.join("fields.npz").exists() && out.join("checkpoint.json").exists());
+    let status = program()
+        .args(long)
+        .args(["--max-wall", "1", "--resume"])
+        .arg("--out")
+        .arg(&out)
+        .status()
+        .unwrap();
+    assert_eq!(status.code(), Some(0));
+    assert!(
+        summary(&out)["time_s"].as_f64() > first["time_s"].as_f64(),
+        "the second second went on from the first"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn interrupt_stops_with_everything_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("interrupted");
+    let mut child = program()
+        .args(["--set", "/time/end_s=1000"])
+        .arg("--out")
+        .arg(&out)
+        .spawn()
+        .unwrap();
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !out.join("history.csv").exists() {
+        assert!(Instant::now() < deadline);
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(
+        Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status()
+            .unwrap()
+            .success()
+    );
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    let summary = summary(&out);
+    assert_eq!(summary["status"], "stopped");
+    assert!(summary["reason"].as_str().unwrap().contains("interrupted"));
+    assert!(out.join("fields.npz").exists());
+}
+
+/// A full disk: `/dev/full` cannot be a folder, so a file-size limit plays its part.
+#[cfg(unix)]
+#[test]
+fn full_disk_is_an_output_error_and_what_was_written_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("full");
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 200; exec {} run {CASE} --quiet --set /time/end_s=5 --set /mesh/cells_per_segment=2 --out {}",
+        env!("CARGO_BIN_EXE_slcbeam"),
+        out.display()
+    );
+    let output = Command::new("bash").args(["-c", &script]).output().unwrap();
+    assert_eq!(
+        output.status.code(),
+        Some(5),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write"));
+    assert!(fs::metadata(out.join("history.csv")).unwrap().len() > 1000);
+}
+
+#[test]
+fn too_many_steps_end_the_run_with_a_diagnosis() {
+    let sets: Vec<String> = SETS
+        .iter()
+        .map(|s| s.to_string())
+        .chain(["/solver/max_steps=500".to_string()])
+        .collect();
+    let case = case::load(Path::new(CASE), &sets).unwrap().case;
+    let mut recorded = Memory::default();
+    let outcome = dynamics::run(&case, &mut recorded).unwrap();
+    let fault = outcome.fault.expect("the run cannot finish in 500 steps");
+    assert!(fault.time_s > 0.0 && fault.cause.is_some() && fault.hint.is_some());
+    assert!(!recorded.rows.is_empty());
+}
