@@ -17,6 +17,7 @@
 //! | [`dae`] | the trait [`dae::Dae`]; the beam as one; dual numbers, pattern, Jacobian. Knows no solver |
 //! | [`sundials`] | IDA and KLU behind safe types; the only `unsafe` code; knows only [`dae::Dae`] |
 //! | [`run`] | a run in time: samples, balances, range checks. Emits what happens, prints nothing |
+//! | [`study`] | many runs to answer one question: exact results |
 //! | [`output`] | result folders: history, arrays, summary, pictures |
 //! | [`cli`] | one file a subcommand; the only place that prints |
 //!
@@ -109,4 +110,5 @@ pub mod error;
 pub mod model;
 pub mod output;
 pub mod run;
+pub mod study;
 pub mod sundials;

@@ -22,6 +22,8 @@ pub enum Command {
     Check(CheckArguments),
     /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
     Mapping(MappingArguments),
+    /// Compute exact results of beam and network theory and compare, with observed orders
+    Verify(VerifyArguments),
     /// Print the JSON Schema of a case
     Schema,
 }
@@ -79,6 +81,16 @@ pub struct MappingArguments {
     /// Which table [default: both, a blank line between them]
     #[arg(long)]
     pub table: Option<Table>,
+}
+
+/// `verify`.
+#[derive(Debug, Args)]
+pub struct VerifyArguments {
+    /// Only results whose name contains this
+    pub name: Option<String>,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// The two maps.

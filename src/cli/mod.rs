@@ -9,6 +9,7 @@ mod run;
 mod schema;
 pub mod summary_box;
 mod terminal;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -46,6 +47,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Run(asked) => run::run(asked),
         Command::Check(asked) => check::check(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
+        Command::Verify(asked) => verify::verify(asked),
         Command::Schema => schema::schema(),
     }
 }

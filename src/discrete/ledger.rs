@@ -38,7 +38,7 @@ pub enum Flow {
     AngularImpulse,
 }
 
-/// All flows, in the order in which they are stored; outflows of the network's components follow.
+/// All flows, in the order in which they are stored; outflow and throughput of every open network follow.
 pub const FLOWS: [Flow; 13] = [
     Flow::Loads,
     Flow::Ends,
@@ -101,7 +101,12 @@ pub struct Invariants {
 
 /// Number of integrated rates of a system.
 pub fn flow_count(system: &System) -> usize {
-    FLOWS.len() + system.model.wet.as_ref().map_or(0, |w| w.network.components)
+    FLOWS.len() + 2 * system.model.wet.as_ref().map_or(0, |w| w.network.open.len())
+}
+
+/// Volume that has left the `open`-th open network through its ports, and volume that has passed them either way [m^3].
+pub fn passed(integrals: &[f64], open: usize) -> (f64, f64) {
+    (integrals[FLOWS.len() + 2 * open], integrals[FLOWS.len() + 2 * open + 1])
 }
 
 /// `[E19]` Rates of all integrals (SI) at a state given in SI units:

@@ -148,6 +148,8 @@ pub struct Network {
     pub component_of_junction: Vec<usize>,
     /// Number of components.
     pub components: usize,
+    /// Components that a port or a source touches.
+    pub open: Vec<usize>,
     /// Chains of bladders as written: the network coordinate follows them.
     pub chains: Vec<Vec<usize>>,
     /// Tubes of all chains and free tubes, `n_c`.
@@ -204,14 +206,17 @@ impl Network {
 
     /// True when no port or flow source touches the component.
     pub fn is_closed(&self, component: usize) -> bool {
+        !self.open.contains(&component)
+    }
+
+    fn touched_by_a_port(&self, component: usize) -> bool {
         let touches = |node: Node| self.component_of(node) == Some(component);
-        !self.sources.iter().any(|s| touches(s.into))
-            && !self.links.iter().any(|l| {
-                (touches(l.from) && matches!(l.to, Node::Port(_))) || (touches(l.to) && matches!(l.from, Node::Port(_)))
-            })
-            && !self.bridges.iter().any(|b| {
-                (touches(b.from) && matches!(b.to, Node::Port(_))) || (touches(b.to) && matches!(b.from, Node::Port(_)))
-            })
+        let joins = |a: Node, b: Node| {
+            (touches(a) && matches!(b, Node::Port(_))) || (touches(b) && matches!(a, Node::Port(_)))
+        };
+        self.sources.iter().any(|s| touches(s.into))
+            || self.links.iter().any(|l| joins(l.from, l.to))
+            || self.bridges.iter().any(|b| joins(b.from, b.to))
     }
 
     /// Component of a point; `None` for a pressure port.
@@ -447,6 +452,7 @@ impl<'a> Builder<'a> {
             component_of_bladder: vec![],
             component_of_junction: vec![],
             components: 0,
+            open: vec![],
             chains,
             tubes,
         };
@@ -460,6 +466,7 @@ impl<'a> Builder<'a> {
             }
         }
         components(&mut network, 2 * self.per_row);
+        network.open = (0..network.components).filter(|&c| network.touched_by_a_port(c)).collect();
         network
     }
 

@@ -2,7 +2,7 @@
 
 use crate::case::schema::Case;
 use crate::dae::BeamDae;
-use crate::discrete::ledger::{self, FLOWS, Flow, Invariants};
+use crate::discrete::ledger::{self, Flow, Invariants};
 use crate::discrete::{System, sample};
 use crate::error::Result;
 use crate::model::audit;
@@ -38,7 +38,7 @@ impl Residuals {
         Self::relative(self.energy, self.energy_seen)
     }
 
-    /// Worst volume residual over the largest volume displaced in the same component.
+    /// Worst volume residual over the largest volume displaced in the same network, or passed through its ports.
     pub fn volume_relative(&self) -> f64 {
         self.volume
             .iter()
@@ -225,8 +225,10 @@ impl Observer {
         let put_in = [Flow::Loads, Flow::Ends, Flow::Ports].map(|f| integrals[f as usize].abs());
         r.energy_seen = put_in.into_iter().fold(r.energy_seen.max(total.abs()), f64::max);
         for c in 0..invariants.volumes.len() {
-            let lost = invariants.volumes[c] - first.volumes[c] + integrals[FLOWS.len() + c];
-            r.volume[c] = r.volume[c].max(lost.abs());
+            let open = system.model.wet.as_ref().and_then(|w| w.network.open.iter().position(|&o| o == c));
+            let (left, through) = open.map_or((0.0, 0.0), |k| ledger::passed(integrals, k));
+            r.volume[c] = r.volume[c].max((invariants.volumes[c] - first.volumes[c] + left).abs());
+            r.volume_seen[c] = r.volume_seen[c].max(through);
         }
         displaced(system, &w.area, &mut r.volume_seen);
         let impulse = [integrals[Flow::ImpulseX as usize], integrals[Flow::ImpulseZ as usize]];

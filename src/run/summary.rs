@@ -40,7 +40,8 @@ pub struct Quantity {
 pub struct Balances {
     /// Largest residual of the energy balance over the largest energy seen.
     pub energy_residual_relative: f64,
-    /// Largest residual of any network's volume balance over the largest volume displaced in it.
+    /// Largest residual of any network's volume balance over the largest volume displaced in it or passed through its
+    /// ports.
     pub volume_residual_relative: f64,
     /// The same for networks without ports alone: these close to round-off at any tolerance.
     #[serde(default)]

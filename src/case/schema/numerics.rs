@@ -210,5 +210,5 @@ fn default_delta_cj() -> f64 {
 }
 
 fn default_max_steps() -> u64 {
-    20_000_000
+    1_000_000_000_000
 }

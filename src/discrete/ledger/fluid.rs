@@ -119,11 +119,17 @@ pub fn flows(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut [f64]
         Place::Junction(j) => Some(network.component_of_junction[j]),
         Place::Port(_) => None,
     };
+    let leave = |component: usize, outward: f64, out: &mut [f64]| {
+        if let Some(open) = network.open.iter().position(|&c| c == component) {
+            out[FLOWS.len() + 2 * open] += outward;
+            out[FLOWS.len() + 2 * open + 1] += outward.abs();
+        }
+    };
     let cross = |from: Place, to: Place, q: f64, out: &mut [f64]| {
         for (place, outward) in [(from, q), (to, -q)] {
             match (place, component(place)) {
                 (Place::Port(p), _) => add(out, Flow::Ports, now.port_pressure[p] * outward),
-                (_, Some(c)) if component(from) != component(to) => out[FLOWS.len() + c] += outward,
+                (_, Some(c)) if component(from) != component(to) => leave(c, outward, out),
                 _ => {}
             }
         }
@@ -154,7 +160,7 @@ pub fn flows(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut [f64]
         add(out, Flow::Ports, (pressure_at(place, now, w) + half * q) * q);
         add(out, Flow::Bladders, half * q * q);
         if let Some(c) = component(place) {
-            out[FLOWS.len() + c] -= q;
+            leave(c, -q, out);
         }
     }
     for (b, (bridge, &(from, to))) in network.bridges.iter().zip(&fluid.bridges).enumerate() {

@@ -1,0 +1,3 @@
+//! Studies: many runs to answer one question. Prints nothing.
+
+pub mod verify;

@@ -1,0 +1,78 @@
+//! Beck's column: flutter under a tip load that stays tangential.
+
+use serde_json::json;
+
+use super::figure::Figure;
+use super::fit::{growth_of_spans, oscillation, through};
+use super::frequencies::free_shape;
+use super::row::Row;
+use super::scene::motion;
+use super::solve::{on_three_meshes, solve};
+use crate::error::Result;
+
+/// Flutter load `P L²/EI` and frequency `ω L² √(m/EI)`.
+const LOAD: f64 = 20.0509536;
+const FREQUENCY: f64 = 11.0155576;
+
+/// All rows.
+pub fn rows() -> Vec<Row> {
+    vec![flutter(), below()]
+}
+
+/// Tip displacement after a small push under the load `p`, and the interval of its samples [s].
+fn tip(cells: usize, p: f64, end: f64) -> Result<(Vec<f64>, f64)> {
+    let interval = 0.02;
+    let mut case = motion(cells, |x| free_shape(1.875104068712, x), end, interval);
+    case["ends"]["tip"] = json!({"free": {"follower_normal_n": -p}});
+    // Compressed from the start, else an axial wave of the size of the load would run to and fro.
+    case["start"]["u3_m"] = json!({"polynomial": {"coefficients": [0.0, -p / 1.2e5]}});
+    case["solver"]["rtol"] = json!(1e-7);
+    Ok((solve(&case)?.column("tip_u1"), interval))
+}
+
+/// Where two modes meet, `λ²` has a square root of `P - Pc`: the square of its imaginary part goes through zero at the
+/// flutter load, its real part is `-ω²` there; both are smooth in P.
+fn flutter() -> Row {
+    Row::new(
+        "beck-flutter",
+        [
+            "Beck 1952; Bolotin: P L^2/EI = 20.0509536, w L^2 sqrt(m/EI) = 11.0155576, undamped",
+            "follower loads; loss of stability by flutter. Growth rates and frequencies at 20.4, 20.9 and 21.4 taken back to where growth begins",
+            "second order: (pi h)^2 times a constant below 1 with 40 cells (6e-3); the limit keeps h^4, the curvature beyond a parabola of three loads and the integrator",
+        ],
+        || {
+            let [load, frequency] = on_three_meshes(10, |cells| {
+                let mut growth = vec![];
+                let mut square = vec![];
+                for p in [20.4, 20.9, 21.4] {
+                    let (tip, interval) = tip(cells, p, 6.0)?;
+                    // By half the time the growing pair of modes is alone.
+                    let (rate, w) = oscillation(&tip[tip.len() / 2..], interval);
+                    growth.push(((2.0 * rate * w).powi(2), p));
+                    square.push((p, w * w - rate * rate));
+                }
+                let load = through(&growth, 0.0);
+                Ok([load, through(&square, load).sqrt()])
+            })?;
+            Ok(vec![
+                Figure::relative("P L^2/EI", load[2], LOAD, 6e-3).on_meshes(load, 5e-4),
+                Figure::relative("w L^2 sqrt(m/EI)", frequency[2], FREQUENCY, 6e-3).on_meshes(frequency, 5e-4),
+            ])
+        },
+    )
+}
+
+fn below() -> Row {
+    Row::new(
+        "beck-below",
+        [
+            "Beck 1952: undamped and below the flutter load every motion stays bounded",
+            "no growth is made by follower load, mesh or integrator at P L^2/EI = 19.5",
+            "the largest deflections of equal spans differ by where the beat of the two modes is met; at 20.6 the growth is 1.8 1/s",
+        ],
+        || {
+            let (tip, interval) = tip(40, 19.5, 12.0)?;
+            Ok(vec![Figure::absolute("growth rate L^2 sqrt(m/EI)", growth_of_spans(&tip, 150, interval, 0), 0.0, 0.02)])
+        },
+    )
+}

@@ -1,0 +1,139 @@
+//! Relaxation of equal bladders joined by equal tubes, and what it dissipates.
+
+use std::f64::consts::PI;
+
+use serde_json::{Value, json};
+
+use super::figure::Figure;
+use super::row::Row;
+use super::solve::{Solved, solve};
+use super::wet::{BLADDER, COMPLIANCE, TUBE, TUBE_LENGTH, case, pressures};
+use crate::error::Result;
+
+/// Bladders in a chain.
+const N: usize = 6;
+/// Resistance between the middles of neighbours: tube and two half bladders in series.
+const R: f64 = BLADDER + TUBE;
+/// Pressure to start from [Pa].
+const START: f64 = 1000.0;
+
+const GOAL: &str = "volume balance, tubes and bladders in series; started in the mode, every mode alone";
+const REASON: &str = "one volume a bladder makes the lumped chain exact: what is left is the integrator's error over one decay time, rtol 1e-9";
+
+/// All rows.
+pub fn rows() -> Vec<Row> {
+    let n = N as f64;
+    let chain = Row::new(
+        "network-closed-chain",
+        ["eigenvalues of a path (discrete cosines): (4/RC) sin^2(k pi/2N)", GOAL, REASON],
+        move || {
+            modes(&chain_of(json!(["sealed", "sealed"])), (1..N).map(|k| k as f64 * PI / n), |angle, j| {
+                (angle * (j - 0.5)).cos()
+            })
+        },
+    );
+    let open = Row::new(
+        "network-open-chain",
+        ["path with one end at pressure zero behind R: (4/RC) sin^2((2k - 1) pi/(2 (2N + 1)))", GOAL, REASON],
+        move || {
+            let angles = (1..=N).map(|k| (2 * k - 1) as f64 * PI / (2.0 * n + 1.0));
+            modes(&open_chain(), angles, |angle, j| (angle * j).sin())
+        },
+    );
+    let ring = Row::new(
+        "network-ring",
+        ["eigenvalues of a ring: (4/RC) sin^2(k pi/N)", GOAL, REASON],
+        move || {
+            modes(&ring(), (1..=N / 2).map(|k| 2.0 * k as f64 * PI / n), |angle, j| (angle * j).cos())
+        },
+    );
+    vec![chain, open, ring, two_bladders(), dissipation()]
+}
+
+fn upper_row() -> Vec<usize> {
+    (1..=N).collect()
+}
+
+fn chain_of(ends: Value) -> Value {
+    json!({"chains": [{"bladders": upper_row(), "ends": ends}]})
+}
+
+/// The inlet of bladder 1 at pressure zero behind a tube that makes up for the missing half bladder.
+fn open_chain() -> Value {
+    let length = TUBE_LENGTH * (1.0 + 0.5 * BLADDER / TUBE);
+    json!({
+        "chains": [{"bladders": upper_row(), "ends": ["connected", "sealed"]}],
+        "junctions": ["outside"],
+        "tubes": [{"from": {"junction": "outside"}, "to": {"bladder": 1, "end": "inlet"}, "length_m": length}],
+        "ports": [{"at": {"junction": "outside"}, "pressure_pa": 0}]
+    })
+}
+
+fn ring() -> Value {
+    json!({
+        "chains": [{"bladders": upper_row(), "ends": ["connected", "connected"]}],
+        "tubes": [{"from": {"bladder": N, "end": "outlet"}, "to": {"bladder": 1, "end": "inlet"}}]
+    })
+}
+
+/// Decay rates of modes `shape(angle, j)` with the rates `(4/RC) sin²(angle/2)`, each run over one decay time.
+fn modes(network: &Value, angles: impl Iterator<Item = f64>, shape: fn(f64, f64) -> f64) -> Result<Vec<Figure>> {
+    (1..)
+        .zip(angles)
+        .map(|(k, angle)| {
+            let exact = 4.0 / (R * COMPLIANCE) * (0.5 * angle).sin().powi(2);
+            let start = |j: usize| START * shape(angle, j as f64);
+            let mut run = case(N, network.clone(), 1.0 / exact, 1.0 / exact);
+            run["start"] = json!({"pressures": pressures((1..=N).map(start))});
+            let solved = solve(&run)?;
+            let left: f64 = upper_pressures(&solved, N).zip(1..).map(|(p, j)| p * start(j)).sum();
+            let whole: f64 = (1..=N).map(|j| start(j).powi(2)).sum();
+            Ok(Figure::relative(format!("rate of mode {k} [1/s]"), (whole / left).ln() * exact, exact, 1e-6))
+        })
+        .collect()
+}
+
+/// Pressures of the upper row at the end of a run [Pa].
+fn upper_pressures(solved: &Solved, count: usize) -> impl Iterator<Item = f64> {
+    solved.field("pressure_pa").last().into_iter().flatten().copied().take(count)
+}
+
+fn two_bladders() -> Row {
+    Row::new(
+        "network-two-bladders",
+        ["two capacitors: the difference of pressure decays with the time R C/2", "the smallest network", REASON],
+        || {
+            let tau = 0.5 * R * COMPLIANCE;
+            let mut run = case(2, json!({"chains": [{"bladders": [1, 2], "ends": ["sealed", "sealed"]}]}), tau, tau);
+            run["start"] = json!({"pressures": pressures([START, 0.0].into_iter())});
+            let left: Vec<f64> = upper_pressures(&solve(&run)?, 2).collect();
+            let [a, b] = left[..] else { return Ok(vec![]) };
+            Ok(vec![Figure::relative("decay time [s]", tau / (START / (a - b)).ln(), tau, 1e-6)])
+        },
+    )
+}
+
+fn dissipation() -> Row {
+    Row::new(
+        "network-dissipation",
+        [
+            "sum q^2 R = -d/dt sum C p^2/2",
+            "energy of the network: what the bladders lose is dissipated, shared between tubes and bladders as their resistances",
+            "the integrals are as good as the integrator, rtol 1e-9, and 20 decay times leave e^-40 of the energy",
+        ],
+        || {
+            let slowest = R * COMPLIANCE / (4.0 * (0.5 * PI / N as f64).sin().powi(2));
+            let mut run = case(N, chain_of(json!(["sealed", "sealed"])), 20.0 * slowest, 20.0 * slowest);
+            let start = |j: usize| if j == 1 { START } else { 0.0 };
+            run["start"] = json!({"pressures": pressures((1..=N).map(start))});
+            let solved = solve(&run)?;
+            let (tubes, bladders) = (solved.last("dissipated_tubes"), solved.last("dissipated_bladders"));
+            let lost = 0.5 * COMPLIANCE * START * START * (1.0 - 1.0 / N as f64);
+            Ok(vec![
+                Figure::relative("dissipated in all [J]", tubes + bladders, lost, 1e-6),
+                Figure::relative("share of the tubes", tubes / (tubes + bladders), TUBE / R, 1e-6),
+                Figure::relative("energy left [J]", solved.last("bladder_energy"), lost / (N - 1) as f64, 1e-6),
+            ])
+        },
+    )
+}

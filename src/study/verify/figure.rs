@@ -1,0 +1,68 @@
+//! One number, computed and exact.
+
+use super::fit::richardson;
+
+/// Whether an error is relative to the exact value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// `|computed - exact|/|exact|`.
+    Relative,
+    /// `|computed - exact|`, in the unit of the quantity.
+    Absolute,
+}
+
+/// One number of a row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// What it is, with its unit: `tip angle [rad]`.
+    pub quantity: String,
+    /// As computed, on the finest mesh where there are several.
+    pub computed: f64,
+    /// Exact value.
+    pub exact: f64,
+    /// What the tolerances bound.
+    pub measure: Measure,
+    /// Largest error accepted.
+    pub tolerance: f64,
+    /// Order in the mesh size observed between the two finer meshes, where it is to be 2.
+    pub order: Option<f64>,
+    /// Error of the limit that the two finer meshes point to (Richardson), and the largest accepted.
+    pub limit: Option<(f64, f64)>,
+}
+
+/// Orders accepted where second order is due.
+const SECOND_ORDER: std::ops::RangeInclusive<f64> = 1.8..=2.2;
+
+impl Figure {
+    pub(super) fn relative(quantity: impl Into<String>, computed: f64, exact: f64, tolerance: f64) -> Self {
+        Self { quantity: quantity.into(), computed, exact, measure: Measure::Relative, tolerance, order: None, limit: None }
+    }
+
+    pub(super) fn absolute(quantity: impl Into<String>, computed: f64, exact: f64, tolerance: f64) -> Self {
+        Self { measure: Measure::Absolute, ..Self::relative(quantity, computed, exact, tolerance) }
+    }
+
+    /// Three meshes, each twice as fine as the one before: second order is due, and the limit within `limit`.
+    pub(super) fn on_meshes(self, values: [f64; 3], limit: f64) -> Self {
+        let [_, middle, fine] = values;
+        let order = ((middle - self.exact) / (fine - self.exact)).abs().log2();
+        let extrapolated = Self { computed: richardson(middle, fine), ..self.clone() };
+        Self { order: Some(order), limit: Some((extrapolated.error(), limit)), ..self }
+    }
+
+    /// Error, relative or absolute as [`Figure::measure`] says.
+    pub fn error(&self) -> f64 {
+        let difference = (self.computed - self.exact).abs();
+        match self.measure {
+            Measure::Relative => difference / self.exact.abs(),
+            Measure::Absolute => difference,
+        }
+    }
+
+    /// Whether error, order and limit are as they should be. Not a number is not.
+    pub fn passed(&self) -> bool {
+        self.error() <= self.tolerance
+            && self.order.is_none_or(|order| SECOND_ORDER.contains(&order))
+            && self.limit.is_none_or(|(error, largest)| error <= largest)
+    }
+}

@@ -1,0 +1,69 @@
+//! Growth rates, frequencies, zeros and limits from samples.
+
+/// Limit `h -> 0` from values at `2h` and `h` whose error is of second order.
+pub fn richardson(coarse: f64, fine: f64) -> f64 {
+    fine + (fine - coarse) / 3.0
+}
+
+/// Growth rate and angular frequency [1/s] of samples `interval` apart that are one exponentially growing or decaying
+/// oscillation, `x_{k+1} = a x_k + b x_{k-1}` with `a = 2 e^{σ Δ} cos(ω Δ)`, `b = -e^{2 σ Δ}` by least squares (Prony).
+pub fn oscillation(samples: &[f64], interval: f64) -> (f64, f64) {
+    let (mut uu, mut uv, mut vv, mut ux, mut vx) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for w in samples.windows(3) {
+        let (v, u, x) = (w[0], w[1], w[2]);
+        uu += u * u;
+        uv += u * v;
+        vv += v * v;
+        ux += u * x;
+        vx += v * x;
+    }
+    let determinant = uu * vv - uv * uv;
+    let a = (ux * vv - vx * uv) / determinant;
+    let b = (vx * uu - ux * uv) / determinant;
+    let radius = (-b).sqrt();
+    (radius.ln() / interval, (0.5 * a / radius).acos() / interval)
+}
+
+/// Slope of the straight line through points by least squares.
+pub fn slope(x: &[f64], y: &[f64]) -> f64 {
+    let count = x.len() as f64;
+    let (mx, my) = (x.iter().sum::<f64>() / count, y.iter().sum::<f64>() / count);
+    let top: f64 = x.iter().zip(y).map(|(x, y)| (x - mx) * (y - my)).sum();
+    top / x.iter().map(|x| (x - mx) * (x - mx)).sum::<f64>()
+}
+
+/// Value at `at` of the polynomial through all points (Neville).
+pub fn through(points: &[(f64, f64)], at: f64) -> f64 {
+    let mut p: Vec<f64> = points.iter().map(|point| point.1).collect();
+    for k in 1..p.len() {
+        for i in 0..p.len() - k {
+            let (a, b) = (points[i].0, points[i + k].0);
+            p[i] = ((at - b) * p[i] + (a - at) * p[i + 1]) / (a - b);
+        }
+    }
+    p.first().copied().unwrap_or(f64::NAN)
+}
+
+/// Growth rate of the largest magnitude in consecutive spans of `span` samples; the first `skipped` spans are left out.
+pub fn growth_of_spans(samples: &[f64], span: usize, interval: f64, skipped: usize) -> f64 {
+    let (times, logs): (Vec<f64>, Vec<f64>) = samples
+        .chunks_exact(span)
+        .enumerate()
+        .skip(skipped)
+        .map(|(k, part)| {
+            let largest = part.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            ((k * span) as f64 * interval, largest.ln())
+        })
+        .unzip();
+    slope(&times, &logs)
+}
+
+/// Lowest value of samples near their minimum, from the parabola through the three lowest neighbours: `(k, value)`.
+pub fn minimum(samples: &[f64]) -> (f64, f64) {
+    let lowest = (1..samples.len().saturating_sub(1)).min_by(|&a, &b| samples[a].total_cmp(&samples[b]));
+    let Some(k) = lowest else { return (f64::NAN, f64::NAN) };
+    let (a, b, c) = (samples[k - 1], samples[k], samples[k + 1]);
+    let (slope, bend) = (0.5 * (c - a), a - 2.0 * b + c);
+    let shift = -slope / bend;
+    (k as f64 + shift, b + 0.5 * slope * shift)
+}

@@ -1,0 +1,52 @@
+//! Exact results of beam and network theory against what the program computes for them, through cases like any other.
+//!
+//! ```text
+//! row          a problem with its source, goal and tolerance; names and how they are chosen
+//! figure       one number of a row: computed, exact, error, observed order, verdict
+//! solve        a case from JSON to its samples
+//! scene        the beam of unit length, bending stiffness and mass that most problems use
+//! fit          growth rates, frequencies and zeros from samples
+//! statics      cantilevers under end moment, tip load, uniform load
+//! buckling     Euler's column, a column under its own weight, the elastica
+//! beck         flutter under a follower load
+//! frequencies  free bending vibrations
+//! spin_up      Simo and Vu-Quoc's rotating arm
+//! mathieu      axial base acceleration
+//! wet          the nearly unloaded beam with bladders that the network problems use
+//! decay        relaxation of chains and rings, dissipation
+//! kirchhoff    a steady network as resistors
+//! ducts        permeabilities of cross-sections
+//! ```
+
+mod beck;
+mod buckling;
+mod decay;
+mod ducts;
+mod figure;
+mod fit;
+mod frequencies;
+mod kirchhoff;
+mod mathieu;
+mod row;
+mod scene;
+mod solve;
+mod spin_up;
+mod statics;
+mod wet;
+
+pub use figure::{Figure, Measure};
+pub use row::{Row, choose};
+
+/// Every row, in the order in which they are told.
+pub fn rows() -> Vec<Row> {
+    let mut all = statics::rows();
+    all.extend(buckling::rows());
+    all.extend(beck::rows());
+    all.extend(frequencies::rows());
+    all.extend(spin_up::rows());
+    all.extend(mathieu::rows());
+    all.extend(decay::rows());
+    all.extend(kirchhoff::rows());
+    all.extend(ducts::rows());
+    all
+}

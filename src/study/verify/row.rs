@@ -1,0 +1,53 @@
+//! Problems with a known answer.
+
+use super::figure::Figure;
+use crate::error::{Error, Result};
+
+/// What computes the figures of a row.
+type Work = Box<dyn Fn() -> Result<Vec<Figure>> + Send + Sync>;
+
+/// A problem with a known answer.
+pub struct Row {
+    /// Name, lower case with dashes: `tip-load-5`.
+    pub name: String,
+    /// Where the answer comes from.
+    pub source: &'static str,
+    /// What it shows.
+    pub goal: &'static str,
+    /// Why the tolerance is what it is.
+    pub reason: &'static str,
+    work: Work,
+}
+
+impl Row {
+    pub(super) fn new(
+        name: impl Into<String>,
+        [source, goal, reason]: [&'static str; 3],
+        work: impl Fn() -> Result<Vec<Figure>> + Send + Sync + 'static,
+    ) -> Self {
+        Self { name: name.into(), source, goal, reason, work: Box::new(work) }
+    }
+
+    /// Computes the row's figures.
+    ///
+    /// # Errors
+    /// When one of its runs fails.
+    pub fn figures(&self) -> Result<Vec<Figure>> {
+        (self.work)()
+    }
+}
+
+/// Rows whose name contains `part`.
+///
+/// # Errors
+/// [`Error::Usage`] with the nearest name when there is none.
+pub fn choose(rows: Vec<Row>, part: &str) -> Result<Vec<Row>> {
+    let names: Vec<String> = rows.iter().map(|row| row.name.clone()).collect();
+    let chosen: Vec<Row> = rows.into_iter().filter(|row| row.name.contains(part)).collect();
+    if !chosen.is_empty() {
+        return Ok(chosen);
+    }
+    let likeness = |name: &String| strsim::jaro_winkler(&part.to_lowercase(), name);
+    let nearest = names.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b))).map_or("", String::as_str);
+    Err(Error::Usage(format!("no exact result has \"{part}\" in its name; the nearest is \"{nearest}\"\nall: {}", names.join(", "))))
+}

@@ -1,0 +1,55 @@
+//! A case from JSON to its samples.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::case;
+use crate::error::{Error, Result};
+use crate::run::dynamics;
+use crate::run::record::Memory;
+
+/// What a run recorded.
+pub struct Solved {
+    memory: Memory,
+}
+
+/// Checks and runs a case.
+///
+/// # Errors
+/// A case that is not valid, a solver that cannot go on.
+pub fn solve(case: &Value) -> Result<Solved> {
+    let loaded = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    let mut memory = Memory::default();
+    let outcome = dynamics::run(&loaded.case, &mut memory)?;
+    match outcome.fault {
+        Some(fault) => Err(Error::Solver(Box::new(fault))),
+        None => Ok(Solved { memory }),
+    }
+}
+
+impl Solved {
+    /// A column of the history, empty when there is none of that name.
+    pub fn column(&self, name: &str) -> Vec<f64> {
+        self.memory.column(name).unwrap_or_default()
+    }
+
+    /// Last value of a column; NaN when there is none.
+    pub fn last(&self, name: &str) -> f64 {
+        self.column(name).last().copied().unwrap_or(f64::NAN)
+    }
+
+    /// A field, one array a time; empty when there is none of that name.
+    pub fn field(&self, name: &str) -> &[Vec<f64>] {
+        self.memory.field(name).unwrap_or_default()
+    }
+}
+
+/// The same figures on three meshes of `cells`, `2 cells` and `4 cells`: for each its three values.
+pub fn on_three_meshes<const N: usize>(
+    cells: usize,
+    values: impl Fn(usize) -> Result<[f64; N]>,
+) -> Result<[[f64; 3]; N]> {
+    let meshes = [values(cells)?, values(2 * cells)?, values(4 * cells)?];
+    Ok(std::array::from_fn(|k| meshes.map(|mesh| mesh[k])))
+}
