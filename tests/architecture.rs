@@ -14,7 +14,7 @@ const ROOMS: [&str; 11] = [
 const LINES: usize = 400;
 
 /// Longer files, each with the reason.
-const LONG: [(&str, &str); 3] = [
+const LONG: [(&str, &str); 6] = [
     (
         "src/model/network.rs",
         "the graph and its builder share every type; divided, both halves would be public",
@@ -23,6 +23,9 @@ const LONG: [(&str, &str); 3] = [
         "src/run/dynamics.rs",
         "one run in the order in which it happens: start, steps, switches, end",
     ),
+    ("tests/architecture.rs", "the rules of the house, one test each"),
+    ("tests/cli.rs", "the command line from outside, one small run a test"),
+    ("tests/equations.rs", "the index of equations, and one test each"),
     (
         "tests/output.rs",
         "one invented run serves all tests of a result folder",
@@ -183,7 +186,7 @@ fn rooms_import_from_above_only() {
 fn unsafe_code_stays_in_its_room_and_says_why_it_is_sound() {
     // A block needs a SAFETY comment close above it; a function of ours a Safety section. What C calls
     // (`unsafe extern "C" fn`) has SUNDIALS' contract, and blocks of its own.
-    const ABOVE: usize = 6;
+    const ABOVE: usize = 4;
     let mut offences = Vec::new();
     for path in files("src", &["rs"]) {
         let lines = lines(&path);
@@ -285,7 +288,8 @@ fn files_are_short() {
                 file!()
             ));
         }
-        if length <= LINES && allowed {
+        // Some lines of grace: a file that hovers about the limit should not change the list with every edit.
+        if length + 50 < LINES && allowed {
             offences.push(format!(
                 "{}: {length} lines only; take it off the list in {}",
                 path.display(),
@@ -339,7 +343,11 @@ fn every_equation_is_defined_once_and_stands_in_the_model() {
     let defined = definitions();
     let model = fs::read_to_string("docs/model.md").unwrap();
     let mut offences = Vec::new();
-    for k in 1..=defined.len() {
+    let last = defined
+        .iter()
+        .filter_map(|(tag, _)| tag[1..].parse::<usize>().ok())
+        .max();
+    for k in 1..=last.unwrap_or(0) {
         let tag = format!("E{k}");
         let places: Vec<&str> = defined
             .iter()

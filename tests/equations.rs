@@ -18,7 +18,11 @@ use slcbeam::run::summary::{Balances, Status};
 const INDEX: [(&str, &str, &str); 21] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
-    ("[E3]", "tests/equations.rs", "reciprocal_strains_and_areas_share_one_potential"),
+    (
+        "[E3]",
+        "tests/equations.rs",
+        "reciprocal_strains_and_areas_share_one_potential",
+    ),
     ("[E4]", "tests/equations.rs", "permeabilities_of_known_ducts"),
     ("[E5]", "tests/equations.rs", "body_forces_act_on_the_mass"),
     ("[E6]", "tests/equations.rs", "a_valve_is_in_series_with_its_half_cells"),
@@ -28,13 +32,33 @@ const INDEX: [(&str, &str, &str); 21] = [
     ("[E10]", "tests/equations.rs", "a_bridge_rectifies"),
     ("[E11]", "tests/equations.rs", "a_circle_has_one_curvature"),
     ("[E12]", "tests/equations.rs", "a_circle_has_one_moment_and_no_shear"),
-    ("[E13]", "tests/equations.rs", "balances_close_for_every_formulation_and_coupling"),
-    ("[E14]", "tests/equations.rs", "balances_close_for_every_formulation_and_coupling"),
-    ("[E15]", "tests/equations.rs", "balances_close_for_every_formulation_and_coupling"),
+    (
+        "[E13]",
+        "tests/equations.rs",
+        "balances_close_for_every_formulation_and_coupling",
+    ),
+    (
+        "[E14]",
+        "tests/equations.rs",
+        "balances_close_for_every_formulation_and_coupling",
+    ),
+    (
+        "[E15]",
+        "tests/equations.rs",
+        "balances_close_for_every_formulation_and_coupling",
+    ),
     ("[E16]", "tests/equations.rs", "means_weigh_as_their_transpose"),
-    ("[E17]", "tests/equations.rs", "balances_close_for_every_formulation_and_coupling"),
+    (
+        "[E17]",
+        "tests/equations.rs",
+        "balances_close_for_every_formulation_and_coupling",
+    ),
     ("[E18]", "tests/equations.rs", "a_bridge_rectifies"),
-    ("[E19]", "tests/equations.rs", "balances_close_for_every_formulation_and_coupling"),
+    (
+        "[E19]",
+        "tests/equations.rs",
+        "balances_close_for_every_formulation_and_coupling",
+    ),
     ("[E20]", "tests/equations.rs", "two_bladders_relax_in_half_their_time"),
     ("[E21]", "tests/equations.rs", "the_audit_of_the_papers_coupling"),
 ];
@@ -56,12 +80,19 @@ fn every_equation_has_a_test() {
     for (tag, file, test) in INDEX {
         assert!(source.contains(&format!("`{tag}` ")), "{tag} is defined nowhere");
         let tests = fs::read_to_string(file).unwrap();
-        assert!(tests.contains(&format!("#[test]\nfn {test}()")), "{tag}: no test {test} in {file}");
+        assert!(
+            tests.contains(&format!("#[test]\nfn {test}()")),
+            "{tag}: no test {test} in {file}"
+        );
     }
     for k in 1..1000 {
         let tag = format!("[E{k}]");
         if !source.contains(&format!("/// `{tag}` ")) {
-            assert_eq!(k, INDEX.len() + 1, "an equation is missing in the index, or in the source: {tag}");
+            assert_eq!(
+                k,
+                INDEX.len() + 1,
+                "an equation is missing in the index, or in the source: {tag}"
+            );
             break;
         }
     }
@@ -95,7 +126,11 @@ fn evaluated(system: &System, y: &[f64]) -> Workspace<f64> {
 fn the_section_of_the_papers_beam() {
     let section = Model::new(&load("wiring-2", &[])).section;
     close(section.mass_factor, 1.0273, 5e-5);
-    close(section.mass_per_length, 950.0 * 0.05 * 0.0216 * section.mass_factor, 1e-15);
+    close(
+        section.mass_per_length,
+        950.0 * 0.05 * 0.0216 * section.mass_factor,
+        1e-15,
+    );
     close(section.axial_stiffness, 1144.8, 1e-12);
     close(section.bending_stiffness, 0.0503885, 1e-6);
     close(section.gyration_radius_squared, 2.2709e-5, 2e-5);
@@ -112,10 +147,21 @@ fn areas_take_the_slope_of_their_sign() {
     let (tension, compression) = (3.64e-8, 6.31e-8);
     let moment = 1e-3;
     let error = law.moment_half_difference * law.moment_width;
-    assert!(error < 2e-3 * opening * moment, "the kink is too wide to be told from the slopes");
-    for (row, sign, slope) in [(1.0, 1.0, opening), (1.0, -1.0, closing), (-1.0, 1.0, closing), (-1.0, -1.0, opening)] {
+    assert!(
+        error < 2e-3 * opening * moment,
+        "the kink is too wide to be told from the slopes"
+    );
+    for (row, sign, slope) in [
+        (1.0, 1.0, opening),
+        (1.0, -1.0, closing),
+        (-1.0, 1.0, closing),
+        (-1.0, -1.0, opening),
+    ] {
         let area: f64 = law.of_moment(sign * moment, row);
-        assert!((area - row * sign * slope * moment).abs() <= error, "row {row}, M of sign {sign}: {area}");
+        assert!(
+            (area - row * sign * slope * moment).abs() <= error,
+            "row {row}, M of sign {sign}: {area}"
+        );
     }
     let (force, error) = (10.0, law.force_half_difference * law.force_width);
     for (sign, slope) in [(1.0, tension), (-1.0, compression)] {
@@ -127,7 +173,10 @@ fn areas_take_the_slope_of_their_sign() {
 /// `[E3]` Strains and areas are derivatives of g*; with the kink too, whose terms the published law lacks.
 #[test]
 fn reciprocal_strains_and_areas_share_one_potential() {
-    let case = load("wiring-2", &["/bladders/coupling=\"reciprocal_kinked\"", "/bladders/kink_width=0.01"]);
+    let case = load(
+        "wiring-2",
+        &["/bladders/coupling=\"reciprocal_kinked\"", "/bladders/kink_width=0.01"],
+    );
     let model = Model::new(&case);
     let wet = model.wet.unwrap();
     let (law, section) = (wet.area, model.section);
@@ -140,7 +189,13 @@ fn reciprocal_strains_and_areas_share_one_potential() {
             .sum()
     };
     let kinks = [law.force_width, law.moment_width];
-    assert_eq!(kinks, [0.01 * section.axial_stiffness, 0.01 * section.bending_stiffness / model.length]);
+    assert_eq!(
+        kinks,
+        [
+            0.01 * section.axial_stiffness,
+            0.01 * section.bending_stiffness / model.length
+        ]
+    );
     for (n, m) in [(5.0, 2e-3), (-20.0, 1e-3), (3.0, -4e-3), (0.1, 1e-5)] {
         let at = [n, m, 3e3, -1e3];
         let slope = |k: usize, step: f64| {
@@ -155,13 +210,21 @@ fn reciprocal_strains_and_areas_share_one_potential() {
         let curvature = wet.coupling.curvature(&law, m, at[2], at[3]);
         close(curvature, ratio * slope(1, 1e-3 * kinks[1]), 1e-6);
         for (k, row) in [(2, 1.0), (3, -1.0)] {
-            close(law.per_pressure * at[k] + law.of_moment(m, row) + law.of_force(n), slope(k, 1.0), 1e-8);
+            close(
+                law.per_pressure * at[k] + law.of_moment(m, row) + law.of_force(n),
+                slope(k, 1.0),
+                1e-8,
+            );
         }
     }
     let published = Coupling::new(&load("wiring-2", &[]), load("wiring-2", &[]).bladders.as_ref().unwrap());
     // (A.24), (A.26): 100 bladders a metre, 2 MPa.
     close(published.stretch(&law, 0.0, 3e3, 1e3), 100.0 * 0.01 * 4e3 / 2e6, 1e-15);
-    close(published.curvature(&law, 0.0, 3e3, 1e3), 100.0 * 0.00381467 * 2e3 / 2e6, 1e-12);
+    close(
+        published.curvature(&law, 0.0, 3e3, 1e3),
+        100.0 * 0.00381467 * 2e3 / 2e6,
+        1e-12,
+    );
 }
 
 /// `[E4]` Square (White, *Viscous Fluid Flow*), a wide slot, and an ellipse that is a circle.
@@ -171,9 +234,16 @@ fn permeabilities_of_known_ducts() {
     close(duct::rectangle(2.0, 2.0), 0.0351443 * 16.0, 2e-6);
     // Edges of a slot a x b take away 0.630 b of its width.
     close(duct::rectangle(50.0, 1.0), (50.0 - 0.6302) / 12.0, 1e-5);
-    let ellipse = CrossSection::Ellipse { semi_axis_a_m: 0.3, semi_axis_b_m: 0.3 };
+    let ellipse = CrossSection::Ellipse {
+        semi_axis_a_m: 0.3,
+        semi_axis_b_m: 0.3,
+    };
     close(duct::permeability(&ellipse), duct::circle(0.3), 1e-14);
-    close(duct::permeability(&CrossSection::Triangle { side_m: 2.0 }), 3f64.sqrt() / 20.0, 1e-14);
+    close(
+        duct::permeability(&CrossSection::Triangle { side_m: 2.0 }),
+        3f64.sqrt() / 20.0,
+        1e-14,
+    );
 }
 
 /// `[E5]` (A.6): gravity is m g in N/m, a contact load what it says.
@@ -199,13 +269,22 @@ fn a_valve_is_in_series_with_its_half_cells() {
         let system = System::new(&load("two-bladders", &[&set]));
         let mut now = Instant::new(&system);
         now.update(&system, case::Clock { t: 0.0, within: 0.0 });
-        let exact = if opening > 0.0 { 1.0 / (2.0 * half + tube / opening) } else { 0.0 };
+        let exact = if opening > 0.0 {
+            1.0 / (2.0 * half + tube / opening)
+        } else {
+            0.0
+        };
         close(now.conductance[0], exact, 1e-13);
     }
 }
 
 /// A valve with numbers of all sizes.
-const VALVE: CheckValve = CheckValve { cracking_pressure: 20.0, forward: 1e-9, reverse: 1e-13, width: 5.0 };
+const VALVE: CheckValve = CheckValve {
+    cracking_pressure: 20.0,
+    forward: 1e-9,
+    reverse: 1e-13,
+    width: 5.0,
+};
 
 /// `[E7]` No flow without a drop, never against it; forward slope far beyond cracking, reverse slope below.
 #[test]
@@ -234,7 +313,11 @@ fn a_bridge_rectifies() {
         assert!(excess(low) >= 0.0 && excess(high) <= 0.0);
         for _ in 0..200 {
             let middle = 0.5 * (low + high);
-            if excess(middle) > 0.0 { low = middle } else { high = middle }
+            if excess(middle) > 0.0 {
+                low = middle
+            } else {
+                high = middle
+            }
         }
         low
     };
@@ -249,13 +332,22 @@ fn a_bridge_rectifies() {
     // Far beyond cracking the bridge is two valves and the turbine in series, less two cracking pressures.
     let d = 1e6;
     let series = 1.0 / (2.0 / VALVE.forward + 1.0 / conductance);
-    close(turbine(d) * conductance, series * (d - 2.0 * VALVE.cracking_pressure), 1e-3);
+    close(
+        turbine(d) * conductance,
+        series * (d - 2.0 * VALVE.cracking_pressure),
+        1e-3,
+    );
 }
 
 /// A wet system and a state with areas, means and displacements of some size.
 fn wet_state() -> (System, Vec<f64>) {
-    let system = System::new(&load("ring-network", &["/bladders/coupling={\"published\": {\"slope_per_pressure_rad\": 0.0038, \"length_per_pressure_m\": 0.01}}"]));
-    let y = (0..system.layout.len).map(|k| system.layout.scales[k] * (1.7 * k as f64).sin()).collect();
+    let system = System::new(&load(
+        "ring-network",
+        &["/bladders/coupling={\"published\": {\"slope_per_pressure_rad\": 0.0038, \"length_per_pressure_m\": 0.01}}"],
+    ));
+    let y = (0..system.layout.len)
+        .map(|k| system.layout.scales[k] * (1.7 * k as f64).sin())
+        .collect();
     (system, y)
 }
 
@@ -266,7 +358,11 @@ fn pressures_give_back_their_areas() {
     let w = evaluated(&system, &y);
     let (wet, fluid) = (system.model.wet.as_ref().unwrap(), system.fluid.as_ref().unwrap());
     for bladder in 0..fluid.bladders {
-        let (j, row) = if bladder < wet.per_row { (bladder, 1.0) } else { (bladder - wet.per_row, -1.0) };
+        let (j, row) = if bladder < wet.per_row {
+            (bladder, 1.0)
+        } else {
+            (bladder - wet.per_row, -1.0)
+        };
         let imposed = wet.area.of_moment(w.mean_moment[j], row) + wet.area.of_force(w.mean_force[j]);
         for cell in fluid.cells_of(bladder) {
             let size = w.area[cell].abs() + imposed.abs();
@@ -324,7 +420,11 @@ fn a_circle_has_one_curvature() {
         assert!(w.strain.iter().all(|e| e.abs() < 1e-12));
         // Round-off of an angle over h.
         let error = 1e-13 / system.mesh.h + 1e-12 * kappa.abs();
-        assert!(w.kappa[..last].iter().all(|k| (k - kappa).abs() < error), "{kappa}: {:?}", &w.kappa);
+        assert!(
+            w.kappa[..last].iter().all(|k| (k - kappa).abs() < error),
+            "{kappa}: {:?}",
+            &w.kappa
+        );
     }
 }
 
@@ -333,7 +433,11 @@ fn a_circle_has_one_curvature() {
 fn a_circle_has_one_moment_and_no_shear() {
     let kappa = 20.0;
     let (system, w) = circle(kappa);
-    let (ei, ea, last) = (system.model.section.bending_stiffness, system.model.section.axial_stiffness, system.mesh.cells);
+    let (ei, ea, last) = (
+        system.model.section.bending_stiffness,
+        system.model.section.axial_stiffness,
+        system.mesh.cells,
+    );
     for i in 0..last {
         close(w.moment[i], ei * kappa, 1e-10);
     }
@@ -380,16 +484,27 @@ fn two_bladders_relax_in_half_their_time() {
 #[test]
 fn the_audit_of_the_papers_coupling() {
     let finding = |case: &Case, name: &str| {
-        audit::coupling(case, &Model::new(case)).into_iter().find(|f| f.name == name).map(|f| (f.value, f.good))
+        audit::coupling(case, &Model::new(case))
+            .into_iter()
+            .find(|f| f.name == name)
+            .map(|f| (f.value, f.good))
     };
     let published = load("wiring-2", &[]);
     let (moment, good) = finding(&published, "l_b am E/psi'").unwrap();
     close(moment, 0.046 * 0.5 * (3.75e-6 + 6.54e-6) * 2e6 / 0.00381467, 1e-12);
     assert!(!good);
-    close(finding(&published, "l_b an E/zeta'").unwrap().0, 0.046 * 0.5 * (3.64e-8 + 6.31e-8) * 2e6 / 0.01, 1e-12);
+    close(
+        finding(&published, "l_b an E/zeta'").unwrap().0,
+        0.046 * 0.5 * (3.64e-8 + 6.31e-8) * 2e6 / 0.01,
+        1e-12,
+    );
     let reciprocal = load("wiring-2", &["/bladders/coupling=\"reciprocal\""]);
     assert_eq!(finding(&reciprocal, "l_b am E/psi'"), None);
-    assert!(audit::coupling(&reciprocal, &Model::new(&reciprocal)).iter().all(|f| f.good));
+    assert!(
+        audit::coupling(&reciprocal, &Model::new(&reciprocal))
+            .iter()
+            .all(|f| f.good)
+    );
 }
 
 /// Balances of a short run of a case with everything in it.
@@ -424,11 +539,17 @@ fn balances_close_for_every_formulation_and_coupling() {
                     b.angular_momentum_residual_relative,
                 ]
             };
-            let (rough, fine) = (all(balances(formulation, coupling, 1e-5)), all(balances(formulation, coupling, 1e-7)));
-            println!("{formulation} {coupling}: {rough:.1e?} {fine:.1e?}");
+            let (rough, fine) = (
+                all(balances(formulation, coupling, 1e-5)),
+                all(balances(formulation, coupling, 1e-7)),
+            );
+            println!("{formulation} {coupling}: {rough:?} {fine:?}");
             for (rough, fine) in rough.into_iter().zip(fine) {
                 // Order 2: the error per step falls a hundredfold, the error of the run at least fivefold.
-                assert!(fine < 2e-4 && (fine < 0.2 * rough || fine < 1e-9), "{formulation} {coupling}: {rough:.1e} {fine:.1e}");
+                assert!(
+                    fine < 2e-4 && (fine < 0.2 * rough || fine < 1e-9),
+                    "{formulation} {coupling}: {rough:.1e} {fine:.1e}"
+                );
             }
         }
     }
@@ -446,6 +567,8 @@ fn the_kink_is_smooth() {
         assert!((bladder::kink_curvature(x, width) - bend).abs() < 1e-5);
     }
     let law = |w: &AreaLaw| (w.moment_half_difference, w.force_half_difference);
-    let wet = Model::new(&load("wiring-2", &["/bladders/coupling=\"reciprocal\""])).wet.unwrap();
+    let wet = Model::new(&load("wiring-2", &["/bladders/coupling=\"reciprocal\""]))
+        .wet
+        .unwrap();
     assert_eq!(law(&wet.area), (0.0, 0.0), "the reciprocal coupling takes mean slopes");
 }

@@ -74,6 +74,28 @@ impl Signal {
         scale.filter(|s| s.is_finite() && *s > 0.0)
     }
 
+    /// As [`Self::fastest_period_s`], but only of what no switching time marks: between the stops at both its ends a ramp
+    /// or a piece of a linear table is as smooth as anything, however short it is.
+    pub fn fastest_unmarked_period_s(&self) -> Option<f64> {
+        match self {
+            Self::Ramp(_) => None,
+            Self::Table(table) if table.interpolation == Interpolation::Linear => None,
+            Self::Sum(terms) => terms
+                .iter()
+                .filter_map(Self::fastest_unmarked_period_s)
+                .reduce(f64::min),
+            Self::Product(factors) => {
+                let frequency: f64 = factors
+                    .iter()
+                    .filter_map(Self::fastest_unmarked_period_s)
+                    .map(f64::recip)
+                    .sum();
+                Some(frequency.recip()).filter(|s| s.is_finite())
+            }
+            _ => self.fastest_period_s(),
+        }
+    }
+
     /// Never changes.
     pub fn is_constant(&self) -> bool {
         match self {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use faer::{Mat, Side};
+use nalgebra::Matrix2;
 
 use super::network::{Network, Node};
 use super::{Model, Wet};
@@ -238,32 +239,26 @@ pub fn mathieu(model: &Model) -> Option<Mathieu> {
     })
 }
 
-/// Growth rate of `q'' + [w2 - a sin(Ω t)] q = 0` from its monodromy matrix, by the classical Runge-Kutta method.
+/// Growth rate of `q'' + [w2 - a sin(Ω t)] q = 0` [1/s] from the trace of its monodromy matrix, by the classical
+/// Runge-Kutta method; 0 when stable.
 pub fn mathieu_growth(w2: f64, a: f64, omega: f64) -> f64 {
     const STEPS: u32 = 4000;
     let period = 2.0 * PI / omega;
     let h = period / f64::from(STEPS);
-    let advance = |mut q: f64, mut v: f64| {
-        let f = |t: f64, q: f64| -(w2 - a * (omega * t).sin()) * q;
-        for k in 0..STEPS {
-            let t = h * f64::from(k);
-            let (k1q, k1v) = (v, f(t, q));
-            let (k2q, k2v) = (v + 0.5 * h * k1v, f(t + 0.5 * h, q + 0.5 * h * k1q));
-            let (k3q, k3v) = (v + 0.5 * h * k2v, f(t + 0.5 * h, q + 0.5 * h * k2q));
-            let (k4q, k4v) = (v + h * k3v, f(t + h, q + h * k3q));
-            q += h / 6.0 * (k1q + 2.0 * k2q + 2.0 * k3q + k4q);
-            v += h / 6.0 * (k1v + 2.0 * k2v + 2.0 * k3v + k4v);
-        }
-        (q, v)
+    let rate = |t: f64, state: &Matrix2<f64>| {
+        Matrix2::new(0.0, 1.0, a * (omega * t).sin() - w2, 0.0) * state
     };
-    let (a11, _) = advance(1.0, 0.0);
-    let (_, a22) = advance(0.0, 1.0);
-    let half_trace = 0.5 * (a11 + a22).abs();
-    if half_trace <= 1.0 + 1e-9 {
-        0.0
-    } else {
-        half_trace.acosh() / period
+    let mut monodromy = Matrix2::identity();
+    for k in 0..STEPS {
+        let t = h * f64::from(k);
+        let k1 = rate(t, &monodromy);
+        let k2 = rate(t + 0.5 * h, &(monodromy + 0.5 * h * k1));
+        let k3 = rate(t + 0.5 * h, &(monodromy + 0.5 * h * k2));
+        let k4 = rate(t + h, &(monodromy + h * k3));
+        monodromy += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
     }
+    let half_trace = 0.5 * monodromy.trace().abs();
+    if half_trace <= 1.0 + 1e-9 { 0.0 } else { half_trace.acosh() / period }
 }
 
 /// `[E20]` Slowest relaxation time of each component of the network [s], each bladder one volume; `None` for a

@@ -123,7 +123,7 @@ impl Drive {
     }
 
     fn hear(&mut self, signal: &Signal) {
-        if let Some(period) = signal.fastest_period_s() {
+        if let Some(period) = signal.fastest_unmarked_period_s() {
             self.frequency = self.frequency.max(2.0 * PI / period);
         }
     }
@@ -144,30 +144,38 @@ impl Scales {
         let size = |p: &Option<crate::case::profile::Profile>| p.as_ref().map_or(0.0, profile_size);
         let first_mode = 3.516 / (l * l) * (ei / m).sqrt();
 
-        let force = (d.axial_force
+        let started = size(&case.start.u1_m).max(size(&case.start.u1_rate_m_s) / first_mode);
+        let moment_of_loads = d.moment + d.transverse_force * l + 0.5 * d.transverse_load * l * l + d.slope * ei / l;
+        let force_of_loads = d.axial_force
             + d.axial_load * l
             + m * l * d.axial_acceleration
-            + size(&case.start.u3_rate_m_s) * (ea * m).sqrt())
-        .max(1e-6 * ea);
-        let moment_of_loads = d.moment + d.transverse_force * l + 0.5 * d.transverse_load * l * l + d.slope * ei / l;
+            + size(&case.start.u3_rate_m_s) * (ea * m).sqrt()
+            + size(&case.start.u3_m) * ea / l;
+        let (mut curvature, mut stretch) = (0.0, 0.0);
         if let Some(wet) = wet {
             for port in &wet.network.ports {
                 d.pressure = d.pressure.max(largest(&port.pressure, case.time.end_s).0);
             }
-            let sealed = (wet.area.force_mean * force + wet.area.moment_mean * moment_of_loads) / wet.area.per_pressure;
+            let moment = moment_of_loads + ei * started / (l * l);
+            let sealed = (wet.area.force_mean * force_of_loads + wet.area.moment_mean * moment) / wet.area.per_pressure;
             d.pressure = d.pressure.max(sealed).max(1e-7 * case.beam.young_modulus_pa);
+            curvature = wet.coupling.curvature(&wet.area, 0.0, d.pressure, 0.0).abs();
+            stretch = wet.coupling.stretch(&wet.area, 0.0, d.pressure, 0.0).abs();
         }
-        let by_pressure = wet.map_or(0.0, |wet| {
-            let alpha = wet.coupling.curvature(&wet.area, 0.0, d.pressure, 0.0).abs();
-            0.5 * alpha * l * l
-        });
         let by_load = moment_of_loads * l * l / (3.0 * ei);
-        let started = size(&case.start.u1_m).max(size(&case.start.u1_rate_m_s) / first_mode);
         let transverse = case
             .solver
             .transverse_scale_m
-            .unwrap_or((d.transverse_motion + by_load + by_pressure + started).clamp(1e-5 * l, l));
-        let axial = (d.axial_motion + force * l / ea + size(&case.start.u3_m)).clamp(1e-6 * l, 10.0 * l);
+            .unwrap_or((d.transverse_motion + by_load + 0.5 * curvature * l * l + started).clamp(1e-5 * l, l));
+        // A beam that bends draws its end in, and swings about with the force that this takes; pressure stretches it.
+        let foreshortening = 0.5 * transverse * transverse / l;
+        let force = (force_of_loads
+            + (d.transverse_force + d.transverse_load * l) * transverse / l
+            + m * l * foreshortening * first_mode * first_mode
+            + ea * stretch)
+            .max(1e-6 * ea);
+        let axial =
+            (d.axial_motion + force * l / ea + foreshortening + size(&case.start.u3_m)).clamp(1e-6 * l, 10.0 * l);
         let frequency = first_mode.max(d.frequency);
         Self {
             transverse,

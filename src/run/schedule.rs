@@ -55,11 +55,11 @@ pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
     all
 }
 
-/// Shortest time scale of any signal [s].
+/// Shortest time scale of any signal that no stop marks [s].
 pub fn fastest_period(model: &Model) -> Option<f64> {
     let mut fastest: Option<f64> = None;
     each_signal(model, |s| {
-        if let Some(period) = s.fastest_period_s() {
+        if let Some(period) = s.fastest_unmarked_period_s() {
             fastest = Some(fastest.map_or(period, |f| f.min(period)));
         }
     });

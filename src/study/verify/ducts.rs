@@ -12,7 +12,7 @@ use crate::error::Result;
 
 /// All rows.
 pub fn rows() -> Vec<Row> {
-    let a = 2e-3;
+    let a: f64 = 2e-3;
     vec![
         duct(
             "circle",
