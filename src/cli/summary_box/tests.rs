@@ -38,6 +38,7 @@ fn summary(status: Status) -> Summary {
         },
         effects: Default::default(),
         characteristic: Default::default(),
+        growth: None,
         warnings: Vec::new(),
     }
 }

@@ -10,18 +10,17 @@ pub fn unit_beam(axial_factor: f64) -> Value {
     })
 }
 
-/// EA of the nearly inextensible unit beam [N], the stiffest that a case may ask for.
-pub const NEARLY_INEXTENSIBLE: f64 = 1.2e8;
-
-/// A slow load path from 0 to `end` in time: no inertia of the solid, so every instant is an equilibrium.
-/// Loads and ends are still to be given.
+/// A load path from 0 to `end` in time: without inertia of the solid every instant is an equilibrium. Loads and ends are
+/// still to be given. Newton's iteration is asked for much more than the error test: with IDA's own 0.33 what it leaves
+/// over is noise to the error test of these purely algebraic equations, which then holds the order at 1 with up to 300
+/// times as many steps.
 pub fn load_path(beam: Value, cells: usize, end: f64, interval: f64) -> Value {
     json!({
         "name": "load-path", "beam": beam, "ends": {"root": "clamped", "tip": "free"},
         "effects": {"solid_inertia": "off"},
         "mesh": {"segments": cells, "cells_per_segment": 1},
         "time": {"end_s": end, "output_interval_s": interval},
-        "solver": {"rtol": 1e-8}
+        "solver": {"rtol": 1e-6, "nonlinear_coefficient": 1e-4}
     })
 }
 
@@ -41,7 +40,7 @@ pub fn motion(cells: usize, start: impl Fn(f64) -> f64, end: f64, interval: f64)
         "effects": {"solid_inertia": "on", "rotary_inertia": "off"},
         "mesh": {"segments": cells, "cells_per_segment": 1},
         "time": {"end_s": end, "output_interval_s": interval},
-        "solver": {"rtol": 1e-8, "transverse_scale_m": SMALL}
+        "solver": {"rtol": 1e-6, "transverse_scale_m": SMALL}
     })
 }
 

@@ -1,0 +1,21 @@
+//! Hard cases: whatever physically sensible case is run, it ends with a right answer or with a diagnosis to act on.
+//!
+//! Every test prints a line `case | steps | energy | volume | figures` for the table of `docs/stability.md`:
+//!
+//! ```text
+//! cargo test --release --test stability -- --nocapture
+//! SLCBEAM_FUZZ=2000 cargo test --release --test stability fuzz -- --nocapture
+//! ```
+//!
+//! Work is held within bands of steps, never of wall time.
+
+mod fluid;
+mod fuzz;
+mod fuzz_case;
+mod fuzz_text;
+mod growth;
+mod harness;
+mod limits;
+mod midpoint;
+mod size;
+mod solid;
