@@ -32,17 +32,16 @@ pub struct Scales {
     pub frequency: f64,
 }
 
-/// Largest absolute value, rate and acceleration of a signal over the run, sampled.
+/// Largest absolute value, rate and acceleration of a signal over the run, sampled at multiples of the golden ratio:
+/// evenly spaced samples would all fall on the zeros of a sine whose period divides their spacing.
 pub fn largest(signal: &Signal, end: f64) -> (f64, f64, f64) {
     const SAMPLES: u32 = 2000;
-    (0..=SAMPLES).fold((0.0, 0.0, 0.0), |(v, r, a): (f64, f64, f64), k| {
-        let t = end * f64::from(k) / f64::from(SAMPLES);
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let between = (1..SAMPLES).map(|k| (f64::from(k) * GOLDEN).fract());
+    between.chain([0.0, 1.0]).fold((0.0, 0.0, 0.0), |(v, r, a): (f64, f64, f64), share| {
+        let t = end * share;
         let jet = signal.jet(Clock { t, within: t });
-        (
-            v.max(jet.value.abs()),
-            r.max(jet.rate.abs()),
-            a.max(jet.acceleration.abs()),
-        )
+        (v.max(jet.value.abs()), r.max(jet.rate.abs()), a.max(jet.acceleration.abs()))
     })
 }
 
@@ -188,6 +187,23 @@ impl Scales {
             force,
             pressure: d.pressure.max(f64::MIN_POSITIVE),
             frequency,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn size_of_a_sine_does_not_depend_on_the_length_of_the_run() {
+        let signal: Signal = serde_json::from_str(r#"{"sine": {"amplitude": 0.012, "frequency_hz": 20}}"#).unwrap();
+        for end in [0.5, 50.0, 100.0, 200.0, 5000.0] {
+            let (value, rate, acceleration) = largest(&signal, end);
+            let omega = 40.0 * PI;
+            assert!((value / 0.012 - 1.0).abs() < 1e-4, "{end}: {value}");
+            assert!((rate / (0.012 * omega) - 1.0).abs() < 1e-4, "{end}: {rate}");
+            assert!((acceleration / (0.012 * omega * omega) - 1.0).abs() < 1e-4, "{end}: {acceleration}");
         }
     }
 }

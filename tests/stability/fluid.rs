@@ -14,13 +14,18 @@ fn permeability_over_twelve_decades() {
         let runs: Vec<Ran> = [1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6]
             .map(|factor: f64| {
                 let factor = format!("/network/permeability_factor={factor:e}");
-                let ran = run("permeability", &[&factor, sets[0], sets[1]]).sound().steps_within(200, 9_000);
+                let ran = run("permeability", &[&factor, sets[0], sets[1]])
+                    .sound()
+                    .steps_within(200, 9_000);
                 let figures = format!("{name}, largest tip u1 {:.4e} m", ran.largest("tip_u1"));
                 ran.line(&figures)
             })
             .into();
         for column in ["tip_u1", "tip_u3"] {
-            let (slow, fast) = (distance(&runs[0], &runs[1], column), distance(&runs[5], &runs[6], column));
+            let (slow, fast) = (
+                distance(&runs[0], &runs[1], column),
+                distance(&runs[5], &runs[6], column),
+            );
             println!("{name}, {column}: sealed limit off by {slow:.1e}, one-pressure limit off by {fast:.1e}");
             assert!(slow < 1e-2 && fast < 1e-2, "{name}, {column}: {slow} {fast}");
         }
@@ -35,15 +40,23 @@ fn viscosity_over_eight_decades() {
         let runs: Vec<Ran> = [1e-5, 1e-4, 1e-3, 1e-1, 1e1, 1e2, 1e3]
             .map(|mu: f64| {
                 let mu = format!("/fluid/viscosity_pa_s={mu:e}");
-                let ran = run("viscosity", &[&mu, sets[0], sets[1]]).sound().steps_within(200, 9_000);
+                let ran = run("viscosity", &[&mu, sets[0], sets[1]])
+                    .sound()
+                    .steps_within(200, 9_000);
                 let ratio = ran.summary.characteristic["t_s_over_t_f"];
-                let figures = format!("{name}, t_s/t_f {ratio:.1e}, largest tip u1 {:.4e} m", ran.largest("tip_u1"));
+                let figures = format!(
+                    "{name}, t_s/t_f {ratio:.1e}, largest tip u1 {:.4e} m",
+                    ran.largest("tip_u1")
+                );
                 ran.line(&figures)
             })
             .into();
         assert!(runs[0].summary.characteristic["t_s_over_t_f"] > 1e3);
         assert!(runs[6].summary.characteristic["t_s_over_t_f"] < 1e-2);
-        let (fast, slow) = (distance(&runs[0], &runs[1], "tip_u1"), distance(&runs[5], &runs[6], "tip_u1"));
+        let (fast, slow) = (
+            distance(&runs[0], &runs[1], "tip_u1"),
+            distance(&runs[5], &runs[6], "tip_u1"),
+        );
         println!("{name}: drained limit off by {fast:.1e}, sealed limit off by {slow:.1e}");
         assert!(slow < 2e-2 && fast < 2e-2, "{name}: {slow} {fast}");
     }
@@ -132,7 +145,10 @@ fn wildly_unequal_tubes() {
 fn islands_and_sealed_bladders() {
     for (name, sets) in COMBINATIONS {
         run("islands", &sets).sound().steps_within(2_000, 60_000).line(name);
-        run("islands", &["/network=null", sets[0], sets[1]]).sound().steps_within(2_000, 60_000).line(name);
+        run("islands", &["/network=null", sets[0], sets[1]])
+            .sound()
+            .steps_within(2_000, 60_000)
+            .line(name);
     }
 }
 
@@ -152,7 +168,10 @@ fn a_bladder_driven_to_closure() {
         *(if r < wanted { &mut low } else { &mut high }) = s;
     }
     let t = 0.5 * low;
-    println!("closing-bladder | {} steps | stopped: {reason} (expected {t:.4} s)", ran.steps());
+    println!(
+        "closing-bladder | {} steps | stopped: {reason} (expected {t:.4} s)",
+        ran.steps()
+    );
     assert!(reason.contains("closed"), "{reason}");
     let recorded = ran.last("t");
     assert!((recorded - t).abs() < 5e-3, "{recorded} s, expected {t} s");

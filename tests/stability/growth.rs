@@ -22,7 +22,10 @@ fn envelope_rate(ran: &Ran, from: f64, to: f64) -> f64 {
 
 fn slope(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
-    let (mt, my) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
+    let (mt, my) = (
+        points.iter().map(|p| p.0).sum::<f64>() / n,
+        points.iter().map(|p| p.1).sum::<f64>() / n,
+    );
     let above: f64 = points.iter().map(|p| (p.0 - mt) * (p.1 - my)).sum();
     above / points.iter().map(|p| (p.0 - mt).powi(2)).sum::<f64>()
 }
@@ -34,7 +37,7 @@ fn slope(points: &[(f64, f64)]) -> f64 {
 fn mathieu_inside_and_outside_the_tongue() {
     let first = 1.875_104_068_712_f64.powi(2) * (EI / MASS).sqrt();
     for formulation in [r#"/formulation="conservative""#, r#"/formulation="published""#] {
-        let ran = run("mathieu", &[formulation]).sound_within(f64::INFINITY).steps_within(3_000, 60_000);
+        let ran = run("mathieu", &[formulation]).sound().steps_within(3_000, 60_000);
         let omega = 2.0 * std::f64::consts::PI * 4.17;
         let expected = mathieu_growth(first * first, MATHIEU_COUPLING * 0.0318 * omega * omega, omega);
         let rate = envelope_rate(&ran, 2.5, 6.0);
@@ -42,7 +45,7 @@ fn mathieu_inside_and_outside_the_tongue() {
         assert!((rate / expected - 1.0).abs() < 2e-2, "{}: {rate} {expected}", ran.name);
 
         let outside = ["/ends/root/clamped/u3_m/sine/frequency_hz=4.8", formulation];
-        let ran = run("mathieu", &outside).sound_within(f64::INFINITY).steps_within(3_000, 60_000);
+        let ran = run("mathieu", &outside).sound().steps_within(3_000, 60_000);
         let u = ran.column("tip_u1");
         let largest = |part: &[f64]| part.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let (early, late) = (largest(&u[..300]), largest(&u[300..]));
@@ -71,7 +74,11 @@ fn beck_below_and_above_flutter() {
     }
     let expected = w.im.abs() * (EI / MASS).sqrt();
     for formulation in [r#"/formulation="conservative""#, r#"/formulation="published""#] {
-        let ran = run("beck", &["/time/end_s=0.8", "/time/output_interval_s=5e-4", formulation]).sound();
+        let ran = run(
+            "beck",
+            &["/time/end_s=0.8", "/time/output_interval_s=5e-4", formulation],
+        )
+        .sound();
         let rate = envelope_rate(&ran, 0.4, 0.8);
         let ran = ran.line(&format!("P l^2/EI 22: growth {rate:.3} 1/s, exact {expected:.3} 1/s"));
         assert!((rate / expected - 1.0).abs() < 5e-2, "{}: {rate} {expected}", ran.name);
@@ -92,7 +99,13 @@ fn column(p: f64, s: f64) -> f64 {
     let root = (0.25 * p * p - s).sqrt();
     let (qa, qb) = (0.5 * p + root, 0.5 * p - root);
     let c = |q: f64| if q >= 0.0 { q.sqrt().cos() } else { (-q).sqrt().cosh() };
-    let f = |q: f64| if q >= 0.0 { q.sqrt().sin() / q.sqrt() } else { (-q).sqrt().sinh() / (-q).sqrt() };
+    let f = |q: f64| {
+        if q >= 0.0 {
+            q.sqrt().sin() / q.sqrt()
+        } else {
+            (-q).sqrt().sinh() / (-q).sqrt()
+        }
+    };
     (qb * c(qb) - qa * c(qa)) * (qb * c(qa) - qa * c(qb)) - (qb * f(qb) - qa * f(qa)) * qa * qb * (f(qb) - f(qa))
 }
 
@@ -104,7 +117,11 @@ fn first_root(load: f64) -> f64 {
     assert!(column(p, low) * column(p, high) < 0.0, "no root near {guess}");
     for _ in 0..100 {
         let s = 0.5 * (low + high);
-        *(if column(p, s) * column(p, low) > 0.0 { &mut low } else { &mut high }) = s;
+        *(if column(p, s) * column(p, low) > 0.0 {
+            &mut low
+        } else {
+            &mut high
+        }) = s;
     }
     low
 }

@@ -18,9 +18,15 @@ pub const PUBLISHED: &str =
 
 /// Every formulation with every coupling, with a name.
 pub const COMBINATIONS: [(&str, [&str; 2]); 4] = [
-    ("conservative, reciprocal", [r#"/formulation="conservative""#, r#"/bladders/coupling="reciprocal""#]),
+    (
+        "conservative, reciprocal",
+        [r#"/formulation="conservative""#, r#"/bladders/coupling="reciprocal""#],
+    ),
     ("conservative, published", [r#"/formulation="conservative""#, PUBLISHED]),
-    ("published, reciprocal", [r#"/formulation="published""#, r#"/bladders/coupling="reciprocal""#]),
+    (
+        "published, reciprocal",
+        [r#"/formulation="published""#, r#"/bladders/coupling="reciprocal""#],
+    ),
     ("published, published", [r#"/formulation="published""#, PUBLISHED]),
 ];
 
@@ -42,7 +48,11 @@ pub struct Budget {
 impl Budget {
     /// Steps and seconds allowed.
     pub fn new(steps: u64, seconds: f64) -> Self {
-        Self { memory: Memory::default(), steps, until: Instant::now() + Duration::from_secs_f64(seconds) }
+        Self {
+            memory: Memory::default(),
+            steps,
+            until: Instant::now() + Duration::from_secs_f64(seconds),
+        }
     }
 }
 
@@ -58,7 +68,11 @@ impl Recorder for Budget {
     }
     fn progress(&mut self, progress: &Progress) -> Result<Control> {
         let used_up = progress.steps >= self.steps || (progress.steps % 64 == 0 && Instant::now() > self.until);
-        Ok(if used_up { Control::Stop(BUDGET.into()) } else { Control::Continue })
+        Ok(if used_up {
+            Control::Stop(BUDGET.into())
+        } else {
+            Control::Continue
+        })
     }
 }
 
@@ -93,7 +107,13 @@ pub fn run(file: &str, sets: &[&str]) -> Ran {
     let mut recorder = Budget::new(3_000_000, 60.0);
     let outcome = dynamics::run(&case, &mut recorder).expect("a recorder in memory does not fail");
     let name = format!("{file} {}", sets.join(" "));
-    Ran { name, rtol: case.solver.rtol, summary: outcome.summary, fault: outcome.fault, record: recorder.memory }
+    Ran {
+        name,
+        rtol: case.solver.rtol,
+        summary: outcome.summary,
+        fault: outcome.fault,
+        record: recorder.memory,
+    }
 }
 
 impl Ran {
@@ -106,9 +126,17 @@ impl Ran {
     pub fn sound_within(self, energy_per_rtol: f64) -> Self {
         let (s, b) = (&self.summary, &self.summary.balances);
         assert_eq!(s.status, Status::Finished, "{}: {:?}", self.name, s.reason);
-        assert!(self.record.rows.iter().flatten().all(|v| v.is_finite()), "{}: numbers not finite", self.name);
+        assert!(
+            self.record.rows.iter().flatten().all(|v| v.is_finite()),
+            "{}: numbers not finite",
+            self.name
+        );
         let energy = b.energy_residual_relative;
-        assert!(energy <= energy_per_rtol * self.rtol, "{}: energy residual {energy:.1e}", self.name);
+        assert!(
+            energy <= energy_per_rtol * self.rtol,
+            "{}: energy residual {energy:.1e}",
+            self.name
+        );
         let volume = b.closed_volume_residual_relative;
         assert!(volume <= VOLUME, "{}: closed volume residual {volume:.1e}", self.name);
         self
@@ -117,7 +145,11 @@ impl Ran {
     /// Steps within a band around what was measured when the suite was written.
     pub fn steps_within(self, low: u64, high: u64) -> Self {
         let steps = self.steps();
-        assert!((low..=high).contains(&steps), "{}: {steps} steps, expected {low} to {high}", self.name);
+        assert!(
+            (low..=high).contains(&steps),
+            "{}: {steps} steps, expected {low} to {high}",
+            self.name
+        );
         self
     }
 
@@ -141,7 +173,9 @@ impl Ran {
 
     /// A column of the history.
     pub fn column(&self, name: &str) -> Vec<f64> {
-        self.record.column(name).unwrap_or_else(|| panic!("{}: no column {name}", self.name))
+        self.record
+            .column(name)
+            .unwrap_or_else(|| panic!("{}: no column {name}", self.name))
     }
 
     /// Largest absolute value of a column.

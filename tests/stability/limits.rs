@@ -24,7 +24,10 @@ fn settling_for_a_million_seconds() {
     for (name, sets) in COMBINATIONS {
         let ran = run("settle", &sets).sound().steps_within(80, 2_000);
         let (early, late) = (ran.column("tip_u1")[1], ran.last("tip_u1"));
-        let ran = ran.line(&format!("{name}, tip u1 {late:.5e} m, drift {:.1e}", late / early - 1.0));
+        let ran = ran.line(&format!(
+            "{name}, tip u1 {late:.5e} m, drift {:.1e}",
+            late / early - 1.0
+        ));
         assert!((late / early - 1.0).abs() < 1e-3, "{}", ran.name);
     }
 }
@@ -36,7 +39,12 @@ fn a_crushed_beam_is_diagnosed() {
     for (name, sets) in COMBINATIONS {
         let ran = run("crushed", &sets);
         let reason = ran.summary.reason.clone().unwrap_or_default();
-        println!("crushed, {name} | {} steps | {:?} at {:.6} s: {reason}", ran.steps(), ran.summary.status, ran.summary.time_s);
+        println!(
+            "crushed, {name} | {} steps | {:?} at {:.6} s: {reason}",
+            ran.steps(),
+            ran.summary.status,
+            ran.summary.time_s
+        );
         assert!(ran.record.rows.iter().flatten().all(|v| v.is_finite()), "{name}");
         match ran.summary.status {
             Status::Finished => {
@@ -45,7 +53,10 @@ fn a_crushed_beam_is_diagnosed() {
             Status::Stopped => assert!(reason.contains("closed") && reason.contains("t = "), "{name}: {reason}"),
             Status::Failed => {
                 let fault = ran.fault.expect("a failure has a fault");
-                assert!(fault.time_s > 0.0 && fault.cause.is_some() && fault.hint.is_some(), "{name}: {fault:?}");
+                assert!(
+                    fault.time_s > 0.0 && fault.cause.is_some() && fault.hint.is_some(),
+                    "{name}: {fault:?}"
+                );
             }
         }
     }

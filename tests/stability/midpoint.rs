@@ -70,7 +70,11 @@ fn matrix(k: usize, sample: Sample) -> DMatrix<f64> {
                 let mut rate = vec![0.0; n];
                 for i in 0..cells {
                     rate[i] = x[cells + i] / unit_u;
-                    let (beyond, weight) = if i + 1 < cells { (force[i + 1], h) } else { (0.0, 0.5 * h) };
+                    let (beyond, weight) = if i + 1 < cells {
+                        (force[i + 1], h)
+                    } else {
+                        (0.0, 0.5 * h)
+                    };
                     rate[cells + i] = (beyond - force[i]) / (mass * weight);
                 }
                 for c in 1..stored {

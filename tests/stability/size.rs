@@ -97,12 +97,21 @@ fn young_modulus_over_six_decades() {
             ];
             let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
             let ran = run("viscosity", &sets).sound().steps_within(300, 9_000);
-            println!("E {:.0e} Pa | {} steps | tip u1 {:.8e} m", 2e6 * s, ran.steps(), ran.largest("tip_u1"));
+            println!(
+                "E {:.0e} Pa | {} steps | tip u1 {:.8e} m",
+                2e6 * s,
+                ran.steps(),
+                ran.largest("tip_u1")
+            );
             ran
         })
         .into();
     for ran in &runs {
-        assert!(off(ran.largest("tip_u1"), runs[2].largest("tip_u1")) < 1e-4, "{}", ran.name);
+        assert!(
+            off(ran.largest("tip_u1"), runs[2].largest("tip_u1")) < 1e-4,
+            "{}",
+            ran.name
+        );
         assert!(off(ran.steps() as f64, runs[2].steps() as f64) < 0.02, "{}", ran.name);
     }
 }

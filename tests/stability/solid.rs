@@ -22,7 +22,11 @@ fn elastica(load: f64) -> (f64, f64, f64) {
     let (mut low, mut high) = (1e-9_f64, 1.0 - 1e-12);
     for _ in 0..200 {
         let k = 0.5 * (low + high);
-        *(if (2.0 * elliptic(k).0 / PI).powi(2) < load { &mut low } else { &mut high }) = k;
+        *(if (2.0 * elliptic(k).0 / PI).powi(2) < load {
+            &mut low
+        } else {
+            &mut high
+        }) = k;
     }
     let (first, second) = elliptic(low);
     (2.0 * low.asin(), 2.0 * low / first, 2.0 * second / first - 1.0)
@@ -48,7 +52,10 @@ fn slenderness_over_three_decades() {
                 format!("/beam/height_m={:e}", 1.0 / ratio),
                 format!("/beam/damping/bending_time_s={:e}", 0.02 * s),
                 format!("/beam/damping/drag_n_s_m2={:e}", 20.0 / (s * s)),
-                format!("/loads/0/force_x_n_m/signal/ramp/to={:e}", 4.0 * 25.0 / 3.0 / 4.0 / s.powi(3)),
+                format!(
+                    "/loads/0/force_x_n_m/signal/ramp/to={:e}",
+                    4.0 * 25.0 / 3.0 / 4.0 / s.powi(3)
+                ),
                 format!("/loads/0/force_x_n_m/signal/ramp/duration_s={:e}", 2.0 * s),
                 format!("/time/end_s={:e}", 8.0 * s),
                 format!("/time/output_interval_s={:e}", 0.08 * s),
@@ -63,7 +70,11 @@ fn slenderness_over_three_decades() {
                 ran.summary.balances.energy_residual_relative
             );
             let tolerance = if ratio < 10.0 { 2e-2 } else { 2e-3 };
-            assert!((w - 0.425_159_284).abs() < tolerance && (u - 0.109_889_253).abs() < tolerance, "{}", ran.name);
+            assert!(
+                (w - 0.425_159_284).abs() < tolerance && (u - 0.109_889_253).abs() < tolerance,
+                "{}",
+                ran.name
+            );
         }
     }
 }
@@ -76,7 +87,11 @@ fn an_end_moment_closes_a_ring() {
         let ran = run("ring", &[formulation]).sound().steps_within(500, 8_000);
         let (x, z, angle) = (ran.last("tip_u1"), ran.last("tip_u3") + 1.0, ran.last("tip_angle"));
         let ran = ran.line(&format!("tip ({x:.1e}, {z:.1e}), angle {angle:.6}"));
-        assert!(x.abs() < 1e-4 && z.abs() < 1e-4 && (angle + 2.0 * PI).abs() < 1e-4, "{}", ran.name);
+        assert!(
+            x.abs() < 1e-4 && z.abs() < 1e-4 && (angle + 2.0 * PI).abs() < 1e-4,
+            "{}",
+            ran.name
+        );
     }
 }
 
@@ -106,9 +121,15 @@ fn quasi_static_through_buckling() {
     let (angle, y, x) = elastica(40.0 / critical);
     let ran = run("quasi-static-buckling", &[]).sound().steps_within(50, 6_000);
     let got = (ran.last("tip_angle"), ran.last("tip_u1"), 1.0 + ran.last("tip_u3"));
-    let ran =
-        ran.line(&format!("angle {:.4} ({angle:.4}), y {:.4} ({y:.4}), x {:.4} ({x:.4})", got.0, got.1, got.2));
-    assert!(off(got.0, angle) < 1e-2 && off(got.1, y) < 1e-2 && (got.2 - x).abs() < 1e-2, "{}", ran.name);
+    let ran = ran.line(&format!(
+        "angle {:.4} ({angle:.4}), y {:.4} ({y:.4}), x {:.4} ({x:.4})",
+        got.0, got.1, got.2
+    ));
+    assert!(
+        off(got.0, angle) < 1e-2 && off(got.1, y) < 1e-2 && (got.2 - x).abs() < 1e-2,
+        "{}",
+        ran.name
+    );
 }
 
 /// Source: linear theory; a load at once makes every mode swing about its static deflection with that amplitude. Goal: twice
@@ -136,7 +157,10 @@ fn an_impulsive_start() {
             (largest(&all[..half]), largest(&all[half..]))
         };
         let (pressure, axial) = (peak("max_pressure"), peak("axial_energy"));
-        assert!(pressure.1 < 1.1 * pressure.0 && axial.1 < 1.1 * axial.0, "{name}: {pressure:?} {axial:?}");
+        assert!(
+            pressure.1 < 1.1 * pressure.0 && axial.1 < 1.1 * axial.0,
+            "{name}: {pressure:?} {axial:?}"
+        );
         let figures = format!("{name}, pressure {:.3e} then {:.3e} Pa", pressure.0, pressure.1);
         ran.line(&figures);
     }
@@ -147,11 +171,16 @@ fn an_impulsive_start() {
 #[test]
 fn free_flight() {
     for (name, sets) in COMBINATIONS {
-        let ran = run("free-flight", &sets).sound_within(ENERGY_PER_RTOL).steps_within(2_000, 60_000);
+        let ran = run("free-flight", &sets)
+            .sound_within(ENERGY_PER_RTOL)
+            .steps_within(2_000, 60_000);
         let b = &ran.summary.balances;
         let (linear, angular) = (b.momentum_residual_relative, b.angular_momentum_residual_relative);
         if name.starts_with("conservative") {
-            assert!(linear < 1e-12 && angular < 10.0 * ran.rtol, "{name}: {linear:.1e} {angular:.1e}");
+            assert!(
+                linear < 1e-12 && angular < 10.0 * ran.rtol,
+                "{name}: {linear:.1e} {angular:.1e}"
+            );
         }
         ran.line(&format!("{name}, momentum {linear:.1e}, angular {angular:.1e}"));
     }

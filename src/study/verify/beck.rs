@@ -6,7 +6,7 @@ use super::figure::Figure;
 use super::fit::{growth_of_spans, oscillation, through};
 use super::frequencies::free_shape;
 use super::row::Row;
-use super::scene::{SMALL, motion};
+use super::scene::{SMALL, motion, unit_beam};
 use super::solve::{on_three_meshes, solve};
 use crate::error::Result;
 
@@ -26,9 +26,10 @@ pub fn rows() -> Vec<Row> {
 fn tip(cells: usize, p: f64, end: f64) -> Result<(Vec<f64>, f64)> {
     let interval = 0.02;
     let mut case = motion(cells, |x| free_shape(1.875104068712, x), end, interval);
+    case["beam"] = unit_beam(100.0);
     case["ends"]["tip"] = json!({"free": {"follower_normal_n": -p}});
     // Compressed from the start, else an axial wave of the size of the load would run to and fro.
-    case["start"]["u3_m"] = json!({"polynomial": {"coefficients": [0.0, -p / 1.2e5]}});
+    case["start"]["u3_m"] = json!({"polynomial": {"coefficients": [0.0, -p / 1.2e7]}});
     case["start"]["u1_m"] = json!({"product": [START / SMALL, case["start"]["u1_m"]]});
     case["solver"]["transverse_scale_m"] = json!(START);
     Ok((solve(&case)?.column("tip_u1"), interval))
@@ -41,14 +42,14 @@ fn flutter() -> Row {
         "beck-flutter",
         [
             "Beck 1952; Bolotin: P L^2/EI = 20.0509536, w L^2 sqrt(m/EI) = 11.0155576, undamped",
-            "follower loads; loss of stability by flutter. Growth rates and frequencies at 20.3, 20.7 and 21.1 taken back to where growth begins",
-            "second order: (pi h)^2 times a constant below 1, 1.5e-3 with 80 cells; the limit keeps h^4, the curvature beyond a parabola of three loads and the integrator, rtol 1e-6",
+            "follower loads; loss of stability by flutter. Growth rates and frequencies at 20.3 to 21.2 taken back to where growth begins",
+            "second order: (pi h)^2 times a constant below 1, 1.5e-3 with 80 cells; the limit keeps h^4, the curvature beyond a cubic through four loads, the shortening P/EA = 2e-6 and the integrator, rtol 1e-6",
         ],
         || {
             let [load, frequency] = on_three_meshes(20, |cells| {
                 let mut growth = vec![];
                 let mut square = vec![];
-                for p in [20.3, 20.7, 21.1] {
+                for p in [20.3, 20.6, 20.9, 21.2] {
                     let (tip, interval) = tip(cells, p, 4.0)?;
                     // By half the time the growing pair of modes is alone.
                     let (rate, w) = oscillation(&tip[tip.len() / 2..], interval);

@@ -58,12 +58,9 @@ pub fn growth_of_spans(samples: &[f64], span: usize, interval: f64, skipped: usi
     slope(&times, &logs)
 }
 
-/// Lowest value of samples near their minimum, from the parabola through the three lowest neighbours: `(k, value)`.
-pub fn minimum(samples: &[f64]) -> (f64, f64) {
-    let lowest = (1..samples.len().saturating_sub(1)).min_by(|&a, &b| samples[a].total_cmp(&samples[b]));
-    let Some(k) = lowest else { return (f64::NAN, f64::NAN) };
-    let (a, b, c) = (samples[k - 1], samples[k], samples[k + 1]);
-    let (slope, bend) = (0.5 * (c - a), a - 2.0 * b + c);
-    let shift = -slope / bend;
-    (k as f64 + shift, b + 0.5 * slope * shift)
+/// Lowest value of a smooth function from samples, by the parabola through the three around its minimum.
+pub fn minimum(samples: &[f64]) -> f64 {
+    let lowest = samples.windows(3).min_by(|a, b| a[1].total_cmp(&b[1]));
+    let Some(&[a, b, c]) = lowest else { return f64::NAN };
+    b - 0.125 * (c - a) * (c - a) / (a - 2.0 * b + c)
 }

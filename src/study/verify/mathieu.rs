@@ -28,11 +28,11 @@ pub fn rows() -> Vec<Row> {
             [
                 source,
                 "growth in the middle of the principal tongue, eps = 0.2, W = 2 w1",
-                "a single mode neglects the second one, of the order of eps^2 = 4 %, and the mesh, 1 % with 40 cells, shifts w1 against W",
+                "a single mode leaves out the second: (eps w1/w2)^2, 1e-3; w1 of 40 cells is off by 5e-4 of W, a hundredth of the half width",
             ],
             || {
                 let exact = mathieu_growth(BETA.powi(4), MODULATION * BETA.powi(4), 2.0 * BETA * BETA);
-                Ok(vec![Figure::relative("growth rate L^2 sqrt(m/EI)", growth(1.0)?, exact, 0.02)])
+                Ok(vec![Figure::relative("growth rate L^2 sqrt(m/EI)", growth(1.0)?, exact, 3e-3)])
             },
         ),
         Row::new(

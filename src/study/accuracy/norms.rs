@@ -1,0 +1,57 @@
+//! How large a vector is and how far apart two are.
+
+use serde::{Deserialize, Serialize};
+
+/// Mean square and maximum norm.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Norms {
+    /// Root of the mean square.
+    pub l2: f64,
+    /// Largest absolute value.
+    pub max: f64,
+}
+
+impl Norms {
+    /// Both the same.
+    pub fn both(value: f64) -> Self {
+        Self { l2: value, max: value }
+    }
+
+    /// Of a vector; zero for an empty one.
+    pub fn of(values: impl ExactSizeIterator<Item = f64>) -> Self {
+        let count = values.len().max(1) as f64;
+        let (sum, max) = values.fold((0.0, 0.0_f64), |(sum, max), x| (sum + x * x, larger(max, x.abs())));
+        Self { l2: (sum / count).sqrt(), max }
+    }
+
+    /// Of a difference.
+    pub fn between(a: &[f64], b: &[f64]) -> Self {
+        debug_assert_eq!(a.len(), b.len());
+        Self::of(a.iter().zip(b).map(|(a, b)| a - b))
+    }
+
+    /// Both combined with those of another.
+    pub fn with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self { l2: f(self.l2, other.l2), max: f(self.max, other.max) }
+    }
+
+    /// Both changed.
+    pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        Self { l2: f(self.l2), max: f(self.max) }
+    }
+
+    /// Relative to a size.
+    pub fn over(self, size: Self) -> Self {
+        self.with(size, |x, s| if s > 0.0 { x / s } else { x })
+    }
+
+    /// The larger of each.
+    pub fn or_larger(self, other: Self) -> Self {
+        self.with(other, larger)
+    }
+}
+
+/// The larger one, and not a number when one of them is not: an error that cannot be computed is not small.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}

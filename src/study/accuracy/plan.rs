@@ -1,0 +1,135 @@
+//! What is asked for.
+
+use serde::Serialize;
+
+use crate::case::schema::{Case, MaxOrder};
+use crate::error::{Error, Result};
+
+/// One way to compute a case.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Setting {
+    /// Beam cells per segment; half as many fluid cells per bladder.
+    pub cells: usize,
+    /// Highest BDF order.
+    pub order: u8,
+    /// Tolerance.
+    pub rtol: f64,
+}
+
+impl Setting {
+    /// Finite volumes along a bladder, refined with the beam.
+    pub fn cells_per_bladder(&self) -> usize {
+        (self.cells / 2).max(1)
+    }
+
+    /// The case so computed. No checkpoints: each is a fresh start of the integrator.
+    pub fn case(&self, case: &Case) -> Case {
+        let mut case = case.clone();
+        case.mesh.cells_per_segment = self.cells;
+        case.mesh.cells_per_bladder = self.cells_per_bladder();
+        case.solver.rtol = self.rtol;
+        case.solver.max_order = match self.order {
+            // These two are refused where they are unstable; a study may look at what they do there.
+            3 | 4 => MaxOrder::Forced(self.order),
+            _ => MaxOrder::Order(self.order),
+        };
+        case.time.checkpoint_interval_s = None;
+        case
+    }
+}
+
+/// What may be spent on a whole study.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Budget {
+    /// Wall time [s].
+    Wall(f64),
+    /// Steps of the integrator: the same on every machine.
+    Steps(u64),
+}
+
+impl Budget {
+    /// Seconds or steps.
+    pub fn size(self) -> f64 {
+        match self {
+            Self::Wall(seconds) => seconds,
+            Self::Steps(steps) => steps as f64,
+        }
+    }
+
+    /// A cost in words.
+    pub fn words(self, cost: f64) -> String {
+        match self {
+            Self::Wall(_) => format!("{cost:.2} s"),
+            Self::Steps(_) => format!("{cost:.0} steps"),
+        }
+    }
+}
+
+/// Settings asked for, each list in the order in which it is run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plan {
+    /// Tolerances, loose to tight.
+    pub rtols: Vec<f64>,
+    /// Meshes, coarse to fine.
+    pub cells: Vec<usize>,
+    /// Highest orders.
+    pub orders: Vec<u8>,
+    /// Timed runs of each setting, after one to warm up.
+    pub repeats: usize,
+    /// For everything.
+    pub budget: Budget,
+    /// Runs at once; times suffer.
+    pub parallel: bool,
+}
+
+/// Tightest tolerance of a reference: below it round-off of the residual is in the way.
+const TIGHTEST: f64 = 1e-11;
+
+impl Plan {
+    /// Checks and sorts.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for an empty list or a value out of range.
+    pub fn checked(mut self) -> Result<Self> {
+        let wrong = |what: &str| Err(Error::Usage(what.into()));
+        if self.rtols.is_empty() || self.rtols.iter().any(|t| !(1e-11..=0.1).contains(t)) {
+            return wrong("--rtol: tolerances from 1e-11 to 0.1, comma between them");
+        }
+        if self.cells.is_empty() || self.cells.iter().any(|k| !(1..=1000).contains(k)) {
+            return wrong("--cells: beam cells per segment from 1 to 1000, comma between them");
+        }
+        if self.orders.is_empty() || self.orders.iter().any(|o| !(1..=5).contains(o)) {
+            return wrong("--orders: highest BDF orders from 1 to 5, comma between them");
+        }
+        if self.repeats == 0 {
+            return wrong("--repeats: at least 1");
+        }
+        let size = self.budget.size();
+        if size.is_nan() || size <= 0.0 {
+            return wrong("--budget: a time above zero, such as 120s or 2m");
+        }
+        self.rtols.sort_by(|a, b| b.total_cmp(a));
+        self.rtols.dedup();
+        self.cells.sort_unstable();
+        self.cells.dedup();
+        self.orders.sort_unstable();
+        self.orders.dedup();
+        Ok(self)
+    }
+
+    /// Tolerances for a reference, tightest first.
+    pub fn reference_rtols(&self) -> Vec<f64> {
+        let least = self.rtols.last().copied().unwrap_or(1e-7);
+        let mut all: Vec<f64> = [1e-3, 1e-2, 1e-1].iter().map(|f| f * least).filter(|t| *t >= TIGHTEST).collect();
+        if all.is_empty() && least > TIGHTEST {
+            all.push(TIGHTEST);
+        }
+        all
+    }
+
+    /// Orders for references: each is the check of the other.
+    pub fn reference_orders(&self) -> [u8; 2] {
+        [5, 2]
+    }
+}

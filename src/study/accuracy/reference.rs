@@ -1,0 +1,183 @@
+//! What points are judged by: the best run on each mesh, and the limit to which the meshes point.
+
+use serde::Serialize;
+
+use super::ladder::Ladder;
+use super::norms::Norms;
+use super::signals::{Kind, Signal};
+use super::trial::Trial;
+
+/// The best run on a mesh.
+#[derive(Clone, Debug, Serialize)]
+pub struct Temporal {
+    /// Beam cells per segment.
+    pub cells: usize,
+    /// Highest order of the run.
+    pub order: u8,
+    /// Its tolerance.
+    pub rtol: f64,
+    /// Its wall time [s].
+    pub wall_s: f64,
+    /// Order and tolerance of the run that checks it.
+    pub checked_by: Option<(u8, f64)>,
+    /// Its error in each signal as its own sequence of tolerances has it, relative.
+    pub by_tolerance: Vec<Option<Norms>>,
+    /// Its distance to the run that checks it, relative.
+    pub by_order: Vec<Option<Norms>>,
+    /// The error that is believed, relative: by tolerance where the check does not contradict, else the larger one.
+    pub own: Vec<Norms>,
+    /// Values.
+    #[serde(skip)]
+    pub values: Vec<Vec<f64>>,
+}
+
+/// How much farther from the checking run than that run's own error a reference may be.
+const DISAGREE: f64 = 3.0;
+
+/// The best run on a mesh; `None` when none finished. `sizes` are those of the signals, `headline` decides which is best.
+pub fn temporal(
+    trials: &[Trial],
+    cells: usize,
+    orders: &[u8],
+    sizes: &[Norms],
+    headline: usize,
+) -> Option<Temporal> {
+    let mut ladders: Vec<(f64, Ladder)> = orders
+        .iter()
+        .map(|&order| Ladder::of(trials, cells, order))
+        .filter(|ladder| !ladder.runs.is_empty())
+        .map(|ladder| (ladder.last_error(headline).map_or(f64::INFINITY, |e| e.max), ladder))
+        .collect();
+    ladders.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut ladders = ladders.into_iter().map(|(_, ladder)| ladder);
+    let main = ladders.next()?;
+    let best = main.last()?;
+    let signals = best.signals.as_ref()?;
+    let check = ladders.next();
+    let checking = check.as_ref().and_then(Ladder::last);
+    let relative = |norms: Option<Norms>, k: usize| norms.map(|n| n.over(sizes[k]));
+    let by_tolerance: Vec<_> = (0..signals.len()).map(|k| relative(main.last_error(k), k)).collect();
+    let by_order: Vec<_> = (0..signals.len())
+        .map(|k| {
+            let other = checking?.signals.as_ref()?.get(k)?;
+            relative(Some(Norms::between(&signals[k].values, &other.values)), k)
+        })
+        .collect();
+    let own = (0..signals.len())
+        .map(|k| {
+            let expected = check.as_ref().and_then(|c| relative(c.last_error(k), k));
+            believed(by_tolerance[k], by_order[k], expected)
+        })
+        .collect();
+    Some(Temporal {
+        cells,
+        order: best.setting.order,
+        rtol: best.setting.rtol,
+        wall_s: best.wall_min_s,
+        checked_by: checking.map(|t| (t.setting.order, t.setting.rtol)),
+        by_tolerance,
+        by_order,
+        own,
+        values: signals.iter().map(|s| s.values.clone()).collect(),
+    })
+}
+
+/// Error of a reference from both routes; `expected` is the checking run's own error.
+fn believed(by_tolerance: Option<Norms>, by_order: Option<Norms>, expected: Option<Norms>) -> Norms {
+    match (by_tolerance, by_order) {
+        (Some(t), Some(o)) => {
+            let expected = expected.unwrap_or(Norms::both(0.0)).with(t, |e, t| e + t);
+            let one = |t: f64, o: f64, e: f64| if o <= DISAGREE * e { t } else { f64::max(t, o) };
+            Norms { l2: one(t.l2, o.l2, expected.l2), max: one(t.max, o.max, expected.max) }
+        }
+        (Some(one), None) | (None, Some(one)) => one,
+        (None, None) => Norms::both(f64::INFINITY),
+    }
+}
+
+/// One signal in the limit of vanishing mesh size.
+#[derive(Clone, Debug, Serialize)]
+pub struct Limit {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// Kind.
+    pub kind: Kind,
+    /// Size to which errors refer.
+    pub size: Norms,
+    /// Order in the mesh size that the three finest meshes show.
+    pub order: Option<f64>,
+    /// Whether temporal errors are below a tenth of what the order was taken from.
+    pub order_is_clean: bool,
+    /// Exponent of the Richardson extrapolation, when there is one; else the finest mesh stands for the limit.
+    pub extrapolated_with: Option<f64>,
+    /// Error of the limit from the meshes, relative.
+    pub own_spatial: Option<Norms>,
+    /// Error of the limit from the references' own errors in time, relative.
+    pub own_temporal: Norms,
+    /// Values.
+    #[serde(skip)]
+    pub values: Vec<f64>,
+}
+
+impl Limit {
+    /// Error of the limit, relative.
+    pub fn own(&self) -> Norms {
+        self.own_temporal.with(self.own_spatial.unwrap_or_default(), |a, b| a + b)
+    }
+}
+
+/// The limit of signal `k` from the meshes' references, coarse to fine, of which there is at least one.
+pub fn limit(meshes: &[Temporal], signal: &Signal, k: usize, size: Norms) -> Option<Limit> {
+    let finest = meshes.last()?;
+    let mut limit = Limit {
+        name: signal.name.clone(),
+        unit: signal.unit.clone(),
+        kind: signal.kind,
+        size,
+        order: None,
+        order_is_clean: false,
+        extrapolated_with: None,
+        own_spatial: None,
+        own_temporal: finest.own[k],
+        values: finest.values[k].clone(),
+    };
+    let [.., coarse, fine] = meshes else { return Some(limit) };
+    let between = |a: &Temporal, b: &Temporal| Norms::between(&a.values[k], &b.values[k]).over(size);
+    let ratio = fine.cells as f64 / coarse.cells as f64;
+    let near = between(fine, coarse);
+    // Without a third mesh nothing is known of the order; first order is the cautious guess.
+    limit.own_spatial = Some(near.map(|d| d / (ratio - 1.0).min(1.0)));
+    let [.., coarsest, _, _] = meshes else { return Some(limit) };
+    let ratio_before = coarse.cells as f64 / coarsest.cells as f64;
+    if (ratio - ratio_before).abs() > 1e-9 {
+        return Some(limit);
+    }
+    let far = between(coarse, coarsest);
+    let order = (far.l2 / near.l2).ln() / ratio.ln();
+    if !order.is_finite() {
+        return Some(limit);
+    }
+    limit.order = Some(order);
+    let noise = fine.own[k].l2 + coarse.own[k].l2;
+    limit.order_is_clean = noise <= 0.1 * near.l2 && coarse.own[k].l2 + coarsest.own[k].l2 <= 0.1 * far.l2;
+    let exponent = match order {
+        // The scheme's own.
+        1.5..2.6 => 2.0,
+        0.8..1.5 => order,
+        _ => return Some(limit),
+    };
+    let gain = ratio.powf(exponent) - 1.0;
+    let extrapolate = |fine: &[f64], coarse: &[f64]| -> Vec<f64> {
+        fine.iter().zip(coarse).map(|(f, c)| f + (f - c) / gain).collect()
+    };
+    limit.values = extrapolate(&fine.values[k], &coarse.values[k]);
+    let before = extrapolate(&coarse.values[k], &coarsest.values[k]);
+    // The next power of the mesh size is left in both limits, a half to a quarter of the former in the latter; a third is
+    // the distance between them times what the better of these leaves.
+    limit.own_spatial = Some(Norms::between(&limit.values, &before).over(size).map(|d| d / 3.0));
+    limit.own_temporal = fine.own[k].with(coarse.own[k], |f, c| ((gain + 1.0) * f + c) / gain);
+    limit.extrapolated_with = Some(exponent);
+    Some(limit)
+}

@@ -1,0 +1,156 @@
+//! What is compared between runs, and the recorder that keeps it and nothing else.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use crate::error::Result;
+use crate::run::record::{Control, Header, Progress, Recorder};
+use crate::run::summary::Summary;
+
+/// Columns of the history that are compared.
+const HISTORIES: [&str; 11] = [
+    "tip_u1",
+    "tip_u3",
+    "tip_angle",
+    "max_pressure",
+    "min_pressure",
+    "turbine_power",
+    "kinetic_energy",
+    "axial_energy",
+    "bending_energy",
+    "bladder_energy",
+    "harvested",
+];
+
+/// Fields that are compared, at the nodes between segments, which all meshes have.
+const FIELDS: [&str; 4] = ["u1_m", "u3_m", "v1_m_s", "v3_m_s"];
+
+/// What a signal is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// One number an output time.
+    History,
+    /// Numbers at the nodes between segments, an output time after the other.
+    Field,
+    /// One number a run.
+    Quantity,
+}
+
+/// A vector that two runs can be compared by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Signal {
+    /// Column, field or quantity: `tip_u1`, `v1_m_s`, `tip_u1_m.max_abs`.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// What it is.
+    pub kind: Kind,
+    /// Values.
+    pub values: Vec<f64>,
+    /// Size to which an error refers, when it is not the signal's own: a final value may well be zero.
+    pub scale: Option<f64>,
+}
+
+/// When a run is stopped.
+#[derive(Clone, Copy, Debug)]
+pub enum Limit {
+    /// At this time.
+    Wall(Instant),
+    /// After so many steps.
+    Steps(u64),
+}
+
+/// Reason of a run that was stopped at its limit.
+pub const TOO_SLOW: &str = "too slow";
+
+/// Steps between two looks at the clock.
+const LOOK: u64 = 64;
+
+/// Keeps what is compared.
+#[derive(Debug)]
+pub struct Keep {
+    limit: Limit,
+    stride: usize,
+    columns: Vec<(usize, Signal)>,
+    fields: Vec<(usize, Signal)>,
+}
+
+impl Keep {
+    /// For a mesh of so many cells a segment.
+    pub fn new(cells: usize, limit: Limit) -> Self {
+        Self { limit, stride: cells, columns: vec![], fields: vec![] }
+    }
+
+    /// Everything, once the run is over.
+    pub fn signals(self, summary: &Summary) -> Vec<Signal> {
+        let kept = self.columns.into_iter().chain(self.fields).map(|(_, signal)| signal);
+        kept.chain(quantities(summary)).collect()
+    }
+}
+
+fn quantities(summary: &Summary) -> Vec<Signal> {
+    let mut all = vec![];
+    for (name, q) in &summary.quantities {
+        let figures = [
+            ("final", q.last),
+            ("max_abs", q.max_abs),
+            ("window_max_abs", q.window_max_abs),
+            ("window", q.window),
+        ];
+        let scale = figures.iter().filter_map(|f| f.1).fold(0.0, |s: f64, x| s.max(x.abs()));
+        let unit = [("_m", "m"), ("_rad", "rad"), ("_pa", "Pa"), ("_j", "J")];
+        let unit = unit.iter().find(|u| name.ends_with(u.0)).map_or("1", |u| u.1);
+        all.extend(figures.iter().filter_map(|&(figure, value)| {
+            Some(Signal {
+                name: format!("{name}.{figure}"),
+                unit: unit.into(),
+                kind: Kind::Quantity,
+                values: vec![value?],
+                scale: Some(scale),
+            })
+        }));
+    }
+    all
+}
+
+fn empty(name: &str, unit: &str, kind: Kind) -> Signal {
+    Signal { name: name.into(), unit: unit.into(), kind, values: vec![], scale: None }
+}
+
+impl Recorder for Keep {
+    fn begin(&mut self, header: &Header) -> Result<()> {
+        let wanted = header.columns.iter().enumerate().filter(|(_, c)| HISTORIES.contains(&c.name.as_str()));
+        self.columns = wanted.map(|(k, c)| (k, empty(&c.name, c.unit, Kind::History))).collect();
+        let wanted = header.fields.iter().enumerate().filter(|(_, f)| FIELDS.contains(&f.name));
+        self.fields = wanted.map(|(k, f)| (k, empty(f.name, f.unit, Kind::Field))).collect();
+        Ok(())
+    }
+
+    fn history(&mut self, row: &[f64]) -> Result<()> {
+        for (k, signal) in &mut self.columns {
+            signal.values.push(row[*k]);
+        }
+        Ok(())
+    }
+
+    fn fields(&mut self, _: f64, arrays: &[&[f64]]) -> Result<()> {
+        for (k, signal) in &mut self.fields {
+            signal.values.extend(arrays[*k].iter().step_by(self.stride));
+        }
+        Ok(())
+    }
+
+    fn progress(&mut self, progress: &Progress) -> Result<Control> {
+        let over = match self.limit {
+            Limit::Steps(most) => progress.steps >= most && progress.t < progress.end,
+            Limit::Wall(end) => progress.steps.is_multiple_of(LOOK) && Instant::now() >= end,
+        };
+        Ok(if over {
+            Control::Stop(format!("{TOO_SLOW}: {:.3} % of the simulated time", 100.0 * progress.t / progress.end))
+        } else {
+            Control::Continue
+        })
+    }
+}

@@ -1,0 +1,214 @@
+//! All runs of a study, within its budget.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use super::ladder::Ladder;
+use super::plan::{Budget, Plan, Setting};
+use super::price;
+use super::trial::{self, Allowance, Role, Trial};
+use crate::case::Case;
+use crate::error::Result;
+
+/// Share of the budget that points may take; references need the rest.
+const POINTS: f64 = 0.5;
+/// Share that one run of a point may take.
+const POINT: f64 = 0.06;
+/// Share that the repeats of a point may take.
+const REPEATS: f64 = 0.015;
+
+/// A run is about to begin.
+#[derive(Clone, Copy, Debug)]
+pub struct Event {
+    /// Which.
+    pub setting: Setting,
+    /// What for.
+    pub role: Role,
+    /// Expected cost of one run, when known.
+    pub expected: Option<f64>,
+    /// Spent so far.
+    pub spent: f64,
+    /// What may be spent.
+    pub budget: Budget,
+    /// Settings done, skipped ones included.
+    pub done: usize,
+    /// Settings in all.
+    pub of: usize,
+}
+
+/// Told of every run before it begins.
+pub type Watch<'a> = &'a (dyn Fn(&Event) + Sync);
+
+#[derive(Default)]
+struct State {
+    trials: Vec<Trial>,
+    spent: f64,
+    reserved: f64,
+    done: usize,
+}
+
+struct Sweep<'a> {
+    case: &'a Case,
+    plan: &'a Plan,
+    begin: Instant,
+    state: Mutex<State>,
+    watch: Watch<'a>,
+}
+
+/// Runs points, then references; returns them with the cost of everything.
+pub fn sweep(case: &Case, plan: &Plan, watch: Watch) -> Result<(Vec<Trial>, f64)> {
+    let sweep = Sweep { case, plan, begin: Instant::now(), state: Mutex::default(), watch };
+    let lines: Vec<(usize, u8)> = plan.cells.iter().flat_map(|&k| plan.orders.iter().map(move |&o| (k, o))).collect();
+    sweep.each(&lines, |&(cells, order)| {
+        plan.rtols.iter().try_for_each(|&rtol| sweep.point(Setting { cells, order, rtol }))
+    })?;
+    let meshes: Vec<usize> = (0..plan.cells.len()).collect();
+    sweep.each(&meshes, |&k| sweep.references(k))?;
+    let spent = sweep.spent(&sweep.lock());
+    let trials = sweep.state.into_inner().unwrap_or_else(PoisonError::into_inner).trials;
+    Ok((trials, spent))
+}
+
+impl Sweep<'_> {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn spent(&self, state: &State) -> f64 {
+        match self.plan.budget {
+            Budget::Wall(_) => self.begin.elapsed().as_secs_f64(),
+            Budget::Steps(_) => state.spent + state.reserved,
+        }
+    }
+
+    /// Does the work for every item, at once when asked.
+    fn each<T: Sync>(&self, items: &[T], work: impl Fn(&T) -> Result<()> + Sync) -> Result<()> {
+        let workers = std::thread::available_parallelism().map_or(1, |n| n.get()).min(items.len());
+        if !self.plan.parallel || workers < 2 {
+            return items.iter().try_for_each(work);
+        }
+        let next = AtomicUsize::new(0);
+        let worker = || -> Result<()> {
+            while let Some(item) = items.get(next.fetch_add(1, Ordering::Relaxed)) {
+                work(item)?;
+            }
+            Ok(())
+        };
+        std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..workers).map(|_| scope.spawn(worker)).collect();
+            threads
+                .into_iter()
+                .try_for_each(|thread| thread.join().unwrap_or_else(|cause| std::panic::resume_unwind(cause)))
+        })
+    }
+
+    fn point(&self, setting: Setting) -> Result<()> {
+        let budget = self.plan.budget;
+        let role = Role::Point;
+        let (left, expected, hopeless) = {
+            let state = self.lock();
+            let left = POINTS * budget.size() - self.spent(&state);
+            (left, price::expected(&state.trials, setting), price::hopeless(&state.trials, setting))
+        };
+        let cap = left.min(POINT * budget.size());
+        let reason = match expected {
+            _ if left <= 0.0 => Some("the part of the budget that is for points is used up".to_string()),
+            _ if hopeless => Some("looser tolerances were too slow already".to_string()),
+            Some(cost) if cost > cap => {
+                Some(format!("expected to take {}, {} are left for it", budget.words(cost), budget.words(cap)))
+            }
+            _ => None,
+        };
+        if let Some(reason) = reason {
+            let mut state = self.lock();
+            state.trials.push(Trial::skipped(setting, role, reason));
+            state.done += 1;
+            return Ok(());
+        }
+        let repeats = (REPEATS * budget.size()).min(left - cap).max(0.0);
+        let allowed = Allowance { run: cap, repeats, wanted: if self.plan.repeats > 1 { self.plan.repeats } else { 0 } };
+        self.run(setting, role, expected, allowed)?;
+        self.lock().done += 1;
+        Ok(())
+    }
+
+    /// Runs, and returns the cost.
+    fn run(&self, setting: Setting, role: Role, expected: Option<f64>, allowed: Allowance) -> Result<f64> {
+        let most = allowed.run + allowed.repeats;
+        let event = {
+            let mut state = self.lock();
+            let spent = self.spent(&state);
+            state.reserved += most;
+            let of = self.plan.cells.len() * (self.plan.orders.len() * self.plan.rtols.len() + 1);
+            Event { setting, role, expected, spent, budget: self.plan.budget, done: state.done, of }
+        };
+        (self.watch)(&event);
+        let outcome = trial::run(self.case, setting, role, self.plan.budget, allowed);
+        let mut state = self.lock();
+        state.reserved -= most;
+        let (trial, cost) = outcome?;
+        state.spent += cost;
+        state.trials.push(trial);
+        Ok(cost)
+    }
+
+    /// References of one mesh: each order as tight as its share of the budget allows, to check the other.
+    fn references(&self, mesh: usize) -> Result<()> {
+        // What is left goes to the meshes by their unknowns and their stiffness; the finest need most.
+        let weight = |cells: usize| (cells as f64).powi(2);
+        let of_all: f64 = self.plan.cells[mesh..].iter().map(|&k| weight(k)).sum();
+        let cells = self.plan.cells[mesh];
+        let left = self.plan.budget.size() - self.spent(&self.lock());
+        let mut share = left.max(0.0) * weight(cells) / of_all;
+        for (k, order) in self.plan.reference_orders().into_iter().enumerate() {
+            let room = if k == 0 { 0.6 * share } else { share };
+            share -= self.reference(cells, order, room)?;
+        }
+        self.lock().done += 1;
+        Ok(())
+    }
+
+    /// One order on one mesh; returns what was spent.
+    fn reference(&self, cells: usize, order: u8, room: f64) -> Result<f64> {
+        let mut left = room;
+        let mut too_tight = 0.0;
+        loop {
+            let (next, expected, first) = {
+                let state = self.lock();
+                let ladder = Ladder::of(&state.trials, cells, order);
+                let last = ladder.last().map(|t| t.setting.rtol);
+                let tighter = |rtol: &f64| *rtol > too_tight && last.is_none_or(|last| *rtol < last);
+                let mut candidates = self.plan.reference_rtols();
+                candidates.extend(self.plan.rtols.iter().rev());
+                if last.is_none() {
+                    // Nothing is known of this line; its tightest point comes first.
+                    candidates.retain(|rtol| self.plan.rtols.contains(rtol));
+                }
+                let setting = |rtol| Setting { cells, order, rtol };
+                let priced = candidates.into_iter().filter(tighter).map(|rtol| {
+                    let setting = setting(rtol);
+                    (setting, price::expected(&state.trials, setting))
+                });
+                let affordable = |expected: &Option<f64>| expected.is_none_or(|cost| cost <= 0.8 * left);
+                let Some((next, expected)) = priced.into_iter().find(|(_, expected)| affordable(expected)) else {
+                    break;
+                };
+                (next, expected, last.is_none())
+            };
+            let allowed = Allowance { run: left, repeats: 0.0, wanted: 0 };
+            left -= self.run(next, Role::Reference, expected, allowed)?;
+            let finished = self.lock().trials.last().is_some_and(|t| t.setting == next && t.finished());
+            if finished && !first {
+                break;
+            }
+            if !finished {
+                too_tight = next.rtol;
+            }
+            if left <= 0.0 {
+                break;
+            }
+        }
+        Ok(room - left)
+    }
+}

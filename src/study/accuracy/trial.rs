@@ -1,0 +1,175 @@
+//! One setting: run, repeated, counted.
+
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+
+use super::plan::{Budget, Setting};
+use super::signals::{Keep, Limit, Signal};
+use crate::case::Case;
+use crate::error::Result;
+use crate::run::dynamics;
+use crate::run::summary::{Counters, Status};
+
+/// What a run is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// A point of the study.
+    Point,
+    /// Tighter than asked for, to judge the points by.
+    Reference,
+}
+
+/// How it went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// To the end of the simulated time.
+    Finished,
+    /// Stopped at its limit, or by the model.
+    Stopped,
+    /// The solver could not go on.
+    Failed,
+    /// Not begun.
+    Skipped,
+}
+
+/// A setting and what came of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Trial {
+    /// How.
+    pub setting: Setting,
+    /// What for.
+    pub role: Role,
+    /// How it went.
+    pub ending: Ending,
+    /// Why it did not finish.
+    pub reason: Option<String>,
+    /// Unknowns.
+    pub unknowns: usize,
+    /// Work of one run.
+    pub counters: Counters,
+    /// Least wall time of the timed runs [s].
+    pub wall_min_s: f64,
+    /// Median of them [s].
+    pub wall_median_s: f64,
+    /// Timed runs.
+    pub repeats: usize,
+    /// Seconds or steps of one run, as the budget counts.
+    pub cost: f64,
+    /// What is compared; only of finished runs.
+    #[serde(skip)]
+    pub signals: Option<Vec<Signal>>,
+}
+
+impl Trial {
+    /// A setting that is not run, for a reason.
+    pub fn skipped(setting: Setting, role: Role, reason: String) -> Self {
+        Self {
+            setting,
+            role,
+            ending: Ending::Skipped,
+            reason: Some(reason),
+            unknowns: 0,
+            counters: Counters::default(),
+            wall_min_s: f64::NAN,
+            wall_median_s: f64::NAN,
+            repeats: 0,
+            cost: 0.0,
+            signals: None,
+        }
+    }
+
+    /// Whether it can be compared.
+    pub fn finished(&self) -> bool {
+        self.signals.is_some()
+    }
+
+    /// Mesh and order: one line of the picture.
+    pub fn line(&self) -> (usize, u8) {
+        (self.setting.cells, self.setting.order)
+    }
+}
+
+/// What one setting may cost.
+#[derive(Clone, Copy, Debug)]
+pub struct Allowance {
+    /// One run; it is stopped there.
+    pub run: f64,
+    /// Further runs, together.
+    pub repeats: f64,
+    /// Timed runs wanted.
+    pub wanted: usize,
+}
+
+/// Runs a setting; returns it with the seconds or steps spent on all runs.
+///
+/// The first run warms up. It counts when there is no allowance for others: a long run needs no warming.
+pub fn run(case: &Case, setting: Setting, role: Role, budget: Budget, allowed: Allowance) -> Result<(Trial, f64)> {
+    let variant = setting.case(case);
+    let once = |most: f64| -> Result<(Trial, f64)> {
+        let begin = Instant::now();
+        let limit = match budget {
+            Budget::Wall(_) => Limit::Wall(begin + Duration::from_secs_f64(most.clamp(0.0, 1e9))),
+            Budget::Steps(_) => Limit::Steps(most.max(1.0) as u64),
+        };
+        let mut keep = Keep::new(setting.cells, limit);
+        let outcome = dynamics::run(&variant, &mut keep)?;
+        let wall = begin.elapsed().as_secs_f64();
+        let summary = outcome.summary;
+        let ending = match summary.status {
+            Status::Finished => Ending::Finished,
+            Status::Stopped => Ending::Stopped,
+            Status::Failed => Ending::Failed,
+        };
+        let signals = (ending == Ending::Finished).then(|| keep.signals(&summary));
+        // Numbers that are none make every comparison worthless; a run that gives them has failed.
+        let broken = signals.iter().flatten().any(|s| s.values.iter().any(|x| !x.is_finite()));
+        let (ending, reason) = if broken {
+            (Ending::Failed, Some("the result has numbers that are not finite".to_string()))
+        } else {
+            (ending, summary.reason)
+        };
+        let cost = match budget {
+            Budget::Wall(_) => wall,
+            Budget::Steps(_) => summary.solver.steps as f64,
+        };
+        let trial = Trial {
+            setting,
+            role,
+            ending,
+            reason,
+            unknowns: summary.unknowns,
+            counters: summary.solver,
+            wall_min_s: wall,
+            wall_median_s: wall,
+            repeats: 1,
+            cost,
+            signals: signals.filter(|_| !broken),
+        };
+        Ok((trial, wall))
+    };
+    let (mut trial, _) = once(allowed.run)?;
+    let mut spent = trial.cost;
+    if !trial.finished() {
+        return Ok((trial, spent));
+    }
+    let mut walls = vec![];
+    let mut left = allowed.repeats;
+    while walls.len() < allowed.wanted && left >= 1.2 * trial.cost {
+        let (again, wall) = once(left)?;
+        spent += again.cost;
+        left -= again.cost;
+        if again.finished() {
+            walls.push(wall);
+        }
+    }
+    if !walls.is_empty() {
+        walls.sort_by(f64::total_cmp);
+        trial.wall_min_s = walls[0];
+        trial.wall_median_s = 0.5 * (walls[walls.len() / 2] + walls[(walls.len() - 1) / 2]);
+        trial.repeats = walls.len();
+    }
+    Ok((trial, spent))
+}

@@ -1,0 +1,148 @@
+//! Cases, runs and how to read them.
+
+use std::path::Path;
+
+use slcbeam::case::{self, Case};
+use slcbeam::run::dynamics;
+use slcbeam::run::record::Memory;
+use slcbeam::run::summary::{Status, Summary};
+
+/// The paper's coupling, `--set` argument.
+pub const PUBLISHED: &str =
+    r#"/bladders/coupling={"published":{"slope_per_pressure_rad":0.00381467,"length_per_pressure_m":0.01}}"#;
+/// Strains and areas from one potential, `--set` argument.
+pub const RECIPROCAL: &str = r#"/bladders/coupling="reciprocal""#;
+/// The conservative form of the momentum balance, `--set` argument.
+pub const CONSERVATIVE: &str = r#"/formulation="conservative""#;
+/// The paper's form, `--set` argument.
+pub const AS_PUBLISHED: &str = r#"/formulation="published""#;
+/// Young's modulus of the paper's beam [Pa].
+pub const E: f64 = 2e6;
+/// Length of the paper's beam [m].
+pub const LENGTH: f64 = 0.1;
+/// Bending stiffness of the paper's beam [N m^2].
+pub const EI: f64 = 0.0503885;
+
+/// A run that reached its end.
+pub struct Run {
+    pub summary: Summary,
+    pub memory: Memory,
+}
+
+/// A shipped case with changes.
+pub fn shipped<S: AsRef<str>>(name: &str, sets: &[S]) -> Case {
+    let path = format!("cases/{name}.json");
+    let sets: Vec<String> = sets.iter().map(|s| s.as_ref().to_string()).collect();
+    case::load(Path::new(&path), &sets)
+        .unwrap_or_else(|e| panic!("{name} with {sets:?}: {}", told(&e)))
+        .case
+}
+
+/// A case from its text, with changes.
+pub fn written<S: AsRef<str>>(text: &str, sets: &[S]) -> Case {
+    let sets: Vec<String> = sets.iter().map(|s| s.as_ref().to_string()).collect();
+    case::parse(text, Path::new("test.json"), Path::new("cases"), &sets)
+        .unwrap_or_else(|e| panic!("{}\nwith {sets:?}: {}", text, told(&e)))
+        .case
+}
+
+fn told(error: &slcbeam::error::Error) -> String {
+    match error {
+        slcbeam::error::Error::Case(fault) => format!("{:#?}", fault.violations),
+        other => other.to_string(),
+    }
+}
+
+/// Runs a case to its end.
+pub fn run(case: &Case) -> Run {
+    let mut memory = Memory::default();
+    let outcome = dynamics::run(case, &mut memory).unwrap();
+    assert_eq!(
+        outcome.summary.status,
+        Status::Finished,
+        "{}: {:?}",
+        case.name,
+        outcome.summary.reason
+    );
+    Run {
+        summary: outcome.summary,
+        memory,
+    }
+}
+
+/// Runs a shipped case with changes.
+pub fn run_shipped<S: AsRef<str>>(name: &str, sets: &[S]) -> Run {
+    run(&shipped(name, sets))
+}
+
+impl Run {
+    /// A column of the history.
+    pub fn column(&self, name: &str) -> Vec<f64> {
+        self.memory.column(name).unwrap_or_else(|| panic!("no column {name}"))
+    }
+
+    /// The last value of a column.
+    pub fn last(&self, name: &str) -> f64 {
+        *self.column(name).last().unwrap()
+    }
+
+    /// What a column gained over the last `window` seconds.
+    pub fn gained(&self, name: &str, window: f64) -> f64 {
+        let (t, values) = (self.column("t"), self.column(name));
+        let end = *t.last().unwrap();
+        let first = t.iter().position(|t| *t >= end - window * (1.0 + 1e-9)).unwrap();
+        values.last().unwrap() - values[first]
+    }
+
+    /// A field, an array for each recorded time.
+    pub fn field(&self, name: &str) -> &[Vec<f64>] {
+        self.memory.field(name).unwrap_or_else(|| panic!("no field {name}"))
+    }
+
+    /// An axis of the fields.
+    pub fn axis(&self, name: &str) -> &[f64] {
+        let axis = self.memory.header.axes.iter().find(|a| a.name == name);
+        &axis.unwrap_or_else(|| panic!("no axis {name}")).values
+    }
+
+    /// Mean pressure of one bladder `R j` at every recorded time [Pa].
+    pub fn bladder_pressure(&self, bladder: i64) -> Vec<f64> {
+        let cells: Vec<usize> = (0..self.axis("bladder").len())
+            .filter(|&k| self.axis("bladder")[k] == bladder as f64)
+            .collect();
+        let mean = |row: &Vec<f64>| cells.iter().map(|&k| row[k]).sum::<f64>() / cells.len() as f64;
+        self.field("pressure_pa").iter().map(mean).collect()
+    }
+
+    /// Largest absolute value of a quantity over the run.
+    pub fn max_abs(&self, quantity: &str) -> f64 {
+        self.summary.quantities[quantity].max_abs.unwrap()
+    }
+
+    /// Largest absolute value of a quantity in the window at the end.
+    pub fn window_max_abs(&self, quantity: &str) -> f64 {
+        self.summary.quantities[quantity].window_max_abs.unwrap()
+    }
+}
+
+/// Largest absolute value.
+pub fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| m.max(v.abs()))
+}
+
+/// Largest difference of two series over the largest value of the second.
+pub fn difference(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    largest(&difference) / largest(b)
+}
+
+/// Fails unless `value` is within `relative` of `expected`.
+pub fn within(what: &str, value: f64, expected: f64, relative: f64) {
+    let error = value / expected - 1.0;
+    println!(
+        "{what}: {value:.6e}, expected {expected:.6e}, off by {:.3} %",
+        100.0 * error
+    );
+    assert!(error.abs() <= relative, "{what}: {value} is not {expected}");
+}

@@ -1,0 +1,16 @@
+//! Physics: what the model must do, against closed forms, conserved quantities, and the numbers of `model.md`.
+//!
+//! Every test prints what it measures; `cargo test --release --test physics -- --nocapture` reprints the numbers.
+
+mod balances;
+mod common;
+mod convergence;
+mod flight;
+mod harvester;
+mod ledger;
+mod mapping;
+mod meshes;
+mod networks;
+mod numbers;
+mod statics;
+mod wiring;
