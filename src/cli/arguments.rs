@@ -20,6 +20,10 @@ pub enum Command {
     Run(RunArguments),
     /// Validate a case; print characteristic numbers, coupling audit and chosen effects; write nothing
     Check(CheckArguments),
+    /// Find what accuracy costs: time against error over tolerances, meshes and orders
+    Study(StudyArguments),
+    /// Compare two result folders: error norms of every field and quantity, cost ratio
+    Compare(CompareArguments),
     /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
     Mapping(MappingArguments),
     /// Compute exact results of beam and network theory and compare, with observed orders
@@ -67,6 +71,64 @@ pub struct CheckArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `study`.
+#[derive(Debug, Args)]
+pub struct StudyArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Folder for study.csv, study.json, study.svg [default: out/<case name>-study]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Wall time for everything, such as 90s or 2m; half of it is for points, the rest for their references
+    #[arg(long, value_name = "TIME", default_value = "120s")]
+    pub budget: String,
+    /// Tolerances
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "1e-2,1e-3,1e-4,1e-5,1e-6,1e-7"
+    )]
+    pub rtol: Vec<f64>,
+    /// Meshes: beam cells per segment, each with half as many fluid cells per bladder; powers of two tell most
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,2,4,8")]
+    pub cells: Vec<usize>,
+    /// Highest BDF orders
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "2,5")]
+    pub orders: Vec<u8>,
+    /// Timed runs of a setting, after one to warm up, as far as the budget allows
+    #[arg(long, value_name = "COUNT", default_value_t = 3)]
+    pub repeats: usize,
+    /// What table, picture and sentence are about: a column, field or figure [default: tip_u1, else tip_u3]
+    #[arg(long, value_name = "NAME")]
+    pub measure: Option<String>,
+    /// Run on all cores at once; times suffer
+    #[arg(long)]
+    pub parallel: bool,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print study.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `compare`.
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// First result folder
+    pub a: PathBuf,
+    /// Second result folder
+    pub b: PathBuf,
+    /// Draw both over each other into this SVG file
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
     /// Print as JSON
     #[arg(long)]
     pub json: bool,

@@ -2,11 +2,13 @@
 
 mod arguments;
 mod check;
+mod compare;
 mod interrupt;
 mod mapping;
 pub mod progress;
 mod run;
 mod schema;
+mod study;
 pub mod summary_box;
 mod terminal;
 mod verify;
@@ -46,6 +48,8 @@ fn act(command: &Command) -> Result<ExitCode> {
     match command {
         Command::Run(asked) => run::run(asked),
         Command::Check(asked) => check::check(asked),
+        Command::Study(asked) => study::study(asked),
+        Command::Compare(asked) => compare::compare(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),
         Command::Schema => schema::schema(),

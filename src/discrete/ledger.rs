@@ -56,6 +56,25 @@ pub const FLOWS: [Flow; 13] = [
 ];
 
 impl Flow {
+    /// Name of its integral in history and summary.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Loads => "work_loads",
+            Self::Ends => "work_ends",
+            Self::Ports => "work_ports",
+            Self::Bladders => "dissipated_bladders",
+            Self::Tubes => "dissipated_tubes",
+            Self::Turbines => "harvested",
+            Self::Rectifiers => "dissipated_rectifiers",
+            Self::Damping => "dissipated_damping",
+            Self::Formulation => "work_formulation",
+            Self::Reciprocity => "work_reciprocity",
+            Self::ImpulseX => "impulse_x",
+            Self::ImpulseZ => "impulse_z",
+            Self::AngularImpulse => "angular_impulse",
+        }
+    }
+
     /// Sign with which the flow enters the energy balance; 0 for impulses.
     pub fn energy_sign(self) -> f64 {
         match self {

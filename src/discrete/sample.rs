@@ -1,7 +1,7 @@
 //! What is read off a state: the columns of the history and the fields.
 
 use super::{Instant, System, Workspace};
-use crate::discrete::ledger::{Energies, FLOWS, Flow};
+use crate::discrete::ledger::{Energies, FLOWS};
 use crate::discrete::recipe::fluid::pressure_at;
 use crate::discrete::recipe::solid::node_stretch;
 use crate::model::mapping::{NetworkCoordinate, TABLE_TUBE_RATIO};
@@ -114,20 +114,12 @@ pub fn row(
     }
     let e = &balance.stored;
     row.extend([e.kinetic, e.rotary, e.axial, e.bending, e.bladders]);
+    // The columns of works and losses are in the order of FLOWS.
     row.extend(
-        [
-            Flow::Loads,
-            Flow::Ends,
-            Flow::Ports,
-            Flow::Bladders,
-            Flow::Tubes,
-            Flow::Turbines,
-            Flow::Rectifiers,
-            Flow::Damping,
-            Flow::Formulation,
-            Flow::Reciprocity,
-        ]
-        .map(|f| integrals[f as usize]),
+        FLOWS
+            .iter()
+            .filter(|f| f.energy_sign() != 0.0)
+            .map(|f| integrals[*f as usize]),
     );
     row.push(balance.residual);
 }

@@ -245,9 +245,7 @@ pub fn mathieu_growth(w2: f64, a: f64, omega: f64) -> f64 {
     const STEPS: u32 = 4000;
     let period = 2.0 * PI / omega;
     let h = period / f64::from(STEPS);
-    let rate = |t: f64, state: &Matrix2<f64>| {
-        Matrix2::new(0.0, 1.0, a * (omega * t).sin() - w2, 0.0) * state
-    };
+    let rate = |t: f64, state: &Matrix2<f64>| Matrix2::new(0.0, 1.0, a * (omega * t).sin() - w2, 0.0) * state;
     let mut monodromy = Matrix2::identity();
     for k in 0..STEPS {
         let t = h * f64::from(k);
@@ -258,7 +256,11 @@ pub fn mathieu_growth(w2: f64, a: f64, omega: f64) -> f64 {
         monodromy += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
     }
     let half_trace = 0.5 * monodromy.trace().abs();
-    if half_trace <= 1.0 + 1e-9 { 0.0 } else { half_trace.acosh() / period }
+    if half_trace <= 1.0 + 1e-9 {
+        0.0
+    } else {
+        half_trace.acosh() / period
+    }
 }
 
 /// `[E20]` Slowest relaxation time of each component of the network [s], each bladder one volume; `None` for a

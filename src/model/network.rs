@@ -211,9 +211,8 @@ impl Network {
 
     fn touched_by_a_port(&self, component: usize) -> bool {
         let touches = |node: Node| self.component_of(node) == Some(component);
-        let joins = |a: Node, b: Node| {
-            (touches(a) && matches!(b, Node::Port(_))) || (touches(b) && matches!(a, Node::Port(_)))
-        };
+        let joins =
+            |a: Node, b: Node| (touches(a) && matches!(b, Node::Port(_))) || (touches(b) && matches!(a, Node::Port(_)));
         self.sources.iter().any(|s| touches(s.into))
             || self.links.iter().any(|l| joins(l.from, l.to))
             || self.bridges.iter().any(|b| joins(b.from, b.to))
@@ -466,7 +465,9 @@ impl<'a> Builder<'a> {
             }
         }
         components(&mut network, 2 * self.per_row);
-        network.open = (0..network.components).filter(|&c| network.touched_by_a_port(c)).collect();
+        network.open = (0..network.components)
+            .filter(|&c| network.touched_by_a_port(c))
+            .collect();
         network
     }
 

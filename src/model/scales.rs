@@ -38,11 +38,17 @@ pub fn largest(signal: &Signal, end: f64) -> (f64, f64, f64) {
     const SAMPLES: u32 = 2000;
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let between = (1..SAMPLES).map(|k| (f64::from(k) * GOLDEN).fract());
-    between.chain([0.0, 1.0]).fold((0.0, 0.0, 0.0), |(v, r, a): (f64, f64, f64), share| {
-        let t = end * share;
-        let jet = signal.jet(Clock { t, within: t });
-        (v.max(jet.value.abs()), r.max(jet.rate.abs()), a.max(jet.acceleration.abs()))
-    })
+    between
+        .chain([0.0, 1.0])
+        .fold((0.0, 0.0, 0.0), |(v, r, a): (f64, f64, f64), share| {
+            let t = end * share;
+            let jet = signal.jet(Clock { t, within: t });
+            (
+                v.max(jet.value.abs()),
+                r.max(jet.rate.abs()),
+                a.max(jet.acceleration.abs()),
+            )
+        })
 }
 
 fn profile_size(profile: &crate::case::profile::Profile) -> f64 {
@@ -203,7 +209,10 @@ mod tests {
             let omega = 40.0 * PI;
             assert!((value / 0.012 - 1.0).abs() < 1e-4, "{end}: {value}");
             assert!((rate / (0.012 * omega) - 1.0).abs() < 1e-4, "{end}: {rate}");
-            assert!((acceleration / (0.012 * omega * omega) - 1.0).abs() < 1e-4, "{end}: {acceleration}");
+            assert!(
+                (acceleration / (0.012 * omega * omega) - 1.0).abs() < 1e-4,
+                "{end}: {acceleration}"
+            );
         }
     }
 }

@@ -8,6 +8,9 @@
 //! checkpoint  where an interrupted run goes on
 //! recorder  the Recorder that ties them together
 //! summary   summary.json, there and back
+//! reading   a result folder back into memory
+//! comparison  the picture of two runs over each other
+//! study     study.csv, study.json, study.svg, table and sentence
 //! pictures  from recorded files to the data of each picture
 //! plot      one picture a file, from plain data to SVG text
 //! numbers   numbers as people read them
@@ -15,13 +18,16 @@
 
 pub mod arrays;
 pub mod checkpoint;
+pub mod comparison;
 pub mod envelope;
 pub mod folder;
 pub mod history;
 pub mod numbers;
 pub mod pictures;
 pub mod plot;
+pub mod reading;
 pub mod recorder;
+pub mod study;
 pub mod summary;
 
 pub use folder::ResultFolder;

@@ -35,25 +35,3 @@ pub struct Checkpoint {
 
 /// Version written into checkpoints.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
-
-impl Counters {
-    /// Adds the work of an earlier part of the run.
-    pub fn add(&mut self, earlier: &Self) {
-        self.steps += earlier.steps;
-        self.residual_evaluations += earlier.residual_evaluations;
-        self.jacobian_evaluations += earlier.jacobian_evaluations;
-        self.factorizations += earlier.factorizations;
-        self.pivot_refreshes += earlier.pivot_refreshes;
-        self.error_test_failures += earlier.error_test_failures;
-        self.newton_failures += earlier.newton_failures;
-        self.newton_iterations += earlier.newton_iterations;
-        self.linear_solves += earlier.linear_solves;
-        self.restarts += earlier.restarts;
-        for (order, count) in earlier.steps_by_order.iter().enumerate() {
-            match self.steps_by_order.get_mut(order) {
-                Some(own) => *own += count,
-                None => self.steps_by_order.push(*count),
-            }
-        }
-    }
-}

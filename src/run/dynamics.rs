@@ -92,6 +92,7 @@ impl<'a> Run<'a> {
         let warnings = audit::warnings(case, &system.model, &characteristic);
         let decisions = &system.model.effects.decisions;
         let order = order::choose(case, &system);
+        let inertia = system.layout.inertia;
         let mathieu = characteristic::mathieu(&system.model);
         let linear = Linear {
             mathieu,
@@ -140,7 +141,10 @@ impl<'a> Run<'a> {
                 relative: case.solver.rtol,
                 absolute: Absolute::Same(case.solver.rtol),
                 max_order: order.order,
-                nonlinear_coefficient: case.solver.nonlinear_coefficient,
+                nonlinear_coefficient: case
+                    .solver
+                    .nonlinear_coefficient
+                    .unwrap_or(if inertia { 0.33 } else { 1e-4 }),
                 delta_cj_setup: case.solver.delta_cj_setup,
                 initial_step: case.solver.initial_step_s,
                 max_step: Some(max_step(case, &system)),
@@ -358,21 +362,7 @@ impl Run<'_> {
     }
 
     fn count(&mut self, ida: &Ida<BeamDae>) {
-        let c = ida.counters();
-        self.summary.solver = Counters {
-            steps: c.steps,
-            residual_evaluations: c.residual_evaluations,
-            jacobian_evaluations: c.jacobian_evaluations,
-            factorizations: c.factorizations,
-            pivot_refreshes: c.pivot_refreshes,
-            error_test_failures: c.error_test_failures,
-            newton_failures: c.newton_failures,
-            newton_iterations: c.newton_iterations,
-            linear_solves: c.linear_solves,
-            restarts: c.restarts,
-            steps_by_order: c.steps_by_order,
-            max_order: c.max_order,
-        };
+        self.summary.solver = ida.counters();
         self.summary.solver.add(&self.earlier);
         let s = &self.summary.solver;
         self.held = order::held_by_stability(
@@ -412,26 +402,15 @@ impl Run<'_> {
         };
         let o = &self.observer.seen;
         s.quantities = o.figures.quantities();
+        let b_open = o.residuals.energy_relative();
         let b = &mut s.balances;
-        b.energy_residual_relative = o.residuals.energy_relative();
+        b.energy_residual_relative = b_open;
         b.volume_residual_relative = o.residuals.volume_relative();
         b.closed_volume_residual_relative = o.residuals.closed_volume_relative();
         b.momentum_residual_relative = o.residuals.momentum_relative();
         b.angular_momentum_residual_relative = o.residuals.angular_relative();
-        let names = [
-            "work_loads",
-            "work_ends",
-            "work_ports",
-            "dissipated_bladders",
-            "dissipated_tubes",
-            "harvested",
-            "dissipated_rectifiers",
-            "dissipated_damping",
-            "work_formulation",
-            "work_reciprocity",
-        ];
-        for (name, flow) in names.into_iter().zip(FLOWS) {
-            b.energy_j.insert(name.into(), o.integrals[flow as usize]);
+        for flow in FLOWS.iter().filter(|f| f.energy_sign() != 0.0) {
+            b.energy_j.insert(flow.name().into(), o.integrals[*flow as usize]);
         }
         let e = &o.stored;
         for (name, value) in [
@@ -446,6 +425,13 @@ impl Run<'_> {
         s.growth = o.growth.judge(self.case.beam.length_m, &self.linear);
         s.warnings.extend(s.growth.as_ref().map(|g| g.warning()));
         s.warnings.extend(self.held);
+        if b_open > OPEN_ENERGY {
+            s.warnings.push(format!(
+                "the energy balance is open by {b_open:.1e} of the largest energy, which is the error of the time \
+                 integration: tighten /solver/rtol, or give waves of the mesh's size a little damping \
+                 (/beam/damping/bending_time_s)"
+            ));
+        }
         s.warnings.extend(self.observer.warnings());
         s.wall_s.total = self.begin.elapsed().as_secs_f64();
         Outcome {
@@ -519,6 +505,9 @@ fn stalled(t: f64, step: f64) -> SolverFault {
         hint: Some("look at the fields just before this time; damping or a smoother signal may help".into()),
     }
 }
+
+/// Relative energy residual above which a run warns.
+const OPEN_ENERGY: f64 = 1e-2;
 
 /// Steps over which progress is judged.
 const STALL_STEPS: u64 = 20_000;

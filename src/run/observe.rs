@@ -225,12 +225,16 @@ impl Observer {
         let put_in = [Flow::Loads, Flow::Ends, Flow::Ports].map(|f| integrals[f as usize].abs());
         r.energy_seen = put_in.into_iter().fold(r.energy_seen.max(total.abs()), f64::max);
         for c in 0..invariants.volumes.len() {
-            let open = system.model.wet.as_ref().and_then(|w| w.network.open.iter().position(|&o| o == c));
+            let open = system
+                .model
+                .wet
+                .as_ref()
+                .and_then(|w| w.network.open.iter().position(|&o| o == c));
             let (left, through) = open.map_or((0.0, 0.0), |k| ledger::passed(integrals, k));
             r.volume[c] = r.volume[c].max((invariants.volumes[c] - first.volumes[c] + left).abs());
             r.volume_seen[c] = r.volume_seen[c].max(through);
         }
-        displaced(system, &w.area, &mut r.volume_seen);
+        displaced(system, &w.area, &w.pressure, &mut r.volume_seen);
         let impulse = [integrals[Flow::ImpulseX as usize], integrals[Flow::ImpulseZ as usize]];
         if system.layout.inertia {
             for (k, gained) in impulse.into_iter().enumerate() {
@@ -338,14 +342,16 @@ pub fn network_coordinate(case: &Case, wet: &crate::model::Wet) -> NetworkCoordi
     NetworkCoordinate::new(&wet.network, wet.per_row, wet.bladder_length, TABLE_TUBE_RATIO * tube)
 }
 
-/// Raises the largest volume displaced in each component, `Σ |a1| ds`.
-fn displaced(system: &System, area: &[f64], seen: &mut [f64]) {
+/// Raises the largest volume displaced in each component, `Σ |a1| ds`, or pressed out of it and back in, `Σ a_p |p| ds`:
+/// where pressure is one and the volume is kept, areas are nothing but round-off.
+fn displaced(system: &System, area: &[f64], pressure: &[f64], seen: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
     let mut now = vec![0.0; seen.len()];
-    for (cell, a) in area.iter().enumerate() {
-        now[wet.network.component_of_bladder[cell / fluid.cells_per_bladder]] += a.abs() * fluid.ds;
+    for (cell, (a, p)) in area.iter().zip(pressure).enumerate() {
+        let size = a.abs().max(wet.area.per_pressure * p.abs());
+        now[wet.network.component_of_bladder[cell / fluid.cells_per_bladder]] += size * fluid.ds;
     }
     for (s, n) in seen.iter_mut().zip(now) {
         *s = s.max(n);

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::growth::Growing;
+pub use crate::sundials::Counters;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -52,35 +53,6 @@ pub struct Balances {
     pub angular_momentum_residual_relative: f64,
     /// Energies and works at the end [J].
     pub energy_j: BTreeMap<String, f64>,
-}
-
-/// Work done by the integrator.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Counters {
-    /// Accepted steps.
-    pub steps: u64,
-    /// Residuals for the nonlinear solver.
-    pub residual_evaluations: u64,
-    /// Jacobians.
-    pub jacobian_evaluations: u64,
-    /// Numerical factorisations, refactorisations included.
-    pub factorizations: u64,
-    /// Factorisations done anew because the pivots had grown bad.
-    pub pivot_refreshes: u64,
-    /// Steps rejected by the error test.
-    pub error_test_failures: u64,
-    /// Newton iterations that did not converge.
-    pub newton_failures: u64,
-    /// Newton iterations.
-    pub newton_iterations: u64,
-    /// Linear solves.
-    pub linear_solves: u64,
-    /// Restarts (switching times, checkpoints).
-    pub restarts: u64,
-    /// Accepted steps by order, index 0 is order 1.
-    pub steps_by_order: Vec<u64>,
-    /// Highest order allowed.
-    pub max_order: u8,
 }
 
 /// Where wall time went [s].

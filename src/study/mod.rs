@@ -1,3 +1,5 @@
 //! Studies: many runs to answer one question. Prints nothing.
 
+pub mod accuracy;
+pub mod compare;
 pub mod verify;

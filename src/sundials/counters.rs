@@ -2,8 +2,10 @@
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 /// Work done since the integrator was created, over all restarts.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
     /// Accepted steps.
     pub steps: u64,
@@ -29,6 +31,28 @@ pub struct Counters {
     pub steps_by_order: Vec<u64>,
     /// Highest order allowed.
     pub max_order: u8,
+}
+
+impl Counters {
+    /// Adds the work of an earlier part of the same run.
+    pub fn add(&mut self, earlier: &Self) {
+        self.steps += earlier.steps;
+        self.residual_evaluations += earlier.residual_evaluations;
+        self.jacobian_evaluations += earlier.jacobian_evaluations;
+        self.factorizations += earlier.factorizations;
+        self.pivot_refreshes += earlier.pivot_refreshes;
+        self.error_test_failures += earlier.error_test_failures;
+        self.newton_failures += earlier.newton_failures;
+        self.newton_iterations += earlier.newton_iterations;
+        self.linear_solves += earlier.linear_solves;
+        self.restarts += earlier.restarts;
+        for (order, count) in earlier.steps_by_order.iter().enumerate() {
+            match self.steps_by_order.get_mut(order) {
+                Some(own) => *own += count,
+                None => self.steps_by_order.push(*count),
+            }
+        }
+    }
 }
 
 /// Wall time spent.

@@ -130,6 +130,12 @@ pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
+/// Numbers with three digits each.
+pub fn listed(values: &[f64]) -> String {
+    let texts: Vec<String> = values.iter().map(|v| format!("{v:.2e}")).collect();
+    texts.join(" ")
+}
+
 /// Largest difference of two series over the largest value of the second.
 pub fn difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
@@ -140,9 +146,6 @@ pub fn difference(a: &[f64], b: &[f64]) -> f64 {
 /// Fails unless `value` is within `relative` of `expected`.
 pub fn within(what: &str, value: f64, expected: f64, relative: f64) {
     let error = value / expected - 1.0;
-    println!(
-        "{what}: {value:.6e}, expected {expected:.6e}, off by {:.3} %",
-        100.0 * error
-    );
+    println!("{what}: {value:.6e}, expected {expected:.6e}, off by {error:.1e}");
     assert!(error.abs() <= relative, "{what}: {value} is not {expected}");
 }

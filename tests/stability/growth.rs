@@ -94,27 +94,26 @@ fn beck_below_and_above_flutter() {
 }
 
 /// Characteristic determinant of a clamped-free column under a dead load, `p = P l^2/EI`, `s = m g^2 l^4/EI` for growth g
-/// (s < 0: frequency), in functions of `q = a^2` that are even in a.
+/// (s < 0: frequency), in functions of `q = a^2` that are even in a, without its trivial zero at `q_a = q_b`.
 fn column(p: f64, s: f64) -> f64 {
-    let root = (0.25 * p * p - s).sqrt();
-    let (qa, qb) = (0.5 * p + root, 0.5 * p - root);
-    let c = |q: f64| if q >= 0.0 { q.sqrt().cos() } else { (-q).sqrt().cosh() };
-    let f = |q: f64| {
-        if q >= 0.0 {
-            q.sqrt().sin() / q.sqrt()
-        } else {
-            (-q).sqrt().sinh() / (-q).sqrt()
-        }
-    };
-    (qb * c(qb) - qa * c(qa)) * (qb * c(qa) - qa * c(qb)) - (qb * f(qb) - qa * f(qa)) * qa * qb * (f(qb) - f(qa))
+    let root = Complex::new(0.25 * p * p - s, 0.0).sqrt();
+    let (qa, qb) = (root + 0.5 * p, -root + 0.5 * p);
+    let c = |q: Complex<f64>| q.sqrt().cos();
+    let f = |q: Complex<f64>| q.sqrt().sin() / q.sqrt();
+    let d =
+        (qb * c(qb) - qa * c(qa)) * (qb * c(qa) - qa * c(qb)) - (qb * f(qb) - qa * f(qa)) * qa * qb * (f(qb) - f(qa));
+    (d / (root * root)).re
 }
 
-/// `m g^2 l^4/EI` of the first mode at `load = P/Pcr`.
+/// `m g^2 l^4/EI` of the first mode at `load = P/Pcr`: the first change of sign away from zero.
 fn first_root(load: f64) -> f64 {
     let p = load * std::f64::consts::PI.powi(2) / 4.0;
-    let guess = 12.362_4 * (load - 1.0);
-    let (mut low, mut high) = (0.6 * guess, 1.4 * guess);
-    assert!(column(p, low) * column(p, high) < 0.0, "no root near {guess}");
+    let step = 12.362_4 * (load - 1.0) / 200.0;
+    let (mut low, mut high) = (0.5 * step, 1.5 * step);
+    while column(p, low) * column(p, high) > 0.0 {
+        assert!(high.abs() < 100.0, "no root at {load}");
+        (low, high) = (high, high + step);
+    }
     for _ in 0..100 {
         let s = 0.5 * (low + high);
         *(if column(p, s) * column(p, low) > 0.0 {

@@ -36,8 +36,8 @@ fn settling_for_a_million_seconds() {
 /// cause, not with numbers.
 #[test]
 fn a_crushed_beam_is_diagnosed() {
-    for (name, sets) in COMBINATIONS {
-        let ran = run("crushed", &sets);
+    for (name, sets) in &COMBINATIONS[..2] {
+        let ran = run("crushed", sets);
         let reason = ran.summary.reason.clone().unwrap_or_default();
         println!(
             "crushed, {name} | {} steps | {:?} at {:.6} s: {reason}",

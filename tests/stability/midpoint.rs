@@ -1,7 +1,7 @@
 //! Why force and moment are averaged over a segment and not sampled at its midpoint (model.md 5.2, derivations G).
 //!
 //! A linear axial model of the paper's beam, written here only: 10 segments of K cells, both rows joined in chains alike
-//! (wiring I), two cells a bladder, the published coupling with the slope `aN+`.
+//! (wiring I), one volume a bladder, the published coupling with the slope `aN+`.
 //!
 //! ```text
 //! m h_i u_i'' = N_{i+1/2} - N_{i-1/2}        N_c = EA (e_c - 2 phi_b zeta'/E pbar_j)
@@ -16,7 +16,7 @@
 use nalgebra::DMatrix;
 
 const SEGMENTS: usize = 10;
-const PER_BLADDER: usize = 2;
+const PER_BLADDER: usize = 1;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Sample {

@@ -150,6 +150,17 @@ impl Canvas<'_> {
         settle(self.backend.draw_rect(fine_point(a), fine_point(b), &style, true));
     }
 
+    /// A filled polygon.
+    pub fn polygon(&mut self, points: &[(f64, f64)], colour: RGBColor) {
+        let style = ShapeStyle {
+            color: colour.to_rgba(),
+            filled: true,
+            stroke_width: 0,
+        };
+        let fine: Vec<(i32, i32)> = points.iter().map(|&p| fine_point(p)).collect();
+        settle(self.backend.fill_polygon(fine, &style));
+    }
+
     /// The outline of a rectangle.
     pub fn frame(&mut self, a: (f64, f64), b: (f64, f64), stroke: Stroke) {
         self.line(&[a, (b.0, a.1), b, (a.0, b.1), a], stroke);

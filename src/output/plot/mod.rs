@@ -5,7 +5,9 @@
 //! colour      blue to red over time, and a palette every eye can tell apart
 //! ticks       round numbers along an axis, with SI prefixes
 //! panel       a frame with grid, ticks and curves
-//! deflection, pressure, history, energy   the pictures
+//! deflection, pressure, history, energy   the pictures of a run
+//! workprecision   what accuracy costs
+//! overlay     two runs over each other
 //! ```
 
 mod canvas;
@@ -16,14 +18,18 @@ mod ticks;
 pub mod deflection;
 pub mod energy;
 pub mod history;
+pub mod overlay;
 pub mod pressure;
+pub mod workprecision;
 
 use super::numbers;
 
 pub use deflection::Deflection;
 pub use energy::Energy;
 pub use history::History;
+pub use overlay::Overlay;
 pub use pressure::Pressure;
+pub use workprecision::WorkPrecision;
 
 /// A named line over time.
 #[derive(Clone, Debug, Default, PartialEq)]

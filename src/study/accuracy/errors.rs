@@ -15,6 +15,8 @@ pub struct Errors {
     pub spatial: Option<Norms>,
     /// Against the limit.
     pub total: Norms,
+    /// The total and the limit's own error: the true error is hardly larger.
+    pub bound: Norms,
     /// Whether the total is at least ten times the error of the limit itself, in the maximum norm.
     pub judged: bool,
 }
@@ -28,28 +30,33 @@ pub fn errors(trial: &Trial, meshes: &[Temporal], limits: &[Limit]) -> Option<Ve
     let mesh = meshes.iter().find(|m| m.cells == trial.setting.cells);
     let one = |(k, limit): (usize, &Limit)| {
         let values = &signals[k].values;
-        let temporal = mesh.map(|m| {
-            let itself = m.order == trial.setting.order && m.rtol == trial.setting.rtol;
-            if itself { m.own[k] } else { Norms::between(values, &m.values[k]).over(limit.size) }
-        });
-        let spatial = mesh
-            .filter(|_| meshes.len() > 1)
-            .map(|m| Norms::between(&m.values[k], &limit.values).over(limit.size));
-        // The finest mesh has no distance to a limit that is itself; what is believed of the limit counts then.
-        let spatial = spatial.map(|s| match limit.own_spatial {
-            Some(own) if limit.extrapolated_with.is_none() => s.or_larger(own),
-            _ => s,
-        });
-        let distance = Norms::between(values, &limit.values).over(limit.size);
-        let total = if limit.extrapolated_with.is_none() && meshes.len() > 1 {
-            distance.or_larger(limit.own_spatial.unwrap_or_default())
-        } else {
-            distance
+        let own = limit.own();
+        // Where the finest mesh stands for the limit, nothing is nearer to the truth than what is believed of it.
+        let least = match limit.extrapolated_with {
+            None => limit.own_spatial.unwrap_or_default(),
+            Some(_) => Norms::default(),
         };
-        let judged = total.max >= BETTER * limit.own().max;
-        // A run that is its own reference has at least the error that is believed of it.
-        let total = total.or_larger(mesh.filter(|_| temporal == mesh.map(|m| m.own[k])).map_or(total, |m| m.own[k]));
-        Errors { temporal, spatial, total, judged }
+        let itself = mesh.filter(|m| m.order == trial.setting.order && m.rtol == trial.setting.rtol);
+        let temporal = match (itself, mesh) {
+            (Some(m), _) => Some(m.own[k]),
+            (None, Some(m)) => Some(Norms::between(values, &m.values[k]).over(limit.size)),
+            (None, None) => None,
+        };
+        let spatial = mesh.filter(|_| meshes.len() > 1).map(|m| {
+            Norms::between(&m.values[k], &limit.values)
+                .over(limit.size)
+                .or_larger(least)
+        });
+        let total = Norms::between(values, &limit.values).over(limit.size).or_larger(least);
+        let total = itself.map_or(total, |m| total.or_larger(m.own[k]));
+        let bound = total.with(own, |t, o| t + o);
+        Errors {
+            temporal,
+            spatial,
+            total,
+            bound,
+            judged: total.max >= BETTER * own.max,
+        }
     };
     Some(limits.iter().enumerate().map(one).collect())
 }

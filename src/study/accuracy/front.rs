@@ -13,7 +13,9 @@ pub struct Mark {
 
 /// Indices of the points that no other beats in error and cost at once, by falling error.
 pub fn front(marks: &[Mark]) -> Vec<usize> {
-    let mut by_cost: Vec<usize> = (0..marks.len()).filter(|&k| marks[k].error.is_finite() && marks[k].cost.is_finite()).collect();
+    let mut by_cost: Vec<usize> = (0..marks.len())
+        .filter(|&k| marks[k].error.is_finite() && marks[k].cost.is_finite())
+        .collect();
     by_cost.sort_by(|&a, &b| {
         let (a, b) = (marks[a], marks[b]);
         a.cost.total_cmp(&b.cost).then(a.error.total_cmp(&b.error))
@@ -39,7 +41,13 @@ pub struct Answer {
 /// For each accuracy the cheapest point on the front that has it.
 pub fn answers(marks: &[Mark], front: &[usize], accuracies: &[f64]) -> Vec<Answer> {
     let cheapest = |accuracy: f64| front.iter().copied().find(|&k| marks[k].error <= accuracy);
-    accuracies.iter().map(|&accuracy| Answer { accuracy, point: cheapest(accuracy) }).collect()
+    accuracies
+        .iter()
+        .map(|&accuracy| Answer {
+            accuracy,
+            point: cheapest(accuracy),
+        })
+        .collect()
 }
 
 /// A line on which looser tolerances cost more than a tighter one.
@@ -61,9 +69,16 @@ const MORE: f64 = 1.1;
 pub fn foot(line: &[usize], cost: &[f64], work: &[f64]) -> Option<Foot> {
     let at = (0..line.len()).min_by(|&a, &b| cost[line[a]].total_cmp(&cost[line[b]]))?;
     let cheapest = line[at];
-    let looser = line[..at].iter().copied().max_by(|&a, &b| cost[a].total_cmp(&cost[b]))?;
+    let looser = line[..at]
+        .iter()
+        .copied()
+        .max_by(|&a, &b| cost[a].total_cmp(&cost[b]))?;
     let factor = cost[looser] / cost[cheapest];
-    (factor > MORE && work[looser] > MORE * work[cheapest]).then_some(Foot { cheapest, looser, factor })
+    (factor > MORE && work[looser] > MORE * work[cheapest]).then_some(Foot {
+        cheapest,
+        looser,
+        factor,
+    })
 }
 
 /// Where on a line the temporal error falls to the spatial one, which is the same all along it.
@@ -89,5 +104,9 @@ pub fn balance(line: &[Along], spatial: f64) -> Option<Balance> {
         return None;
     }
     let at = |a: f64, b: f64| (a.ln() * (1.0 - share) + b.ln() * share).exp();
-    Some(Balance { rtol: at(a.0, b.0), error: at(a.2, b.2), cost: at(a.3, b.3) })
+    Some(Balance {
+        rtol: at(a.0, b.0),
+        error: at(a.2, b.2),
+        cost: at(a.3, b.3),
+    })
 }

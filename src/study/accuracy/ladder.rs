@@ -15,7 +15,10 @@ pub struct Ladder<'a> {
 impl<'a> Ladder<'a> {
     /// Of a mesh and an order.
     pub fn of(trials: &'a [Trial], cells: usize, order: u8) -> Self {
-        let mut runs: Vec<&Trial> = trials.iter().filter(|t| t.finished() && t.line() == (cells, order)).collect();
+        let mut runs: Vec<&Trial> = trials
+            .iter()
+            .filter(|t| t.finished() && t.line() == (cells, order))
+            .collect();
         runs.sort_by(|a, b| b.setting.rtol.total_cmp(&a.setting.rtol));
         Self { order, runs }
     }

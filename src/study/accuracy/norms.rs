@@ -21,7 +21,10 @@ impl Norms {
     pub fn of(values: impl ExactSizeIterator<Item = f64>) -> Self {
         let count = values.len().max(1) as f64;
         let (sum, max) = values.fold((0.0, 0.0_f64), |(sum, max), x| (sum + x * x, larger(max, x.abs())));
-        Self { l2: (sum / count).sqrt(), max }
+        Self {
+            l2: (sum / count).sqrt(),
+            max,
+        }
     }
 
     /// Of a difference.
@@ -32,12 +35,18 @@ impl Norms {
 
     /// Both combined with those of another.
     pub fn with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Self { l2: f(self.l2, other.l2), max: f(self.max, other.max) }
+        Self {
+            l2: f(self.l2, other.l2),
+            max: f(self.max, other.max),
+        }
     }
 
     /// Both changed.
     pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        Self { l2: f(self.l2), max: f(self.max) }
+        Self {
+            l2: f(self.l2),
+            max: f(self.max),
+        }
     }
 
     /// Relative to a size.

@@ -121,9 +121,27 @@ impl Plan {
     /// Tolerances for a reference, tightest first.
     pub fn reference_rtols(&self) -> Vec<f64> {
         let least = self.rtols.last().copied().unwrap_or(1e-7);
-        let mut all: Vec<f64> = [1e-3, 1e-2, 1e-1].iter().map(|f| f * least).filter(|t| *t >= TIGHTEST).collect();
+        let mut all: Vec<f64> = [1e-3, 1e-2, 1e-1]
+            .iter()
+            .map(|f| f * least)
+            .filter(|t| *t >= TIGHTEST)
+            .collect();
         if all.is_empty() && least > TIGHTEST {
             all.push(TIGHTEST);
+        }
+        all
+    }
+
+    /// Meshes for references: those of the points, and one beyond the finest, for the limit to which they point.
+    pub fn reference_cells(&self) -> Vec<usize> {
+        let mut all = self.cells.clone();
+        if let [.., before, finest] = self.cells.as_slice() {
+            // The ratio of the last two, so that three meshes in a row show an order.
+            all.push(if finest % before == 0 {
+                finest * (finest / before)
+            } else {
+                2 * finest
+            });
         }
         all
     }

@@ -24,7 +24,9 @@ pub fn expected(trials: &[Trial], next: Setting) -> Option<f64> {
             Some(fine.cost / twin.cost)
         });
         let power = if next.order > 2 { 3 } else { 1 };
-        let ratio = ratios.last().unwrap_or((next.cells as f64 / coarse.setting.cells as f64).powi(power));
+        let ratio = ratios
+            .last()
+            .unwrap_or((next.cells as f64 / coarse.setting.cells as f64).powi(power));
         guesses.push(coarse.cost * ratio);
     }
     guesses.into_iter().reduce(f64::min)

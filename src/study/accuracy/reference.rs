@@ -35,13 +35,7 @@ pub struct Temporal {
 const DISAGREE: f64 = 3.0;
 
 /// The best run on a mesh; `None` when none finished. `sizes` are those of the signals, `headline` decides which is best.
-pub fn temporal(
-    trials: &[Trial],
-    cells: usize,
-    orders: &[u8],
-    sizes: &[Norms],
-    headline: usize,
-) -> Option<Temporal> {
+pub fn temporal(trials: &[Trial], cells: usize, orders: &[u8], sizes: &[Norms], headline: usize) -> Option<Temporal> {
     let mut ladders: Vec<(f64, Ladder)> = orders
         .iter()
         .map(|&order| Ladder::of(trials, cells, order))
@@ -88,7 +82,10 @@ fn believed(by_tolerance: Option<Norms>, by_order: Option<Norms>, expected: Opti
         (Some(t), Some(o)) => {
             let expected = expected.unwrap_or(Norms::both(0.0)).with(t, |e, t| e + t);
             let one = |t: f64, o: f64, e: f64| if o <= DISAGREE * e { t } else { f64::max(t, o) };
-            Norms { l2: one(t.l2, o.l2, expected.l2), max: one(t.max, o.max, expected.max) }
+            Norms {
+                l2: one(t.l2, o.l2, expected.l2),
+                max: one(t.max, o.max, expected.max),
+            }
         }
         (Some(one), None) | (None, Some(one)) => one,
         (None, None) => Norms::both(f64::INFINITY),
@@ -124,7 +121,8 @@ pub struct Limit {
 impl Limit {
     /// Error of the limit, relative.
     pub fn own(&self) -> Norms {
-        self.own_temporal.with(self.own_spatial.unwrap_or_default(), |a, b| a + b)
+        self.own_temporal
+            .with(self.own_spatial.unwrap_or_default(), |a, b| a + b)
     }
 }
 
@@ -149,7 +147,9 @@ pub fn limit(meshes: &[Temporal], signal: &Signal, k: usize, size: Norms) -> Opt
     let near = between(fine, coarse);
     // Without a third mesh nothing is known of the order; first order is the cautious guess.
     limit.own_spatial = Some(near.map(|d| d / (ratio - 1.0).min(1.0)));
-    let [.., coarsest, _, _] = meshes else { return Some(limit) };
+    let [.., coarsest, _, _] = meshes else {
+        return Some(limit);
+    };
     let ratio_before = coarse.cells as f64 / coarsest.cells as f64;
     if (ratio - ratio_before).abs() > 1e-9 {
         return Some(limit);
@@ -174,9 +174,18 @@ pub fn limit(meshes: &[Temporal], signal: &Signal, k: usize, size: Norms) -> Opt
     };
     limit.values = extrapolate(&fine.values[k], &coarse.values[k]);
     let before = extrapolate(&coarse.values[k], &coarsest.values[k]);
-    // The next power of the mesh size is left in both limits, a half to a quarter of the former in the latter; a third is
-    // the distance between them times what the better of these leaves.
-    limit.own_spatial = Some(Norms::between(&limit.values, &before).over(size).map(|d| d / 3.0));
+    // What is left in the limits falls by a factor from one to the next: as a fourth mesh shows, at most the 8 of the
+    // third order, at least 2; without a fourth mesh 4.
+    let apart = Norms::between(&limit.values, &before);
+    let falls = match meshes {
+        [.., first, _, _, _] if (coarsest.cells as f64 / first.cells as f64 - ratio).abs() < 1e-9 => {
+            let earlier = extrapolate(&coarsest.values[k], &first.values[k]);
+            (Norms::between(&before, &earlier).l2 / apart.l2).clamp(2.0, 8.0)
+        }
+        _ => 4.0,
+    };
+    let falls = if falls.is_nan() { 4.0 } else { falls };
+    limit.own_spatial = Some(apart.over(size).map(|d| d / (falls - 1.0)));
     limit.own_temporal = fine.own[k].with(coarse.own[k], |f, c| ((gain + 1.0) * f + c) / gain);
     limit.extrapolated_with = Some(exponent);
     Some(limit)

@@ -80,7 +80,12 @@ pub struct Keep {
 impl Keep {
     /// For a mesh of so many cells a segment.
     pub fn new(cells: usize, limit: Limit) -> Self {
-        Self { limit, stride: cells, columns: vec![], fields: vec![] }
+        Self {
+            limit,
+            stride: cells,
+            columns: vec![],
+            fields: vec![],
+        }
     }
 
     /// Everything, once the run is over.
@@ -116,14 +121,30 @@ fn quantities(summary: &Summary) -> Vec<Signal> {
 }
 
 fn empty(name: &str, unit: &str, kind: Kind) -> Signal {
-    Signal { name: name.into(), unit: unit.into(), kind, values: vec![], scale: None }
+    Signal {
+        name: name.into(),
+        unit: unit.into(),
+        kind,
+        values: vec![],
+        scale: None,
+    }
 }
 
 impl Recorder for Keep {
     fn begin(&mut self, header: &Header) -> Result<()> {
-        let wanted = header.columns.iter().enumerate().filter(|(_, c)| HISTORIES.contains(&c.name.as_str()));
-        self.columns = wanted.map(|(k, c)| (k, empty(&c.name, c.unit, Kind::History))).collect();
-        let wanted = header.fields.iter().enumerate().filter(|(_, f)| FIELDS.contains(&f.name));
+        let wanted = header
+            .columns
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| HISTORIES.contains(&c.name.as_str()));
+        self.columns = wanted
+            .map(|(k, c)| (k, empty(&c.name, c.unit, Kind::History)))
+            .collect();
+        let wanted = header
+            .fields
+            .iter()
+            .enumerate()
+            .filter(|(_, f)| FIELDS.contains(&f.name));
         self.fields = wanted.map(|(k, f)| (k, empty(f.name, f.unit, Kind::Field))).collect();
         Ok(())
     }
@@ -148,7 +169,10 @@ impl Recorder for Keep {
             Limit::Wall(end) => progress.steps.is_multiple_of(LOOK) && Instant::now() >= end,
         };
         Ok(if over {
-            Control::Stop(format!("{TOO_SLOW}: {:.3} % of the simulated time", 100.0 * progress.t / progress.end))
+            Control::Stop(format!(
+                "{TOO_SLOW}: {:.3} % of the simulated time",
+                100.0 * progress.t / progress.end
+            ))
         } else {
             Control::Continue
         })

@@ -58,13 +58,26 @@ struct Sweep<'a> {
 
 /// Runs points, then references; returns them with the cost of everything.
 pub fn sweep(case: &Case, plan: &Plan, watch: Watch) -> Result<(Vec<Trial>, f64)> {
-    let sweep = Sweep { case, plan, begin: Instant::now(), state: Mutex::default(), watch };
-    let lines: Vec<(usize, u8)> = plan.cells.iter().flat_map(|&k| plan.orders.iter().map(move |&o| (k, o))).collect();
+    let sweep = Sweep {
+        case,
+        plan,
+        begin: Instant::now(),
+        state: Mutex::default(),
+        watch,
+    };
+    let lines: Vec<(usize, u8)> = plan
+        .cells
+        .iter()
+        .flat_map(|&k| plan.orders.iter().map(move |&o| (k, o)))
+        .collect();
     sweep.each(&lines, |&(cells, order)| {
-        plan.rtols.iter().try_for_each(|&rtol| sweep.point(Setting { cells, order, rtol }))
+        plan.rtols
+            .iter()
+            .try_for_each(|&rtol| sweep.point(Setting { cells, order, rtol }))
     })?;
-    let meshes: Vec<usize> = (0..plan.cells.len()).collect();
-    sweep.each(&meshes, |&k| sweep.references(k))?;
+    let meshes = plan.reference_cells();
+    let numbers: Vec<usize> = (0..meshes.len()).collect();
+    sweep.each(&numbers, |&k| sweep.references(&meshes[k..]))?;
     let spent = sweep.spent(&sweep.lock());
     let trials = sweep.state.into_inner().unwrap_or_else(PoisonError::into_inner).trials;
     Ok((trials, spent))
@@ -84,7 +97,9 @@ impl Sweep<'_> {
 
     /// Does the work for every item, at once when asked.
     fn each<T: Sync>(&self, items: &[T], work: impl Fn(&T) -> Result<()> + Sync) -> Result<()> {
-        let workers = std::thread::available_parallelism().map_or(1, |n| n.get()).min(items.len());
+        let workers = std::thread::available_parallelism()
+            .map_or(1, |n| n.get())
+            .min(items.len());
         if !self.plan.parallel || workers < 2 {
             return items.iter().try_for_each(work);
         }
@@ -109,15 +124,21 @@ impl Sweep<'_> {
         let (left, expected, hopeless) = {
             let state = self.lock();
             let left = POINTS * budget.size() - self.spent(&state);
-            (left, price::expected(&state.trials, setting), price::hopeless(&state.trials, setting))
+            (
+                left,
+                price::expected(&state.trials, setting),
+                price::hopeless(&state.trials, setting),
+            )
         };
         let cap = left.min(POINT * budget.size());
         let reason = match expected {
             _ if left <= 0.0 => Some("the part of the budget that is for points is used up".to_string()),
             _ if hopeless => Some("looser tolerances were too slow already".to_string()),
-            Some(cost) if cost > cap => {
-                Some(format!("expected to take {}, {} are left for it", budget.words(cost), budget.words(cap)))
-            }
+            Some(cost) if cost > cap => Some(format!(
+                "expected to take {}, {} are left for it",
+                budget.words(cost),
+                budget.words(cap)
+            )),
             _ => None,
         };
         if let Some(reason) = reason {
@@ -127,7 +148,11 @@ impl Sweep<'_> {
             return Ok(());
         }
         let repeats = (REPEATS * budget.size()).min(left - cap).max(0.0);
-        let allowed = Allowance { run: cap, repeats, wanted: if self.plan.repeats > 1 { self.plan.repeats } else { 0 } };
+        let allowed = Allowance {
+            run: cap,
+            repeats,
+            wanted: if self.plan.repeats > 1 { self.plan.repeats } else { 0 },
+        };
         self.run(setting, role, expected, allowed)?;
         self.lock().done += 1;
         Ok(())
@@ -140,8 +165,16 @@ impl Sweep<'_> {
             let mut state = self.lock();
             let spent = self.spent(&state);
             state.reserved += most;
-            let of = self.plan.cells.len() * (self.plan.orders.len() * self.plan.rtols.len() + 1);
-            Event { setting, role, expected, spent, budget: self.plan.budget, done: state.done, of }
+            let of = self.plan.cells.len() * (self.plan.orders.len() * self.plan.rtols.len() + 1) + 1;
+            Event {
+                setting,
+                role,
+                expected,
+                spent,
+                budget: self.plan.budget,
+                done: state.done,
+                of,
+            }
         };
         (self.watch)(&event);
         let outcome = trial::run(self.case, setting, role, self.plan.budget, allowed);
@@ -153,12 +186,14 @@ impl Sweep<'_> {
         Ok(cost)
     }
 
-    /// References of one mesh: each order as tight as its share of the budget allows, to check the other.
-    fn references(&self, mesh: usize) -> Result<()> {
-        // What is left goes to the meshes by their unknowns and their stiffness; the finest need most.
-        let weight = |cells: usize| (cells as f64).powi(2);
-        let of_all: f64 = self.plan.cells[mesh..].iter().map(|&k| weight(k)).sum();
-        let cells = self.plan.cells[mesh];
+    /// References of the first of these meshes: each order as tight as its share of the budget allows, to check the other.
+    fn references(&self, meshes: &[usize]) -> Result<()> {
+        // What is left goes to the meshes by their unknowns and their stiffness. The mesh beyond the finest has what
+        // that has: it is worth a try, but no point depends on it.
+        let finest = self.plan.cells.last().copied().unwrap_or(1);
+        let weight = |cells: usize| (cells.min(finest) as f64).powi(2);
+        let of_all: f64 = meshes.iter().map(|&k| weight(k)).sum();
+        let Some(&cells) = meshes.first() else { return Ok(()) };
         let left = self.plan.budget.size() - self.spent(&self.lock());
         let mut share = left.max(0.0) * weight(cells) / of_all;
         for (k, order) in self.plan.reference_orders().into_iter().enumerate() {
@@ -196,9 +231,17 @@ impl Sweep<'_> {
                 };
                 (next, expected, last.is_none())
             };
-            let allowed = Allowance { run: left, repeats: 0.0, wanted: 0 };
+            let allowed = Allowance {
+                run: left,
+                repeats: 0.0,
+                wanted: 0,
+            };
             left -= self.run(next, Role::Reference, expected, allowed)?;
-            let finished = self.lock().trials.last().is_some_and(|t| t.setting == next && t.finished());
+            let finished = self
+                .lock()
+                .trials
+                .last()
+                .is_some_and(|t| t.setting == next && t.finished());
             if finished && !first {
                 break;
             }

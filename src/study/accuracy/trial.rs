@@ -125,9 +125,15 @@ pub fn run(case: &Case, setting: Setting, role: Role, budget: Budget, allowed: A
         };
         let signals = (ending == Ending::Finished).then(|| keep.signals(&summary));
         // Numbers that are none make every comparison worthless; a run that gives them has failed.
-        let broken = signals.iter().flatten().any(|s| s.values.iter().any(|x| !x.is_finite()));
+        let broken = signals
+            .iter()
+            .flatten()
+            .any(|s| s.values.iter().any(|x| !x.is_finite()));
         let (ending, reason) = if broken {
-            (Ending::Failed, Some("the result has numbers that are not finite".to_string()))
+            (
+                Ending::Failed,
+                Some("the result has numbers that are not finite".to_string()),
+            )
         } else {
             (ending, summary.reason)
         };

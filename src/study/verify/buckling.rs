@@ -34,8 +34,13 @@ fn vanishing_stiffness(mut case: Value) -> Result<f64> {
     case["solver"]["transverse_scale_m"] = json!(1e-6);
     let solved = solve(&case)?;
     let loads = solved.column("t");
-    let points: Vec<(f64, f64)> =
-        solved.column("tip_u1").iter().map(|w| 1e-6 / w).zip(loads).skip(14).map(|(k, t)| (k, t)).collect();
+    let points: Vec<(f64, f64)> = solved
+        .column("tip_u1")
+        .iter()
+        .map(|w| 1e-6 / w)
+        .zip(loads)
+        .skip(14)
+        .collect();
     Ok(through(&points, 0.0))
 }
 
@@ -53,7 +58,9 @@ fn euler() -> Row {
                 case["ends"]["tip"] = json!({"free": {"force_z_n": growing(-EULER)}});
                 Ok([EULER * vanishing_stiffness(case)?])
             })?;
-            Ok(vec![Figure::relative("P L^2/EI", load[2], EULER, 5e-5).on_meshes(load, 1e-6)])
+            Ok(vec![
+                Figure::relative("P L^2/EI", load[2], EULER, 5e-5).on_meshes(load, 1e-6),
+            ])
         },
     )
 }
@@ -74,7 +81,9 @@ fn self_weight() -> Row {
                 case["loads"] = json!([{"force_z_n_m": {"signal": growing(-EXACT)}}]);
                 Ok([EXACT * vanishing_stiffness(case)?])
             })?;
-            Ok(vec![Figure::relative("q L^3/EI", load[2], EXACT, 1.6e-4).on_meshes(load, 1e-6)])
+            Ok(vec![
+                Figure::relative("q L^3/EI", load[2], EXACT, 1.6e-4).on_meshes(load, 1e-6),
+            ])
         },
     )
 }

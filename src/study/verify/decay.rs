@@ -25,16 +25,26 @@ pub fn rows() -> Vec<Row> {
     let n = N as f64;
     let chain = Row::new(
         "network-closed-chain",
-        ["eigenvalues of a path (discrete cosines): (4/RC) sin^2(k pi/2N)", GOAL, REASON],
+        [
+            "eigenvalues of a path (discrete cosines): (4/RC) sin^2(k pi/2N)",
+            GOAL,
+            REASON,
+        ],
         move || {
-            modes(&chain_of(json!(["sealed", "sealed"])), (1..N).map(|k| k as f64 * PI / n), |angle, j| {
-                (angle * (j - 0.5)).cos()
-            })
+            modes(
+                &chain_of(json!(["sealed", "sealed"])),
+                (1..N).map(|k| k as f64 * PI / n),
+                |angle, j| (angle * (j - 0.5)).cos(),
+            )
         },
     );
     let open = Row::new(
         "network-open-chain",
-        ["path with one end at pressure zero behind R: (4/RC) sin^2((2k - 1) pi/(2 (2N + 1)))", GOAL, REASON],
+        [
+            "path with one end at pressure zero behind R: (4/RC) sin^2((2k - 1) pi/(2 (2N + 1)))",
+            GOAL,
+            REASON,
+        ],
         move || {
             let angles = (1..=N).map(|k| (2 * k - 1) as f64 * PI / (2.0 * n + 1.0));
             modes(&open_chain(), angles, |angle, j| (angle * j).sin())
@@ -44,7 +54,9 @@ pub fn rows() -> Vec<Row> {
         "network-ring",
         ["eigenvalues of a ring: (4/RC) sin^2(k pi/N)", GOAL, REASON],
         move || {
-            modes(&ring(), (1..=N / 2).map(|k| 2.0 * k as f64 * PI / n), |angle, j| (angle * j).cos())
+            modes(&ring(), (1..=N / 2).map(|k| 2.0 * k as f64 * PI / n), |angle, j| {
+                (angle * j).cos()
+            })
         },
     );
     vec![chain, open, ring, two_bladders(), dissipation()]
@@ -88,27 +100,52 @@ fn modes(network: &Value, angles: impl Iterator<Item = f64>, shape: fn(f64, f64)
             let solved = solve(&run)?;
             let left: f64 = upper_pressures(&solved, N).zip(1..).map(|(p, j)| p * start(j)).sum();
             let whole: f64 = (1..=N).map(|j| start(j).powi(2)).sum();
-            Ok(Figure::relative(format!("rate of mode {k} [1/s]"), (whole / left).ln() * exact, exact, 1e-6))
+            Ok(Figure::relative(
+                format!("rate of mode {k} [1/s]"),
+                (whole / left).ln() * exact,
+                exact,
+                1e-6,
+            ))
         })
         .collect()
 }
 
 /// Pressures of the upper row at the end of a run [Pa].
 fn upper_pressures(solved: &Solved, count: usize) -> impl Iterator<Item = f64> {
-    solved.field("pressure_pa").last().into_iter().flatten().copied().take(count)
+    solved
+        .field("pressure_pa")
+        .last()
+        .into_iter()
+        .flatten()
+        .copied()
+        .take(count)
 }
 
 fn two_bladders() -> Row {
     Row::new(
         "network-two-bladders",
-        ["two capacitors: the difference of pressure decays with the time R C/2", "the smallest network", REASON],
+        [
+            "two capacitors: the difference of pressure decays with the time R C/2",
+            "the smallest network",
+            REASON,
+        ],
         || {
             let tau = 0.5 * R * COMPLIANCE;
-            let mut run = case(2, json!({"chains": [{"bladders": [1, 2], "ends": ["sealed", "sealed"]}]}), tau, tau);
+            let mut run = case(
+                2,
+                json!({"chains": [{"bladders": [1, 2], "ends": ["sealed", "sealed"]}]}),
+                tau,
+                tau,
+            );
             run["start"] = json!({"pressures": pressures([START, 0.0].into_iter())});
             let left: Vec<f64> = upper_pressures(&solve(&run)?, 2).collect();
             let [a, b] = left[..] else { return Ok(vec![]) };
-            Ok(vec![Figure::relative("decay time [s]", tau / (START / (a - b)).ln(), tau, 1e-6)])
+            Ok(vec![Figure::relative(
+                "decay time [s]",
+                tau / (START / (a - b)).ln(),
+                tau,
+                1e-6,
+            )])
         },
     )
 }
@@ -132,7 +169,12 @@ fn dissipation() -> Row {
             Ok(vec![
                 Figure::relative("dissipated in all [J]", tubes + bladders, lost, 1e-6),
                 Figure::relative("share of the tubes", tubes / (tubes + bladders), TUBE / R, 1e-6),
-                Figure::relative("energy left [J]", solved.last("bladder_energy"), lost / (N - 1) as f64, 1e-6),
+                Figure::relative(
+                    "energy left [J]",
+                    solved.last("bladder_energy"),
+                    lost / (N - 1) as f64,
+                    1e-6,
+                ),
             ])
         },
     )

@@ -66,8 +66,19 @@ fn slot(a: f64, b: f64) -> f64 {
 fn duct(name: &str, source: &'static str, section: Value, exact: f64, reason: &'static str, tolerance: f64) -> Row {
     Row::new(
         format!("duct-{name}"),
-        [source, "permeability of a tube given by its cross-section, q1 = P mu l/drop^2 from the power P put in", reason],
-        move || Ok(vec![Figure::relative("q1 [m^4]", permeability(&section)?, exact, tolerance)]),
+        [
+            source,
+            "permeability of a tube given by its cross-section, q1 = P mu l/drop^2 from the power P put in",
+            reason,
+        ],
+        move || {
+            Ok(vec![Figure::relative(
+                "q1 [m^4]",
+                permeability(&section)?,
+                exact,
+                tolerance,
+            )])
+        },
     )
 }
 

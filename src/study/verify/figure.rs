@@ -34,20 +34,40 @@ pub struct Figure {
 const SECOND_ORDER: std::ops::RangeInclusive<f64> = 1.8..=2.2;
 
 impl Figure {
-    pub(super) fn relative(quantity: impl Into<String>, computed: f64, exact: f64, tolerance: f64) -> Self {
-        Self { quantity: quantity.into(), computed, exact, measure: Measure::Relative, tolerance, order: None, limit: None }
+    /// A number with a tolerance relative to its exact value.
+    pub fn relative(quantity: impl Into<String>, computed: f64, exact: f64, tolerance: f64) -> Self {
+        Self {
+            quantity: quantity.into(),
+            computed,
+            exact,
+            measure: Measure::Relative,
+            tolerance,
+            order: None,
+            limit: None,
+        }
     }
 
-    pub(super) fn absolute(quantity: impl Into<String>, computed: f64, exact: f64, tolerance: f64) -> Self {
-        Self { measure: Measure::Absolute, ..Self::relative(quantity, computed, exact, tolerance) }
+    /// A number with a tolerance in its own unit.
+    pub fn absolute(quantity: impl Into<String>, computed: f64, exact: f64, tolerance: f64) -> Self {
+        Self {
+            measure: Measure::Absolute,
+            ..Self::relative(quantity, computed, exact, tolerance)
+        }
     }
 
     /// Three meshes, each twice as fine as the one before: second order is due, and the limit within `limit`.
-    pub(super) fn on_meshes(self, values: [f64; 3], limit: f64) -> Self {
+    pub fn on_meshes(self, values: [f64; 3], limit: f64) -> Self {
         let [_, middle, fine] = values;
         let order = ((middle - self.exact) / (fine - self.exact)).abs().log2();
-        let extrapolated = Self { computed: richardson(middle, fine), ..self.clone() };
-        Self { order: Some(order), limit: Some((extrapolated.error(), limit)), ..self }
+        let extrapolated = Self {
+            computed: richardson(middle, fine),
+            ..self.clone()
+        };
+        Self {
+            order: Some(order),
+            limit: Some((extrapolated.error(), limit)),
+            ..self
+        }
     }
 
     /// Error, relative or absolute as [`Figure::measure`] says.

@@ -1,5 +1,7 @@
 //! Growth rates, frequencies, zeros and limits from samples.
 
+use std::f64::consts::TAU;
+
 /// Limit `h -> 0` from values at `2h` and `h` whose error is of second order.
 pub fn richardson(coarse: f64, fine: f64) -> f64 {
     fine + (fine - coarse) / 3.0
@@ -56,6 +58,13 @@ pub fn growth_of_spans(samples: &[f64], span: usize, interval: f64, skipped: usi
         })
         .unzip();
     slope(&times, &logs)
+}
+
+/// Mean under the weight `1 - cos`, which hardly sees an oscillation however its periods fit the samples.
+pub fn smooth_mean(samples: &[f64]) -> f64 {
+    let count = samples.len() as f64;
+    let weight = |k: usize| 1.0 - (TAU * (k as f64 + 0.5) / count).cos();
+    samples.iter().enumerate().map(|(k, x)| weight(k) * x).sum::<f64>() / count
 }
 
 /// Lowest value of a smooth function from samples, by the parabola through the three around its minimum.

@@ -67,7 +67,12 @@ fn compare() -> Result<Vec<Figure>> {
         })
         .collect();
     let turbine = TURBINE * (exact[4] - exact[5]).powi(2);
-    figures.push(Figure::relative("power of the turbine [W]", solved.last("turbine_power"), turbine, 1e-6));
+    figures.push(Figure::relative(
+        "power of the turbine [W]",
+        solved.last("turbine_power"),
+        turbine,
+        1e-6,
+    ));
     figures.push(Figure::relative("power put in [W]", computed, power, 1e-6));
     Ok(figures)
 }
@@ -98,7 +103,10 @@ fn resistors() -> (DVector<f64>, f64) {
         flow[node] += pressure / half;
     }
     flow[5] += SOURCE;
-    let pressures = matrix.lu().solve(&flow).unwrap_or_else(|| DVector::from_element(NODES, f64::NAN));
+    let pressures = matrix
+        .lu()
+        .solve(&flow)
+        .unwrap_or_else(|| DVector::from_element(NODES, f64::NAN));
     let inflow = |node: usize, pressure: f64| (pressure - pressures[node]) / half;
     let power = PRESSURES[0] * inflow(0, PRESSURES[0]) + PRESSURES[1] * inflow(3, PRESSURES[1]) + SOURCE * pressures[5];
     (pressures, power)

@@ -32,7 +32,12 @@ pub fn rows() -> Vec<Row> {
             ],
             || {
                 let exact = mathieu_growth(BETA.powi(4), MODULATION * BETA.powi(4), 2.0 * BETA * BETA);
-                Ok(vec![Figure::relative("growth rate L^2 sqrt(m/EI)", growth(1.0)?, exact, 3e-3)])
+                Ok(vec![Figure::relative(
+                    "growth rate L^2 sqrt(m/EI)",
+                    growth(1.0)?,
+                    exact,
+                    3e-3,
+                )])
             },
         ),
         Row::new(
@@ -42,7 +47,14 @@ pub fn rows() -> Vec<Row> {
                 "no growth outside the principal tongue, eps = 0.2, W = 2.2 w1: 10 % off, twice the half width of 5 %",
                 "bounded motion beats: spans differ, but without a trend; inside the tongue the growth is 0.18 1/s",
             ],
-            || Ok(vec![Figure::absolute("growth rate L^2 sqrt(m/EI)", growth(1.1)?, 0.0, 0.01)]),
+            || {
+                Ok(vec![Figure::absolute(
+                    "growth rate L^2 sqrt(m/EI)",
+                    growth(1.1)?,
+                    0.0,
+                    0.01,
+                )])
+            },
         ),
     ]
 }
@@ -54,7 +66,12 @@ fn growth(detuning: f64) -> Result<f64> {
     let amplitude = MODULATION * first * first / MATHIEU_COUPLING / (omega * omega);
     let interval = 2.0 * PI / omega / SAMPLES as f64;
     let periods = 36;
-    let mut case = motion(40, |x| free_shape(BETA, x), (periods * SAMPLES) as f64 * interval, interval);
+    let mut case = motion(
+        40,
+        |x| free_shape(BETA, x),
+        (periods * SAMPLES) as f64 * interval,
+        interval,
+    );
     case["ends"]["root"] =
         json!({"clamped": {"u3_m": {"sine": {"amplitude": amplitude, "frequency_hz": omega / (2.0 * PI)}}}});
     // The whole beam starts with the speed of the base, else the jump would send an axial wave.

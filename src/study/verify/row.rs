@@ -20,12 +20,19 @@ pub struct Row {
 }
 
 impl Row {
-    pub(super) fn new(
+    /// A row: its name, then source, goal and reason for the tolerance, then what computes it.
+    pub fn new(
         name: impl Into<String>,
         [source, goal, reason]: [&'static str; 3],
         work: impl Fn() -> Result<Vec<Figure>> + Send + Sync + 'static,
     ) -> Self {
-        Self { name: name.into(), source, goal, reason, work: Box::new(work) }
+        Self {
+            name: name.into(),
+            source,
+            goal,
+            reason,
+            work: Box::new(work),
+        }
     }
 
     /// Computes the row's figures.
@@ -48,6 +55,12 @@ pub fn choose(rows: Vec<Row>, part: &str) -> Result<Vec<Row>> {
         return Ok(chosen);
     }
     let likeness = |name: &String| strsim::jaro_winkler(&part.to_lowercase(), name);
-    let nearest = names.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b))).map_or("", String::as_str);
-    Err(Error::Usage(format!("no exact result has \"{part}\" in its name; the nearest is \"{nearest}\"\nall: {}", names.join(", "))))
+    let nearest = names
+        .iter()
+        .max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
+        .map_or("", String::as_str);
+    Err(Error::Usage(format!(
+        "no exact result has \"{part}\" in its name; the nearest is \"{nearest}\"\nall: {}",
+        names.join(", ")
+    )))
 }

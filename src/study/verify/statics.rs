@@ -21,8 +21,14 @@ fn tip(case: &Value) -> Result<[f64; 3]> {
 
 /// All rows.
 pub fn rows() -> Vec<Row> {
-    let mut all: Vec<Row> =
-        [("quarter", 0.5 * PI), ("half", PI), ("ring", 2.0 * PI), ("two-turns", 4.0 * PI)].map(end_moment).into();
+    let mut all: Vec<Row> = [
+        ("quarter", 0.5 * PI),
+        ("half", PI),
+        ("ring", 2.0 * PI),
+        ("two-turns", 4.0 * PI),
+    ]
+    .map(end_moment)
+    .into();
     all.extend(
         [
             (1, [0.0564332362834, 0.301720773800, 0.461351949712]),
@@ -64,7 +70,11 @@ fn end_moment((name, k): (&'static str, f64)) -> Row {
             let full_turns = (0.5 * k / PI).fract() == 0.0;
             let place = |quantity, values: [f64; 3], exact| {
                 let figure = Figure::absolute(quantity, values[2], exact, if full_turns { 1e-7 } else { bound });
-                if full_turns { figure } else { figure.on_meshes(values, 1e-7) }
+                if full_turns {
+                    figure
+                } else {
+                    figure.on_meshes(values, 1e-7)
+                }
             };
             let mut figures = vec![
                 Figure::absolute("shortening u/L", u[2], exact[0], 1e-7),
@@ -128,12 +138,16 @@ fn tip_load_stretch() -> Row {
                 Ok(["tip_u3", "tip_u1", "tip_angle"].map(|name| solved.last(name)))
             })?;
             let exact = [-0.508537304326, -1.207239854550, -0.986237330266];
-            Ok(["axial displacement [m]", "transverse displacement [m]", "tip angle [rad]"]
-                .into_iter()
-                .zip(values)
-                .zip(exact)
-                .map(|((name, values), exact)| Figure::relative(name, values[2], exact, 8e-5).on_meshes(values, 1e-6))
-                .collect())
+            Ok([
+                "axial displacement [m]",
+                "transverse displacement [m]",
+                "tip angle [rad]",
+            ]
+            .into_iter()
+            .zip(values)
+            .zip(exact)
+            .map(|((name, values), exact)| Figure::relative(name, values[2], exact, 8e-5).on_meshes(values, 1e-6))
+            .collect())
         },
     )
 }

@@ -39,5 +39,8 @@ pub fn case(per_row: usize, network: Value, end: f64, interval: f64) -> Value {
 
 /// Start pressures of bladders `1..`.
 pub fn pressures(values: impl Iterator<Item = f64>) -> Value {
-    (1..).zip(values).map(|(bladder, p)| json!({"bladders": [bladder], "pressure_pa": p})).collect()
+    (1..)
+        .zip(values)
+        .map(|(bladder, p)| json!({"bladders": [bladder], "pressure_pa": p}))
+        .collect()
 }

@@ -1,0 +1,158 @@
+//! `slcbeam study`: what accuracy costs.
+
+use std::io::IsTerminal as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Mutex;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::arguments::StudyArguments;
+use crate::case;
+use crate::discrete::System;
+use crate::error::{Error, Result};
+use crate::output::numbers::duration;
+use crate::output::study as files;
+use crate::study::accuracy::trial::Role;
+use crate::study::accuracy::{Budget, Event, Plan, study as run_study};
+
+/// Runs the settings, writes the folder, prints the table and the sentence.
+pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
+    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let case = &loaded.case;
+    super::refuse(&loaded, &System::new(case))?;
+    let plan = Plan {
+        rtols: asked.rtol.clone(),
+        cells: asked.cells.clone(),
+        orders: asked.orders.clone(),
+        repeats: asked.repeats,
+        budget: Budget::Wall(seconds(&asked.budget)?),
+        parallel: asked.parallel,
+    }
+    .checked()?;
+    let out = asked
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("out").join(format!("{}-study", case.name)));
+    let progress = Progress::new(asked.quiet);
+    let found = run_study(case, plan, asked.measure.as_deref(), &|event| progress.show(event))?;
+    progress.done();
+    files::write(&out, &found)?;
+    if asked.json {
+        super::print(&files::json(&found))?;
+    } else {
+        let notes: String = found.notes.iter().map(|n| format!("note: {n}\n")).collect();
+        let text = format!(
+            "{}\n{notes}{}\n\nfiles in {}\n",
+            files::table(&found),
+            files::sentence(&found),
+            out.display()
+        );
+        super::print(&text)?;
+    }
+    Ok(if found.references.is_empty() {
+        ExitCode::from(4)
+    } else {
+        ExitCode::SUCCESS
+    })
+}
+
+/// `120`, `120s`, `2m`, `1h` in seconds.
+fn seconds(text: &str) -> Result<f64> {
+    let (number, unit) = match text.trim().strip_suffix(['s', 'm', 'h']) {
+        Some(number) => (number, text.trim().chars().last()),
+        None => (text.trim(), None),
+    };
+    let factor = match unit {
+        Some('m') => 60.0,
+        Some('h') => 3600.0,
+        _ => 1.0,
+    };
+    let value = number
+        .trim()
+        .parse::<f64>()
+        .ok()
+        .map(|n| n * factor)
+        .filter(|s| s.is_finite() && *s > 0.0);
+    value.ok_or_else(|| Error::Usage(format!("--budget {text}: a time above zero, such as 120s or 2m")))
+}
+
+/// A bar on a terminal, a line a mesh and order elsewhere.
+struct Progress {
+    bar: Option<ProgressBar>,
+    lines: bool,
+    last: Mutex<Option<(usize, u8, Role)>>,
+}
+
+impl Progress {
+    fn new(quiet: bool) -> Self {
+        let terminal = std::io::stderr().is_terminal();
+        let bar = (terminal && !quiet).then(|| {
+            let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+            if let Ok(style) = ProgressStyle::with_template("{pos}/{len} {wide_bar:.blue/dim} {msg}") {
+                bar.set_style(style);
+            }
+            bar.enable_steady_tick(Duration::from_millis(200));
+            bar
+        });
+        Self {
+            bar,
+            lines: !terminal && !quiet,
+            last: Mutex::new(None),
+        }
+    }
+
+    fn show(&self, event: &Event) {
+        let s = event.setting;
+        let what = match event.role {
+            Role::Point => "",
+            Role::Reference => "reference, ",
+        };
+        let expected = event
+            .expected
+            .map_or(String::new(), |cost| format!(", about {}", duration(cost)));
+        let spent = format!("{} of {} used", duration(event.spent), duration(event.budget.size()));
+        if let Some(bar) = &self.bar {
+            bar.set_length(event.of as u64);
+            bar.set_position(event.done as u64);
+            bar.set_message(format!(
+                "{what}{} cells, order {}, rtol {:e}{expected} · {spent}",
+                s.cells, s.order, s.rtol
+            ));
+        } else if self.lines {
+            let now = Some((s.cells, s.order, event.role));
+            let mut last = self.last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            if *last != now {
+                *last = now;
+                let (done, of) = (event.done, event.of);
+                eprintln!(
+                    "{done}/{of}: {what}{} cells, order {}{expected} each or more; {spent}",
+                    s.cells, s.order
+                );
+            }
+        }
+    }
+
+    fn done(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn budgets_are_times() {
+        assert_eq!(seconds("120s").ok(), Some(120.0));
+        assert_eq!(seconds("2m").ok(), Some(120.0));
+        assert_eq!(seconds("90").ok(), Some(90.0));
+        assert_eq!(seconds("0.5h").ok(), Some(1800.0));
+        for wrong in ["", "s", "-3s", "2 days", "nan"] {
+            assert_eq!(seconds(wrong).map_err(|e| e.exit_code()), Err(2), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,325 @@
+//! `study.svg`: what accuracy costs. Error across, time up, both in logarithms; one line a mesh and order, one marker a
+//! tolerance.
+
+use plotters::style::RGBColor;
+
+use super::canvas::{Anchor, Canvas, FAINT_INK, INK, Stroke, Words, picture};
+use super::colour::PALETTE;
+use super::extent;
+use super::panel::{Panel, Place, title};
+use super::ticks::Scale;
+use crate::output::numbers::{quantity, significant, superscript, trimmed};
+
+/// A run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Marker {
+    /// Relative error.
+    pub error: f64,
+    /// Least wall time [s].
+    pub least_s: f64,
+    /// Median wall time [s].
+    pub median_s: f64,
+    /// Tolerance.
+    pub rtol: f64,
+    /// Whether the reference is good enough to judge it.
+    pub judged: bool,
+    /// Whether no other is cheaper and more accurate.
+    pub front: bool,
+}
+
+/// Where temporal equals spatial error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balance {
+    /// Relative error.
+    pub error: f64,
+    /// Wall time [s].
+    pub seconds: f64,
+}
+
+/// One mesh and order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// Cells a segment; the colour.
+    pub cells: usize,
+    /// Highest order; the marker.
+    pub order: u8,
+    /// Runs, loose to tight.
+    pub markers: Vec<Marker>,
+    /// Balance of errors.
+    pub balance: Option<Balance>,
+}
+
+/// All that is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorkPrecision {
+    /// Name of the case.
+    pub case: String,
+    /// What the error is of.
+    pub measure: String,
+    /// The reference's own error.
+    pub own: f64,
+    /// Timed runs a point, at most.
+    pub repeats: usize,
+    /// Lines, by order, then by mesh.
+    pub lines: Vec<Line>,
+}
+
+const LEFT: f64 = 84.0;
+const TOP: f64 = 64.0;
+const WIDTH: f64 = 560.0;
+const HEIGHT: f64 = 440.0;
+const SHEET: f64 = 850.0;
+/// Radius of a marker.
+const RADIUS: f64 = 4.2;
+/// Keeps logarithms of times off zero, where a panel draws the line of zero.
+const OFF: f64 = 20.0;
+
+const FRONT: RGBColor = RGBColor(0xd9, 0xdd, 0xe1);
+const SHADE: RGBColor = RGBColor(0xf4, 0xf2, 0xec);
+const PAPER: RGBColor = RGBColor(0xff, 0xff, 0xff);
+const SMALL: f64 = 11.0;
+
+/// Draws it; `None` when there is nothing to draw.
+pub fn draw(data: &WorkPrecision) -> Option<String> {
+    let markers = || {
+        data.lines
+            .iter()
+            .flat_map(|l| &l.markers)
+            .filter(|m| m.error > 0.0 && m.least_s > 0.0)
+    };
+    let x = decades(extent(markers().map(|m| m.error.log10()))?, 0.0, |n| {
+        format!("10{}", superscript(n))
+    });
+    let times = extent(markers().flat_map(|m| [m.least_s.log10(), m.median_s.log10()]))?;
+    let y = decades(times, OFF, |n| trimmed(&quantity(10_f64.powi(n), "s", 3)));
+    let place = Place {
+        left: LEFT,
+        top: TOP,
+        width: WIDTH,
+        height: HEIGHT,
+    };
+    let sheet = Sheet {
+        panel: Panel { place, x, y },
+        data,
+        meshes: meshes(data),
+    };
+    Some(picture(SHEET, TOP + HEIGHT + 52.0, |canvas| sheet.draw(canvas)))
+}
+
+/// Meshes, coarse to fine: each has a colour.
+fn meshes(data: &WorkPrecision) -> Vec<usize> {
+    let mut all: Vec<usize> = data.lines.iter().map(|l| l.cells).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+/// A logarithmic axis with its ticks at decades.
+fn decades((lo, hi): (f64, f64), off: f64, label: impl Fn(i32) -> String) -> Scale {
+    let margin = (0.05 * (hi - lo)).max(0.15);
+    let (lo, hi) = (lo - margin, hi + margin);
+    let ticks: Vec<(f64, String)> = (lo.ceil() as i32..=hi.floor() as i32)
+        .map(|n| (f64::from(n) + off, label(n)))
+        .collect();
+    Scale {
+        lo: lo + off,
+        hi: hi + off,
+        ticks,
+        unit: String::new(),
+    }
+}
+
+struct Sheet<'a> {
+    panel: Panel,
+    data: &'a WorkPrecision,
+    meshes: Vec<usize>,
+}
+
+impl Sheet<'_> {
+    fn at(&self, error: f64, seconds: f64) -> (f64, f64) {
+        self.panel.at((error.log10(), seconds.log10() + OFF))
+    }
+
+    fn colour(&self, cells: usize) -> RGBColor {
+        // Blue, orange, green, purple, then the others; the palette's own order.
+        PALETTE[self.meshes.iter().position(|k| *k == cells).unwrap_or(0) % PALETTE.len()]
+    }
+
+    fn draw(&self, canvas: &mut Canvas) {
+        let data = self.data;
+        let what = format!("error of {} against wall time, lower left is better", data.measure);
+        title(canvas, LEFT, &format!("{} · what accuracy costs", data.case), &what);
+        self.shade(canvas);
+        self.panel.grid(canvas);
+        self.front(canvas);
+        let balances = self.balances(canvas);
+        for line in &data.lines {
+            self.line(canvas, line);
+        }
+        self.labels(canvas);
+        self.panel.axes(
+            canvas,
+            Some("relative error, time and space together"),
+            "wall time of a run",
+        );
+        self.legend(canvas, balances);
+    }
+
+    /// Errors that the reference is not good enough to judge.
+    fn shade(&self, canvas: &mut Canvas) {
+        let p = self.panel.place;
+        let edge = self.at(10.0 * self.data.own, 1.0).0;
+        if edge.is_finite() && edge > p.left {
+            canvas.rectangle((p.left, p.top), (edge.min(p.right()), p.bottom()), SHADE);
+        }
+    }
+
+    fn front(&self, canvas: &mut Canvas) {
+        let mut front: Vec<&Marker> = self
+            .data
+            .lines
+            .iter()
+            .flat_map(|l| &l.markers)
+            .filter(|m| m.front)
+            .collect();
+        front.sort_by(|a, b| b.error.total_cmp(&a.error));
+        let points: Vec<_> = front.iter().map(|m| self.at(m.error, m.least_s)).collect();
+        canvas.line(&points, Stroke::solid(FRONT, 9.0));
+    }
+
+    /// Lines of balance, one an order; returns whether there is any.
+    fn balances(&self, canvas: &mut Canvas) -> bool {
+        let mut orders: Vec<u8> = self.data.lines.iter().map(|l| l.order).collect();
+        orders.dedup();
+        let mut any = false;
+        for order in orders {
+            let of_order = self.data.lines.iter().filter(|l| l.order == order);
+            let points: Vec<_> = of_order
+                .filter_map(|l| l.balance)
+                .map(|b| self.at(b.error, b.seconds))
+                .collect();
+            any |= !points.is_empty();
+            canvas.line(
+                &points,
+                Stroke {
+                    dash: Some((2.0, 4.0)),
+                    ..Stroke::solid(FAINT_INK, 1.0)
+                },
+            );
+            for p in points {
+                self.cross(canvas, p);
+            }
+        }
+        any
+    }
+
+    fn cross(&self, canvas: &mut Canvas, (x, y): (f64, f64)) {
+        let r = 5.0;
+        let stroke = Stroke::solid(INK, 1.3);
+        canvas.line(&[(x - r, y - r), (x + r, y + r)], stroke);
+        canvas.line(&[(x - r, y + r), (x + r, y - r)], stroke);
+    }
+
+    fn stroke(&self, line: &Line) -> Stroke {
+        let solid = Stroke::solid(self.colour(line.cells), 1.5);
+        if line.order > 2 {
+            Stroke {
+                dash: Some((5.0, 3.5)),
+                ..solid
+            }
+        } else {
+            solid
+        }
+    }
+
+    fn line(&self, canvas: &mut Canvas, line: &Line) {
+        let shown = || line.markers.iter().filter(|m| m.error > 0.0 && m.least_s > 0.0);
+        let points: Vec<_> = shown().map(|m| self.at(m.error, m.least_s)).collect();
+        canvas.line(&points, self.stroke(line));
+        for marker in shown() {
+            let (x, y) = self.at(marker.error, marker.least_s);
+            let median = self.at(marker.error, marker.median_s).1;
+            let colour = self.colour(line.cells);
+            canvas.line(&[(x, y), (x, median)], Stroke::solid(colour, 1.0));
+            draw_marker(canvas, (x, y), line.order, colour, marker.judged);
+        }
+    }
+
+    /// Tolerances, at the markers of the front.
+    fn labels(&self, canvas: &mut Canvas) {
+        let markers = self.data.lines.iter().flat_map(|l| &l.markers);
+        let mut labelled: Vec<(f64, f64)> = vec![];
+        for marker in markers.filter(|m| m.front) {
+            let at = self.at(marker.error, marker.least_s);
+            let at = (at.0 - 8.0, at.1 + 10.0);
+            let free = |p: &(f64, f64)| (p.0 - at.0).abs() > 30.0 || (p.1 - at.1).abs() > 11.0;
+            if labelled.iter().all(free) && at.0 - self.panel.place.left > 28.0 {
+                let words = Words::new(9.5, Anchor::Right).coloured(FAINT_INK);
+                canvas.text(at, &format!("{:e}", marker.rtol), words);
+                labelled.push(at);
+            }
+        }
+    }
+
+    fn legend(&self, canvas: &mut Canvas, balances: bool) {
+        let left = LEFT + WIDTH + 22.0;
+        let mut y = TOP + 8.0;
+        let words = Words::new(SMALL, Anchor::Left);
+        for line in self.data.lines.iter().filter(|l| !l.markers.is_empty()) {
+            canvas.line(&[(left, y), (left + 30.0, y)], self.stroke(line));
+            draw_marker(canvas, (left + 15.0, y), line.order, self.colour(line.cells), true);
+            let cells = if line.cells == 1 { "cell" } else { "cells" };
+            canvas.text(
+                (left + 38.0, y),
+                &format!("{} {cells}, order {}", line.cells, line.order),
+                words,
+            );
+            y += 18.0;
+        }
+        y += 10.0;
+        canvas.line(&[(left, y), (left + 30.0, y)], Stroke::solid(FRONT, 9.0));
+        canvas.text((left + 38.0, y), "no run is cheaper", words);
+        canvas.text((left + 38.0, y + 14.0), "and more accurate;", words);
+        canvas.text((left + 38.0, y + 28.0), "rtol beside it", words);
+        y += 50.0;
+        if balances {
+            self.cross(canvas, (left + 15.0, y));
+            canvas.text((left + 38.0, y), "error in time equals", words);
+            canvas.text((left + 38.0, y + 14.0), "error in space", words);
+            y += 36.0;
+        }
+        if self.data.lines.iter().flat_map(|l| &l.markers).any(|m| !m.judged) {
+            draw_marker(canvas, (left + 15.0, y), 2, FAINT_INK, false);
+            canvas.text((left + 38.0, y), "reference not ten", words);
+            canvas.text((left + 38.0, y + 14.0), "times better", words);
+            y += 36.0;
+        }
+        let faint = words.coloured(FAINT_INK);
+        let own = format!("reference's own error {}", significant(self.data.own, 1));
+        canvas.text((left, y), &own, faint);
+        if self.data.repeats > 1 {
+            let timing = format!("time: least of {} runs;", self.data.repeats);
+            canvas.text((left, y + 16.0), &timing, faint);
+            canvas.text((left, y + 30.0), "whisker: to the median", faint);
+        }
+    }
+}
+
+/// Round for orders 1 and 2, a diamond for 5, a square for what lies between; hollow when not judged.
+fn draw_marker(canvas: &mut Canvas, (x, y): (f64, f64), order: u8, colour: RGBColor, filled: bool) {
+    let shape = |r: f64| -> Vec<(f64, f64)> {
+        let (corners, turn, r) = match order {
+            0..=2 => (20, 0.0, r),
+            5 => (4, 0.0, 1.25 * r),
+            _ => (4, std::f64::consts::FRAC_PI_4, 1.2 * r),
+        };
+        (0..corners)
+            .map(|k| f64::from(k) * std::f64::consts::TAU / f64::from(corners) + turn)
+            .map(|angle| (x + r * angle.cos(), y + r * angle.sin()))
+            .collect()
+    };
+    canvas.polygon(&shape(RADIUS), colour);
+    if !filled {
+        canvas.polygon(&shape(RADIUS - 1.4), PAPER);
+    }
+}

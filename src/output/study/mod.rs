@@ -1,0 +1,93 @@
+//! What a study leaves behind: `study.csv`, `study.json`, `study.svg`, and its words.
+//!
+//! ```text
+//! table   for the terminal, and as CSV
+//! words   the sentence at the end
+//! ```
+
+mod table;
+mod words;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::folder::{fault, part_of};
+use super::plot::workprecision::{self, Balance, Line, Marker, WorkPrecision};
+use crate::error::Result;
+use crate::study::accuracy::Study;
+
+pub use table::{csv, table};
+pub use words::sentence;
+
+/// One row a setting and measure.
+pub const CSV: &str = "study.csv";
+/// Everything.
+pub const JSON: &str = "study.json";
+/// Error and time.
+pub const PICTURE: &str = "study.svg";
+
+/// The text of `study.json`; what is not finite is null.
+pub fn json(study: &Study) -> String {
+    let mut value = serde_json::to_value(study).unwrap_or_default();
+    value["sentence"] = sentence(study).into();
+    format!("{value:#}\n")
+}
+
+/// Writes the files into a folder, which is made; other files in it stay.
+pub fn write(dir: &Path, study: &Study) -> Result<Vec<PathBuf>> {
+    fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
+    let picture = picture(study).and_then(|data| workprecision::draw(&data));
+    let mut files = vec![(CSV, csv(study)), (JSON, json(study))];
+    files.extend(picture.map(|text| (PICTURE, text)));
+    files
+        .into_iter()
+        .map(|(name, text)| {
+            let path = dir.join(name);
+            let part = part_of(&path);
+            fs::write(&part, text)
+                .and_then(|()| fs::rename(&part, &path))
+                .map_err(|e| fault("write", &path, e))?;
+            Ok(path)
+        })
+        .collect()
+}
+
+/// The picture's data; `None` when nothing could be compared.
+pub fn picture(study: &Study) -> Option<WorkPrecision> {
+    let measure = study.measure()?;
+    let mut lines = vec![];
+    for &order in &study.plan.orders {
+        for &cells in &study.plan.cells {
+            let markers = study.line(cells, order).into_iter().filter_map(|k| {
+                let trial = &study.points[k].trial;
+                let error = study.error(k)?;
+                Some(Marker {
+                    error: error.total.max,
+                    least_s: trial.wall_min_s,
+                    median_s: trial.wall_median_s,
+                    rtol: trial.setting.rtol,
+                    judged: error.judged,
+                    front: study.points[k].on_front,
+                })
+            });
+            let balance = study.balances.iter().find(|b| (b.cells, b.order) == (cells, order));
+            lines.push(Line {
+                cells,
+                order,
+                markers: markers.collect(),
+                balance: balance.map(|b| Balance {
+                    error: b.at.error,
+                    seconds: b.at.cost,
+                }),
+            });
+        }
+    }
+    let repeats = study.points.iter().map(|p| p.trial.repeats).max().unwrap_or(1);
+    Some(WorkPrecision {
+        case: study.case.clone(),
+        measure: words::spoken(&measure.name),
+        own: measure.own().max,
+        repeats,
+        lines,
+    })
+}

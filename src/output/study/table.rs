@@ -1,0 +1,245 @@
+//! The table of a study, for the terminal and as CSV.
+
+use std::fmt::Write as _;
+
+use super::words::spoken;
+use crate::output::numbers::{shortest, significant};
+use crate::study::accuracy::Study;
+use crate::study::accuracy::study::Point;
+use crate::study::accuracy::trial::{Ending, Role};
+
+const HEADINGS: [&str; 13] = [
+    "cells",
+    "order",
+    "rtol",
+    "time",
+    "median",
+    "steps",
+    "residuals",
+    "factor.",
+    "failed",
+    "in time",
+    "in space",
+    "total",
+    "",
+];
+
+/// The table of points in the headline's measure, then references, then what each measure's limit is worth.
+pub fn table(study: &Study) -> String {
+    let mut text = String::new();
+    let Some(measure) = study.measure() else {
+        for point in &study.points {
+            let _ = writeln!(text, "{}", reasons(point));
+        }
+        return text;
+    };
+    let _ = writeln!(
+        text,
+        "{}: error of {}, largest over the run, relative to {} {}\n",
+        study.case,
+        spoken(&measure.name),
+        significant(measure.size.max, 3),
+        measure.unit
+    );
+    let mut lines = vec![HEADINGS.map(String::from)];
+    let mut unfinished = vec![];
+    for (k, point) in study
+        .points
+        .iter()
+        .enumerate()
+        .filter(|(_, p)| p.trial.role == Role::Point)
+    {
+        match study.error(k) {
+            Some(_) => lines.push(row(study, k)),
+            None => unfinished.push(reasons(point)),
+        }
+    }
+    let widths: [usize; 13] = std::array::from_fn(|k| lines.iter().map(|l| l[k].chars().count()).max().unwrap_or(0));
+    for line in &lines {
+        let cells: Vec<String> = line
+            .iter()
+            .zip(widths)
+            .map(|(cell, width)| format!("{cell:>width$}"))
+            .collect();
+        let _ = writeln!(text, "{}", cells.join("  ").trim_end());
+    }
+    text += "\n* no other point is both cheaper and more accurate   ? the reference is not ten times better than this point\n\
+             time: least of the timed runs; failed: rejected steps and Newton failures\n";
+    if !unfinished.is_empty() {
+        let _ = writeln!(text, "\nnot finished\n  {}", unfinished.join("\n  "));
+    }
+    text += &references(study);
+    text += &limits(study);
+    text
+}
+
+fn row(study: &Study, k: usize) -> [String; 13] {
+    let point = &study.points[k];
+    let (trial, s) = (&point.trial, point.trial.setting);
+    let small = |x: Option<f64>| x.map_or_else(|| "-".into(), |x| format!("{x:.1e}"));
+    let seconds = |x: f64| if x < 10.0 { format!("{x:.3}") } else { format!("{x:.1}") };
+    let errors = study.error(k);
+    let mark = match (point.on_front, errors.is_some_and(|e| e.judged)) {
+        (true, true) => "*",
+        (true, false) => "*?",
+        (false, true) => "",
+        (false, false) => "?",
+    };
+    let c = &trial.counters;
+    [
+        s.cells.to_string(),
+        s.order.to_string(),
+        format!("{:e}", s.rtol),
+        seconds(trial.wall_min_s),
+        seconds(trial.wall_median_s),
+        c.steps.to_string(),
+        c.residual_evaluations.to_string(),
+        c.factorizations.to_string(),
+        (c.error_test_failures + c.newton_failures).to_string(),
+        small(errors.and_then(|e| e.temporal).map(|e| e.max)),
+        small(errors.and_then(|e| e.spatial).map(|e| e.max)),
+        small(errors.map(|e| e.total.max)),
+        mark.into(),
+    ]
+}
+
+fn reasons(point: &Point) -> String {
+    let s = point.trial.setting;
+    let how = ending(point.trial.ending);
+    let why = point.trial.reason.as_deref().unwrap_or("no reason given");
+    format!("{} cells, order {}, rtol {:e}: {how}: {why}", s.cells, s.order, s.rtol)
+}
+
+fn ending(ending: Ending) -> &'static str {
+    match ending {
+        Ending::Finished => "finished",
+        Ending::Stopped => "stopped",
+        Ending::Failed => "failed",
+        Ending::Skipped => "skipped",
+    }
+}
+
+fn references(study: &Study) -> String {
+    let mut text = String::from("\nreference of each mesh, and its own error by two routes\n");
+    let k = study.headline;
+    let small = |x: Option<f64>| x.map_or_else(|| "unknown".into(), |x| format!("{x:.1e}"));
+    for r in &study.references {
+        let _ = write!(
+            text,
+            "  {} cells: order {}, rtol {:e}, {:.2} s: {} by its tolerances",
+            r.cells,
+            r.order,
+            r.rtol,
+            r.wall_s,
+            small(r.by_tolerance[k].map(|n| n.max))
+        );
+        if let Some((order, rtol)) = r.checked_by {
+            let apart = small(r.by_order[k].map(|n| n.max));
+            let _ = write!(text, ", {apart} from order {order} at rtol {rtol:e}");
+        }
+        let _ = writeln!(text, "; believed {:.1e}", r.own[k].max);
+    }
+    text
+}
+
+/// What is known of each measure: order in space, own error of the limit.
+fn limits(study: &Study) -> String {
+    let mut text = String::from(
+        "\nlimit of each measure             order  limit by        own error  of it in space      size\n",
+    );
+    for m in &study.measures {
+        let order = m.order.map_or("-".into(), |o| {
+            format!("{o:.2}{}", if m.order_is_clean { "" } else { "~" })
+        });
+        let by = match m.extrapolated_with {
+            Some(q) => format!("Richardson h^{}", significant(q, 2)),
+            None => "finest mesh".into(),
+        };
+        let _ = writeln!(
+            text,
+            "  {:<30} {order:>6}  {by:<14} {:>10.1e} {:>15}  {:>8} {}",
+            m.name,
+            m.own().max,
+            m.own_spatial
+                .map_or_else(|| "unknown".into(), |n| format!("{:.1e}", n.max)),
+            significant(m.size.max, 3),
+            m.unit
+        );
+    }
+    text += "  ~ errors in time are above a tenth of the differences between meshes\n";
+    if !study.left_out.is_empty() {
+        let _ = writeln!(
+            text,
+            "  nothing beside others of its unit: {}",
+            study.left_out.join(", ")
+        );
+    }
+    text
+}
+
+/// `study.csv`: one row a setting and measure; one without errors for a setting that did not finish.
+pub fn csv(study: &Study) -> String {
+    let mut text = String::from(
+        "cells_per_segment,cells_per_bladder,max_order,rtol,role,status,reason,unknowns,wall_min [s],wall_median [s],repeats,\
+         steps,residual_evaluations,jacobian_evaluations,factorizations,error_test_failures,newton_failures,\
+         measure,kind,temporal_l2,temporal_max,spatial_l2,spatial_max,total_l2,total_max,limit_own_error_l2,\
+         limit_own_error_max,judged,on_front\n",
+    );
+    for point in &study.points {
+        let (trial, s, c) = (&point.trial, point.trial.setting, &point.trial.counters);
+        let role = match trial.role {
+            Role::Point => "point",
+            Role::Reference => "reference",
+        };
+        let reason = trial.reason.as_deref().unwrap_or("").replace('"', "'");
+        let first = format!(
+            "{},{},{},{:e},{role},{},\"{reason}\",{},{},{},{},{},{},{},{},{},{}",
+            s.cells,
+            s.cells_per_bladder(),
+            s.order,
+            s.rtol,
+            ending(trial.ending),
+            trial.unknowns,
+            number(Some(trial.wall_min_s)),
+            number(Some(trial.wall_median_s)),
+            trial.repeats,
+            c.steps,
+            c.residual_evaluations,
+            c.jacobian_evaluations,
+            c.factorizations,
+            c.error_test_failures,
+            c.newton_failures
+        );
+        let Some(errors) = &point.errors else {
+            let _ = writeln!(text, "{first}{}", ",".repeat(12));
+            continue;
+        };
+        for (e, m) in errors.iter().zip(&study.measures) {
+            let kind = format!("{:?}", m.kind).to_lowercase();
+            let own = m.own();
+            let numbers = [
+                e.temporal.map(|n| n.l2),
+                e.temporal.map(|n| n.max),
+                e.spatial.map(|n| n.l2),
+                e.spatial.map(|n| n.max),
+                Some(e.total.l2),
+                Some(e.total.max),
+                Some(own.l2),
+                Some(own.max),
+            ]
+            .map(number)
+            .join(",");
+            let _ = writeln!(
+                text,
+                "{first},{},{kind},{numbers},{},{}",
+                m.name, e.judged, point.on_front
+            );
+        }
+    }
+    text
+}
+
+/// Empty when unknown or not finite.
+fn number(x: Option<f64>) -> String {
+    x.filter(|x| x.is_finite()).map_or_else(String::new, shortest)
+}

@@ -1,0 +1,137 @@
+//! The sentence at the end of a study.
+
+use crate::output::numbers::{significant, trimmed};
+use crate::study::accuracy::{Setting, Study};
+
+/// A measure as people say it.
+pub fn spoken(name: &str) -> String {
+    match name {
+        "tip_u1" => "tip deflection".into(),
+        "tip_u3" => "axial tip displacement".into(),
+        "tip_angle" => "tip angle".into(),
+        "max_pressure" => "the largest pressure".into(),
+        other => other.replace('_', " "),
+    }
+}
+
+/// `1 % of tip deflection costs 0.03 s (2 cells, rtol 1e-3); ...; looser than rtol 1e-3 costs more, not less.`
+pub fn sentence(study: &Study) -> String {
+    let Some(measure) = study.measure() else {
+        return "Nothing can be said: no run finished.".into();
+    };
+    let orders: Vec<u8> = study.plan.orders.clone();
+    let mut parts: Vec<String> = vec![];
+    let mut missing = vec![];
+    let mut last = None;
+    for answer in &study.answers {
+        let accuracy = format!("{} %", trimmed(&significant(100.0 * answer.accuracy, 2)));
+        let Some(k) = answer.point else {
+            missing.push(accuracy);
+            continue;
+        };
+        let trial = &study.points[k].trial;
+        let of = if parts.is_empty() {
+            format!(" of {}", spoken(&measure.name))
+        } else {
+            String::new()
+        };
+        if last == Some(k) {
+            // The cheapest run of all is more accurate than asked: it answers the looser question, too.
+            parts.pop();
+            let of = if parts.is_empty() {
+                format!(" of {}", spoken(&measure.name))
+            } else {
+                String::new()
+            };
+            parts.push(format!(
+                "{accuracy}{of} costs {}",
+                price(trial.wall_min_s, trial.setting, &orders)
+            ));
+        } else {
+            parts.push(format!(
+                "{accuracy}{of} costs {}",
+                price(trial.wall_min_s, trial.setting, &orders)
+            ));
+        }
+        last = Some(k);
+    }
+    if parts.is_empty() {
+        parts.push(format!(
+            "no setting has {} of {}",
+            missing.join(" or "),
+            spoken(&measure.name)
+        ));
+    } else if !missing.is_empty() {
+        let are = if missing.len() > 1 { "are" } else { "is" };
+        parts.push(format!(
+            "{} {are} not reached, or cannot be judged within this budget",
+            missing.join(" and ")
+        ));
+    }
+    parts.extend(foot(study));
+    parts.extend(trap(study));
+    let mut text = parts.join("; ");
+    text.push('.');
+    text
+}
+
+fn price(seconds: f64, setting: Setting, orders: &[u8]) -> String {
+    let order = if orders.len() > 1 {
+        format!(", order {}", setting.order)
+    } else {
+        String::new()
+    };
+    let cells = if setting.cells == 1 { "cell" } else { "cells" };
+    format!(
+        "{} s ({} {cells}{order}, rtol {:e})",
+        significant(seconds, 2),
+        setting.cells,
+        setting.rtol
+    )
+}
+
+/// The worst foot among the lines that an answer lies on.
+fn foot(study: &Study) -> Option<String> {
+    let lines: Vec<_> = study
+        .answers
+        .iter()
+        .filter_map(|a| a.point)
+        .map(|k| study.points[k].trial.line())
+        .collect();
+    let on_answers = study
+        .feet
+        .iter()
+        .filter(|f| lines.contains(&study.points[f.cheapest].trial.line()));
+    let worst = on_answers.max_by(|a, b| a.factor.total_cmp(&b.factor))?;
+    let setting = study.points[worst.cheapest].trial.setting;
+    let factor = significant(worst.factor, 2);
+    Some(format!(
+        "looser than rtol {:e} costs more, not less (up to {factor} times)",
+        setting.rtol
+    ))
+}
+
+/// How much more orders beyond 2 cost at the first accuracy that both have, when they cost more.
+fn trap(study: &Study) -> Option<String> {
+    let cheapest = |high: bool, accuracy: f64| {
+        let all = study.points.iter().enumerate().filter(|(k, p)| {
+            (p.trial.setting.order > 2) == high && study.error(*k).is_some_and(|e| e.bound.max <= accuracy)
+        });
+        all.map(|(_, p)| p.trial.wall_min_s).reduce(f64::min)
+    };
+    let answer = study
+        .answers
+        .iter()
+        .filter(|a| a.point.is_some() && a.accuracy < 0.05)
+        .map(|a| a.accuracy);
+    let (accuracy, factor) = answer
+        .filter_map(|accuracy| Some((accuracy, cheapest(true, accuracy)? / cheapest(false, accuracy)?)))
+        .next()?;
+    (factor > 2.0).then(|| {
+        let percent = trimmed(&significant(100.0 * accuracy, 2));
+        format!(
+            "orders beyond 2 cost {} times as much at {percent} %",
+            significant(factor, 2)
+        )
+    })
+}

@@ -1,0 +1,314 @@
+//! The study of a case, from its settings to what they say.
+
+use serde::Serialize;
+
+use super::errors::{self, BETTER, Errors};
+use super::front::{self, Answer, Balance, Foot, Mark};
+use super::norms::Norms;
+use super::plan::Plan;
+use super::reference::{self, Limit, Temporal};
+use super::signals::{Kind, Signal};
+use super::sweep::{self, Watch};
+use super::trial::{Role, Trial};
+use crate::case::Case;
+use crate::error::{Error, Result};
+
+/// Accuracies for which the cheapest point is sought.
+const ACCURACIES: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
+/// Signals smaller than this beside others of their unit are round-off.
+const NOTHING: f64 = 1e-6;
+
+/// A run with its errors.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    /// The run.
+    pub trial: Trial,
+    /// Errors in every measure; only of finished runs.
+    pub errors: Option<Vec<Errors>>,
+    /// Whether no other point is both more accurate and cheaper, in the headline's measure.
+    pub on_front: bool,
+}
+
+/// The balance of temporal and spatial error on one line.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LineBalance {
+    /// Beam cells per segment.
+    pub cells: usize,
+    /// Highest order.
+    pub order: u8,
+    /// Where.
+    pub at: Balance,
+}
+
+/// Everything that a study found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Study {
+    /// Name of the case.
+    pub case: String,
+    /// What was asked for.
+    pub plan: Plan,
+    /// What it took, in the unit of the budget.
+    pub spent: f64,
+    /// What is measured, each in the limit to which the meshes point.
+    pub measures: Vec<Limit>,
+    /// Signals that are nothing in this case, and not measured.
+    pub left_out: Vec<String>,
+    /// The measure that picture, table and sentence are about, in the maximum norm.
+    pub headline: usize,
+    /// The best run on each mesh.
+    pub references: Vec<Temporal>,
+    /// All runs, references included.
+    pub points: Vec<Point>,
+    /// Points that no other beats, by falling error.
+    pub front: Vec<usize>,
+    /// Cheapest points for 10 %, 1 %, 0.1 %, 0.01 %.
+    pub answers: Vec<Answer>,
+    /// Lines on which looser tolerances cost more.
+    pub feet: Vec<Foot>,
+    /// Where temporal equals spatial error.
+    pub balances: Vec<LineBalance>,
+    /// What to know before these numbers are used.
+    pub notes: Vec<String>,
+}
+
+impl Study {
+    /// What the headline measures.
+    pub fn measure(&self) -> Option<&Limit> {
+        self.measures.get(self.headline)
+    }
+
+    /// Errors of a point in the headline's measure.
+    pub fn error(&self, point: usize) -> Option<&Errors> {
+        self.points.get(point)?.errors.as_ref()?.get(self.headline)
+    }
+
+    /// Finished points of a line, loose to tight; references are none of them.
+    pub fn line(&self, cells: usize, order: u8) -> Vec<usize> {
+        let mut line: Vec<usize> = (0..self.points.len())
+            .filter(|&k| {
+                let trial = &self.points[k].trial;
+                trial.role == Role::Point && trial.finished() && trial.line() == (cells, order)
+            })
+            .collect();
+        line.sort_by(|&a, &b| {
+            self.points[b]
+                .trial
+                .setting
+                .rtol
+                .total_cmp(&self.points[a].trial.setting.rtol)
+        });
+        line
+    }
+}
+
+/// Studies a case; `measure` names the headline, by default the deflection of the tip.
+pub fn study(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> Result<Study> {
+    let (mut trials, spent) = sweep::sweep(case, &plan, watch)?;
+    let (left_out, sizes) = agree(&mut trials);
+    let names: Vec<String> = best(&trials)
+        .iter()
+        .flat_map(|s| s.iter().map(|s| s.name.clone()))
+        .collect();
+    let headline = headline(&names, measure)?;
+    let mut orders: Vec<u8> = plan.orders.iter().copied().chain(plan.reference_orders()).collect();
+    orders.sort_unstable();
+    orders.dedup();
+    let references: Vec<Temporal> = plan
+        .reference_cells()
+        .into_iter()
+        .filter_map(|k| reference::temporal(&trials, k, &orders, &sizes, headline))
+        .collect();
+    let measures: Vec<Limit> = best(&trials)
+        .iter()
+        .flat_map(|signals| signals.iter().enumerate())
+        .filter_map(|(k, signal)| reference::limit(&references, signal, k, sizes[k]))
+        .collect();
+    trials.sort_by(|a, b| {
+        let key = |t: &Trial| (t.role == Role::Reference, t.line());
+        key(a).cmp(&key(b)).then(b.setting.rtol.total_cmp(&a.setting.rtol))
+    });
+    let points = trials
+        .into_iter()
+        .map(|trial| Point {
+            errors: errors::errors(&trial, &references, &measures),
+            trial,
+            on_front: false,
+        })
+        .collect();
+    let mut study = Study {
+        case: case.name.clone(),
+        plan,
+        spent,
+        measures,
+        left_out,
+        headline,
+        references,
+        points,
+        front: vec![],
+        answers: vec![],
+        feet: vec![],
+        balances: vec![],
+        notes: vec![],
+    };
+    conclude(&mut study);
+    study.notes = notes(&study);
+    Ok(study)
+}
+
+/// Signals of the run that was asked for most.
+fn best(trials: &[Trial]) -> Option<&Vec<Signal>> {
+    let finest = trials.iter().filter(|t| t.finished()).max_by(|a, b| {
+        a.setting
+            .cells
+            .cmp(&b.setting.cells)
+            .then(b.setting.rtol.total_cmp(&a.setting.rtol))
+    });
+    finest.and_then(|t| t.signals.as_ref())
+}
+
+/// Keeps the signals that all finished runs have and that are more than round-off, in the same order everywhere;
+/// returns the names of the others, and the sizes of those kept.
+fn agree(trials: &mut [Trial]) -> (Vec<String>, Vec<Norms>) {
+    let Some(best) = best(trials) else {
+        return (vec![], vec![]);
+    };
+    let size = |s: &Signal| s.scale.map_or_else(|| Norms::of(s.values.iter().copied()), Norms::both);
+    let largest = |unit: &str| {
+        let alike = best.iter().filter(|s| s.unit == unit && s.kind != Kind::Quantity);
+        alike.map(|s| size(s).max).fold(0.0, f64::max)
+    };
+    let everywhere = |signal: &Signal| {
+        let same = |s: &Signal| s.name == signal.name && s.kind == signal.kind && s.values.len() == signal.values.len();
+        trials
+            .iter()
+            .filter_map(|t| t.signals.as_ref())
+            .all(|signals| signals.iter().any(same))
+    };
+    let counts = |s: &&Signal| {
+        let size = size(s).max;
+        size > 0.0 && size >= NOTHING * largest(&s.unit) && everywhere(s)
+    };
+    let (kept, others): (Vec<&Signal>, Vec<&Signal>) = best.iter().partition(counts);
+    let left_out = others.iter().map(|s| s.name.clone()).collect();
+    let sizes = kept.iter().map(|s| size(s)).collect();
+    let kept: Vec<(String, Kind)> = kept.iter().map(|s| (s.name.clone(), s.kind)).collect();
+    for signals in trials.iter_mut().filter_map(|t| t.signals.as_mut()) {
+        let find = |(name, kind): &(String, Kind)| signals.iter().find(|s| s.name == *name && s.kind == *kind).cloned();
+        *signals = kept.iter().filter_map(find).collect();
+    }
+    (left_out, sizes)
+}
+
+fn headline(names: &[String], wanted: Option<&str>) -> Result<usize> {
+    let at = |name: &str| names.iter().position(|n| n == name);
+    match wanted {
+        Some(name) if !names.is_empty() => {
+            at(name).ok_or_else(|| Error::Usage(format!("--measure {name}: this case has {}", names.join(", "))))
+        }
+        _ => Ok(at("tip_u1").or_else(|| at("tip_u3")).unwrap_or(0)),
+    }
+}
+
+fn conclude(study: &mut Study) {
+    let all = 0..study.points.len();
+    let none = Mark {
+        error: f64::INFINITY,
+        cost: f64::INFINITY,
+    };
+    let mark = |k: usize| match study.error(k) {
+        Some(errors) if study.points[k].trial.role == Role::Point => Mark {
+            error: errors.bound.max,
+            cost: study.points[k].trial.wall_min_s,
+        },
+        _ => none,
+    };
+    let marks: Vec<Mark> = all.clone().map(mark).collect();
+    study.front = front::front(&marks);
+    study.answers = front::answers(&marks, &study.front, &ACCURACIES);
+    let cost: Vec<f64> = all.clone().map(|k| study.points[k].trial.wall_min_s).collect();
+    let work: Vec<f64> = all
+        .map(|k| study.points[k].trial.counters.residual_evaluations as f64)
+        .collect();
+    let lines = || {
+        study
+            .plan
+            .cells
+            .iter()
+            .flat_map(|&c| study.plan.orders.iter().map(move |&o| (c, o)))
+    };
+    study.feet = lines()
+        .filter_map(|(c, o)| front::foot(&study.line(c, o), &cost, &work))
+        .collect();
+    study.balances = lines()
+        .filter_map(|(cells, order)| {
+            let line = study.line(cells, order);
+            let along = line.iter().filter_map(|&k| {
+                let errors = study.error(k)?;
+                Some((
+                    study.points[k].trial.setting.rtol,
+                    errors.temporal?.max,
+                    errors.total.max,
+                    cost[k],
+                ))
+            });
+            let spatial = study.error(*line.first()?)?.spatial?.max;
+            let at = front::balance(&along.collect::<Vec<_>>(), spatial)?;
+            Some(LineBalance { cells, order, at })
+        })
+        .collect();
+    for &k in &study.front {
+        study.points[k].on_front = true;
+    }
+}
+
+fn notes(study: &Study) -> Vec<String> {
+    let mut notes = vec![];
+    let Some(measure) = study.measure() else {
+        return vec!["no run finished: there is nothing to compare".into()];
+    };
+    let own = measure.own().max;
+    let judged: Vec<bool> = (0..study.points.len())
+        .filter(|&k| study.points[k].trial.role == Role::Point)
+        .filter_map(|k| Some(study.error(k)?.judged))
+        .collect();
+    let unjudged = judged.iter().filter(|j| !**j).count();
+    if unjudged > 0 {
+        notes.push(format!(
+            "{unjudged} of {} points are not judged: the reference is not {BETTER} times better than they are (its own error \
+             in {} is {own:.1e}); a larger --budget or tighter --rtol and finer --cells improve it",
+            judged.len(),
+            measure.name
+        ));
+    }
+    let known = |cells: &usize| study.references.iter().any(|r| r.cells == *cells);
+    if !study.plan.cells.iter().all(known) {
+        notes.push("some meshes have no finished run: they are not in the comparison".into());
+    }
+    if study.references.len() == 1 {
+        notes.push("one mesh only: errors are those of the time integration, nothing is known of the mesh".into());
+    }
+    if study.references.len() > 1 && measure.extrapolated_with.is_none() {
+        notes.push(format!(
+            "the meshes do not converge in {} at a known order: the finest mesh stands for the limit",
+            measure.name
+        ));
+    } else if measure.order.is_some() && !measure.order_is_clean {
+        notes.push(format!(
+            "the observed order of {} is not clean: errors in time are above a tenth of the differences between meshes",
+            measure.name
+        ));
+    }
+    for r in &study.references {
+        let k = study.headline;
+        if let (Some(t), Some(o)) = (r.by_tolerance[k], r.by_order[k])
+            && r.own[k].max > t.max
+        {
+            notes.push(format!(
+                "{} cells: the two ways to judge the reference disagree ({:.1e} by its tolerances, {:.1e} by another order); \
+                 the larger one counts",
+                r.cells, t.max, o.max
+            ));
+        }
+    }
+    notes
+}

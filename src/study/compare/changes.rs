@@ -1,0 +1,68 @@
+//! What differs between two cases.
+
+use serde::Serialize;
+use serde_json::Value;
+
+/// A value that is not the same.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Change {
+    /// JSON pointer.
+    pub pointer: String,
+    /// In the first case, null when absent.
+    pub a: Value,
+    /// In the second case.
+    pub b: Value,
+}
+
+/// How a case is computed and not what it is.
+const NUMERICS: [&str; 6] = [
+    "/mesh",
+    "/solver",
+    "/time/output_interval_s",
+    "/time/fields_interval_s",
+    "/time/window_s",
+    "/time/checkpoint_interval_s",
+];
+
+/// Names and words.
+const WORDS: [&str; 3] = ["/name", "/about", "/$schema"];
+
+/// Changes of the physics, and changes of the numerics.
+pub fn changes(a: &Value, b: &Value) -> (Vec<Change>, Vec<Change>) {
+    let mut all = vec![];
+    walk(a, b, String::new(), &mut all);
+    all.retain(|c| !WORDS.contains(&c.pointer.as_str()));
+    all.into_iter()
+        .partition(|c| !NUMERICS.iter().any(|n| c.pointer.starts_with(n)))
+}
+
+fn walk(a: &Value, b: &Value, pointer: String, out: &mut Vec<Change>) {
+    match (a, b) {
+        (Value::Object(x), Value::Object(y)) => {
+            for (key, value) in x {
+                walk(
+                    value,
+                    y.get(key).unwrap_or(&Value::Null),
+                    format!("{pointer}/{key}"),
+                    out,
+                );
+            }
+            for (key, value) in y.iter().filter(|(key, _)| !x.contains_key(*key)) {
+                walk(&Value::Null, value, format!("{pointer}/{key}"), out);
+            }
+        }
+        (Value::Array(x), Value::Array(y)) if x.len() == y.len() => {
+            for (k, (a, b)) in x.iter().zip(y).enumerate() {
+                walk(a, b, format!("{pointer}/{k}"), out);
+            }
+        }
+        // 1 and 1.0 are the same number.
+        (Value::Number(x), Value::Number(y)) if x.as_f64() == y.as_f64() => {}
+        _ if a == b => {}
+        _ => out.push(Change {
+            pointer,
+            a: a.clone(),
+            b: b.clone(),
+        }),
+    }
+}

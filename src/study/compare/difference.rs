@@ -1,0 +1,332 @@
+//! How far apart two recordings are.
+
+use serde::Serialize;
+
+use super::align::{self, Places};
+use super::changes::{self, Change};
+use super::interpolate::cubic;
+use super::recording::{Array, Recording, Series};
+use crate::run::summary::Quantity;
+use crate::study::accuracy::Norms;
+
+/// One field or column.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Difference {
+    /// Name.
+    pub name: String,
+    /// Unit; empty for a field, whose name has it.
+    pub unit: String,
+    /// Norms relative to those of the larger of the two.
+    pub relative: Norms,
+    /// Size to which they refer.
+    pub size: Norms,
+    /// Time of the largest difference [s].
+    pub at_s: f64,
+    /// Its place, a share of the beam's length or of the network, for fields.
+    pub place: Option<f64>,
+    /// What interpolation in time may add to the largest difference, relative; 0 where the times coincide.
+    pub interpolation: f64,
+    /// Instants compared.
+    pub instants: usize,
+}
+
+/// One figure of the summary.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FigureDifference {
+    /// `tip_u1_m.max_abs`.
+    pub name: String,
+    /// In the first.
+    pub a: f64,
+    /// In the second.
+    pub b: f64,
+    /// Difference over the largest figure of the quantity.
+    pub relative: f64,
+}
+
+/// What each run took.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Cost {
+    /// What is counted.
+    pub name: String,
+    /// By the first.
+    pub a: f64,
+    /// By the second.
+    pub b: f64,
+}
+
+/// Two results side by side.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// The two folders.
+    pub folders: [String; 2],
+    /// Time that both cover [s].
+    pub from_s: f64,
+    /// End of it [s].
+    pub to_s: f64,
+    /// What differs in the physics: differences are then no errors.
+    pub physics: Vec<Change>,
+    /// What differs in the numerics.
+    pub numerics: Vec<Change>,
+    /// Histories.
+    pub histories: Vec<Difference>,
+    /// Fields.
+    pub fields: Vec<Difference>,
+    /// Figures of the summaries.
+    pub figures: Vec<FigureDifference>,
+    /// Wall time and work.
+    pub costs: Vec<Cost>,
+    /// What could not be compared, and why.
+    pub left_out: Vec<String>,
+}
+
+/// Smaller than this beside others of the same unit is round-off.
+const NOTHING: f64 = 1e-9;
+
+/// Compares two recordings.
+pub fn compare(a: &Recording, b: &Recording) -> Comparison {
+    let end = |times: &[f64]| times.last().copied().unwrap_or(0.0);
+    let start = |times: &[f64]| times.first().copied().unwrap_or(0.0);
+    let (physics, numerics) = changes::changes(&a.case, &b.case);
+    let mut out = Comparison {
+        folders: [a.label.clone(), b.label.clone()],
+        from_s: start(&a.times).max(start(&b.times)),
+        to_s: end(&a.times).min(end(&b.times)),
+        physics,
+        numerics,
+        histories: vec![],
+        fields: vec![],
+        figures: figures(a, b),
+        costs: costs(a, b),
+        left_out: vec![],
+    };
+    let largest = |unit: &str| {
+        let alike = [a, b].into_iter().flat_map(|r| &r.columns).filter(|c| c.unit == unit);
+        alike.flat_map(|c| &c.values).fold(0.0, |m: f64, x| m.max(x.abs()))
+    };
+    for column in &a.columns {
+        match b
+            .column(&column.name)
+            .and_then(|other| history((a, column), (b, other)))
+        {
+            Some(d) if d.size.max > NOTHING * largest(&column.unit) => out.histories.push(d),
+            Some(d) if d.size.max > 0.0 => out.left_out.push(format!("{}: round-off in both", column.name)),
+            Some(_) => {}
+            None => out
+                .left_out
+                .push(format!("{}: not in both, or no time in common", column.name)),
+        }
+    }
+    for array in &a.fields {
+        match b
+            .field(&array.name)
+            .ok_or("not in both")
+            .and_then(|other| field((a, array), (b, other)))
+        {
+            Ok(d) if d.size.max > NOTHING * largest_field(a, b, &array.name) => out.fields.push(d),
+            Ok(d) if d.size.max > 0.0 => out.left_out.push(format!("{}: round-off in both", array.name)),
+            Ok(_) => {}
+            Err(why) => out.left_out.push(format!("{}: {why}", array.name)),
+        }
+    }
+    out
+}
+
+/// Largest value among the fields of the same unit, which is what follows the first underscore of a name.
+fn largest_field(a: &Recording, b: &Recording, name: &str) -> f64 {
+    let unit = |name: &str| name.split_once('_').map(|n| n.1.to_string());
+    let alike = [a, b]
+        .into_iter()
+        .flat_map(|r| &r.fields)
+        .filter(|f| unit(&f.name) == unit(name));
+    alike.flat_map(|f| &f.values).fold(0.0, |m: f64, x| m.max(x.abs()))
+}
+
+/// Instants of the recording with fewer of them that both cover; whether these are the first one's.
+fn shared(a: &[f64], b: &[f64]) -> (Vec<f64>, bool) {
+    let (Some(from), Some(to)) = (a.first().zip(b.first()), a.last().zip(b.last())) else {
+        return (vec![], true);
+    };
+    let (from, to) = (from.0.max(*from.1), to.0.min(*to.1));
+    // A hair of grace: two ends that differ by round-off are the same.
+    let hair = 1e-9 * (to - from).abs();
+    let within = |times: &[f64]| -> Vec<f64> {
+        times
+            .iter()
+            .copied()
+            .filter(|t| (from - hair..=to + hair).contains(t))
+            .collect()
+    };
+    let (of_a, of_b) = (within(a), within(b));
+    if of_a.len() <= of_b.len() {
+        (of_a, true)
+    } else {
+        (of_b, false)
+    }
+}
+
+/// Collects a difference over instants.
+struct Sum {
+    squares: [f64; 3],
+    largest: [f64; 3],
+    count: usize,
+    at: f64,
+    place: usize,
+}
+
+impl Sum {
+    fn new() -> Self {
+        Self {
+            squares: [0.0; 3],
+            largest: [0.0; 3],
+            count: 0,
+            at: 0.0,
+            place: 0,
+        }
+    }
+
+    fn take(&mut self, t: f64, a: &[f64], b: &[f64]) {
+        for (k, (&a, &b)) in a.iter().zip(b).enumerate() {
+            let off = (a - b).abs();
+            if off > self.largest[2] {
+                (self.at, self.place) = (t, k);
+            }
+            for (i, x) in [a.abs(), b.abs(), off].into_iter().enumerate() {
+                self.squares[i] += x * x;
+                self.largest[i] = self.largest[i].max(x);
+            }
+            self.count += 1;
+        }
+    }
+
+    fn norms(&self, i: usize) -> Norms {
+        Norms {
+            l2: (self.squares[i] / self.count.max(1) as f64).sqrt(),
+            max: self.largest[i],
+        }
+    }
+
+    fn difference(&self, name: &str, unit: &str, interpolation: f64, instants: usize) -> Difference {
+        let size = self.norms(0).or_larger(self.norms(1));
+        Difference {
+            name: name.into(),
+            unit: unit.into(),
+            relative: self.norms(2).over(size),
+            size,
+            at_s: self.at,
+            place: None,
+            interpolation: if size.max > 0.0 { interpolation / size.max } else { 0.0 },
+            instants,
+        }
+    }
+}
+
+fn history((a, of_a): (&Recording, &Series), (b, of_b): (&Recording, &Series)) -> Option<Difference> {
+    let (times, a_is_coarse) = shared(&a.times, &b.times);
+    if times.is_empty() {
+        return None;
+    }
+    let mut sum = Sum::new();
+    let mut exact = true;
+    for &t in &times {
+        let mut at = |times: &[f64], series: &Series| {
+            let weights = cubic(times, t);
+            exact &= weights.is_exact();
+            weights.mean(|k| series.values[k])
+        };
+        sum.take(t, &[at(&a.times, of_a)], &[at(&b.times, of_b)]);
+    }
+    let (dense, series) = if a_is_coarse { (b, of_b) } else { (a, of_a) };
+    let added = if exact {
+        0.0
+    } else {
+        align::column_interpolation_error(&dense.times, &series.values)
+    };
+    Some(sum.difference(&of_a.name, &of_a.unit, added, times.len()))
+}
+
+fn field((a, of_a): (&Recording, &Array), (b, of_b): (&Recording, &Array)) -> Result<Difference, &'static str> {
+    let (times, a_is_coarse) = shared(&a.field_times, &b.field_times);
+    if times.is_empty() {
+        return Err("no time in common");
+    }
+    let places = |r, f| Places::of(r, f).ok_or("its coordinate is missing");
+    let (at_a, at_b) = (places(a, of_a)?, places(b, of_b)?);
+    if !at_a.alike(&at_b) {
+        return Err("the networks are not the same");
+    }
+    let coarse = if at_a.x.len() <= at_b.x.len() { &at_a } else { &at_b };
+    let mut sum = Sum::new();
+    let mut exact = true;
+    for &t in &times {
+        exact &= cubic(&a.field_times, t).is_exact() && cubic(&b.field_times, t).is_exact();
+        let row_a = at_a.bring(&align::row_at(a, of_a, t), coarse);
+        let row_b = at_b.bring(&align::row_at(b, of_b, t), coarse);
+        sum.take(t, &row_a, &row_b);
+    }
+    let (dense, array) = if a_is_coarse { (b, of_b) } else { (a, of_a) };
+    let added = if exact {
+        0.0
+    } else {
+        align::field_interpolation_error(dense, array)
+    };
+    Ok(Difference {
+        place: Some(coarse.x[sum.place]),
+        ..sum.difference(&of_a.name, "", added, times.len())
+    })
+}
+
+fn figures(a: &Recording, b: &Recording) -> Vec<FigureDifference> {
+    let named = |q: &Quantity| {
+        [
+            ("final", q.last),
+            ("max_abs", q.max_abs),
+            ("window_max_abs", q.window_max_abs),
+            ("window", q.window),
+        ]
+    };
+    let mut all = vec![];
+    for (name, of_a) in &a.summary.quantities {
+        let Some(of_b) = b.summary.quantities.get(name) else {
+            continue;
+        };
+        let pairs = named(of_a).into_iter().zip(named(of_b));
+        let pairs: Vec<_> = pairs
+            .filter_map(|((figure, a), (_, b))| Some((figure, a?, b?)))
+            .collect();
+        let size = pairs.iter().fold(0.0, |s: f64, (_, a, b)| s.max(a.abs()).max(b.abs()));
+        all.extend(
+            pairs
+                .into_iter()
+                .filter(|_| size > 0.0)
+                .map(|(figure, a, b)| FigureDifference {
+                    name: format!("{name}.{figure}"),
+                    a,
+                    b,
+                    relative: (a - b).abs() / size,
+                }),
+        );
+    }
+    all
+}
+
+fn costs(a: &Recording, b: &Recording) -> Vec<Cost> {
+    let of = |r: &Recording| {
+        let (s, w) = (&r.summary.solver, &r.summary.wall_s);
+        [
+            ("wall time [s]", w.total),
+            ("steps", s.steps as f64),
+            ("residuals", s.residual_evaluations as f64),
+            ("factorisations", s.factorizations as f64),
+            ("unknowns", r.summary.unknowns as f64),
+        ]
+    };
+    of(a)
+        .into_iter()
+        .zip(of(b))
+        .map(|((name, a), (_, b))| Cost {
+            name: name.into(),
+            a,
+            b,
+        })
+        .collect()
+}

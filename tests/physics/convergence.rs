@@ -1,0 +1,136 @@
+//! Source: `model.md` section 5 (second order in space in all end combinations), BDF of order 2 in time.
+//! Goal: observed orders 2 for tip deflection and pressure, in space and in time, on problems whose solution is smooth:
+//! motions that start with a ramp, mean slopes instead of kinks.
+//! Tolerance: 0.1 on an observed order. In space all meshes take the same steps, so that the error in time is the same
+//! and drops out of differences; in time one mesh is used throughout.
+
+use super::common::{AS_PUBLISHED, CONSERVATIVE, RECIPROCAL, Run, difference, listed, run_shipped};
+
+const NAMES: [&str; 4] = ["tip u1", "tip u3", "pressure of bladder 1", "pressure of bladder 10"];
+
+fn series(run: &Run) -> [Vec<f64>; 4] {
+    [
+        run.column("tip_u1"),
+        run.column("tip_u3"),
+        run.bladder_pressure(1),
+        run.bladder_pressure(10),
+    ]
+}
+
+/// Root shaken across at 8 Hz for two cycles or along at 20 Hz for two, steps of at most `step` and hardly ever less,
+/// Newton's error far below the step's.
+fn smooth(case: &str, formulation: &str, step: f64, more: &[String]) -> Run {
+    let (signal, end) = match case {
+        "shake-wet" => ("u1_m", 0.25),
+        _ => ("u3_m", 0.1),
+    };
+    let mut sets = vec![
+        format!("/ends/root/clamped/{signal}/sine/ramp_cycles=2"),
+        RECIPROCAL.into(),
+        formulation.into(),
+        format!("/time/end_s={end}"),
+        format!("/time/output_interval_s={}", end / 20.0),
+        format!("/time/fields_interval_s={}", end / 20.0),
+        format!("/time/window_s={}", end / 10.0),
+        "/solver/rtol=1e-2".into(),
+        "/solver/nonlinear_coefficient=1e-6".into(),
+        format!("/solver/max_step_s={step}"),
+    ];
+    sets.extend_from_slice(more);
+    run_shipped(case, &sets)
+}
+
+/// Meshes 2, 4, 8 and 16 cells a segment with 1, 2, 4, 8 cells a bladder: successive differences fall by four.
+fn second_order_in_space(case: &str, formulation: &str) {
+    let step = 5e-5;
+    let meshes: Vec<[Vec<f64>; 4]> = [(2, 1), (4, 2), (8, 4), (16, 8)]
+        .into_iter()
+        .map(|(k, cells)| {
+            let mesh = [
+                format!("/mesh/cells_per_segment={k}"),
+                format!("/mesh/cells_per_bladder={cells}"),
+            ];
+            series(&smooth(case, formulation, step, &mesh))
+        })
+        .collect();
+    for (q, name) in NAMES.iter().enumerate() {
+        let change: Vec<f64> = meshes.windows(2).map(|m| difference(&m[0][q], &m[1][q])).collect();
+        let orders: Vec<f64> = change.windows(2).map(|c| (c[0] / c[1]).log2()).collect();
+        println!(
+            "{case} {formulation} {name}: changes {}, orders {orders:.2?}",
+            listed(&change)
+        );
+        for order in orders {
+            assert!((order - 2.0).abs() < 0.1, "{name}: {order}");
+        }
+    }
+}
+
+#[test]
+fn second_order_in_space_shaken_along() {
+    second_order_in_space("wiring-2", CONSERVATIVE);
+    second_order_in_space("wiring-2", AS_PUBLISHED);
+}
+
+/// Steps halved from 1 ms to 1/16 ms at order 2 against steps of 1/128 ms. Where IDA went down to order 1 by its own
+/// choice the error belongs to that order: such runs are printed and left out.
+#[test]
+fn second_order_in_time_shaken_across() {
+    let reference = series(&smooth("shake-wet", CONSERVATIVE, 1.0 / 128e3, &[]));
+    let mut seen: Vec<(f64, Vec<f64>)> = vec![];
+    for halvings in 0..5 {
+        let step = 1e-3 / f64::from(1 << halvings);
+        let run = smooth("shake-wet", CONSERVATIVE, step, &[]);
+        let by_order = &run.summary.solver.steps_by_order;
+        let now = series(&run);
+        let errors: Vec<f64> = (0..NAMES.len()).map(|q| difference(&now[q], &reference[q])).collect();
+        println!(
+            "steps of {step:.3e} s, {by_order:?} by order: errors {}",
+            listed(&errors)
+        );
+        if by_order[0] <= 2 {
+            seen.push((step, errors));
+        }
+    }
+    assert!(seen.len() >= 3);
+    for pair in seen.windows(2) {
+        for (q, name) in NAMES.iter().enumerate() {
+            let order = (pair[0].1[q] / pair[1].1[q]).ln() / (pair[0].0 / pair[1].0).ln();
+            println!("{name}: order {order:.2}");
+            assert!((order - 2.0).abs() < 0.1, "{name}: {order}");
+        }
+    }
+}
+
+/// Error control: the error falls with the tolerance, as the second power of the number of steps on the whole. IDA's
+/// choices of step and order scatter single pairs, so the slope is taken from the loosest to the tightest.
+#[test]
+fn the_error_follows_the_tolerance() {
+    let at = |rtol: &str| {
+        let sets = [
+            "/ends/root/clamped/u1_m/sine/ramp_cycles=2",
+            RECIPROCAL,
+            CONSERVATIVE,
+            "/time/end_s=0.25",
+            "/time/output_interval_s=0.0125",
+            "/time/fields_interval_s=0.0125",
+            &format!("/solver/rtol={rtol}"),
+        ];
+        let run = run_shipped("shake-wet", &sets);
+        (run.summary.solver.steps as f64, series(&run))
+    };
+    let (_, exact) = at("1e-9");
+    let runs: Vec<(f64, f64)> = ["1e-4", "1e-5", "1e-6", "1e-7"]
+        .into_iter()
+        .map(|rtol| {
+            let (steps, now) = at(rtol);
+            let error = difference(&now[0], &exact[0]);
+            println!("rtol {rtol}: {steps} steps, error of tip u1 {error:.2e}");
+            (steps, error)
+        })
+        .collect();
+    assert!(runs.windows(2).all(|r| r[1].1 < r[0].1));
+    let slope = (runs[0].1 / runs[3].1).ln() / (runs[3].0 / runs[0].0).ln();
+    println!("error against steps: order {slope:.2}");
+    assert!((1.5..2.5).contains(&slope));
+}
