@@ -13,4 +13,5 @@ mod meshes;
 mod networks;
 mod numbers;
 mod statics;
+mod valves;
 mod wiring;

@@ -3,8 +3,11 @@
 //! deflection, impulsive and ramped.
 //! Tolerances: 15 % on sizes, which a throw-away prototype measured; the straight beam and the signs are exact.
 
+use nalgebra::Complex;
+use slcbeam::model::Model;
+
 use super::common::{
-    AS_PUBLISHED, CONSERVATIVE, E, EI, LENGTH, PUBLISHED, RECIPROCAL, Run, largest, run_shipped, within,
+    AS_PUBLISHED, CONSERVATIVE, E, EI, LENGTH, PUBLISHED, RECIPROCAL, Run, largest, run, run_shipped, shipped, within,
 };
 
 fn ramp(cycles: u32) -> String {
@@ -204,8 +207,8 @@ fn above_its_first_frequency_a_beam_answers_uniform_pressure_with_two_signs() {
     );
     let m = Model::new(&case).section.mass_per_length;
     let omega = 40.0 * std::f64::consts::PI;
-    let b = LENGTH * (Complex::new(m * omega * omega, -20.0 * omega) / EI).powf(0.25);
-    let exact = (b.cosh() + b.cos()) / (b.cosh() * b.cos() + 1.0);
+    let b: Complex<f64> = (Complex::new(m * omega * omega, -20.0 * omega) / EI).powf(0.25) * LENGTH;
+    let exact: Complex<f64> = (b.cosh() + b.cos()) / (b.cosh() * b.cos() + 1.0);
     let run = run(&case);
     let kappa = run.field("curvature_1_m");
     let cycle = &kappa[kappa.len() - 100..];

@@ -15,6 +15,8 @@ use crate::output::numbers::{quantity, significant, superscript, trimmed};
 pub struct Marker {
     /// Relative error.
     pub error: f64,
+    /// Relative error of the time integration alone.
+    pub temporal: Option<f64>,
     /// Least wall time [s].
     pub least_s: f64,
     /// Median wall time [s].
@@ -62,13 +64,18 @@ pub struct WorkPrecision {
     pub repeats: usize,
     /// Lines, by order, then by mesh.
     pub lines: Vec<Line>,
+    /// Whether errors in time have a panel of their own.
+    pub split: bool,
 }
 
 const LEFT: f64 = 84.0;
 const TOP: f64 = 64.0;
 const WIDTH: f64 = 560.0;
-const HEIGHT: f64 = 440.0;
-const SHEET: f64 = 850.0;
+const HEIGHT: f64 = 400.0;
+/// Of the panel of errors in time alone.
+const LOWER: f64 = 300.0;
+const GAP: f64 = 66.0;
+const SHEET: f64 = 862.0;
 /// Radius of a marker.
 const RADIUS: f64 = 4.2;
 /// Keeps logarithms of times off zero, where a panel draws the line of zero.
@@ -87,23 +94,45 @@ pub fn draw(data: &WorkPrecision) -> Option<String> {
             .flat_map(|l| &l.markers)
             .filter(|m| m.error > 0.0 && m.least_s > 0.0)
     };
-    let x = decades(extent(markers().map(|m| m.error.log10()))?, 0.0, |n| {
-        format!("10{}", superscript(n))
-    });
     let times = extent(markers().flat_map(|m| [m.least_s.log10(), m.median_s.log10()]))?;
     let y = decades(times, OFF, |n| trimmed(&quantity(10_f64.powi(n), "s", 3)));
+    let x = |errors: Option<(f64, f64)>| Some(decades(errors?, 0.0, |n| format!("10{}", superscript(n))));
     let place = Place {
         left: LEFT,
         top: TOP,
         width: WIDTH,
         height: HEIGHT,
     };
+    let total = Panel {
+        place,
+        x: x(extent(markers().map(|m| m.error.log10())))?,
+        y: y.clone(),
+    };
     let sheet = Sheet {
+        panel: total,
+        data,
+        meshes: meshes(data),
+        error: |m| Some(m.error),
+    };
+    let place = Place {
+        top: TOP + HEIGHT + GAP,
+        height: LOWER,
+        ..place
+    };
+    let in_time = extent(markers().filter_map(|m| Some(m.temporal?.log10())));
+    let lower = x(in_time).filter(|_| data.split).map(|x| Sheet {
         panel: Panel { place, x, y },
         data,
         meshes: meshes(data),
-    };
-    Some(picture(SHEET, TOP + HEIGHT + 52.0, |canvas| sheet.draw(canvas)))
+        error: |m| m.temporal,
+    });
+    let bottom = lower.as_ref().map_or(TOP + HEIGHT, |l| l.panel.place.bottom());
+    Some(picture(SHEET, bottom + 52.0, |canvas| {
+        sheet.draw(canvas);
+        if let Some(lower) = lower {
+            lower.draw_lines(canvas, "relative error of the time integration alone");
+        }
+    }))
 }
 
 /// Meshes, coarse to fine: each has a colour.
@@ -133,6 +162,8 @@ struct Sheet<'a> {
     panel: Panel,
     data: &'a WorkPrecision,
     meshes: Vec<usize>,
+    /// Which error is across.
+    error: fn(&Marker) -> Option<f64>,
 }
 
 impl Sheet<'_> {
@@ -157,12 +188,22 @@ impl Sheet<'_> {
             self.line(canvas, line);
         }
         self.labels(canvas);
-        self.panel.axes(
-            canvas,
-            Some("relative error, time and space together"),
-            "wall time of a run",
-        );
+        let across = if data.split {
+            "relative error, of time and space together"
+        } else {
+            "relative error"
+        };
+        self.panel.axes(canvas, Some(across), "wall time of a run");
         self.legend(canvas, balances);
+    }
+
+    /// Axes and lines alone.
+    fn draw_lines(&self, canvas: &mut Canvas, across: &str) {
+        self.panel.grid(canvas);
+        for line in &self.data.lines {
+            self.line(canvas, line);
+        }
+        self.panel.axes(canvas, Some(across), "wall time of a run");
     }
 
     /// Errors that the reference is not good enough to judge.
@@ -233,14 +274,17 @@ impl Sheet<'_> {
     }
 
     fn line(&self, canvas: &mut Canvas, line: &Line) {
-        let shown = || line.markers.iter().filter(|m| m.error > 0.0 && m.least_s > 0.0);
-        let points: Vec<_> = shown().map(|m| self.at(m.error, m.least_s)).collect();
+        let error = |m: &Marker| (self.error)(m).filter(|e| *e > 0.0 && m.least_s > 0.0);
+        let shown = || line.markers.iter().filter_map(|m| Some((m, error(m)?)));
+        let points: Vec<_> = shown().map(|(m, e)| self.at(e, m.least_s)).collect();
         canvas.line(&points, self.stroke(line));
-        for marker in shown() {
-            let (x, y) = self.at(marker.error, marker.least_s);
-            let median = self.at(marker.error, marker.median_s).1;
+        for (marker, e) in shown() {
+            let (x, y) = self.at(e, marker.least_s);
+            let median = self.at(e, marker.median_s).1;
             let colour = self.colour(line.cells);
-            canvas.line(&[(x, y), (x, median)], Stroke::solid(colour, 1.0));
+            if y - median > RADIUS {
+                canvas.line(&[(x, y), (x, median)], Stroke::solid(colour, 1.0));
+            }
             draw_marker(canvas, (x, y), line.order, colour, marker.judged);
         }
     }
@@ -277,10 +321,10 @@ impl Sheet<'_> {
             y += 18.0;
         }
         y += 10.0;
-        canvas.line(&[(left, y), (left + 30.0, y)], Stroke::solid(FRONT, 9.0));
-        canvas.text((left + 38.0, y), "no run is cheaper", words);
-        canvas.text((left + 38.0, y + 14.0), "and more accurate;", words);
-        canvas.text((left + 38.0, y + 28.0), "rtol beside it", words);
+        canvas.line(&[(left + 3.0, y), (left + 25.0, y)], Stroke::solid(FRONT, 9.0));
+        canvas.text((left + 38.0, y), "no run is cheaper and", words);
+        canvas.text((left + 38.0, y + 14.0), "more accurate; rtol", words);
+        canvas.text((left + 38.0, y + 28.0), "beside it", words);
         y += 50.0;
         if balances {
             self.cross(canvas, (left + 15.0, y));
@@ -309,7 +353,7 @@ impl Sheet<'_> {
 fn draw_marker(canvas: &mut Canvas, (x, y): (f64, f64), order: u8, colour: RGBColor, filled: bool) {
     let shape = |r: f64| -> Vec<(f64, f64)> {
         let (corners, turn, r) = match order {
-            0..=2 => (20, 0.0, r),
+            0..=2 => (14, 0.0, r),
             5 => (4, 0.0, 1.25 * r),
             _ => (4, std::f64::consts::FRAC_PI_4, 1.2 * r),
         };

@@ -63,6 +63,7 @@ pub fn picture(study: &Study) -> Option<WorkPrecision> {
                 let error = study.error(k)?;
                 Some(Marker {
                     error: error.total.max,
+                    temporal: error.temporal.map(|e| e.max),
                     least_s: trial.wall_min_s,
                     median_s: trial.wall_median_s,
                     rtol: trial.setting.rtol,
@@ -89,5 +90,6 @@ pub fn picture(study: &Study) -> Option<WorkPrecision> {
         own: measure.own().max,
         repeats,
         lines,
+        split: study.references.len() > 1,
     })
 }

@@ -77,11 +77,20 @@ pub fn temporal(trials: &[Trial], cells: usize, orders: &[u8], sizes: &[Norms], 
 }
 
 /// Error of a reference from both routes; `expected` is the checking run's own error.
+///
+/// Where the two runs are as far apart as their errors explain, the smaller of two bounds holds: that of the reference's
+/// own tolerances, and the distance with the checking run's error added. Else the larger of the two routes counts.
 fn believed(by_tolerance: Option<Norms>, by_order: Option<Norms>, expected: Option<Norms>) -> Norms {
     match (by_tolerance, by_order) {
         (Some(t), Some(o)) => {
-            let expected = expected.unwrap_or(Norms::both(0.0)).with(t, |e, t| e + t);
-            let one = |t: f64, o: f64, e: f64| if o <= DISAGREE * e { t } else { f64::max(t, o) };
+            let expected = expected.unwrap_or(o);
+            let one = |t: f64, o: f64, e: f64| {
+                if o <= DISAGREE * (e + t) {
+                    t.min(o + e)
+                } else {
+                    t.max(o)
+                }
+            };
             Norms {
                 l2: one(t.l2, o.l2, expected.l2),
                 max: one(t.max, o.max, expected.max),

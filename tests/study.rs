@@ -1,0 +1,441 @@
+//! Studies: what accuracy costs, and two results side by side. Work is counted in steps: no clock decides.
+
+use std::path::Path;
+
+use slcbeam::case::{self, Case};
+use slcbeam::output::study as files;
+use slcbeam::output::{FolderRecorder, Labels, ResultFolder, comparison, reading};
+use slcbeam::run::dynamics;
+use slcbeam::run::record::Control;
+use slcbeam::study::accuracy::front::{self, Mark};
+use slcbeam::study::accuracy::study::Study;
+use slcbeam::study::accuracy::trial::{Ending, Role};
+use slcbeam::study::accuracy::{Budget, Plan, study};
+use slcbeam::study::compare::{self, interpolate};
+
+/// A dry cantilever swung by a load on it.
+const DRY: &str = r#"{
+  "name": "dry",
+  "beam": {"length_m": 0.1, "height_m": 0.02, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 950},
+  "loads": [{"force_x_n_m": {"signal": {"sine": {"amplitude": 10, "frequency_hz": 10, "ramp_cycles": 1}}}}],
+  "ends": {"root": "clamped", "tip": "free"},
+  "mesh": {"segments": 3},
+  "time": {"end_s": 0.15, "output_interval_s": 0.0015}
+}"#;
+
+/// Two bladders and a tube in a beam swung by a load.
+const WET: &str = r#"{
+  "name": "wet",
+  "beam": {"length_m": 0.1, "height_m": 0.02, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 950},
+  "fluid": {"density_kg_m3": 1000, "viscosity_pa_s": 1e-3},
+  "bladders": {
+    "per_row": 1, "length_m": 0.046, "height_m": 0.008, "width_m": 0.008, "permeability_m4": 1.5e-12,
+    "area_per_pressure_m2_per_pa": 1.75e-10,
+    "area_per_moment_m2_per_n_m": {"opening": 5e-6, "closing": 5e-6},
+    "area_per_force_m2_per_n": {"tension": 5e-8, "compression": 5e-8}
+  },
+  "tubes": {"length_m": 0.02, "radius_m": 0.001},
+  "network": {"tubes": [{"from": {"bladder": 1, "end": "outlet"}, "to": {"bladder": -1, "end": "inlet"}}]},
+  "loads": [{"force_x_n_m": {"signal": {"sine": {"amplitude": 20, "frequency_hz": 5, "ramp_cycles": 1}}}}],
+  "ends": {"root": "clamped", "tip": "free"},
+  "time": {"end_s": 0.3, "output_interval_s": 0.003}
+}"#;
+
+fn parsed(text: &str, sets: &[&str]) -> Case {
+    let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
+    case::parse(text, Path::new("case.json"), Path::new("."), &sets)
+        .unwrap()
+        .case
+}
+
+fn plan(rtols: &[f64], cells: &[usize], orders: &[u8], budget: Budget) -> Plan {
+    let plan = Plan {
+        rtols: rtols.to_vec(),
+        cells: cells.to_vec(),
+        orders: orders.to_vec(),
+        repeats: 1,
+        budget,
+        parallel: false,
+    };
+    plan.checked().unwrap()
+}
+
+const PLENTY: Budget = Budget::Steps(2_000_000);
+
+fn studied(text: &str, plan: Plan) -> Study {
+    study(&parsed(text, &[]), plan, None, &|_| {}).unwrap()
+}
+
+#[test]
+fn errors_fall_with_tolerance_and_mesh_size_and_the_reference_knows_its_own() {
+    let found = studied(DRY, plan(&[1e-3, 1e-4, 1e-5], &[2, 4, 8], &[2], PLENTY));
+    let measure = found.measure().unwrap();
+    assert_eq!(measure.name, "tip_u1");
+    for cells in [2, 4, 8] {
+        let line = found.line(cells, 2);
+        let in_time: Vec<f64> = line
+            .iter()
+            .map(|&k| found.error(k).unwrap().temporal.unwrap().l2)
+            .collect();
+        assert_eq!(in_time.len(), 3);
+        // Order 2 gains a factor of 10^(2/3) a decade; a half of that is asked for.
+        assert!(
+            in_time.windows(2).all(|w| w[1] < 0.5 * w[0]),
+            "{cells} cells: {in_time:?}"
+        );
+    }
+    // The mesh is of the second order; errors in time are well below what it is taken from.
+    let order = measure.order.unwrap();
+    assert!((1.8..2.2).contains(&order) && measure.order_is_clean, "{order}");
+    assert_eq!(measure.extrapolated_with, Some(2.0));
+    // A fourth mesh beyond the finest, each with a check by another order.
+    assert_eq!(
+        found.references.iter().map(|r| r.cells).collect::<Vec<_>>(),
+        [2, 4, 8, 16]
+    );
+    for r in &found.references {
+        assert!(r.checked_by.is_some() && r.by_tolerance[0].is_some() && r.by_order[0].is_some());
+        assert!(
+            r.own[found.headline].max < 1e-4,
+            "{} cells: {:?}",
+            r.cells,
+            r.own[found.headline]
+        );
+    }
+    let own = measure.own();
+    assert!(own.max > 0.0 && own.max < 1e-3, "{own:?}");
+    // Spatial errors fall by four from mesh to mesh.
+    let spatial = [2, 4, 8].map(|cells| found.error(found.line(cells, 2)[0]).unwrap().spatial.unwrap().l2);
+    assert!(
+        spatial.windows(2).all(|w| (3.3..4.7).contains(&(w[0] / w[1]))),
+        "{spatial:?}"
+    );
+    // Whatever an error is judged by is ten times better.
+    for (k, point) in found.points.iter().enumerate().filter(|(_, p)| p.errors.is_some()) {
+        let e = found.error(k).unwrap();
+        assert_eq!(e.judged, e.total.max >= 10.0 * own.max, "{:?}", point.trial.setting);
+        assert!(e.bound.max >= e.total.max);
+    }
+}
+
+#[test]
+fn a_wet_beam_is_studied_in_its_pressures_too() {
+    let found = studied(WET, plan(&[1e-3, 1e-5], &[2, 4], &[2, 5], PLENTY));
+    let names: Vec<&str> = found.measures.iter().map(|m| m.name.as_str()).collect();
+    for wanted in [
+        "tip_u1",
+        "max_pressure",
+        "v1_m_s",
+        "u3_m",
+        "max_pressure_pa.max_abs",
+        "input_energy_j.final",
+    ] {
+        assert!(names.contains(&wanted), "{wanted} is not among {names:?}");
+    }
+    assert!(found.left_out.contains(&"harvested".to_string()), "there is no turbine");
+    assert_eq!(found.points.iter().filter(|p| p.trial.role == Role::Point).count(), 8);
+    let text = files::table(&found);
+    assert!(
+        text.contains("reference of each mesh") && text.contains("its tolerances"),
+        "{text}"
+    );
+    let rows = files::csv(&found);
+    let columns = rows.lines().next().unwrap().split(',').count();
+    let finished = rows.lines().filter(|l| l.contains(",finished,")).count();
+    assert_eq!(finished % found.measures.len(), 0);
+    assert!(rows.lines().all(|l| l.split(',').count() == columns));
+    let json: serde_json::Value = serde_json::from_str(&files::json(&found)).unwrap();
+    assert!(
+        json["sentence"].as_str().is_some_and(|s| s.contains("tip deflection")),
+        "{json}"
+    );
+    let dir = tempfile::tempdir().unwrap();
+    assert_eq!(files::write(dir.path(), &found).unwrap().len(), 3);
+}
+
+#[test]
+fn a_budget_is_kept_and_what_is_left_out_has_a_reason() {
+    let budget = 6000;
+    let found = studied(
+        DRY,
+        plan(&[1e-2, 1e-3, 1e-6, 1e-8], &[1, 2, 4], &[2], Budget::Steps(budget)),
+    );
+    let steps: u64 = found.points.iter().map(|p| p.trial.counters.steps).sum();
+    assert!(steps <= budget && found.spent <= budget as f64, "{steps} of {budget}");
+    let points: Vec<_> = found.points.iter().filter(|p| p.trial.role == Role::Point).collect();
+    assert_eq!(points.len(), 12, "a row each");
+    let unfinished: Vec<_> = points.iter().filter(|p| p.trial.ending != Ending::Finished).collect();
+    assert!(!unfinished.is_empty() && unfinished.len() < 12);
+    assert!(unfinished.iter().all(|p| p.trial.reason.is_some()));
+    assert!(files::table(&found).contains("not finished"));
+}
+
+#[test]
+fn a_budget_too_small_for_anything_is_no_failure() {
+    let found = studied(DRY, plan(&[1e-3], &[2], &[2], Budget::Steps(10)));
+    assert!(found.measure().is_none() && found.front.is_empty());
+    assert_eq!(files::sentence(&found), "Nothing can be said: no run finished.");
+    assert!(files::picture(&found).is_none());
+}
+
+#[test]
+fn runs_at_once_find_the_same() {
+    let one = plan(&[1e-3, 1e-4], &[2, 4], &[2], PLENTY);
+    let many = Plan {
+        parallel: true,
+        ..one.clone()
+    };
+    let errors = |found: &Study| -> Vec<Option<f64>> {
+        (0..found.points.len())
+            .filter(|&k| found.points[k].trial.role == Role::Point)
+            .map(|k| found.error(k).and_then(|e| e.temporal).map(|t| t.max))
+            .collect()
+    };
+    let (one, many) = (studied(DRY, one), studied(DRY, many));
+    for (a, b) in errors(&one).into_iter().zip(errors(&many)) {
+        // References may be of other tolerances, as the budget fell; the errors of points hardly feel it.
+        let (a, b) = (a.unwrap(), b.unwrap());
+        assert!((a - b).abs() < 0.05 * a, "{a} {b}");
+    }
+}
+
+#[test]
+fn senseless_plans_are_refused() {
+    let good = plan(&[1e-3], &[2], &[2], PLENTY);
+    let wrong = [
+        Plan {
+            rtols: vec![],
+            ..good.clone()
+        },
+        Plan {
+            rtols: vec![1.0],
+            ..good.clone()
+        },
+        Plan {
+            cells: vec![0],
+            ..good.clone()
+        },
+        Plan {
+            orders: vec![6],
+            ..good.clone()
+        },
+        Plan {
+            repeats: 0,
+            ..good.clone()
+        },
+        Plan {
+            budget: Budget::Wall(f64::NAN),
+            ..good.clone()
+        },
+    ];
+    for plan in wrong {
+        assert_eq!(plan.checked().map_err(|e| e.exit_code()), Err(2));
+    }
+    let unknown = study(&parsed(DRY, &[]), good, Some("tip"), &|_| {});
+    assert!(unknown.is_err_and(|e| e.to_string().contains("tip_u1")));
+}
+
+fn marks(all: &[(f64, f64)]) -> Vec<Mark> {
+    all.iter().map(|&(error, cost)| Mark { error, cost }).collect()
+}
+
+#[test]
+fn the_front_holds_what_no_other_beats() {
+    let points = marks(&[
+        (1e-1, 1.0),
+        (1e-2, 2.0),
+        (2e-2, 3.0),
+        (1e-3, 4.0),
+        (1e-3, 5.0),
+        (f64::NAN, 0.1),
+        (2e-1, 1.0),
+    ]);
+    let front = front::front(&points);
+    assert_eq!(front, [0, 1, 3]);
+    let answers = front::answers(&points, &front, &[0.5, 5e-2, 1e-3, 1e-4]);
+    assert_eq!(
+        answers.iter().map(|a| a.point).collect::<Vec<_>>(),
+        [Some(0), Some(1), Some(3), None]
+    );
+    assert!(front::front(&[]).is_empty());
+}
+
+#[test]
+fn the_foot_and_the_balance_of_a_line() {
+    let cost = [3.0, 1.0, 2.0, 4.0];
+    let foot = front::foot(&[0, 1, 2, 3], &cost, &[30.0, 10.0, 20.0, 40.0]).unwrap();
+    assert_eq!((foot.cheapest, foot.looser, foot.factor), (1, 0, 3.0));
+    // A clock that had an accident is no foot.
+    assert_eq!(front::foot(&[0, 1, 2, 3], &cost, &[10.0, 10.0, 20.0, 40.0]), None);
+    assert_eq!(front::foot(&[0, 1], &[1.0, 2.0], &[1.0, 2.0]), None);
+    // Temporal error 1e-1, 1e-2, 1e-4 against 1e-3 in space: halfway between the last two in logarithms.
+    let line = [
+        (1e-2, 1e-1, 1e-1, 1.0),
+        (1e-3, 1e-2, 1e-2, 10.0),
+        (1e-4, 1e-4, 1e-3, 100.0),
+    ];
+    let at = front::balance(&line, 1e-3).unwrap();
+    assert!((at.rtol / 1e-3_f64.powf(0.5) / 1e-4_f64.powf(0.5) - 1.0).abs() < 1e-12);
+    assert!((at.cost / 1000_f64.sqrt() - 1.0).abs() < 1e-12);
+    assert_eq!(front::balance(&line, 1e-6), None);
+}
+
+#[test]
+fn the_sentence_says_what_an_accuracy_costs() {
+    let mut found = studied(DRY, plan(&[1e-2, 1e-3, 1e-4], &[2, 4], &[2], PLENTY));
+    let at = |found: &Study, cells, rtol| {
+        found
+            .points
+            .iter()
+            .position(|p| p.trial.setting.cells == cells && p.trial.setting.rtol == rtol)
+            .unwrap()
+    };
+    let (coarse, fine) = (at(&found, 2, 1e-3), at(&found, 4, 1e-4));
+    found.points[coarse].trial.wall_min_s = 0.03;
+    found.points[fine].trial.wall_min_s = 0.4;
+    let answer = |accuracy, point| front::Answer { accuracy, point };
+    found.answers = vec![
+        answer(1e-1, Some(coarse)),
+        answer(1e-2, Some(coarse)),
+        answer(1e-3, Some(fine)),
+        answer(1e-4, None),
+    ];
+    found.feet = vec![front::Foot {
+        cheapest: coarse,
+        looser: at(&found, 2, 1e-2),
+        factor: 3.0,
+    }];
+    assert_eq!(
+        files::sentence(&found),
+        "1 % of tip deflection costs 0.030 s (2 cells, rtol 1e-3); 0.1 % costs 0.40 s (4 cells, rtol 1e-4); 0.01 % is not \
+         reached, or cannot be judged within this budget; looser than rtol 1e-3 costs more, not less (up to 3.0 times)."
+    );
+    found.answers = vec![answer(1e-2, None)];
+    found.feet = vec![];
+    assert_eq!(files::sentence(&found), "no setting has 1 % of tip deflection.");
+}
+
+/// Runs into a folder.
+fn run_into(dir: &Path, text: &str, sets: &[&str]) -> compare::Recording {
+    let case = parsed(text, sets);
+    let labels = Labels {
+        case_name: case.name.clone(),
+        case_json: case.resolved_json(),
+        frequency_hz: None,
+    };
+    let mut recorder = FolderRecorder::new(
+        ResultFolder::create(dir).unwrap(),
+        labels,
+        Box::new(|_| Control::Continue),
+    );
+    let outcome = dynamics::run(&case, &mut recorder).unwrap();
+    recorder.finish(&outcome.summary).unwrap();
+    reading::read(dir).unwrap()
+}
+
+#[test]
+fn a_run_equals_itself_and_nearly_its_other_meshes_and_times() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    let tight = "/solver/rtol=1e-8";
+    let first = run_into(
+        &at("first"),
+        WET,
+        &["/mesh/cells_per_segment=8", "/mesh/cells_per_bladder=4", tight],
+    );
+    let itself = compare::compare(&first, &first);
+    assert!(itself.physics.is_empty() && itself.numerics.is_empty() && itself.left_out.len() < 5);
+    for d in itself.histories.iter().chain(&itself.fields) {
+        assert_eq!(
+            (d.relative.l2, d.relative.max, d.interpolation),
+            (0.0, 0.0, 0.0),
+            "{}",
+            d.name
+        );
+    }
+    assert!(itself.fields.iter().any(|d| d.name == "pressure_pa") && itself.histories.len() > 6);
+
+    // Twice as fine a mesh: a quarter of the error of the second order is left, well below 5 %.
+    let finer = run_into(
+        &at("finer"),
+        WET,
+        &["/mesh/cells_per_segment=16", "/mesh/cells_per_bladder=8", tight],
+    );
+    let meshes = compare::compare(&first, &finer);
+    assert!(meshes.physics.is_empty() && !meshes.numerics.is_empty());
+    let named = |c: &compare::Comparison, name: &str| {
+        let all = c.histories.iter().chain(&c.fields);
+        all.clone()
+            .find(|d| d.name == name)
+            .cloned()
+            .unwrap_or_else(|| panic!("no {name}"))
+    };
+    for name in ["tip_u1", "u1_m", "v1_m_s", "moment_n_m", "pressure_pa"] {
+        let d = named(&meshes, name);
+        assert!(d.relative.l2 > 0.0 && d.relative.l2 < 0.05, "{name}: {:?}", d.relative);
+    }
+    assert!(
+        named(&meshes, "u1_m").place.is_some_and(|x| x > 0.5),
+        "largest near the tip"
+    );
+
+    // Other output times: same steps, so only interpolation is in between, and it says how much.
+    let shifted = [
+        "/mesh/cells_per_segment=8",
+        "/mesh/cells_per_bladder=4",
+        tight,
+        "/time/output_interval_s=0.0007",
+    ];
+    let shifted = run_into(&at("shifted"), WET, &shifted);
+    let times = compare::compare(&first, &shifted);
+    for (name, most) in [("tip_u1", 1e-5), ("u1_m", 1e-5), ("u3_m", 1e-4), ("v1_m_s", 1e-3)] {
+        let d = named(&times, name);
+        assert!(d.relative.max < most, "{name}: {:?}", d.relative);
+        assert!(
+            d.interpolation > 0.0 && d.relative.max < 20.0 * d.interpolation + 1e-7,
+            "{name}: {d:?}"
+        );
+    }
+    // Fewer instants are those of the first run.
+    assert!(named(&times, "tip_u1").instants <= first.times.len());
+    assert!(comparison::picture(&first, &shifted, &times).is_some_and(|svg| svg.contains("difference")));
+}
+
+#[test]
+fn another_problem_is_called_one() {
+    let dir = tempfile::tempdir().unwrap();
+    let a = run_into(&dir.path().join("a"), DRY, &[]);
+    let b = run_into(&dir.path().join("b"), DRY, &["/beam/length_m=0.11", "/time/end_s=0.12"]);
+    let found = compare::compare(&a, &b);
+    let pointers: Vec<&str> = found.physics.iter().map(|c| c.pointer.as_str()).collect();
+    assert_eq!(pointers, ["/beam/length_m", "/time/end_s"]);
+    assert!((found.to_s - 0.12).abs() < 1e-12);
+    assert!(
+        found
+            .histories
+            .iter()
+            .any(|d| d.name == "tip_u1" && d.relative.max > 0.05)
+    );
+}
+
+#[test]
+fn cubics_are_exact_for_cubics_and_kinks_do_not_ring() {
+    let xs = [0.0, 1.0, 2.5, 3.0, 4.5, 6.0];
+    let f = |x: f64| 1.0 - 2.0 * x + 0.5 * x * x - 0.1 * x * x * x;
+    for x in [0.2, 1.0, 1.7, 2.9, 4.0, 5.9] {
+        assert!(
+            (interpolate::cubic(&xs, x).mean(|k| f(xs[k])) - f(x)).abs() < 1e-12,
+            "{x}"
+        );
+    }
+    let slope = |x: f64| -2.0 + x - 0.3 * x * x;
+    let w = interpolate::hermite(0.3, 1.5);
+    let (a, b) = (1.0, 2.5);
+    let between = w[0] * f(a) + w[1] * f(b) + w[2] * slope(a) + w[3] * slope(b);
+    assert!((between - f(1.45)).abs() < 1e-12);
+    let step = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+    for k in 0..=60 {
+        let y = interpolate::monotone(&xs, &step, 0.1 * f64::from(k));
+        assert!((0.0..=1.0).contains(&y), "{y}");
+    }
+}
