@@ -14,6 +14,9 @@ use super::figures::Figures;
 use super::growth::Growth;
 use super::record::{Axis, Column, Field, Header, Recorder};
 
+/// Above this the run warns that the energy balance does not close.
+const ENERGY_OPEN: f64 = 0.01;
+
 /// Largest residuals and references seen.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
@@ -298,6 +301,14 @@ impl Observer {
     /// Limits of the model's range that were passed.
     pub fn warnings(&self) -> Vec<String> {
         let mut all = Vec::new();
+        let open = self.seen.residuals.energy_relative();
+        if open > ENERGY_OPEN {
+            all.push(format!(
+                "energy balance: it stays open by {open:.1e} of the largest energy; tighten solver/rtol, or set \
+                 solver/nonlinear_coefficient to 0.01 where very stiff parts or ports meet large motions, until answers no \
+                 longer change (a load or valve that jumps without inertia or damping leaves it open at any tolerance)"
+            ));
+        }
         if let Some((strain, t, node)) = self.seen.range.strain
             && strain > 0.5
         {

@@ -19,12 +19,13 @@ use crate::harness::{BUDGET, Budget};
 const STEPS: u64 = 20_000;
 const SECONDS: f64 = 1.5;
 
-/// Energy residual in units of rtol of the largest energy seen. Wider than for the hard cases: the largest energy of a
-/// random case may be far below the sizes to which tolerances refer (a small load beside a large driven motion), so this
-/// asks only that the balance is closed at all. At least 1 %, so that rtol = 1e-6 is not asked for what jumps leave.
-fn energy_bound(rtol: f64) -> f64 {
-    (3000.0 * rtol).clamp(0.01, 1.0)
-}
+/// Energy residual up to which a balance is closed, as in the run's own warning. Not in units of rtol: the largest energy
+/// of a random case may be far below the sizes to which tolerances refer (a small load beside a large driven motion).
+const CLOSED: f64 = 0.01;
+
+/// Volume that a closed network may lose: round-off of flows between nearly equal pressures and of the matrix, 1e-16 times
+/// step over time constant (up to 10^10 here, 2.5e-7 seen).
+const VOLUME: f64 = 1e-6;
 
 /// Verdict on one seed.
 enum Verdict {
@@ -74,15 +75,20 @@ fn run(text: &str, told: &mut String) -> Verdict {
     match s.status {
         Status::Finished => {
             let b = &s.balances;
-            let rtol = loaded.case.solver.rtol;
             let volume = b.closed_volume_residual_relative;
-            if volume.is_nan() || volume > 1e-9 {
+            if volume.is_nan() || volume > VOLUME {
                 return Verdict::Bad(format!("closed volume residual {volume:.1e}"));
             }
-            if b.energy_residual_relative <= energy_bound(rtol) {
+            if b.energy_residual_relative <= CLOSED {
                 return Verdict::Good("finished, balances closed");
             }
-            confirm(loaded.case, &recorder.memory, b.energy_residual_relative)
+            if !s.warnings.iter().any(|w| w.starts_with("energy balance")) {
+                return Verdict::Bad(format!(
+                    "energy residual {:.1e} without a warning",
+                    b.energy_residual_relative
+                ));
+            }
+            confirm(loaded.case, &recorder.memory)
         }
         Status::Stopped if reason == BUDGET => Verdict::Good("budget used up"),
         Status::Stopped if reason.contains("t = ") && reason.contains("closed") => {
@@ -102,37 +108,35 @@ fn run(text: &str, told: &mut String) -> Verdict {
     }
 }
 
-/// A run whose energy balance does not close says so in its summary. The answer must be right all the same: with a
-/// hundredth of the tolerance it may change by 5 % of its largest value and of a thousandth of the sizes at hand.
-fn confirm(mut case: slcbeam::case::Case, loose: &Memory, residual: f64) -> Verdict {
+/// A run whose energy balance does not close has warned of it. Whether its answer is right all the same: with a hundredth
+/// of the tolerance it changes by less than 5 % of its largest value, counted from a thousandth of the sizes at hand.
+fn confirm(mut case: slcbeam::case::Case, loose: &Memory) -> Verdict {
     case.solver.rtol = (0.01 * case.solver.rtol).max(1e-9);
     let mut recorder = Budget::new(30 * STEPS, 20.0 * SECONDS);
     let Ok(outcome) = dynamics::run(&case, &mut recorder) else {
         return Verdict::Bad("recorder".into());
     };
     if outcome.summary.status != Status::Finished {
-        return Verdict::Good("finished, energy balance open, too costly to confirm");
+        return Verdict::Good("finished, energy open and warned of, too costly to confirm");
     }
     let columns = [
         ("tip_u1", case.beam.length_m),
         ("tip_u3", case.beam.length_m),
         ("tip_angle", 1.0),
     ];
-    for (column, size) in columns {
+    let confirmed = columns.into_iter().all(|(column, size)| {
         let (a, b) = (
             loose.column(column).unwrap_or_default(),
             recorder.memory.column(column).unwrap_or_default(),
         );
         let largest = b.iter().fold(1e-3 * size, |m: f64, v| m.max(v.abs()));
-        let apart = a.iter().zip(&b).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
-        if apart > 0.05 * largest {
-            return Verdict::Bad(format!(
-                "energy residual {residual:.1e}, {column} changes by {:.1e}",
-                apart / largest
-            ));
-        }
-    }
-    Verdict::Good("finished, energy balance open, answer confirmed")
+        a.iter().zip(&b).all(|(a, b)| (a - b).abs() <= 0.05 * largest)
+    });
+    Verdict::Good(if confirmed {
+        "finished, energy open and warned of, answer confirmed"
+    } else {
+        "finished, energy open and warned of, answer off by more than 5 %"
+    })
 }
 
 /// Seeds of cases that went wrong once stay here for ever.
@@ -183,8 +187,14 @@ fn random_cases_finish_or_are_diagnosed() {
         .filter(|(word, _)| word.contains("open"))
         .map(|(_, n)| n)
         .sum();
-    // Ports and jumps without resistance (docs/stability.md): 3 in a hundred seen.
+    // Ports and jumps without resistance (docs/stability.md): 4 in a hundred seen.
     assert!(10 * open < count, "too many energy balances stay open");
+    let off: u64 = counts
+        .iter()
+        .filter(|(word, _)| word.contains("off by"))
+        .map(|(_, n)| n)
+        .sum();
+    assert!(50 * off < count, "too many answers that a tighter tolerance changes");
     assert!(
         10 * of("refused by the case check") < count,
         "too many cases are refused"

@@ -70,7 +70,8 @@ impl Recorder for Budget {
         self.memory.fields(t, arrays)
     }
     fn progress(&mut self, progress: &Progress) -> Result<Control> {
-        let used_up = progress.steps >= self.steps || (progress.steps % 64 == 0 && Instant::now() > self.until);
+        let used_up =
+            progress.steps >= self.steps || (progress.steps.is_multiple_of(64) && Instant::now() > self.until);
         Ok(if used_up {
             Control::Stop(BUDGET.into())
         } else {

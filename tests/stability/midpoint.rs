@@ -16,7 +16,6 @@
 use nalgebra::DMatrix;
 
 const SEGMENTS: usize = 10;
-const PER_BLADDER: usize = 1;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Sample {
@@ -32,11 +31,8 @@ fn matrix(k: usize, sample: Sample) -> DMatrix<f64> {
     let cells = SEGMENTS * k;
     let h = length / cells as f64;
     let strain_per_pressure = 2.0 * SEGMENTS as f64 / length * zeta / e;
-    let stored = SEGMENTS * PER_BLADDER;
-    let ds = lb / PER_BLADDER as f64;
-    let inside = q1b / mu / ds;
-    let between = 1.0 / (1.0 / inside + mu * lc / q1c);
-    let n = 2 * cells + stored;
+    let between = 1.0 / (mu * lb / q1b + mu * lc / q1c);
+    let n = 2 * cells + SEGMENTS;
     // Rates of u of 1e4/s: u in units of v/1e4; areas in units that a strain v/c makes.
     let (unit_u, unit_a) = (1e-4, ap * 1e4);
     DMatrix::from_columns(
@@ -47,7 +43,7 @@ fn matrix(k: usize, sample: Sample) -> DMatrix<f64> {
                 let node = |i: usize| if i == 0 { 0.0 } else { x[i - 1] * unit_u };
                 let strain: Vec<f64> = (0..cells).map(|c| (node(c + 1) - node(c)) / h).collect();
                 let area: Vec<f64> = x[2 * cells..].iter().map(|a| a * unit_a).collect();
-                let (mut force, mut pressure) = (vec![0.0; cells], vec![0.0; stored]);
+                let (mut force, mut pressure) = (vec![0.0; cells], vec![0.0; SEGMENTS]);
                 for j in 0..SEGMENTS {
                     let own = &strain[j * k..(j + 1) * k];
                     let sampled = match sample {
@@ -55,16 +51,11 @@ fn matrix(k: usize, sample: Sample) -> DMatrix<f64> {
                         Sample::Midpoint if k % 2 == 1 => own[k / 2],
                         Sample::Midpoint => 0.5 * (own[k / 2 - 1] + own[k / 2]),
                     };
-                    let bladder = &area[j * PER_BLADDER..(j + 1) * PER_BLADDER];
-                    let mean_area = bladder.iter().sum::<f64>() / PER_BLADDER as f64;
-                    let s = ea * (sampled - strain_per_pressure * mean_area / ap)
+                    let s = ea * (sampled - strain_per_pressure * area[j] / ap)
                         / (1.0 - ea * strain_per_pressure * an / ap);
-                    let mean_pressure = (mean_area - an * s) / ap;
+                    pressure[j] = (area[j] - an * s) / ap;
                     for (f, e) in force[j * k..(j + 1) * k].iter_mut().zip(own) {
-                        *f = ea * (e - strain_per_pressure * mean_pressure);
-                    }
-                    for (p, a) in pressure[j * PER_BLADDER..(j + 1) * PER_BLADDER].iter_mut().zip(bladder) {
-                        *p = (a - an * s) / ap;
+                        *f = ea * (e - strain_per_pressure * pressure[j]);
                     }
                 }
                 let mut rate = vec![0.0; n];
@@ -77,9 +68,8 @@ fn matrix(k: usize, sample: Sample) -> DMatrix<f64> {
                     };
                     rate[cells + i] = (beyond - force[i]) / (mass * weight);
                 }
-                for c in 1..stored {
-                    let g = if c % PER_BLADDER == 0 { between } else { inside };
-                    let q = g * (pressure[c - 1] - pressure[c]) / ds / unit_a;
+                for c in 1..SEGMENTS {
+                    let q = between * (pressure[c - 1] - pressure[c]) / lb / unit_a;
                     rate[2 * cells + c - 1] -= q;
                     rate[2 * cells + c] += q;
                 }

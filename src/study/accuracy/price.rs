@@ -5,15 +5,23 @@ use super::trial::{Ending, Trial};
 
 /// Expected cost of a setting, in the unit of the trials' costs; `None` when nothing like it was run.
 ///
-/// Along a line of tolerances the steps of order `p` grow as `τ^(-1/(p+1))`. From mesh to mesh the cost follows the
+/// Along a line of tolerances, from the two that are nearest, the steps of order `p` grow as `τ^(-1/(p+1))`. From mesh to mesh the cost follows the
 /// unknowns where accuracy rules, and their cube where stability does, beyond order 2. The least of all guesses counts:
-/// loose tolerances may cost more than tight ones, and a run that proves too slow is stopped anyway.
+/// a run that proves too slow is stopped anyway.
 pub fn expected(trials: &[Trial], next: Setting) -> Option<f64> {
     let finished = || trials.iter().filter(|t| t.finished());
     let mut guesses = vec![];
     let same_line = |t: &&Trial| t.line() == (next.cells, next.order);
-    for known in finished().filter(same_line) {
-        guesses.push(known.cost * along(next.order, known.setting.rtol, next.rtol));
+    let mut line: Vec<&Trial> = finished().filter(same_line).collect();
+    line.sort_by(|a, b| a.setting.rtol.total_cmp(&b.setting.rtol));
+    for known in line.iter().filter(|t| t.setting.rtol > next.rtol).take(2) {
+        // A single run may stand on the foot, where tighter tolerances cost less.
+        let growth = if line.len() > 1 {
+            along(next.order, known.setting.rtol, next.rtol)
+        } else {
+            1.0
+        };
+        guesses.push(known.cost * growth);
     }
     for coarse in finished().filter(|t| t.setting.order == next.order && t.setting.cells < next.cells) {
         if coarse.setting.rtol != next.rtol {

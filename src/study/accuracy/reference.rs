@@ -34,6 +34,9 @@ pub struct Temporal {
 /// How much farther from the checking run than that run's own error a reference may be.
 const DISAGREE: f64 = 3.0;
 
+/// How much looser than a reference the run that checks it may be.
+const LOOSER: f64 = 1e4;
+
 /// The best run on a mesh; `None` when none finished. `sizes` are those of the signals, `headline` decides which is best.
 pub fn temporal(trials: &[Trial], cells: usize, orders: &[u8], sizes: &[Norms], headline: usize) -> Option<Temporal> {
     let mut ladders: Vec<(f64, Ladder)> = orders
@@ -47,7 +50,13 @@ pub fn temporal(trials: &[Trial], cells: usize, orders: &[u8], sizes: &[Norms], 
     let main = ladders.next()?;
     let best = main.last()?;
     let signals = best.signals.as_ref()?;
-    let check = ladders.next();
+    // A run that is far looser does not check anything.
+    let sharp = |ladder: &Ladder| {
+        ladder
+            .last()
+            .is_some_and(|t| t.setting.rtol <= LOOSER * best.setting.rtol)
+    };
+    let check = ladders.find(sharp);
     let checking = check.as_ref().and_then(Ladder::last);
     let relative = |norms: Option<Norms>, k: usize| norms.map(|n| n.over(sizes[k]));
     let by_tolerance: Vec<_> = (0..signals.len()).map(|k| relative(main.last_error(k), k)).collect();

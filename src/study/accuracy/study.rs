@@ -118,10 +118,23 @@ pub fn study(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> Re
         .into_iter()
         .filter_map(|k| reference::temporal(&trials, k, &orders, &sizes, headline))
         .collect();
+    // The mesh beyond the finest helps where its own error in time is small enough.
+    let without = references
+        .iter()
+        .filter(|r| plan.cells.contains(&r.cells))
+        .cloned()
+        .collect::<Vec<_>>();
+    let limit = |(k, signal): (usize, &Signal)| {
+        let limits = [&references, &without].map(|meshes| reference::limit(meshes, signal, k, sizes[k]));
+        limits
+            .into_iter()
+            .flatten()
+            .min_by(|a, b| a.own().max.total_cmp(&b.own().max))
+    };
     let measures: Vec<Limit> = best(&trials)
         .iter()
         .flat_map(|signals| signals.iter().enumerate())
-        .filter_map(|(k, signal)| reference::limit(&references, signal, k, sizes[k]))
+        .filter_map(limit)
         .collect();
     trials.sort_by(|a, b| {
         let key = |t: &Trial| (t.role == Role::Reference, t.line());
@@ -300,6 +313,13 @@ fn notes(study: &Study) -> Vec<String> {
     }
     for r in &study.references {
         let k = study.headline;
+        if r.checked_by.is_none() {
+            notes.push(format!(
+                "{} cells: no run of another order is near enough to check the reference; its error is by its own \
+                 tolerances alone",
+                r.cells
+            ));
+        }
         if let (Some(t), Some(o)) = (r.by_tolerance[k], r.by_order[k])
             && r.own[k].max > t.max
         {

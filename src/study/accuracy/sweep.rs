@@ -46,6 +46,7 @@ struct State {
     spent: f64,
     reserved: f64,
     done: usize,
+    lines_begun: usize,
 }
 
 struct Sweep<'a> {
@@ -71,9 +72,10 @@ pub fn sweep(case: &Case, plan: &Plan, watch: Watch) -> Result<(Vec<Trial>, f64)
         .flat_map(|&k| plan.orders.iter().map(move |&o| (k, o)))
         .collect();
     sweep.each(&lines, |&(cells, order)| {
+        let mut room = sweep.room(lines.len());
         plan.rtols
             .iter()
-            .try_for_each(|&rtol| sweep.point(Setting { cells, order, rtol }))
+            .try_for_each(|&rtol| sweep.point(Setting { cells, order, rtol }, &mut room))
     })?;
     let meshes = plan.reference_cells();
     let numbers: Vec<usize> = (0..meshes.len()).collect();
@@ -118,12 +120,20 @@ impl Sweep<'_> {
         })
     }
 
-    fn point(&self, setting: Setting) -> Result<()> {
+    /// What a line may spend: twice its share of what is left for points, since many need less.
+    fn room(&self, lines: usize) -> f64 {
+        let mut state = self.lock();
+        let to_come = (lines - state.lines_begun).max(1) as f64;
+        state.lines_begun += 1;
+        2.0 * (POINTS * self.plan.budget.size() - self.spent(&state)).max(0.0) / to_come
+    }
+
+    fn point(&self, setting: Setting, room: &mut f64) -> Result<()> {
         let budget = self.plan.budget;
         let role = Role::Point;
         let (left, expected, hopeless) = {
             let state = self.lock();
-            let left = POINTS * budget.size() - self.spent(&state);
+            let left = (POINTS * budget.size() - self.spent(&state)).min(*room);
             (
                 left,
                 price::expected(&state.trials, setting),
@@ -153,7 +163,7 @@ impl Sweep<'_> {
             repeats,
             wanted: if self.plan.repeats > 1 { self.plan.repeats } else { 0 },
         };
-        self.run(setting, role, expected, allowed)?;
+        *room -= self.run(setting, role, expected, allowed)?;
         self.lock().done += 1;
         Ok(())
     }
