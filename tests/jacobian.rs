@@ -26,7 +26,13 @@ fn worst_difference(dae: &mut BeamDae, seed: u64, size: f64) -> f64 {
     // Neighbouring nodes may move against each other by a fifth of a cell: beyond that a cell folds over.
     let (layout, h) = (&dae.system().layout, dae.system().mesh.h);
     let displacements = layout.u1..layout.u3 + layout.free_u3.len();
-    let reach = |i: usize| if displacements.contains(&i) { (0.2 * h / layout.scales[i]).min(1.0) } else { 1.0 };
+    let reach = |i: usize| {
+        if displacements.contains(&i) {
+            (0.2 * h / layout.scales[i]).min(1.0)
+        } else {
+            1.0
+        }
+    };
     let y: Vec<f64> = (0..n).map(|i| size * reach(i) * random.next()).collect();
     let yp: Vec<f64> = (0..n).map(|_| size * random.next()).collect();
     let (t, cj) = (0.013, 37.0);

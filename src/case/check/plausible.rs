@@ -94,8 +94,8 @@ const DURATION: Range = Range {
     hint: "times are in seconds",
 };
 
-/// Longest beam, in heights.
-const MOST_SLENDER: f64 = 1e5;
+/// Longest beam, in heights: dry, and with bladders, which cover a good part of it.
+const MOST_SLENDER: [f64; 2] = [1e5, 4e3];
 /// Longest tube, in lengths of the beam.
 const LONGEST_TUBE: f64 = 100.0;
 
@@ -166,12 +166,13 @@ pub(super) fn sizes(case: &Case, faults: &mut Faults) {
 pub(super) fn proportions(case: &Case, faults: &mut Faults) {
     let beam = &case.beam;
     let slenderness = beam.length_m / beam.height_m;
-    if slenderness > MOST_SLENDER && !faults.has("/beam/length_m") && !faults.has("/beam/height_m") {
+    let most = MOST_SLENDER[usize::from(case.bladders.is_some())];
+    if slenderness > most && !faults.has("/beam/length_m") && !faults.has("/beam/height_m") {
         let what = format!("a beam {} times as long as it is high", slenderness.round());
         let fault = Violation::new("/beam/length_m", what);
         faults.push(
             fault
-                .allowed(format!("up to {MOST_SLENDER} times the height"))
+                .allowed(format!("up to {most} times the height"))
                 .hint(MILLIMETRES),
         );
     }

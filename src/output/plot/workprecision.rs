@@ -1,6 +1,8 @@
 //! `study.svg`: what accuracy costs. Error across, time up, both in logarithms; one line a mesh and order, one marker a
 //! tolerance.
 
+mod legend;
+
 use plotters::style::RGBColor;
 
 use super::canvas::{Anchor, Canvas, FAINT_INK, INK, Stroke, Words, picture};
@@ -8,7 +10,7 @@ use super::colour::PALETTE;
 use super::extent;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
-use crate::output::numbers::{quantity, significant, superscript, trimmed};
+use crate::output::numbers::{quantity, superscript, trimmed};
 
 /// A run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,7 +86,6 @@ const OFF: f64 = 20.0;
 const FRONT: RGBColor = RGBColor(0xd9, 0xdd, 0xe1);
 const SHADE: RGBColor = RGBColor(0xf4, 0xf2, 0xec);
 const PAPER: RGBColor = RGBColor(0xff, 0xff, 0xff);
-const SMALL: f64 = 11.0;
 
 /// Draws it; `None` when there is nothing to draw.
 pub fn draw(data: &WorkPrecision) -> Option<String> {
@@ -194,7 +195,7 @@ impl Sheet<'_> {
             "relative error"
         };
         self.panel.axes(canvas, Some(across), "wall time of a run");
-        self.legend(canvas, balances);
+        legend::draw(self, canvas, balances);
     }
 
     /// Axes and lines alone.
@@ -248,17 +249,10 @@ impl Sheet<'_> {
                 },
             );
             for p in points {
-                self.cross(canvas, p);
+                cross(canvas, p);
             }
         }
         any
-    }
-
-    fn cross(&self, canvas: &mut Canvas, (x, y): (f64, f64)) {
-        let r = 5.0;
-        let stroke = Stroke::solid(INK, 1.3);
-        canvas.line(&[(x - r, y - r), (x + r, y + r)], stroke);
-        canvas.line(&[(x - r, y + r), (x + r, y - r)], stroke);
     }
 
     fn stroke(&self, line: &Line) -> Stroke {
@@ -304,49 +298,13 @@ impl Sheet<'_> {
             }
         }
     }
+}
 
-    fn legend(&self, canvas: &mut Canvas, balances: bool) {
-        let left = LEFT + WIDTH + 22.0;
-        let mut y = TOP + 8.0;
-        let words = Words::new(SMALL, Anchor::Left);
-        for line in self.data.lines.iter().filter(|l| !l.markers.is_empty()) {
-            canvas.line(&[(left, y), (left + 30.0, y)], self.stroke(line));
-            draw_marker(canvas, (left + 15.0, y), line.order, self.colour(line.cells), true);
-            let cells = if line.cells == 1 { "cell" } else { "cells" };
-            canvas.text(
-                (left + 38.0, y),
-                &format!("{} {cells}, order {}", line.cells, line.order),
-                words,
-            );
-            y += 18.0;
-        }
-        y += 10.0;
-        canvas.line(&[(left + 3.0, y), (left + 25.0, y)], Stroke::solid(FRONT, 9.0));
-        canvas.text((left + 38.0, y), "no run is cheaper and", words);
-        canvas.text((left + 38.0, y + 14.0), "more accurate; rtol", words);
-        canvas.text((left + 38.0, y + 28.0), "beside it", words);
-        y += 50.0;
-        if balances {
-            self.cross(canvas, (left + 15.0, y));
-            canvas.text((left + 38.0, y), "error in time equals", words);
-            canvas.text((left + 38.0, y + 14.0), "error in space", words);
-            y += 36.0;
-        }
-        if self.data.lines.iter().flat_map(|l| &l.markers).any(|m| !m.judged) {
-            draw_marker(canvas, (left + 15.0, y), 2, FAINT_INK, false);
-            canvas.text((left + 38.0, y), "reference not ten", words);
-            canvas.text((left + 38.0, y + 14.0), "times better", words);
-            y += 36.0;
-        }
-        let faint = words.coloured(FAINT_INK);
-        let own = format!("reference's own error {}", significant(self.data.own, 1));
-        canvas.text((left, y), &own, faint);
-        if self.data.repeats > 1 {
-            let timing = format!("time: least of {} runs;", self.data.repeats);
-            canvas.text((left, y + 16.0), &timing, faint);
-            canvas.text((left, y + 30.0), "whisker: to the median", faint);
-        }
-    }
+fn cross(canvas: &mut Canvas, (x, y): (f64, f64)) {
+    let r = 5.0;
+    let stroke = Stroke::solid(INK, 1.3);
+    canvas.line(&[(x - r, y - r), (x + r, y + r)], stroke);
+    canvas.line(&[(x - r, y + r), (x + r, y - r)], stroke);
 }
 
 /// Round for orders 1 and 2, a diamond for 5, a square for what lies between; hollow when not judged.

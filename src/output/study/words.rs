@@ -90,23 +90,29 @@ fn price(seconds: f64, setting: Setting, orders: &[u8]) -> String {
     )
 }
 
-/// The worst foot among the lines that an answer lies on.
+/// The worst foot among the lines that an answer lies on; else the worst of all, with its line.
 fn foot(study: &Study) -> Option<String> {
-    let lines: Vec<_> = study
-        .answers
-        .iter()
-        .filter_map(|a| a.point)
-        .map(|k| study.points[k].trial.line())
-        .collect();
-    let on_answers = study
-        .feet
-        .iter()
-        .filter(|f| lines.contains(&study.points[f.cheapest].trial.line()));
-    let worst = on_answers.max_by(|a, b| a.factor.total_cmp(&b.factor))?;
-    let setting = study.points[worst.cheapest].trial.setting;
-    let factor = significant(worst.factor, 2);
+    let line = |k: usize| study.points[k].trial.line();
+    let lines: Vec<_> = study.answers.iter().filter_map(|a| a.point).map(line).collect();
+    let worst = |answering: bool| {
+        let feet = study
+            .feet
+            .iter()
+            .filter(|f| lines.contains(&line(f.cheapest)) == answering);
+        feet.max_by(|a, b| a.factor.total_cmp(&b.factor))
+    };
+    let (foot, answering) = worst(true)
+        .map(|f| (f, true))
+        .or_else(|| worst(false).map(|f| (f, false)))?;
+    let setting = study.points[foot.cheapest].trial.setting;
+    let factor = significant(foot.factor, 2);
+    let with = if answering {
+        String::new()
+    } else {
+        format!(" with {} cells and order {}", setting.cells, setting.order)
+    };
     Some(format!(
-        "looser than rtol {:e} costs more, not less (up to {factor} times)",
+        "looser than rtol {:e} costs more, not less{with} (up to {factor} times)",
         setting.rtol
     ))
 }

@@ -15,7 +15,8 @@ pub struct Errors {
     pub spatial: Option<Norms>,
     /// Against the limit.
     pub total: Norms,
-    /// The total and the limit's own error: the true error is hardly larger.
+    /// What may be relied on: the total with the limit's own error, and no less than the error in time or in space, which
+    /// may cancel by luck.
     pub bound: Norms,
     /// Whether the total is at least ten times the error of the limit itself, in the maximum norm.
     pub judged: bool,
@@ -49,7 +50,8 @@ pub fn errors(trial: &Trial, meshes: &[Temporal], limits: &[Limit]) -> Option<Ve
         });
         let total = Norms::between(values, &limit.values).over(limit.size).or_larger(least);
         let total = itself.map_or(total, |m| total.or_larger(m.own[k]));
-        let bound = total.with(own, |t, o| t + o);
+        let parts = temporal.unwrap_or_default().or_larger(spatial.unwrap_or_default());
+        let bound = total.with(own, |t, o| t + o).or_larger(parts);
         Errors {
             temporal,
             spatial,

@@ -203,7 +203,13 @@ pub fn limit(meshes: &[Temporal], signal: &Signal, k: usize, size: Norms) -> Opt
         _ => 4.0,
     };
     let falls = if falls.is_nan() { 4.0 } else { falls };
-    limit.own_spatial = Some(apart.over(size).map(|d| d / (falls - 1.0)));
+    let left = apart.over(size).map(|d| d / (falls - 1.0));
+    // An exponent that was fitted makes the limits agree where there is nothing to agree; half the way to the limit is
+    // then the cautious guess.
+    let way = Norms::between(&limit.values, &fine.values[k])
+        .over(size)
+        .map(|d| 0.5 * d);
+    limit.own_spatial = Some(if exponent == 2.0 { left } else { left.or_larger(way) });
     limit.own_temporal = fine.own[k].with(coarse.own[k], |f, c| ((gain + 1.0) * f + c) / gain);
     limit.extrapolated_with = Some(exponent);
     Some(limit)

@@ -228,16 +228,20 @@ fn conclude(study: &mut Study) {
         error: f64::INFINITY,
         cost: f64::INFINITY,
     };
-    let mark = |k: usize| match study.error(k) {
-        Some(errors) if study.points[k].trial.role == Role::Point => Mark {
-            error: errors.bound.max,
-            cost: study.points[k].trial.wall_min_s,
-        },
-        _ => none,
+    let marks = |error: fn(&Errors) -> f64| -> Vec<Mark> {
+        let mark = |k: usize| match study.error(k) {
+            Some(errors) if study.points[k].trial.role == Role::Point => Mark {
+                error: error(errors),
+                cost: study.points[k].trial.wall_min_s,
+            },
+            _ => none,
+        };
+        (0..study.points.len()).map(mark).collect()
     };
-    let marks: Vec<Mark> = all.clone().map(mark).collect();
-    study.front = front::front(&marks);
-    study.answers = front::answers(&marks, &study.front, &ACCURACIES);
+    let (totals, bounds) = (marks(|e| e.total.max), marks(|e| e.bound.max));
+    let (of_totals, of_bounds) = (front::front(&totals), front::front(&bounds));
+    study.answers = front::answers(&bounds, &of_bounds, &ACCURACIES);
+    study.front = of_totals;
     let cost: Vec<f64> = all.clone().map(|k| study.points[k].trial.wall_min_s).collect();
     let work: Vec<f64> = all
         .map(|k| study.points[k].trial.counters.residual_evaluations as f64)

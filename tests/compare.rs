@@ -1,0 +1,169 @@
+//! Two results side by side: aligned in time and space, and how far apart they are.
+
+use std::path::Path;
+
+use slcbeam::case::{self, Case};
+use slcbeam::output::{FolderRecorder, Labels, ResultFolder, comparison, reading};
+use slcbeam::run::dynamics;
+use slcbeam::run::record::Control;
+use slcbeam::study::compare::{self, interpolate};
+
+/// A dry cantilever swung by a load on it.
+const DRY: &str = r#"{
+  "name": "dry",
+  "beam": {"length_m": 0.1, "height_m": 0.02, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 950},
+  "loads": [{"force_x_n_m": {"signal": {"sine": {"amplitude": 10, "frequency_hz": 10, "ramp_cycles": 1}}}}],
+  "ends": {"root": "clamped", "tip": "free"},
+  "mesh": {"segments": 3},
+  "time": {"end_s": 0.15, "output_interval_s": 0.0015}
+}"#;
+
+/// Two bladders and a tube in a beam swung by a load.
+const WET: &str = r#"{
+  "name": "wet",
+  "beam": {"length_m": 0.1, "height_m": 0.02, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 950},
+  "fluid": {"density_kg_m3": 1000, "viscosity_pa_s": 1e-3},
+  "bladders": {
+    "per_row": 1, "length_m": 0.046, "height_m": 0.008, "width_m": 0.008, "permeability_m4": 1.5e-12,
+    "area_per_pressure_m2_per_pa": 1.75e-10,
+    "area_per_moment_m2_per_n_m": {"opening": 5e-6, "closing": 5e-6},
+    "area_per_force_m2_per_n": {"tension": 5e-8, "compression": 5e-8}
+  },
+  "tubes": {"length_m": 0.02, "radius_m": 0.001},
+  "network": {"tubes": [{"from": {"bladder": 1, "end": "outlet"}, "to": {"bladder": -1, "end": "inlet"}}]},
+  "loads": [{"force_x_n_m": {"signal": {"sine": {"amplitude": 20, "frequency_hz": 5, "ramp_cycles": 1}}}}],
+  "ends": {"root": "clamped", "tip": "free"},
+  "time": {"end_s": 0.3, "output_interval_s": 0.003}
+}"#;
+
+fn parsed(text: &str, sets: &[&str]) -> Case {
+    let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
+    case::parse(text, Path::new("case.json"), Path::new("."), &sets)
+        .unwrap()
+        .case
+}
+
+/// Runs into a folder.
+fn run_into(dir: &Path, text: &str, sets: &[&str]) -> compare::Recording {
+    let case = parsed(text, sets);
+    let labels = Labels {
+        case_name: case.name.clone(),
+        case_json: case.resolved_json(),
+        frequency_hz: None,
+    };
+    let mut recorder = FolderRecorder::new(
+        ResultFolder::create(dir).unwrap(),
+        labels,
+        Box::new(|_| Control::Continue),
+    );
+    let outcome = dynamics::run(&case, &mut recorder).unwrap();
+    recorder.finish(&outcome.summary).unwrap();
+    reading::read(dir).unwrap()
+}
+
+#[test]
+fn a_run_equals_itself_and_nearly_its_other_meshes_and_times() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    let tight = "/solver/rtol=1e-8";
+    let first = run_into(
+        &at("first"),
+        WET,
+        &["/mesh/cells_per_segment=8", "/mesh/cells_per_bladder=4", tight],
+    );
+    let itself = compare::compare(&first, &first);
+    assert!(itself.physics.is_empty() && itself.numerics.is_empty() && itself.left_out.len() < 5);
+    for d in itself.histories.iter().chain(&itself.fields) {
+        assert_eq!(
+            (d.relative.l2, d.relative.max, d.interpolation),
+            (0.0, 0.0, 0.0),
+            "{}",
+            d.name
+        );
+    }
+    assert!(itself.fields.iter().any(|d| d.name == "pressure_pa") && itself.histories.len() > 6);
+
+    // Twice as fine a mesh: a quarter of the error of the second order is left, well below 5 %.
+    let finer = run_into(
+        &at("finer"),
+        WET,
+        &["/mesh/cells_per_segment=16", "/mesh/cells_per_bladder=8", tight],
+    );
+    let meshes = compare::compare(&first, &finer);
+    assert!(meshes.physics.is_empty() && !meshes.numerics.is_empty());
+    let named = |c: &compare::Comparison, name: &str| {
+        let all = c.histories.iter().chain(&c.fields);
+        all.clone()
+            .find(|d| d.name == name)
+            .cloned()
+            .unwrap_or_else(|| panic!("no {name}"))
+    };
+    for name in ["tip_u1", "u1_m", "v1_m_s", "moment_n_m", "pressure_pa"] {
+        let d = named(&meshes, name);
+        assert!(d.relative.l2 > 0.0 && d.relative.l2 < 0.05, "{name}: {:?}", d.relative);
+    }
+    assert!(
+        named(&meshes, "u1_m").place.is_some_and(|x| x > 0.5),
+        "largest near the tip"
+    );
+
+    // Other output times: same steps, so only interpolation is in between, and it says how much.
+    let shifted = [
+        "/mesh/cells_per_segment=8",
+        "/mesh/cells_per_bladder=4",
+        tight,
+        "/time/output_interval_s=0.0007",
+    ];
+    let shifted = run_into(&at("shifted"), WET, &shifted);
+    let times = compare::compare(&first, &shifted);
+    for (name, most) in [("tip_u1", 1e-5), ("u1_m", 1e-5), ("u3_m", 1e-4), ("v1_m_s", 1e-3)] {
+        let d = named(&times, name);
+        assert!(d.relative.max < most, "{name}: {:?}", d.relative);
+        assert!(
+            d.interpolation > 0.0 && d.relative.max < 20.0 * d.interpolation + 1e-7,
+            "{name}: {d:?}"
+        );
+    }
+    // Fewer instants are those of the first run.
+    assert!(named(&times, "tip_u1").instants <= first.times.len());
+    assert!(comparison::picture(&first, &shifted, &times).is_some_and(|svg| svg.contains("difference")));
+}
+
+#[test]
+fn another_problem_is_called_one() {
+    let dir = tempfile::tempdir().unwrap();
+    let a = run_into(&dir.path().join("a"), DRY, &[]);
+    let b = run_into(&dir.path().join("b"), DRY, &["/beam/length_m=0.11", "/time/end_s=0.12"]);
+    let found = compare::compare(&a, &b);
+    let pointers: Vec<&str> = found.physics.iter().map(|c| c.pointer.as_str()).collect();
+    assert_eq!(pointers, ["/beam/length_m", "/time/end_s"]);
+    assert!((found.to_s - 0.12).abs() < 1e-12);
+    assert!(
+        found
+            .histories
+            .iter()
+            .any(|d| d.name == "tip_u1" && d.relative.max > 0.05)
+    );
+}
+
+#[test]
+fn cubics_are_exact_for_cubics_and_kinks_do_not_ring() {
+    let xs = [0.0, 1.0, 2.5, 3.0, 4.5, 6.0];
+    let f = |x: f64| 1.0 - 2.0 * x + 0.5 * x * x - 0.1 * x * x * x;
+    for x in [0.2, 1.0, 1.7, 2.9, 4.0, 5.9] {
+        assert!(
+            (interpolate::cubic(&xs, x).mean(|k| f(xs[k])) - f(x)).abs() < 1e-12,
+            "{x}"
+        );
+    }
+    let slope = |x: f64| -2.0 + x - 0.3 * x * x;
+    let w = interpolate::hermite(0.3, 1.5);
+    let (a, b) = (1.0, 2.5);
+    let between = w[0] * f(a) + w[1] * f(b) + w[2] * slope(a) + w[3] * slope(b);
+    assert!((between - f(1.45)).abs() < 1e-12);
+    let step = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+    for k in 0..=60 {
+        let y = interpolate::monotone(&xs, &step, 0.1 * f64::from(k));
+        assert!((0.0..=1.0).contains(&y), "{y}");
+    }
+}
