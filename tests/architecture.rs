@@ -14,7 +14,7 @@ const ROOMS: [&str; 11] = [
 const LINES: usize = 400;
 
 /// Longer files, each with the reason.
-const LONG: [(&str, &str); 7] = [
+const LONG: [(&str, &str); 6] = [
     (
         "src/model/network.rs",
         "the graph and its builder share every type; divided, both halves would be public",
@@ -29,10 +29,6 @@ const LONG: [(&str, &str); 7] = [
     (
         "tests/output.rs",
         "one invented run serves all tests of a result folder",
-    ),
-    (
-        "tests/study.rs",
-        "two small beams serve all tests of studies and comparisons",
     ),
 ];
 

@@ -47,7 +47,7 @@ pub fn draw(data: &Overlay) -> Option<String> {
             canvas,
             LEFT,
             "two runs over each other",
-            "difference (first less second) below each quantity",
+            "below each quantity the first less the second",
         );
         legend(canvas, &data.names);
         for (k, pair) in data.pairs.iter().enumerate() {
@@ -74,7 +74,7 @@ pub fn draw(data: &Overlay) -> Option<String> {
                 &x,
                 place,
                 &[(&pair.difference, Stroke::solid(PALETTE[9], 1.0))],
-                "difference",
+                "less",
                 last,
             );
         }
@@ -83,7 +83,7 @@ pub fn draw(data: &Overlay) -> Option<String> {
 
 fn panel(canvas: &mut Canvas, x: &Scale, place: Place, curves: &[(&Curve, Stroke)], name: &str, labelled: bool) {
     let values = curves.iter().flat_map(|(c, _)| c.points.iter().map(|p| p.1));
-    let ticks = if place.height > 100.0 { 4 } else { 2 };
+    let ticks = if place.height > 100.0 { 4 } else { 3 };
     let y = Scale::around(extent(values), 0.0, curves.first().map_or("1", |c| &c.0.unit), ticks);
     let panel = Panel { place, x: x.clone(), y };
     panel.grid(canvas);

@@ -26,6 +26,16 @@ const HISTORIES: [&str; 11] = [
 /// Fields that are compared, at the nodes between segments, which all meshes have.
 const FIELDS: [&str; 4] = ["u1_m", "u3_m", "v1_m_s", "v3_m_s"];
 
+/// Whether a case could have a signal of this name; figures of the summary, `quantity.figure`, are not known before a run.
+pub fn possible(name: &str) -> bool {
+    name.contains('.') || HISTORIES.contains(&name) || FIELDS.contains(&name)
+}
+
+/// Names of histories and fields.
+pub fn names() -> String {
+    [HISTORIES.join(", "), FIELDS.join(", ")].join(", ")
+}
+
 /// What a signal is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

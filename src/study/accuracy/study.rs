@@ -7,7 +7,7 @@ use super::front::{self, Answer, Balance, Foot, Mark};
 use super::norms::Norms;
 use super::plan::Plan;
 use super::reference::{self, Limit, Temporal};
-use super::signals::{Kind, Signal};
+use super::signals::{self, Kind, Signal};
 use super::sweep::{self, Watch};
 use super::trial::{Role, Trial};
 use crate::case::Case;
@@ -103,6 +103,12 @@ impl Study {
 
 /// Studies a case; `measure` names the headline, by default the deflection of the tip.
 pub fn study(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> Result<Study> {
+    if let Some(name) = measure.filter(|name| !signals::possible(name)) {
+        return Err(Error::Usage(format!(
+            "--measure {name}: one of {}, or a figure such as tip_u1_m.max_abs",
+            signals::names()
+        )));
+    }
     let (mut trials, spent) = sweep::sweep(case, &plan, watch)?;
     let (left_out, sizes) = agree(&mut trials);
     let names: Vec<String> = best(&trials)
