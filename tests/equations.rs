@@ -382,7 +382,7 @@ fn flows_follow_pressures_and_lose_nothing() {
     let inside = 1.55e-12 / (8.68e-4 * fluid.ds);
     let between = 1.0 / (1.0 / inside + 8.68e-4 * 0.02 / 6.72e-13);
     let flow = |cell: usize| {
-        let tube = (cell + 1) % fluid.cells_per_bladder == 0;
+        let tube = (cell + 1).is_multiple_of(fluid.cells_per_bladder);
         (if tube { between } else { inside }) * (w.pressure[cell] - w.pressure[(cell + 1) % cells])
     };
     let size = (0..cells).map(|c| flow(c).abs()).fold(0.0, f64::max);

@@ -27,13 +27,13 @@ pub fn expected(trials: &[Trial], next: Setting) -> Option<f64> {
         if coarse.setting.rtol != next.rtol {
             continue;
         }
-        let ratios = finished().filter(same_line).filter_map(|fine| {
+        let mut ratios = finished().filter(same_line).filter_map(|fine| {
             let twin = finished().find(|t| t.line() == coarse.line() && t.setting.rtol == fine.setting.rtol)?;
             Some(fine.cost / twin.cost)
         });
         let power = if next.order > 2 { 3 } else { 1 };
         let ratio = ratios
-            .last()
+            .next_back()
             .unwrap_or((next.cells as f64 / coarse.setting.cells as f64).powi(power));
         guesses.push(coarse.cost * ratio);
     }
