@@ -17,7 +17,7 @@
 //! | [`dae`] | the trait [`dae::Dae`]; the beam as one; dual numbers, pattern, Jacobian. Knows no solver |
 //! | [`sundials`] | IDA and KLU behind safe types; the only `unsafe` code; knows only [`dae::Dae`] |
 //! | [`run`] | a run in time: samples, balances, range checks. Emits what happens, prints nothing |
-//! | [`study`] | many runs to answer one question: exact results |
+//! | [`study`] | many runs to answer one question: exact results, accuracy against cost, comparison |
 //! | [`output`] | result folders: history, arrays, summary, pictures |
 //! | [`cli`] | one file a subcommand; the only place that prints |
 //!
