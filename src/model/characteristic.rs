@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use faer::{Mat, Side};
-use nalgebra::Matrix2;
+use nalgebra::{DMatrix, Matrix2};
 
 use super::network::{Network, Node};
 use super::{Model, Wet};
@@ -292,7 +291,7 @@ fn slowest_time(wet: &Wet, component: usize) -> Option<f64> {
         Node::Junction(j) => junctions.iter().position(|&k| k == j).map(|k| nb + k),
         Node::Port(_) => None,
     };
-    let mut laplacian = Mat::<f64>::zeros(nb + nj, nb + nj);
+    let mut laplacian = DMatrix::<f64>::zeros(nb + nj, nb + nj);
     let clock = Clock { t: 0.0, within: 0.0 };
     let mut grounded = false;
     for link in &network.links {
@@ -329,8 +328,8 @@ fn slowest_time(wet: &Wet, component: usize) -> Option<f64> {
             }
         }
     }
-    let reduced = laplacian.submatrix(0, 0, nb, nb).to_owned();
-    let mut values = reduced.self_adjoint_eigenvalues(Side::Lower).ok()?;
+    let reduced = laplacian.view((0, 0), (nb, nb)).into_owned();
+    let mut values: Vec<f64> = reduced.symmetric_eigenvalues().iter().copied().collect();
     values.sort_by(f64::total_cmp);
     let slowest = values.get(usize::from(!grounded)).copied()?;
     let largest = values.last().copied()?;

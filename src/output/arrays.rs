@@ -9,9 +9,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use npyz::WriterBuilder;
-use npyz::npz::NpzWriter;
-use npyz::zip::write::FileOptions;
-use npyz::zip::{CompressionMethod, DateTime};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::folder::{fault, part_of};
 use super::history::FLUSH;
@@ -157,7 +156,7 @@ impl ArraysWriter {
     }
 
     fn pack(&self, path: &Path) -> io::Result<()> {
-        let mut npz = NpzWriter::create(path)?;
+        let mut npz = ZipWriter::new(BufWriter::new(File::create(path)?));
         for axis in &self.axes {
             let shape = [axis.values.len() as u64];
             write_array(&mut npz, axis.name, &shape, axis.values.iter().map(|&x| Ok(x)))?;
@@ -166,29 +165,26 @@ impl ArraysWriter {
         for (field, raw) in self.fields.iter().zip(&self.raw) {
             write_array(&mut npz, field.name, &[self.instants, field.len as u64], raw.stream()?)?;
         }
-        let mut file = npz.zip_writer().finish().map_err(io::Error::from)?;
-        file.flush()
+        npz.finish()?.flush()
     }
 }
 
 fn write_array(
-    npz: &mut NpzWriter<BufWriter<File>>,
+    npz: &mut ZipWriter<BufWriter<File>>,
     name: &str,
     shape: &[u64],
     values: impl Iterator<Item = io::Result<f64>>,
 ) -> io::Result<()> {
     // Beyond 4 GiB the format needs its larger headers.
     let large = shape.iter().product::<u64>() * 8 > u64::from(u32::MAX) / 2;
-    let options = FileOptions::default()
+    let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
         // The same run gives the same file, whenever it is run.
         .last_modified_time(DateTime::default())
         .large_file(large);
-    let mut array = npz
-        .array::<f64>(name, options)?
-        .default_dtype()
-        .shape(shape)
-        .begin_nd()?;
+    npz.start_file(format!("{name}.npy"), options)?;
+    let array = npyz::WriteOptions::<f64>::new().default_dtype().shape(shape);
+    let mut array = array.writer(npz).begin_nd()?;
     for value in values {
         array.push(&value?)?;
     }

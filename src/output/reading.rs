@@ -1,11 +1,12 @@
 //! A result folder back into memory, to be compared with another.
 
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, BufReader};
 use std::path::Path;
 
-use npyz::npz::NpzArchive;
+use npyz::NpyFile;
 use serde_json::Value;
+use zip::ZipArchive;
 
 use super::arrays::TIMES;
 use super::folder::{CASE, FIELDS, HISTORY, fault};
@@ -70,10 +71,13 @@ fn history(path: &Path) -> io::Result<Vec<Series>> {
 }
 
 fn arrays(path: &Path, out: &mut Recording) -> io::Result<()> {
-    let mut npz = NpzArchive::open(path)?;
-    let names: Vec<String> = npz.array_names().map(String::from).collect();
-    for name in names {
-        let Some(array) = npz.by_name(&name)? else { continue };
+    let mut npz = ZipArchive::new(BufReader::new(File::open(path)?))?;
+    for k in 0..npz.len() {
+        let entry = npz.by_index(k)?;
+        let Some(name) = entry.name()?.strip_suffix(".npy").map(String::from) else {
+            continue;
+        };
+        let array = NpyFile::new(entry)?;
         let shape = array.shape().to_vec();
         let values: Vec<f64> = array.into_vec()?;
         match shape.as_slice() {
