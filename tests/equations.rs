@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use slcbeam::case::{self, Case};
+use slcbeam::dae::BeamDae;
 use slcbeam::discrete::recipe::{self, fluid::bridge_drops};
 use slcbeam::discrete::{Instant, System, Workspace};
 use slcbeam::model::network::CheckValve;
@@ -15,7 +16,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 21] = [
+const INDEX: [(&str, &str, &str); 22] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -61,6 +62,11 @@ const INDEX: [(&str, &str, &str); 21] = [
     ),
     ("[E20]", "tests/equations.rs", "two_bladders_relax_in_half_their_time"),
     ("[E21]", "tests/equations.rs", "the_audit_of_the_papers_coupling"),
+    (
+        "[E22]",
+        "tests/equations.rs",
+        "a_rigid_motion_leaves_the_unknowns_alone",
+    ),
 ];
 
 #[test]
@@ -572,4 +578,64 @@ fn the_kink_is_smooth() {
         .wet
         .unwrap();
     assert_eq!(law(&wet.area), (0.0, 0.0), "the reciprocal coupling takes mean slopes");
+}
+
+/// `[E22]` A root on its way, unknowns zero: every node goes with it, and nothing is strained, to the last digit but the
+/// round-off of coordinates. Two ends driven apart stretch the beam evenly.
+#[test]
+fn a_rigid_motion_leaves_the_unknowns_alone() {
+    let at = |sets: &[&str]| {
+        let system = System::new(&load("wiring-2", sets));
+        let mut now = Instant::new(&system);
+        now.update(&system, case::Clock { t: 0.0123, within: 0.0 });
+        let mut w = Workspace::new(&system);
+        let zero = vec![0.0; system.layout.len];
+        recipe::evaluate(&system, &now, &zero, &zero, &mut w);
+        (
+            w,
+            now.ends.map(|e| e.u3.unwrap_or_default()),
+            system.model.section.axial_stiffness,
+        )
+    };
+    let (w, [root, _], stiffness) = at(&[]);
+    assert!(root.value.abs() > 0.01 && root.rate.abs() > 0.01);
+    for node in 0..w.u3.len() {
+        assert_eq!(
+            (w.u3[node], w.v3[node], w.a3[node]),
+            (root.value, root.rate, root.acceleration)
+        );
+    }
+    assert!(w.force.iter().all(|n| n.abs() < 1e-12 * stiffness), "{:?}", w.force);
+
+    let pulled = r#"/ends/tip={"clamped": {"u3_m": {"sine": {"amplitude": 0.002, "frequency_hz": 5}}}}"#;
+    let (w, [root, tip], stiffness) = at(&[pulled]);
+    let force = stiffness * (tip.value - root.value) / 0.1;
+    for &n in &w.force {
+        close(n, force, 1e-9);
+    }
+}
+
+/// `[E22]` Where a root's velocity jumps the unknowns are restated: every free node stays where it is and as fast as it is.
+#[test]
+fn a_jerk_leaves_free_nodes_alone() {
+    let zigzag = r#"/ends/root={"clamped": {"u3_m": {"table": {"times_s": [0, 0.1, 0.2], "values": [0, 0.01, 0.005], "interpolation": "linear"}}}}"#;
+    let system = System::new(&load("wiring-2", &[zigzag]));
+    let (layout, last) = (system.layout.clone(), system.mesh.nodes - 1);
+    let mut dae = BeamDae::new(system);
+    let mut y: Vec<f64> = (0..layout.len).map(|k| 1e-3 * (k as f64).sin()).collect();
+    let rates = vec![0.0; layout.len];
+    let look = |dae: &mut BeamDae, y: &[f64]| {
+        let (_, _, w) = dae.evaluate(0.1, y, &rates);
+        (w.u3.clone(), w.v3.clone())
+    };
+    dae.look_within(0.05);
+    let (u, v) = look(&mut dae, &y);
+    dae.switch(0.1, 0.15, &mut y);
+    let (u_after, v_after) = look(&mut dae, &y);
+    close(v[0], 0.1, 1e-9);
+    close(v_after[0], -0.05, 1e-9);
+    for node in 1..=last {
+        close(u_after[node], u[node], 1e-12);
+        close(v_after[node], v[node], 1e-12);
+    }
 }

@@ -3,7 +3,7 @@
 use super::dual::Dual;
 use super::{Dae, Fault, Pattern, Seeds, colour, trace};
 use crate::case::signals::Clock;
-use crate::discrete::{Instant, System, Workspace, ledger, recipe};
+use crate::discrete::{Instant, System, Workspace, ledger, recipe, start};
 
 /// Directions differentiated in one sweep.
 const LANES: usize = 8;
@@ -71,6 +71,15 @@ impl BeamDae {
     /// Chooses the smooth interval in which signals are looked at, by an instant inside it [s].
     pub fn look_within(&mut self, t: f64) {
         self.within = t;
+    }
+
+    /// At a switching time `t` [s]: looks at signals in the smooth interval around `within` from now on, and restates the
+    /// scaled unknowns so that the beam stays where it is and as fast as it is.
+    pub fn switch(&mut self, t: f64, within: f64, y: &mut [f64]) {
+        let before = self.instant(t).1.clone();
+        self.look_within(within);
+        let (system, after) = self.instant(t);
+        start::change_frame(system, &before, after, y);
     }
 
     /// The system, and the values of time alone at an instant.

@@ -53,6 +53,46 @@ pub struct EndInstant {
     pub follower: Option<(f64, f64)>,
 }
 
+/// Motion of the straight line through the displacements that the ends prescribe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    root: Jet,
+    /// Tip less root.
+    lean: Jet,
+}
+
+impl Frame {
+    /// The line through both driven ends, or the motion of the one; `None` when neither is driven.
+    fn through(root: Option<Jet>, tip: Option<Jet>) -> Option<Self> {
+        let alone = |root: Jet| Self {
+            root,
+            lean: Jet::default(),
+        };
+        match (root, tip) {
+            (Some(root), Some(tip)) => Some(Self {
+                root,
+                lean: Jet {
+                    value: tip.value - root.value,
+                    rate: tip.rate - root.rate,
+                    acceleration: tip.acceleration - root.acceleration,
+                },
+            }),
+            (Some(end), None) | (None, Some(end)) => Some(alone(end)),
+            (None, None) => None,
+        }
+    }
+
+    /// Displacement, velocity and acceleration at a share of the length, 0 at the root and 1 at the tip.
+    #[inline]
+    pub fn at(&self, share: f64) -> Jet {
+        Jet {
+            value: self.root.value + share * self.lean.value,
+            rate: self.root.rate + share * self.lean.rate,
+            acceleration: self.root.acceleration + share * self.lean.acceleration,
+        }
+    }
+}
+
 /// Values at one instant.
 #[derive(Clone, Debug)]
 pub struct Instant {
@@ -99,6 +139,18 @@ impl Instant {
             port_pressure: vec![0.0; ports],
             source_flow: vec![0.0; sources],
         }
+    }
+
+    /// Frame of the transverse displacements.
+    #[inline]
+    pub fn frame_1(&self) -> Option<Frame> {
+        Frame::through(self.ends[0].u1, self.ends[1].u1)
+    }
+
+    /// Frame of the axial displacements.
+    #[inline]
+    pub fn frame_3(&self) -> Option<Frame> {
+        Frame::through(self.ends[0].u3, self.ends[1].u3)
     }
 
     /// Evaluates every signal at `clock`, unless that is where it stands already.

@@ -16,16 +16,32 @@ pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
             .as_ref()
             .map_or(0.0, |p| p.value(system.mesh.node_coordinate(node) / length))
     };
-    for (k, node) in l.free_u1.clone().enumerate() {
-        y[l.u1 + k] = at(&case.start.u1_m, node);
-        if l.inertia {
-            y[l.v1 + k] = at(&case.start.u1_rate_m_s, node);
-        }
-    }
-    for (k, node) in l.free_u3.clone().enumerate() {
-        y[l.u3 + k] = at(&case.start.u3_m, node);
-        if l.inertia {
-            y[l.v3 + k] = at(&case.start.u3_rate_m_s, node);
+    let last = (system.mesh.nodes - 1) as f64;
+    let lines = [
+        (
+            now.frame_1(),
+            &l.free_u1,
+            l.u1,
+            l.v1,
+            &case.start.u1_m,
+            &case.start.u1_rate_m_s,
+        ),
+        (
+            now.frame_3(),
+            &l.free_u3,
+            l.u3,
+            l.v3,
+            &case.start.u3_m,
+            &case.start.u3_rate_m_s,
+        ),
+    ];
+    for (frame, free, u, v, displacement, velocity) in lines {
+        for (k, node) in free.clone().enumerate() {
+            let frame = frame.map_or(Default::default(), |f| f.at(node as f64 / last));
+            y[u + k] = at(displacement, node) - frame.value;
+            if l.inertia {
+                y[v + k] = at(velocity, node) - frame.rate;
+            }
         }
     }
     if system.fluid.is_some() {
@@ -83,5 +99,27 @@ fn fill_bladders(system: &System, case: &Case, now: &Instant, y: &mut [f64]) {
     }
     for (junction, value) in y[l.junction..l.bridge].iter_mut().enumerate() {
         *value = w.junction.get(junction).copied().unwrap_or(0.0);
+    }
+}
+
+/// Keeps displacements and velocities what they are while the ends' signals pass from one smooth branch to the next.
+pub fn change_frame(system: &System, before: &Instant, after: &Instant, y: &mut [f64]) {
+    let l = &system.layout;
+    let last = (system.mesh.nodes - 1) as f64;
+    let lines = [
+        (before.frame_1(), after.frame_1(), &l.free_u1, l.u1, l.v1),
+        (before.frame_3(), after.frame_3(), &l.free_u3, l.u3, l.v3),
+    ];
+    for (before, after, free, u, v) in lines {
+        let (Some(before), Some(after)) = (before, after) else {
+            continue;
+        };
+        for (k, node) in free.clone().enumerate() {
+            let (old, new) = (before.at(node as f64 / last), after.at(node as f64 / last));
+            y[u + k] += (old.value - new.value) / l.scales[u + k];
+            if l.inertia {
+                y[v + k] += (old.rate - new.rate) / l.scales[v + k];
+            }
+        }
     }
 }

@@ -80,6 +80,10 @@ pub struct Workspace<T> {
     pub inflow: Vec<T>,
     /// Net inflow of each junction [m^3/s].
     pub junction_inflow: Vec<T>,
+    /// Inflow of each component of the network that is not stored: what Newton's iteration leaves over [m^3/s].
+    pub surplus: Vec<T>,
+    /// Conductance of each component's links to pressure ports, together [m^3/(s Pa)].
+    pub gates: Vec<T>,
 }
 
 impl<T: Scalar> Workspace<T> {
@@ -93,11 +97,10 @@ impl<T: Scalar> Workspace<T> {
             0
         };
         let (cells, bladders) = system.fluid.as_ref().map_or((0, 0), |f| (f.cells, f.bladders));
-        let (junctions, bridges) = system
-            .model
-            .wet
-            .as_ref()
-            .map_or((0, 0), |w| (w.network.junctions.len(), w.network.bridges.len()));
+        let (junctions, bridges, components) = system.model.wet.as_ref().map_or((0, 0, 0), |w| {
+            let n = &w.network;
+            (n.junctions.len(), n.bridges.len(), n.components)
+        });
         Self {
             u1: zeros(n),
             u3: zeros(n),
@@ -134,6 +137,8 @@ impl<T: Scalar> Workspace<T> {
             bridge: zeros(bridges),
             inflow: zeros(cells),
             junction_inflow: zeros(junctions),
+            surplus: zeros(components),
+            gates: zeros(components),
         }
     }
 }

@@ -10,9 +10,9 @@ use crate::case::{ResolvedEnd, Rotation, Translation};
 /// Sizes to which tolerances are relative; SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
-    /// Transverse displacement [m].
+    /// Transverse displacement, relative to the driven ends [m].
     pub transverse: f64,
-    /// Axial displacement [m].
+    /// Axial displacement, relative to the driven ends [m].
     pub axial: f64,
     /// Transverse velocity [m/s].
     pub transverse_rate: f64,
@@ -64,8 +64,12 @@ struct Drive {
     axial_force: f64,
     moment: f64,
     transverse_motion: f64,
-    axial_motion: f64,
+    transverse_acceleration: f64,
     axial_acceleration: f64,
+    /// Velocity with which a driven end sets off from rest.
+    axial_jump: f64,
+    /// Axial motions of both ends, where both are driven.
+    axial_pull: f64,
     slope: f64,
     pressure: f64,
     frequency: f64,
@@ -95,10 +99,13 @@ impl Drive {
                 d.hear(&l.signal);
             }
         }
+        let both = ends.iter().all(|e| matches!(e.axial, Translation::Displacement(_)));
         for e in ends {
             match &e.transverse {
                 Translation::Displacement(s) => {
-                    d.transverse_motion = d.transverse_motion.max(size(s));
+                    let (value, _, acceleration) = largest(s, end);
+                    d.transverse_motion = d.transverse_motion.max(value);
+                    d.transverse_acceleration = d.transverse_acceleration.max(acceleration);
                     d.hear(s);
                 }
                 Translation::Force(s) => d.transverse_force += size(s),
@@ -106,7 +113,11 @@ impl Drive {
             match &e.axial {
                 Translation::Displacement(s) => {
                     let (value, _, acceleration) = largest(s, end);
-                    d.axial_motion = d.axial_motion.max(value);
+                    let start = s.jet(Clock { t: 0.0, within: 0.0 });
+                    d.axial_jump = d.axial_jump.max(start.rate.abs());
+                    if both {
+                        d.axial_pull += value;
+                    }
                     d.axial_acceleration = d.axial_acceleration.max(acceleration);
                     d.hear(s);
                 }
@@ -154,6 +165,8 @@ impl Scales {
         let force_of_loads = d.axial_force
             + d.axial_load * l
             + m * l * d.axial_acceleration
+            + d.axial_jump * (ea * m).sqrt()
+            + d.axial_pull * ea / l
             + size(&case.start.u3_rate_m_s) * (ea * m).sqrt()
             + size(&case.start.u3_m) * ea / l;
         let (mut curvature, mut stretch) = (0.0, 0.0);
@@ -167,11 +180,21 @@ impl Scales {
             curvature = wet.coupling.curvature(&wet.area, 0.0, d.pressure, 0.0).abs();
             stretch = wet.coupling.stretch(&wet.area, 0.0, d.pressure, 0.0).abs();
         }
+        // Relative to the driven ends: a beam lags behind one, by all of its motion at most, and follows two bending.
+        let both = ends
+            .iter()
+            .all(|e| matches!(e.transverse, Translation::Displacement(_)));
+        let lag = if both {
+            d.transverse_motion
+        } else {
+            d.transverse_motion
+                .min(m * d.transverse_acceleration * l.powi(4) / (8.0 * ei))
+        };
         let by_load = moment_of_loads * l * l / (3.0 * ei);
         let transverse = case
             .solver
             .transverse_scale_m
-            .unwrap_or((d.transverse_motion + by_load + 0.5 * curvature * l * l + started).clamp(1e-5 * l, l));
+            .unwrap_or((lag + by_load + 0.5 * curvature * l * l + started).clamp(1e-5 * l, l));
         // A beam that bends draws its end in, and swings about with the force that this takes; pressure stretches it.
         let foreshortening = 0.5 * transverse * transverse / l;
         let force = (force_of_loads
@@ -179,8 +202,7 @@ impl Scales {
             + m * l * foreshortening * first_mode * first_mode
             + ea * stretch)
             .max(1e-6 * ea);
-        let axial =
-            (d.axial_motion + force * l / ea + foreshortening + size(&case.start.u3_m)).clamp(1e-6 * l, 10.0 * l);
+        let axial = (force * l / ea + foreshortening + size(&case.start.u3_m)).clamp(1e-6 * l, 10.0 * l);
         let frequency = first_mode.max(d.frequency);
         Self {
             transverse,

@@ -304,9 +304,8 @@ impl Observer {
         let open = self.seen.residuals.energy_relative();
         if open > ENERGY_OPEN {
             all.push(format!(
-                "energy balance: it stays open by {open:.1e} of the largest energy; tighten solver/rtol, or set \
-                 solver/nonlinear_coefficient to 0.01 where very stiff parts or ports meet large motions, until answers no \
-                 longer change (a load or valve that jumps without inertia or damping leaves it open at any tolerance)"
+                "energy balance: it stays open by {open:.1e} of the largest energy; tighten solver/rtol \
+                 until answers no longer change (a load or valve that jumps without inertia or damping leaves it open at any tolerance)"
             ));
         }
         if let Some((strain, t, node)) = self.seen.range.strain

@@ -37,8 +37,9 @@ pub const ENERGY_PER_RTOL: f64 = 1000.0;
 /// Closed networks lose nothing but round-off: 1e-16 a step, at random, over at most 10^6 steps, with some room.
 pub const VOLUME: f64 = 1e-12;
 
-/// Round-off of flows between nearly equal pressures is 1e-16 times step over time constant, here up to 10^7.
-pub const STIFF_VOLUME: f64 = 1e-9;
+/// Round-off of flows between nearly equal pressures is 1e-16 times step over time constant, here up to 10^7, in each of
+/// some thousand steps, at random.
+pub const STIFF_VOLUME: f64 = 3e-8;
 
 /// Keeps everything in memory and stops when steps or time are used up.
 pub struct Budget {

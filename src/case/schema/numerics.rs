@@ -136,7 +136,7 @@ pub struct Solver {
     /// Highest BDF order.
     #[serde(default)]
     pub max_order: MaxOrder,
-    /// Safety factor of Newton's convergence test, IDA's nonlinear convergence coefficient. Absent: 0.33 with solid
+    /// Safety factor of Newton's convergence test, IDA's nonlinear convergence coefficient. Absent: 0.033 with solid
     /// inertia; 1e-4 without, where what Newton leaves over is noise to the error test.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0), range(max = 1.0))]

@@ -5,7 +5,7 @@ use crate::discrete::fluid_mesh::Place;
 use crate::discrete::recipe::fluid::{bridge_drops, pressure_at};
 use crate::discrete::{Instant, System, Workspace};
 use crate::model::bladder::{kink_curvature, kink_slope};
-use crate::model::network::LinkKind;
+use crate::model::network::{LinkKind, Node};
 use crate::model::{AreaLaw, Coupling, Wet};
 
 /// Power that a coupling without reciprocity adds, and the rate of `alpha_p` at a node (for ends with given moment).
@@ -102,7 +102,11 @@ impl SegmentRates {
 }
 
 /// Dissipation, harvest, power of ports, and the outflow of every component.
-pub fn flows(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut [f64]) {
+///
+/// Flow through a pressure port is `g (p_port - p)`: where g is large, the last digits of p make it noise. So what a
+/// component takes in through its pressure ports is told from what it stores, exactly; `g (p_port - p)` only says how
+/// the ports share it.
+pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
@@ -119,6 +123,8 @@ pub fn flows(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut [f64]
         Place::Junction(j) => Some(network.component_of_junction[j]),
         Place::Port(_) => None,
     };
+    surplus(system, now, w);
+    let w = &*w;
     let leave = |component: usize, outward: f64, out: &mut [f64]| {
         if let Some(open) = network.open.iter().position(|&c| c == component) {
             out[FLOWS.len() + 2 * open] += outward;
@@ -149,7 +155,12 @@ pub fn flows(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut [f64]
             },
             rest,
         );
-        cross(link.from, link.to, q, out);
+        let surplus = match (link.from, component(link.to), link.to, component(link.from)) {
+            (Place::Port(_), Some(c), ..) => w.surplus[c] * conductance / w.gates[c].max(f64::MIN_POSITIVE),
+            (_, _, Place::Port(_), Some(c)) => -w.surplus[c] * conductance / w.gates[c].max(f64::MIN_POSITIVE),
+            _ => 0.0,
+        };
+        cross(link.from, link.to, q - surplus, out);
     }
     for (&place, &q) in fluid.sources.iter().zip(&now.source_flow) {
         let half = if matches!(place, Place::Cell(_)) {
@@ -170,6 +181,34 @@ pub fn flows(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut [f64]
         add(out, Flow::Turbines, conductance * w.bridge[b] * w.bridge[b]);
         add(out, Flow::Rectifiers, 2.0 * (qf * forward + qb * backward));
         cross(from, to, qf - qb, out);
+    }
+}
+
+/// Sums over the components of the network what flows in and is not stored, and the conductances to pressure ports.
+fn surplus(system: &System, now: &Instant, w: &mut Workspace<f64>) {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
+    let network = &wet.network;
+    w.surplus.fill(0.0);
+    w.gates.fill(0.0);
+    for (bladder, &component) in network.component_of_bladder.iter().enumerate() {
+        let cells = fluid.cells_of(bladder);
+        let inflow: f64 = w.inflow[cells.clone()].iter().sum();
+        let stored: f64 = w.area_rate[cells].iter().sum();
+        w.surplus[component] += inflow - stored * fluid.ds;
+    }
+    for (inflow, &component) in w.junction_inflow.iter().zip(&network.component_of_junction) {
+        w.surplus[component] += inflow;
+    }
+    for (link, conductance) in network.links.iter().zip(&now.conductance) {
+        let inside = match (link.from, link.to) {
+            (Node::Port(_), node) | (node, Node::Port(_)) => network.component_of(node),
+            _ => None,
+        };
+        if let Some(component) = inside {
+            w.gates[component] += conductance;
+        }
     }
 }
 

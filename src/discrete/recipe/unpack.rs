@@ -1,35 +1,38 @@
 //! From the vector of unknowns to displacements, velocities, means and areas; driven ends filled in.
 
-use crate::case::signals::Jet;
+use std::ops::Range;
+
+use crate::discrete::instant::Frame;
 use crate::discrete::{Instant, System, Workspace};
 use crate::model::Scalar;
 
 /// Copies the state into the workspace; what an end prescribes comes from its signal, with exact rates.
+///
+/// `[E22]` Displacements are unknown relative to the straight line through the motions that the ends prescribe:
+///
+/// ```text
+/// u_i = U_i + y_i     v_i = U'_i + y'_i     U_i = u(0) + (u(l_s) - u(0)) θ_i/l_s, or that of the one driven end
+/// ```
+///
+/// So the integrator's error in a motion as a whole cannot stretch the beam between a node that is driven exactly and
+/// its neighbour that is integrated.
 pub fn unpack<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w: &mut Workspace<T>) {
     let l = &system.layout;
-    let copy = |target: &mut [T], source: &[T], first: usize| {
-        let len = target.len();
-        target.copy_from_slice(&source[first..first + len]);
-    };
-    let (free_1, free_3) = (l.free_u1.clone(), l.free_u3.clone());
-    copy(&mut w.u1[free_1.clone()], y, l.u1);
-    copy(&mut w.u3[free_3.clone()], y, l.u3);
-    if l.inertia {
-        copy(&mut w.v1[free_1.clone()], y, l.v1);
-        copy(&mut w.v3[free_3.clone()], y, l.v3);
-        copy(&mut w.a1[free_1], yp, l.v1);
-        copy(&mut w.a3[free_3], yp, l.v3);
-    } else {
-        copy(&mut w.v1[free_1], yp, l.u1);
-        copy(&mut w.v3[free_3], yp, l.u3);
-    }
     let last = system.mesh.nodes - 1;
-    for (node, end) in [(0, &now.ends[0]), (last, &now.ends[1])] {
-        if let Some(jet) = end.u1 {
-            drive(jet, l.inertia, node, &mut w.u1, &mut w.v1, &mut w.a1);
+    let lines = [
+        (now.frame_1(), &l.free_u1, l.u1, l.v1, &mut w.u1, &mut w.v1, &mut w.a1),
+        (now.frame_3(), &l.free_u3, l.u3, l.v3, &mut w.u3, &mut w.v3, &mut w.a3),
+    ];
+    for (frame, free, u, v, displacement, velocity, acceleration) in lines {
+        copy(&mut displacement[free.clone()], y, u);
+        if l.inertia {
+            copy(&mut velocity[free.clone()], y, v);
+            copy(&mut acceleration[free.clone()], yp, v);
+        } else {
+            copy(&mut velocity[free.clone()], yp, u);
         }
-        if let Some(jet) = end.u3 {
-            drive(jet, l.inertia, node, &mut w.u3, &mut w.v3, &mut w.a3);
+        if let Some(frame) = frame {
+            carry(&frame, l.inertia, free, last, [displacement, velocity, acceleration]);
         }
     }
     if system.fluid.is_some() {
@@ -42,8 +45,24 @@ pub fn unpack<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w: &
     }
 }
 
-fn drive<T: Scalar>(jet: Jet, inertia: bool, node: usize, u: &mut [T], v: &mut [T], a: &mut [T]) {
-    u[node] = T::constant(jet.value);
-    v[node] = T::constant(jet.rate);
-    a[node] = T::constant(if inertia { jet.acceleration } else { 0.0 });
+fn copy<T: Scalar>(target: &mut [T], source: &[T], first: usize) {
+    let len = target.len();
+    target.copy_from_slice(&source[first..first + len]);
+}
+
+/// Adds the frame's motion to the free nodes and gives it to the driven ones.
+fn carry<T: Scalar>(frame: &Frame, inertia: bool, free: &Range<usize>, last: usize, [u, v, a]: [&mut Vec<T>; 3]) {
+    for node in 0..=last {
+        let jet = frame.at(node as f64 / last as f64);
+        let acceleration = if inertia { jet.acceleration } else { 0.0 };
+        if free.contains(&node) {
+            u[node] += T::constant(jet.value);
+            v[node] += T::constant(jet.rate);
+            a[node] += T::constant(acceleration);
+        } else {
+            u[node] = T::constant(jet.value);
+            v[node] = T::constant(jet.rate);
+            a[node] = T::constant(acceleration);
+        }
+    }
 }
