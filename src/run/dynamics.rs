@@ -64,6 +64,7 @@ struct Run<'a> {
     summary: Summary,
     options: IdaOptions,
     linear: Linear,
+    inertia: bool,
     held: Option<String>,
     begin: Instant,
     output_wall: f64,
@@ -159,6 +160,7 @@ impl<'a> Run<'a> {
                 ..IdaOptions::default()
             },
             linear,
+            inertia,
             held: None,
             begin,
             output_wall: 0.0,
@@ -441,6 +443,10 @@ impl Run<'_> {
         }
         s.growth = o.growth.judge(self.case.beam.length_m, &self.linear);
         s.warnings.extend(s.growth.as_ref().map(|g| g.warning()));
+        if !self.inertia {
+            let buckled = o.growth.straight_beyond_buckling(self.case.beam.length_m, &self.linear);
+            s.warnings.extend(buckled);
+        }
         s.warnings.extend(self.held);
         s.warnings.extend(self.observer.warnings());
         s.wall_s.total = self.begin.elapsed().as_secs_f64();

@@ -109,6 +109,20 @@ impl Growth {
         })
     }
 
+    /// A warning when a beam without inertia stayed straight although its compression passed Euler's load: an equilibrium,
+    /// but no stable one, which nothing in the equations of a perfect column notices.
+    pub fn straight_beyond_buckling(&self, length: f64, linear: &Linear) -> Option<String> {
+        let euler = linear.euler_load?;
+        let largest = self.windows.iter().map(|w| w.deflection).fold(0.0, f64::max);
+        (self.compression > euler && largest < 1e-6 * length).then(|| {
+            format!(
+                "buckling: compression reached {:.3e} N, above Euler's load {euler:.3e} N, and the beam without inertia stayed \
+                 straight, an unstable equilibrium; a load across of a thousandth would show the bent one",
+                self.compression
+            )
+        })
+    }
+
     fn drivers(&self, late: &[&Window], rate: f64, linear: &Linear) -> Vec<Driver> {
         let (first, last) = (late[0], late[late.len() - 1]);
         let gained = (last.bending_energy - first.bending_energy).max(f64::MIN_POSITIVE);

@@ -105,6 +105,9 @@ pub struct Observer {
     fields_every: u64,
     row: Vec<f64>,
     convex_up_to: f64,
+    /// Mass [kg] and length [m] of the beam.
+    mass: f64,
+    length: f64,
     /// `2 ρ/(π μ r_c)`: Reynolds number of a tube over its flow [s/m^3].
     reynolds_per_flow: f64,
     /// What has been seen so far.
@@ -136,6 +139,8 @@ impl Observer {
             fields_every,
             row: Vec::new(),
             convex_up_to,
+            mass: system.model.section.mass_per_length * system.model.length,
+            length: system.model.length,
             reynolds_per_flow: match (&case.fluid, &case.tubes) {
                 (Some(f), Some(t)) => 2.0 * f.density_kg_m3 / (std::f64::consts::PI * f.viscosity_pa_s * t.radius_m),
                 _ => 0.0,
@@ -240,6 +245,10 @@ impl Observer {
         displaced(system, &w.area, &w.pressure, &mut r.volume_seen);
         let impulse = [integrals[Flow::ImpulseX as usize], integrals[Flow::ImpulseZ as usize]];
         if system.layout.inertia {
+            // The momentum that the largest energy could carry: loads and reactions may cancel all along.
+            let carried = (2.0 * self.mass * r.energy_seen).sqrt();
+            r.momentum_seen = r.momentum_seen.max(carried);
+            r.angular_seen = r.angular_seen.max(carried * self.length);
             for (k, gained) in impulse.into_iter().enumerate() {
                 let lost = invariants.momentum[k] - first.momentum[k] - gained;
                 r.momentum = r.momentum.max(lost.abs());

@@ -142,7 +142,10 @@ fn confirm(mut case: slcbeam::case::Case, loose: &Memory) -> Verdict {
 }
 
 /// Seeds of cases that went wrong once stay here for ever.
-const REGRESSIONS: [u64; 0] = [];
+const REGRESSIONS: [u64; 5] = [
+    // no consistent start, for round-off of rates in networks that equalise in nanoseconds
+    41, 44, 90, 123, 170,
+];
 
 /// Goal: 200 random cases (SLCBEAM_FUZZ says how many) end well; most of what is generated must be a real test: at
 /// least half finishes, at most a tenth is refused by the case check.
