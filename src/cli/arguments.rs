@@ -51,6 +51,9 @@ pub struct RunArguments {
     /// Result folder [default: out/<case name>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Choose mesh and tolerance so that the estimated relative error of every quantity is below this, such as 0.01
+    #[arg(long, value_name = "REL", conflicts_with = "resume")]
+    pub accuracy: Option<f64>,
     /// Go on from the last checkpoint in the result folder (needs /time/checkpoint_interval_s in the case)
     #[arg(long)]
     pub resume: bool,

@@ -1,13 +1,15 @@
 //! `slcbeam run`.
 
-use std::path::PathBuf;
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use super::arguments::RunArguments;
 use super::progress::Watcher;
 use super::{interrupt, summary_box, terminal};
-use crate::case;
+use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::model::characteristic;
@@ -15,51 +17,27 @@ use crate::output::checkpoint;
 use crate::output::folder::ResultFolder;
 use crate::output::recorder::{FolderRecorder, Hook, Labels};
 use crate::output::summary;
-use crate::run::dynamics;
-use crate::run::record::Control;
+use crate::run::dynamics::{self, Outcome};
+use crate::run::record::{Control, Progress};
+use crate::run::summary::Status;
+use crate::study::target;
 
 /// Runs a case into a result folder.
 pub fn run(asked: &RunArguments) -> Result<ExitCode> {
     let loaded = case::load(&asked.case.case, &asked.case.sets)?;
     let case = &loaded.case;
     super::refuse(&loaded, &System::new(case))?;
+    let accuracy = asked.accuracy.map(accuracy).transpose()?;
     let out = asked
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("out").join(&case.name));
-    let folder = ResultFolder::create(&out)?;
-    let interrupted = interrupt::flag();
-    let mut watcher = Watcher::new(asked.quiet);
-    let deadline = asked
-        .max_wall
-        .map(|seconds| Instant::now() + Duration::from_secs_f64(seconds.clamp(0.0, 1e9)));
-    let hook: Hook = Box::new(move |progress| {
-        watcher.step(progress);
-        if interrupt::raised(&interrupted) {
-            Control::Stop(format!("interrupted at t = {:.6} s", progress.t))
-        } else if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
-            Control::Stop(format!("the wall time allowed is used up at t = {:.6} s", progress.t))
-        } else {
-            Control::Continue
-        }
-    });
-    let labels = Labels {
-        case_name: case.name.clone(),
-        case_json: case.resolved_json(),
-        frequency_hz: characteristic::forcing_period(case).map(|p| 1.0 / p),
+    let hook = hook(asked);
+    let outcome = match (accuracy, asked.resume) {
+        (Some(accuracy), _) => reach(case, accuracy, &out, &hook)?,
+        (None, true) => resume(case, &out, &hook)?,
+        (None, false) => record(case, &out, &hook)?,
     };
-    let (recorder, outcome) = if asked.resume {
-        let saved = checkpoint::read(&out)?
-            .ok_or_else(|| Error::Usage(format!("{} holds no checkpoint to resume from", out.display())))?;
-        let mut recorder = FolderRecorder::resume(folder, labels, hook, &saved, &dynamics::header(case))?;
-        let outcome = dynamics::resume(case, &saved.run, &mut recorder)?;
-        (recorder, outcome)
-    } else {
-        let mut recorder = FolderRecorder::new(folder, labels, hook);
-        let outcome = dynamics::run(case, &mut recorder)?;
-        (recorder, outcome)
-    };
-    recorder.finish(&outcome.summary)?;
     if asked.json {
         super::print(&summary::to_json(&outcome.summary))?;
     } else {
@@ -73,4 +51,88 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
             ExitCode::from(4)
         }
     })
+}
+
+/// Asked after every step of every run: progress, Ctrl-C, wall time.
+type SharedHook = Rc<RefCell<Hook>>;
+
+fn hook(asked: &RunArguments) -> SharedHook {
+    let interrupted = interrupt::flag();
+    let mut watcher = Watcher::new(asked.quiet);
+    let deadline = asked
+        .max_wall
+        .map(|seconds| Instant::now() + Duration::from_secs_f64(seconds.clamp(0.0, 1e9)));
+    Rc::new(RefCell::new(Box::new(move |progress: &Progress| {
+        watcher.step(progress);
+        if interrupt::raised(&interrupted) {
+            Control::Stop(format!("interrupted at t = {:.6} s", progress.t))
+        } else if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+            Control::Stop(format!("the wall time allowed is used up at t = {:.6} s", progress.t))
+        } else {
+            Control::Continue
+        }
+    })))
+}
+
+fn accuracy(asked: f64) -> Result<f64> {
+    if (1e-6..=0.5).contains(&asked) {
+        return Ok(asked);
+    }
+    Err(Error::Usage(format!(
+        "--accuracy {asked}: a relative error from 1e-6 to 0.5, such as 0.01 for one per cent"
+    )))
+}
+
+fn labels(case: &Case) -> Labels {
+    Labels {
+        case_name: case.name.clone(),
+        case_json: case.resolved_json(),
+        frequency_hz: characteristic::forcing_period(case).map(|p| 1.0 / p),
+    }
+}
+
+fn own(hook: &SharedHook) -> Hook {
+    let hook = Rc::clone(hook);
+    Box::new(move |progress| hook.borrow_mut()(progress))
+}
+
+fn record(case: &Case, out: &Path, hook: &SharedHook) -> Result<Outcome> {
+    let mut recorder = FolderRecorder::new(ResultFolder::create(out)?, labels(case), own(hook));
+    let outcome = dynamics::run(case, &mut recorder)?;
+    recorder.finish(&outcome.summary)?;
+    Ok(outcome)
+}
+
+/// Candidates are recorded beside the result and take its place when they finish, so that one that is stopped leaves the
+/// one before.
+fn reach(case: &Case, accuracy: f64, out: &Path, hook: &SharedHook) -> Result<Outcome> {
+    let mut result = ResultFolder::create(out)?;
+    let mut name = out.as_os_str().to_owned();
+    name.push(".next");
+    let beside = PathBuf::from(name);
+    let ask = |progress: &Progress| hook.borrow_mut()(progress);
+    let mut first = true;
+    let mut candidate = |case: &Case| -> Result<Outcome> {
+        let outcome = record(case, &beside, hook)?;
+        if first || outcome.summary.status == Status::Finished {
+            result.replace(&beside)?;
+        } else {
+            ResultFolder::discard(&beside)?;
+        }
+        first = false;
+        Ok(outcome)
+    };
+    let outcome = target::reach(case, accuracy, &ask, &mut candidate)?;
+    summary::write(&result, &outcome.summary)?;
+    Ok(outcome)
+}
+
+fn resume(case: &Case, out: &Path, hook: &SharedHook) -> Result<Outcome> {
+    let folder = ResultFolder::create(out)?;
+    let saved = checkpoint::read(out)?
+        .ok_or_else(|| Error::Usage(format!("{} holds no checkpoint to resume from", out.display())))?;
+    let mut recorder = FolderRecorder::resume(folder, labels(case), own(hook), &saved, &dynamics::header(case))?;
+    let outcome = dynamics::resume(case, &saved.run, &mut recorder)?;
+    recorder.finish(&outcome.summary)?;
+    Ok(outcome)
 }

@@ -85,6 +85,7 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     add("deflection", deflection(summary), Tone::Plain);
     add("pressure", pressure(summary), Tone::Plain);
     add("energy", energy(summary), Tone::Plain);
+    add("accuracy", accuracy(summary), Tone::Plain);
     add("balances", Some(balances(summary)), Tone::Plain);
     add("integrator", Some(integrator(summary)), Tone::Plain);
     add("time", Some(times(summary)), Tone::Plain);
@@ -184,6 +185,30 @@ fn energy(summary: &Summary) -> Option<String> {
             .map(|e| hold(format!("in the window {}", percent(e)))),
     ];
     Some(parts.into_iter().flatten().collect::<Vec<_>>().join(BETWEEN))
+}
+
+/// What was asked, the estimates of the worst quantities first, and how it was reached.
+fn accuracy(summary: &Summary) -> Option<String> {
+    let found = summary.accuracy.as_ref()?;
+    let mut worst: Vec<_> = found.quantities.iter().collect();
+    worst.sort_by(|a, b| b.1.total.unwrap_or(f64::MAX).total_cmp(&a.1.total.unwrap_or(f64::MAX)));
+    let shown = worst.iter().take(3).map(|(name, e)| match (e.total, e.time, e.space) {
+        (Some(total), Some(time), Some(space)) => format!(
+            "{name} {} (time {}, space {})",
+            significant(total, 2),
+            significant(time, 2),
+            significant(space, 2)
+        ),
+        _ => format!("{name} unknown"),
+    });
+    Some(format!(
+        "asked {}, estimated errors: {} · with {} cells a segment, rtol {}, after {} pilot runs",
+        significant(found.asked, 2),
+        shown.collect::<Vec<_>>().join(" · "),
+        found.cells_per_segment,
+        significant(found.rtol, 1),
+        found.pilots.len()
+    ))
 }
 
 fn balances(summary: &Summary) -> String {

@@ -101,6 +101,23 @@ impl ResultFolder {
         self.holds_older = false;
         Ok(())
     }
+
+    /// Takes over the result in another folder of the same file system, in place of its own, and removes that folder.
+    pub fn replace(&mut self, with: &Path) -> Result<()> {
+        self.clear()?;
+        let entries = fs::read_dir(with).map_err(|e| fault("read", with, e))?;
+        for entry in entries {
+            let entry = entry.map_err(|e| fault("read", with, e))?;
+            let target = self.dir.join(entry.file_name());
+            fs::rename(entry.path(), &target).map_err(|e| fault("write", &target, e))?;
+        }
+        fs::remove_dir(with).map_err(|e| fault("remove", with, e))
+    }
+
+    /// Removes a folder and the result in it.
+    pub fn discard(dir: &Path) -> Result<()> {
+        fs::remove_dir_all(dir).map_err(|e| fault("remove", dir, e))
+    }
 }
 
 /// The name under which a file grows before it takes its own.

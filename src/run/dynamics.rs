@@ -142,6 +142,7 @@ impl<'a> Run<'a> {
                     )])
                     .collect(),
                 growth: None,
+                accuracy: None,
                 characteristic,
                 warnings,
             },

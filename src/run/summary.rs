@@ -79,6 +79,49 @@ pub struct Chosen {
     pub reason: String,
 }
 
+/// Estimated errors of a quantity, relative to its largest figure; absent where nothing is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Of the time integration.
+    pub time: Option<f64>,
+    /// Of the mesh.
+    pub space: Option<f64>,
+    /// Both.
+    pub total: Option<f64>,
+}
+
+/// A run that others were judged by.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pilot {
+    /// Beam cells per segment.
+    pub cells_per_segment: usize,
+    /// Tolerance.
+    pub rtol: f64,
+    /// Steps.
+    pub steps: u64,
+    /// Wall time [s].
+    pub wall_s: f64,
+}
+
+/// What an accuracy asked for led to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Accuracy {
+    /// Relative error asked for.
+    pub asked: f64,
+    /// Whether every estimate is below it.
+    pub reached: bool,
+    /// Mesh chosen: beam cells per segment.
+    pub cells_per_segment: usize,
+    /// Mesh chosen: fluid cells per bladder.
+    pub cells_per_bladder: usize,
+    /// Tolerance chosen.
+    pub rtol: f64,
+    /// Estimates by quantity.
+    pub quantities: BTreeMap<String, Estimate>,
+    /// The runs that led there, the result's own not among them.
+    pub pilots: Vec<Pilot>,
+}
+
 /// `summary.json`; see the README for its keys.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
@@ -107,6 +150,9 @@ pub struct Summary {
     /// Growth of the response and what drives it, when it grows.
     #[serde(default)]
     pub growth: Option<Growing>,
+    /// Estimated errors, when an accuracy was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<Accuracy>,
     /// Everything the user should know before trusting the result.
     pub warnings: Vec<String>,
 }

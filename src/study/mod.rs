@@ -2,4 +2,5 @@
 
 pub mod accuracy;
 pub mod compare;
+pub mod target;
 pub mod verify;

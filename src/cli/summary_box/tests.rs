@@ -39,6 +39,7 @@ fn summary(status: Status) -> Summary {
         effects: Default::default(),
         characteristic: Default::default(),
         growth: None,
+        accuracy: None,
         warnings: Vec::new(),
     }
 }
