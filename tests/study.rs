@@ -7,7 +7,7 @@ use slcbeam::output::study as files;
 use slcbeam::study::accuracy::front::{self, Mark};
 use slcbeam::study::accuracy::study::Study;
 use slcbeam::study::accuracy::trial::{Ending, Role};
-use slcbeam::study::accuracy::{Budget, Plan, study};
+use slcbeam::study::accuracy::{Budget, Plan, Scheme, study};
 
 /// A dry cantilever swung by a load on it.
 const DRY: &str = r#"{
@@ -48,7 +48,7 @@ fn plan(rtols: &[f64], cells: &[usize], orders: &[u8], budget: Budget) -> Plan {
     let plan = Plan {
         rtols: rtols.to_vec(),
         cells: cells.to_vec(),
-        orders: orders.to_vec(),
+        schemes: orders.iter().map(|&order| Scheme::ida(order)).collect(),
         repeats: 1,
         budget,
         parallel: false,
@@ -68,7 +68,7 @@ fn errors_fall_with_tolerance_and_mesh_size_and_the_reference_knows_its_own() {
     let measure = found.measure().unwrap();
     assert_eq!(measure.name, "tip_u1");
     for cells in [2, 4, 8] {
-        let line = found.line(cells, 2);
+        let line = found.line(cells, Scheme::ida(2));
         let in_time: Vec<f64> = line
             .iter()
             .map(|&k| found.error(k).unwrap().temporal.unwrap().l2)
@@ -101,7 +101,14 @@ fn errors_fall_with_tolerance_and_mesh_size_and_the_reference_knows_its_own() {
     let own = measure.own();
     assert!(own.max > 0.0 && own.max < 1e-3, "{own:?}");
     // Spatial errors fall by four from mesh to mesh.
-    let spatial = [2, 4, 8].map(|cells| found.error(found.line(cells, 2)[0]).unwrap().spatial.unwrap().l2);
+    let spatial = [2, 4, 8].map(|cells| {
+        found
+            .error(found.line(cells, Scheme::ida(2))[0])
+            .unwrap()
+            .spatial
+            .unwrap()
+            .l2
+    });
     assert!(
         spatial.windows(2).all(|w| (3.3..4.7).contains(&(w[0] / w[1]))),
         "{spatial:?}"
@@ -212,7 +219,7 @@ fn senseless_plans_are_refused() {
             ..good.clone()
         },
         Plan {
-            orders: vec![6],
+            schemes: vec![Scheme::ida(6)],
             ..good.clone()
         },
         Plan {
