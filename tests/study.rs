@@ -238,6 +238,33 @@ fn senseless_plans_are_refused() {
     assert!(unknown.is_err_and(|e| e.to_string().contains("tip_u1")));
 }
 
+/// One-step methods are lines of their own, in the table, in the file and in the picture, and judge each other.
+#[test]
+fn one_step_methods_stand_beside_orders() {
+    let names = ["ida", "esdirk34", "esdirk46"].map(String::from);
+    let plan = Plan {
+        schemes: Scheme::list(&names, &[2]).unwrap(),
+        ..plan(&[1e-3, 1e-4, 1e-5], &[2], &[2], PLENTY)
+    };
+    let found = studied(DRY, plan.checked().unwrap());
+    for (scheme, name) in found.plan.schemes.iter().zip(["2", "esdirk34", "esdirk46"]) {
+        assert_eq!(scheme.label(), name);
+        let line = found.line(2, *scheme);
+        let error = |k: usize| found.error(line[k]).unwrap().total.l2;
+        // A hundredth of the tolerance gains at least what order 2 promises, 100^(2/3) = 22, with some room.
+        assert!(
+            line.len() == 3 && error(2) < 0.1 * error(0),
+            "{name}: {} {}",
+            error(0),
+            error(2)
+        );
+    }
+    assert!(files::table(&found).contains("esdirk46") && files::csv(&found).contains(",esdirk34,3,"));
+    let picture = slcbeam::output::plot::workprecision::draw(&files::picture(&found).unwrap()).unwrap();
+    assert!(picture.contains("2 cells, esdirk34") && picture.contains("2 cells, order 2"));
+    assert_eq!(Scheme::list(&["rk4".into()], &[2]).map_err(|e| e.exit_code()), Err(2));
+}
+
 fn marks(all: &[(f64, f64)]) -> Vec<Mark> {
     all.iter().map(|&(error, cost)| Mark { error, cost }).collect()
 }
