@@ -16,6 +16,7 @@
 //! | [`discrete`] | space: mesh, unknowns with their scales, the residual in the paper's order, the exact balances |
 //! | [`dae`] | the trait [`dae::Dae`]; the beam as one; dual numbers, pattern, Jacobian. Knows no solver |
 //! | [`sundials`] | IDA and KLU behind safe types; the only `unsafe` code; knows only [`dae::Dae`] |
+//! | [`onestep`] | A-stable one-step methods of order 2 to 5, with the interface of [`sundials::Ida`] |
 //! | [`run`] | a run in time: samples, balances, range checks. Emits what happens, prints nothing |
 //! | [`study`] | many runs to answer one question: exact results, accuracy against cost, comparison |
 //! | [`output`] | result folders: history, arrays, summary, pictures |
@@ -108,6 +109,7 @@ pub mod dae;
 pub mod discrete;
 pub mod error;
 pub mod model;
+pub mod onestep;
 pub mod output;
 pub mod run;
 pub mod study;

@@ -7,7 +7,7 @@ use slcbeam::output::study as files;
 use slcbeam::study::accuracy::front::{self, Mark};
 use slcbeam::study::accuracy::study::Study;
 use slcbeam::study::accuracy::trial::{Ending, Role};
-use slcbeam::study::accuracy::{Budget, Plan, study};
+use slcbeam::study::accuracy::{Budget, Plan, Scheme, study};
 
 /// A dry cantilever swung by a load on it.
 const DRY: &str = r#"{
@@ -48,7 +48,7 @@ fn plan(rtols: &[f64], cells: &[usize], orders: &[u8], budget: Budget) -> Plan {
     let plan = Plan {
         rtols: rtols.to_vec(),
         cells: cells.to_vec(),
-        orders: orders.to_vec(),
+        schemes: orders.iter().map(|&order| Scheme::ida(order)).collect(),
         repeats: 1,
         budget,
         parallel: false,
@@ -68,7 +68,7 @@ fn errors_fall_with_tolerance_and_mesh_size_and_the_reference_knows_its_own() {
     let measure = found.measure().unwrap();
     assert_eq!(measure.name, "tip_u1");
     for cells in [2, 4, 8] {
-        let line = found.line(cells, 2);
+        let line = found.line(cells, Scheme::ida(2));
         let in_time: Vec<f64> = line
             .iter()
             .map(|&k| found.error(k).unwrap().temporal.unwrap().l2)
@@ -101,7 +101,14 @@ fn errors_fall_with_tolerance_and_mesh_size_and_the_reference_knows_its_own() {
     let own = measure.own();
     assert!(own.max > 0.0 && own.max < 1e-3, "{own:?}");
     // Spatial errors fall by four from mesh to mesh.
-    let spatial = [2, 4, 8].map(|cells| found.error(found.line(cells, 2)[0]).unwrap().spatial.unwrap().l2);
+    let spatial = [2, 4, 8].map(|cells| {
+        found
+            .error(found.line(cells, Scheme::ida(2))[0])
+            .unwrap()
+            .spatial
+            .unwrap()
+            .l2
+    });
     assert!(
         spatial.windows(2).all(|w| (3.3..4.7).contains(&(w[0] / w[1]))),
         "{spatial:?}"
@@ -212,7 +219,7 @@ fn senseless_plans_are_refused() {
             ..good.clone()
         },
         Plan {
-            orders: vec![6],
+            schemes: vec![Scheme::ida(6)],
             ..good.clone()
         },
         Plan {
@@ -229,6 +236,33 @@ fn senseless_plans_are_refused() {
     }
     let unknown = study(&parsed(DRY, &[]), good, Some("tip"), &|_| {});
     assert!(unknown.is_err_and(|e| e.to_string().contains("tip_u1")));
+}
+
+/// One-step methods are lines of their own, in the table, in the file and in the picture, and judge each other.
+#[test]
+fn one_step_methods_stand_beside_orders() {
+    let names = ["ida", "esdirk34", "esdirk46"].map(String::from);
+    let plan = Plan {
+        schemes: Scheme::list(&names, &[2]).unwrap(),
+        ..plan(&[1e-3, 1e-4, 1e-5], &[2], &[2], PLENTY)
+    };
+    let found = studied(DRY, plan.checked().unwrap());
+    for (scheme, name) in found.plan.schemes.iter().zip(["2", "esdirk34", "esdirk46"]) {
+        assert_eq!(scheme.label(), name);
+        let line = found.line(2, *scheme);
+        let error = |k: usize| found.error(line[k]).unwrap().total.l2;
+        // A hundredth of the tolerance gains at least what order 2 promises, 100^(2/3) = 22, with some room.
+        assert!(
+            line.len() == 3 && error(2) < 0.1 * error(0),
+            "{name}: {} {}",
+            error(0),
+            error(2)
+        );
+    }
+    assert!(files::table(&found).contains("esdirk46") && files::csv(&found).contains(",esdirk34,3,"));
+    let picture = slcbeam::output::plot::workprecision::draw(&files::picture(&found).unwrap()).unwrap();
+    assert!(picture.contains("2 cells, esdirk34") && picture.contains("2 cells, order 2"));
+    assert_eq!(Scheme::list(&["rk4".into()], &[2]).map_err(|e| e.exit_code()), Err(2));
 }
 
 fn marks(all: &[(f64, f64)]) -> Vec<Mark> {

@@ -102,6 +102,9 @@ pub struct StudyArguments {
     /// Meshes: beam cells per segment, each with half as many fluid cells per bladder; powers of two tell most
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,2,4,8")]
     pub cells: Vec<usize>,
+    /// Methods: ida (with each of the orders), trbdf2, esdirk34, esdirk46, esdirk57
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "ida")]
+    pub methods: Vec<String>,
     /// Highest BDF orders
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "2,5")]
     pub orders: Vec<u8>,

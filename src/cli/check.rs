@@ -11,7 +11,7 @@ use crate::discrete::System;
 use crate::error::Result;
 use crate::model::{audit, characteristic};
 use crate::output::numbers::significant;
-use crate::run::order;
+use crate::run::method;
 
 /// Prints characteristic numbers, coupling audit, chosen effects and warnings.
 pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
@@ -22,7 +22,8 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     let numbers = characteristic::numbers(case, &system.model);
     let findings = audit::coupling(case, &system.model);
     let warnings = audit::warnings(case, &system.model, &numbers);
-    let order::OrderChoice { order, reason: why } = order::choose(case, &system);
+    let chosen = method::choose(case, &system);
+    let (order, why) = (chosen.order.order, &chosen.order.reason);
     if asked.json {
         let audit: Vec<_> = findings
             .iter()
@@ -42,7 +43,8 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
             .collect();
         let all = json!({
             "case": case.name, "unknowns": system.layout.len, "characteristic": numbers, "audit": audit,
-            "effects": effects, "max_order": {"value": order, "reason": why}, "warnings": warnings,
+            "effects": effects, "method": {"value": chosen.name(), "reason": chosen.reason},
+            "max_order": {"value": order, "reason": why}, "warnings": warnings,
         });
         super::print(&format!("{all:#}\n"))?;
         return Ok(ExitCode::SUCCESS);
@@ -80,8 +82,10 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     }
     let _ = writeln!(
         text,
-        "\nunknowns {}, highest BDF order {order} ({why})",
-        system.layout.len
+        "\nunknowns {}, method {} ({}), highest order {order} ({why})",
+        system.layout.len,
+        chosen.name(),
+        chosen.reason
     );
     if !warnings.is_empty() {
         text += "\nwarnings\n";

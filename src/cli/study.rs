@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::output::numbers::duration;
 use crate::output::study as files;
 use crate::study::accuracy::trial::Role;
-use crate::study::accuracy::{Budget, Event, Plan, study as run_study};
+use crate::study::accuracy::{Budget, Event, Plan, Scheme, study as run_study};
 
 /// Runs the settings, writes the folder, prints the table and the sentence.
 pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
@@ -25,7 +25,7 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
     let plan = Plan {
         rtols: asked.rtol.clone(),
         cells: asked.cells.clone(),
-        orders: asked.orders.clone(),
+        schemes: Scheme::list(&asked.methods, &asked.orders)?,
         repeats: asked.repeats,
         budget: Budget::Wall(seconds(&asked.budget)?),
         parallel: asked.parallel,
@@ -78,11 +78,11 @@ fn seconds(text: &str) -> Result<f64> {
     value.ok_or_else(|| Error::Usage(format!("--budget {text}: a time above zero, such as 120s or 2m")))
 }
 
-/// A bar on a terminal, a line a mesh and order elsewhere.
+/// A bar on a terminal, a line a mesh and method elsewhere.
 struct Progress {
     bar: Option<ProgressBar>,
     lines: bool,
-    last: Mutex<Option<(usize, u8, Role)>>,
+    last: Mutex<Option<(usize, Scheme, Role)>>,
 }
 
 impl Progress {
@@ -117,18 +117,18 @@ impl Progress {
             bar.set_length(event.of as u64);
             bar.set_position(event.done as u64);
             bar.set_message(format!(
-                "{what}{} cells, order {}, rtol {:e}{expected} · {spent}",
-                s.cells, s.order, s.rtol
+                "{what}{} cells, {}, rtol {:e}{expected} · {spent}",
+                s.cells, s.scheme, s.rtol
             ));
         } else if self.lines {
-            let now = Some((s.cells, s.order, event.role));
+            let now = Some((s.cells, s.scheme, event.role));
             let mut last = self.last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             if *last != now {
                 *last = now;
                 let (done, of) = (event.done, event.of);
                 eprintln!(
-                    "{done}/{of}: {what}{} cells, order {}{expected} each or more; {spent}",
-                    s.cells, s.order
+                    "{done}/{of}: {what}{} cells, {}{expected} each or more; {spent}",
+                    s.cells, s.scheme
                 );
             }
         }

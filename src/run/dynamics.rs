@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::checkpoint::{Checkpoint, VERSION};
 use super::growth::Linear;
+use super::method::{self, Integrator, Options};
 use super::observe::Observer;
 use super::order;
 use super::record::{Control, Header, Progress, Recorder};
@@ -15,7 +16,7 @@ use crate::discrete::ledger::FLOWS;
 use crate::discrete::{System, start};
 use crate::error::{Error, Result, SolverFault};
 use crate::model::{audit, characteristic};
-use crate::sundials::{Absolute, Ida, IdaFailure, IdaOptions, StartFailure, StartOptions, consistent_start};
+use crate::sundials::{IdaFailure, StartFailure, StartOptions, consistent_start};
 
 /// A run that ended, in whatever way; everything up to its end is recorded.
 #[derive(Clone, Debug)]
@@ -62,7 +63,7 @@ struct Run<'a> {
     outputs: Outputs,
     stops: Vec<Stop>,
     summary: Summary,
-    options: IdaOptions,
+    options: Options,
     linear: Linear,
     inertia: bool,
     held: Option<String>,
@@ -76,13 +77,6 @@ struct Run<'a> {
     /// Work before the checkpoint from which this run goes on.
     earlier: Counters,
 }
-
-/// Newton's iteration ends at this part of the tolerance where the solid has inertia. IDA's own third leaves noise that
-/// its error test takes for truncation, step after step, on slow motions; it costs a tenth less elsewhere.
-const NONLINEAR: f64 = 0.033;
-
-/// The same without inertia: the smoother the motion, the smaller the steps' own error beside that noise.
-const NONLINEAR_STATIC: f64 = 1e-4;
 
 /// How a run left its loop.
 enum End {
@@ -99,7 +93,8 @@ impl<'a> Run<'a> {
         let characteristic = characteristic::numbers(case, &system.model);
         let warnings = audit::warnings(case, &system.model, &characteristic);
         let decisions = &system.model.effects.decisions;
-        let order = order::choose(case, &system);
+        let chosen = method::choose(case, &system);
+        let options = Options::new(case, &system, &chosen, max_step(case, &system));
         let inertia = system.layout.inertia;
         let mathieu = characteristic::mathieu(&system.model);
         let linear = Linear {
@@ -133,33 +128,29 @@ impl<'a> Run<'a> {
                             },
                         )
                     })
-                    .chain([(
-                        "max_order".into(),
-                        Chosen {
-                            value: order.order.to_string(),
-                            reason: order.reason,
-                        },
-                    )])
+                    .chain([
+                        (
+                            "method".into(),
+                            Chosen {
+                                value: chosen.name(),
+                                reason: chosen.reason,
+                            },
+                        ),
+                        (
+                            "max_order".into(),
+                            Chosen {
+                                value: chosen.order.order.to_string(),
+                                reason: chosen.order.reason,
+                            },
+                        ),
+                    ])
                     .collect(),
                 growth: None,
                 accuracy: None,
                 characteristic,
                 warnings,
             },
-            options: IdaOptions {
-                relative: case.solver.rtol,
-                absolute: Absolute::Same(case.solver.rtol),
-                max_order: order.order,
-                nonlinear_coefficient: case.solver.nonlinear_coefficient.unwrap_or(if inertia {
-                    NONLINEAR
-                } else {
-                    NONLINEAR_STATIC
-                }),
-                delta_cj_setup: case.solver.delta_cj_setup,
-                initial_step: case.solver.initial_step_s,
-                max_step: Some(max_step(case, &system)),
-                ..IdaOptions::default()
-            },
+            options,
             linear,
             inertia,
             held: None,
@@ -211,11 +202,11 @@ impl Run<'_> {
         };
         let end = match consistent {
             Some(fault) => End::Failed(fault),
-            None => match Ida::new(dae, t, &self.state, &self.rates, &self.options) {
+            None => match Integrator::new(dae, t, &self.state, &self.rates, &self.options) {
                 Err(failure) => End::Failed(fault(&failure)),
-                Ok(mut ida) => {
-                    let end = self.integrate(&mut ida, first_stop, recorder)?;
-                    self.count(&ida);
+                Ok(mut solver) => {
+                    let end = self.integrate(&mut solver, first_stop, recorder)?;
+                    self.count(&solver);
                     end
                 }
             },
@@ -232,23 +223,28 @@ impl Run<'_> {
         self.outputs.go_on(checkpoint.next_output);
     }
 
-    fn integrate(&mut self, ida: &mut Ida<BeamDae>, first: usize, recorder: &mut dyn Recorder) -> Result<End> {
-        if let Some(reason) = self.sample(ida, recorder, true)? {
+    fn integrate(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        first: usize,
+        recorder: &mut dyn Recorder,
+    ) -> Result<End> {
+        if let Some(reason) = self.sample(solver, recorder, true)? {
             return Ok(End::Stopped(reason));
         }
-        let mut pace = Pace::new(ida.time());
+        let mut pace = Pace::new(solver.time());
         for k in first..self.stops.len() {
             let stop = self.stops[k];
             loop {
-                let step = match ida.step(stop.t) {
+                let step = match solver.step(stop.t) {
                     Ok(step) => step,
                     Err(failure) => return Ok(End::Failed(fault(&failure))),
                 };
                 self.summary.time_s = step.time;
-                if let Some(reason) = self.sample(ida, recorder, false)? {
+                if let Some(reason) = self.sample(solver, recorder, false)? {
                     return Ok(End::Stopped(reason));
                 }
-                let steps = ida.steps();
+                let steps = solver.steps();
                 let progress = Progress {
                     t: step.time,
                     end: self.case.time.end_s,
@@ -270,7 +266,7 @@ impl Run<'_> {
                 }
             }
             if let Some(next) = self.stops.get(k + 1).copied()
-                && let Some(fault) = self.pass(ida, k, next.t, recorder)?
+                && let Some(fault) = self.pass(solver, k, next.t, recorder)?
             {
                 return Ok(End::Failed(fault));
             }
@@ -282,7 +278,7 @@ impl Run<'_> {
     /// start of the integrator.
     fn pass(
         &mut self,
-        ida: &mut Ida<BeamDae>,
+        solver: &mut Integrator<BeamDae>,
         stop: usize,
         next: f64,
         recorder: &mut dyn Recorder,
@@ -292,16 +288,16 @@ impl Run<'_> {
             switches,
             checkpoint,
         } = self.stops[stop];
-        self.state.copy_from_slice(ida.y());
-        self.rates.copy_from_slice(ida.yp());
-        if let Err(failure) = ida.integrals(None, &mut self.integrals) {
+        self.state.copy_from_slice(solver.y());
+        self.rates.copy_from_slice(solver.yp());
+        if let Err(failure) = solver.integrals(None, &mut self.integrals) {
             return Ok(Some(fault(&failure)));
         }
         for (carried, more) in self.carried.iter_mut().zip(&self.integrals) {
             *carried += more;
         }
         if checkpoint {
-            self.count(ida);
+            self.count(solver);
             recorder.checkpoint(&Checkpoint {
                 version: VERSION.into(),
                 case: self.case.resolved_json(),
@@ -318,17 +314,14 @@ impl Run<'_> {
                 observed: self.observer.seen.clone(),
             })?;
         }
-        let dae = ida.dae_mut();
-        let ahead = 0.5 * (t + next);
-        if switches {
-            dae.switch(t, ahead, &mut self.state);
-            if let Err(failure) = consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default()) {
-                return Ok(Some(inconsistent(t, &failure)));
-            }
-        } else {
-            dae.look_within(ahead);
+        let dae = solver.dae_mut();
+        dae.look_within(0.5 * (t + next));
+        if switches
+            && let Err(failure) = consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
+        {
+            return Ok(Some(inconsistent(t, &failure)));
         }
-        Ok(ida
+        Ok(solver
             .restart(t, &self.state, &self.rates)
             .err()
             .map(|failure| fault(&failure)))
@@ -337,25 +330,26 @@ impl Run<'_> {
     /// Takes every sample that is due, from the integrator's own polynomial.
     fn sample(
         &mut self,
-        ida: &mut Ida<BeamDae>,
+        solver: &mut Integrator<BeamDae>,
         recorder: &mut dyn Recorder,
         at_start: bool,
     ) -> Result<Option<String>> {
-        let now = ida.time();
+        let now = solver.time();
         let mut begin = None;
         while let Some((number, t)) = self.outputs.due(now) {
             begin.get_or_insert_with(Instant::now);
             let exact = at_start || t == now;
             if exact {
-                self.state.copy_from_slice(ida.y());
-                self.rates.copy_from_slice(ida.yp());
+                self.state.copy_from_slice(solver.y());
+                self.rates.copy_from_slice(solver.yp());
             }
             let read = if exact {
-                ida.integrals(None, &mut self.integrals)
+                solver.integrals(None, &mut self.integrals)
             } else {
-                ida.interpolate(t, 0, &mut self.state)
-                    .and_then(|()| ida.interpolate(t, 1, &mut self.rates))
-                    .and_then(|()| ida.integrals(Some(t), &mut self.integrals))
+                solver
+                    .interpolate(t, 0, &mut self.state)
+                    .and_then(|()| solver.interpolate(t, 1, &mut self.rates))
+                    .and_then(|()| solver.integrals(Some(t), &mut self.integrals))
             };
             if let Err(failure) = read {
                 return Ok(Some(format!("the state at t = {t:.6} s could not be read: {failure}")));
@@ -364,7 +358,7 @@ impl Run<'_> {
                 *total += carried;
             }
             let ended = self.observer.sample(
-                ida.dae_mut(),
+                solver.dae_mut(),
                 number,
                 t,
                 &self.state,
@@ -382,18 +376,21 @@ impl Run<'_> {
         Ok(None)
     }
 
-    fn count(&mut self, ida: &Ida<BeamDae>) {
-        self.summary.solver = ida.counters();
+    fn count(&mut self, solver: &Integrator<BeamDae>) {
+        self.summary.solver = solver.counters();
         self.summary.solver.add(&self.earlier);
         let s = &self.summary.solver;
-        self.held = order::held_by_stability(
-            ida.dae().system(),
-            s.max_order,
-            self.summary.time_s,
-            s.steps,
-            s.error_test_failures,
-        );
-        let wall = ida.wall();
+        self.held = match self.options {
+            Options::OneStep(_) => None,
+            Options::Ida(_) => order::held_by_stability(
+                solver.dae().system(),
+                s.max_order,
+                self.summary.time_s,
+                s.steps,
+                s.error_test_failures,
+            ),
+        };
+        let wall = solver.wall();
         self.summary.wall_s = WallTimes {
             total: 0.0,
             residual: wall.residual.as_secs_f64(),

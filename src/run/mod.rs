@@ -4,6 +4,7 @@ pub mod checkpoint;
 pub mod dynamics;
 pub mod figures;
 pub mod growth;
+pub mod method;
 pub mod observe;
 pub mod order;
 pub mod record;

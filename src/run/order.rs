@@ -4,7 +4,7 @@
 //! 0.069, 0.287 and 0.618 (the cosines of their stability angles 86.0, 73.4 and 51.8 degrees) at steps of about their
 //! period. An undamped beam always carries such waves.
 
-use crate::case::schema::{Case, MaxOrder};
+use crate::case::schema::{Case, MaxOrder, Method};
 use crate::discrete::System;
 use crate::error::Violation;
 
@@ -51,6 +51,9 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
     let MaxOrder::Order(order @ (3 | 4)) = case.solver.max_order else {
         return None;
     };
+    if !matches!(case.solver.method, Method::Auto | Method::Ida) {
+        return None;
+    }
     let ratio = if system.layout.inertia {
         least_damping_ratio(system)
     } else {

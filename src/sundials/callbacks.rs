@@ -140,7 +140,7 @@ pub(super) unsafe extern "C" fn jacobian<D: Dae>(
 }
 
 /// Says which derivative is not finite; `entry` is a position in the pattern.
-pub(super) fn not_finite<D: Dae>(dae: &D, entry: usize, t: f64) -> String {
+pub(crate) fn not_finite<D: Dae>(dae: &D, entry: usize, t: f64) -> String {
     let pattern = dae.pattern();
     let column = pattern.starts.partition_point(|&start| start as usize <= entry) - 1;
     let row = pattern.rows[entry] as usize;

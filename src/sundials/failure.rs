@@ -42,7 +42,7 @@ pub struct IdaFailure {
 
 impl IdaFailure {
     /// A request that cannot be met, at time `time` [s].
-    pub(super) fn request(message: String, time: f64) -> Box<Self> {
+    pub(crate) fn request(message: String, time: f64) -> Box<Self> {
         Box::new(Self {
             code: 0,
             meaning: "the request cannot be met",
@@ -80,7 +80,7 @@ impl fmt::Display for IdaFailure {
                 worst.name, worst.ratio
             )?;
         }
-        if self.code == 0 {
+        if self.code == 0 && !self.message.is_empty() {
             write!(f, ": {}", self.message)?;
         }
         Ok(())

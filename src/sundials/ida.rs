@@ -12,7 +12,7 @@ use super::failure::{IdaFailure, meaning};
 use super::integrals;
 use super::klu::{Klu, KluFault};
 use super::linear_solver::LinearSolver;
-use super::options::{Absolute, IdaOptions};
+use super::options::IdaOptions;
 use super::shared::Shared;
 use super::vector::Vector;
 use crate::dae::Dae;
@@ -98,10 +98,7 @@ impl<D: Dae> Ida<D> {
         let bridge = Shared::new(Bridge {
             dae,
             relative: options.relative,
-            absolute: match &options.absolute {
-                Absolute::Same(value) => vec![*value; n],
-                Absolute::Each(values) => values.clone(),
-            },
+            absolute: options.absolute.each(n),
             stop: None,
             recoverable: None,
             residuals: 0,

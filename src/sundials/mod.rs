@@ -37,6 +37,7 @@ mod shared;
 pub mod start;
 mod vector;
 
+pub(crate) use callbacks::not_finite;
 pub use counters::{Counters, Wall};
 pub use failure::{IdaFailure, Worst};
 pub use ida::{Ida, Step};

@@ -125,7 +125,7 @@ impl Time {
     }
 }
 
-/// Time integration by IDA.
+/// Time integration.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Solver {
@@ -133,15 +133,19 @@ pub struct Solver {
     #[serde(default = "default_rtol")]
     #[schemars(range(min = 1e-13, max = 0.1))]
     pub rtol: f64,
-    /// Highest BDF order.
+    /// How time is integrated.
+    #[serde(default)]
+    pub method: Method,
+    /// Highest BDF order; of no meaning to other methods.
     #[serde(default)]
     pub max_order: MaxOrder,
-    /// Safety factor of Newton's convergence test, IDA's nonlinear convergence coefficient. Absent: 0.033 with solid
-    /// inertia; 1e-4 without, where what Newton leaves over is noise to the error test.
+    /// Safety factor of Newton's convergence test. With IDA its nonlinear convergence coefficient; absent: 0.033 with solid
+    /// inertia, 1e-4 without, where what Newton leaves over is noise to the error test. With one-step methods the part
+    /// of the tolerance that Newton may leave over.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0), range(max = 1.0))]
     pub nonlinear_coefficient: Option<f64>,
-    /// Relative change of the step coefficient that asks for a new Jacobian (IDA's `dcj`).
+    /// Relative change of the step coefficient that asks for a new Jacobian (IDA's `dcj`); of no meaning to other methods.
     #[serde(default = "default_delta_cj")]
     #[schemars(extend("exclusiveMinimum" = 0), extend("exclusiveMaximum" = 1))]
     pub delta_cj_setup: f64,
@@ -167,6 +171,7 @@ impl Default for Solver {
     fn default() -> Self {
         Self {
             rtol: default_rtol(),
+            method: Method::Auto,
             max_order: MaxOrder::Auto,
             nonlinear_coefficient: None,
             delta_cj_setup: default_delta_cj(),
@@ -176,6 +181,25 @@ impl Default for Solver {
             transverse_scale_m: None,
         }
     }
+}
+
+/// How time is integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Chosen by the program: IDA.
+    #[default]
+    Auto,
+    /// Variable-order BDF: many cheap steps; of order 2 where waves are not damped.
+    Ida,
+    /// One-step method TR-BDF2 of order 2, L-stable.
+    Trbdf2,
+    /// One-step method ESDIRK3(2)4L[2]SA of order 3, L-stable: few steps of three stages each.
+    Esdirk34,
+    /// One-step method ESDIRK4(3)6L[2]SA of order 4, L-stable: for small errors.
+    Esdirk46,
+    /// One-step method ESDIRK5(4)7L[2]SA2 of order 5, L-stable: for smaller errors still.
+    Esdirk57,
 }
 
 /// Highest BDF order: `"auto"` or 1 to 5.

@@ -1,4 +1,4 @@
-//! `study.svg`: what accuracy costs. Error across, time up, both in logarithms; one line a mesh and order, one marker a
+//! `study.svg`: what accuracy costs. Error across, time up, both in logarithms; one line a mesh and method, one marker a
 //! tolerance.
 
 mod legend;
@@ -10,7 +10,9 @@ use super::colour::PALETTE;
 use super::extent;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
+use crate::case::schema::Method;
 use crate::output::numbers::{quantity, superscript, trimmed};
+use crate::study::accuracy::Scheme;
 
 /// A run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,13 +42,13 @@ pub struct Balance {
     pub seconds: f64,
 }
 
-/// One mesh and order.
+/// One mesh and scheme.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     /// Cells a segment; the colour.
     pub cells: usize,
-    /// Highest order; the marker.
-    pub order: u8,
+    /// How time is integrated; the marker.
+    pub scheme: Scheme,
     /// Runs, loose to tight.
     pub markers: Vec<Marker>,
     /// Balance of errors.
@@ -64,7 +66,7 @@ pub struct WorkPrecision {
     pub own: f64,
     /// Timed runs a point, at most.
     pub repeats: usize,
-    /// Lines, by order, then by mesh.
+    /// Lines, by scheme, then by mesh.
     pub lines: Vec<Line>,
     /// Whether errors in time have a panel of their own.
     pub split: bool,
@@ -229,14 +231,14 @@ impl Sheet<'_> {
         canvas.line(&points, Stroke::solid(FRONT, 9.0));
     }
 
-    /// Lines of balance, one an order; returns whether there is any.
+    /// Lines of balance, one a scheme; returns whether there is any.
     fn balances(&self, canvas: &mut Canvas) -> bool {
-        let mut orders: Vec<u8> = self.data.lines.iter().map(|l| l.order).collect();
-        orders.dedup();
+        let mut schemes: Vec<Scheme> = self.data.lines.iter().map(|l| l.scheme).collect();
+        schemes.dedup();
         let mut any = false;
-        for order in orders {
-            let of_order = self.data.lines.iter().filter(|l| l.order == order);
-            let points: Vec<_> = of_order
+        for scheme in schemes {
+            let alike = self.data.lines.iter().filter(|l| l.scheme == scheme);
+            let points: Vec<_> = alike
                 .filter_map(|l| l.balance)
                 .map(|b| self.at(b.error, b.seconds))
                 .collect();
@@ -257,14 +259,17 @@ impl Sheet<'_> {
 
     fn stroke(&self, line: &Line) -> Stroke {
         let solid = Stroke::solid(self.colour(line.cells), 1.5);
-        if line.order > 2 {
-            Stroke {
-                dash: Some((5.0, 3.5)),
-                ..solid
-            }
-        } else {
-            solid
-        }
+        let dash = match line.scheme {
+            Scheme {
+                method: Method::Ida,
+                order: 1 | 2,
+            } => None,
+            Scheme {
+                method: Method::Ida, ..
+            } => Some((5.0, 3.5)),
+            _ => Some((9.0, 2.5)),
+        };
+        Stroke { dash, ..solid }
     }
 
     fn line(&self, canvas: &mut Canvas, line: &Line) {
@@ -279,7 +284,7 @@ impl Sheet<'_> {
             if y - median > RADIUS {
                 canvas.line(&[(x, y), (x, median)], Stroke::solid(colour, 1.0));
             }
-            draw_marker(canvas, (x, y), line.order, colour, marker.judged);
+            draw_marker(canvas, (x, y), line.scheme, colour, marker.judged);
         }
     }
 
@@ -307,13 +312,16 @@ fn cross(canvas: &mut Canvas, (x, y): (f64, f64)) {
     canvas.line(&[(x - r, y + r), (x + r, y - r)], stroke);
 }
 
-/// Round for orders 1 and 2, a diamond for 5, a square for what lies between; hollow when not judged.
-fn draw_marker(canvas: &mut Canvas, (x, y): (f64, f64), order: u8, colour: RGBColor, filled: bool) {
+/// BDF: round for orders 1 and 2, a diamond for 5, a square for what lies between. One-step methods: triangles, upwards,
+/// downwards and sideways by their order. Hollow when not judged.
+fn draw_marker(canvas: &mut Canvas, (x, y): (f64, f64), scheme: Scheme, colour: RGBColor, filled: bool) {
     let shape = |r: f64| -> Vec<(f64, f64)> {
-        let (corners, turn, r) = match order {
-            0..=2 => (14, 0.0, r),
-            5 => (4, 0.0, 1.25 * r),
-            _ => (4, std::f64::consts::FRAC_PI_4, 1.2 * r),
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let (corners, turn, r) = match (scheme.is_ida(), scheme.order) {
+            (true, 0..=2) => (14, 0.0, r),
+            (true, 5) => (4, 0.0, 1.25 * r),
+            (true, _) => (4, 0.5 * quarter, 1.2 * r),
+            (false, order) => (3, quarter * f64::from(order % 4), 1.3 * r),
         };
         (0..corners)
             .map(|k| f64::from(k) * std::f64::consts::TAU / f64::from(corners) + turn)

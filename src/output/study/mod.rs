@@ -56,9 +56,9 @@ pub fn write(dir: &Path, study: &Study) -> Result<Vec<PathBuf>> {
 pub fn picture(study: &Study) -> Option<WorkPrecision> {
     let measure = study.measure()?;
     let mut lines = vec![];
-    for &order in &study.plan.orders {
+    for &scheme in &study.plan.schemes {
         for &cells in &study.plan.cells {
-            let markers = study.line(cells, order).into_iter().filter_map(|k| {
+            let markers = study.line(cells, scheme).into_iter().filter_map(|k| {
                 let trial = &study.points[k].trial;
                 let error = study.error(k)?;
                 Some(Marker {
@@ -71,10 +71,10 @@ pub fn picture(study: &Study) -> Option<WorkPrecision> {
                     front: study.points[k].on_front,
                 })
             });
-            let balance = study.balances.iter().find(|b| (b.cells, b.order) == (cells, order));
+            let balance = study.balances.iter().find(|b| (b.cells, b.scheme) == (cells, scheme));
             lines.push(Line {
                 cells,
-                order,
+                scheme,
                 markers: markers.collect(),
                 balance: balance.map(|b| Balance {
                     error: b.at.error,

@@ -10,7 +10,7 @@ use crate::study::accuracy::trial::{Ending, Role};
 
 const HEADINGS: [&str; 13] = [
     "cells",
-    "order",
+    "method",
     "rtol",
     "time",
     "median",
@@ -88,7 +88,7 @@ fn row(study: &Study, k: usize) -> [String; 13] {
     let c = &trial.counters;
     [
         s.cells.to_string(),
-        s.order.to_string(),
+        s.scheme.label(),
         format!("{:e}", s.rtol),
         seconds(trial.wall_min_s),
         seconds(trial.wall_median_s),
@@ -107,7 +107,7 @@ fn reasons(point: &Point) -> String {
     let s = point.trial.setting;
     let how = ending(point.trial.ending);
     let why = point.trial.reason.as_deref().unwrap_or("no reason given");
-    format!("{} cells, order {}, rtol {:e}: {how}: {why}", s.cells, s.order, s.rtol)
+    format!("{} cells, {}, rtol {:e}: {how}: {why}", s.cells, s.scheme, s.rtol)
 }
 
 fn ending(ending: Ending) -> &'static str {
@@ -126,16 +126,16 @@ fn references(study: &Study) -> String {
     for r in &study.references {
         let _ = write!(
             text,
-            "  {} cells: order {}, rtol {:e}, {:.2} s: {} by its tolerances",
+            "  {} cells: {}, rtol {:e}, {:.2} s: {} by its tolerances",
             r.cells,
-            r.order,
+            r.scheme,
             r.rtol,
             r.wall_s,
             small(r.by_tolerance[k].map(|n| n.max))
         );
-        if let Some((order, rtol)) = r.checked_by {
+        if let Some((scheme, rtol)) = r.checked_by {
             let apart = small(r.by_order[k].map(|n| n.max));
-            let _ = write!(text, ", {apart} from order {order} at rtol {rtol:e}");
+            let _ = write!(text, ", {apart} from {scheme} at rtol {rtol:e}");
         }
         let _ = writeln!(text, "; believed {:.1e}", r.own[k].max);
     }
@@ -180,7 +180,7 @@ fn limits(study: &Study) -> String {
 /// `study.csv`: one row a setting and measure; one without errors for a setting that did not finish.
 pub fn csv(study: &Study) -> String {
     let mut text = String::from(
-        "cells_per_segment,cells_per_bladder,max_order,rtol,role,status,reason,unknowns,wall_min [s],wall_median [s],repeats,\
+        "cells_per_segment,cells_per_bladder,method,max_order,rtol,role,status,reason,unknowns,wall_min [s],wall_median [s],repeats,\
          steps,residual_evaluations,jacobian_evaluations,factorizations,error_test_failures,newton_failures,\
          measure,kind,temporal_l2,temporal_max,spatial_l2,spatial_max,total_l2,total_max,limit_own_error_l2,\
          limit_own_error_max,judged,on_front\n",
@@ -193,10 +193,15 @@ pub fn csv(study: &Study) -> String {
         };
         let reason = trial.reason.as_deref().unwrap_or("").replace('"', "'");
         let first = format!(
-            "{},{},{},{:e},{role},{},\"{reason}\",{},{},{},{},{},{},{},{},{},{}",
+            "{},{},{},{},{:e},{role},{},\"{reason}\",{},{},{},{},{},{},{},{},{},{}",
             s.cells,
             s.cells_per_bladder(),
-            s.order,
+            if s.scheme.is_ida() {
+                "ida".into()
+            } else {
+                s.scheme.label()
+            },
+            s.scheme.order,
             s.rtol,
             ending(trial.ending),
             trial.unknowns,

@@ -1,7 +1,7 @@
 //! The sentence at the end of a study.
 
 use crate::output::numbers::{significant, trimmed};
-use crate::study::accuracy::{Setting, Study};
+use crate::study::accuracy::{Scheme, Setting, Study};
 
 /// A measure as people say it.
 pub fn spoken(name: &str) -> String {
@@ -19,7 +19,7 @@ pub fn sentence(study: &Study) -> String {
     let Some(measure) = study.measure() else {
         return "Nothing can be said: no run finished.".into();
     };
-    let orders: Vec<u8> = study.plan.orders.clone();
+    let schemes: Vec<Scheme> = study.plan.schemes.clone();
     let mut parts: Vec<String> = vec![];
     let mut missing = vec![];
     let mut last = None;
@@ -45,12 +45,12 @@ pub fn sentence(study: &Study) -> String {
             };
             parts.push(format!(
                 "{accuracy}{of} costs {}",
-                price(trial.wall_min_s, trial.setting, &orders)
+                price(trial.wall_min_s, trial.setting, &schemes)
             ));
         } else {
             parts.push(format!(
                 "{accuracy}{of} costs {}",
-                price(trial.wall_min_s, trial.setting, &orders)
+                price(trial.wall_min_s, trial.setting, &schemes)
             ));
         }
         last = Some(k);
@@ -75,15 +75,15 @@ pub fn sentence(study: &Study) -> String {
     text
 }
 
-fn price(seconds: f64, setting: Setting, orders: &[u8]) -> String {
-    let order = if orders.len() > 1 {
-        format!(", order {}", setting.order)
+fn price(seconds: f64, setting: Setting, schemes: &[Scheme]) -> String {
+    let scheme = if schemes.len() > 1 {
+        format!(", {}", setting.scheme)
     } else {
         String::new()
     };
     let cells = if setting.cells == 1 { "cell" } else { "cells" };
     format!(
-        "{} s ({} {cells}{order}, rtol {:e})",
+        "{} s ({} {cells}{scheme}, rtol {:e})",
         significant(seconds, 2),
         setting.cells,
         setting.rtol
@@ -109,7 +109,7 @@ fn foot(study: &Study) -> Option<String> {
     let with = if answering {
         String::new()
     } else {
-        format!(" with {} cells and order {}", setting.cells, setting.order)
+        format!(" with {} cells and {}", setting.cells, setting.scheme)
     };
     Some(format!(
         "looser than rtol {:e} costs more, not less{with} (up to {factor} times)",
@@ -121,7 +121,7 @@ fn foot(study: &Study) -> Option<String> {
 fn trap(study: &Study) -> Option<String> {
     let cheapest = |high: bool, accuracy: f64| {
         let all = study.points.iter().enumerate().filter(|(k, p)| {
-            (p.trial.setting.order > 2) == high && study.error(*k).is_some_and(|e| e.bound.max <= accuracy)
+            p.trial.setting.scheme.trapped() == high && study.error(*k).is_some_and(|e| e.bound.max <= accuracy)
         });
         all.map(|(_, p)| p.trial.wall_min_s).reduce(f64::min)
     };
@@ -136,7 +136,7 @@ fn trap(study: &Study) -> Option<String> {
     (factor > 2.0).then(|| {
         let percent = trimmed(&significant(100.0 * accuracy, 2));
         format!(
-            "orders beyond 2 cost {} times as much at {percent} %",
+            "BDF orders beyond 2 cost {} times as much at {percent} %",
             significant(factor, 2)
         )
     })

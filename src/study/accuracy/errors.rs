@@ -37,7 +37,7 @@ pub fn errors(trial: &Trial, meshes: &[Temporal], limits: &[Limit]) -> Option<Ve
             None => limit.own_spatial.unwrap_or_default(),
             Some(_) => Norms::default(),
         };
-        let itself = mesh.filter(|m| m.order == trial.setting.order && m.rtol == trial.setting.rtol);
+        let itself = mesh.filter(|m| m.scheme == trial.setting.scheme && m.rtol == trial.setting.rtol);
         let temporal = match (itself, mesh) {
             (Some(m), _) => Some(m.own[k]),
             (None, Some(m)) => Some(Norms::between(values, &m.values[k]).over(limit.size)),

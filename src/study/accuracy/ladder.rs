@@ -1,26 +1,27 @@
-//! Runs of one mesh and order over tolerances: what their sequence says of the error of the last.
+//! Runs of one mesh and scheme over tolerances: what their sequence says of the error of the last.
 
 use super::norms::Norms;
+use super::scheme::Scheme;
 use super::trial::Trial;
 
 /// Finished runs of one line, loose to tight.
 #[derive(Clone, Debug)]
 pub struct Ladder<'a> {
-    /// Highest order.
-    pub order: u8,
+    /// How time is integrated.
+    pub scheme: Scheme,
     /// Runs.
     pub runs: Vec<&'a Trial>,
 }
 
 impl<'a> Ladder<'a> {
-    /// Of a mesh and an order.
-    pub fn of(trials: &'a [Trial], cells: usize, order: u8) -> Self {
+    /// Of a mesh and a scheme.
+    pub fn of(trials: &'a [Trial], cells: usize, scheme: Scheme) -> Self {
         let mut runs: Vec<&Trial> = trials
             .iter()
-            .filter(|t| t.finished() && t.line() == (cells, order))
+            .filter(|t| t.finished() && t.line() == (cells, scheme))
             .collect();
         runs.sort_by(|a, b| b.setting.rtol.total_cmp(&a.setting.rtol));
-        Self { order, runs }
+        Self { scheme, runs }
     }
 
     /// Tightest run.
@@ -44,7 +45,7 @@ impl<'a> Ladder<'a> {
         let (x0, t0) = self.values(0, signal)?;
         let (x1, t1) = self.values(1, signal)?;
         let d0 = Norms::between(x0, x1);
-        let order = f64::from(self.order);
+        let order = f64::from(self.scheme.order);
         let best = 10_f64.powf(order / (order + 1.0));
         let gain = self.values(2, signal).map_or(2.0, |(x2, t2)| {
             let d1 = Norms::between(x1, x2);

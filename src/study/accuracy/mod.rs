@@ -1,4 +1,4 @@
-//! What accuracy costs: time against error over tolerance, mesh and order, for everything a case is asked for.
+//! What accuracy costs: time against error over tolerance, mesh, order and method, for everything a case is asked for.
 //!
 //! ```text
 //! plan       settings asked for, the case of each, what may be spent
@@ -6,7 +6,8 @@
 //! norms      how far apart two vectors are
 //! trial      one setting: run, repeated, counted
 //! price      what the next run will cost
-//! ladder     runs of one mesh and order over tolerances: what their sequence says of the error of the last
+//! scheme     how a setting integrates in time
+//! ladder     runs of one mesh and scheme over tolerances: what their sequence says of the error of the last
 //! sweep      all runs within the budget: points, then references
 //! reference  the best run on each mesh; the limit to which the meshes point
 //! errors     temporal, spatial and total error of every point
@@ -27,6 +28,7 @@ pub mod norms;
 pub mod plan;
 pub mod price;
 pub mod reference;
+pub mod scheme;
 pub mod signals;
 pub mod study;
 mod sweep;
@@ -34,5 +36,6 @@ pub mod trial;
 
 pub use norms::Norms;
 pub use plan::{Budget, Plan, Setting};
+pub use scheme::Scheme;
 pub use study::{Study, study};
 pub use sweep::Event;

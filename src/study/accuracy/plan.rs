@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::case::schema::{Case, MaxOrder};
+use super::scheme::Scheme;
+use crate::case::schema::{Case, Method};
 use crate::error::{Error, Result};
 
 /// One way to compute a case.
@@ -10,8 +11,8 @@ use crate::error::{Error, Result};
 pub struct Setting {
     /// Beam cells per segment; half as many fluid cells per bladder.
     pub cells: usize,
-    /// Highest BDF order.
-    pub order: u8,
+    /// How time is integrated.
+    pub scheme: Scheme,
     /// Tolerance.
     pub rtol: f64,
 }
@@ -28,11 +29,7 @@ impl Setting {
         case.mesh.cells_per_segment = self.cells;
         case.mesh.cells_per_bladder = self.cells_per_bladder();
         case.solver.rtol = self.rtol;
-        case.solver.max_order = match self.order {
-            // These two are refused where they are unstable; a study may look at what they do there.
-            3 | 4 => MaxOrder::Forced(self.order),
-            _ => MaxOrder::Order(self.order),
-        };
+        self.scheme.apply(&mut case.solver);
         case.time.checkpoint_interval_s = None;
         case
     }
@@ -73,8 +70,8 @@ pub struct Plan {
     pub rtols: Vec<f64>,
     /// Meshes, coarse to fine.
     pub cells: Vec<usize>,
-    /// Highest orders.
-    pub orders: Vec<u8>,
+    /// Methods, IDA with each order.
+    pub schemes: Vec<Scheme>,
     /// Timed runs of each setting, after one to warm up.
     pub repeats: usize,
     /// For everything.
@@ -99,7 +96,7 @@ impl Plan {
         if self.cells.is_empty() || self.cells.iter().any(|k| !(1..=1000).contains(k)) {
             return wrong("--cells: beam cells per segment from 1 to 1000, comma between them");
         }
-        if self.orders.is_empty() || self.orders.iter().any(|o| !(1..=5).contains(o)) {
+        if self.schemes.is_empty() || self.schemes.iter().any(|s| !(1..=5).contains(&s.order)) {
             return wrong("--orders: highest BDF orders from 1 to 5, comma between them");
         }
         if self.repeats == 0 {
@@ -113,8 +110,8 @@ impl Plan {
         self.rtols.dedup();
         self.cells.sort_unstable();
         self.cells.dedup();
-        self.orders.sort_unstable();
-        self.orders.dedup();
+        self.schemes.sort_unstable();
+        self.schemes.dedup();
         Ok(self)
     }
 
@@ -146,8 +143,14 @@ impl Plan {
         all
     }
 
-    /// Orders for references: each is the check of the other.
-    pub fn reference_orders(&self) -> [u8; 2] {
-        [5, 2]
+    /// Schemes for references: each is the check of the other. Where one-step methods are asked for, the one of order 4
+    /// takes the place of IDA at order 2: it costs less.
+    pub fn reference_schemes(&self) -> [Scheme; 2] {
+        let other = if self.schemes.iter().all(|s| s.is_ida()) {
+            None
+        } else {
+            Scheme::one_step(Method::Esdirk46)
+        };
+        [Scheme::ida(5), other.unwrap_or(Scheme::ida(2))]
     }
 }

@@ -11,19 +11,19 @@ use super::trial::{Ending, Trial};
 pub fn expected(trials: &[Trial], next: Setting) -> Option<f64> {
     let finished = || trials.iter().filter(|t| t.finished());
     let mut guesses = vec![];
-    let same_line = |t: &&Trial| t.line() == (next.cells, next.order);
+    let same_line = |t: &&Trial| t.line() == (next.cells, next.scheme);
     let mut line: Vec<&Trial> = finished().filter(same_line).collect();
     line.sort_by(|a, b| a.setting.rtol.total_cmp(&b.setting.rtol));
     for known in line.iter().filter(|t| t.setting.rtol > next.rtol).take(2) {
         // A single run may stand on the foot, where tighter tolerances cost less.
         let growth = if line.len() > 1 {
-            along(next.order, known.setting.rtol, next.rtol)
+            along(next.scheme.order, known.setting.rtol, next.rtol)
         } else {
             1.0
         };
         guesses.push(known.cost * growth);
     }
-    for coarse in finished().filter(|t| t.setting.order == next.order && t.setting.cells < next.cells) {
+    for coarse in finished().filter(|t| t.setting.scheme == next.scheme && t.setting.cells < next.cells) {
         if coarse.setting.rtol != next.rtol {
             continue;
         }
@@ -31,7 +31,7 @@ pub fn expected(trials: &[Trial], next: Setting) -> Option<f64> {
             let twin = finished().find(|t| t.line() == coarse.line() && t.setting.rtol == fine.setting.rtol)?;
             Some(fine.cost / twin.cost)
         });
-        let power = if next.order > 2 { 3 } else { 1 };
+        let power = if next.scheme.trapped() { 3 } else { 1 };
         let ratio = ratios
             .next_back()
             .unwrap_or((next.cells as f64 / coarse.setting.cells as f64).powi(power));
@@ -47,7 +47,10 @@ fn along(order: u8, from: f64, to: f64) -> f64 {
 
 /// Why a line is not gone on with, if it is not: a tighter run was stopped, or two runs without any that finished.
 pub fn hopeless(trials: &[Trial], next: Setting) -> bool {
-    let line: Vec<&Trial> = trials.iter().filter(|t| t.line() == (next.cells, next.order)).collect();
+    let line: Vec<&Trial> = trials
+        .iter()
+        .filter(|t| t.line() == (next.cells, next.scheme))
+        .collect();
     let slow = |t: &&&Trial| t.ending == Ending::Stopped;
     match line.iter().rposition(|t| t.finished()) {
         Some(last) => line[last..].iter().any(|t| slow(&t)),

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::ladder::Ladder;
 use super::norms::Norms;
+use super::scheme::Scheme;
 use super::signals::{Kind, Signal};
 use super::trial::Trial;
 
@@ -12,14 +13,14 @@ use super::trial::Trial;
 pub struct Temporal {
     /// Beam cells per segment.
     pub cells: usize,
-    /// Highest order of the run.
-    pub order: u8,
+    /// How the run integrates in time.
+    pub scheme: Scheme,
     /// Its tolerance.
     pub rtol: f64,
     /// Its wall time [s].
     pub wall_s: f64,
-    /// Order and tolerance of the run that checks it.
-    pub checked_by: Option<(u8, f64)>,
+    /// Scheme and tolerance of the run that checks it.
+    pub checked_by: Option<(Scheme, f64)>,
     /// Its error in each signal as its own sequence of tolerances has it, relative.
     pub by_tolerance: Vec<Option<Norms>>,
     /// Its distance to the run that checks it, relative.
@@ -38,10 +39,16 @@ const DISAGREE: f64 = 3.0;
 const LOOSER: f64 = 1e4;
 
 /// The best run on a mesh; `None` when none finished. `sizes` are those of the signals, `headline` decides which is best.
-pub fn temporal(trials: &[Trial], cells: usize, orders: &[u8], sizes: &[Norms], headline: usize) -> Option<Temporal> {
-    let mut ladders: Vec<(f64, Ladder)> = orders
+pub fn temporal(
+    trials: &[Trial],
+    cells: usize,
+    schemes: &[Scheme],
+    sizes: &[Norms],
+    headline: usize,
+) -> Option<Temporal> {
+    let mut ladders: Vec<(f64, Ladder)> = schemes
         .iter()
-        .map(|&order| Ladder::of(trials, cells, order))
+        .map(|&scheme| Ladder::of(trials, cells, scheme))
         .filter(|ladder| !ladder.runs.is_empty())
         .map(|ladder| (ladder.last_error(headline).map_or(f64::INFINITY, |e| e.max), ladder))
         .collect();
@@ -74,10 +81,10 @@ pub fn temporal(trials: &[Trial], cells: usize, orders: &[u8], sizes: &[Norms], 
         .collect();
     Some(Temporal {
         cells,
-        order: best.setting.order,
+        scheme: best.setting.scheme,
         rtol: best.setting.rtol,
         wall_s: best.wall_min_s,
-        checked_by: checking.map(|t| (t.setting.order, t.setting.rtol)),
+        checked_by: checking.map(|t| (t.setting.scheme, t.setting.rtol)),
         by_tolerance,
         by_order,
         own,

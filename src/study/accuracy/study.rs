@@ -7,6 +7,7 @@ use super::front::{self, Answer, Balance, Foot, Mark};
 use super::norms::Norms;
 use super::plan::Plan;
 use super::reference::{self, Limit, Temporal};
+use super::scheme::Scheme;
 use super::signals::{self, Kind, Signal};
 use super::sweep::{self, Watch};
 use super::trial::{Role, Trial};
@@ -34,8 +35,8 @@ pub struct Point {
 pub struct LineBalance {
     /// Beam cells per segment.
     pub cells: usize,
-    /// Highest order.
-    pub order: u8,
+    /// How time is integrated.
+    pub scheme: Scheme,
     /// Where.
     pub at: Balance,
 }
@@ -83,11 +84,11 @@ impl Study {
     }
 
     /// Finished points of a line, loose to tight; references are none of them.
-    pub fn line(&self, cells: usize, order: u8) -> Vec<usize> {
+    pub fn line(&self, cells: usize, scheme: Scheme) -> Vec<usize> {
         let mut line: Vec<usize> = (0..self.points.len())
             .filter(|&k| {
                 let trial = &self.points[k].trial;
-                trial.role == Role::Point && trial.finished() && trial.line() == (cells, order)
+                trial.role == Role::Point && trial.finished() && trial.line() == (cells, scheme)
             })
             .collect();
         line.sort_by(|&a, &b| {
@@ -116,13 +117,13 @@ pub fn study(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> Re
         .flat_map(|s| s.iter().map(|s| s.name.clone()))
         .collect();
     let headline = headline(&names, measure)?;
-    let mut orders: Vec<u8> = plan.orders.iter().copied().chain(plan.reference_orders()).collect();
-    orders.sort_unstable();
-    orders.dedup();
+    let mut schemes: Vec<Scheme> = plan.schemes.iter().copied().chain(plan.reference_schemes()).collect();
+    schemes.sort_unstable();
+    schemes.dedup();
     let references: Vec<Temporal> = plan
         .reference_cells()
         .into_iter()
-        .filter_map(|k| reference::temporal(&trials, k, &orders, &sizes, headline))
+        .filter_map(|k| reference::temporal(&trials, k, &schemes, &sizes, headline))
         .collect();
     // The mesh beyond the finest helps where its own error in time is small enough.
     let without = references
@@ -257,14 +258,14 @@ fn conclude(study: &mut Study) {
             .plan
             .cells
             .iter()
-            .flat_map(|&c| study.plan.orders.iter().map(move |&o| (c, o)))
+            .flat_map(|&c| study.plan.schemes.iter().map(move |&o| (c, o)))
     };
     study.feet = lines()
         .filter_map(|(c, o)| front::foot(&study.line(c, o), &cost, &work))
         .collect();
     study.balances = lines()
-        .filter_map(|(cells, order)| {
-            let line = study.line(cells, order);
+        .filter_map(|(cells, scheme)| {
+            let line = study.line(cells, scheme);
             let along = line.iter().filter_map(|&k| {
                 let errors = study.error(k)?;
                 Some((
@@ -276,7 +277,7 @@ fn conclude(study: &mut Study) {
             });
             let spatial = study.error(*line.first()?)?.spatial?.max;
             let at = front::balance(&along.collect::<Vec<_>>(), spatial)?;
-            Some(LineBalance { cells, order, at })
+            Some(LineBalance { cells, scheme, at })
         })
         .collect();
     for &k in &study.front {
@@ -325,7 +326,7 @@ fn notes(study: &Study) -> Vec<String> {
         let k = study.headline;
         if r.checked_by.is_none() {
             notes.push(format!(
-                "{} cells: no run of another order is near enough to check the reference; its error is by its own \
+                "{} cells: no run of another order or method is near enough to check the reference; its error is by its own \
                  tolerances alone",
                 r.cells
             ));
@@ -334,7 +335,7 @@ fn notes(study: &Study) -> Vec<String> {
             && r.own[k].max > t.max
         {
             notes.push(format!(
-                "{} cells: the two ways to judge the reference disagree ({:.1e} by its tolerances, {:.1e} by another order); \
+                "{} cells: the two ways to judge the reference disagree ({:.1e} by its tolerances, {:.1e} by another scheme); \
                  the larger one counts",
                 r.cells, t.max, o.max
             ));

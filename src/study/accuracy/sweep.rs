@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::ladder::Ladder;
 use super::plan::{Budget, Plan, Setting};
 use super::price;
+use super::scheme::Scheme;
 use super::trial::{self, Allowance, Role, Trial};
 use crate::case::Case;
 use crate::error::Result;
@@ -66,16 +67,16 @@ pub fn sweep(case: &Case, plan: &Plan, watch: Watch) -> Result<(Vec<Trial>, f64)
         state: Mutex::default(),
         watch,
     };
-    let lines: Vec<(usize, u8)> = plan
+    let lines: Vec<(usize, Scheme)> = plan
         .cells
         .iter()
-        .flat_map(|&k| plan.orders.iter().map(move |&o| (k, o)))
+        .flat_map(|&k| plan.schemes.iter().map(move |&o| (k, o)))
         .collect();
-    sweep.each(&lines, |&(cells, order)| {
+    sweep.each(&lines, |&(cells, scheme)| {
         let mut room = sweep.room(lines.len());
         plan.rtols
             .iter()
-            .try_for_each(|&rtol| sweep.point(Setting { cells, order, rtol }, &mut room))
+            .try_for_each(|&rtol| sweep.point(Setting { cells, scheme, rtol }, &mut room))
     })?;
     let meshes = plan.reference_cells();
     let numbers: Vec<usize> = (0..meshes.len()).collect();
@@ -175,7 +176,7 @@ impl Sweep<'_> {
             let mut state = self.lock();
             let spent = self.spent(&state);
             state.reserved += most;
-            let of = self.plan.cells.len() * (self.plan.orders.len() * self.plan.rtols.len() + 1) + 1;
+            let of = self.plan.cells.len() * (self.plan.schemes.len() * self.plan.rtols.len() + 1) + 1;
             Event {
                 setting,
                 role,
@@ -196,7 +197,7 @@ impl Sweep<'_> {
         Ok(cost)
     }
 
-    /// References of the first of these meshes: each order as tight as its share of the budget allows, to check the other.
+    /// References of the first of these meshes: each scheme as tight as its share of the budget allows, to check the other.
     fn references(&self, meshes: &[usize]) -> Result<()> {
         // What is left goes to the meshes by their unknowns and their stiffness. The mesh beyond the finest has what
         // that has: it is worth a try, but no point depends on it.
@@ -206,22 +207,22 @@ impl Sweep<'_> {
         let Some(&cells) = meshes.first() else { return Ok(()) };
         let left = self.plan.budget.size() - self.spent(&self.lock());
         let mut share = left.max(0.0) * weight(cells) / of_all;
-        for (k, order) in self.plan.reference_orders().into_iter().enumerate() {
+        for (k, scheme) in self.plan.reference_schemes().into_iter().enumerate() {
             let room = if k == 0 { 0.6 * share } else { share };
-            share -= self.reference(cells, order, room)?;
+            share -= self.reference(cells, scheme, room)?;
         }
         self.lock().done += 1;
         Ok(())
     }
 
-    /// One order on one mesh; returns what was spent.
-    fn reference(&self, cells: usize, order: u8, room: f64) -> Result<f64> {
+    /// One scheme on one mesh; returns what was spent.
+    fn reference(&self, cells: usize, scheme: Scheme, room: f64) -> Result<f64> {
         let mut left = room;
         let mut too_tight = 0.0;
         loop {
             let (next, expected, first) = {
                 let state = self.lock();
-                let ladder = Ladder::of(&state.trials, cells, order);
+                let ladder = Ladder::of(&state.trials, cells, scheme);
                 let last = ladder.last().map(|t| t.setting.rtol);
                 let tighter = |rtol: &f64| *rtol > too_tight && last.is_none_or(|last| *rtol < last);
                 let mut candidates = self.plan.reference_rtols();
@@ -230,7 +231,7 @@ impl Sweep<'_> {
                     // Nothing is known of this line; its tightest point comes first.
                     candidates.retain(|rtol| self.plan.rtols.contains(rtol));
                 }
-                let setting = |rtol| Setting { cells, order, rtol };
+                let setting = |rtol| Setting { cells, scheme, rtol };
                 let priced = candidates.into_iter().filter(tighter).map(|rtol| {
                     let setting = setting(rtol);
                     (setting, price::expected(&state.trials, setting))

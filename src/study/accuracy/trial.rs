@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use super::plan::{Budget, Setting};
+use super::scheme::Scheme;
 use super::signals::{Keep, Limit, Signal};
 use crate::case::Case;
 use crate::error::Result;
@@ -86,9 +87,9 @@ impl Trial {
         self.signals.is_some()
     }
 
-    /// Mesh and order: one line of the picture.
-    pub fn line(&self) -> (usize, u8) {
-        (self.setting.cells, self.setting.order)
+    /// Mesh and scheme: one line of the picture.
+    pub fn line(&self) -> (usize, Scheme) {
+        (self.setting.cells, self.setting.scheme)
     }
 }
 

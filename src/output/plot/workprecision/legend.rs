@@ -3,6 +3,7 @@
 use super::{FRONT, LEFT, Sheet, TOP, WIDTH, cross, draw_marker};
 use crate::output::numbers::significant;
 use crate::output::plot::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words};
+use crate::study::accuracy::Scheme;
 
 /// Size of the words.
 const SMALL: f64 = 11.0;
@@ -14,11 +15,11 @@ pub fn draw(sheet: &Sheet, canvas: &mut Canvas, balances: bool) {
     let words = Words::new(SMALL, Anchor::Left);
     for line in sheet.data.lines.iter().filter(|l| !l.markers.is_empty()) {
         canvas.line(&[(left, y), (left + 30.0, y)], sheet.stroke(line));
-        draw_marker(canvas, (left + 15.0, y), line.order, sheet.colour(line.cells), true);
+        draw_marker(canvas, (left + 15.0, y), line.scheme, sheet.colour(line.cells), true);
         let cells = if line.cells == 1 { "cell" } else { "cells" };
         canvas.text(
             (left + 38.0, y),
-            &format!("{} {cells}, order {}", line.cells, line.order),
+            &format!("{} {cells}, {}", line.cells, line.scheme),
             words,
         );
         y += 18.0;
@@ -36,7 +37,7 @@ pub fn draw(sheet: &Sheet, canvas: &mut Canvas, balances: bool) {
         y += 36.0;
     }
     if sheet.data.lines.iter().flat_map(|l| &l.markers).any(|m| !m.judged) {
-        draw_marker(canvas, (left + 15.0, y), 2, FAINT_INK, false);
+        draw_marker(canvas, (left + 15.0, y), Scheme::ida(2), FAINT_INK, false);
         canvas.text((left + 38.0, y), "reference not ten", words);
         canvas.text((left + 38.0, y + 14.0), "times better", words);
         y += 36.0;

@@ -1,0 +1,300 @@
+//! The integrator: one accepted step at a time.
+
+use super::control::Control;
+use super::dense::Integrals;
+use super::equations::{Equations, Obstacle};
+use super::matrix::Matrix;
+use super::options::OneStepOptions;
+use super::stages::{Stages, Work};
+use super::tableau::Tableau;
+use crate::dae::Dae;
+use crate::sundials::{Counters, IdaFailure, Klu, KluFault, Step, Wall, Worst, kernels};
+
+/// Integrator of a system `F(t, y, y') = 0` of index one, with the interface of [`crate::sundials::Ida`].
+pub struct OneStep<D: Dae> {
+    pub(super) equations: Equations<D>,
+    pub(super) matrix: Matrix,
+    pub(super) options: OneStepOptions,
+    pub(super) tableau: Tableau,
+    absolute: Vec<f64>,
+    /// 1 for differential, 0 for algebraic unknowns.
+    pub(super) mask: Vec<f64>,
+    /// Positions of algebraic unknowns.
+    pub(super) algebraic: Vec<usize>,
+    /// The step that is tried; its first stage is the present state.
+    pub(super) now: Stages,
+    /// The last step accepted.
+    pub(super) last: Stages,
+    pub(super) work: Work,
+    pub(super) integrals: Integrals,
+    pub(super) time: f64,
+    yp: Vec<f64>,
+    control: Control,
+    counters: Counters,
+    pub(super) newton_iterations: u64,
+    recoverable: Option<String>,
+}
+
+impl<D: Dae> OneStep<D> {
+    /// An integrator at time `t0` [s] with consistent values `y0` and derivatives `yp0`, both of length `dae.len()`.
+    pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &OneStepOptions) -> Result<Self, Box<IdaFailure>> {
+        let n = dae.len();
+        let refuse = |message: String| IdaFailure::request(message, t0);
+        if n == 0 || dae.pattern().columns() != n || dae.differential().len() != n {
+            return Err(refuse(format!(
+                "{n} unknowns do not fit the pattern or the kinds of unknowns"
+            )));
+        }
+        if y0.len() != n || yp0.len() != n {
+            return Err(refuse(format!(
+                "{} values and {} derivatives stand for {n} unknowns",
+                y0.len(),
+                yp0.len()
+            )));
+        }
+        options.check(n).map_err(refuse)?;
+        let klu = Klu::new(dae.pattern()).map_err(|fault| match fault {
+            KluFault::Singular { column } => refuse(format!("no equation can be solved for {}", dae.name(column))),
+            KluFault::Package { status } => refuse(format!("KLU cannot analyse the pattern (status {status})")),
+        })?;
+        let tableau = options.method.tableau();
+        let order = options.method.order();
+        let differential = dae.differential();
+        let mut this = Self {
+            mask: differential.iter().map(|&d| f64::from(u8::from(d))).collect(),
+            algebraic: (0..n).filter(|&i| !differential[i]).collect(),
+            absolute: options.absolute.each(n),
+            matrix: Matrix::new(klu),
+            now: Stages::new(tableau.stages, n),
+            last: Stages::new(tableau.stages, n),
+            work: Work::new(n),
+            integrals: Integrals::new(dae.integrals()),
+            time: t0,
+            yp: vec![0.0; n],
+            control: Control::new(options.max_step, tableau.power),
+            counters: Counters {
+                steps_by_order: vec![0; order.into()],
+                max_order: order,
+                ..Counters::default()
+            },
+            newton_iterations: 0,
+            recoverable: None,
+            equations: Equations::new(dae),
+            options: options.clone(),
+            tableau,
+        };
+        this.begin(t0, y0, yp0)?;
+        Ok(this)
+    }
+
+    /// Takes up a state, without a past.
+    fn begin(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IdaFailure>> {
+        self.matrix.forget();
+        self.integrals.restart();
+        self.time = t;
+        self.last.h = 0.0;
+        self.control.begin(0.0);
+        self.yp.copy_from_slice(yp);
+        self.now.y[0].copy_from_slice(y);
+        for (i, x) in self.now.x[0].iter_mut().enumerate() {
+            *x = if self.mask[i] > 0.0 { yp[i] } else { y[i] };
+        }
+        self.weigh()
+    }
+
+    /// Weights of the error norm at the present state.
+    fn weigh(&mut self) -> Result<(), Box<IdaFailure>> {
+        let (y, relative) = (&self.now.y[0], self.options.relative);
+        if kernels::error_weights(y, relative, &self.absolute, &mut self.work.weights) {
+            return Ok(());
+        }
+        let message = "an error weight is not positive and finite".to_owned();
+        Err(IdaFailure::request(message, self.time))
+    }
+
+    /// One accepted step, which does not pass `stop` [s]. A stop closer than round-off counts as reached.
+    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IdaFailure>> {
+        let round_off = 100.0 * f64::EPSILON * (self.time.abs() + stop.abs());
+        if stop.is_nan() || stop < self.time - round_off {
+            let message = format!("the stop time {stop:e} s lies behind");
+            return Err(IdaFailure::request(message, self.time));
+        }
+        let order = self.options.method.order();
+        if stop - self.time <= round_off {
+            self.time = stop;
+            return Ok(Step {
+                time: stop,
+                size: 0.0,
+                order,
+                stopped: true,
+            });
+        }
+        if self.control.size == 0.0 {
+            self.control.begin(self.first_step(stop));
+        }
+        self.recoverable = None;
+        for _ in 0..self.options.max_failures {
+            let (h, t1) = self.control.attempt(self.time, stop);
+            if h <= 4.0 * f64::EPSILON * self.time.abs() {
+                return Err(self.failure("the step became too small", h, None));
+            }
+            let error = match self.attempt(h, t1) {
+                Ok(error) if error <= 1.0 => match self.integrate(t1) {
+                    Ok(()) => Ok(error),
+                    Err(obstacle) => Err(obstacle),
+                },
+                other => other,
+            };
+            match error {
+                Ok(error) if error <= 1.0 => {
+                    self.accept(h, t1, error)?;
+                    return Ok(Step {
+                        time: t1,
+                        size: h,
+                        order,
+                        stopped: t1 == stop,
+                    });
+                }
+                Ok(error) => {
+                    self.counters.error_test_failures += 1;
+                    self.control.rejected(h, error);
+                }
+                Err(Obstacle::Fatal(what)) => {
+                    return Err(self.failure("the equations could not be evaluated", h, Some(what)));
+                }
+                Err(obstacle) => {
+                    if let Obstacle::Recoverable(what) = obstacle {
+                        self.recoverable = Some(what);
+                    }
+                    self.counters.newton_failures += 1;
+                    self.control.failed(h);
+                }
+            }
+        }
+        let h = self.control.size;
+        Err(self.failure(
+            "the error test or Newton's iteration failed too often, however short the step",
+            h,
+            None,
+        ))
+    }
+
+    /// The step tried becomes the last one, and its end the present.
+    fn accept(&mut self, h: f64, t1: f64, error: f64) -> Result<(), Box<IdaFailure>> {
+        let mut yp = std::mem::take(&mut self.yp);
+        let end = self.tableau.stages - 1;
+        self.rates(end, &mut yp);
+        self.yp = yp;
+        std::mem::swap(&mut self.now, &mut self.last);
+        self.now.x[0].copy_from_slice(&self.last.x[end]);
+        self.now.y[0].copy_from_slice(&self.last.y[end]);
+        self.time = t1;
+        self.control.accepted(h, error);
+        self.counters.steps += 1;
+        if let Some(count) = self.counters.steps_by_order.last_mut() {
+            *count += 1;
+        }
+        self.weigh()
+    }
+
+    /// A first step [s]: short against the way to the stop, and short enough for the present rates to change nothing by
+    /// more than half its tolerance (IDA's choice).
+    fn first_step(&self, stop: f64) -> f64 {
+        if let Some(step) = self.options.initial_step {
+            return step;
+        }
+        let least = 1e-3 * (stop - self.time);
+        let (n, weights) = (self.mask.len() as f64, &self.work.weights);
+        let speed = (kernels::weighted_square_masked(&self.yp, weights, &self.mask) / n).sqrt();
+        if speed * least > 0.5 { 0.5 / speed } else { least }
+    }
+
+    /// Everything known about a failure.
+    fn failure(&self, meaning: &'static str, step: f64, fatal: Option<String>) -> Box<IdaFailure> {
+        let ratios = self.work.r.iter().zip(&self.work.weights).map(|(r, w)| (r * w).abs());
+        let worst = ratios.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        Box::new(IdaFailure {
+            code: 0,
+            meaning,
+            fatal,
+            message: String::new(),
+            time: self.time,
+            step,
+            order: self.options.method.order(),
+            worst: worst.filter(|(_, ratio)| *ratio > 0.0).map(|(unknown, ratio)| Worst {
+                unknown,
+                name: self.dae().name(unknown),
+                ratio,
+            }),
+            recoverable: self.recoverable.clone(),
+            singular: self.matrix.singular.map(|column| self.dae().name(column)),
+        })
+    }
+
+    /// Present time [s].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Unknowns at the present time.
+    pub fn y(&self) -> &[f64] {
+        &self.now.y[0]
+    }
+
+    /// Their derivatives at the present time [1/s].
+    pub fn yp(&self) -> &[f64] {
+        &self.yp
+    }
+
+    /// Goes on from consistent values at time `t` [s], forgetting the past, factors, pivots and step size included, so that
+    /// a new integrator from the same values would do the same bit for bit. Integrals start at zero.
+    ///
+    /// Panics when a slice has another length than the unknowns.
+    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IdaFailure>> {
+        self.counters.restarts += 1;
+        self.begin(t, y, yp)
+    }
+
+    /// Accepted steps since the integrator was created.
+    pub fn steps(&self) -> u64 {
+        self.counters.steps
+    }
+
+    /// Work done since the integrator was created.
+    pub fn counters(&self) -> Counters {
+        Counters {
+            residual_evaluations: self.equations.residuals,
+            jacobian_evaluations: self.equations.jacobians,
+            factorizations: self.matrix.klu.factorizations,
+            pivot_refreshes: self.matrix.klu.pivot_refreshes,
+            newton_iterations: self.newton_iterations,
+            linear_solves: self.matrix.solves,
+            ..self.counters.clone()
+        }
+    }
+
+    /// Wall time spent in the equations and the linear solver.
+    pub fn wall(&self) -> Wall {
+        Wall {
+            residual: self.equations.residual_wall,
+            jacobian: self.equations.jacobian_wall,
+            linear_solver: self.matrix.wall,
+            integrands: self.equations.integrand_wall,
+        }
+    }
+
+    /// The equations.
+    pub fn dae(&self) -> &D {
+        &self.equations.dae
+    }
+
+    /// The equations; after changing what they mean, [`OneStep::restart`].
+    pub fn dae_mut(&mut self) -> &mut D {
+        &mut self.equations.dae
+    }
+
+    /// Gives the equations back.
+    pub fn into_dae(self) -> D {
+        self.equations.dae
+    }
+}

@@ -1,0 +1,115 @@
+//! Newton's matrix `∂F/∂y + cj ∂F/∂y'`, its factors, and when they are too old.
+
+use std::time::{Duration, Instant};
+
+use super::equations::{Equations, Obstacle};
+use crate::dae::Dae;
+use crate::sundials::{Klu, KluFault};
+
+/// Contraction that is assumed before one is measured: corrections are then taken for what is left.
+const UNKNOWN_RATE: f64 = 0.5;
+/// Measured contraction from which on a new matrix pays.
+const SLOW: f64 = 0.1;
+
+/// The factors and what is known of them.
+pub(super) struct Matrix {
+    pub klu: Klu,
+    values: Vec<f64>,
+    /// `cj` of the factors; 0 without factors.
+    cj: f64,
+    /// Contraction of Newton's iteration with these factors, as last measured.
+    pub rate: f64,
+    /// Asks for new factors at the next stage.
+    pub stale: bool,
+    /// Whether the factors were made in the present attempt.
+    pub fresh: bool,
+    slow: bool,
+    pub solves: u64,
+    pub wall: Duration,
+    /// Column that had no pivot, of the last matrix.
+    pub singular: Option<usize>,
+}
+
+impl Matrix {
+    pub fn new(klu: Klu) -> Self {
+        Self {
+            values: vec![0.0; klu.entries()],
+            klu,
+            cj: 0.0,
+            rate: UNKNOWN_RATE,
+            stale: true,
+            fresh: false,
+            slow: false,
+            solves: 0,
+            wall: Duration::ZERO,
+            singular: None,
+        }
+    }
+
+    /// As new, counters apart.
+    pub fn forget(&mut self) {
+        self.klu.forget();
+        (self.cj, self.rate, self.stale) = (0.0, UNKNOWN_RATE, true);
+        (self.fresh, self.slow) = (false, false);
+        self.singular = None;
+    }
+
+    /// A new attempt at a step begins.
+    pub fn begin(&mut self) {
+        self.stale |= std::mem::take(&mut self.slow) && !self.fresh;
+        self.fresh = false;
+    }
+
+    /// Makes factors for `cj` at a state, when there are none that will do.
+    pub fn prepare<D: Dae>(
+        &mut self,
+        equations: &mut Equations<D>,
+        (t, y, yp): (f64, &[f64], &[f64]),
+        cj: f64,
+        band: f64,
+    ) -> Result<(), Obstacle> {
+        if !self.stale && (cj / self.cj - 1.0).abs() <= band {
+            return Ok(());
+        }
+        self.stale = true;
+        equations.jacobian(t, y, yp, cj, &mut self.values)?;
+        let begin = Instant::now();
+        let factored = self.klu.factor(&self.values);
+        self.wall += begin.elapsed();
+        match factored {
+            Ok(()) => {
+                (self.cj, self.rate, self.stale, self.fresh) = (cj, UNKNOWN_RATE, false, true);
+                self.singular = None;
+                Ok(())
+            }
+            Err(KluFault::Singular { column }) => {
+                self.singular = Some(column);
+                Err(Obstacle::Singular(column))
+            }
+            Err(KluFault::Package { status }) => Err(Obstacle::Fatal(format!("KLU cannot go on (status {status})"))),
+        }
+    }
+
+    /// Replaces `b` by the solution; returns the factor by which it is to be multiplied for an old `cj`.
+    ///
+    /// `2 / (1 + cj/cj_old)` halves the error at both ends of the spectrum (IDA's choice).
+    pub fn solve(&mut self, b: &mut [f64], cj: f64) -> f64 {
+        let begin = Instant::now();
+        self.klu.solve(b);
+        self.solves += 1;
+        self.wall += begin.elapsed();
+        2.0 / (1.0 + cj / self.cj)
+    }
+
+    /// Notes a measured contraction; a slow one asks for a new matrix in the next step, unless all that is to be gained is
+    /// there already.
+    pub fn measured(&mut self, rate: f64, settled: bool) {
+        self.rate = rate.min(UNKNOWN_RATE);
+        self.slow |= rate > SLOW && !settled;
+    }
+
+    /// Trust in an old measurement fades (Hairer & Wanner IV.8).
+    pub fn trust_less(&mut self) {
+        self.rate = self.rate.max(1e-12).powf(0.8).min(UNKNOWN_RATE);
+    }
+}

@@ -1,0 +1,59 @@
+//! What can be asked of a one-step method.
+
+use super::tableau::Method;
+use crate::sundials::Absolute;
+
+/// Settings of [`super::OneStep`]. Weights of the error norm are IDA's, `1 / (relative |yᵢ| + absoluteᵢ)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OneStepOptions {
+    /// Coefficients.
+    pub method: Method,
+    /// Relative tolerance, > 0.
+    pub relative: f64,
+    /// Absolute tolerances, > 0.
+    pub absolute: Absolute,
+    /// Error that Newton's iteration may leave, as a fraction of the tolerance.
+    pub newton_tolerance: f64,
+    /// Relative change of `1/(h γ)` that asks for a new matrix.
+    pub matrix_band: f64,
+    /// First step [s], after every restart; a guess when absent.
+    pub initial_step: Option<f64>,
+    /// Largest step [s].
+    pub max_step: Option<f64>,
+    /// Failures allowed in one step, of Newton's iteration and of the error test together.
+    pub max_failures: u16,
+}
+
+impl Default for OneStepOptions {
+    fn default() -> Self {
+        Self {
+            method: Method::Esdirk34,
+            relative: 1e-4,
+            absolute: Absolute::Same(1e-6),
+            newton_tolerance: 0.05,
+            matrix_band: 0.3,
+            initial_step: None,
+            max_step: None,
+            max_failures: 30,
+        }
+    }
+}
+
+impl OneStepOptions {
+    /// Checks the settings for a system of `n` unknowns; the error names the first that cannot be.
+    pub fn check(&self, n: usize) -> Result<(), String> {
+        self.absolute.check(self.relative, n)?;
+        let positive = |value: f64| value.is_finite() && value > 0.0;
+        for (value, what) in [
+            (self.newton_tolerance, "tolerance of Newton's iteration"),
+            (self.matrix_band, "change of the step for a new matrix"),
+            (self.initial_step.unwrap_or(1.0), "first step"),
+            (self.max_step.unwrap_or(1.0), "largest step"),
+        ] {
+            if !positive(value) {
+                return Err(format!("the {what} must be positive, it is {value}"));
+            }
+        }
+        Ok(())
+    }
+}

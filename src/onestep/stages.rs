@@ -1,0 +1,247 @@
+//! From stage to stage by a simplified Newton iteration, and the estimate of the error.
+//!
+//! A stage's own unknowns are `x`: the rate `K` where differential, the value where algebraic. With `base` the part of `Y`
+//! that the stages before give, `Y = base + s x`, `s = h γ` or 1. A correction `δ` of `Y` is one of `δ/s` of `x`, so that rates
+//! are never differences of values.
+
+use super::equations::Obstacle;
+use super::integrator::OneStep;
+use super::polynomial;
+use crate::dae::Dae;
+use crate::sundials::kernels::weighted_square;
+
+/// Iterations allowed in one stage.
+const ITERATIONS: usize = 7;
+/// Contraction beyond which an iteration is given up.
+const DIVERGING: f64 = 0.9;
+/// Nodes of the polynomial that predicts a stage.
+const PREDICTOR_NODES: usize = 3;
+
+/// Stages of one step.
+#[derive(Clone, Debug)]
+pub(super) struct Stages {
+    /// Time at its beginning [s].
+    pub t: f64,
+    /// Its size [s]; 0 before there is one.
+    pub h: f64,
+    /// Rates of differential, values of algebraic unknowns, at every stage.
+    pub x: Vec<Vec<f64>>,
+    /// Values of all unknowns at every stage.
+    pub y: Vec<Vec<f64>>,
+}
+
+impl Stages {
+    pub fn new(stages: usize, n: usize) -> Self {
+        let zeros = vec![vec![0.0; n]; stages];
+        Self {
+            t: 0.0,
+            h: 0.0,
+            x: zeros.clone(),
+            y: zeros,
+        }
+    }
+}
+
+/// Vectors to work with.
+#[derive(Clone, Debug)]
+pub(super) struct Work {
+    /// Part of a stage's values that the stages before give.
+    pub base: Vec<f64>,
+    /// `∂Y/∂x`: `h γ` or 1.
+    pub scale: Vec<f64>,
+    /// `∂x/∂Y`: `1/(h γ)` or 1.
+    pub inverse: Vec<f64>,
+    /// Rates, 0 for algebraic unknowns.
+    pub yp: Vec<f64>,
+    /// Residual, then correction.
+    pub r: Vec<f64>,
+    /// Weights of the error norm.
+    pub weights: Vec<f64>,
+}
+
+impl Work {
+    pub fn new(n: usize) -> Self {
+        let zeros = || vec![0.0; n];
+        Self {
+            base: zeros(),
+            scale: zeros(),
+            inverse: zeros(),
+            yp: zeros(),
+            r: zeros(),
+            weights: zeros(),
+        }
+    }
+}
+
+/// `out += factor v`.
+pub(super) fn add(out: &mut [f64], factor: f64, v: &[f64]) {
+    for (out, v) in out.iter_mut().zip(v) {
+        *out += factor * v;
+    }
+}
+
+/// Weighted root mean square of the entries.
+fn norm(v: &[f64], weights: &[f64]) -> f64 {
+    (weighted_square(v, weights) / v.len() as f64).sqrt()
+}
+
+impl<D: Dae> OneStep<D> {
+    /// Tries a step of size `h` that ends at `t1` [s]; returns its error relative to the tolerance.
+    pub(super) fn attempt(&mut self, h: f64, t1: f64) -> Result<f64, Obstacle> {
+        self.matrix.begin();
+        (self.now.t, self.now.h) = (self.time, h);
+        let cj = 1.0 / (h * self.tableau.gamma());
+        for ((scale, inverse), &mask) in (self.work.scale.iter_mut().zip(&mut self.work.inverse)).zip(&self.mask) {
+            let differential = mask > 0.0;
+            *scale = if differential { h * self.tableau.gamma() } else { 1.0 };
+            *inverse = if differential { cj } else { 1.0 };
+        }
+        for i in 1..self.tableau.stages {
+            let last = self.tableau.c[i] == 1.0;
+            let t = if last { t1 } else { self.time + self.tableau.c[i] * h };
+            self.lay_base(i);
+            self.predict(i);
+            match self.newton(i, t, cj) {
+                // what failed with old factors is tried with new ones
+                Err(Obstacle::Newton | Obstacle::Recoverable(_)) if !self.matrix.fresh => {
+                    self.matrix.stale = true;
+                    self.predict(i);
+                    self.newton(i, t, cj)?;
+                }
+                other => other?,
+            }
+        }
+        self.estimate(t1, cj)
+    }
+
+    /// `yₙ + h Σ_{j<i} aᵢⱼ Kⱼ`.
+    fn lay_base(&mut self, i: usize) {
+        let (now, base) = (&self.now, &mut self.work.base);
+        base.copy_from_slice(&now.y[0]);
+        for j in (0..i).filter(|&j| self.tableau.a[i][j] != 0.0) {
+            add(base, now.h * self.tableau.a[i][j], &now.x[j]);
+        }
+        for (base, mask) in base.iter_mut().zip(&self.mask) {
+            *base *= mask;
+        }
+    }
+
+    /// Predicts stage `i` by the polynomial through the stages before, of the last step too.
+    fn predict(&mut self, i: usize) {
+        let (tableau, last) = (&self.tableau, &self.last);
+        let mut nodes = [0.0; polynomial::NODES];
+        let mut sources: [(bool, usize); polynomial::NODES] = [(false, 0); polynomial::NODES];
+        let mut count = 0;
+        let mut push = |node: f64, source: (bool, usize)| {
+            if count < PREDICTOR_NODES {
+                (nodes[count], sources[count]) = (node, source);
+                count += 1;
+            }
+        };
+        for j in (0..i).rev() {
+            push(tableau.c[j], (false, j));
+        }
+        if last.h > 0.0 {
+            let ratio = last.h / self.now.h;
+            // the last stage of the last step is the first of this one
+            for &j in tableau.nodes.iter().rev().skip(1) {
+                push((tableau.c[j] - 1.0) * ratio, (true, j));
+            }
+        }
+        let weights = polynomial::value(&nodes[..count], tableau.c[i]);
+        let (before, rest) = self.now.x.split_at_mut(i);
+        let x = &mut rest[0];
+        x.fill(0.0);
+        for (&weight, &(of_last, j)) in weights.iter().zip(&sources).take(count) {
+            add(x, weight, if of_last { &last.x[j] } else { &before[j] });
+        }
+    }
+
+    /// Solves stage `i` at time `t` [s] from its prediction.
+    fn newton(&mut self, i: usize, t: f64, cj: f64) -> Result<(), Obstacle> {
+        self.update(i);
+        let state = (t, self.now.y[i].as_slice(), self.work.yp.as_slice());
+        self.matrix
+            .prepare(&mut self.equations, state, cj, self.options.matrix_band)?;
+        let tolerance = self.options.newton_tolerance;
+        let mut before: Option<f64> = None;
+        for iteration in 0..ITERATIONS {
+            self.newton_iterations += 1;
+            self.equations
+                .residual(t, &self.now.y[i], &self.work.yp, &mut self.work.r)?;
+            let factor = -self.matrix.solve(&mut self.work.r, cj);
+            self.work.r.iter_mut().for_each(|r| *r *= factor);
+            let x = &mut self.now.x[i];
+            for ((x, r), inverse) in x.iter_mut().zip(&self.work.r).zip(&self.work.inverse) {
+                *x += inverse * r;
+            }
+            self.update(i);
+            let size = norm(&self.work.r, &self.work.weights);
+            if !size.is_finite() {
+                return Err(Obstacle::Newton);
+            }
+            if let Some(before) = before {
+                let rate = size / before;
+                // at round-off nothing contracts any further
+                let settled = size <= 0.1 * tolerance;
+                self.matrix.measured(rate, settled);
+                if settled {
+                    return Ok(());
+                }
+                let left = (ITERATIONS - 1 - iteration) as i32;
+                if rate > DIVERGING || rate.powi(left) * size * rate / (1.0 - rate) > tolerance {
+                    return Err(Obstacle::Newton);
+                }
+            }
+            let rate = self.matrix.rate;
+            if rate / (1.0 - rate) * size <= tolerance {
+                if before.is_none() {
+                    self.matrix.trust_less();
+                }
+                return Ok(());
+            }
+            before = Some(size);
+        }
+        Err(Obstacle::Newton)
+    }
+
+    /// Values and rates of stage `i` from its own unknowns.
+    fn update(&mut self, i: usize) {
+        let Stages { x, y, .. } = &mut self.now;
+        let (x, y, w) = (&x[i], &mut y[i], &mut self.work);
+        for ((y, base), (x, scale)) in y.iter_mut().zip(&w.base).zip(x.iter().zip(&w.scale)) {
+            *y = base + scale * x;
+        }
+        for ((yp, x), mask) in w.yp.iter_mut().zip(x).zip(&self.mask) {
+            *yp = mask * x;
+        }
+    }
+
+    /// Error of the step, relative to the tolerance.
+    ///
+    /// The embedded method gives `e = h Σ (bᵢ - b̂ᵢ) Kᵢ`, which for stiff components is as large as they are stiff. Solved for
+    /// once more, `(∂F/∂y + cj ∂F/∂y') err = cj ∂F/∂y' e`, it is what the method would do to a disturbance `e` (Shampine;
+    /// Hairer & Wanner IV.8): `(1 - h γ λ)⁻¹ e`. The right-hand side is a residual with the rates moved by `cj e`. Algebraic
+    /// unknowns have the error that the differential ones bring them, and count.
+    fn estimate(&mut self, t1: f64, cj: f64) -> Result<f64, Obstacle> {
+        let s = self.tableau.stages;
+        let (b, gamma) = (self.tableau.b(), self.tableau.gamma());
+        let yp = &mut self.work.yp;
+        yp.copy_from_slice(&self.now.x[s - 1]);
+        for (j, x) in self.now.x.iter().enumerate().take(s) {
+            add(yp, (b[j] - self.tableau.embedded[j]) / gamma, x);
+        }
+        for (yp, mask) in yp.iter_mut().zip(&self.mask) {
+            *yp *= mask;
+        }
+        self.equations
+            .residual(t1, &self.now.y[s - 1], &self.work.yp, &mut self.work.r)?;
+        let factor = self.matrix.solve(&mut self.work.r, cj);
+        let error = factor * norm(&self.work.r, &self.work.weights);
+        if error.is_finite() {
+            Ok(error)
+        } else {
+            Err(Obstacle::Newton)
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Which integrator a run uses, and why; both behind one face.
+
+use super::order::{self, OrderChoice};
+use crate::case::schema::{self, Case};
+use crate::dae::Dae;
+use crate::discrete::System;
+use crate::onestep::{Method, OneStep, OneStepOptions};
+use crate::sundials::{Absolute, Counters, Ida, IdaFailure, IdaOptions, Step, Wall};
+
+/// Method and highest order of a case, with reasons.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MethodChoice {
+    /// A one-step method; `None` for IDA.
+    pub one_step: Option<Method>,
+    /// In words.
+    pub reason: String,
+    /// Highest order.
+    pub order: OrderChoice,
+}
+
+impl MethodChoice {
+    /// Name of the method, for people.
+    pub fn name(&self) -> String {
+        self.one_step.map_or("IDA".into(), |method| method.to_string())
+    }
+}
+
+/// The one-step method that a case asks for.
+pub fn one_step(case: &Case) -> Option<Method> {
+    match case.solver.method {
+        schema::Method::Auto | schema::Method::Ida => None,
+        schema::Method::Trbdf2 => Some(Method::TrBdf2),
+        schema::Method::Esdirk34 => Some(Method::Esdirk34),
+        schema::Method::Esdirk46 => Some(Method::Esdirk46),
+        schema::Method::Esdirk57 => Some(Method::Esdirk57),
+    }
+}
+
+/// Method for a case: as asked, else IDA.
+pub fn choose(case: &Case, system: &System) -> MethodChoice {
+    let one_step = one_step(case);
+    let reason = match case.solver.method {
+        schema::Method::Auto => "variable-order BDF unless another method is asked for",
+        _ => "as asked",
+    };
+    let order = one_step.map_or_else(
+        || order::choose(case, system),
+        |method| OrderChoice {
+            order: method.order(),
+            reason: format!("the order of {method}"),
+        },
+    );
+    MethodChoice {
+        one_step,
+        reason: reason.into(),
+        order,
+    }
+}
+
+/// IDA's Newton iteration ends at this part of the tolerance where the solid has inertia. IDA's own third leaves noise that
+/// its error test takes for truncation, step after step, on slow motions; it costs a tenth less elsewhere.
+const NONLINEAR: f64 = 0.033;
+
+/// The same without inertia: the smoother the motion, the smaller the steps' own error beside that noise.
+const NONLINEAR_STATIC: f64 = 1e-4;
+
+/// What is asked of the integrator of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Options {
+    /// IDA's settings.
+    Ida(IdaOptions),
+    /// Those of a one-step method.
+    OneStep(OneStepOptions),
+}
+
+impl Options {
+    /// Settings of a case, its method chosen.
+    pub fn new(case: &Case, system: &System, choice: &MethodChoice, max_step: f64) -> Self {
+        let solver = &case.solver;
+        let (relative, absolute) = (solver.rtol, Absolute::Same(solver.rtol));
+        let (initial_step, max_step) = (solver.initial_step_s, Some(max_step));
+        match choice.one_step {
+            None => Self::Ida(IdaOptions {
+                relative,
+                absolute,
+                max_order: choice.order.order,
+                nonlinear_coefficient: solver.nonlinear_coefficient.unwrap_or(if system.layout.inertia {
+                    NONLINEAR
+                } else {
+                    NONLINEAR_STATIC
+                }),
+                delta_cj_setup: solver.delta_cj_setup,
+                initial_step,
+                max_step,
+                ..IdaOptions::default()
+            }),
+            Some(method) => {
+                let usual = OneStepOptions::default();
+                Self::OneStep(OneStepOptions {
+                    method,
+                    relative,
+                    absolute,
+                    newton_tolerance: solver.nonlinear_coefficient.unwrap_or(usual.newton_tolerance),
+                    initial_step,
+                    max_step,
+                    ..usual
+                })
+            }
+        }
+    }
+}
+
+/// An integrator: IDA, or a one-step method. See [`Ida`] for what its functions promise.
+#[allow(clippy::large_enum_variant)] // there is one of it in a run
+pub enum Integrator<D: Dae> {
+    /// Variable-order BDF.
+    Ida(Ida<D>),
+    /// A one-step method.
+    OneStep(OneStep<D>),
+}
+
+/// The same call on whichever integrator it is.
+macro_rules! either {
+    ($this:expr, $one:ident => $call:expr) => {
+        match $this {
+            Integrator::Ida($one) => $call,
+            Integrator::OneStep($one) => $call,
+        }
+    };
+}
+
+impl<D: Dae> Integrator<D> {
+    /// An integrator at time `t0` [s] with consistent values and derivatives.
+    pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &Options) -> Result<Self, Box<IdaFailure>> {
+        match options {
+            Options::Ida(options) => Ida::new(dae, t0, y0, yp0, options).map(Self::Ida),
+            Options::OneStep(options) => OneStep::new(dae, t0, y0, yp0, options).map(Self::OneStep),
+        }
+    }
+
+    /// One accepted step, which does not pass `stop` [s].
+    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IdaFailure>> {
+        either!(self, one => one.step(stop))
+    }
+
+    /// Present time [s].
+    pub fn time(&self) -> f64 {
+        either!(self, one => one.time())
+    }
+
+    /// Unknowns at the present time.
+    pub fn y(&self) -> &[f64] {
+        either!(self, one => one.y())
+    }
+
+    /// Their derivatives at the present time [1/s].
+    pub fn yp(&self) -> &[f64] {
+        either!(self, one => one.yp())
+    }
+
+    /// Derivative number `k` of the unknowns at a time [s] within the last step.
+    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
+        either!(self, one => one.interpolate(time, k, out))
+    }
+
+    /// The integrals since the last restart, at the present time or at one [s] within the last step.
+    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
+        either!(self, one => one.integrals(time, out))
+    }
+
+    /// Goes on from consistent values at time `t` [s], forgetting the past.
+    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IdaFailure>> {
+        either!(self, one => one.restart(t, y, yp))
+    }
+
+    /// Accepted steps since the integrator was created.
+    pub fn steps(&self) -> u64 {
+        either!(self, one => one.steps())
+    }
+
+    /// Work done since the integrator was created.
+    pub fn counters(&self) -> Counters {
+        either!(self, one => one.counters())
+    }
+
+    /// Wall time spent in the equations and the linear solver.
+    pub fn wall(&self) -> Wall {
+        either!(self, one => one.wall())
+    }
+
+    /// The equations.
+    pub fn dae(&self) -> &D {
+        either!(self, one => one.dae())
+    }
+
+    /// The equations; after changing what they mean, [`Integrator::restart`].
+    pub fn dae_mut(&mut self) -> &mut D {
+        either!(self, one => one.dae_mut())
+    }
+}
