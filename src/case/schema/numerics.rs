@@ -187,7 +187,7 @@ impl Default for Solver {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// Chosen by the program: IDA.
+    /// Chosen by the program: `esdirk46` where undamped waves would keep BDF at order 2 and rtol is 1e-3 or less, else IDA.
     #[default]
     Auto,
     /// Variable-order BDF: many cheap steps; of order 2 where waves are not damped.
