@@ -401,7 +401,7 @@ fn a_run_stops_where_a_bladder_closes() {
 fn a_failing_solver_leaves_the_result_so_far() {
     let dir = TempDir::new().unwrap();
     let folder = dir.path().join("result");
-    let said = run(&folder, &["--set", "/solver/max_steps=50"]);
+    let said = run(&folder, &["--set", "/solver/max_steps=10"]);
     assert_eq!(said.code, 4, "{}", said.err);
     assert!(
         said.err.contains("failed at t = ") && said.err.contains("/solver/max_steps"),
@@ -410,7 +410,7 @@ fn a_failing_solver_leaves_the_result_so_far() {
     );
     let summary = json(&folder.join("summary.json"));
     assert_eq!(summary["status"], "failed");
-    assert_eq!(summary["solver"]["steps"], 50);
+    assert_eq!(summary["solver"]["steps"], 10);
     let reached = summary["time_s"].as_f64().unwrap();
     let history = fs::read_to_string(folder.join("history.csv")).unwrap();
     let last: f64 = history

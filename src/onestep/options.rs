@@ -30,7 +30,7 @@ impl Default for OneStepOptions {
             method: Method::Esdirk34,
             relative: 1e-4,
             absolute: Absolute::Same(1e-6),
-            newton_tolerance: 0.05,
+            newton_tolerance: 0.02,
             matrix_band: 0.3,
             initial_step: None,
             max_step: None,

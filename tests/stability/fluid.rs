@@ -16,7 +16,7 @@ fn permeability_over_twelve_decades() {
                 let factor = format!("/network/permeability_factor={factor:e}");
                 let ran = run("permeability", &[&factor, sets[0], sets[1]])
                     .sound_with(ENERGY_PER_RTOL, STIFF_VOLUME)
-                    .steps_within(200, 9_000);
+                    .steps_within(20, 3_000);
                 let figures = format!("{name}, largest tip u1 {:.4e} m", ran.largest("tip_u1"));
                 ran.line(&figures)
             })
@@ -42,7 +42,7 @@ fn viscosity_over_eight_decades() {
                 let mu = format!("/fluid/viscosity_pa_s={mu:e}");
                 let ran = run("viscosity", &[&mu, sets[0], sets[1]])
                     .sound()
-                    .steps_within(200, 9_000);
+                    .steps_within(20, 3_000);
                 let ratio = ran.summary.characteristic["t_s_over_t_f"];
                 let figures = format!(
                     "{name}, t_s/t_f {ratio:.1e}, largest tip u1 {:.4e} m",
@@ -68,8 +68,8 @@ fn viscosity_over_eight_decades() {
 #[test]
 fn valves_in_a_millisecond_and_a_microsecond() {
     for (name, sets) in COMBINATIONS {
-        let slow = run("valves-1ms", &sets).sound().steps_within(400, 4_000);
-        let fast = run("valves-1us", &sets).sound().steps_within(400, 5_000);
+        let slow = run("valves-1ms", &sets).sound().steps_within(40, 1_333);
+        let fast = run("valves-1us", &sets).sound().steps_within(40, 1_666);
         assert_eq!((slow.summary.solver.restarts, fast.summary.solver.restarts), (6, 6));
         let apart = distance(&slow, &fast, "tip_u1");
         let slow = slow.line(name);
@@ -96,7 +96,7 @@ fn closed_valves_are_walls() {
 #[test]
 fn ports_that_switch() {
     for (name, sets) in COMBINATIONS {
-        let ran = run("ports-switched", &sets).sound().steps_within(400, 12_000);
+        let ran = run("ports-switched", &sets).sound().steps_within(40, 4_000);
         let volume = ran.summary.balances.volume_residual_relative;
         let ran = ran.line(&format!("{name}, volume with ports {volume:.1e}"));
         assert!(volume < 1e-3, "{name}: {volume}");
@@ -111,7 +111,7 @@ fn ports_that_switch() {
 #[test]
 fn a_pressure_step() {
     for (name, sets) in COMBINATIONS {
-        let ran = run("pressure-step", &sets).sound().steps_within(2_000, 150_000);
+        let ran = run("pressure-step", &sets).sound().steps_within(200, 50_000);
         let tip = ran.column("tip_u1");
         let mean = tip[20..].iter().sum::<f64>() / (tip.len() - 20) as f64;
         let overshoot = ran.largest("tip_u1") / mean.abs();
@@ -125,7 +125,7 @@ fn a_pressure_step() {
 #[test]
 fn wildly_unequal_tubes() {
     for (name, sets) in COMBINATIONS {
-        let all = run("unequal-tubes", &sets).sound().steps_within(300, 30_000);
+        let all = run("unequal-tubes", &sets).sound().steps_within(30, 10_000);
         let wide = [
             r#"/network={"tubes": [{"from": {"bladder": 1, "end": "outlet"}, "to": {"bladder": 2, "end": "inlet"},
                 "permeability_m4": 1e-14}, {"from": {"bladder": 4, "end": "outlet"}, "to": {"bladder": 5, "end": "inlet"},
@@ -154,12 +154,12 @@ fn islands_and_sealed_bladders() {
         };
         run("islands", &sets)
             .sound_with(bound, VOLUME)
-            .steps_within(2_000, 300_000)
+            .steps_within(200, 100_000)
             .line(name);
         let sealed = ["/network=null", sets[0], sets[1]];
         run("islands", &sealed)
             .sound_with(bound, VOLUME)
-            .steps_within(2_000, 300_000)
+            .steps_within(200, 100_000)
             .line(name);
     }
 }
@@ -198,7 +198,7 @@ fn kinks_crossed_every_half_cycle() {
         let runs: Vec<Ran> = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
             .map(|width: f64| {
                 let width = format!("/bladders/kink_width={width:e}");
-                let ran = run("kinks", &[&width, formulation]).sound().steps_within(1_000, 40_000);
+                let ran = run("kinks", &[&width, formulation]).sound().steps_within(100, 13_333);
                 let figures = format!("largest tip u1 {:.4e} m", ran.largest("tip_u1"));
                 ran.line(&figures)
             })
@@ -210,16 +210,16 @@ fn kinks_crossed_every_half_cycle() {
 
 /// Goal: a pump on a network that equalises 10^8 times faster than the paper's. A flow through its port told from pressures
 /// would be a difference of nearly equal ones times a huge conductance; told from what the network stores, energy and
-/// volume balances close. Pressure and deflection are the same with a hundredth of the tolerance, within 1000 rtol.
+/// volume balances close, the energy's but for the flows inside, whose noise squared is dissipation. Pressure and deflection are the same with a hundredth of the tolerance, within 1000 rtol.
 /// Round-off of the matrix costs sealed bladders 1e-16 times 10^8, a thousand steps. Found by random cases (seeds 24, 43,
 /// 66).
 #[test]
 fn a_port_without_resistance() {
     for (name, sets) in COMBINATIONS {
         let loose = run("stiff-port", &sets)
-            .sound_with(ENERGY_PER_RTOL, 1e-4)
-            .steps_within(100, 20_000);
-        let tight = run("stiff-port", &["/solver/rtol=1e-7", sets[0], sets[1]]).sound_with(ENERGY_PER_RTOL, 1e-4);
+            .sound_with(2.0 * ENERGY_PER_RTOL, 1e-4)
+            .steps_within(10, 6_666);
+        let tight = run("stiff-port", &["/solver/rtol=1e-7", sets[0], sets[1]]).sound_with(2.0 * ENERGY_PER_RTOL, 1e-4);
         let apart = distance(&loose, &tight, "tip_u1").max(distance(&loose, &tight, "max_pressure"));
         let volume = loose.summary.balances.volume_residual_relative;
         let loose = loose.line(&format!(
@@ -236,7 +236,7 @@ fn a_port_without_resistance() {
 #[test]
 fn a_slow_drive() {
     for (name, sets) in COMBINATIONS {
-        let loose = run("slow-drive", &sets).sound().steps_within(30, 2_000);
+        let loose = run("slow-drive", &sets).sound().steps_within(5, 666);
         let tight = run("slow-drive", &["/solver/rtol=1e-7", sets[0], sets[1]]).sound();
         let apart = distance(&loose, &tight, "max_pressure");
         let rejected = loose.summary.solver.error_test_failures;

@@ -35,7 +35,7 @@ fn from_one_bladder_to_four_hundred() {
                 format!("/mesh/cells_per_segment={}", (80 / n).clamp(1, 40)),
             ];
             let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
-            let ran = run("viscosity", &sets).sound().steps_within(300, 9_000);
+            let ran = run("viscosity", &sets).sound().steps_within(30, 3_000);
             println!(
                 "{n} bladders a row | {} unknowns | {} steps | energy {:.1e} | largest tip u1 {:.5e} m",
                 ran.summary.unknowns,
@@ -58,7 +58,7 @@ fn from_one_cell_to_thirty_two() {
         let runs: Vec<Ran> = [1, 2, 4, 8, 16, 32]
             .map(|k| {
                 let cells = format!("/mesh/cells_per_segment={k}");
-                let ran = run("viscosity", &[&cells, coupling]).sound().steps_within(300, 9_000);
+                let ran = run("viscosity", &[&cells, coupling]).sound().steps_within(30, 3_000);
                 let figures = format!("largest tip u1 {:.5e} m", ran.largest("tip_u1"));
                 ran.line(&figures)
             })
@@ -96,7 +96,7 @@ fn young_modulus_over_six_decades() {
                 format!("/time/output_interval_s={:e}", 0.002 * t),
             ];
             let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
-            let ran = run("viscosity", &sets).sound().steps_within(300, 9_000);
+            let ran = run("viscosity", &sets).sound().steps_within(30, 3_000);
             println!(
                 "E {:.0e} Pa | {} steps | tip u1 {:.8e} m",
                 2e6 * s,
