@@ -444,3 +444,42 @@ fn a_wall_time_limit_stops_with_what_there_is() {
         summary["reason"]
     );
 }
+
+#[test]
+fn an_accuracy_is_asked_for() {
+    let dir = TempDir::new().unwrap();
+    let folder = dir.path().join("result");
+    let out = folder.to_str().unwrap();
+    let said = say(&[
+        "run",
+        "cases/bend-dry.json",
+        "--out",
+        out,
+        "--quiet",
+        "--accuracy",
+        "0.05",
+    ]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(said.out.contains("asked 0.05"), "{}", said.out);
+    let summary = json(&folder.join("summary.json"));
+    assert_eq!(summary["accuracy"]["reached"], true, "{summary:#}");
+    let case = json(&folder.join("case.json"));
+    assert_eq!(case["solver"]["rtol"], summary["accuracy"]["rtol"]);
+    assert_eq!(names(dir.path()), ["result"], "nothing is left beside the result");
+
+    for wrong in ["0", "-1", "2", "nan"] {
+        let accuracy = format!("--accuracy={wrong}");
+        let said = say(&["run", "cases/bend-dry.json", "--out", out, &accuracy]);
+        assert_eq!(said.code, 2, "{wrong}: {}", said.err);
+    }
+    let said = say(&[
+        "run",
+        "cases/bend-dry.json",
+        "--out",
+        out,
+        "--accuracy",
+        "0.1",
+        "--resume",
+    ]);
+    assert_eq!(said.code, 2, "{}", said.err);
+}

@@ -26,7 +26,7 @@ const TIGHTEST: i32 = 9;
 /// Expected ratio of one difference to the one before, where it is not seen.
 const EXPECTED_RATIO: f64 = 0.3;
 /// Ratios that are believed when seen: beyond them differences happen to be small or large.
-const BELIEVED: std::ops::RangeInclusive<f64> = 0.2..=0.7;
+const BELIEVED: std::ops::RangeInclusive<f64> = 0.1..=0.7;
 /// Part of the accuracy asked that an estimate may fill: estimates are no bounds.
 const FILL: f64 = 0.6;
 /// Quantities whose size is below this part of others of their unit are round-off.
