@@ -149,6 +149,12 @@ impl Klu {
         if done == 0 || self.common.status != i64::from(c::KLU_OK) {
             return false;
         }
+        // a block of one row is no sum that could grow: only its zero tells
+        // SAFETY: as above.
+        let regular = unsafe { c::klu_l_rcond(self.symbolic, self.numeric, &mut *self.common) } != 0;
+        if !regular || self.common.rcond == 0.0 {
+            return false;
+        }
         if self.smallest_growth <= 0.0 {
             return true;
         }

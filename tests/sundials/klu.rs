@@ -35,6 +35,15 @@ fn guard_sees_stale_pivots() {
     }
 }
 
+/// A row that stands alone becomes zero: growth of pivots does not see it, the guard does.
+#[test]
+fn a_block_of_one_row_that_vanishes_is_singular() {
+    let mut klu = Klu::new(&Pattern::from_columns(&[vec![0], vec![1]])).unwrap();
+    klu.factor(&[1.0, 2.0]).unwrap();
+    assert_eq!(klu.factor(&[1.0, 0.0]), Err(KluFault::Singular { column: 1 }));
+    klu.factor(&[1.0, 2.0]).unwrap();
+}
+
 /// A singular matrix names its column, before and after good ones, and the next good one is factored again.
 ///
 /// Goal: numbers and structure that are singular; recovery. Tolerance: exact small numbers.
