@@ -198,15 +198,20 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// A first step [s]: short against the way to the stop, and short enough for the present rates to change nothing by
-    /// more than half its tolerance (IDA's choice).
+    /// more than half its tolerance (IDA's choice), but no shorter than time can tell: rates after a switch may relax faster.
     fn first_step(&self, stop: f64) -> f64 {
         if let Some(step) = self.options.initial_step {
             return step;
         }
         let least = 1e-3 * (stop - self.time);
+        let shortest = (1e3 * f64::EPSILON * self.time.abs()).min(least);
         let (n, weights) = (self.mask.len() as f64, &self.work.weights);
         let speed = (kernels::weighted_square_masked(&self.yp, weights, &self.mask) / n).sqrt();
-        if speed * least > 0.5 { 0.5 / speed } else { least }
+        if speed * least > 0.5 {
+            (0.5 / speed).max(shortest)
+        } else {
+            least
+        }
     }
 
     /// Everything known about a failure.

@@ -211,3 +211,44 @@ fn options_are_obeyed_or_refused() {
     let max_step = Some(-1.0);
     refuse(&[0.0; 3], OneStepOptions { max_step, ..usual() }, "largest step");
 }
+
+/// `y' = -1e19 (y - 1)`: relaxes in a time that no clock near 1 can tell.
+struct Instantly(Pattern);
+
+impl Dae for Instantly {
+    fn len(&self) -> usize {
+        1
+    }
+    fn differential(&self) -> &[bool] {
+        &[true]
+    }
+    fn pattern(&self) -> &Pattern {
+        &self.0
+    }
+    fn residual(&mut self, _: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+        residual[0] = 1e-19 * yp[0] + y[0] - 1.0;
+        Ok(())
+    }
+    fn jacobian(&mut self, _: f64, _: &[f64], _: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+        values[0] = match seeds {
+            Seeds::Step { cj } => 1.0 + 1e-19 * cj,
+            Seeds::Columns { y, yp } => y[0] + 1e-19 * yp[0],
+        };
+        Ok(())
+    }
+    fn name(&self, _: usize) -> String {
+        "y".into()
+    }
+}
+
+/// A tenth of the tolerance off, at t = 1: rates of 1e10 1/s ask for a first step below the last digit of the time; it is
+/// taken at the shortest that time can tell, and L-stability does the rest. Found by random case 44. Tolerance: that of the method.
+#[test]
+fn what_relaxes_faster_than_time_can_tell_is_no_obstacle() {
+    for method in Method::ALL {
+        let dae = Instantly(Pattern::from_columns(&[vec![0]]));
+        let mut one = OneStep::new(dae, 1.0, &[1.0 - 1e-9], &[1e10], &tight(method)).unwrap();
+        while !one.step(2.0).unwrap().stopped {}
+        assert!((one.y()[0] - 1.0).abs() < 1e-7, "{method}: {}", one.y()[0]);
+    }
+}
