@@ -6,6 +6,7 @@ use slcbeam::case::{self, Case};
 use slcbeam::run::dynamics::{self, Outcome};
 use slcbeam::run::record::{Control, Memory};
 use slcbeam::run::summary::{Quantity, Summary};
+use slcbeam::study::accuracy::plan;
 use slcbeam::study::target;
 
 fn load(name: &str, sets: &[&str]) -> Case {
@@ -21,10 +22,7 @@ fn record(case: &Case) -> Outcome {
 }
 
 fn figures(q: &Quantity) -> Vec<f64> {
-    [q.last, q.max_abs, q.window_max_abs, q.window]
-        .into_iter()
-        .flatten()
-        .collect()
+    q.figures().map(|(_, value)| value).collect()
 }
 
 /// Largest error of a quantity's figures, relative to the largest of them.
@@ -70,11 +68,7 @@ fn estimates_are_honest() {
         let found = |s: &Summary| s.accuracy.clone().unwrap_or_else(|| panic!("{name}: {:?}", s.warnings));
         let finest = runs.iter().map(|r| found(&r.1).cells_per_segment).max().unwrap_or(1);
         let tightest = runs.iter().map(|r| found(&r.1).rtol).fold(1.0, f64::min);
-        let mut reference = case.clone();
-        reference.mesh.cells_per_segment = 2 * finest;
-        reference.mesh.cells_per_bladder = finest;
-        reference.solver.rtol = (0.01 * tightest).max(1e-8);
-        let reference = record(&reference).summary;
+        let reference = record(&plan::refined(&case, 2 * finest, (0.01 * tightest).max(1e-8))).summary;
         for (asked, summary) in &runs {
             let accuracy = found(summary);
             println!(

@@ -8,7 +8,7 @@ use super::options::OneStepOptions;
 use super::stages::{Stages, Work};
 use super::tableau::Tableau;
 use crate::dae::Dae;
-use crate::sundials::{Counters, IdaFailure, Klu, KluFault, Step, Wall, Worst, kernels};
+use crate::sundials::{Counters, IdaFailure, Step, Wall, Worst, kernels, request};
 
 /// Integrator of a system `F(t, y, y') = 0` of index one, with the interface of [`crate::sundials::Ida`].
 pub struct OneStep<D: Dae> {
@@ -39,24 +39,8 @@ impl<D: Dae> OneStep<D> {
     /// An integrator at time `t0` [s] with consistent values `y0` and derivatives `yp0`, both of length `dae.len()`.
     pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &OneStepOptions) -> Result<Self, Box<IdaFailure>> {
         let n = dae.len();
-        let refuse = |message: String| IdaFailure::request(message, t0);
-        if n == 0 || dae.pattern().columns() != n || dae.differential().len() != n {
-            return Err(refuse(format!(
-                "{n} unknowns do not fit the pattern or the kinds of unknowns"
-            )));
-        }
-        if y0.len() != n || yp0.len() != n {
-            return Err(refuse(format!(
-                "{} values and {} derivatives stand for {n} unknowns",
-                y0.len(),
-                yp0.len()
-            )));
-        }
-        options.check(n).map_err(refuse)?;
-        let klu = Klu::new(dae.pattern()).map_err(|fault| match fault {
-            KluFault::Singular { column } => refuse(format!("no equation can be solved for {}", dae.name(column))),
-            KluFault::Package { status } => refuse(format!("KLU cannot analyse the pattern (status {status})")),
-        })?;
+        let klu =
+            request::admit(&dae, [y0, yp0], options.check(n)).map_err(|message| IdaFailure::request(message, t0))?;
         let tableau = options.method.tableau();
         let order = options.method.order();
         let differential = dae.differential();
@@ -114,13 +98,8 @@ impl<D: Dae> OneStep<D> {
 
     /// One accepted step, which does not pass `stop` [s]. A stop closer than round-off counts as reached.
     pub fn step(&mut self, stop: f64) -> Result<Step, Box<IdaFailure>> {
-        let round_off = 100.0 * f64::EPSILON * (self.time.abs() + stop.abs());
-        if stop.is_nan() || stop < self.time - round_off {
-            let message = format!("the stop time {stop:e} s lies behind");
-            return Err(IdaFailure::request(message, self.time));
-        }
         let order = self.options.method.order();
-        if stop - self.time <= round_off {
+        if request::reached(self.time, stop)? {
             self.time = stop;
             return Ok(Step {
                 time: stop,

@@ -36,6 +36,19 @@ pub struct Quantity {
     pub window: Option<f64>,
 }
 
+impl Quantity {
+    /// What is known of it, by the names in `summary.json`.
+    pub fn figures(&self) -> impl Iterator<Item = (&'static str, f64)> + use<> {
+        let all = [
+            ("final", self.last),
+            ("max_abs", self.max_abs),
+            ("window_max_abs", self.window_max_abs),
+            ("window", self.window),
+        ];
+        all.into_iter().filter_map(|(name, value)| Some((name, value?)))
+    }
+}
+
 /// Whether the balances close.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balances {

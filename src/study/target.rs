@@ -14,6 +14,7 @@
 
 use std::collections::BTreeMap;
 
+use super::accuracy::plan;
 use crate::case::Case;
 use crate::error::Result;
 use crate::run::dynamics::{self, Outcome};
@@ -50,13 +51,9 @@ struct Search<'a> {
     pilots: Vec<Pilot>,
 }
 
-/// The case on a mesh at a tolerance; half as many fluid cells a bladder as beam cells a segment.
+/// The case on a mesh at a tolerance.
 fn variant(case: &Case, (cells, decades): At) -> Case {
-    let mut case = case.clone();
-    case.mesh.cells_per_segment = cells;
-    case.mesh.cells_per_bladder = (cells / 2).max(1);
-    case.solver.rtol = 10_f64.powi(-decades);
-    case
+    plan::refined(case, cells, 10_f64.powi(-decades))
 }
 
 /// Runs the case so that the estimated error of each of its quantities is below `asked`, relative to the quantity's size.
@@ -247,7 +244,7 @@ impl Search<'_> {
             asked: self.asked,
             reached,
             cells_per_segment: cells,
-            cells_per_bladder: (cells / 2).max(1),
+            cells_per_bladder: plan::fluid_cells(cells),
             rtol: 10_f64.powi(-decades),
             quantities: estimates,
             pilots: self.pilots.clone(),
@@ -266,12 +263,7 @@ fn pilot((cells, decades): At, summary: &Summary) -> Pilot {
 
 /// Figures of the quantities that are more than round-off beside others of their unit.
 fn figures(summary: &Summary) -> Figures {
-    let of = |q: &Quantity| -> Vec<f64> {
-        [q.last, q.max_abs, q.window_max_abs, q.window]
-            .into_iter()
-            .flatten()
-            .collect()
-    };
+    let of = |q: &Quantity| -> Vec<f64> { q.figures().map(|(_, value)| value).collect() };
     let size = |q: &Quantity| of(q).iter().fold(0.0_f64, |s, x| s.max(x.abs()));
     let all = &summary.quantities;
     let counts = |name: &str, q: &Quantity| {

@@ -10,9 +10,9 @@ use super::context::{Context, Messages, keep};
 use super::counters::{Counters, Wall};
 use super::failure::{IdaFailure, meaning};
 use super::integrals;
-use super::klu::{Klu, KluFault};
 use super::linear_solver::LinearSolver;
 use super::options::IdaOptions;
+use super::request;
 use super::shared::Shared;
 use super::vector::Vector;
 use crate::dae::Dae;
@@ -63,23 +63,7 @@ impl<D: Dae> Ida<D> {
     pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &IdaOptions) -> Result<Self, Box<IdaFailure>> {
         let n = dae.len();
         let refuse = |message: String| IdaFailure::request(message, t0);
-        if n == 0 || dae.pattern().columns() != n || dae.differential().len() != n {
-            return Err(refuse(format!(
-                "{n} unknowns do not fit the pattern or the kinds of unknowns"
-            )));
-        }
-        if y0.len() != n || yp0.len() != n {
-            return Err(refuse(format!(
-                "{} values and {} derivatives stand for {n} unknowns",
-                y0.len(),
-                yp0.len()
-            )));
-        }
-        options.check(n).map_err(refuse)?;
-        let klu = Klu::new(dae.pattern()).map_err(|fault| match fault {
-            KluFault::Singular { column } => refuse(format!("no equation can be solved for {}", dae.name(column))),
-            KluFault::Package { status } => refuse(format!("KLU cannot analyse the pattern (status {status})")),
-        })?;
+        let klu = request::admit(&dae, [y0, yp0], options.check(n)).map_err(refuse)?;
         let context = Context::new().map_err(refuse)?;
         let vector = |entries: &[f64]| Vector::new(entries, context.raw()).map_err(refuse);
         let id: Vec<f64> = dae
@@ -168,12 +152,7 @@ impl<D: Dae> Ida<D> {
     ///
     /// Panics of the equations go on here.
     pub fn step(&mut self, stop: f64) -> Result<Step, Box<IdaFailure>> {
-        let round_off = 100.0 * f64::EPSILON * (self.time.abs() + stop.abs());
-        if stop.is_nan() || stop < self.time - round_off {
-            let message = format!("the stop time {stop:e} s lies behind");
-            return Err(IdaFailure::request(message, self.time));
-        }
-        if stop - self.time <= round_off {
+        if request::reached(self.time, stop)? {
             self.time = stop;
             return Ok(Step {
                 time: stop,

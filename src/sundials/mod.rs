@@ -33,6 +33,7 @@ pub mod klu;
 mod linear_solver;
 mod operations;
 pub mod options;
+pub(crate) mod request;
 mod shared;
 pub mod start;
 mod vector;

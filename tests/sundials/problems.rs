@@ -125,6 +125,18 @@ pub fn transistor_voltages(z: &[f64]) -> [f64; 8] {
     [z[0] + z[1], z[1], z[2], z[3] + z[4], z[4], z[5], z[6] + z[7], z[7]]
 }
 
+/// Voltages of [`transistor`] at t = 0.2, published with the IVP test set.
+pub const TRANSISTOR: [f64; 8] = [
+    -0.5562145012262709e-2,
+    3.006522471903042,
+    2.849958788608128,
+    2.926422536206241,
+    2.704617865010554,
+    2.761837778393145,
+    4.770927631616772,
+    1.236995868091548,
+];
+
 /// Unknowns of [`transistor`] at t = 0 and the rates of the differential ones: u = (0, 3, 3, 6, 3, 3, 6, 0).
 pub fn transistor_start() -> ([f64; 8], [f64; 8]) {
     let rate = |k: f64, current: f64| current / (k * 1e-6);

@@ -155,9 +155,10 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
             },
             rest,
         );
-        let surplus = match (link.from, component(link.to), link.to, component(link.from)) {
-            (Place::Port(_), Some(c), ..) => w.surplus[c] * conductance / w.gates[c].max(f64::MIN_POSITIVE),
-            (_, _, Place::Port(_), Some(c)) => -w.surplus[c] * conductance / w.gates[c].max(f64::MIN_POSITIVE),
+        let share = |c: usize| w.surplus[c] * conductance / w.gates[c].max(f64::MIN_POSITIVE);
+        let surplus = match (component(link.from), component(link.to)) {
+            (None, Some(c)) => share(c),
+            (Some(c), None) => -share(c),
             _ => 0.0,
         };
         cross(link.from, link.to, q - surplus, out);
@@ -190,6 +191,9 @@ fn surplus(system: &System, now: &Instant, w: &mut Workspace<f64>) {
         return;
     };
     let network = &wet.network;
+    if network.ports.is_empty() {
+        return;
+    }
     w.surplus.fill(0.0);
     w.gates.fill(0.0);
     for (bladder, &component) in network.component_of_bladder.iter().enumerate() {

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::words::spoken;
 use crate::output::numbers::{shortest, significant};
 use crate::study::accuracy::Study;
+use crate::study::accuracy::plan::fluid_cells;
 use crate::study::accuracy::study::Point;
 use crate::study::accuracy::trial::{Ending, Role};
 
@@ -195,7 +196,7 @@ pub fn csv(study: &Study) -> String {
         let first = format!(
             "{},{},{},{},{:e},{role},{},\"{reason}\",{},{},{},{},{},{},{},{},{},{}",
             s.cells,
-            s.cells_per_bladder(),
+            fluid_cells(s.cells),
             if s.scheme.is_ida() {
                 "ida".into()
             } else {

@@ -17,18 +17,24 @@ pub struct Setting {
     pub rtol: f64,
 }
 
-impl Setting {
-    /// Finite volumes along a bladder, refined with the beam.
-    pub fn cells_per_bladder(&self) -> usize {
-        (self.cells / 2).max(1)
-    }
+/// Finite volumes along a bladder, refined with the beam's cells per segment.
+pub fn fluid_cells(cells: usize) -> usize {
+    (cells / 2).max(1)
+}
 
+/// The case on a mesh of so many beam cells per segment, at a tolerance.
+pub fn refined(case: &Case, cells: usize, rtol: f64) -> Case {
+    let mut case = case.clone();
+    case.mesh.cells_per_segment = cells;
+    case.mesh.cells_per_bladder = fluid_cells(cells);
+    case.solver.rtol = rtol;
+    case
+}
+
+impl Setting {
     /// The case so computed. No checkpoints: each is a fresh start of the integrator.
     pub fn case(&self, case: &Case) -> Case {
-        let mut case = case.clone();
-        case.mesh.cells_per_segment = self.cells;
-        case.mesh.cells_per_bladder = self.cells_per_bladder();
-        case.solver.rtol = self.rtol;
+        let mut case = refined(case, self.cells, self.rtol);
         self.scheme.apply(&mut case.solver);
         case.time.checkpoint_interval_s = None;
         case

@@ -108,23 +108,15 @@ impl Keep {
 fn quantities(summary: &Summary) -> Vec<Signal> {
     let mut all = vec![];
     for (name, q) in &summary.quantities {
-        let figures = [
-            ("final", q.last),
-            ("max_abs", q.max_abs),
-            ("window_max_abs", q.window_max_abs),
-            ("window", q.window),
-        ];
-        let scale = figures.iter().filter_map(|f| f.1).fold(0.0, |s: f64, x| s.max(x.abs()));
+        let scale = q.figures().fold(0.0, |s: f64, (_, x)| s.max(x.abs()));
         let unit = [("_m", "m"), ("_rad", "rad"), ("_pa", "Pa"), ("_j", "J")];
         let unit = unit.iter().find(|u| name.ends_with(u.0)).map_or("1", |u| u.1);
-        all.extend(figures.iter().filter_map(|&(figure, value)| {
-            Some(Signal {
-                name: format!("{name}.{figure}"),
-                unit: unit.into(),
-                kind: Kind::Quantity,
-                values: vec![value?],
-                scale: Some(scale),
-            })
+        all.extend(q.figures().map(|(figure, value)| Signal {
+            name: format!("{name}.{figure}"),
+            unit: unit.into(),
+            kind: Kind::Quantity,
+            values: vec![value],
+            scale: Some(scale),
         }));
     }
     all

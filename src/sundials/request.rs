@@ -1,0 +1,32 @@
+//! What every integrator checks before it begins, and before a step.
+
+use super::failure::IdaFailure;
+use super::klu::{Klu, KluFault};
+use crate::dae::Dae;
+
+/// The factors to be of a system that fits its values `[y, y']` and whose `options` were found good; else what is wrong.
+pub(crate) fn admit<D: Dae>(dae: &D, values: [&[f64]; 2], options: Result<(), String>) -> Result<Klu, String> {
+    let n = dae.len();
+    if n == 0 || dae.pattern().columns() != n || dae.differential().len() != n {
+        return Err(format!("{n} unknowns do not fit the pattern or the kinds of unknowns"));
+    }
+    let [y, yp] = values.map(<[f64]>::len);
+    if y != n || yp != n {
+        return Err(format!("{y} values and {yp} derivatives stand for {n} unknowns"));
+    }
+    options?;
+    Klu::new(dae.pattern()).map_err(|fault| match fault {
+        KluFault::Singular { column } => format!("no equation can be solved for {}", dae.name(column)),
+        KluFault::Package { status } => format!("KLU cannot analyse the pattern (status {status})"),
+    })
+}
+
+/// Whether a stop time [s] is reached, round-off included; one that lies behind is refused.
+pub(crate) fn reached(time: f64, stop: f64) -> Result<bool, Box<IdaFailure>> {
+    let round_off = 100.0 * f64::EPSILON * (time.abs() + stop.abs());
+    if stop.is_nan() || stop < time - round_off {
+        let message = format!("the stop time {stop:e} s lies behind");
+        return Err(IdaFailure::request(message, time));
+    }
+    Ok(stop - time <= round_off)
+}
