@@ -445,6 +445,39 @@ fn a_wall_time_limit_stops_with_what_there_is() {
     );
 }
 
+/// The published law with a thousand times its slope has no unique state once bladders are under high pressure.
+#[test]
+fn a_run_that_cannot_start_leaves_the_older_result() {
+    let dir = TempDir::new().unwrap();
+    let folder = dir.path().join("result");
+    let out = folder.to_str().unwrap();
+    let common = ["run", "cases/wiring-2.json", "--quiet", "--out", out];
+    let common = [
+        &common[..],
+        &["--set", "/time={\"end_s\":0.001,\"output_interval_s\":1e-4}"],
+    ]
+    .concat();
+    assert_eq!(say(&common).code, 0);
+    let before = std::fs::read(folder.join("summary.json")).unwrap();
+    let impossible = r#"/bladders/coupling={"published":{"slope_per_pressure_rad":5,"length_per_pressure_m":0.01}}"#;
+    let pressed = r#"/start={"pressures":[{"bladders":[1,2,3,-1,-2],"pressure_pa":5e7}]}"#;
+    let impossible = [
+        "--set",
+        impossible,
+        "--set",
+        pressed,
+        "--set",
+        r#"/effects={"solid_inertia":"off"}"#,
+    ];
+    for more in [&[][..], &["--accuracy", "0.1"]] {
+        let said = say(&[&common[..], &impossible, more].concat());
+        assert_eq!(said.code, 4, "{}", said.err);
+        assert_eq!(said.err.matches("no consistent start").count(), 1, "{}", said.err);
+        assert_eq!(std::fs::read(folder.join("summary.json")).unwrap(), before);
+        assert_eq!(names(dir.path()), ["result"]);
+    }
+}
+
 #[test]
 fn an_accuracy_is_asked_for() {
     let dir = TempDir::new().unwrap();

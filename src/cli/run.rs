@@ -14,7 +14,7 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::model::characteristic;
 use crate::output::checkpoint;
-use crate::output::folder::ResultFolder;
+use crate::output::folder::{HISTORY, ResultFolder};
 use crate::output::recorder::{FolderRecorder, Hook, Labels};
 use crate::output::summary;
 use crate::run::dynamics::{self, Outcome};
@@ -104,26 +104,29 @@ fn record(case: &Case, out: &Path, hook: &SharedHook) -> Result<Outcome> {
 }
 
 /// Candidates are recorded beside the result and take its place when they finish, so that one that is stopped leaves the
-/// one before.
+/// one before. The first may end early, as long as it began: then it is all there is.
 fn reach(case: &Case, accuracy: f64, out: &Path, hook: &SharedHook) -> Result<Outcome> {
     let mut result = ResultFolder::create(out)?;
     let mut name = out.as_os_str().to_owned();
     name.push(".next");
     let beside = PathBuf::from(name);
     let ask = |progress: &Progress| hook.borrow_mut()(progress);
-    let mut first = true;
+    let mut placed = false;
     let mut candidate = |case: &Case| -> Result<Outcome> {
         let outcome = record(case, &beside, hook)?;
-        if first || outcome.summary.status == Status::Finished {
+        let begun = beside.join(HISTORY).exists() || !result.holds_older();
+        if outcome.summary.status == Status::Finished || !placed && begun {
             result.replace(&beside)?;
+            placed = true;
         } else {
             ResultFolder::discard(&beside)?;
         }
-        first = false;
         Ok(outcome)
     };
     let outcome = target::reach(case, accuracy, &ask, &mut candidate)?;
-    summary::write(&result, &outcome.summary)?;
+    if placed {
+        summary::write(&result, &outcome.summary)?;
+    }
     Ok(outcome)
 }
 

@@ -173,7 +173,6 @@ impl Run<'_> {
         self.carried = vec![0.0; dae.integrals()];
         let (t, first_stop) = match from {
             None => {
-                recorder.begin(&Observer::header(self.case, dae.system()))?;
                 dae.look_within(0.5 * self.stops[0].t);
                 let (system, now) = dae.instant(0.0);
                 self.state = start::state(system, self.case, now);
@@ -200,11 +199,13 @@ impl Run<'_> {
         } else {
             None
         };
+        let header = from.is_none().then(|| Observer::header(self.case, dae.system()));
         let end = match consistent {
             Some(fault) => End::Failed(fault),
             None => match Integrator::new(dae, t, &self.state, &self.rates, &self.options) {
                 Err(failure) => End::Failed(fault(&failure)),
                 Ok(mut solver) => {
+                    header.map_or(Ok(()), |header| recorder.begin(&header))?;
                     let end = self.integrate(&mut solver, first_stop, recorder)?;
                     self.count(&solver);
                     end
@@ -499,7 +500,7 @@ fn inconsistent(t: f64, failure: &StartFailure) -> SolverFault {
     };
     SolverFault {
         time_s: t,
-        what: format!("{what}: {failure}"),
+        what: format!("{what}: {}", failure.what),
         unknown: failure.worst.as_ref().map(|(_, name)| name.clone()),
         cause: Some(cause.into()),
         hint: Some(hint.into()),
