@@ -66,12 +66,12 @@ impl<D: Dae> OneStep<D> {
         let end = self.tableau.stages - 1;
         let [v0, v1, s0, s1] = hermite(x, k == 1);
         let per = if k == 1 { 1.0 / h } else { 1.0 };
-        out.fill(0.0);
-        self.algebraic(&self.last, x, k == 1, out);
-        for (i, out) in out.iter_mut().enumerate().filter(|(i, _)| self.mask[*i] > 0.0) {
-            let values = v0 * y[0][i] + v1 * y[end][i];
-            *out = per * (values + h * (s0 * stages[0][i] + s1 * stages[end][i]));
+        let ends = (y[0].iter().zip(&y[end])).zip(stages[0].iter().zip(&stages[end]));
+        let [w0, w1, r0, r1] = [per * v0, per * v1, per * h * s0, per * h * s1];
+        for (out, ((y0, y1), (x0, x1))) in out.iter_mut().zip(ends) {
+            *out = w0 * y0 + w1 * y1 + r0 * x0 + r1 * x1;
         }
+        self.algebraic(&self.last, x, k == 1, out);
         Ok(())
     }
 
@@ -109,7 +109,7 @@ impl<D: Dae> OneStep<D> {
         Err(IdaFailure::request(message, self.time))
     }
 
-    /// Adds the values of algebraic unknowns at a place in a step, or their rates [1/s], to what is zero there.
+    /// Puts in the values of algebraic unknowns at a place in a step, or their rates [1/s].
     pub(super) fn algebraic(&self, step: &Stages, x: f64, rates: bool, out: &mut [f64]) {
         let chosen = self.tableau.nodes;
         let mut nodes = [0.0; polynomial::NODES];
@@ -123,7 +123,7 @@ impl<D: Dae> OneStep<D> {
             polynomial::value(nodes, x)
         };
         for &i in &self.algebraic {
-            out[i] += chosen.iter().zip(weights).map(|(&j, w)| w * step.x[j][i]).sum::<f64>();
+            out[i] = chosen.iter().zip(weights).map(|(&j, w)| w * step.x[j][i]).sum();
         }
     }
 

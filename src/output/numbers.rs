@@ -166,16 +166,12 @@ pub fn duration(seconds: f64) -> String {
 
 /// The shortest text that reads back as the same number, without long rows of zeros.
 pub fn shortest(value: f64) -> String {
-    let magnitude = value.abs();
-    if magnitude == 0.0 || (1e-4..1e15).contains(&magnitude) {
-        format!("{value}")
-    } else if value.is_nan() {
-        "nan".to_string()
-    } else if value.is_infinite() {
-        if value > 0.0 { "inf" } else { "-inf" }.to_string()
-    } else {
-        format!("{value:e}")
+    if value.is_nan() {
+        return "nan".into();
     }
+    let mut buffer = zmij::Buffer::new();
+    let text = buffer.format(value);
+    text.strip_suffix(".0").unwrap_or(text).into()
 }
 
 #[cfg(test)]
