@@ -111,7 +111,7 @@ fn a_run_fills_a_result_folder() {
     for quantity in ["tip_u1_m", "tip_u3_m", "max_pressure_pa"] {
         assert_eq!(
             keys(&summary["quantities"][quantity]),
-            ["final", "max_abs", "window_max_abs"],
+            ["final", "max_abs", "window_max_abs", "window_rms"],
             "{quantity}"
         );
     }

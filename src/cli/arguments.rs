@@ -103,7 +103,7 @@ pub struct StudyArguments {
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,2,4,8")]
     pub cells: Vec<usize>,
     /// Methods: ida (with each of the orders), trbdf2, esdirk34, esdirk46, esdirk57
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "ida")]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "ida,esdirk46")]
     pub methods: Vec<String>,
     /// Highest BDF orders
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "2,5")]

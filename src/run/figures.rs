@@ -14,6 +14,10 @@ struct Track {
     max_abs: f64,
     window_max_abs: f64,
     window_start: Option<f64>,
+    #[serde(default)]
+    window_squares: f64,
+    #[serde(default)]
+    window_samples: u32,
 }
 
 impl Track {
@@ -23,6 +27,8 @@ impl Track {
         if in_window {
             self.window_start.get_or_insert(value);
             self.window_max_abs = self.window_max_abs.max(value.abs());
+            self.window_squares += value * value;
+            self.window_samples += 1;
         }
     }
 
@@ -82,6 +88,7 @@ impl Figures {
             last: Some(t.last),
             max_abs: Some(t.max_abs),
             window_max_abs: Some(t.window_max_abs),
+            window_rms: (t.window_samples > 0).then(|| (t.window_squares / f64::from(t.window_samples)).sqrt()),
             window: None,
         };
         let [u1, u3, angle] = &self.values;

@@ -31,6 +31,9 @@ pub struct Quantity {
     /// Largest absolute value in the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window_max_abs: Option<f64>,
+    /// Root mean square over the output times in the window.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window_rms: Option<f64>,
     /// Increment (energies) or ratio of increments (efficiency) over the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<f64>,
@@ -43,9 +46,16 @@ impl Quantity {
             ("final", self.last),
             ("max_abs", self.max_abs),
             ("window_max_abs", self.window_max_abs),
+            ("window_rms", self.window_rms),
             ("window", self.window),
         ];
         all.into_iter().filter_map(|(name, value)| Some((name, value?)))
+    }
+
+    /// Those that tell one motion from another of the same kind the least: root mean square and increment over the window.
+    pub fn statistics(&self) -> impl Iterator<Item = (&'static str, f64)> + use<> {
+        self.figures()
+            .filter(|(name, _)| matches!(*name, "window_rms" | "window"))
     }
 }
 
@@ -116,6 +126,17 @@ pub struct Pilot {
     pub wall_s: f64,
 }
 
+/// Which figures of the quantities an accuracy is about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Judged {
+    /// All of them.
+    #[default]
+    Figures,
+    /// Those over the window alone: root mean squares and increments.
+    WindowStatistics,
+}
+
 /// What an accuracy asked for led to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
@@ -129,6 +150,9 @@ pub struct Accuracy {
     pub cells_per_bladder: usize,
     /// Tolerance chosen.
     pub rtol: f64,
+    /// What is judged: every figure, or statistics alone where the motion cannot be followed that far.
+    #[serde(default)]
+    pub judged_by: Judged,
     /// Estimates by quantity.
     pub quantities: BTreeMap<String, Estimate>,
     /// The runs that led there, the result's own not among them.

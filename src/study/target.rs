@@ -11,6 +11,9 @@
 //! the sums of geometric series of differences. Where the third run is missing ρ is 0.3, between the 10^(-2/3) of BDF 2, the
 //! 1/4 of second order in space, and what rougher quantities do. An error of a quantity is the largest of its figures',
 //! relative to the quantity's largest figure.
+//!
+//! Where finer runs go on to differ by a good part of the quantity, the motion is one of many that start nearly alike: it grows
+//! from what is no more than round-off, or is chaotic. From then on only its statistics over the window are judged.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +22,7 @@ use crate::case::Case;
 use crate::error::Result;
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::{Control, Header, Progress, Recorder};
-use crate::run::summary::{Accuracy, Estimate, Pilot, Quantity, Status, Summary};
+use crate::run::summary::{Accuracy, Estimate, Judged, Pilot, Quantity, Status, Summary};
 
 /// Finest mesh and tightest tolerance that are tried: cells a segment, decades.
 const FINEST: usize = 64;
@@ -30,6 +33,11 @@ const EXPECTED_RATIO: f64 = 0.3;
 const BELIEVED: std::ops::RangeInclusive<f64> = 0.1..=0.7;
 /// Part of the accuracy asked that an estimate may fill: estimates are no bounds.
 const FILL: f64 = 0.6;
+/// A difference that is this part of the quantity, on a mesh and at a tolerance that should resolve it, and no more than
+/// [`BELIEVED`]'s least part smaller than the one before: the motion cannot be followed.
+const LOST: f64 = 0.3;
+const RESOLVED: At = (8, 5);
+const MESH: &str = "mesh";
 /// Quantities whose size is below this part of others of their unit are round-off.
 const NOTHING: f64 = 1e-6;
 
@@ -47,8 +55,17 @@ struct Search<'a> {
     case: &'a Case,
     asked: f64,
     hook: Hook<'a>,
-    runs: BTreeMap<At, Figures>,
+    runs: BTreeMap<At, Looked>,
     pilots: Vec<Pilot>,
+    judged_by: Judged,
+    /// Why not by every figure.
+    lost: Option<String>,
+}
+
+/// A run, as it is judged by every figure and by statistics.
+struct Looked {
+    figures: Figures,
+    statistics: Figures,
 }
 
 /// The case on a mesh at a tolerance.
@@ -67,6 +84,8 @@ pub fn reach(case: &Case, asked: f64, hook: Hook, record: Record) -> Result<Outc
         hook,
         runs: BTreeMap::new(),
         pilots: vec![],
+        judged_by: Judged::Figures,
+        lost: None,
     };
     let mut at: At = (2, 3);
     let mut recorded = at;
@@ -76,11 +95,12 @@ pub fn reach(case: &Case, asked: f64, hook: Hook, record: Record) -> Result<Outc
         outcome.summary.warnings.push(why.into());
         return Ok(outcome);
     }
-    search.runs.insert(at, figures(&outcome.summary));
+    search.runs.insert(at, Looked::new(&outcome.summary));
     let cut_short = loop {
         if let Some(reason) = search.compare_with_cheaper(at)? {
             break Some(reason);
         }
+        search.lose_sight(at);
         let estimates = search.estimates(at);
         let next = search.cheapest(at, &estimates);
         let sure = match next {
@@ -102,7 +122,7 @@ pub fn reach(case: &Case, asked: f64, hook: Hook, record: Record) -> Result<Outc
             break finer.summary.reason;
         }
         search.pilots.push(pilot(recorded, &outcome.summary));
-        search.runs.insert(at, figures(&finer.summary));
+        search.runs.insert(at, Looked::new(&finer.summary));
         (recorded, outcome) = (at, finer);
     };
     search.conclude(recorded, cut_short, &mut outcome.summary);
@@ -122,7 +142,7 @@ impl Search<'_> {
         let summary = dynamics::run(&variant(self.case, at), &mut watch)?.summary;
         self.pilots.push(pilot(at, &summary));
         if summary.status == Status::Finished {
-            self.runs.insert(at, figures(&summary));
+            self.runs.insert(at, Looked::new(&summary));
         }
         Ok(watch.stopped)
     }
@@ -138,9 +158,41 @@ impl Search<'_> {
         Ok(None)
     }
 
+    /// A run's figures that are judged.
+    fn judged(&self, at: At) -> Option<&Figures> {
+        let run = self.runs.get(&at)?;
+        Some(match self.judged_by {
+            Judged::Figures => &run.figures,
+            Judged::WindowStatistics => &run.statistics,
+        })
+    }
+
+    /// Goes over to statistics where a quantity does not settle.
+    fn lose_sight(&mut self, at: At) {
+        let (cells, decades) = at;
+        if self.judged_by != Judged::Figures || cells < RESOLVED.0 || decades < RESOLVED.1 {
+            return;
+        }
+        let lost = |quantity: &String| {
+            let apart = |what: &str, [coarsest, coarse, fine]: [At; 3]| {
+                let last = self.difference(quantity, fine, coarse)?;
+                // meshes are a factor of two apart, tolerances ten: a first difference of meshes need not mean much
+                let before = self.difference(quantity, coarse, coarsest);
+                let settles = last < LOST || before.map_or(what == MESH, |before| last < *BELIEVED.end() * before);
+                (!settles).then(|| format!("{quantity} changes by {last:.1e} from {what} to {what}"))
+            };
+            apart("rtol", [(cells, decades - 2), (cells, decades - 1), at])
+                .or_else(|| apart(MESH, [(cells / 4, decades), (cells / 2, decades), at]))
+        };
+        self.lost = self.judged(at).and_then(|figures| figures.keys().find_map(lost));
+        if self.lost.is_some() {
+            self.judged_by = Judged::WindowStatistics;
+        }
+    }
+
     /// Largest change of a quantity's figures between two runs, relative to its largest figure.
     fn difference(&self, quantity: &str, a: At, b: At) -> Option<f64> {
-        let (a, b) = (self.runs.get(&a)?.get(quantity)?, self.runs.get(&b)?.get(quantity)?);
+        let (a, b) = (self.judged(a)?.get(quantity)?, self.judged(b)?.get(quantity)?);
         let size = a.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
         let apart = a.iter().zip(b).fold(0.0_f64, |d, (x, y)| d.max((x - y).abs()));
         Some(if apart > 0.0 {
@@ -163,7 +215,7 @@ impl Search<'_> {
     /// Errors of every quantity of a run that are known.
     fn estimates(&self, at: At) -> BTreeMap<String, Estimate> {
         let (cells, decades) = at;
-        let Some(run) = self.runs.get(&at) else {
+        let Some(run) = self.judged(at) else {
             return BTreeMap::new();
         };
         let of = |quantity: &String| {
@@ -228,16 +280,20 @@ impl Search<'_> {
                 None => Some(format!("{name} unknown")),
             };
             let short: Vec<String> = estimates.iter().filter_map(short).collect();
-            let growth = if summary.growth.is_some() {
-                "; the response grows, and errors with it: figures of a time far along are those of one of many motions, \
-                 sizes and rates are what remains"
-            } else {
-                ""
-            };
             summary.warnings.push(format!(
-                "accuracy: {:e} is not reached with {cells} cells a segment and rtol 1e-{decades}: {}{growth}",
+                "accuracy: {:e} is not reached with {cells} cells a segment and rtol 1e-{decades}: {}",
                 self.asked,
                 short.join(", ")
+            ));
+        }
+        if let Some(lost) = &self.lost {
+            let grows = summary
+                .growth
+                .as_ref()
+                .map_or(String::new(), |g| format!(" (it grows at {:.2} 1/s)", g.rate_per_s));
+            summary.warnings.push(format!(
+                "accuracy: {lost}: the motion{grows} is one of many that start alike, and cannot be followed to the end. Judged are root \
+                 mean squares and increments over the window, not single values"
             ));
         }
         summary.accuracy = Some(Accuracy {
@@ -246,6 +302,7 @@ impl Search<'_> {
             cells_per_segment: cells,
             cells_per_bladder: plan::fluid_cells(cells),
             rtol: 10_f64.powi(-decades),
+            judged_by: self.judged_by,
             quantities: estimates,
             pilots: self.pilots.clone(),
         });
@@ -261,21 +318,25 @@ fn pilot((cells, decades): At, summary: &Summary) -> Pilot {
     }
 }
 
-/// Figures of the quantities that are more than round-off beside others of their unit.
-fn figures(summary: &Summary) -> Figures {
-    let of = |q: &Quantity| -> Vec<f64> { q.figures().map(|(_, value)| value).collect() };
-    let size = |q: &Quantity| of(q).iter().fold(0.0_f64, |s, x| s.max(x.abs()));
-    let all = &summary.quantities;
-    let counts = |name: &str, q: &Quantity| {
-        let unit = |n: &str| n.rsplit('_').next().map(str::to_owned);
-        let alike = all.iter().filter(|(other, _)| unit(other) == unit(name));
-        let largest = alike.map(|(_, q)| size(q)).fold(0.0, f64::max);
-        size(q) > NOTHING * largest
-    };
-    all.iter()
-        .filter(|(name, q)| counts(name, q))
-        .map(|(name, q)| (name.clone(), of(q)))
-        .collect()
+impl Looked {
+    /// Of the quantities that are more than round-off beside others of their unit.
+    fn new(summary: &Summary) -> Self {
+        let size = |q: &Quantity| q.figures().fold(0.0_f64, |s, (_, x)| s.max(x.abs()));
+        let all = &summary.quantities;
+        let counts = |name: &str, q: &Quantity| {
+            let unit = |n: &str| n.rsplit('_').next().map(str::to_owned);
+            let alike = all.iter().filter(|(other, _)| unit(other) == unit(name));
+            let largest = alike.map(|(_, q)| size(q)).fold(0.0, f64::max);
+            size(q) > NOTHING * largest
+        };
+        let counted = all.iter().filter(|(name, q)| counts(name, q));
+        let (mut figures, mut statistics) = (Figures::new(), Figures::new());
+        for (name, q) in counted {
+            figures.insert(name.clone(), q.figures().map(|f| f.1).collect());
+            statistics.insert(name.clone(), q.statistics().map(|f| f.1).collect());
+        }
+        Self { figures, statistics }
+    }
 }
 
 /// Records nothing, passes progress on.
@@ -300,5 +361,54 @@ impl Recorder for Watch<'_> {
             self.stopped = Some(reason.clone());
         }
         Ok(control)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn looked(last: f64, rms: f64) -> Looked {
+        let one = |values: Vec<f64>| Figures::from([("tip_u1_m".to_string(), values)]);
+        Looked {
+            figures: one(vec![last, 1.0, rms]),
+            statistics: one(vec![rms]),
+        }
+    }
+
+    /// A last value that is another one from tolerance to tolerance, with a root mean square that hardly changes: judged by
+    /// the latter from then on. One that settles, or that nothing resolves yet, is judged by every figure.
+    #[test]
+    fn a_motion_that_cannot_be_followed_is_judged_by_statistics() {
+        let case = crate::case::load("cases/dry-cantilever.json".as_ref(), &[])
+            .expect("a case")
+            .case;
+        let hook = |_: &Progress| Control::Continue;
+        let judge = |at: At, of: [f64; 3]| {
+            let (cells, decades) = at;
+            let runs = [
+                ((cells, decades - 1), of[0]),
+                ((cells / 2, decades), of[1]),
+                (at, of[2]),
+            ];
+            let mut search = Search {
+                case: &case,
+                asked: 0.1,
+                hook: &hook,
+                runs: runs.map(|(at, last)| (at, looked(last, 0.5 + 0.01 * last))).into(),
+                pilots: vec![],
+                judged_by: Judged::Figures,
+                lost: None,
+            };
+            search.lose_sight(at);
+            (search.judged_by, search.fill(&search.estimates(at)))
+        };
+        let (judged_by, fill) = judge((8, 6), [0.9, 0.3, -0.2]);
+        assert_eq!(judged_by, Judged::WindowStatistics);
+        assert!(fill < 1.0, "{fill}");
+        let (judged_by, fill) = judge((8, 3), [0.9, 0.3, -0.2]);
+        assert_eq!(judged_by, Judged::Figures);
+        assert!(fill > 1.0, "{fill}");
+        assert_eq!(judge((8, 6), [0.9, 0.89, 0.895]).0, Judged::Figures);
     }
 }

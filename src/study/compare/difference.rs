@@ -6,7 +6,6 @@ use super::align::{self, Places};
 use super::changes::{self, Change};
 use super::interpolate::cubic;
 use super::recording::{Array, Recording, Series};
-use crate::run::summary::Quantity;
 use crate::study::accuracy::Norms;
 
 /// One field or column.
@@ -277,22 +276,15 @@ fn field((a, of_a): (&Recording, &Array), (b, of_b): (&Recording, &Array)) -> Re
 }
 
 fn figures(a: &Recording, b: &Recording) -> Vec<FigureDifference> {
-    let named = |q: &Quantity| {
-        [
-            ("final", q.last),
-            ("max_abs", q.max_abs),
-            ("window_max_abs", q.window_max_abs),
-            ("window", q.window),
-        ]
-    };
     let mut all = vec![];
     for (name, of_a) in &a.summary.quantities {
         let Some(of_b) = b.summary.quantities.get(name) else {
             continue;
         };
-        let pairs = named(of_a).into_iter().zip(named(of_b));
-        let pairs: Vec<_> = pairs
-            .filter_map(|((figure, a), (_, b))| Some((figure, a?, b?)))
+        let of_b = |figure: &str| of_b.figures().find(|(name, _)| *name == figure);
+        let pairs: Vec<_> = of_a
+            .figures()
+            .filter_map(|(figure, a)| Some((figure, a, of_b(figure)?.1)))
             .collect();
         let size = pairs.iter().fold(0.0, |s: f64, (_, a, b)| s.max(a.abs()).max(b.abs()));
         all.extend(
