@@ -1,11 +1,12 @@
 //! An accuracy asked for: chosen meshes and tolerances hold it, estimates are honest.
 
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use slcbeam::case::{self, Case};
 use slcbeam::run::dynamics::{self, Outcome};
-use slcbeam::run::record::{Control, Memory};
-use slcbeam::run::summary::{Quantity, Summary};
+use slcbeam::run::record::{Control, Header, Progress, Recorder};
+use slcbeam::run::summary::{Judged, Quantity, Status, Summary};
 use slcbeam::study::accuracy::plan;
 use slcbeam::study::target;
 
@@ -17,17 +18,43 @@ fn load(name: &str, sets: &[&str]) -> Case {
     }
 }
 
-fn record(case: &Case) -> Outcome {
-    dynamics::run(case, &mut Memory::default()).expect("a recorder in memory does not fail")
+/// Keeps nothing, and stops when time is up.
+struct Until(Instant);
+
+impl Recorder for Until {
+    fn begin(&mut self, _: &Header) -> slcbeam::error::Result<()> {
+        Ok(())
+    }
+    fn history(&mut self, _: &[f64]) -> slcbeam::error::Result<()> {
+        Ok(())
+    }
+    fn fields(&mut self, _: f64, _: &[&[f64]]) -> slcbeam::error::Result<()> {
+        Ok(())
+    }
+    fn progress(&mut self, _: &Progress) -> slcbeam::error::Result<Control> {
+        Ok(if Instant::now() < self.0 {
+            Control::Continue
+        } else {
+            Control::Stop("time is up".into())
+        })
+    }
 }
 
-fn figures(q: &Quantity) -> Vec<f64> {
-    q.figures().map(|(_, value)| value).collect()
+fn record(case: &Case, until: Instant) -> Outcome {
+    dynamics::run(case, &mut Until(until)).expect("a recorder that keeps nothing does not fail")
+}
+
+fn figures(q: &Quantity, judged_by: Judged) -> Vec<f64> {
+    match judged_by {
+        Judged::Figures => q.figures().map(|f| f.1).collect(),
+        Judged::WindowStatistics => q.statistics().map(|f| f.1).collect(),
+    }
 }
 
 /// Largest error of a quantity's figures, relative to the largest of them.
-fn error(name: &str, run: &Summary, reference: &Summary) -> f64 {
-    let (a, b) = (figures(&run.quantities[name]), figures(&reference.quantities[name]));
+fn error(name: &str, run: &Summary, reference: &Summary, judged_by: Judged) -> f64 {
+    let of = |s: &Summary| figures(&s.quantities[name], judged_by);
+    let (a, b) = (of(run), of(reference));
     let size = b.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
     a.iter().zip(&b).fold(0.0_f64, |e, (x, y)| e.max((x - y).abs())) / size
 }
@@ -56,45 +83,125 @@ fn estimates_are_honest() {
             &[1e-1],
         ),
     ];
-    let (mut all, mut held, mut covered, mut near) = (0, 0, 0, 0);
+    let mut tally = Tally::default();
     for (name, sets, accuracies) in scenes {
-        let case = load(name, sets);
-        let reach = |&asked: &f64| {
-            let go_on = |_: &_| Control::Continue;
-            let outcome = target::reach(&case, asked, &go_on, &mut |case| Ok(record(case))).expect("memory");
-            (asked, outcome.summary)
-        };
-        let runs: Vec<(f64, Summary)> = accuracies.iter().map(reach).collect();
-        let found = |s: &Summary| s.accuracy.clone().unwrap_or_else(|| panic!("{name}: {:?}", s.warnings));
+        let unreached = tally.judge(name, &load(name, sets), accuracies, Duration::from_secs(600));
+        assert_eq!(unreached, 0, "{name}");
+    }
+    tally.assert();
+}
+
+/// Goal: the same over every shipped case at 10 %, 1 % and 0.1 %, as far as half a minute each goes; what is not reached must
+/// be said. Takes an hour: `cargo test --release --test target -- --ignored --nocapture`.
+#[test]
+#[ignore = "an hour"]
+fn estimates_are_honest_for_every_shipped_case() {
+    let mut names: Vec<String> = std::fs::read_dir("cases")
+        .expect("cases")
+        .filter_map(|entry| {
+            entry
+                .ok()?
+                .file_name()
+                .to_str()?
+                .strip_suffix(".json")
+                .map(String::from)
+        })
+        .filter(|name| name != "schema")
+        .collect();
+    names.sort();
+    let mut tally = Tally::default();
+    let mut unreached = 0;
+    for name in &names {
+        unreached += tally.judge(name, &load(name, &[]), &[1e-1, 1e-2, 1e-3], Duration::from_secs(30));
+    }
+    println!("{unreached} of {} not reached, and said so", 3 * names.len());
+    tally.assert();
+}
+
+/// Quantities, and how their estimates fared.
+#[derive(Default)]
+struct Tally {
+    all: usize,
+    held: usize,
+    covered: usize,
+    near: usize,
+}
+
+impl Tally {
+    /// Reaches accuracies of a case, each within the time, and compares with a run on twice the finest mesh at a hundredth of
+    /// the tightest tolerance, if there is time for that. Returns how many were not reached.
+    fn judge(&mut self, name: &str, case: &Case, accuracies: &[f64], time: Duration) -> usize {
+        let mut runs: Vec<(f64, Summary)> = vec![];
+        for &asked in accuracies {
+            let until = Instant::now() + time;
+            let hook = |_: &Progress| {
+                if Instant::now() < until {
+                    Control::Continue
+                } else {
+                    Control::Stop("time is up".into())
+                }
+            };
+            let reached = target::reach(case, asked, &hook, &mut |case| Ok(record(case, until)));
+            let summary = reached.expect("memory").summary;
+            let accuracy = summary.accuracy.as_ref();
+            let told = accuracy.map_or("nothing is known".into(), |a| {
+                format!(
+                    "{} with {} cells, rtol {:.0e}, {} pilots, {:?}",
+                    if a.reached { "reached" } else { "not reached" },
+                    a.cells_per_segment,
+                    a.rtol,
+                    a.pilots.len(),
+                    a.judged_by,
+                )
+            });
+            println!("{name}, asked {asked}: {told}");
+            if accuracy.is_some_and(|a| a.reached) {
+                runs.push((asked, summary));
+            } else {
+                assert!(
+                    summary.warnings.iter().any(|w| w.contains("accuracy")),
+                    "{name}: silent"
+                );
+            }
+        }
+        let unreached = accuracies.len() - runs.len();
+        let found = |s: &Summary| s.accuracy.clone().expect("reached");
         let finest = runs.iter().map(|r| found(&r.1).cells_per_segment).max().unwrap_or(1);
         let tightest = runs.iter().map(|r| found(&r.1).rtol).fold(1.0, f64::min);
-        let reference = record(&plan::refined(&case, 2 * finest, (0.01 * tightest).max(1e-8))).summary;
+        let reference = plan::refined(case, 2 * finest, (0.01 * tightest).max(1e-8));
+        let reference = record(&reference, Instant::now() + 4 * time).summary;
+        if reference.status != Status::Finished {
+            println!("    no time for a reference");
+            return unreached;
+        }
         for (asked, summary) in &runs {
             let accuracy = found(summary);
-            println!(
-                "{name}, asked {asked}: {} with {} cells, rtol {:.0e}, {} pilots",
-                if accuracy.reached { "reached" } else { "not reached" },
-                accuracy.cells_per_segment,
-                accuracy.rtol,
-                accuracy.pilots.len()
-            );
-            assert!(accuracy.reached, "{name}: {asked}");
             for (quantity, estimate) in &accuracy.quantities {
                 let total = estimate.total.expect("reached, so known");
-                let true_error = error(quantity, summary, &reference);
-                println!("    {quantity}: error {true_error:.1e}, estimate {total:.1e}");
-                all += 1;
-                held += usize::from(true_error <= *asked);
-                covered += usize::from(true_error <= 3.0 * total + 1e-12);
-                near += usize::from(
+                let true_error = error(quantity, summary, &reference, accuracy.judged_by);
+                println!("    {quantity} at {asked}: error {true_error:.1e}, estimate {total:.1e}");
+                self.all += 1;
+                self.held += usize::from(true_error <= *asked);
+                self.covered += usize::from(true_error <= 3.0 * total + 1e-12);
+                self.near += usize::from(
                     true_error <= 3.0 * total && 3.0 * true_error >= total || total.max(true_error) < 0.01 * asked,
                 );
             }
         }
+        unreached
     }
-    println!(
-        "{all} quantities: {held} held, {covered} not underestimated, {near} within a factor of 3 or a hundredth of what was asked"
-    );
-    assert!(20 * held >= 19 * all, "{held} of {all}");
-    assert!(5 * covered >= 4 * all, "{covered} of {all}");
+
+    fn assert(&self) {
+        let Self {
+            all,
+            held,
+            covered,
+            near,
+        } = self;
+        println!(
+            "{all} quantities: {held} held, {covered} not underestimated, {near} within a factor of 3 or a hundredth of what was asked"
+        );
+        assert!(20 * held >= 19 * all, "{held} of {all}");
+        assert!(5 * covered >= 4 * all, "{covered} of {all}");
+    }
 }

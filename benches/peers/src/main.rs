@@ -74,7 +74,9 @@ impl Scene {
         let mut yp = vec![0.0; y.len()];
         consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default()).expect("a start");
         let (end, interval) = (case.time.end_s, case.time.output_interval());
-        let times = (1..=(end / interval).round() as usize).map(|k| k as f64 * interval).collect();
+        let times = (1..=(end / interval).round() as usize)
+            .map(|k| k as f64 * interval)
+            .collect();
         let largest_step = slcbeam::run::dynamics::max_step(&case, dae.system());
         Self {
             case,
@@ -144,7 +146,8 @@ impl Scene {
         let mut values = vec![0.0; dae.pattern().rows.len()];
         let mut klu = Klu::new(dae.pattern()).expect("factors");
         let seeds = Seeds::Step { cj: 1e3 };
-        dae.jacobian(0.0, &self.y, &self.yp, seeds, &mut values).expect("a Jacobian");
+        dae.jacobian(0.0, &self.y, &self.yp, seeds, &mut values)
+            .expect("a Jacobian");
         klu.factor(&values).expect("factors");
         let price = |work: &mut dyn FnMut()| {
             let begin = Instant::now();
@@ -155,7 +158,10 @@ impl Scene {
             price(&mut || dae.residual(0.0, &self.y, &self.yp, &mut r).expect("a residual")),
             price(&mut || assert!(klu.solve(&mut vec![1.0; n]))),
             price(&mut || klu.factor(&values).expect("factors")),
-            price(&mut || dae.jacobian(0.0, &self.y, &self.yp, seeds, &mut values).expect("a Jacobian")),
+            price(&mut || {
+                dae.jacobian(0.0, &self.y, &self.yp, seeds, &mut values)
+                    .expect("a Jacobian")
+            }),
         ]
     }
 
@@ -164,8 +170,10 @@ impl Scene {
         let n = self.y.len();
         let (mut with, mut without) = (vec![0.0; n], vec![0.0; n]);
         let mut dae = self.dae();
-        dae.residual(0.0, &self.y, &vec![1.0; n], &mut with).expect("a residual");
-        dae.residual(0.0, &self.y, &vec![0.0; n], &mut without).expect("a residual");
+        dae.residual(0.0, &self.y, &vec![1.0; n], &mut with)
+            .expect("a residual");
+        dae.residual(0.0, &self.y, &vec![0.0; n], &mut without)
+            .expect("a residual");
         with.iter().zip(&without).map(|(w, o)| w - o).collect()
     }
 
@@ -191,7 +199,10 @@ impl Scene {
                 let (at, of, values) = &mut *kept;
                 if *at != t || of != y {
                     let seeds = Seeds::Columns { y: &ones, yp: &zero };
-                    shared.borrow_mut().jacobian(t, y, &zero, seeds, values).expect("a Jacobian");
+                    shared
+                        .borrow_mut()
+                        .jacobian(t, y, &zero, seeds, values)
+                        .expect("a Jacobian");
                     (*at, *of) = (t, y.to_vec());
                 }
                 out.fill(0.0);
@@ -225,7 +236,10 @@ impl Scene {
                 let mut solver = $solver.expect("a solver");
                 let (values, _) = solver.solve_dense(&self.times).expect("a solution");
                 let steps = solver.get_statistics().number_of_steps;
-                ((0..values.ncols()).map(|k| values[(self.tip, k)]).collect(), steps)
+                (
+                    (0..values.ncols()).map(|k| values[(self.tip, k)]).collect(),
+                    steps,
+                )
             }};
         }
         match peer {
@@ -286,18 +300,32 @@ fn main() {
         }
     }
     let prices = scene.prices();
-    println!("\nRadau IIA of order 5: work, and the ms it would take at {:.1?} us for a", prices.map(|p| 1e6 * p));
+    println!(
+        "\nRadau IIA of order 5: work, and the ms it would take at {:.1?} us for a",
+        prices.map(|p| 1e6 * p)
+    );
     println!("residual, solution, factorisation, Jacobian, complex ones four times as much");
-    println!("{:>9}{:>8}{:>12}{:>9}{:>10}{:>10}", "rtol", "steps", "iterations", "factors", "error", "ms");
+    println!(
+        "{:>9}{:>8}{:>12}{:>9}{:>10}{:>10}",
+        "rtol", "steps", "iterations", "factors", "error", "ms"
+    );
     let mass = scene.mass();
     let mut radau_curve = vec![];
     for &rtol in &settings {
         let mut radau = Radau::new(scene.dae(), &mass, rtol);
         let tip = radau.solve(&scene.y, &scene.times, scene.tip, scene.largest_step);
-        let Work { steps, iterations, factorizations, .. } = radau.work;
+        let Work {
+            steps,
+            iterations,
+            factorizations,
+            ..
+        } = radau.work;
         let (error, time) = (error(&tip), radau.work.time(prices));
         radau_curve.push((error, time));
-        println!("{rtol:>9.1e}{steps:>8}{iterations:>12}{factorizations:>9}{error:>10.1e}{:>10.2}", 1e3 * time);
+        println!(
+            "{rtol:>9.1e}{steps:>8}{iterations:>12}{factorizations:>9}{error:>10.1e}{:>10.2}",
+            1e3 * time
+        );
     }
     curves.push(radau_curve);
     println!("\nms at an error of, and part of diffsol's ESDIRK34");

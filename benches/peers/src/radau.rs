@@ -34,8 +34,16 @@ pub struct Radau<'a, D: Dae> {
 fn a() -> [[f64; 3]; 3] {
     let s = 6.0_f64.sqrt();
     [
-        [(88.0 - 7.0 * s) / 360.0, (296.0 - 169.0 * s) / 1800.0, (-2.0 + 3.0 * s) / 225.0],
-        [(296.0 + 169.0 * s) / 1800.0, (88.0 + 7.0 * s) / 360.0, (-2.0 - 3.0 * s) / 225.0],
+        [
+            (88.0 - 7.0 * s) / 360.0,
+            (296.0 - 169.0 * s) / 1800.0,
+            (-2.0 + 3.0 * s) / 225.0,
+        ],
+        [
+            (296.0 + 169.0 * s) / 1800.0,
+            (88.0 + 7.0 * s) / 360.0,
+            (-2.0 - 3.0 * s) / 225.0,
+        ],
         [(16.0 - s) / 36.0, (16.0 + s) / 36.0, 1.0 / 9.0],
     ]
 }
@@ -108,7 +116,9 @@ impl<'a, D: Dae> Radau<'a, D> {
         self.work.jacobians += 1;
         let (ones, zero) = (vec![1.0; y.len()], vec![0.0; y.len()]);
         let seeds = Seeds::Columns { y: &ones, yp: &zero };
-        self.dae.jacobian(t, y, &zero, seeds, &mut self.jacobian).expect("a Jacobian");
+        self.dae
+            .jacobian(t, y, &zero, seeds, &mut self.jacobian)
+            .expect("a Jacobian");
     }
 
     /// Factors of `δ M + h a ∂F/∂y`, and of `γ/h M + ∂F/∂y`.
@@ -158,9 +168,9 @@ impl<'a, D: Dae> Radau<'a, D> {
             }
             for (k, z) in z.iter_mut().enumerate() {
                 for (i, z) in z.iter_mut().enumerate() {
-                    *z = before.as_ref().map_or(0.0, |(hp, zp)| {
-                        collocation(zp, i, 1.0 + c()[k] * h / hp) - zp[2][i]
-                    });
+                    *z = before
+                        .as_ref()
+                        .map_or(0.0, |(hp, zp)| collocation(zp, i, 1.0 + c()[k] * h / hp) - zp[2][i]);
                 }
             }
             let (mut last, mut converged, mut rate): (f64, bool, f64) = (f64::NAN, false, 1.0);
@@ -221,7 +231,11 @@ impl<'a, D: Dae> Radau<'a, D> {
             self.block.solve(&mut f0);
             let tolerance = self.tolerance;
             let norm = |v: &[f64]| {
-                let sum: f64 = v.iter().zip(&y).map(|(e, y)| (e / (tolerance * (1.0 + y.abs()))).powi(2)).sum();
+                let sum: f64 = v
+                    .iter()
+                    .zip(&y)
+                    .map(|(e, y)| (e / (tolerance * (1.0 + y.abs()))).powi(2))
+                    .sum();
                 (sum / n as f64).sqrt()
             };
             let mut error = norm(&f0);

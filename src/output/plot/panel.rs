@@ -87,7 +87,9 @@ impl Panel {
             upright: true,
             ..Words::new(NORMAL, Anchor::Centre)
         };
-        canvas.text((p.left - 52.0, p.top + 0.5 * p.height), &self.y.named(y_name), words);
+        let longest = self.y.ticks.iter().map(|(_, label)| label.chars().count()).max();
+        let beside = (20.0 + 6.4 * longest.unwrap_or(0) as f64).max(52.0);
+        canvas.text((p.left - beside, p.top + 0.5 * p.height), &self.y.named(y_name), words);
         for (x, label) in &self.x.ticks {
             let at = self.at((*x, self.y.lo)).0;
             canvas.line(&[(at, p.bottom()), (at, p.bottom() + 4.0)], Stroke::solid(FRAME, 0.8));
