@@ -103,6 +103,7 @@ fn balances_of_loaded_beams_close() {
         ("shake-wet", 0.01),
         ("dry-cantilever", 0.01),
         ("roll-up", 0.5),
+        ("spin-up", 2.0),
     ] {
         closes(name, end);
     }

@@ -33,6 +33,7 @@ fn smooth(case: &str, formulation: &str, step: f64, more: &[String]) -> Run {
         format!("/time/fields_interval_s={}", end / 20.0),
         format!("/time/window_s={}", end / 10.0),
         "/solver/rtol=1e-2".into(),
+        r#"/solver/method="ida""#.into(),
         "/solver/nonlinear_coefficient=1e-6".into(),
         format!("/solver/max_step_s={step}"),
     ];
