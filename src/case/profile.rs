@@ -139,6 +139,11 @@ impl Profile {
         self.jet(x).value
     }
 
+    /// True where it is a number, the same everywhere.
+    pub fn is_uniform(&self) -> bool {
+        matches!(self, Self::Constant(_))
+    }
+
     /// Derivative by `x` at `x`.
     pub fn slope(&self, x: f64) -> f64 {
         self.jet(x).rate

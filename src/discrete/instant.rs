@@ -113,6 +113,8 @@ pub struct Instant {
     pub resistance: Vec<f64>,
     /// Prescribed pressure of each port [Pa].
     pub port_pressure: Vec<f64>,
+    /// Its rate [Pa/s].
+    pub port_pressure_rate: Vec<f64>,
     /// Prescribed flow of each source [m^3/s].
     pub source_flow: Vec<f64>,
 }
@@ -120,13 +122,12 @@ pub struct Instant {
 impl Instant {
     /// Room for the values of a system; nothing is evaluated yet.
     pub fn new(system: &System) -> Self {
-        let (links, ports, sources) = system.model.wet.as_ref().map_or((0, 0, 0), |wet| {
-            (
-                wet.network.links.len(),
-                wet.network.ports.len(),
-                wet.network.sources.len(),
-            )
-        });
+        let (ports, sources) = system
+            .model
+            .wet
+            .as_ref()
+            .map_or((0, 0), |wet| (wet.network.ports.len(), wet.network.sources.len()));
+        let links = system.fluid.as_ref().map_or(0, |fluid| fluid.links.len());
         Self {
             clock: None,
             ends: [EndInstant::default(); 2],
@@ -137,6 +138,7 @@ impl Instant {
             conductance: vec![0.0; links],
             resistance: vec![0.0; links],
             port_pressure: vec![0.0; ports],
+            port_pressure_rate: vec![0.0; ports],
             source_flow: vec![0.0; sources],
         }
     }
@@ -208,8 +210,8 @@ impl Instant {
         let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
             return;
         };
-        for (k, (link, mesh_link)) in wet.network.links.iter().zip(&fluid.links).enumerate() {
-            match &link.opening {
+        for (k, mesh_link) in fluid.links.iter().enumerate() {
+            match &wet.network.links[mesh_link.number].opening {
                 None if !first => {}
                 None => {
                     self.conductance[k] = 1.0 / (mesh_link.half_cells + mesh_link.resistance);
@@ -222,8 +224,9 @@ impl Instant {
                 }
             }
         }
-        for (value, port) in self.port_pressure.iter_mut().zip(&wet.network.ports) {
-            *value = port.pressure.jet(clock).value;
+        for (k, port) in wet.network.ports.iter().enumerate() {
+            let pressure = port.pressure.jet(clock);
+            (self.port_pressure[k], self.port_pressure_rate[k]) = (pressure.value, pressure.rate);
         }
         for (value, source) in self.source_flow.iter_mut().zip(&wet.network.sources) {
             *value = source.flow.jet(clock).value;

@@ -138,7 +138,8 @@ pub fn passed(integrals: &[f64], open: usize) -> (f64, f64) {
 /// The workspace must hold [`recipe::evaluate`] of the same state; rates are added to it here.
 pub fn flows(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
-    recipe::solid::strain_rates(system, now, w);
+    recipe::strain_rates(system, now, w);
+    fluid::complete(system, now, yp, w);
     let rates = fluid::rates(system, yp, w, out);
     solid::flows(system, now, rates, w, out);
     fluid::flows(system, now, w, out);

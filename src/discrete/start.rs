@@ -3,6 +3,7 @@
 use super::{Instant, System, Workspace, recipe};
 use crate::case::profile::Profile;
 use crate::case::schema::Case;
+use crate::case::signals::Clock;
 use crate::model::network::bladder_index;
 
 /// Scaled unknowns at the start: displacements and rates as given, areas from the given pressures.
@@ -44,13 +45,19 @@ pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
             }
         }
     }
-    if system.fluid.is_some() {
-        fill_bladders(system, case, now, &mut y);
-    }
+    fill_bladders(system, case, now, &mut y);
     for (value, scale) in y.iter_mut().zip(&l.scales) {
         *value /= scale;
     }
     y
+}
+
+/// Area change of every cell at the start [m^2], of a system in which all of them are unknowns.
+pub fn areas(system: &System, case: &Case) -> Vec<f64> {
+    let mut now = Instant::new(system);
+    now.update(system, Clock { t: 0.0, within: 0.0 });
+    let (l, y) = (&system.layout, state(system, case, &now));
+    (l.area..l.junction).map(|k| y[k] * l.scales[k]).collect()
 }
 
 /// Areas that give the prescribed pressures, with the means that follow from them: a fixed point, exact after one
@@ -70,16 +77,33 @@ fn fill_bladders(system: &System, case: &Case, now: &Instant, y: &mut [f64]) {
             }
         }
     }
+    for (k, pool) in wet.pools.iter().enumerate() {
+        if let Some(unknown) = l.pool_pressure[k] {
+            let cells = pool.bladders.iter().flat_map(|&b| fluid.cells_of(b));
+            y[unknown] =
+                cells.map(|c| pressure[c]).sum::<f64>() / (pool.bladders.len() * fluid.cells_per_bladder) as f64;
+        }
+        if let Some(unknown) = l.pool_volume[k] {
+            y[unknown] = fluid.volume_at_start[k];
+        }
+    }
     let yp = vec![0.0; y.len()];
     let mut w = Workspace::new(system);
     let mut residual = vec![0.0; y.len()];
     for _ in 0..20 {
         for j in 0..wet.per_row {
-            let (moment, force) = (y[l.mean_moment + j], y[l.mean_force + j]);
+            let mean = |takes: bool, first: usize| if takes { y[first + j] } else { 0.0 };
+            let (moment, force) = (
+                mean(wet.takes_moments, l.mean_moment),
+                mean(wet.takes_forces, l.mean_force),
+            );
             for (bladder, row) in [(j, 1.0), (wet.per_row + j, -1.0)] {
                 let imposed = wet.area.of_moment(moment, row) + wet.area.of_force(force);
-                for cell in fluid.cells_of(bladder) {
-                    y[l.area + cell] = wet.area.per_pressure * pressure[cell] + imposed;
+                if let Ok(slot) = fluid.flowing.binary_search(&bladder) {
+                    for (k, cell) in fluid.cells_of(bladder).enumerate() {
+                        y[l.area + slot * fluid.cells_per_bladder + k] =
+                            wet.area.per_pressure * pressure[cell] + imposed;
+                    }
                 }
             }
         }

@@ -87,7 +87,8 @@ pub fn least_damping_ratio(system: &System) -> f64 {
         (s.axial_damping_time, 1.571 * axial / l, 2.0 * axial / h),
     ];
     let mut least = f64::INFINITY;
-    for (time, slowest, fastest) in families {
+    let bends = system.model.effects.transverse_motion;
+    for (time, slowest, fastest) in families.into_iter().skip(usize::from(!bends)) {
         let ratio = |omega: f64| s.drag / (2.0 * m * omega) + 0.5 * omega * time;
         least = least.min(ratio(slowest)).min(ratio(fastest));
         if time > 0.0 {

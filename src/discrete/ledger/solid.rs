@@ -5,6 +5,7 @@ use crate::case::schema::Formulation;
 use crate::discrete::recipe::rows::{end_force, published_force};
 use crate::discrete::recipe::solid::node_stretch;
 use crate::discrete::{Instant, System, Workspace};
+use crate::model::Kinematics;
 
 /// Powers and impulses of loads, ends, damping, and of the published form.
 pub fn flows(
@@ -16,7 +17,7 @@ pub fn flows(
 ) {
     let (mesh, section, l) = (&system.mesh, &system.model.section, &system.layout);
     let last = mesh.nodes - 1;
-    let published = system.model.formulation == Formulation::Published;
+    let published = system.model.published();
     for i in 0..=last {
         let length = mesh.node_length(i);
         let (mut fx, mut fz) = (length * now.force_x[i], length * now.force_z[i]);
@@ -56,7 +57,9 @@ pub fn flows(
         add(out, Flow::ImpulseX, fx);
         add(out, Flow::ImpulseZ, fz);
         add(out, Flow::AngularImpulse, z * fx - x * fz);
-        bending(system, now, &curvature_rate, w, i, out);
+        if system.model.kinematics != Kinematics::Bar {
+            bending(system, now, &curvature_rate, w, i, out);
+        }
     }
     cells(system, now, w, published, out);
 }
@@ -73,7 +76,7 @@ fn bending(
     let (mesh, section) = (&system.mesh, &system.model.section);
     let last = mesh.nodes - 1;
     let length = mesh.node_length(i);
-    let published = system.model.formulation == Formulation::Published;
+    let published = system.model.published();
     let end = match i {
         0 => Some(&now.ends[0]),
         _ if i == last => Some(&now.ends[1]),

@@ -1,12 +1,13 @@
 //! The semi-discrete equations in the paper's order: what lies between two instants is nothing but this.
 
+pub mod bar;
 pub mod fluid;
 pub mod rows;
 pub mod solid;
 mod unpack;
 
 use super::{Instant, System, Workspace};
-use crate::model::Scalar;
+use crate::model::{Kinematics, Scalar};
 
 pub use unpack::unpack;
 
@@ -15,11 +16,30 @@ pub fn evaluate<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w:
     unpack(system, now, y, yp, w);
     fluid::pressures(system, w);
     fluid::pressure_strains(system, w);
-    solid::kinematics(system, now, w);
-    solid::rates(system, now, w);
-    solid::resultants(system, now, w);
-    solid::section_forces(system, now, w);
+    match system.model.kinematics {
+        Kinematics::Bar => {
+            bar::kinematics(system, w);
+            bar::rates(system, w);
+            solid::normal_forces(system, w);
+            bar::section_forces(system, w);
+        }
+        Kinematics::FiniteRotation => {
+            solid::kinematics(system, now, w);
+            solid::rates(system, now, w);
+            solid::normal_forces(system, w);
+            solid::moments(system, now, w);
+            solid::section_forces(system, now, w);
+        }
+    }
     fluid::flows(system, now, w);
+}
+
+/// Rates of stretch, angle and curvature, whether or not an equation depends on them: for balances and samples.
+pub fn strain_rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
+    match system.model.kinematics {
+        Kinematics::Bar => bar::strain_rates(system, w),
+        Kinematics::FiniteRotation => solid::strain_rates(system, now, w),
+    }
 }
 
 /// The residual `F(t, y, y')`, one equation an unknown, in SI units.
@@ -29,6 +49,7 @@ pub fn residual<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w:
     rows::motion(system, y, yp, r);
     rows::means(system, w, r);
     rows::storage(system, w, r);
+    rows::pools(system, now, y, yp, w, r);
     rows::junctions(system, w, r);
     rows::bridges(system, now, w, r);
 }

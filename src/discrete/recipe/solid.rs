@@ -91,19 +91,30 @@ pub fn strain_rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace
 /// ```
 ///
 /// At an end with given moment M is the value and the curvature follows.
-pub fn resultants<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
+pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let section = &system.model.section;
-    let (ea, ei) = (section.axial_stiffness, section.bending_stiffness);
-    let wet = system.fluid.is_some();
+    let ea = section.axial_stiffness;
+    let pressed = system.fluid.is_some() && system.model.effects.pressure_to_stretch;
     let k = system.mesh.cells_per_segment;
     for c in 0..system.mesh.cells {
-        let elastic = if wet {
+        let elastic = if pressed {
             w.strain[c] - w.pressure_stretch[c / k]
         } else {
             w.strain[c]
         };
         w.force[c] = elastic * ea;
     }
+    if section.axial_damping_time > 0.0 {
+        for c in 0..system.mesh.cells {
+            w.viscous_force[c] = w.stretch_rate[c] * (ea * section.axial_damping_time);
+        }
+    }
+}
+
+/// Moments and the shear that follows from them, `[E12]`.
+pub fn moments<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
+    let section = &system.model.section;
+    let ei = section.bending_stiffness;
     let published = system.model.formulation == Formulation::Published;
     let last = system.mesh.nodes - 1;
     for i in 0..=last {
@@ -130,11 +141,6 @@ pub fn resultants<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T
             }
         }
     }
-    if section.axial_damping_time > 0.0 {
-        for c in 0..system.mesh.cells {
-            w.viscous_force[c] = w.stretch_rate[c] * (ea * section.axial_damping_time);
-        }
-    }
     if section.bending_damping_time > 0.0 {
         let first = usize::from(now.ends[0].slope.is_none());
         let end = last + usize::from(now.ends[1].slope.is_some());
@@ -155,7 +161,7 @@ pub fn resultants<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T
 /// `alpha_p` at a node: the mean of the segments on its two sides (the transpose of the mean moment's weights).
 #[inline]
 pub fn pressure_curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
-    if system.fluid.is_none() {
+    if system.fluid.is_none() || !system.model.effects.pressure_to_curvature {
         return T::zero();
     }
     let (left, right) = system.mesh.segments_of_node(node);

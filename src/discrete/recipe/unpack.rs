@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::discrete::instant::Frame;
 use crate::discrete::{Instant, System, Workspace};
-use crate::model::Scalar;
+use crate::model::{PoolKind, Scalar};
 
 /// Copies the state into the workspace; what an end prescribes comes from its signal, with exact rates.
 ///
@@ -35,13 +35,27 @@ pub fn unpack<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w: &
             carry(&frame, l.inertia, free, last, [displacement, velocity, acceleration]);
         }
     }
-    if system.fluid.is_some() {
-        copy(&mut w.mean_moment, y, l.mean_moment);
-        copy(&mut w.mean_force, y, l.mean_force);
-        copy(&mut w.area, y, l.area);
-        copy(&mut w.area_rate, yp, l.area);
+    if let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) {
+        if wet.takes_moments {
+            copy(&mut w.mean_moment, y, l.mean_moment);
+        }
+        if wet.takes_forces {
+            copy(&mut w.mean_force, y, l.mean_force);
+        }
+        for (slot, &bladder) in fluid.flowing.iter().enumerate() {
+            let first = l.area + slot * fluid.cells_per_bladder;
+            copy(&mut w.area[fluid.cells_of(bladder)], y, first);
+            copy(&mut w.area_rate[fluid.cells_of(bladder)], yp, first);
+        }
         copy(&mut w.junction, y, l.junction);
         copy(&mut w.bridge, y, l.bridge);
+        for (k, pool) in wet.pools.iter().enumerate() {
+            w.pool[k] = match (&pool.kind, l.pool_pressure[k]) {
+                (PoolKind::Port(port), _) => T::constant(now.port_pressure[*port]),
+                (_, Some(unknown)) => y[unknown],
+                _ => T::zero(),
+            };
+        }
     }
 }
 

@@ -1,0 +1,19 @@
+//! Effects: what is left out is gone, what is left in is right, and what was left out was small.
+//!
+//! Every test prints what it measures; `cargo test --release --test effects -- --nocapture` reprints the numbers.
+
+#[allow(dead_code)] // shared with the tests of physics
+#[path = "../physics/common.rs"]
+mod common;
+#[path = "../differences/mod.rs"]
+mod differences;
+
+mod choices;
+mod coupling;
+mod exact;
+mod limits;
+mod refusals;
+mod rotary;
+mod sizes;
+mod undrained;
+mod uniform;
