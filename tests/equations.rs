@@ -16,7 +16,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 25] = [
+const INDEX: [(&str, &str, &str); 26] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -70,6 +70,11 @@ const INDEX: [(&str, &str, &str); 25] = [
     ("[E23]", "tests/effects/exact.rs", "sealed_bladders_need_no_unknowns"),
     ("[E24]", "tests/effects/exact.rs", "a_beam_shaken_along_is_a_bar"),
     ("[E25]", "tests/effects/uniform.rs", "a_closed_network_has_one_pressure"),
+    (
+        "[E26]",
+        "tests/effects/rotation.rs",
+        "small_rotations_err_with_the_square_of_the_angle",
+    ),
 ];
 
 #[test]

@@ -4,6 +4,7 @@ use super::{Instant, System, Workspace};
 use crate::discrete::ledger::{Energies, FLOWS};
 use crate::discrete::recipe::fluid::pressure_at;
 use crate::discrete::recipe::solid::node_stretch;
+use crate::model::Kinematics;
 use crate::model::mapping::{NetworkCoordinate, TABLE_TUBE_RATIO};
 use crate::model::network::{LinkKind, bladder_label};
 
@@ -128,7 +129,11 @@ pub fn row(
 fn tip_angle(system: &System, w: &Workspace<f64>) -> f64 {
     let last = system.mesh.nodes - 1;
     let interior: f64 = w.kappa[1..last].iter().sum();
-    w.tx[0].atan2(w.tz[0]) - system.mesh.h * (interior + 0.5 * w.kappa[last])
+    let first = match system.model.kinematics {
+        Kinematics::Bar | Kinematics::FiniteRotation => w.tx[0].atan2(w.tz[0]),
+        Kinematics::Linear | Kinematics::SmallRotation => w.d3x[0],
+    };
+    first - system.mesh.h * (interior + 0.5 * w.kappa[last])
 }
 
 fn turbine_power(system: &System, now: &Instant, w: &Workspace<f64>) -> f64 {

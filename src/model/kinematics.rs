@@ -7,6 +7,10 @@ use super::EffectSet;
 pub enum Kinematics {
     /// A bar, which can only stretch.
     Bar,
+    /// Small rotations, and no normal force on bending: the linear beam.
+    Linear,
+    /// Small rotations (von Karman).
+    SmallRotation,
     /// Rotations of any size.
     FiniteRotation,
 }
@@ -14,10 +18,11 @@ pub enum Kinematics {
 impl Kinematics {
     /// The least that holds the effects.
     pub fn of(effects: &EffectSet) -> Self {
-        if effects.transverse_motion {
-            Self::FiniteRotation
-        } else {
-            Self::Bar
+        match effects {
+            e if !e.transverse_motion => Self::Bar,
+            e if e.finite_rotation => Self::FiniteRotation,
+            e if e.axial_force_on_bending => Self::SmallRotation,
+            _ => Self::Linear,
         }
     }
 }

@@ -41,7 +41,25 @@ const ALONG: [&str; 4] = [
     "/effects/transverse_motion=\"off\"",
 ];
 
+/// Forces that turn with the tip.
+const FOLLOWER: &str = r#"/ends/tip={"free":{"follower_normal_n":{"sine":{"amplitude":10,"frequency_hz":50}},"follower_shear_n":4,
+    "moment_n_m":{"sine":{"amplitude":0.05,"frequency_hz":70}}}}"#;
+const SMALL: &str = r#"{"finite_rotation":"off"}"#;
+const LINEAR: &str = r#"{"finite_rotation":"off","axial_force_on_bending":"off"}"#;
+
 const CHOICES: &[Choice] = &[
+    choice(SMALL),
+    choice(LINEAR),
+    Choice {
+        effects: SMALL,
+        sets: &[FOLLOWER],
+    },
+    Choice {
+        effects: LINEAR,
+        sets: &[FOLLOWER],
+    },
+    choice(r#"{"finite_rotation":"off","solid_inertia":"off"}"#),
+    choice(r#"{"finite_rotation":"off","rotary_inertia":"off"}"#),
     choice(r#"{"fluid":"off"}"#),
     Choice {
         effects: r#"{"flow":"off"}"#,

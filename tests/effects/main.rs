@@ -14,6 +14,7 @@ mod exact;
 mod limits;
 mod refusals;
 mod rotary;
+mod rotation;
 mod sizes;
 mod undrained;
 mod uniform;

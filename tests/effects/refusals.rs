@@ -48,6 +48,16 @@ fn a_beam_that_is_moved_across_is_no_bar() {
 }
 
 #[test]
+fn the_published_form_turns_and_what_turns_bears_its_normal_force() {
+    let published = "/formulation=\"published\"";
+    let small = "/effects={\"finite_rotation\":\"off\"}";
+    refused(&[published, small], "/effects/finite_rotation", "published form");
+    let linear = "/effects={\"axial_force_on_bending\":\"off\"}";
+    refused(&[linear], "/effects/axial_force_on_bending", "finite_rotation is on");
+    assert!(effects(&[small]).refusals.is_empty());
+}
+
+#[test]
 fn a_prescribed_flow_needs_flow() {
     refused(&["/effects={\"flow\":\"off\"}"], "/effects/flow", "prescribes a flow");
 }

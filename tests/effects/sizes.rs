@@ -13,6 +13,22 @@ const SIZES: &[Row] = &[
     ("{}", [4, 2, 2, 0], [44, 4, 36, 30, -16, -68]),
     (r#"{"rotary_inertia":"off"}"#, [4, 2, 2, 0], [34, 4, 36, 30, -16, -60]),
     (r#"{"solid_inertia":"off"}"#, [2, 2, 2, 0], [28, 4, 36, 30, -16, -60]),
+    (r#"{"finite_rotation":"off"}"#, [4, 2, 2, 0], [29, 4, 29, 26, -12, -43]),
+    (
+        r#"{"finite_rotation":"off","rotary_inertia":"off"}"#,
+        [4, 2, 2, 0],
+        [27, 4, 29, 26, -12, -41],
+    ),
+    (
+        r#"{"finite_rotation":"off","axial_force_on_bending":"off","rotary_inertia":"off"}"#,
+        [4, 2, 2, 0],
+        [20, 4, 28, 26, -12, -36],
+    ),
+    (
+        r#"{"finite_rotation":"off","axial_force_on_bending":"off","rotary_inertia":"off","fluid":"off"}"#,
+        [4, 0, 0, 0],
+        [14, 0, 0, 0, 0, -8],
+    ),
     (r#"{"transverse_motion":"off"}"#, [2, 1, 2, 0], [8, 2, 7, 12, -2, -12]),
     (
         r#"{"fluid":"off","rotary_inertia":"off"}"#,

@@ -23,6 +23,13 @@ pub struct EffectChoices {
     /// across.
     #[serde(default)]
     pub transverse_motion: Choice,
+    /// Rotations of any size; off: small ones, `u3' + u1'^2/2` the strain and `u1'` the angle. Needs the conservative
+    /// formulation.
+    #[serde(default)]
+    pub finite_rotation: Choice,
+    /// The normal force that acts on bending (geometric stiffness); off: the linear beam. Needs `finite_rotation` off.
+    #[serde(default)]
+    pub axial_force_on_bending: Choice,
     /// Inertia of the solid; off: quasi-static solid.
     #[serde(default)]
     pub solid_inertia: Choice,

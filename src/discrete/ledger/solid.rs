@@ -1,9 +1,8 @@
 //! The beam's part of the balances.
 
 use super::{Energies, Flow, add};
-use crate::case::schema::Formulation;
 use crate::discrete::recipe::rows::{end_force, published_force};
-use crate::discrete::recipe::solid::node_stretch;
+use crate::discrete::recipe::solid::{couple, node_stretch};
 use crate::discrete::{Instant, System, Workspace};
 use crate::model::Kinematics;
 
@@ -53,10 +52,15 @@ pub fn flows(
             add(out, Flow::Ends, reaction * w.v3[i]);
             fz += reaction;
         }
-        let (x, z) = (w.u1[i], mesh.node_coordinate(i) + w.u3[i]);
+        let ([x, z], [x_t, z_t]) = arms(system, w, i);
         add(out, Flow::ImpulseX, fx);
         add(out, Flow::ImpulseZ, fz);
-        add(out, Flow::AngularImpulse, z * fx - x * fz);
+        let turning = if l.inertia {
+            inertia * (z_t * w.v1[i] - x_t * w.v3[i])
+        } else {
+            0.0
+        };
+        add(out, Flow::AngularImpulse, z * fx - x * fz + turning);
         if system.model.kinematics != Kinematics::Bar {
             bending(system, now, &curvature_rate, w, i, out);
         }
@@ -120,7 +124,7 @@ fn cells(system: &System, now: &Instant, w: &Workspace<f64>, published: bool, ou
     let rotary = section.mass_per_length * section.gyration_radius_squared;
     for c in 0..system.mesh.cells {
         if system.has_moments {
-            let couple = w.d3x[c] * now.moment_x[c] + w.d3z[c] * now.moment_z[c];
+            let couple = couple(system, now, w, c);
             add(out, Flow::Loads, -h * couple * w.angle_rate[c]);
             add(out, Flow::AngularImpulse, -h * couple);
         }
@@ -155,11 +159,23 @@ pub fn energies(system: &System, w: &Workspace<f64>) -> Energies {
 /// Angular momentum of a cell's rotation per length: `m y11 φ_t`, published `m y11 λ² φ_t`.
 fn spin(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
     let section = &system.model.section;
-    let factor = match system.model.formulation {
-        Formulation::Conservative => 1.0,
-        Formulation::Published => w.stretch[c] * w.stretch[c],
+    let factor = if system.model.published() {
+        w.stretch[c] * w.stretch[c]
+    } else {
+        1.0
     };
     section.mass_per_length * section.gyration_radius_squared * factor * w.angle_rate[c]
+}
+
+/// Arms (x, z) with which a node's momentum and force turn about the origin, and their rates: its position. A small
+/// rotation ε moves a node by (ε θ, -ε g u1), whatever u3 is: that is what the potential of `[E26]` does not feel.
+fn arms(system: &System, w: &Workspace<f64>, i: usize) -> ([f64; 2], [f64; 2]) {
+    let theta = system.mesh.node_coordinate(i);
+    match system.model.kinematics {
+        Kinematics::Bar | Kinematics::FiniteRotation => ([w.u1[i], theta + w.u3[i]], [w.v1[i], w.v3[i]]),
+        Kinematics::SmallRotation => ([w.u1[i], theta], [w.v1[i], 0.0]),
+        Kinematics::Linear => ([0.0, theta], [0.0, 0.0]),
+    }
 }
 
 /// Momentum (x, z) and angular momentum about the origin.
@@ -173,7 +189,8 @@ pub fn momenta(system: &System, w: &Workspace<f64>) -> ([f64; 2], f64) {
         let mass = section.mass_per_length * mesh.node_length(i);
         momentum[0] += mass * w.v1[i];
         momentum[1] += mass * w.v3[i];
-        angular += mass * ((mesh.node_coordinate(i) + w.u3[i]) * w.v1[i] - w.u1[i] * w.v3[i]);
+        let ([x, z], _) = arms(system, w, i);
+        angular += mass * (z * w.v1[i] - x * w.v3[i]);
     }
     if system.model.effects.rotary_inertia {
         angular += (0..mesh.cells).map(|c| mesh.h * spin(system, w, c)).sum::<f64>();

@@ -1,5 +1,6 @@
 //! The beam that does not move across: a bar.
 
+use super::solid::normal_force;
 use crate::discrete::{System, Workspace};
 use crate::model::Scalar;
 
@@ -36,12 +37,7 @@ pub fn strain_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 
 /// The section force is the normal force.
 pub fn section_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
-    let damped = system.model.section.axial_damping_time > 0.0;
     for c in 0..system.mesh.cells {
-        w.sz[c] = if damped {
-            w.force[c] + w.viscous_force[c]
-        } else {
-            w.force[c]
-        };
+        w.sz[c] = normal_force(system, w, c);
     }
 }

@@ -3,6 +3,7 @@
 pub mod bar;
 pub mod fluid;
 pub mod rows;
+pub mod small;
 pub mod solid;
 mod unpack;
 
@@ -23,11 +24,19 @@ pub fn evaluate<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w:
             solid::normal_forces(system, w);
             bar::section_forces(system, w);
         }
+        Kinematics::Linear | Kinematics::SmallRotation => {
+            small::kinematics(system, now, w);
+            small::rates(system, now, w);
+            solid::normal_forces(system, w);
+            solid::moments(system, now, w);
+            small::section_forces(system, now, w);
+        }
         Kinematics::FiniteRotation => {
             solid::kinematics(system, now, w);
             solid::rates(system, now, w);
             solid::normal_forces(system, w);
             solid::moments(system, now, w);
+            solid::shears(system, w);
             solid::section_forces(system, now, w);
         }
     }
@@ -38,6 +47,7 @@ pub fn evaluate<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w:
 pub fn strain_rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
     match system.model.kinematics {
         Kinematics::Bar => bar::strain_rates(system, w),
+        Kinematics::Linear | Kinematics::SmallRotation => small::strain_rates(system, now, w),
         Kinematics::FiniteRotation => solid::strain_rates(system, now, w),
     }
 }

@@ -68,8 +68,22 @@ pub fn end_force<T: Scalar>(system: &System, now: &Instant, w: &Workspace<T>, no
     let end = &now.ends[usize::from(node == last)];
     let (mut fx, mut fz) = (T::constant(end.force_x), T::constant(end.force_z));
     if let Some((normal, shear)) = end.follower {
-        let (tx, tz) = end_tangent(system, now, w, node);
         let outward = if node == last { 1.0 } else { -1.0 };
+        let (tx, tz) = match system.model.kinematics {
+            Kinematics::FiniteRotation => end_tangent(system, now, w, node),
+            // n_x = g N φ - V, n_z = N, as [E26] has it in every section.
+            kinematics => {
+                let turned = kinematics == Kinematics::SmallRotation;
+                let angle = if turned {
+                    end_angle(system, now, w, node)
+                } else {
+                    T::zero()
+                };
+                fx += angle * (outward * normal) + -outward * shear;
+                fz += T::constant(outward * normal);
+                return (fx, fz);
+            }
+        };
         fx += tx * (outward * normal) - tz * (outward * shear);
         fz += tz * (outward * normal) + tx * (outward * shear);
     }
@@ -91,6 +105,20 @@ pub fn end_tangent<T: Scalar>(system: &System, now: &Instant, w: &Workspace<T>, 
         w.tx[cell] * cosine + w.tz[cell] * sine,
         w.tz[cell] * cosine - w.tx[cell] * sine,
     )
+}
+
+/// Angle at an end of a beam that turns little, as [`end_tangent`] has it.
+fn end_angle<T: Scalar>(system: &System, now: &Instant, w: &Workspace<T>, node: usize) -> T {
+    let at_tip = node + 1 == system.mesh.nodes;
+    if let Some(slope) = now.ends[usize::from(at_tip)].slope {
+        return T::constant(slope.value);
+    }
+    let half = 0.5 * system.mesh.h;
+    if at_tip {
+        w.d3x[node - 1] - w.kappa[node] * half
+    } else {
+        w.d3x[0] + w.kappa[0] * half
+    }
 }
 
 /// `[E15]` What the published form adds to the conservative one at a node:

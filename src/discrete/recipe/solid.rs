@@ -1,8 +1,7 @@
 //! Kinematics, resultants and section forces of the beam.
 
-use crate::case::schema::Formulation;
 use crate::discrete::{Instant, System, Workspace};
-use crate::model::Scalar;
+use crate::model::{Kinematics, Scalar};
 
 /// `[E11]` Directors, stretch, tangent and curvature (A.1, A.2, A.19, A.20), curvature positive with the +x fibre in
 /// tension:
@@ -71,6 +70,12 @@ pub fn strain_rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace
         w.stretch_rate[c] = w.tx[c] * dx_t + w.tz[c] * dz_t;
         w.angle_rate[c] = (w.tz[c] * dx_t - w.tx[c] * dz_t) / w.stretch[c];
     }
+    curvature_rates(system, now, w);
+}
+
+/// `κ_t` at nodes from the turning of cells and prescribed slopes.
+pub fn curvature_rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
+    let inverse = 1.0 / system.mesh.h;
     let last = system.mesh.nodes - 1;
     for i in 1..last {
         w.kappa_rate[i] = (w.angle_rate[i - 1] - w.angle_rate[i]) * inverse;
@@ -115,7 +120,7 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 pub fn moments<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
     let section = &system.model.section;
     let ei = section.bending_stiffness;
-    let published = system.model.formulation == Formulation::Published;
+    let published = system.model.published();
     let last = system.mesh.nodes - 1;
     for i in 0..=last {
         let pressure_curvature = pressure_curvature(system, w, i);
@@ -148,13 +153,45 @@ pub fn moments<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) 
             w.viscous_moment[i] = w.kappa_rate[i] * (ei * section.bending_damping_time);
         }
     }
+}
+
+/// Shear, `[E12]`.
+pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     for c in 0..system.mesh.cells {
-        let mut drop = w.moment[c] - w.moment[c + 1];
-        if section.bending_damping_time > 0.0 {
-            drop += w.viscous_moment[c] - w.viscous_moment[c + 1];
-        }
-        w.shear[c] = drop * inverse / w.stretch[c];
+        w.shear[c] = total_moment_drop(system, w, c) * inverse / w.stretch[c];
+    }
+}
+
+/// By how much the moment, viscous part included, falls over a cell [N m].
+#[inline]
+pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
+    let drop = w.moment[c] - w.moment[c + 1];
+    if system.model.section.bending_damping_time > 0.0 {
+        drop + (w.viscous_moment[c] - w.viscous_moment[c + 1])
+    } else {
+        drop
+    }
+}
+
+/// `N_total` of a cell [N].
+#[inline]
+pub fn normal_force<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
+    if system.model.section.axial_damping_time > 0.0 {
+        w.force[c] + w.viscous_force[c]
+    } else {
+        w.force[c]
+    }
+}
+
+/// Couple per length of distributed moments: `d3·m b1`, for small rotations `m b1_z + g φ m b1_x`, `[E26]`.
+#[inline]
+pub fn couple<T: Scalar>(system: &System, now: &Instant, w: &Workspace<T>, c: usize) -> T {
+    match system.model.kinematics {
+        Kinematics::Bar => T::zero(),
+        Kinematics::Linear => T::constant(now.moment_z[c]),
+        Kinematics::SmallRotation => w.d3x[c] * now.moment_x[c] + now.moment_z[c],
+        Kinematics::FiniteRotation => w.d3x[c] * now.moment_x[c] + w.d3z[c] * now.moment_z[c],
     }
 }
 
@@ -194,27 +231,22 @@ pub fn node_stretch<T: Scalar>(w: &Workspace<T>, node: usize, last: usize) -> T 
 /// ```
 pub fn section_forces<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
     let section = &system.model.section;
-    let damped = section.axial_damping_time > 0.0;
     for c in 0..system.mesh.cells {
         let (tx, tz) = (w.tx[c], w.tz[c]);
-        let normal = if damped {
-            w.force[c] + w.viscous_force[c]
-        } else {
-            w.force[c]
-        };
+        let normal = normal_force(system, w, c);
         w.sx[c] = normal * tx - w.shear[c] * tz;
         w.sz[c] = normal * tz + w.shear[c] * tx;
     }
     if system.has_moments {
         for c in 0..system.mesh.cells {
-            let couple = w.d3x[c] * now.moment_x[c] + w.d3z[c] * now.moment_z[c];
+            let couple = couple(system, now, w, c);
             add_couple(couple, c, w);
         }
     }
     if system.model.effects.rotary_inertia {
         let inertia = section.mass_per_length * section.gyration_radius_squared;
         let inverse = 1.0 / system.mesh.h;
-        let published = system.model.formulation == Formulation::Published;
+        let published = system.model.published();
         for c in 0..system.mesh.cells {
             let dx_tt = (w.a1[c + 1] - w.a1[c]) * inverse;
             let dz_tt = (w.a3[c + 1] - w.a3[c]) * inverse;

@@ -30,6 +30,10 @@ pub struct Decision {
 pub struct EffectSet {
     /// Motion across the beam.
     pub transverse_motion: bool,
+    /// Rotations of any size.
+    pub finite_rotation: bool,
+    /// The normal force acts on bending.
+    pub axial_force_on_bending: bool,
     /// Inertia of the solid.
     pub solid_inertia: bool,
     /// Inertia of the section's rotation.
@@ -88,16 +92,29 @@ impl EffectSet {
             || obstacles::transverse_motion(case),
             kept(),
         );
-        let solid_inertia = table.decide("solid_inertia", c.solid_inertia, Ok(()), || None, kept());
-        let rotary_possible = if !solid_inertia {
-            Err("no solid inertia")
-        } else if !transverse_motion {
-            Err("no transverse motion")
-        } else {
+        let across = if transverse_motion {
             Ok(())
+        } else {
+            Err("no transverse motion")
         };
+        let finite_rotation = table.decide(
+            "finite_rotation",
+            c.finite_rotation,
+            across,
+            || obstacles::finite_rotation(case),
+            kept(),
+        );
+        let axial_force_on_bending = table.decide(
+            "axial_force_on_bending",
+            c.axial_force_on_bending,
+            across,
+            || obstacles::axial_force_on_bending(finite_rotation),
+            kept(),
+        );
+        let solid_inertia = table.decide("solid_inertia", c.solid_inertia, Ok(()), || None, kept());
+        let moving = if solid_inertia { Ok(()) } else { Err("no solid inertia") };
         let rotary = rotary(case, section);
-        let rotary_inertia = table.decide("rotary_inertia", c.rotary_inertia, rotary_possible, || None, rotary);
+        let rotary_inertia = table.decide("rotary_inertia", c.rotary_inertia, moving.and(across), || None, rotary);
 
         let filled = if case.fluid.is_some() && case.bladders.is_some() {
             Ok(())
@@ -143,11 +160,7 @@ impl EffectSet {
             || None,
             (true, "as fine as /mesh/cells_per_bladder".into()),
         );
-        let bends = wet.and(if transverse_motion {
-            Ok(())
-        } else {
-            Err("no transverse motion")
-        });
+        let bends = wet.and(across);
         let mut coupling = |name, choice, possible| table.decide(name, choice, possible, || None, kept());
         let pressure_to_curvature = coupling("pressure_to_curvature", c.pressure_to_curvature, bends);
         let pressure_to_stretch = coupling("pressure_to_stretch", c.pressure_to_stretch, wet);
@@ -157,6 +170,8 @@ impl EffectSet {
         table.report(case, network);
         Self {
             transverse_motion,
+            finite_rotation,
+            axial_force_on_bending,
             solid_inertia,
             rotary_inertia,
             fluid,

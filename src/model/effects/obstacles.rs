@@ -1,7 +1,7 @@
 //! What stands against leaving an effect out: something in the case that has a meaning only with it.
 
 use crate::case::profile::Profile;
-use crate::case::schema::{Case, Load};
+use crate::case::schema::{Case, Formulation, Load};
 use crate::case::signals::Signal;
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::model::{Network, Pool};
@@ -55,6 +55,23 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
         return obstacle("the beam starts bent or moving across", HINT);
     }
     None
+}
+
+/// The published form is one of finite rotations.
+pub fn finite_rotation(case: &Case) -> Option<Obstacle> {
+    if case.formulation == Formulation::Conservative {
+        return None;
+    }
+    obstacle(
+        "the published form has no potential for small rotations",
+        "set \"formulation\" to \"conservative\", or leave finite_rotation on",
+    )
+}
+
+/// Finite rotations turn the normal force with the beam.
+pub fn axial_force_on_bending(finite_rotation: bool) -> Option<Obstacle> {
+    let turns = finite_rotation.then_some("finite_rotation is on, which turns the normal force with the beam")?;
+    obstacle(turns, "leave finite_rotation out too, or axial_force_on_bending on")
 }
 
 /// A prescribed flow must have somewhere to go.

@@ -16,13 +16,27 @@ pub struct Effect {
 }
 
 /// Every effect once, in the order of the decisions.
-pub const TABLE: [Effect; 17] = [
+pub const TABLE: [Effect; 19] = [
     Effect {
         name: "transverse_motion",
         adds: "x = u1, φ, κ, M = EI (κ - α_p), V = -M'/λ; without it a bar, N = EA (u3' - λ_p)",
         brings: "u1, v1 of every node; mean moments; turning, curvature, moments, shear",
         number: "0 where nothing moves or loads the beam across and p_u = p_d",
         cost: "half the unknowns of the solid, most of its arithmetic",
+    },
+    Effect {
+        name: "finite_rotation",
+        adds: "x' = λ sin φ, z' = λ cos φ; without it e = u3' + u1'²/2, φ = u1'",
+        brings: "roots and arcs in every cell, neighbours of u3 in the rows of u1 and the other way round",
+        number: "φ², the square of the largest angle",
+        cost: "most of the arithmetic of the solid",
+    },
+    Effect {
+        name: "axial_force_on_bending",
+        adds: "N u1' in n_x, u1'²/2 in e",
+        brings: "geometric stiffness: buckling, tension, parametric excitation; without it bending and stretch are apart",
+        number: "N l_s²/(π² EI), and (u1/h_s)² where both ends hold u3",
+        cost: "entries that couple u1 and u3",
     },
     Effect {
         name: "solid_inertia",
