@@ -16,7 +16,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 26] = [
+const INDEX: [(&str, &str, &str); 27] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -74,6 +74,11 @@ const INDEX: [(&str, &str, &str); 26] = [
         "[E26]",
         "tests/effects/rotation.rs",
         "small_rotations_err_with_the_square_of_the_angle",
+    ),
+    (
+        "[E27]",
+        "tests/effects/waves.rs",
+        "axial_waves_vanish_with_the_square_of_the_frequency",
     ),
 ];
 

@@ -20,9 +20,9 @@ pub struct Layout {
     pub u1: usize,
     /// First `u3`.
     pub u3: usize,
-    /// First `v1`; only with solid inertia.
+    /// First `v1`, where it is an unknown.
     pub v1: usize,
-    /// First `v3`; only with solid inertia.
+    /// First `v3`, where it is an unknown.
     pub v3: usize,
     /// First mean moment `Mbar_j`.
     pub mean_moment: usize,
@@ -40,8 +40,10 @@ pub struct Layout {
     pub pool_volume: Vec<Option<usize>>,
     /// Number of unknowns.
     pub len: usize,
-    /// Whether velocities are unknowns.
+    /// Whether masses resist acceleration.
     pub inertia: bool,
+    /// Whether `v1` and `v3` are unknowns: with inertia, but not along a beam without axial waves.
+    pub waves: [bool; 2],
     /// Characteristic size of each unknown, in its unit.
     pub scales: Vec<f64>,
     /// Characteristic size of each equation.
@@ -77,45 +79,47 @@ impl Layout {
         };
         let free_u3 = free(&root.axial, &tip.axial);
         let inertia = model.effects.solid_inertia;
-        let moving = inertia
-            || model.section.drag > 0.0
-            || model.section.axial_damping_time > 0.0
-            || model.section.bending_damping_time > 0.0;
+        let waves = [inertia && !bar, inertia && model.effects.axial_inertia];
+        let damped = model.section.drag > 0.0 || model.section.axial_damping_time > 0.0;
+        let bent = model.section.bending_damping_time > 0.0;
         let s = &model.scales;
         let cell_mass = model.section.mass_per_length * mesh.h;
         let mut build = Builder::default();
 
         let force_1 = s.transverse_force.max(1e-12);
         let force_3 = s.axial_force.max(1e-12);
+        let row = |waves, rate, force| if waves { rate } else { force };
         let u1 = build.nodes(
             "u1 [m]",
             &free_u1,
             s.transverse,
-            if inertia { s.transverse_rate } else { force_1 },
-            moving,
+            row(waves[0], s.transverse_rate, force_1),
+            inertia || damped || bent,
         );
+        // Without waves the damping of bending alone does not make u3 differential: in a straight beam it acts across.
         let u3 = build.nodes(
             "u3 [m]",
             &free_u3,
             s.axial,
-            if inertia { s.axial_rate } else { force_3 },
-            moving,
+            row(waves[1], s.axial_rate, force_3),
+            waves[1] || damped || (bent && !inertia),
         );
-        let (v1, v3) = if inertia {
-            let acceleration = |rate: f64| cell_mass * rate * s.frequency;
-            (
-                build.nodes(
-                    "v1 [m/s]",
-                    &free_u1,
-                    s.transverse_rate,
-                    acceleration(s.transverse_rate),
-                    true,
-                ),
-                build.nodes("v3 [m/s]", &free_u3, s.axial_rate, acceleration(s.axial_rate), true),
-            )
-        } else {
-            (build.len(), build.len())
-        };
+        let acceleration = |rate: f64| cell_mass * rate * s.frequency;
+        let none = 0..0;
+        let v1 = build.nodes(
+            "v1 [m/s]",
+            if waves[0] { &free_u1 } else { &none },
+            s.transverse_rate,
+            acceleration(s.transverse_rate),
+            true,
+        );
+        let v3 = build.nodes(
+            "v3 [m/s]",
+            if waves[1] { &free_u3 } else { &none },
+            s.axial_rate,
+            acceleration(s.axial_rate),
+            true,
+        );
         let mut mean_moment = build.len();
         let mut mean_force = mean_moment;
         let (mut area, mut junction, mut bridge) = (mean_moment, mean_moment, mean_moment);
@@ -171,6 +175,7 @@ impl Layout {
             pool_volume,
             len: build.len(),
             inertia,
+            waves,
             scales: build.scales,
             row_scales: build.row_scales,
             differential: build.differential,

@@ -24,6 +24,7 @@ pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
             &l.free_u1,
             l.u1,
             l.v1,
+            l.waves[0],
             &case.start.u1_m,
             &case.start.u1_rate_m_s,
         ),
@@ -32,15 +33,16 @@ pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
             &l.free_u3,
             l.u3,
             l.v3,
+            l.waves[1],
             &case.start.u3_m,
             &case.start.u3_rate_m_s,
         ),
     ];
-    for (frame, free, u, v, displacement, velocity) in lines {
+    for (frame, free, u, v, waves, displacement, velocity) in lines {
         for (k, node) in free.clone().enumerate() {
             let frame = frame.map_or(Default::default(), |f| f.at(node as f64 / last));
             y[u + k] = at(displacement, node) - frame.value;
-            if l.inertia {
+            if waves {
                 y[v + k] = at(velocity, node) - frame.rate;
             }
         }
@@ -131,17 +133,17 @@ pub fn change_frame(system: &System, before: &Instant, after: &Instant, y: &mut 
     let l = &system.layout;
     let last = (system.mesh.nodes - 1) as f64;
     let lines = [
-        (before.frame_1(), after.frame_1(), &l.free_u1, l.u1, l.v1),
-        (before.frame_3(), after.frame_3(), &l.free_u3, l.u3, l.v3),
+        (before.frame_1(), after.frame_1(), &l.free_u1, l.u1, l.v1, l.waves[0]),
+        (before.frame_3(), after.frame_3(), &l.free_u3, l.u3, l.v3, l.waves[1]),
     ];
-    for (before, after, free, u, v) in lines {
+    for (before, after, free, u, v, waves) in lines {
         let (Some(before), Some(after)) = (before, after) else {
             continue;
         };
         for (k, node) in free.clone().enumerate() {
             let (old, new) = (before.at(node as f64 / last), after.at(node as f64 / last));
             y[u + k] += (old.value - new.value) / l.scales[u + k];
-            if l.inertia {
+            if waves {
                 y[v + k] += (old.rate - new.rate) / l.scales[v + k];
             }
         }

@@ -47,6 +47,12 @@ const FOLLOWER: &str = r#"/ends/tip={"free":{"follower_normal_n":{"sine":{"ampli
 const SMALL: &str = r#"{"finite_rotation":"off"}"#;
 const LINEAR: &str = r#"{"finite_rotation":"off","axial_force_on_bending":"off"}"#;
 
+const WAVELESS: &str = r#"{"axial_inertia":"off"}"#;
+const UNDAMPED: &str = "/beam/damping={}";
+const BENDING_DAMPED: &str = r#"/beam/damping={"bending_time_s":3e-4}"#;
+/// Both ends move along; stiff enough for a tolerance of its own.
+const PULLED: &str = r#"/ends={"root":"clamped","tip":{"clamped":{"u3_m":{"sine":{"amplitude":0.001,"frequency_hz":60,"ramp_cycles":1}}}}}"#;
+
 const CHOICES: &[Choice] = &[
     choice(SMALL),
     choice(LINEAR),
@@ -59,6 +65,22 @@ const CHOICES: &[Choice] = &[
         sets: &[FOLLOWER],
     },
     choice(r#"{"finite_rotation":"off","solid_inertia":"off"}"#),
+    choice(WAVELESS),
+    choice(r#"{"axial_inertia":"off","rotary_inertia":"off"}"#),
+    choice(r#"{"axial_inertia":"off","finite_rotation":"off"}"#),
+    choice(r#"{"axial_inertia":"off","finite_rotation":"off","axial_force_on_bending":"off"}"#),
+    Choice {
+        effects: WAVELESS,
+        sets: &[UNDAMPED],
+    },
+    Choice {
+        effects: WAVELESS,
+        sets: &[BENDING_DAMPED],
+    },
+    Choice {
+        effects: WAVELESS,
+        sets: &[PULLED, "/solver/rtol=1e-12"],
+    },
     choice(r#"{"finite_rotation":"off","rotary_inertia":"off"}"#),
     choice(r#"{"fluid":"off"}"#),
     Choice {

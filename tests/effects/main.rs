@@ -18,3 +18,4 @@ mod rotation;
 mod sizes;
 mod undrained;
 mod uniform;
+mod waves;

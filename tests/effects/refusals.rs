@@ -58,6 +58,16 @@ fn the_published_form_turns_and_what_turns_bears_its_normal_force() {
 }
 
 #[test]
+fn a_beam_without_axial_inertia_is_carried_by_an_end() {
+    let free = r#"/ends={"root":"free","tip":"free"}"#;
+    refused(
+        &[free, "/effects={\"axial_inertia\":\"off\"}"],
+        "/effects/axial_inertia",
+        "neither end",
+    );
+}
+
+#[test]
 fn a_prescribed_flow_needs_flow() {
     refused(&["/effects={\"flow\":\"off\"}"], "/effects/flow", "prescribes a flow");
 }

@@ -29,6 +29,26 @@ const SIZES: &[Row] = &[
         [4, 0, 0, 0],
         [14, 0, 0, 0, 0, -8],
     ),
+    (
+        r#"{"axial_inertia":"off","rotary_inertia":"off"}"#,
+        [3, 2, 2, 0],
+        [31, 4, 36, 30, -16, -60],
+    ),
+    (
+        r#"{"axial_inertia":"off","finite_rotation":"off","rotary_inertia":"off"}"#,
+        [3, 2, 2, 0],
+        [24, 4, 29, 26, -12, -41],
+    ),
+    (
+        r#"{"axial_inertia":"off","transverse_motion":"off"}"#,
+        [1, 1, 2, 0],
+        [5, 2, 7, 12, -2, -12],
+    ),
+    (
+        r#"{"axial_inertia":"off","fluid":"off","rotary_inertia":"off"}"#,
+        [3, 0, 0, 0],
+        [23, 0, 0, 0, 0, -24],
+    ),
     (r#"{"transverse_motion":"off"}"#, [2, 1, 2, 0], [8, 2, 7, 12, -2, -12]),
     (
         r#"{"fluid":"off","rotary_inertia":"off"}"#,

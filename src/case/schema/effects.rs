@@ -33,6 +33,10 @@ pub struct EffectChoices {
     /// Inertia of the solid; off: quasi-static solid.
     #[serde(default)]
     pub solid_inertia: Choice,
+    /// Inertia along the beam, axial waves; off: the beam is carried along by its driven ends, with the force that this
+    /// takes. Needs an end that holds or drives `u3`.
+    #[serde(default)]
+    pub axial_inertia: Choice,
     /// Inertia of the section's rotation, `m y11`.
     #[serde(default)]
     pub rotary_inertia: Choice,

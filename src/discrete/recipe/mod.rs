@@ -43,8 +43,9 @@ pub fn evaluate<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w:
     fluid::flows(system, now, w);
 }
 
-/// Rates of stretch, angle and curvature, whether or not an equation depends on them: for balances and samples.
-pub fn strain_rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
+/// What balances and samples need besides: velocities and rates of strain, whether or not an equation depends on them.
+pub fn complete<T: Scalar>(system: &System, now: &Instant, yp: &[T], w: &mut Workspace<T>) {
+    unpack::complete_velocities(system, now, yp, w);
     match system.model.kinematics {
         Kinematics::Bar => bar::strain_rates(system, w),
         Kinematics::Linear | Kinematics::SmallRotation => small::strain_rates(system, now, w),

@@ -10,13 +10,24 @@ use crate::model::{Kinematics, PoolKind, Scalar};
 /// ```text
 /// m h_i a_i = h_i (b_i - c v_i) + n_{i+1/2} - n_{i-1/2} (+ end force) (+ c_i, published)
 /// ```
+///
+/// `[E27]` Without axial inertia the beam is carried along by its frame, [E22], and its waves are left out; inertia of the
+/// sections' rotation is then that of `m y11 |d3_t|²/2`, whose parts along x and z are apart:
+///
+/// ```text
+/// m h_i U_i'' = h_i (b_z,i - c v3_i) + n_z,i+1/2 - n_z,i-1/2        n_x gains m y11 x'_tt, n_z nothing
+/// ```
+///
+/// The force `-m U''` does work on displacements relative to the frame: `P_ends` gains `-Σ h_i m U_i'' (v3_i - U_i')`, and the
+/// kinetic energy along is that of the frame, `Σ h_i m U_i'²/2`.
 pub fn momentum<T: Scalar>(system: &System, now: &Instant, w: &Workspace<T>, r: &mut [T]) {
     let (l, mesh) = (&system.layout, &system.mesh);
     let section = &system.model.section;
     let last = mesh.nodes - 1;
     let published = system.model.published();
     let across = system.model.kinematics != Kinematics::Bar;
-    let (row_1, row_3) = if l.inertia { (l.v1, l.v3) } else { (l.u1, l.u3) };
+    let row_1 = if l.waves[0] { l.v1 } else { l.u1 };
+    let row_3 = if l.waves[1] { l.v3 } else { l.u3 };
     for i in 0..=last {
         let length = mesh.node_length(i);
         let (mut fx, mut fz) = (T::zero(), T::constant(length * now.force_z[i]));
@@ -152,10 +163,11 @@ pub fn published_force<T: Scalar>(system: &System, w: &Workspace<T>, i: usize) -
 /// `u' = v`, where velocities are unknowns.
 pub fn motion<T: Scalar>(system: &System, y: &[T], yp: &[T], r: &mut [T]) {
     let l = &system.layout;
-    if !l.inertia {
-        return;
-    }
-    for (u, v, nodes) in [(l.u1, l.v1, &l.free_u1), (l.u3, l.v3, &l.free_u3)] {
+    let lines = [
+        (l.u1, l.v1, &l.free_u1, l.waves[0]),
+        (l.u3, l.v3, &l.free_u3, l.waves[1]),
+    ];
+    for (u, v, nodes, _) in lines.into_iter().filter(|(.., waves)| *waves) {
         for k in 0..nodes.len() {
             r[u + k] = yp[u + k] - y[v + k];
         }

@@ -55,7 +55,8 @@ fn direction<T: Scalar>(angle: f64) -> (T, T) {
 
 /// Rates of stretch, angle and curvature, where something depends on them: `λ_t = e_t·d3_t`, `φ_t = d1·d3_t/λ²`.
 pub fn rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
-    if !(system.model.effects.rotary_inertia || system.damped) {
+    let turned = system.model.effects.rotary_inertia && system.layout.waves[1];
+    if !(turned || system.damped) {
         return;
     }
     strain_rates(system, now, w);
@@ -247,6 +248,13 @@ pub fn section_forces<T: Scalar>(system: &System, now: &Instant, w: &mut Workspa
         let inertia = section.mass_per_length * section.gyration_radius_squared;
         let inverse = 1.0 / system.mesh.h;
         let published = system.model.published();
+        if !system.layout.waves[1] {
+            for c in 0..system.mesh.cells {
+                let turned = (w.a1[c + 1] - w.a1[c]) * (inverse * inertia);
+                w.sx[c] += turned;
+            }
+            return;
+        }
         for c in 0..system.mesh.cells {
             let dx_tt = (w.a1[c + 1] - w.a1[c]) * inverse;
             let dz_tt = (w.a3[c + 1] - w.a3[c]) * inverse;

@@ -20,16 +20,41 @@ pub fn unpack<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w: &
     let l = &system.layout;
     let last = system.mesh.nodes - 1;
     let lines = [
-        (now.frame_1(), &l.free_u1, l.u1, l.v1, &mut w.u1, &mut w.v1, &mut w.a1),
-        (now.frame_3(), &l.free_u3, l.u3, l.v3, &mut w.u3, &mut w.v3, &mut w.a3),
+        (
+            now.frame_1(),
+            &l.free_u1,
+            l.u1,
+            l.v1,
+            l.waves[0],
+            &mut w.u1,
+            &mut w.v1,
+            &mut w.a1,
+        ),
+        (
+            now.frame_3(),
+            &l.free_u3,
+            l.u3,
+            l.v3,
+            l.waves[1],
+            &mut w.u3,
+            &mut w.v3,
+            &mut w.a3,
+        ),
     ];
-    for (frame, free, u, v, displacement, velocity, acceleration) in lines {
+    for (frame, free, u, v, waves, displacement, velocity, acceleration) in lines {
         copy(&mut displacement[free.clone()], y, u);
-        if l.inertia {
+        if waves {
             copy(&mut velocity[free.clone()], y, v);
             copy(&mut acceleration[free.clone()], yp, v);
         } else {
-            copy(&mut velocity[free.clone()], yp, u);
+            acceleration[free.clone()].fill(T::zero());
+            for (k, rate) in velocity[free.clone()].iter_mut().enumerate() {
+                *rate = if l.differential[u + k] || !l.inertia {
+                    yp[u + k]
+                } else {
+                    T::zero()
+                };
+            }
         }
         if let Some(frame) = frame {
             carry(&frame, l.inertia, free, last, [displacement, velocity, acceleration]);
@@ -56,6 +81,19 @@ pub fn unpack<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w: &
                 _ => T::zero(),
             };
         }
+    }
+}
+
+/// Axial velocities that no equation takes, because nothing but waves depends on them; for balances and samples.
+pub fn complete_velocities<T: Scalar>(system: &System, now: &Instant, yp: &[T], w: &mut Workspace<T>) {
+    let l = &system.layout;
+    if l.waves[1] || !l.inertia {
+        return;
+    }
+    let last = (system.mesh.nodes - 1) as f64;
+    for (k, node) in l.free_u3.clone().enumerate() {
+        let frame = now.frame_3().map_or(0.0, |frame| frame.at(node as f64 / last).rate);
+        w.v3[node] = yp[l.u3 + k] + frame;
     }
 }
 

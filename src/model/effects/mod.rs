@@ -36,6 +36,8 @@ pub struct EffectSet {
     pub axial_force_on_bending: bool,
     /// Inertia of the solid.
     pub solid_inertia: bool,
+    /// Inertia along the beam.
+    pub axial_inertia: bool,
     /// Inertia of the section's rotation.
     pub rotary_inertia: bool,
     /// Fluid in the bladders.
@@ -113,6 +115,13 @@ impl EffectSet {
         );
         let solid_inertia = table.decide("solid_inertia", c.solid_inertia, Ok(()), || None, kept());
         let moving = if solid_inertia { Ok(()) } else { Err("no solid inertia") };
+        let axial_inertia = table.decide(
+            "axial_inertia",
+            c.axial_inertia,
+            moving,
+            || obstacles::axial_inertia(case),
+            kept(),
+        );
         let rotary = rotary(case, section);
         let rotary_inertia = table.decide("rotary_inertia", c.rotary_inertia, moving.and(across), || None, rotary);
 
@@ -173,6 +182,7 @@ impl EffectSet {
             finite_rotation,
             axial_force_on_bending,
             solid_inertia,
+            axial_inertia,
             rotary_inertia,
             fluid,
             flow,

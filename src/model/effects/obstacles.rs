@@ -74,6 +74,18 @@ pub fn axial_force_on_bending(finite_rotation: bool) -> Option<Obstacle> {
     obstacle(turns, "leave finite_rotation out too, or axial_force_on_bending on")
 }
 
+/// Something must carry the beam along.
+pub fn axial_inertia(case: &Case) -> Option<Obstacle> {
+    let held = [&case.ends.root, &case.ends.tip].map(|end| end.resolve().axial);
+    if held.iter().any(|axial| matches!(axial, Translation::Displacement(_))) {
+        return None;
+    }
+    obstacle(
+        "neither end holds u3, so nothing but its inertia keeps the beam where it is",
+        "give u3_m at an end, or leave axial_inertia on",
+    )
+}
+
 /// A prescribed flow must have somewhere to go.
 pub fn flow(network: &Network) -> Option<Obstacle> {
     let source = network.sources.first()?;

@@ -16,7 +16,7 @@ pub struct Effect {
 }
 
 /// Every effect once, in the order of the decisions.
-pub const TABLE: [Effect; 19] = [
+pub const TABLE: [Effect; 20] = [
     Effect {
         name: "transverse_motion",
         adds: "x = u1, φ, κ, M = EI (κ - α_p), V = -M'/λ; without it a bar, N = EA (u3' - λ_p)",
@@ -44,6 +44,13 @@ pub const TABLE: [Effect; 19] = [
         brings: "v1, v3 of every node",
         number: "(ω/ω1)², ω1 the first bending frequency",
         cost: "half the unknowns of the solid; the waves that limit steps and orders",
+    },
+    Effect {
+        name: "axial_inertia",
+        adds: "m u3_tt; without it m U'', U the motion of the driven ends",
+        brings: "v3 of every node; axial waves",
+        number: "(f/f_axial)², and (u1/l_s)² where the beam bends",
+        cost: "a quarter of the unknowns of the solid; its fastest waves where the mesh is coarse",
     },
     Effect {
         name: "rotary_inertia",
