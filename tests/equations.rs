@@ -16,7 +16,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 27] = [
+const INDEX: [(&str, &str, &str); 28] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -79,6 +79,11 @@ const INDEX: [(&str, &str, &str); 27] = [
         "[E27]",
         "tests/effects/waves.rs",
         "axial_waves_vanish_with_the_square_of_the_frequency",
+    ),
+    (
+        "[E28]",
+        "tests/effects/stretch.rs",
+        "stretch_vanishes_with_the_inverse_of_the_stiffness",
     ),
 ];
 

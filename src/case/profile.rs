@@ -171,6 +171,7 @@ impl Wave {
             value: a * sin,
             rate: a * k * cos,
             acceleration: -a * k * k * sin,
+            jerk: -a * k * k * k * cos,
         }
     }
 
@@ -181,6 +182,7 @@ impl Wave {
             value: a * cos,
             rate: -a * k * sin,
             acceleration: -a * k * k * cos,
+            jerk: a * k * k * k * sin,
         }
     }
 }

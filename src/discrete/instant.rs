@@ -1,6 +1,6 @@
 //! Everything that depends on time alone, evaluated once an instant.
 
-use super::System;
+use super::{Statics, System};
 use crate::case::signals::{Clock, Jet, Signal};
 use crate::case::{Rotation, Translation};
 use crate::model::Load;
@@ -75,6 +75,7 @@ impl Frame {
                     value: tip.value - root.value,
                     rate: tip.rate - root.rate,
                     acceleration: tip.acceleration - root.acceleration,
+                    jerk: tip.jerk - root.jerk,
                 },
             }),
             (Some(end), None) | (None, Some(end)) => Some(alone(end)),
@@ -89,6 +90,7 @@ impl Frame {
             value: self.root.value + share * self.lean.value,
             rate: self.root.rate + share * self.lean.rate,
             acceleration: self.root.acceleration + share * self.lean.acceleration,
+            jerk: self.root.jerk + share * self.lean.jerk,
         }
     }
 }
@@ -107,6 +109,8 @@ pub struct Instant {
     pub moment_x: Vec<f64>,
     /// First moment per length, z component, in each cell [N].
     pub moment_z: Vec<f64>,
+    /// Normal forces that follow from loads alone; nothing where the beam can stretch.
+    pub statics: Statics,
     /// Conductance of each link [m^3/(s Pa)].
     pub conductance: Vec<f64>,
     /// Resistance of each link between its half cells, valve included [Pa s/m^3]; infinite when closed.
@@ -135,6 +139,7 @@ impl Instant {
             force_z: vec![0.0; system.mesh.nodes],
             moment_x: vec![0.0; system.mesh.cells],
             moment_z: vec![0.0; system.mesh.cells],
+            statics: Statics::new(system),
             conductance: vec![0.0; links],
             resistance: vec![0.0; links],
             port_pressure: vec![0.0; ports],
@@ -179,6 +184,7 @@ impl Instant {
                 .map(|f| (f.normal.jet(clock).value, f.shear.jet(clock).value));
         }
         self.loads(system, clock);
+        self.statics.update(system, self.frame_3(), clock);
         self.network(system, clock, first);
     }
 

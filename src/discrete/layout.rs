@@ -77,7 +77,11 @@ impl Layout {
         } else {
             free(&root.transverse, &tip.transverse)
         };
-        let free_u3 = free(&root.axial, &tip.axial);
+        let free_u3 = if model.effects.axial_stretch {
+            free(&root.axial, &tip.axial)
+        } else {
+            0..0
+        };
         let inertia = model.effects.solid_inertia;
         let waves = [inertia && !bar, inertia && model.effects.axial_inertia];
         let damped = model.section.drag > 0.0 || model.section.axial_damping_time > 0.0;

@@ -8,6 +8,7 @@ pub mod mesh;
 pub mod recipe;
 pub mod sample;
 pub mod start;
+pub mod statics;
 pub mod workspace;
 
 use crate::case::schema::Case;
@@ -18,6 +19,7 @@ pub use fluid_mesh::FluidMesh;
 pub use instant::{Instant, SampledLoad};
 pub use layout::Layout;
 pub use mesh::Mesh;
+pub use statics::Statics;
 pub use workspace::Workspace;
 
 /// A model on a mesh: everything the residual needs besides time and state.

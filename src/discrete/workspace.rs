@@ -59,6 +59,10 @@ pub struct Workspace<T> {
     pub mean_moment: Vec<T>,
     /// Mean force.
     pub mean_force: Vec<T>,
+    /// Its rate; for the balances.
+    pub mean_moment_rate: Vec<T>,
+    /// Rate of the mean force; for the balances.
+    pub mean_force_rate: Vec<T>,
     /// `lambda_p`.
     pub pressure_stretch: Vec<T>,
     /// `alpha_p`.
@@ -133,6 +137,8 @@ impl<T: Scalar> Workspace<T> {
             sz: zeros(c),
             mean_moment: zeros(s),
             mean_force: zeros(s),
+            mean_moment_rate: zeros(s),
+            mean_force_rate: zeros(s),
             pressure_stretch: zeros(s),
             pressure_curvature: zeros(s),
             area: kept.iter().map(|&a| T::constant(a)).collect(),

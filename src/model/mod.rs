@@ -88,7 +88,7 @@ impl Wet {
         let bends = effects.pressure_to_curvature && reciprocal && self.strains.moment_half_difference > 0.0;
         let stretches = effects.pressure_to_stretch && reciprocal && self.strains.force_half_difference > 0.0;
         self.takes_moments = effects.moment_to_area || bends;
-        self.takes_forces = effects.force_to_area || stretches;
+        self.takes_forces = effects.axial_stretch && (effects.force_to_area || stretches);
         self.area = self.area.without(!effects.moment_to_area, !effects.force_to_area);
         self.strains = self
             .strains

@@ -53,7 +53,31 @@ const BENDING_DAMPED: &str = r#"/beam/damping={"bending_time_s":3e-4}"#;
 /// Both ends move along; stiff enough for a tolerance of its own.
 const PULLED: &str = r#"/ends={"root":"clamped","tip":{"clamped":{"u3_m":{"sine":{"amplitude":0.001,"frequency_hz":60,"ramp_cycles":1}}}}}"#;
 
+const RIGID_ALONG: &str = r#"{"finite_rotation":"off","axial_stretch":"off"}"#;
+/// The tip is held and driven along, the root is not.
+const TIP_HELD: &str = r#"/ends={"root":{"conditions":{"u1_m":{"sine":{"amplitude":0.001,"frequency_hz":60,"ramp_cycles":1}},"slope_rad":0,
+    "force_z_n":{"sine":{"amplitude":5,"frequency_hz":30}}}},
+    "tip":{"conditions":{"u3_m":{"sine":{"amplitude":0.001,"frequency_hz":40,"ramp_cycles":1}},"force_x_n":1,"moment_n_m":0}}}"#;
+
 const CHOICES: &[Choice] = &[
+    choice(RIGID_ALONG),
+    choice(r#"{"finite_rotation":"off","axial_stretch":"off","axial_force_on_bending":"off"}"#),
+    choice(r#"{"finite_rotation":"off","axial_stretch":"off","solid_inertia":"off"}"#),
+    choice(r#"{"finite_rotation":"off","axial_stretch":"off","pressure_to_stretch":"off","rotary_inertia":"off"}"#),
+    choice(r#"{"finite_rotation":"off","axial_stretch":"off","force_to_area":"off"}"#),
+    choice(r#"{"finite_rotation":"off","axial_stretch":"off","fluid":"off"}"#),
+    Choice {
+        effects: RIGID_ALONG,
+        sets: &[FOLLOWER],
+    },
+    Choice {
+        effects: RIGID_ALONG,
+        sets: &[TIP_HELD],
+    },
+    Choice {
+        effects: r#"{"finite_rotation":"off","axial_stretch":"off","network_pressure_differences":"off"}"#,
+        sets: &[PORT],
+    },
     choice(SMALL),
     choice(LINEAR),
     Choice {

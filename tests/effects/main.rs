@@ -16,6 +16,7 @@ mod refusals;
 mod rotary;
 mod rotation;
 mod sizes;
+mod stretch;
 mod undrained;
 mod uniform;
 mod waves;

@@ -68,6 +68,16 @@ fn a_beam_without_axial_inertia_is_carried_by_an_end() {
 }
 
 #[test]
+fn a_beam_that_does_not_stretch_is_held_by_one_end() {
+    let off = r#"/effects={"finite_rotation":"off","axial_stretch":"off"}"#;
+    let at = "/effects/axial_stretch";
+    assert!(effects(&[off]).refusals.is_empty());
+    refused(&[r#"/ends={"root":"free","tip":"free"}"#, off], at, "neither end");
+    refused(&[r#"/ends={"root":"clamped","tip":"clamped"}"#, off], at, "both ends");
+    refused(&[r#"/effects={"axial_stretch":"off"}"#], at, "finite_rotation is on");
+}
+
+#[test]
 fn a_prescribed_flow_needs_flow() {
     refused(&["/effects={\"flow\":\"off\"}"], "/effects/flow", "prescribes a flow");
 }

@@ -49,6 +49,16 @@ const SIZES: &[Row] = &[
         [3, 0, 0, 0],
         [23, 0, 0, 0, 0, -24],
     ),
+    (
+        r#"{"axial_stretch":"off","finite_rotation":"off","rotary_inertia":"off"}"#,
+        [2, 1, 2, 0],
+        [10, 2, 13, 20, -10, -22],
+    ),
+    (
+        r#"{"axial_stretch":"off","finite_rotation":"off","rotary_inertia":"off","fluid":"off"}"#,
+        [2, 0, 0, 0],
+        [8, 0, 0, 0, 0, -6],
+    ),
     (r#"{"transverse_motion":"off"}"#, [2, 1, 2, 0], [8, 2, 7, 12, -2, -12]),
     (
         r#"{"fluid":"off","rotary_inertia":"off"}"#,

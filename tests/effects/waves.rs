@@ -8,7 +8,7 @@ use super::limits::falls;
 const SINE: &str = r#"{"sine":{"amplitude":1,"frequency_hz":20}}"#;
 
 /// A dry beam shaken along at 20 Hz, starting smoothly, and loaded across; `stiffness` times the paper's modulus, axially.
-fn shaken(stiffness: f64, across: bool, effects: &str) -> Run {
+pub fn shaken(stiffness: f64, across: bool, effects: &str) -> Run {
     let loads = if across {
         r#"[{"force_x_n_m":{"signal":{"sine":{"amplitude":0.02,"frequency_hz":15,"ramp_cycles":0.5}}}}]"#
     } else {

@@ -30,6 +30,10 @@ pub struct EffectChoices {
     /// The normal force that acts on bending (geometric stiffness); off: the linear beam. Needs `finite_rotation` off.
     #[serde(default)]
     pub axial_force_on_bending: Choice,
+    /// Stretch along the beam; off: the beam draws in only as it bends, and the normal force follows from the loads. Needs
+    /// `finite_rotation` off, one end that holds or drives `u3`, and one that is free along.
+    #[serde(default)]
+    pub axial_stretch: Choice,
     /// Inertia of the solid; off: quasi-static solid.
     #[serde(default)]
     pub solid_inertia: Choice,

@@ -4,6 +4,7 @@ use super::{FLOWS, Flow, add};
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
 use crate::discrete::recipe::fluid::{bridge_drops, pressure_at};
 use crate::discrete::recipe::rows::{mean_force, mean_moment};
+use crate::discrete::recipe::small;
 use crate::discrete::{FluidMesh, Instant, System, Workspace};
 use crate::model::bladder::{kink_curvature, kink_slope};
 use crate::model::network::{LinkKind, Node};
@@ -21,6 +22,12 @@ pub fn complete(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f6
         if !wet.takes_forces {
             w.mean_force[j] = mean_force(system, w, j);
         }
+        let rate = |takes: bool, first: usize| if takes { yp[first + j] } else { 0.0 };
+        w.mean_moment_rate[j] = rate(wet.takes_moments, system.layout.mean_moment);
+        w.mean_force_rate[j] = match now.statics.mean_rate.get(j) {
+            Some(&given) => given,
+            None => rate(wet.takes_forces, system.layout.mean_force),
+        };
     }
     for (k, pool) in wet.pools.iter().enumerate() {
         w.pool_rate[k] = match (&pool.kind, system.layout.pool_pressure[k]) {
@@ -29,30 +36,41 @@ pub fn complete(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f6
             _ => 0.0,
         };
         for &bladder in &pool.bladders {
-            let rate = imposed_rate(system, wet, yp, w, bladder);
+            let rate = imposed_rate(wet, w, bladder);
             w.area_rate[fluid.cells_of(bladder)].fill(wet.area.per_pressure * w.pool_rate[k] + rate);
         }
     }
 }
 
-/// Rates of a segment's mean moment and force.
-fn mean_rates(system: &System, wet: &Wet, yp: &[f64], segment: usize) -> (f64, f64) {
-    let rate = |takes: bool, first: usize| if takes { yp[first + segment] } else { 0.0 };
-    (
-        rate(wet.takes_moments, system.layout.mean_moment),
-        rate(wet.takes_forces, system.layout.mean_force),
-    )
-}
-
 /// Rate of the area that moment and force impose on a bladder.
-fn imposed_rate(system: &System, wet: &Wet, yp: &[f64], w: &Workspace<f64>, bladder: usize) -> f64 {
+fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
     let (j, row) = if bladder < wet.per_row {
         (bladder, 1.0)
     } else {
         (bladder - wet.per_row, -1.0)
     };
-    let (moment_rate, force_rate) = mean_rates(system, wet, yp, j);
-    wet.area.moment_slope(w.mean_moment[j], row) * moment_rate + wet.area.force_slope(w.mean_force[j]) * force_rate
+    wet.area.moment_slope(w.mean_moment[j], row) * w.mean_moment_rate[j]
+        + wet.area.force_slope(w.mean_force[j]) * w.mean_force_rate[j]
+}
+
+/// Stretch by pressure of a beam that does not stretch otherwise, and with it the motion along, `[E28]`.
+pub fn draw_in(system: &System, w: &mut Workspace<f64>) {
+    if let Some(wet) = &system.model.wet
+        && system.model.effects.pressure_to_stretch
+    {
+        for j in 0..wet.per_row {
+            let (upper, lower) = (w.mean_pressure[j], w.mean_pressure[wet.per_row + j]);
+            w.pressure_stretch[j] = wet.coupling.stretch(&wet.strains, w.mean_force[j], upper, lower);
+        }
+    }
+    let stretch_rate = |w: &Workspace<f64>, j| {
+        system.model.wet.as_ref().map_or(0.0, |wet| {
+            SegmentRates::new(system, wet, w, j)
+                .strain_rates(&wet.coupling, &wet.strains)
+                .0
+        })
+    };
+    small::draw_in(system, stretch_rate, w);
 }
 
 /// Power that a coupling without reciprocity adds, and the rate of `alpha_p` at a node (for ends with given moment).
@@ -63,14 +81,13 @@ fn imposed_rate(system: &System, wet: &Wet, yp: &[f64], w: &Workspace<f64>, blad
 /// ```
 pub fn rates<'a>(
     system: &'a System,
-    yp: &'a [f64],
     w: &Workspace<f64>,
     out: &mut [f64],
 ) -> impl Fn(&Workspace<f64>, usize) -> f64 + use<'a> {
     if let Some(wet) = &system.model.wet {
         let ratio = wet.bladder_length * wet.per_row as f64 / system.model.length;
         for j in 0..wet.per_row {
-            let s = SegmentRates::new(system, wet, yp, w, j);
+            let s = SegmentRates::new(system, wet, w, j);
             let reciprocal = Coupling::Reciprocal { length_ratio: ratio };
             let (stretch, curvature) = s.strain_rates(&wet.coupling, &wet.strains);
             let (stretch_0, curvature_0) = s.strain_rates(&reciprocal, &wet.area);
@@ -81,7 +98,7 @@ pub fn rates<'a>(
     move |w, node| {
         let Some(wet) = &system.model.wet else { return 0.0 };
         let j = system.mesh.segments_of_node(node).0;
-        SegmentRates::new(system, wet, yp, w, j)
+        SegmentRates::new(system, wet, w, j)
             .strain_rates(&wet.coupling, &wet.strains)
             .1
     }
@@ -98,9 +115,9 @@ struct SegmentRates {
 }
 
 impl SegmentRates {
-    fn new(system: &System, wet: &Wet, yp: &[f64], w: &Workspace<f64>, j: usize) -> Self {
+    fn new(system: &System, wet: &Wet, w: &Workspace<f64>, j: usize) -> Self {
         let (moment, force) = (w.mean_moment[j], w.mean_force[j]);
-        let (moment_rate, force_rate) = mean_rates(system, wet, yp, j);
+        let (moment_rate, force_rate) = (w.mean_moment_rate[j], w.mean_force_rate[j]);
         let mut pressure = [0.0; 2];
         let mut pressure_rate = [0.0; 2];
         for (k, bladder) in [j, wet.per_row + j].into_iter().enumerate() {
@@ -111,7 +128,7 @@ impl SegmentRates {
                     let cells = system.fluid.as_ref().map_or(0..0, |f| f.cells_of(bladder));
                     let count = cells.len() as f64;
                     let area_rate = w.area_rate[cells].iter().sum::<f64>() / count;
-                    (area_rate - imposed_rate(system, wet, yp, w, bladder)) / wet.area.per_pressure
+                    (area_rate - imposed_rate(wet, w, bladder)) / wet.area.per_pressure
                 }
             };
         }

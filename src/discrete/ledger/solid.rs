@@ -33,7 +33,12 @@ pub fn flows(
             fz += cz;
         }
         if section.drag > 0.0 {
-            let (dx, dz) = (length * section.drag * w.v1[i], length * section.drag * w.v3[i]);
+            let along = if system.model.effects.axial_stretch {
+                w.v3[i]
+            } else {
+                carried(system, now, w, i)
+            };
+            let (dx, dz) = (length * section.drag * w.v1[i], length * section.drag * along);
             add(out, Flow::Damping, dx * w.v1[i] + dz * w.v3[i]);
             fx -= dx;
             fz -= dz;
@@ -183,7 +188,9 @@ pub fn energies(system: &System, now: &Instant, w: &Workspace<f64>) -> Energies 
         e.bending += 0.5 * length * w.moment[i] * w.moment[i] / section.bending_stiffness;
     }
     for c in 0..mesh.cells {
-        e.axial += 0.5 * mesh.h * w.force[c] * w.force[c] / section.axial_stiffness;
+        if system.model.effects.axial_stretch {
+            e.axial += 0.5 * mesh.h * w.force[c] * w.force[c] / section.axial_stiffness;
+        }
         if system.model.effects.rotary_inertia {
             e.rotary += 0.5 * mesh.h * spin(system, w, c) * turning_rate(system, w, c);
         }

@@ -54,7 +54,7 @@ pub fn pressure_strains<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let effects = &system.model.effects;
     for j in 0..wet.per_row {
         let (upper, lower) = (w.mean_pressure[j], w.mean_pressure[wet.per_row + j]);
-        if effects.pressure_to_stretch {
+        if effects.pressure_to_stretch && effects.axial_stretch {
             w.pressure_stretch[j] = wet.coupling.stretch(&wet.strains, w.mean_force[j], upper, lower);
         }
         if effects.pressure_to_curvature {

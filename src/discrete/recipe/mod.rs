@@ -27,7 +27,7 @@ pub fn evaluate<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w:
         Kinematics::Linear | Kinematics::SmallRotation => {
             small::kinematics(system, now, w);
             small::rates(system, now, w);
-            solid::normal_forces(system, w);
+            small::normal_forces(system, now, w);
             solid::moments(system, now, w);
             small::section_forces(system, now, w);
         }

@@ -1,6 +1,7 @@
 //! The beam that turns little: von Karman's, and the linear one.
 
-use super::solid::{couple, curvature_rates, normal_force, total_moment_drop};
+use super::solid::{self, couple, curvature_rates, normal_force, total_moment_drop};
+use crate::case::Translation;
 use crate::discrete::{Instant, System, Workspace};
 use crate::model::{Kinematics, Scalar};
 
@@ -16,13 +17,17 @@ use crate::model::{Kinematics, Scalar};
 pub fn kinematics<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
+    let stretches = system.model.effects.axial_stretch;
     for c in 0..system.mesh.cells {
         let angle = (w.u1[c + 1] - w.u1[c]) * inverse;
+        w.d3x[c] = angle;
+        if !stretches {
+            continue;
+        }
         let mut e = (w.u3[c + 1] - w.u3[c]) * inverse;
         if tension {
             e += angle.squared() * 0.5;
         }
-        w.d3x[c] = angle;
         w.strain[c] = e;
         w.stretch[c] = e + 1.0;
     }
@@ -64,6 +69,44 @@ pub fn strain_rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace
         }
     }
     curvature_rates(system, now, w);
+}
+
+/// Normal forces: elastic, or where the beam does not stretch those of statics, `[E28]`.
+pub fn normal_forces<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
+    if system.model.effects.axial_stretch {
+        solid::normal_forces(system, w);
+        return;
+    }
+    for (force, &given) in w.force.iter_mut().zip(&now.statics.force) {
+        *force = T::constant(given);
+    }
+}
+
+/// Displacement and velocity along of a beam that does not stretch, from the end that is held on, `[E28]`; with the rates
+/// of stretch by pressure in each segment.
+pub fn draw_in(system: &System, stretch_rate: impl Fn(&Workspace<f64>, usize) -> f64, w: &mut Workspace<f64>) {
+    let (h, k, last) = (system.mesh.h, system.mesh.cells_per_segment, system.mesh.cells);
+    let tension = system.model.kinematics == Kinematics::SmallRotation;
+    let root_held = matches!(system.model.ends[0].axial, Translation::Displacement(_));
+    let pressed = system.fluid.is_some() && system.model.effects.pressure_to_stretch;
+    let held = if root_held { 0 } else { last };
+    let (mut u, mut v) = (w.u3[held], w.v3[held]);
+    for step in 0..last {
+        let (cell, node, outward) = if root_held {
+            (step, step + 1, 1.0)
+        } else {
+            (last - 1 - step, last - 1 - step, -1.0)
+        };
+        if pressed {
+            u += outward * h * w.pressure_stretch[cell / k];
+            v += outward * h * stretch_rate(w, cell / k);
+        }
+        if tension {
+            u -= outward * h * 0.5 * w.d3x[cell] * w.d3x[cell];
+            v -= outward * h * w.d3x[cell] * w.angle_rate[cell];
+        }
+        (w.u3[node], w.v3[node]) = (u, v);
+    }
 }
 
 /// Section forces in lab axes.

@@ -67,6 +67,9 @@ pub fn unpack<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w: &
         if wet.takes_forces {
             copy(&mut w.mean_force, y, l.mean_force);
         }
+        for (mean, &given) in w.mean_force.iter_mut().zip(&now.statics.mean) {
+            *mean = T::constant(given);
+        }
         for (slot, &bladder) in fluid.flowing.iter().enumerate() {
             let first = l.area + slot * fluid.cells_per_bladder;
             copy(&mut w.area[fluid.cells_of(bladder)], y, first);

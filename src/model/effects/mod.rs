@@ -34,6 +34,8 @@ pub struct EffectSet {
     pub finite_rotation: bool,
     /// The normal force acts on bending.
     pub axial_force_on_bending: bool,
+    /// Stretch along the beam.
+    pub axial_stretch: bool,
     /// Inertia of the solid.
     pub solid_inertia: bool,
     /// Inertia along the beam.
@@ -113,12 +115,20 @@ impl EffectSet {
             || obstacles::axial_force_on_bending(finite_rotation),
             kept(),
         );
+        let axial_stretch = table.decide(
+            "axial_stretch",
+            c.axial_stretch,
+            Ok(()),
+            || obstacles::axial_stretch(case, transverse_motion, finite_rotation),
+            kept(),
+        );
         let solid_inertia = table.decide("solid_inertia", c.solid_inertia, Ok(()), || None, kept());
         let moving = if solid_inertia { Ok(()) } else { Err("no solid inertia") };
+        let stretching = if axial_stretch { Ok(()) } else { Err("no axial stretch") };
         let axial_inertia = table.decide(
             "axial_inertia",
             c.axial_inertia,
-            moving,
+            moving.and(stretching),
             || obstacles::axial_inertia(case),
             kept(),
         );
@@ -181,6 +191,7 @@ impl EffectSet {
             transverse_motion,
             finite_rotation,
             axial_force_on_bending,
+            axial_stretch,
             solid_inertia,
             axial_inertia,
             rotary_inertia,

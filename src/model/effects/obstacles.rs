@@ -86,6 +86,33 @@ pub fn axial_inertia(case: &Case) -> Option<Obstacle> {
     )
 }
 
+/// The normal force must follow from the loads.
+pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool) -> Option<Obstacle> {
+    const HINT: &str = "leave axial_stretch on";
+    if !transverse_motion {
+        return obstacle("a beam that neither bends nor stretches is rigid", HINT);
+    }
+    if finite_rotation {
+        return obstacle(
+            "finite_rotation is on, which couples stretch and bending",
+            "leave finite_rotation out too",
+        );
+    }
+    let held = [&case.ends.root, &case.ends.tip].map(|end| end.resolve().axial);
+    match held
+        .iter()
+        .filter(|axial| matches!(axial, Translation::Displacement(_)))
+        .count()
+    {
+        1 => None,
+        0 => obstacle("neither end holds u3", HINT),
+        _ => obstacle(
+            "both ends hold u3, so the normal force does not follow from the loads",
+            HINT,
+        ),
+    }
+}
+
 /// A prescribed flow must have somewhere to go.
 pub fn flow(network: &Network) -> Option<Obstacle> {
     let source = network.sources.first()?;

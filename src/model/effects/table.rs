@@ -16,7 +16,7 @@ pub struct Effect {
 }
 
 /// Every effect once, in the order of the decisions.
-pub const TABLE: [Effect; 20] = [
+pub const TABLE: [Effect; 21] = [
     Effect {
         name: "transverse_motion",
         adds: "x = u1, φ, κ, M = EI (κ - α_p), V = -M'/λ; without it a bar, N = EA (u3' - λ_p)",
@@ -37,6 +37,13 @@ pub const TABLE: [Effect; 20] = [
         brings: "geometric stiffness: buckling, tension, parametric excitation; without it bending and stretch are apart",
         number: "N l_s²/(π² EI), and (u1/h_s)² where both ends hold u3",
         cost: "entries that couple u1 and u3",
+    },
+    Effect {
+        name: "axial_stretch",
+        adds: "N = EA (e - λ_p); without it u3' = λ_p - g u1'²/2, N from statics",
+        brings: "u3 and v3 of every node; mean forces",
+        number: "N/EA: the stretch, and with inertia (f/f_axial)²",
+        cost: "half the unknowns of the solid; axial waves",
     },
     Effect {
         name: "solid_inertia",
