@@ -8,13 +8,19 @@ mod common;
 #[path = "../differences/mod.rs"]
 mod differences;
 
+#[allow(dead_code)] // shared with the tests of stability
+#[path = "../stability/fuzz_case.rs"]
+mod fuzz_case;
+
 mod choices;
 mod coupling;
 mod exact;
 mod limits;
+mod random;
 mod refusals;
 mod rotary;
 mod rotation;
+mod runs;
 mod sizes;
 mod stretch;
 mod undrained;
