@@ -1,5 +1,7 @@
 //! Finite volumes along the bladders, and the conductances between them.
 
+use std::ops::Range;
+
 use crate::case::schema::BladderEnd;
 use crate::model::network::{LinkKind, Node};
 use crate::model::{Storage, Wet};
@@ -67,6 +69,8 @@ pub struct FluidMesh {
     pub conductance: f64,
     /// Bladders whose cells' areas are unknowns, ascending.
     pub flowing: Vec<usize>,
+    /// Their cells, neighbours taken together: the unknowns follow one another in this order.
+    pub runs: Vec<Range<usize>>,
     /// Junctions whose pressures are unknowns, by their numbers in the network.
     pub junctions: Vec<usize>,
     /// Links along which fluid flows.
@@ -91,6 +95,7 @@ impl FluidMesh {
         let half = 0.5 / conductance;
         let flows = |bladder: usize| wet.storage[bladder] == Storage::Flowing;
         let pooled = |component: usize| wet.pools.iter().any(|pool| pool.component == component);
+        let flowing: Vec<usize> = (0..bladders).filter(|&b| flows(b)).collect();
         let junctions: Vec<usize> = (0..network.junctions.len())
             .filter(|&j| wet.flows && !pooled(network.component_of_junction[j]))
             .collect();
@@ -131,7 +136,8 @@ impl FluidMesh {
             cells: bladders * cells_per_bladder,
             ds,
             conductance,
-            flowing: (0..bladders).filter(|&b| flows(b)).collect(),
+            runs: runs(&flowing, cells_per_bladder),
+            flowing,
             links: links.collect(),
             sources: sources.collect(),
             bridges: bridges.collect(),
@@ -161,7 +167,20 @@ impl FluidMesh {
 
     /// Cells of a bladder.
     #[inline]
-    pub fn cells_of(&self, bladder: usize) -> std::ops::Range<usize> {
+    pub fn cells_of(&self, bladder: usize) -> Range<usize> {
         bladder * self.cells_per_bladder..(bladder + 1) * self.cells_per_bladder
     }
+}
+
+/// Ranges of the cells of bladders, those of neighbours in one.
+fn runs(bladders: &[usize], cells_per_bladder: usize) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = vec![];
+    for &bladder in bladders {
+        let (start, end) = (bladder * cells_per_bladder, (bladder + 1) * cells_per_bladder);
+        match runs.last_mut() {
+            Some(run) if run.end == start => run.end = end,
+            _ => runs.push(start..end),
+        }
+    }
+    runs
 }

@@ -215,9 +215,12 @@ pub fn mean_force<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize) 
 /// `[E17]` Storage of each cell, `ds da/dt = inflow` (A.13).
 pub fn storage<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     let Some(fluid) = &system.fluid else { return };
-    let cells = fluid.flowing.iter().flat_map(|&bladder| fluid.cells_of(bladder));
-    for (row, cell) in (system.layout.area..).zip(cells) {
-        r[row] = w.area_rate[cell] * fluid.ds - w.inflow[cell];
+    let mut row = system.layout.area;
+    for run in &fluid.runs {
+        for cell in run.clone() {
+            r[row] = w.area_rate[cell] * fluid.ds - w.inflow[cell];
+            row += 1;
+        }
     }
 }
 

@@ -70,10 +70,11 @@ pub fn unpack<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w: &
         for (mean, &given) in w.mean_force.iter_mut().zip(&now.statics.mean) {
             *mean = T::constant(given);
         }
-        for (slot, &bladder) in fluid.flowing.iter().enumerate() {
-            let first = l.area + slot * fluid.cells_per_bladder;
-            copy(&mut w.area[fluid.cells_of(bladder)], y, first);
-            copy(&mut w.area_rate[fluid.cells_of(bladder)], yp, first);
+        let mut first = l.area;
+        for run in &fluid.runs {
+            copy(&mut w.area[run.clone()], y, first);
+            copy(&mut w.area_rate[run.clone()], yp, first);
+            first += run.len();
         }
         copy(&mut w.junction, y, l.junction);
         copy(&mut w.bridge, y, l.bridge);
