@@ -66,6 +66,7 @@
 //! | n, r | section force in lab axes, its rotary part over d1 | N | E13 |
 //! | b, m b1 | load per length, its first moment over the section | N/m, N | E5, E13 |
 //! | c_i | force on a node that the published form adds | N | E15 |
+//! | g, U | 1 where the normal force acts on bending, else 0; motion of the driven ends along the beam | 1, m | E26, E27, E28 |
 //!
 //! Fluid and network:
 //!
@@ -84,6 +85,7 @@
 //! | σ, d | smoothed absolute value and its width | as its argument | E2 |
 //! | ψ', ζ' | published slope and length per pressure over E | rad, m | E3 |
 //! | g* | complementary energy per length of the reciprocal coupling | N | E3 |
+//! | a0, V | area and volume change that is kept | m², m³ | E23, E25 |
 //! | Mbar, Nbar | means over a segment | N m, N | E16 |
 //! | q1b, q1c | permeability of bladder and tube | m⁴ | E4 |
 //! | l_c, r_c | length and radius of a tube | m | E6 |

@@ -177,3 +177,56 @@ fn profiles_and_their_slopes() {
     // The slope at an end is that of the curve, not of the constant beyond.
     assert_eq!(read(r#"{"table":{"positions":[0,1],"values":[0,2]}}"#).slope(0.0), 2.0);
 }
+
+/// Third derivatives, where nothing joins: fourth-order differences of the second.
+#[test]
+fn third_derivatives_agree_with_differences() {
+    for (text, t) in [
+        (
+            r#"{"sine": {"amplitude": 2, "frequency_hz": 1.5, "phase_rad": 0.3}}"#,
+            0.41,
+        ),
+        (
+            r#"{"sine": {"amplitude": 2, "frequency_hz": 1.5, "ramp_cycles": 2}}"#,
+            0.41,
+        ),
+        (
+            r#"{"sigmoid": {"amplitude": 3, "steepness_per_s": 4, "midpoint_s": 0.5}}"#,
+            0.41,
+        ),
+        (
+            r#"{"sigmoid": {"amplitude": 3, "steepness_per_s": 4, "midpoint_s": 0.5}}"#,
+            0.7,
+        ),
+        (
+            r#"{"ramp": {"from": 1, "to": 4, "start_s": 0.1, "duration_s": 1}}"#,
+            0.41,
+        ),
+        (r#"{"polynomial": {"coefficients": [1, 2, 3, 4, 5]}}"#, 0.41),
+        (
+            r#"{"table": {"times_s": [0, 0.3, 1], "values": [0, 2, 1], "interpolation": "cubic"}}"#,
+            0.41,
+        ),
+        (
+            r#"{"product": [{"polynomial": {"coefficients": [1, 2, 3, 4]}}, {"sine": {"amplitude": 2, "frequency_hz": 0.5}}]}"#,
+            0.41,
+        ),
+    ] {
+        let signal: Signal = serde_json::from_str(text).unwrap();
+        let h = 1e-3;
+        let a = |k: f64| {
+            signal
+                .jet(Clock {
+                    t: t + k * h,
+                    within: t,
+                })
+                .acceleration
+        };
+        let expected = (a(-2.0) - 8.0 * a(-1.0) + 8.0 * a(1.0) - a(2.0)) / (12.0 * h);
+        let jerk = signal.jet(Clock { t, within: t }).jerk;
+        assert!(
+            (jerk - expected).abs() < 1e-6 * (1.0 + jerk.abs()),
+            "{text}: {jerk} {expected}"
+        );
+    }
+}

@@ -89,6 +89,7 @@ impl Curve {
             value: a * y0 + b * y1 + ((a * a * a - a) * m0 + (b * b * b - b) * m1) * h * h / 6.0,
             rate: (y1 - y0) / h + ((1.0 - 3.0 * a * a) * m0 + (3.0 * b * b - 1.0) * m1) * h / 6.0,
             acceleration: a * m0 + b * m1,
+            jerk: (m1 - m0) / h,
         }
     }
 

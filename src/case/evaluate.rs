@@ -119,6 +119,7 @@ impl Sine {
             value: a * sin,
             rate: a * w * cos,
             acceleration: -a * w * w * sin,
+            jerk: -a * w * w * w * cos,
         };
         let s = t * self.frequency_hz / self.ramp_cycles;
         if self.ramp_cycles <= 0.0 || s >= 1.0 {
@@ -132,7 +133,7 @@ impl Sine {
 }
 
 impl Sigmoid {
-    /// `y = A g`, `y' = A k g h`, `y'' = A k^2 g h (h - g)` with `g = 1/(1 + e^-z)`, `h = 1 - g`, `z = k (t - t0)`;
+    /// `y = A g`, `y' = A k g h`, `y'' = A k^2 g h (h - g)`, `y''' = A k^3 g h (h^2 - 4 g h + g^2)` with `g = 1/(1 + e^-z)`, `h = 1 - g`, `z = k (t - t0)`;
     /// only `e^-|z|` is formed, which cannot overflow.
     fn jet(&self, t: f64) -> Jet {
         let (a, k) = (self.amplitude, self.steepness_per_s);
@@ -144,6 +145,7 @@ impl Sigmoid {
             value: a * g,
             rate: a * k * g * h,
             acceleration: a * k * k * g * h * (h - g),
+            jerk: a * k * k * k * g * h * (h * h - 4.0 * g * h + g * g),
         }
     }
 }
@@ -162,6 +164,7 @@ impl Ramp {
                 value: (clock.t - self.start_s) / self.duration_s,
                 rate: 1.0 / self.duration_s,
                 acceleration: 0.0,
+                jerk: 0.0,
             },
         };
         Jet::constant(self.from) + part.scaled(self.to - self.from)
@@ -175,6 +178,7 @@ impl Polynomial {
             value: p.value * x + c,
             rate: p.rate * x + p.value,
             acceleration: p.acceleration * x + 2.0 * p.rate,
+            jerk: p.jerk * x + 3.0 * p.acceleration,
         })
     }
 }

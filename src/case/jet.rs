@@ -1,6 +1,6 @@
-//! Value, first and second derivative in time as one quantity, with the rules of calculus.
+//! Value and the first three derivatives in time as one quantity, with the rules of calculus.
 
-/// Value of a signal with its first and second time derivative.
+/// Value of a signal with its first three time derivatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jet {
     /// Value.
@@ -9,6 +9,8 @@ pub struct Jet {
     pub rate: f64,
     /// Second derivative [1/s^2].
     pub acceleration: f64,
+    /// Third derivative [1/s^3].
+    pub jerk: f64,
 }
 
 impl Jet {
@@ -18,6 +20,7 @@ impl Jet {
             value,
             rate: 0.0,
             acceleration: 0.0,
+            jerk: 0.0,
         }
     }
 
@@ -27,6 +30,7 @@ impl Jet {
             value: factor * self.value,
             rate: factor * self.rate,
             acceleration: factor * self.acceleration,
+            jerk: factor * self.jerk,
         }
     }
 
@@ -37,6 +41,7 @@ impl Jet {
             value: s * s * s * (10.0 + s * (6.0 * s - 15.0)),
             rate: n * 30.0 * s * s * (1.0 - s) * (1.0 - s),
             acceleration: n * n * 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s),
+            jerk: n * n * n * 60.0 * (1.0 + 6.0 * s * (s - 1.0)),
         }
     }
 }
@@ -48,11 +53,12 @@ impl std::ops::Add for Jet {
             value: self.value + other.value,
             rate: self.rate + other.rate,
             acceleration: self.acceleration + other.acceleration,
+            jerk: self.jerk + other.jerk,
         }
     }
 }
 
-/// Leibniz: `(a b)' = a' b + a b'`, `(a b)'' = a'' b + 2 a' b' + a b''`.
+/// Leibniz: `(a b)' = a' b + a b'`, `(a b)'' = a'' b + 2 a' b' + a b''`, `(a b)''' = a''' b + 3 a'' b' + 3 a' b'' + a b'''`.
 impl std::ops::Mul for Jet {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
@@ -62,6 +68,9 @@ impl std::ops::Mul for Jet {
             acceleration: self.acceleration * other.value
                 + 2.0 * self.rate * other.rate
                 + self.value * other.acceleration,
+            jerk: self.jerk * other.value
+                + 3.0 * (self.acceleration * other.rate + self.rate * other.acceleration)
+                + self.value * other.jerk,
         }
     }
 }

@@ -139,6 +139,11 @@ impl Profile {
         self.jet(x).value
     }
 
+    /// True where it is a number, the same everywhere.
+    pub fn is_uniform(&self) -> bool {
+        matches!(self, Self::Constant(_))
+    }
+
     /// Derivative by `x` at `x`.
     pub fn slope(&self, x: f64) -> f64 {
         self.jet(x).rate
@@ -166,6 +171,7 @@ impl Wave {
             value: a * sin,
             rate: a * k * cos,
             acceleration: -a * k * k * sin,
+            jerk: -a * k * k * k * cos,
         }
     }
 
@@ -176,6 +182,7 @@ impl Wave {
             value: a * cos,
             rate: -a * k * sin,
             acceleration: -a * k * k * cos,
+            jerk: a * k * k * k * sin,
         }
     }
 }

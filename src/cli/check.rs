@@ -74,7 +74,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     for d in &system.model.effects.decisions {
         let _ = writeln!(
             text,
-            "  {:<16} {:<4} {}",
+            "  {:<30} {:<4} {}",
             d.name,
             if d.on { "on" } else { "off" },
             d.reason

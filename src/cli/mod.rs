@@ -60,6 +60,7 @@ fn act(command: &Command) -> Result<ExitCode> {
 fn refuse(loaded: &LoadedCase, system: &System) -> Result<()> {
     let mut violations: Vec<_> = order::refusal(&loaded.case, system).into_iter().collect();
     violations.extend(audit::refusals(&loaded.case, &system.model));
+    violations.extend(system.model.effects.refusals.iter().cloned());
     if violations.is_empty() {
         return Ok(());
     }

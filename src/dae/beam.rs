@@ -93,7 +93,7 @@ impl BeamDae {
         self.unscale(t, y, yp);
         let b = &mut self.plain;
         recipe::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
-        recipe::solid::strain_rates(&self.system, &self.now, &mut b.workspace);
+        ledger::complete(&self.system, &self.now, &b.yp, &mut b.workspace);
         (&self.system, &self.now, &mut b.workspace)
     }
 

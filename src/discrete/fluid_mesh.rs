@@ -1,8 +1,10 @@
 //! Finite volumes along the bladders, and the conductances between them.
 
+use std::ops::Range;
+
 use crate::case::schema::BladderEnd;
-use crate::model::Wet;
 use crate::model::network::{LinkKind, Node};
+use crate::model::{Storage, Wet};
 
 /// Where a link ends, on the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +20,8 @@ pub enum Place {
 /// A link on the mesh.
 #[derive(Clone, Debug)]
 pub struct MeshLink {
+    /// Number among the network's links.
+    pub number: usize,
     /// Where positive flow comes from.
     pub from: Place,
     /// Where it goes.
@@ -28,6 +32,26 @@ pub struct MeshLink {
     pub resistance: f64,
     /// What it is.
     pub kind: LinkKind,
+}
+
+/// A prescribed flow on the mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshSource {
+    /// Number among the network's sources.
+    pub number: usize,
+    /// Where it enters.
+    pub into: Place,
+}
+
+/// A bridge on the mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshBridge {
+    /// Number among the network's bridges.
+    pub number: usize,
+    /// One port.
+    pub from: Place,
+    /// The other.
+    pub to: Place,
 }
 
 /// Cells of all bladders: bladder b holds cells `b cells_per_bladder ..`, inlet to outlet; upper row first.
@@ -43,65 +67,120 @@ pub struct FluidMesh {
     pub ds: f64,
     /// Conductance between neighbouring cells of a bladder, `q1b/(mu ds)` [m^3/(s Pa)].
     pub conductance: f64,
-    /// Links, in the order of the network's.
+    /// Bladders whose cells' areas are unknowns, ascending.
+    pub flowing: Vec<usize>,
+    /// Their cells, neighbours taken together: the unknowns follow one another in this order.
+    pub runs: Vec<Range<usize>>,
+    /// Junctions whose pressures are unknowns, by their numbers in the network.
+    pub junctions: Vec<usize>,
+    /// Links along which fluid flows.
     pub links: Vec<MeshLink>,
-    /// Where the network's sources enter.
-    pub sources: Vec<Place>,
-    /// Ends of the network's bridges.
-    pub bridges: Vec<(Place, Place)>,
+    /// Prescribed flows.
+    pub sources: Vec<MeshSource>,
+    /// Bridges of check valves.
+    pub bridges: Vec<MeshBridge>,
+    /// Volume change of each pool at the start [m^3].
+    pub volume_at_start: Vec<f64>,
+    /// Area change of each cell at the start, where it stays that [m^2].
+    pub area_at_start: Vec<f64>,
 }
 
 impl FluidMesh {
-    /// Cells and links of the network.
+    /// Cells and links of the network, those that take part.
     pub fn new(wet: &Wet, cells_per_bladder: usize) -> Self {
+        let network = &wet.network;
         let bladders = 2 * wet.per_row;
         let ds = wet.bladder_length / cells_per_bladder as f64;
-        let conductance = wet.network.bladder_mobility / ds;
+        let conductance = network.bladder_mobility / ds;
         let half = 0.5 / conductance;
+        let flows = |bladder: usize| wet.storage[bladder] == Storage::Flowing;
+        let pooled = |component: usize| wet.pools.iter().any(|pool| pool.component == component);
+        let flowing: Vec<usize> = (0..bladders).filter(|&b| flows(b)).collect();
+        let junctions: Vec<usize> = (0..network.junctions.len())
+            .filter(|&j| wet.flows && !pooled(network.component_of_junction[j]))
+            .collect();
+        // Where a link ends; nowhere in a bladder that takes no part.
         let place = |node: Node| match node {
-            Node::Cell { bladder, end } => Place::Cell(match end {
+            Node::Cell { bladder, .. } if !flows(bladder) => None,
+            Node::Cell { bladder, end } => Some(Place::Cell(match end {
                 BladderEnd::Inlet => bladder * cells_per_bladder,
                 BladderEnd::Outlet => (bladder + 1) * cells_per_bladder - 1,
-            }),
-            Node::Junction(j) => Place::Junction(j),
-            Node::Port(p) => Place::Port(p),
+            })),
+            Node::Junction(j) => junctions.iter().position(|&k| k == j).map(Place::Junction),
+            Node::Port(p) => wet.flows.then_some(Place::Port(p)),
         };
         let half_of = |p: Place| if let Place::Cell(_) = p { half } else { 0.0 };
-        let links = wet
-            .network
-            .links
-            .iter()
-            .map(|link| {
-                let (from, to) = (place(link.from), place(link.to));
-                MeshLink {
-                    from,
-                    to,
-                    half_cells: half_of(from) + half_of(to),
-                    resistance: link.resistance,
-                    kind: link.kind,
-                }
+        let open = network.links.iter().enumerate().filter(|(_, link)| !link.is_shut());
+        let links = open.filter_map(|(number, link)| {
+            let (from, to) = (place(link.from)?, place(link.to)?);
+            Some(MeshLink {
+                number,
+                from,
+                to,
+                half_cells: half_of(from) + half_of(to),
+                resistance: link.resistance,
+                kind: link.kind,
             })
-            .collect();
+        });
+        let sources = network.sources.iter().enumerate().filter_map(|(number, source)| {
+            let into = place(source.into)?;
+            Some(MeshSource { number, into })
+        });
+        let bridges = network.bridges.iter().enumerate().filter_map(|(number, bridge)| {
+            let (from, to) = (place(bridge.from)?, place(bridge.to)?);
+            Some(MeshBridge { number, from, to })
+        });
         Self {
             bladders,
             cells_per_bladder,
             cells: bladders * cells_per_bladder,
             ds,
             conductance,
-            links,
-            sources: wet.network.sources.iter().map(|s| place(s.into)).collect(),
-            bridges: wet
-                .network
-                .bridges
+            runs: runs(&flowing, cells_per_bladder),
+            flowing,
+            links: links.collect(),
+            sources: sources.collect(),
+            bridges: bridges.collect(),
+            junctions: junctions.clone(),
+            volume_at_start: vec![0.0; wet.pools.len()],
+            area_at_start: vec![0.0; bladders * cells_per_bladder],
+        }
+    }
+
+    /// Keeps the volumes of the start, in bladders and pools that keep theirs.
+    pub fn keep(&mut self, areas: &[f64], wet: &Wet) {
+        for bladder in 0..self.bladders {
+            let cells = self.cells_of(bladder);
+            if wet.storage[bladder] == Storage::Kept {
+                let mean = areas[cells.clone()].iter().sum::<f64>() / cells.len() as f64;
+                self.area_at_start[cells].fill(mean);
+            }
+        }
+        for (volume, pool) in self.volume_at_start.iter_mut().zip(&wet.pools) {
+            let cells = pool
+                .bladders
                 .iter()
-                .map(|b| (place(b.from), place(b.to)))
-                .collect(),
+                .flat_map(|&bladder| bladder * self.cells_per_bladder..(bladder + 1) * self.cells_per_bladder);
+            *volume = cells.map(|cell| areas[cell]).sum::<f64>() * self.ds;
         }
     }
 
     /// Cells of a bladder.
     #[inline]
-    pub fn cells_of(&self, bladder: usize) -> std::ops::Range<usize> {
+    pub fn cells_of(&self, bladder: usize) -> Range<usize> {
         bladder * self.cells_per_bladder..(bladder + 1) * self.cells_per_bladder
     }
+}
+
+/// Ranges of the cells of bladders, those of neighbours in one.
+fn runs(bladders: &[usize], cells_per_bladder: usize) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = vec![];
+    for &bladder in bladders {
+        let (start, end) = (bladder * cells_per_bladder, (bladder + 1) * cells_per_bladder);
+        match runs.last_mut() {
+            Some(run) if run.end == start => run.end = end,
+            _ => runs.push(start..end),
+        }
+    }
+    runs
 }

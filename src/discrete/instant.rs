@@ -1,6 +1,6 @@
 //! Everything that depends on time alone, evaluated once an instant.
 
-use super::System;
+use super::{Statics, System};
 use crate::case::signals::{Clock, Jet, Signal};
 use crate::case::{Rotation, Translation};
 use crate::model::Load;
@@ -75,6 +75,7 @@ impl Frame {
                     value: tip.value - root.value,
                     rate: tip.rate - root.rate,
                     acceleration: tip.acceleration - root.acceleration,
+                    jerk: tip.jerk - root.jerk,
                 },
             }),
             (Some(end), None) | (None, Some(end)) => Some(alone(end)),
@@ -89,6 +90,7 @@ impl Frame {
             value: self.root.value + share * self.lean.value,
             rate: self.root.rate + share * self.lean.rate,
             acceleration: self.root.acceleration + share * self.lean.acceleration,
+            jerk: self.root.jerk + share * self.lean.jerk,
         }
     }
 }
@@ -107,12 +109,16 @@ pub struct Instant {
     pub moment_x: Vec<f64>,
     /// First moment per length, z component, in each cell [N].
     pub moment_z: Vec<f64>,
+    /// Normal forces that follow from loads alone; nothing where the beam can stretch.
+    pub statics: Statics,
     /// Conductance of each link [m^3/(s Pa)].
     pub conductance: Vec<f64>,
     /// Resistance of each link between its half cells, valve included [Pa s/m^3]; infinite when closed.
     pub resistance: Vec<f64>,
     /// Prescribed pressure of each port [Pa].
     pub port_pressure: Vec<f64>,
+    /// Its rate [Pa/s].
+    pub port_pressure_rate: Vec<f64>,
     /// Prescribed flow of each source [m^3/s].
     pub source_flow: Vec<f64>,
 }
@@ -120,13 +126,12 @@ pub struct Instant {
 impl Instant {
     /// Room for the values of a system; nothing is evaluated yet.
     pub fn new(system: &System) -> Self {
-        let (links, ports, sources) = system.model.wet.as_ref().map_or((0, 0, 0), |wet| {
-            (
-                wet.network.links.len(),
-                wet.network.ports.len(),
-                wet.network.sources.len(),
-            )
-        });
+        let (ports, sources) = system
+            .model
+            .wet
+            .as_ref()
+            .map_or((0, 0), |wet| (wet.network.ports.len(), wet.network.sources.len()));
+        let links = system.fluid.as_ref().map_or(0, |fluid| fluid.links.len());
         Self {
             clock: None,
             ends: [EndInstant::default(); 2],
@@ -134,9 +139,11 @@ impl Instant {
             force_z: vec![0.0; system.mesh.nodes],
             moment_x: vec![0.0; system.mesh.cells],
             moment_z: vec![0.0; system.mesh.cells],
+            statics: Statics::new(system),
             conductance: vec![0.0; links],
             resistance: vec![0.0; links],
             port_pressure: vec![0.0; ports],
+            port_pressure_rate: vec![0.0; ports],
             source_flow: vec![0.0; sources],
         }
     }
@@ -177,6 +184,7 @@ impl Instant {
                 .map(|f| (f.normal.jet(clock).value, f.shear.jet(clock).value));
         }
         self.loads(system, clock);
+        self.statics.update(system, self.frame_3(), clock);
         self.network(system, clock, first);
     }
 
@@ -208,8 +216,8 @@ impl Instant {
         let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
             return;
         };
-        for (k, (link, mesh_link)) in wet.network.links.iter().zip(&fluid.links).enumerate() {
-            match &link.opening {
+        for (k, mesh_link) in fluid.links.iter().enumerate() {
+            match &wet.network.links[mesh_link.number].opening {
                 None if !first => {}
                 None => {
                     self.conductance[k] = 1.0 / (mesh_link.half_cells + mesh_link.resistance);
@@ -222,8 +230,9 @@ impl Instant {
                 }
             }
         }
-        for (value, port) in self.port_pressure.iter_mut().zip(&wet.network.ports) {
-            *value = port.pressure.jet(clock).value;
+        for (k, port) in wet.network.ports.iter().enumerate() {
+            let pressure = port.pressure.jet(clock);
+            (self.port_pressure[k], self.port_pressure_rate[k]) = (pressure.value, pressure.rate);
         }
         for (value, source) in self.source_flow.iter_mut().zip(&wet.network.sources) {
             *value = source.flow.jet(clock).value;

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::{FluidMesh, Mesh};
 use crate::case::Translation;
-use crate::model::{Model, network};
+use crate::model::{Kinematics, Model, PoolKind, network};
 
 /// Blocks of unknowns, in this order.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,9 +20,9 @@ pub struct Layout {
     pub u1: usize,
     /// First `u3`.
     pub u3: usize,
-    /// First `v1`; only with solid inertia.
+    /// First `v1`, where it is an unknown.
     pub v1: usize,
-    /// First `v3`; only with solid inertia.
+    /// First `v3`, where it is an unknown.
     pub v3: usize,
     /// First mean moment `Mbar_j`.
     pub mean_moment: usize,
@@ -34,10 +34,16 @@ pub struct Layout {
     pub junction: usize,
     /// First turbine pressure drop behind a real rectifier.
     pub bridge: usize,
+    /// Pressure of each pool, where it is unknown.
+    pub pool_pressure: Vec<Option<usize>>,
+    /// Volume of each pool, where it is unknown.
+    pub pool_volume: Vec<Option<usize>>,
     /// Number of unknowns.
     pub len: usize,
-    /// Whether velocities are unknowns.
+    /// Whether masses resist acceleration.
     pub inertia: bool,
+    /// Whether `v1` and `v3` are unknowns: with inertia, but not along a beam without axial waves.
+    pub waves: [bool; 2],
     /// Characteristic size of each unknown, in its unit.
     pub scales: Vec<f64>,
     /// Characteristic size of each equation.
@@ -55,81 +61,106 @@ enum Name {
     Area(usize, usize),
     Junction(usize),
     Bridge(usize),
+    Pool(&'static str, usize),
 }
 
 impl Layout {
     /// Unknowns of a model on a mesh.
     pub fn new(model: &Model, mesh: &Mesh, fluid: Option<&FluidMesh>) -> Self {
-        let last = mesh.nodes - 1;
         let driven = |motion: &Translation| matches!(motion, Translation::Displacement(_));
         let [root, tip] = &model.ends;
         let free =
             |root: &Translation, tip: &Translation| usize::from(driven(root))..mesh.nodes - usize::from(driven(tip));
-        let free_u1 = free(&root.transverse, &tip.transverse);
-        let free_u3 = free(&root.axial, &tip.axial);
-        debug_assert!(free_u1.end >= last && free_u3.end >= last);
+        let bar = model.kinematics == Kinematics::Bar;
+        let free_u1 = if bar {
+            0..0
+        } else {
+            free(&root.transverse, &tip.transverse)
+        };
+        let free_u3 = if model.effects.axial_stretch {
+            free(&root.axial, &tip.axial)
+        } else {
+            0..0
+        };
         let inertia = model.effects.solid_inertia;
-        let moving = inertia
-            || model.section.drag > 0.0
-            || model.section.axial_damping_time > 0.0
-            || model.section.bending_damping_time > 0.0;
+        let waves = [inertia && !bar, inertia && model.effects.axial_inertia];
+        let damped = model.section.drag > 0.0 || model.section.axial_damping_time > 0.0;
+        let bent = model.section.bending_damping_time > 0.0;
         let s = &model.scales;
         let cell_mass = model.section.mass_per_length * mesh.h;
         let mut build = Builder::default();
 
         let force_1 = s.transverse_force.max(1e-12);
         let force_3 = s.axial_force.max(1e-12);
+        let row = |waves, rate, force| if waves { rate } else { force };
         let u1 = build.nodes(
             "u1 [m]",
             &free_u1,
             s.transverse,
-            if inertia { s.transverse_rate } else { force_1 },
-            moving,
+            row(waves[0], s.transverse_rate, force_1),
+            inertia || damped || bent,
         );
+        // Without waves the damping of bending alone does not make u3 differential: in a straight beam it acts across.
         let u3 = build.nodes(
             "u3 [m]",
             &free_u3,
             s.axial,
-            if inertia { s.axial_rate } else { force_3 },
-            moving,
+            row(waves[1], s.axial_rate, force_3),
+            waves[1] || damped || (bent && !inertia),
         );
-        let (v1, v3) = if inertia {
-            let acceleration = |rate: f64| cell_mass * rate * s.frequency;
-            (
-                build.nodes(
-                    "v1 [m/s]",
-                    &free_u1,
-                    s.transverse_rate,
-                    acceleration(s.transverse_rate),
-                    true,
-                ),
-                build.nodes("v3 [m/s]", &free_u3, s.axial_rate, acceleration(s.axial_rate), true),
-            )
-        } else {
-            (build.len(), build.len())
-        };
+        let acceleration = |rate: f64| cell_mass * rate * s.frequency;
+        let none = 0..0;
+        let v1 = build.nodes(
+            "v1 [m/s]",
+            if waves[0] { &free_u1 } else { &none },
+            s.transverse_rate,
+            acceleration(s.transverse_rate),
+            true,
+        );
+        let v3 = build.nodes(
+            "v3 [m/s]",
+            if waves[1] { &free_u3 } else { &none },
+            s.axial_rate,
+            acceleration(s.axial_rate),
+            true,
+        );
         let mut mean_moment = build.len();
         let mut mean_force = mean_moment;
         let (mut area, mut junction, mut bridge) = (mean_moment, mean_moment, mean_moment);
+        let (mut pool_pressure, mut pool_volume) = (vec![], vec![]);
         let mut per_row = 0;
         if let (Some(wet), Some(fluid)) = (&model.wet, fluid) {
             per_row = wet.per_row;
-            mean_moment = build.segments("mean moment [N m]", mesh.segments, s.moment);
-            mean_force = build.segments("mean normal force [N]", mesh.segments, s.force);
+            let segments = |takes: bool| if takes { mesh.segments } else { 0 };
+            mean_moment = build.segments("mean moment [N m]", segments(wet.takes_moments), s.moment);
+            mean_force = build.segments("mean normal force [N]", segments(wet.takes_forces), s.force);
             let stored = wet.area.per_pressure * s.pressure;
             area = build.len();
-            for cell in 0..fluid.cells {
-                let name = Name::Area(cell / fluid.cells_per_bladder, cell % fluid.cells_per_bladder);
-                build.push(name, stored, stored * fluid.ds * s.frequency, true);
+            for &bladder in &fluid.flowing {
+                for cell in 0..fluid.cells_per_bladder {
+                    let name = Name::Area(bladder, cell);
+                    build.push(name, stored, stored * fluid.ds * s.frequency, true);
+                }
             }
             junction = build.len();
-            for j in 0..wet.network.junctions.len() {
+            for &j in &fluid.junctions {
                 build.push(Name::Junction(j), s.pressure, s.pressure * fluid.conductance, false);
             }
             bridge = build.len();
-            for (k, b) in wet.network.bridges.iter().enumerate() {
-                let conductance = wet.network.turbines[b.turbine].conductance;
-                build.push(Name::Bridge(k), s.pressure, s.pressure * conductance, false);
+            for bridge in &fluid.bridges {
+                let turbine = wet.network.bridges[bridge.number].turbine;
+                let conductance = wet.network.turbines[turbine].conductance;
+                build.push(Name::Bridge(bridge.number), s.pressure, s.pressure * conductance, false);
+            }
+            for pool in &wet.pools {
+                let volume = stored * wet.bladder_length * pool.bladders.len() as f64;
+                let name = |what| Name::Pool(what, pool.component);
+                let closed = pool.kind == PoolKind::Closed;
+                let fed = matches!(pool.kind, PoolKind::Fed(_));
+                pool_pressure
+                    .push((closed || fed).then(|| build.push(name("pressure [Pa]"), s.pressure, volume, false)));
+                let rate = volume * s.frequency;
+                pool_volume.push(fed.then(|| build.push(name("volume change [m^3]"), volume, rate, true)));
             }
         }
         Self {
@@ -144,8 +175,11 @@ impl Layout {
             area,
             junction,
             bridge,
+            pool_pressure,
+            pool_volume,
             len: build.len(),
             inertia,
+            waves,
             scales: build.scales,
             row_scales: build.row_scales,
             differential: build.differential,
@@ -162,6 +196,7 @@ impl Layout {
             Name::Segment(what, segment) => format!("{what} of segment {}", segment + 1),
             Name::Area(b, cell) => format!("area change [m^2] of bladder {}, cell {}", bladder(b), cell + 1),
             Name::Junction(j) => format!("pressure [Pa] of junction {}", j + 1),
+            Name::Pool(what, component) => format!("{what} of network {}", component + 1),
             Name::Bridge(k) => format!("pressure drop [Pa] of turbine behind rectifier {}", k + 1),
         }
     }
@@ -180,11 +215,13 @@ impl Builder {
         self.scales.len()
     }
 
-    fn push(&mut self, name: Name, scale: f64, row_scale: f64, differential: bool) {
+    /// Adds an unknown; its index.
+    fn push(&mut self, name: Name, scale: f64, row_scale: f64, differential: bool) -> usize {
         self.scales.push(scale);
         self.row_scales.push(row_scale);
         self.differential.push(differential);
         self.names.push(name);
+        self.len() - 1
     }
 
     fn nodes(&mut self, what: &'static str, nodes: &Range<usize>, scale: f64, row: f64, differential: bool) -> usize {

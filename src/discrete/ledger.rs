@@ -138,22 +138,32 @@ pub fn passed(integrals: &[f64], open: usize) -> (f64, f64) {
 /// The workspace must hold [`recipe::evaluate`] of the same state; rates are added to it here.
 pub fn flows(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
-    recipe::solid::strain_rates(system, now, w);
-    let rates = fluid::rates(system, yp, w, out);
+    complete(system, now, yp, w);
+    let rates = fluid::rates(system, w, out);
     solid::flows(system, now, rates, w, out);
     fluid::flows(system, now, w, out);
 }
 
+/// What balances and samples need and no equation does: rates of strain, means, motion along where it has no unknowns.
+/// The workspace must hold [`recipe::evaluate`] of the same state.
+pub fn complete(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f64>) {
+    recipe::complete(system, now, yp, w);
+    fluid::complete(system, now, yp, w);
+    if !system.model.effects.axial_stretch {
+        fluid::draw_in(system, w);
+    }
+}
+
 /// Energies at the state in the workspace; needs the strain rates of [`flows`].
-pub fn energies(system: &System, w: &Workspace<f64>) -> Energies {
-    let mut e = solid::energies(system, w);
+pub fn energies(system: &System, now: &Instant, w: &Workspace<f64>) -> Energies {
+    let mut e = solid::energies(system, now, w);
     e.bladders = fluid::energy(system, w);
     e
 }
 
 /// Invariants at the state in the workspace; needs the strain rates of [`flows`].
-pub fn invariants(system: &System, w: &Workspace<f64>) -> Invariants {
-    let (momentum, angular_momentum) = solid::momenta(system, w);
+pub fn invariants(system: &System, now: &Instant, w: &Workspace<f64>) -> Invariants {
+    let (momentum, angular_momentum) = solid::momenta(system, now, w);
     Invariants {
         momentum,
         angular_momentum,

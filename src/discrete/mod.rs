@@ -8,16 +8,18 @@ pub mod mesh;
 pub mod recipe;
 pub mod sample;
 pub mod start;
+pub mod statics;
 pub mod workspace;
 
 use crate::case::schema::Case;
-use crate::model::Model;
 use crate::model::loads::LoadKind;
+use crate::model::{Model, Storage};
 
 pub use fluid_mesh::FluidMesh;
 pub use instant::{Instant, SampledLoad};
 pub use layout::Layout;
 pub use mesh::Mesh;
+pub use statics::Statics;
 pub use workspace::Workspace;
 
 /// A model on a mesh: everything the residual needs besides time and state.
@@ -40,9 +42,26 @@ pub struct System {
 }
 
 impl System {
-    /// Discretises a checked case.
+    /// Discretises a checked case. Bladders that keep their volume keep what the same system with areas as unknowns
+    /// starts with.
     pub fn new(case: &Case) -> Self {
-        let model = Model::new(case);
+        let mut system = Self::of(case, Model::new(case));
+        let flowing = |s: &Storage| *s == Storage::Flowing;
+        if let (Some(wet), Some(fluid)) = (&system.model.wet, &mut system.fluid)
+            && !wet.storage.iter().all(flowing)
+        {
+            let mut model = system.model.clone();
+            if let Some(wet) = &mut model.wet {
+                wet.flows = true;
+                wet.storage.fill(Storage::Flowing);
+                wet.pools.clear();
+            }
+            fluid.keep(&start::areas(&Self::of(case, model), case), wet);
+        }
+        system
+    }
+
+    fn of(case: &Case, model: Model) -> Self {
         let segments = case
             .bladders
             .as_ref()
@@ -53,7 +72,7 @@ impl System {
         let fluid = model
             .wet
             .as_ref()
-            .map(|wet| FluidMesh::new(wet, case.mesh.cells_per_bladder));
+            .map(|wet| FluidMesh::new(wet, model.cells_per_bladder(case)));
         let layout = Layout::new(&model, &mesh, fluid.as_ref());
         let loads: Vec<_> = model.loads.iter().map(|load| SampledLoad::new(load, &mesh)).collect();
         let has_moments = loads

@@ -4,6 +4,7 @@ use super::{Instant, System, Workspace};
 use crate::discrete::ledger::{Energies, FLOWS};
 use crate::discrete::recipe::fluid::pressure_at;
 use crate::discrete::recipe::solid::node_stretch;
+use crate::model::Kinematics;
 use crate::model::mapping::{NetworkCoordinate, TABLE_TUBE_RATIO};
 use crate::model::network::{LinkKind, bladder_label};
 
@@ -128,7 +129,11 @@ pub fn row(
 fn tip_angle(system: &System, w: &Workspace<f64>) -> f64 {
     let last = system.mesh.nodes - 1;
     let interior: f64 = w.kappa[1..last].iter().sum();
-    w.tx[0].atan2(w.tz[0]) - system.mesh.h * (interior + 0.5 * w.kappa[last])
+    let first = match system.model.kinematics {
+        Kinematics::Bar | Kinematics::FiniteRotation => w.tx[0].atan2(w.tz[0]),
+        Kinematics::Linear | Kinematics::SmallRotation => w.d3x[0],
+    };
+    first - system.mesh.h * (interior + 0.5 * w.kappa[last])
 }
 
 fn turbine_power(system: &System, now: &Instant, w: &Workspace<f64>) -> f64 {
@@ -142,25 +147,29 @@ fn turbine_power(system: &System, now: &Instant, w: &Workspace<f64>) -> f64 {
             power += q * q * link.resistance;
         }
     }
-    for (bridge, drop) in wet.network.bridges.iter().zip(&w.bridge) {
-        power += wet.network.turbines[bridge.turbine].conductance * drop * drop;
+    for (bridge, drop) in fluid.bridges.iter().zip(&w.bridge) {
+        let turbine = wet.network.bridges[bridge.number].turbine;
+        power += wet.network.turbines[turbine].conductance * drop * drop;
     }
     power
 }
 
 /// Largest flow through a tube [m^3/s] and the tube's number among the tubes.
 pub fn largest_flow(system: &System, now: &Instant, w: &Workspace<f64>) -> Option<(f64, usize)> {
-    let fluid = system.fluid.as_ref()?;
+    let (wet, fluid) = (system.model.wet.as_ref()?, system.fluid.as_ref()?);
     let tubes = fluid
         .links
         .iter()
         .zip(&now.conductance)
         .filter(|(link, _)| link.kind == LinkKind::Tube);
-    tubes
-        .map(|(link, g)| (g * (pressure_at(link.from, now, w) - pressure_at(link.to, now, w))).abs())
-        .enumerate()
-        .map(|(k, q)| (q, k))
-        .reduce(|a, b| if b.0 > a.0 { b } else { a })
+    let (q, link) = tubes
+        .map(|(link, g)| {
+            let drop = pressure_at(link.from, now, w) - pressure_at(link.to, now, w);
+            ((g * drop).abs(), link.number)
+        })
+        .reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+    let before = wet.network.links[..link].iter().filter(|l| l.kind == LinkKind::Tube);
+    Some((q, before.count()))
 }
 
 /// Smallest `(h_b w_b + a1)/(h_b w_b)`.

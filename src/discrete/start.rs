@@ -3,6 +3,7 @@
 use super::{Instant, System, Workspace, recipe};
 use crate::case::profile::Profile;
 use crate::case::schema::Case;
+use crate::case::signals::Clock;
 use crate::model::network::bladder_index;
 
 /// Scaled unknowns at the start: displacements and rates as given, areas from the given pressures.
@@ -23,6 +24,7 @@ pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
             &l.free_u1,
             l.u1,
             l.v1,
+            l.waves[0],
             &case.start.u1_m,
             &case.start.u1_rate_m_s,
         ),
@@ -31,26 +33,33 @@ pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
             &l.free_u3,
             l.u3,
             l.v3,
+            l.waves[1],
             &case.start.u3_m,
             &case.start.u3_rate_m_s,
         ),
     ];
-    for (frame, free, u, v, displacement, velocity) in lines {
+    for (frame, free, u, v, waves, displacement, velocity) in lines {
         for (k, node) in free.clone().enumerate() {
             let frame = frame.map_or(Default::default(), |f| f.at(node as f64 / last));
             y[u + k] = at(displacement, node) - frame.value;
-            if l.inertia {
+            if waves {
                 y[v + k] = at(velocity, node) - frame.rate;
             }
         }
     }
-    if system.fluid.is_some() {
-        fill_bladders(system, case, now, &mut y);
-    }
+    fill_bladders(system, case, now, &mut y);
     for (value, scale) in y.iter_mut().zip(&l.scales) {
         *value /= scale;
     }
     y
+}
+
+/// Area change of every cell at the start [m^2], of a system in which all of them are unknowns.
+pub fn areas(system: &System, case: &Case) -> Vec<f64> {
+    let mut now = Instant::new(system);
+    now.update(system, Clock { t: 0.0, within: 0.0 });
+    let (l, y) = (&system.layout, state(system, case, &now));
+    (l.area..l.junction).map(|k| y[k] * l.scales[k]).collect()
 }
 
 /// Areas that give the prescribed pressures, with the means that follow from them: a fixed point, exact after one
@@ -70,16 +79,33 @@ fn fill_bladders(system: &System, case: &Case, now: &Instant, y: &mut [f64]) {
             }
         }
     }
+    for (k, pool) in wet.pools.iter().enumerate() {
+        if let Some(unknown) = l.pool_pressure[k] {
+            let cells = pool.bladders.iter().flat_map(|&b| fluid.cells_of(b));
+            y[unknown] =
+                cells.map(|c| pressure[c]).sum::<f64>() / (pool.bladders.len() * fluid.cells_per_bladder) as f64;
+        }
+        if let Some(unknown) = l.pool_volume[k] {
+            y[unknown] = fluid.volume_at_start[k];
+        }
+    }
     let yp = vec![0.0; y.len()];
     let mut w = Workspace::new(system);
     let mut residual = vec![0.0; y.len()];
     for _ in 0..20 {
         for j in 0..wet.per_row {
-            let (moment, force) = (y[l.mean_moment + j], y[l.mean_force + j]);
+            let mean = |takes: bool, first: usize| if takes { y[first + j] } else { 0.0 };
+            let (moment, force) = (
+                mean(wet.takes_moments, l.mean_moment),
+                mean(wet.takes_forces, l.mean_force),
+            );
             for (bladder, row) in [(j, 1.0), (wet.per_row + j, -1.0)] {
                 let imposed = wet.area.of_moment(moment, row) + wet.area.of_force(force);
-                for cell in fluid.cells_of(bladder) {
-                    y[l.area + cell] = wet.area.per_pressure * pressure[cell] + imposed;
+                if let Ok(slot) = fluid.flowing.binary_search(&bladder) {
+                    for (k, cell) in fluid.cells_of(bladder).enumerate() {
+                        y[l.area + slot * fluid.cells_per_bladder + k] =
+                            wet.area.per_pressure * pressure[cell] + imposed;
+                    }
                 }
             }
         }
@@ -107,17 +133,17 @@ pub fn change_frame(system: &System, before: &Instant, after: &Instant, y: &mut 
     let l = &system.layout;
     let last = (system.mesh.nodes - 1) as f64;
     let lines = [
-        (before.frame_1(), after.frame_1(), &l.free_u1, l.u1, l.v1),
-        (before.frame_3(), after.frame_3(), &l.free_u3, l.u3, l.v3),
+        (before.frame_1(), after.frame_1(), &l.free_u1, l.u1, l.v1, l.waves[0]),
+        (before.frame_3(), after.frame_3(), &l.free_u3, l.u3, l.v3, l.waves[1]),
     ];
-    for (before, after, free, u, v) in lines {
+    for (before, after, free, u, v, waves) in lines {
         let (Some(before), Some(after)) = (before, after) else {
             continue;
         };
         for (k, node) in free.clone().enumerate() {
             let (old, new) = (before.at(node as f64 / last), after.at(node as f64 / last));
             y[u + k] += (old.value - new.value) / l.scales[u + k];
-            if l.inertia {
+            if waves {
                 y[v + k] += (old.rate - new.rate) / l.scales[v + k];
             }
         }

@@ -59,6 +59,10 @@ pub struct Workspace<T> {
     pub mean_moment: Vec<T>,
     /// Mean force.
     pub mean_force: Vec<T>,
+    /// Its rate; for the balances.
+    pub mean_moment_rate: Vec<T>,
+    /// Rate of the mean force; for the balances.
+    pub mean_force_rate: Vec<T>,
     /// `lambda_p`.
     pub pressure_stretch: Vec<T>,
     /// `alpha_p`.
@@ -74,6 +78,10 @@ pub struct Workspace<T> {
     pub mean_pressure: Vec<T>,
     /// Pressures of junctions [Pa].
     pub junction: Vec<T>,
+    /// Pressures of pools [Pa].
+    pub pool: Vec<T>,
+    /// Their rates [Pa/s]; for the balances.
+    pub pool_rate: Vec<T>,
     /// Turbine drops behind real rectifiers [Pa].
     pub bridge: Vec<T>,
     /// Net inflow of each cell [m^3/s].
@@ -96,11 +104,13 @@ impl<T: Scalar> Workspace<T> {
         } else {
             0
         };
-        let (cells, bladders) = system.fluid.as_ref().map_or((0, 0), |f| (f.cells, f.bladders));
-        let (junctions, bridges, components) = system.model.wet.as_ref().map_or((0, 0, 0), |w| {
-            let n = &w.network;
-            (n.junctions.len(), n.bridges.len(), n.components)
-        });
+        let fluid = system.fluid.as_ref();
+        let (cells, bladders) = fluid.map_or((0, 0), |f| (f.cells, f.bladders));
+        let (junctions, bridges) = fluid.map_or((0, 0), |f| (f.junctions.len(), f.bridges.len()));
+        let components = system.model.wet.as_ref().map_or(0, |w| w.network.components);
+        let pools = fluid.map_or(0, |f| f.volume_at_start.len());
+        // What is the same at all times is set here, and stays.
+        let kept = fluid.map_or(&[][..], |f| &f.area_at_start);
         Self {
             u1: zeros(n),
             u3: zeros(n),
@@ -114,10 +124,10 @@ impl<T: Scalar> Workspace<T> {
             kappa_rate: zeros(n),
             d3x: zeros(c),
             d3z: zeros(c),
-            stretch: zeros(c),
+            stretch: vec![T::constant(1.0); c],
             strain: zeros(c),
             tx: zeros(c),
-            tz: zeros(c),
+            tz: vec![T::constant(1.0); c],
             stretch_rate: zeros(c),
             angle_rate: zeros(c),
             force: zeros(c),
@@ -127,13 +137,17 @@ impl<T: Scalar> Workspace<T> {
             sz: zeros(c),
             mean_moment: zeros(s),
             mean_force: zeros(s),
+            mean_moment_rate: zeros(s),
+            mean_force_rate: zeros(s),
             pressure_stretch: zeros(s),
             pressure_curvature: zeros(s),
-            area: zeros(cells),
+            area: kept.iter().map(|&a| T::constant(a)).collect(),
             area_rate: zeros(cells),
             pressure: zeros(cells),
             mean_pressure: zeros(bladders),
             junction: zeros(junctions),
+            pool: zeros(pools),
+            pool_rate: zeros(pools),
             bridge: zeros(bridges),
             inflow: zeros(cells),
             junction_inflow: zeros(junctions),

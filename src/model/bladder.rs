@@ -48,6 +48,18 @@ impl AreaLaw {
         }
     }
 
+    /// The law without what M or N does.
+    pub fn without(self, moment: bool, force: bool) -> Self {
+        let mut law = self;
+        if moment {
+            (law.moment_mean, law.moment_half_difference) = (0.0, 0.0);
+        }
+        if force {
+            (law.force_mean, law.force_half_difference) = (0.0, 0.0);
+        }
+        law
+    }
+
     /// `A_N(N)` [m^2].
     #[inline]
     pub fn of_force<T: Scalar>(&self, force: T) -> T {

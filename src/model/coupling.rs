@@ -42,6 +42,20 @@ impl Coupling {
         }
     }
 
+    /// The law without what pressure does to curvature or stretch, where its coefficients are its own.
+    pub fn without(self, curvature: bool, stretch: bool) -> Self {
+        match self {
+            Self::Published {
+                stretch_per_pressure,
+                curvature_per_pressure,
+            } => Self::Published {
+                stretch_per_pressure: if stretch { 0.0 } else { stretch_per_pressure },
+                curvature_per_pressure: if curvature { 0.0 } else { curvature_per_pressure },
+            },
+            Self::Reciprocal { .. } => self,
+        }
+    }
+
     /// `λ_p` [1].
     #[inline]
     pub fn stretch<T: Scalar>(&self, law: &AreaLaw, force: T, upper: T, lower: T) -> T {

@@ -9,23 +9,27 @@ pub mod characteristic;
 pub mod coupling;
 pub mod duct;
 pub mod effects;
+pub mod kinematics;
 pub mod loads;
 pub mod mapping;
 pub mod network;
 pub mod scalar;
 pub mod scales;
+pub mod storage;
 
 use crate::case::ResolvedEnd;
-use crate::case::schema::{Case, Formulation};
+use crate::case::schema::{Bladders, Case, Formulation};
 
 pub use beam::Section;
 pub use bladder::AreaLaw;
 pub use coupling::Coupling;
 pub use effects::{Decision, EffectSet};
+pub use kinematics::Kinematics;
 pub use loads::Load;
 pub use network::Network;
 pub use scalar::Scalar;
 pub use scales::Scales;
+pub use storage::{Pool, PoolKind, Storage};
 
 /// The bladders and what they are filled with and joined by.
 #[derive(Clone, Debug)]
@@ -36,12 +40,63 @@ pub struct Wet {
     pub bladder_length: f64,
     /// Cross-section at rest `h_b w_b` [m^2].
     pub area_at_rest: f64,
-    /// Area change of a bladder cell.
+    /// Area change of a bladder cell; slopes of what does not change areas are zero.
     pub area: AreaLaw,
+    /// The law whose slopes pressure strains the beam with; those of what it does not strain are zero.
+    pub strains: AreaLaw,
     /// Strains caused by pressure.
     pub coupling: Coupling,
     /// Tubes, junctions, ports, turbines.
     pub network: Network,
+    /// Whether fluid flows at all.
+    pub flows: bool,
+    /// How each bladder stores fluid.
+    pub storage: Vec<Storage>,
+    /// Bladders that share a pressure.
+    pub pools: Vec<Pool>,
+    /// Whether something depends on mean moments: they are unknowns then.
+    pub takes_moments: bool,
+    /// Whether something depends on mean forces.
+    pub takes_forces: bool,
+}
+
+impl Wet {
+    /// The whole coupling of a case's bladders.
+    fn new(case: &Case, bladders: &Bladders, section: &Section, network: Network, effects: &EffectSet) -> Self {
+        let area = AreaLaw::new(case, bladders, section, effects.asymmetry);
+        let (storage, pools) = storage::of_bladders(case, &network, effects);
+        Self {
+            per_row: bladders.per_row,
+            bladder_length: bladders.length_m,
+            area_at_rest: bladders.height_m * bladders.width_m,
+            area,
+            strains: area,
+            coupling: Coupling::new(case, bladders),
+            network,
+            flows: effects.flow,
+            storage,
+            pools,
+            takes_moments: true,
+            takes_forces: true,
+        }
+    }
+
+    /// Leaves out what the effects leave out. Pressure strains by slopes of its own, which depend on M and N where they
+    /// are kinked.
+    fn reduce(&mut self, effects: &EffectSet) {
+        let reciprocal = matches!(self.coupling, Coupling::Reciprocal { .. });
+        let bends = effects.pressure_to_curvature && reciprocal && self.strains.moment_half_difference > 0.0;
+        let stretches = effects.pressure_to_stretch && reciprocal && self.strains.force_half_difference > 0.0;
+        self.takes_moments = effects.moment_to_area || bends;
+        self.takes_forces = effects.axial_stretch && (effects.force_to_area || stretches);
+        self.area = self.area.without(!effects.moment_to_area, !effects.force_to_area);
+        self.strains = self
+            .strains
+            .without(!effects.pressure_to_curvature, !effects.pressure_to_stretch);
+        self.coupling = self
+            .coupling
+            .without(!effects.pressure_to_curvature, !effects.pressure_to_stretch);
+    }
 }
 
 /// A case resolved into physics.
@@ -53,6 +108,8 @@ pub struct Model {
     pub length: f64,
     /// Form of the momentum balance.
     pub formulation: Formulation,
+    /// How strains follow from displacements.
+    pub kinematics: Kinematics,
     /// Effects that are simulated.
     pub effects: EffectSet,
     /// Conditions at root and tip.
@@ -69,19 +126,13 @@ impl Model {
     /// The model of a checked case.
     pub fn new(case: &Case) -> Self {
         let section = Section::new(case);
-        let effects = EffectSet::choose(case, &section);
-        let wet = case
-            .fluid
-            .as_ref()
-            .zip(case.bladders.as_ref())
-            .map(|(fluid, bladders)| Wet {
-                per_row: bladders.per_row,
-                bladder_length: bladders.length_m,
-                area_at_rest: bladders.height_m * bladders.width_m,
-                area: AreaLaw::new(case, bladders, &section, effects.asymmetry),
-                coupling: Coupling::new(case, bladders),
-                network: Network::new(case, fluid, bladders),
-            });
+        let filled = case.fluid.as_ref().zip(case.bladders.as_ref());
+        let network = filled.map(|(fluid, bladders)| Network::new(case, fluid, bladders));
+        let effects = EffectSet::choose(case, &section, network.as_ref());
+        let mut wet = filled
+            .zip(network)
+            .filter(|_| effects.fluid)
+            .map(|((_, bladders), network)| Wet::new(case, bladders, &section, network, &effects));
         let loads = case
             .loads
             .iter()
@@ -89,15 +140,34 @@ impl Model {
             .collect();
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
         let scales = Scales::estimate(case, &section, wet.as_ref());
+        if let Some(wet) = &mut wet {
+            wet.reduce(&effects);
+        }
+        let kinematics = Kinematics::of(&effects);
         Self {
             section,
             length: case.beam.length_m,
             formulation: case.formulation,
+            kinematics,
             effects,
             ends,
             loads,
             wet,
             scales,
         }
+    }
+
+    /// Finite volumes in each bladder: as the mesh says, or one.
+    pub fn cells_per_bladder(&self, case: &Case) -> usize {
+        if self.effects.flow_along_bladders {
+            case.mesh.cells_per_bladder
+        } else {
+            1
+        }
+    }
+
+    /// Whether forces of the published form act, which bending alone brings about.
+    pub fn published(&self) -> bool {
+        self.formulation == Formulation::Published && self.kinematics == Kinematics::FiniteRotation
     }
 }

@@ -54,6 +54,14 @@ pub struct Link {
     pub kind: LinkKind,
 }
 
+impl Link {
+    /// A valve that never opens.
+    pub fn is_shut(&self) -> bool {
+        let shut = |o: &Signal| o.is_constant() && o.value(0.0) <= 0.0;
+        self.opening.as_ref().is_some_and(shut)
+    }
+}
+
 /// Prescribed flow into a cell or a junction.
 #[derive(Clone, Debug)]
 pub struct Source {
@@ -209,12 +217,22 @@ impl Network {
         !self.open.contains(&component)
     }
 
+    /// Of each bladder, whether nothing can ever flow into it or out of it.
+    pub fn sealed(&self) -> impl Iterator<Item = bool> + '_ {
+        let joined = |bladder: usize| {
+            let here = |node: Node| matches!(node, Node::Cell { bladder: b, .. } if b == bladder);
+            let links = self.links.iter().filter(|l| !l.is_shut());
+            links.into_iter().any(|l| here(l.from) || here(l.to)) || self.sources.iter().any(|s| here(s.into))
+        };
+        (0..self.component_of_bladder.len()).map(move |bladder| !joined(bladder))
+    }
+
     fn touched_by_a_port(&self, component: usize) -> bool {
         let touches = |node: Node| self.component_of(node) == Some(component);
         let joins =
             |a: Node, b: Node| (touches(a) && matches!(b, Node::Port(_))) || (touches(b) && matches!(a, Node::Port(_)));
         self.sources.iter().any(|s| touches(s.into))
-            || self.links.iter().any(|l| joins(l.from, l.to))
+            || self.links.iter().any(|l| !l.is_shut() && joins(l.from, l.to))
             || self.bridges.iter().any(|b| joins(b.from, b.to))
     }
 
@@ -589,6 +607,7 @@ fn components(network: &mut Network, bladders: usize) {
     let pairs = network
         .links
         .iter()
+        .filter(|l| !l.is_shut())
         .map(|l| (l.from, l.to))
         .chain(network.bridges.iter().map(|b| (b.from, b.to)));
     for (from, to) in pairs {

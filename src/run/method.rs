@@ -96,11 +96,13 @@ impl Options {
                 relative,
                 absolute,
                 max_order: choice.order.order,
-                nonlinear_coefficient: solver.nonlinear_coefficient.unwrap_or(if system.layout.inertia {
-                    NONLINEAR
-                } else {
-                    NONLINEAR_STATIC
-                }),
+                nonlinear_coefficient: solver
+                    .nonlinear_coefficient
+                    .unwrap_or(if system.layout.waves != [false; 2] {
+                        NONLINEAR
+                    } else {
+                        NONLINEAR_STATIC
+                    }),
                 delta_cj_setup: solver.delta_cj_setup,
                 initial_step,
                 max_step,

@@ -223,8 +223,8 @@ impl Observer {
         recorder: &mut dyn Recorder,
     ) -> Result<Option<String>> {
         let (system, now, w) = dae.evaluate(t, y, yp);
-        let stored = ledger::energies(system, w);
-        let invariants = ledger::invariants(system, w);
+        let stored = ledger::energies(system, now, w);
+        let invariants = ledger::invariants(system, now, w);
         let total = stored.total();
         let (at_start, first) = self.seen.start.get_or_insert_with(|| (total, invariants.clone()));
         let balance = sample::energy_balance(stored, *at_start, integrals);

@@ -26,7 +26,9 @@ pub fn choose(case: &Case, system: &System) -> OrderChoice {
     match case.solver.max_order {
         MaxOrder::Order(order) => chosen(order, "as asked".into()),
         MaxOrder::Forced(order) => chosen(order, "forced".into()),
-        MaxOrder::Auto if !system.layout.inertia => chosen(5, "no solid inertia: nothing oscillates freely".into()),
+        MaxOrder::Auto if system.layout.waves == [false; 2] => {
+            chosen(5, "no solid inertia: nothing oscillates freely".into())
+        }
         MaxOrder::Auto => match least_damping_ratio(system) {
             0.0 => chosen(
                 2,
@@ -54,7 +56,7 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
     if !matches!(case.solver.method, Method::Auto | Method::Ida) {
         return None;
     }
-    let ratio = if system.layout.inertia {
+    let ratio = if system.layout.waves != [false; 2] {
         least_damping_ratio(system)
     } else {
         return None;
@@ -87,7 +89,11 @@ pub fn least_damping_ratio(system: &System) -> f64 {
         (s.axial_damping_time, 1.571 * axial / l, 2.0 * axial / h),
     ];
     let mut least = f64::INFINITY;
-    for (time, slowest, fastest) in families {
+    let carried = families
+        .into_iter()
+        .zip(system.layout.waves)
+        .filter(|(_, waves)| *waves);
+    for ((time, slowest, fastest), _) in carried {
         let ratio = |omega: f64| s.drag / (2.0 * m * omega) + 0.5 * omega * time;
         least = least.min(ratio(slowest)).min(ratio(fastest));
         if time > 0.0 {
@@ -105,13 +111,15 @@ pub fn highest_frequency(system: &System) -> f64 {
     let s = &system.model.section;
     let h = system.mesh.h;
     let bending = 4.0 / (h * h) * (s.bending_stiffness / s.mass_per_length).sqrt();
-    bending.max(2.0 / h * (s.axial_stiffness / s.mass_per_length).sqrt())
+    let axial = 2.0 / h * (s.axial_stiffness / s.mass_per_length).sqrt();
+    let carried = [bending, axial].into_iter().zip(system.layout.waves);
+    carried.filter(|(_, waves)| *waves).map(|(f, _)| f).fold(0.0, f64::max)
 }
 
 /// A sentence when the steps of a run were held down by stability and not by accuracy: orders beyond 2 were allowed on
 /// hardly damped waves, and the mean step stayed near the period of the fastest wave.
 pub fn held_by_stability(system: &System, order: u8, time: f64, steps: u64, rejected: u64) -> Option<String> {
-    if order <= 2 || !system.layout.inertia || steps < 1000 {
+    if order <= 2 || system.layout.waves == [false; 2] || steps < 1000 {
         return None;
     }
     let ratio = least_damping_ratio(system);

@@ -12,6 +12,8 @@ pub const PUBLISHED: &str =
     r#"/bladders/coupling={"published":{"slope_per_pressure_rad":0.00381467,"length_per_pressure_m":0.01}}"#;
 /// Strains and areas from one potential, `--set` argument.
 pub const RECIPROCAL: &str = r#"/bladders/coupling="reciprocal""#;
+/// The same with the kinked slopes, `--set` argument.
+pub const KINKED: &str = r#"/bladders/coupling="reciprocal_kinked""#;
 /// The conservative form of the momentum balance, `--set` argument.
 pub const CONSERVATIVE: &str = r#"/formulation="conservative""#;
 /// The paper's form, `--set` argument.
@@ -22,6 +24,51 @@ pub const E: f64 = 2e6;
 pub const LENGTH: f64 = 0.1;
 /// Bending stiffness of the paper's beam [N m^2].
 pub const EI: f64 = 0.0503885;
+
+/// Five segments, every element of a network, every load, all damping; ends to be filled in.
+pub const EVERYTHING: &str = r#"{
+  "name": "everything",
+  "beam": {"length_m": 0.1, "height_m": 0.0216, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 950,
+           "axial_stiffness_factor": 0.53, "bending_stiffness_factor": 0.6,
+           "damping": {"axial_time_s": 2e-4, "bending_time_s": 3e-4, "drag_n_s_m2": 8}},
+  "fluid": {"density_kg_m3": 1000, "viscosity_pa_s": 8.68e-4},
+  "bladders": {"per_row": 5, "length_m": 0.046, "height_m": 0.0078, "width_m": 0.0078, "permeability_m4": 1.55e-12,
+               "area_per_pressure_m2_per_pa": 1.75e-10,
+               "area_per_moment_m2_per_n_m": {"opening": 3.75e-6, "closing": 6.54e-6},
+               "area_per_force_m2_per_n": {"tension": 3.64e-8, "compression": 6.31e-8},
+               "coupling": "reciprocal", "kink_width": 0.05},
+  "tubes": {"length_m": 0.02, "radius_m": 0.001, "permeability_m4": 6.72e-13},
+  "network": {
+    "chains": [
+      {"bladders": [1, 2, 3, 4], "ends": [{"pressure_pa": {"sine": {"amplitude": 3000, "frequency_hz": 70}}}, "connected"]},
+      {"bladders": [-1, -2, -3], "ends": ["connected", {"flow_m3_s": {"sine": {"amplitude": 2e-6, "frequency_hz": 90}}}]}
+    ],
+    "junctions": ["tee"],
+    "tubes": [
+      {"from": {"bladder": 4, "end": "outlet"}, "to": {"junction": "tee"},
+       "opening": {"sum": [0.5, {"sine": {"amplitude": 0.4, "frequency_hz": 60}}]}},
+      {"from": {"junction": "tee"}, "to": {"bladder": 5, "end": "inlet"}, "length_m": 0.01},
+      {"from": {"junction": "tee"}, "to": {"bladder": -1, "end": "inlet"}, "length_m": 0.03}
+    ],
+    "turbines": [
+      {"from": {"bladder": 5, "end": "outlet"}, "to": {"bladder": -5, "end": "inlet"}, "conductance": {"m3_s_pa": 1e-8}},
+      {"from": {"bladder": -5, "end": "outlet"}, "to": {"bladder": -4, "end": "inlet"}, "conductance": {"m3_s_pa": 1e-8},
+       "rectifier": {"check_valves": {"cracking_pressure_pa": 10, "forward_conductance_m3_s_pa": 2e-8,
+                                      "reverse_conductance_m3_s_pa": 1e-10, "smoothing_pa": 20}}}
+    ]
+  },
+  "loads": [
+    {"force_x_n_m": {"signal": {"sine": {"amplitude": 200, "frequency_hz": 50}}, "profile": {"polynomial": {"coefficients": [0, 1]}}}},
+    {"force_z_n_m": {"signal": {"sine": {"amplitude": 300, "frequency_hz": 40}}}},
+    {"moment_z_n": {"signal": {"sine": {"amplitude": 3, "frequency_hz": 45}}, "profile": {"cosine": {"waves": 1}}}},
+    {"moment_x_n": {"signal": {"sine": {"amplitude": 2, "frequency_hz": 55}}}},
+    {"gravity": {"x_m_s2": 3, "z_m_s2": -9.81}}
+  ],
+  "ends": {"root": "clamped", "tip": "free"},
+  "start": {"u1_rate_m_s": {"polynomial": {"coefficients": [0, 0, 0.3]}}, "pressures": [{"bladders": [2, -4], "pressure_pa": 1000}]},
+  "time": {"end_s": 0.004, "output_interval_s": 1e-4},
+  "solver": {"rtol": 1e-11, "max_order": 5}
+}"#;
 
 /// A run that reached its end.
 pub struct Run {

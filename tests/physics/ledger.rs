@@ -4,52 +4,7 @@
 //! Tolerance: 3e-8 of the largest energy (measured: 3e-11 to 1.2e-8) at rtol 1e-11 over 4 ms, BDF up to order 5 (unstable waves do not grow in so
 //! short a time). A term left out shows as its own share of all work done, here 1e-6 or more (the least is printed).
 
-use super::common::{AS_PUBLISHED, CONSERVATIVE, PUBLISHED, RECIPROCAL, run, written};
-
-/// Five segments, every element of a network, every load, all damping; ends to be filled in.
-const EVERYTHING: &str = r#"{
-  "name": "everything",
-  "beam": {"length_m": 0.1, "height_m": 0.0216, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 950,
-           "axial_stiffness_factor": 0.53, "bending_stiffness_factor": 0.6,
-           "damping": {"axial_time_s": 2e-4, "bending_time_s": 3e-4, "drag_n_s_m2": 8}},
-  "fluid": {"density_kg_m3": 1000, "viscosity_pa_s": 8.68e-4},
-  "bladders": {"per_row": 5, "length_m": 0.046, "height_m": 0.0078, "width_m": 0.0078, "permeability_m4": 1.55e-12,
-               "area_per_pressure_m2_per_pa": 1.75e-10,
-               "area_per_moment_m2_per_n_m": {"opening": 3.75e-6, "closing": 6.54e-6},
-               "area_per_force_m2_per_n": {"tension": 3.64e-8, "compression": 6.31e-8},
-               "coupling": "reciprocal", "kink_width": 0.05},
-  "tubes": {"length_m": 0.02, "radius_m": 0.001, "permeability_m4": 6.72e-13},
-  "network": {
-    "chains": [
-      {"bladders": [1, 2, 3, 4], "ends": [{"pressure_pa": {"sine": {"amplitude": 3000, "frequency_hz": 70}}}, "connected"]},
-      {"bladders": [-1, -2, -3], "ends": ["connected", {"flow_m3_s": {"sine": {"amplitude": 2e-6, "frequency_hz": 90}}}]}
-    ],
-    "junctions": ["tee"],
-    "tubes": [
-      {"from": {"bladder": 4, "end": "outlet"}, "to": {"junction": "tee"},
-       "opening": {"sum": [0.5, {"sine": {"amplitude": 0.4, "frequency_hz": 60}}]}},
-      {"from": {"junction": "tee"}, "to": {"bladder": 5, "end": "inlet"}, "length_m": 0.01},
-      {"from": {"junction": "tee"}, "to": {"bladder": -1, "end": "inlet"}, "length_m": 0.03}
-    ],
-    "turbines": [
-      {"from": {"bladder": 5, "end": "outlet"}, "to": {"bladder": -5, "end": "inlet"}, "conductance": {"m3_s_pa": 1e-8}},
-      {"from": {"bladder": -5, "end": "outlet"}, "to": {"bladder": -4, "end": "inlet"}, "conductance": {"m3_s_pa": 1e-8},
-       "rectifier": {"check_valves": {"cracking_pressure_pa": 10, "forward_conductance_m3_s_pa": 2e-8,
-                                      "reverse_conductance_m3_s_pa": 1e-10, "smoothing_pa": 20}}}
-    ]
-  },
-  "loads": [
-    {"force_x_n_m": {"signal": {"sine": {"amplitude": 200, "frequency_hz": 50}}, "profile": {"polynomial": {"coefficients": [0, 1]}}}},
-    {"force_z_n_m": {"signal": {"sine": {"amplitude": 300, "frequency_hz": 40}}}},
-    {"moment_z_n": {"signal": {"sine": {"amplitude": 3, "frequency_hz": 45}}, "profile": {"cosine": {"waves": 1}}}},
-    {"moment_x_n": {"signal": {"sine": {"amplitude": 2, "frequency_hz": 55}}}},
-    {"gravity": {"x_m_s2": 3, "z_m_s2": -9.81}}
-  ],
-  "ends": {"root": "clamped", "tip": "free"},
-  "start": {"u1_rate_m_s": {"polynomial": {"coefficients": [0, 0, 0.3]}}, "pressures": [{"bladders": [2, -4], "pressure_pa": 1000}]},
-  "time": {"end_s": 0.004, "output_interval_s": 1e-4},
-  "solver": {"rtol": 1e-11, "max_order": 5}
-}"#;
+use super::common::{AS_PUBLISHED, CONSERVATIVE, EVERYTHING, KINKED, PUBLISHED, RECIPROCAL, run, written};
 
 /// Root and tip; every kind of condition occurs.
 const ENDS: [(&str, &str); 5] = [
@@ -85,8 +40,6 @@ const ENDS: [(&str, &str); 5] = [
             "tip":{"free":{"moment_n_m":{"sine":{"amplitude":0.03,"frequency_hz":65}}}}}"#,
     ),
 ];
-
-const KINKED: &str = r#"/bladders/coupling="reciprocal_kinked""#;
 
 /// Residuals of energy, momentum and angular momentum.
 fn residuals(ends: &str, formulation: &str, coupling: &str, effects: &str) -> [f64; 3] {

@@ -8,12 +8,14 @@ use serde::{Deserialize, Serialize};
 
 mod beam;
 mod bladders;
+mod effects;
 mod loads;
 mod network;
 mod numerics;
 
 pub use beam::*;
 pub use bladders::*;
+pub use effects::*;
 pub use loads::*;
 pub use network::*;
 pub use numerics::*;

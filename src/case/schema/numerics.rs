@@ -14,46 +14,6 @@ pub enum Formulation {
     Published,
 }
 
-/// Which physical effects are simulated: `"auto"`, `"full"` or choice by choice.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Effects {
-    /// The program chooses and says why.
-    #[default]
-    Auto,
-    /// Everything the case describes.
-    Full,
-    /// Named choices; the others are `auto`.
-    Chosen(EffectChoices),
-}
-
-/// Named effects.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct EffectChoices {
-    /// Inertia of the section's rotation, `m y11`.
-    #[serde(default)]
-    pub rotary_inertia: Choice,
-    /// Inertia of the solid; off: quasi-static solid.
-    #[serde(default)]
-    pub solid_inertia: Choice,
-    /// Different opening and closing slopes of the bladder area.
-    #[serde(default)]
-    pub asymmetry: Choice,
-}
-
-/// On, off, or chosen by the program.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Choice {
-    /// Chosen by the program.
-    #[default]
-    Auto,
-    /// Simulated.
-    On,
-    /// Left out.
-    Off,
-}
-
 /// Resolution in space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

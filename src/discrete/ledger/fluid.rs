@@ -1,12 +1,77 @@
 //! The fluid's part of the balances.
 
 use super::{FLOWS, Flow, add};
-use crate::discrete::fluid_mesh::Place;
+use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
 use crate::discrete::recipe::fluid::{bridge_drops, pressure_at};
-use crate::discrete::{Instant, System, Workspace};
+use crate::discrete::recipe::rows::{mean_force, mean_moment};
+use crate::discrete::recipe::small;
+use crate::discrete::{FluidMesh, Instant, System, Workspace};
 use crate::model::bladder::{kink_curvature, kink_slope};
 use crate::model::network::{LinkKind, Node};
-use crate::model::{AreaLaw, Coupling, Wet};
+use crate::model::{AreaLaw, Coupling, Pool, PoolKind, Storage, Wet};
+
+/// What no equation needs but the balances: means, rates of pools' pressures and of their bladders' areas.
+pub fn complete(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f64>) {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
+    for j in 0..wet.per_row {
+        if !wet.takes_moments {
+            w.mean_moment[j] = mean_moment(system, w, j);
+        }
+        if !wet.takes_forces {
+            w.mean_force[j] = mean_force(system, w, j);
+        }
+        let rate = |takes: bool, first: usize| if takes { yp[first + j] } else { 0.0 };
+        w.mean_moment_rate[j] = rate(wet.takes_moments, system.layout.mean_moment);
+        w.mean_force_rate[j] = match now.statics.mean_rate.get(j) {
+            Some(&given) => given,
+            None => rate(wet.takes_forces, system.layout.mean_force),
+        };
+    }
+    for (k, pool) in wet.pools.iter().enumerate() {
+        w.pool_rate[k] = match (&pool.kind, system.layout.pool_pressure[k]) {
+            (PoolKind::Port(port), _) => now.port_pressure_rate[*port],
+            (_, Some(unknown)) => yp[unknown],
+            _ => 0.0,
+        };
+        for &bladder in &pool.bladders {
+            let rate = imposed_rate(wet, w, bladder);
+            w.area_rate[fluid.cells_of(bladder)].fill(wet.area.per_pressure * w.pool_rate[k] + rate);
+        }
+    }
+}
+
+/// Rate of the area that moment and force impose on a bladder.
+fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
+    let (j, row) = if bladder < wet.per_row {
+        (bladder, 1.0)
+    } else {
+        (bladder - wet.per_row, -1.0)
+    };
+    wet.area.moment_slope(w.mean_moment[j], row) * w.mean_moment_rate[j]
+        + wet.area.force_slope(w.mean_force[j]) * w.mean_force_rate[j]
+}
+
+/// Stretch by pressure of a beam that does not stretch otherwise, and with it the motion along, `[E28]`.
+pub fn draw_in(system: &System, w: &mut Workspace<f64>) {
+    if let Some(wet) = &system.model.wet
+        && system.model.effects.pressure_to_stretch
+    {
+        for j in 0..wet.per_row {
+            let (upper, lower) = (w.mean_pressure[j], w.mean_pressure[wet.per_row + j]);
+            w.pressure_stretch[j] = wet.coupling.stretch(&wet.strains, w.mean_force[j], upper, lower);
+        }
+    }
+    let stretch_rate = |w: &Workspace<f64>, j| {
+        system.model.wet.as_ref().map_or(0.0, |wet| {
+            SegmentRates::new(system, wet, w, j)
+                .strain_rates(&wet.coupling, &wet.strains)
+                .0
+        })
+    };
+    small::draw_in(system, stretch_rate, w);
+}
 
 /// Power that a coupling without reciprocity adds, and the rate of `alpha_p` at a node (for ends with given moment).
 ///
@@ -16,16 +81,15 @@ use crate::model::{AreaLaw, Coupling, Wet};
 /// ```
 pub fn rates<'a>(
     system: &'a System,
-    yp: &'a [f64],
     w: &Workspace<f64>,
     out: &mut [f64],
 ) -> impl Fn(&Workspace<f64>, usize) -> f64 + use<'a> {
     if let Some(wet) = &system.model.wet {
         let ratio = wet.bladder_length * wet.per_row as f64 / system.model.length;
         for j in 0..wet.per_row {
-            let s = SegmentRates::new(system, wet, yp, w, j);
+            let s = SegmentRates::new(system, wet, w, j);
             let reciprocal = Coupling::Reciprocal { length_ratio: ratio };
-            let (stretch, curvature) = s.strain_rates(&wet.coupling, &wet.area);
+            let (stretch, curvature) = s.strain_rates(&wet.coupling, &wet.strains);
             let (stretch_0, curvature_0) = s.strain_rates(&reciprocal, &wet.area);
             let power = s.force * (stretch_0 - stretch) + s.moment * (curvature_0 - curvature);
             add(out, Flow::Reciprocity, system.mesh.segment_length * power);
@@ -34,8 +98,8 @@ pub fn rates<'a>(
     move |w, node| {
         let Some(wet) = &system.model.wet else { return 0.0 };
         let j = system.mesh.segments_of_node(node).0;
-        SegmentRates::new(system, wet, yp, w, j)
-            .strain_rates(&wet.coupling, &wet.area)
+        SegmentRates::new(system, wet, w, j)
+            .strain_rates(&wet.coupling, &wet.strains)
             .1
     }
 }
@@ -51,19 +115,22 @@ struct SegmentRates {
 }
 
 impl SegmentRates {
-    fn new(system: &System, wet: &Wet, yp: &[f64], w: &Workspace<f64>, j: usize) -> Self {
+    fn new(system: &System, wet: &Wet, w: &Workspace<f64>, j: usize) -> Self {
         let (moment, force) = (w.mean_moment[j], w.mean_force[j]);
-        let moment_rate = yp[system.layout.mean_moment + j];
-        let force_rate = yp[system.layout.mean_force + j];
+        let (moment_rate, force_rate) = (w.mean_moment_rate[j], w.mean_force_rate[j]);
         let mut pressure = [0.0; 2];
         let mut pressure_rate = [0.0; 2];
-        for (k, (bladder, row)) in [(j, 1.0), (wet.per_row + j, -1.0)].into_iter().enumerate() {
-            let cells = system.fluid.as_ref().map_or(0..0, |f| f.cells_of(bladder));
-            let count = cells.len() as f64;
-            let area_rate = w.area_rate[cells].iter().sum::<f64>() / count;
-            let imposed = wet.area.moment_slope(moment, row) * moment_rate + wet.area.force_slope(force) * force_rate;
+        for (k, bladder) in [j, wet.per_row + j].into_iter().enumerate() {
             pressure[k] = w.mean_pressure[bladder];
-            pressure_rate[k] = (area_rate - imposed) / wet.area.per_pressure;
+            pressure_rate[k] = match wet.storage[bladder] {
+                Storage::Shared(pool) => w.pool_rate[pool],
+                Storage::Flowing | Storage::Kept => {
+                    let cells = system.fluid.as_ref().map_or(0..0, |f| f.cells_of(bladder));
+                    let count = cells.len() as f64;
+                    let area_rate = w.area_rate[cells].iter().sum::<f64>() / count;
+                    (area_rate - imposed_rate(wet, w, bladder)) / wet.area.per_pressure
+                }
+            };
         }
         Self {
             moment,
@@ -112,7 +179,7 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
     };
     let network = &wet.network;
     let k = fluid.cells_per_bladder;
-    for bladder in 0..fluid.bladders {
+    for &bladder in &fluid.flowing {
         for cell in bladder * k + 1..(bladder + 1) * k {
             let drop = w.pressure[cell - 1] - w.pressure[cell];
             add(out, Flow::Bladders, fluid.conductance * drop * drop);
@@ -120,7 +187,7 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
     }
     let component = |place: Place| match place {
         Place::Cell(c) => Some(network.component_of_bladder[c / k]),
-        Place::Junction(j) => Some(network.component_of_junction[j]),
+        Place::Junction(j) => Some(network.component_of_junction[fluid.junctions[j]]),
         Place::Port(_) => None,
     };
     surplus(system, now, w);
@@ -131,6 +198,11 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
             out[FLOWS.len() + 2 * open + 1] += outward.abs();
         }
     };
+    for (k, pool) in wet.pools.iter().enumerate() {
+        let (power, outward) = pool_ports(fluid, now, w, k, pool);
+        add(out, Flow::Ports, power);
+        leave(pool.component, outward, out);
+    }
     let cross = |from: Place, to: Place, q: f64, out: &mut [f64]| {
         for (place, outward) in [(from, q), (to, -q)] {
             match (place, component(place)) {
@@ -163,7 +235,8 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
         };
         cross(link.from, link.to, q - surplus, out);
     }
-    for (&place, &q) in fluid.sources.iter().zip(&now.source_flow) {
+    for &MeshSource { number, into: place } in &fluid.sources {
+        let q = now.source_flow[number];
         let half = if matches!(place, Place::Cell(_)) {
             0.5 / fluid.conductance
         } else {
@@ -175,7 +248,8 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
             leave(c, -q, out);
         }
     }
-    for (b, (bridge, &(from, to))) in network.bridges.iter().zip(&fluid.bridges).enumerate() {
+    for (b, &MeshBridge { number, from, to }) in fluid.bridges.iter().enumerate() {
+        let bridge = &network.bridges[number];
         let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.bridge[b]);
         let (qf, qb) = (bridge.valve.flow(forward), bridge.valve.flow(backward));
         let conductance = network.turbines[bridge.turbine].conductance;
@@ -183,6 +257,19 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
         add(out, Flow::Rectifiers, 2.0 * (qf * forward + qb * backward));
         cross(from, to, qf - qb, out);
     }
+}
+
+/// Power and outflow of a pool through its ports, and volume that passes them.
+fn pool_ports(fluid: &FluidMesh, now: &Instant, w: &Workspace<f64>, k: usize, pool: &Pool) -> (f64, f64) {
+    let gain = match &pool.kind {
+        PoolKind::Closed => 0.0,
+        PoolKind::Fed(sources) => sources.iter().map(|&s| now.source_flow[s]).sum(),
+        PoolKind::Port(_) => {
+            let cells = pool.bladders.iter().flat_map(|&b| fluid.cells_of(b));
+            cells.map(|cell| w.area_rate[cell]).sum::<f64>() * fluid.ds
+        }
+    };
+    (w.pool[k] * gain, -gain)
 }
 
 /// Sums over the components of the network what flows in and is not stored, and the conductances to pressure ports.
@@ -202,10 +289,11 @@ fn surplus(system: &System, now: &Instant, w: &mut Workspace<f64>) {
         let stored: f64 = w.area_rate[cells].iter().sum();
         w.surplus[component] += inflow - stored * fluid.ds;
     }
-    for (inflow, &component) in w.junction_inflow.iter().zip(&network.component_of_junction) {
-        w.surplus[component] += inflow;
+    for (inflow, &junction) in w.junction_inflow.iter().zip(&fluid.junctions) {
+        w.surplus[network.component_of_junction[junction]] += inflow;
     }
-    for (link, conductance) in network.links.iter().zip(&now.conductance) {
+    for (link, conductance) in fluid.links.iter().zip(&now.conductance) {
+        let link = &network.links[link.number];
         let inside = match (link.from, link.to) {
             (Node::Port(_), node) | (node, Node::Port(_)) => network.component_of(node),
             _ => None,

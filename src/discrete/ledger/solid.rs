@@ -1,10 +1,10 @@
 //! The beam's part of the balances.
 
 use super::{Energies, Flow, add};
-use crate::case::schema::Formulation;
 use crate::discrete::recipe::rows::{end_force, published_force};
-use crate::discrete::recipe::solid::node_stretch;
+use crate::discrete::recipe::solid::{couple, node_stretch};
 use crate::discrete::{Instant, System, Workspace};
+use crate::model::Kinematics;
 
 /// Powers and impulses of loads, ends, damping, and of the published form.
 pub fn flows(
@@ -16,7 +16,7 @@ pub fn flows(
 ) {
     let (mesh, section, l) = (&system.mesh, &system.model.section, &system.layout);
     let last = mesh.nodes - 1;
-    let published = system.model.formulation == Formulation::Published;
+    let published = system.model.published();
     for i in 0..=last {
         let length = mesh.node_length(i);
         let (mut fx, mut fz) = (length * now.force_x[i], length * now.force_z[i]);
@@ -33,7 +33,12 @@ pub fn flows(
             fz += cz;
         }
         if section.drag > 0.0 {
-            let (dx, dz) = (length * section.drag * w.v1[i], length * section.drag * w.v3[i]);
+            let along = if system.model.effects.axial_stretch {
+                w.v3[i]
+            } else {
+                carried(system, now, w, i)
+            };
+            let (dx, dz) = (length * section.drag * w.v1[i], length * section.drag * along);
             add(out, Flow::Damping, dx * w.v1[i] + dz * w.v3[i]);
             fx -= dx;
             fz -= dz;
@@ -47,16 +52,30 @@ pub fn flows(
             add(out, Flow::Ends, reaction * w.v1[i]);
             fx += reaction;
         }
+        if l.inertia && !l.waves[1] {
+            add(
+                out,
+                Flow::Ends,
+                -inertia * w.a3[i] * (w.v3[i] - carried(system, now, w, i)),
+            );
+        }
         if !l.free_u3.contains(&i) {
             let reaction = inertia * w.a3[i] - fz - right.1 + left.1;
             add(out, Flow::Ends, reaction * w.v3[i]);
             fz += reaction;
         }
-        let (x, z) = (w.u1[i], mesh.node_coordinate(i) + w.u3[i]);
+        let ([x, z], [x_t, z_t]) = arms(system, w, i);
         add(out, Flow::ImpulseX, fx);
         add(out, Flow::ImpulseZ, fz);
-        add(out, Flow::AngularImpulse, z * fx - x * fz);
-        bending(system, now, &curvature_rate, w, i, out);
+        let turning = if l.inertia {
+            inertia * (z_t * w.v1[i] - x_t * carried(system, now, w, i))
+        } else {
+            0.0
+        };
+        add(out, Flow::AngularImpulse, z * fx - x * fz + turning);
+        if system.model.kinematics != Kinematics::Bar {
+            bending(system, now, &curvature_rate, w, i, out);
+        }
     }
     cells(system, now, w, published, out);
 }
@@ -73,7 +92,7 @@ fn bending(
     let (mesh, section) = (&system.mesh, &system.model.section);
     let last = mesh.nodes - 1;
     let length = mesh.node_length(i);
-    let published = system.model.formulation == Formulation::Published;
+    let published = system.model.published();
     let end = match i {
         0 => Some(&now.ends[0]),
         _ if i == last => Some(&now.ends[1]),
@@ -117,50 +136,92 @@ fn cells(system: &System, now: &Instant, w: &Workspace<f64>, published: bool, ou
     let rotary = section.mass_per_length * section.gyration_radius_squared;
     for c in 0..system.mesh.cells {
         if system.has_moments {
-            let couple = w.d3x[c] * now.moment_x[c] + w.d3z[c] * now.moment_z[c];
+            let couple = couple(system, now, w, c);
             add(out, Flow::Loads, -h * couple * w.angle_rate[c]);
             add(out, Flow::AngularImpulse, -h * couple);
         }
         add(out, Flow::Damping, h * w.viscous_force[c] * w.stretch_rate[c]);
-        if published && system.model.effects.rotary_inertia {
+        if turned_across(system) {
+            let turning = (w.v3[c + 1] - w.v3[c]) * turning_rate(system, w, c);
+            add(out, Flow::AngularImpulse, rotary * turning);
+        } else if published && system.model.effects.rotary_inertia {
             let spurious = rotary * w.stretch[c] * w.stretch_rate[c] * w.angle_rate[c].powi(2);
             add(out, Flow::Formulation, -h * spurious);
         }
     }
 }
 
+/// Velocity along with which a node carries its mass: its own, without axial inertia that of the frame, `[E27]`.
+fn carried(system: &System, now: &Instant, w: &Workspace<f64>, node: usize) -> f64 {
+    if system.layout.waves[1] {
+        return w.v3[node];
+    }
+    let share = node as f64 / (system.mesh.nodes - 1) as f64;
+    now.frame_3().map_or(0.0, |frame| frame.at(share).rate)
+}
+
+/// Whether sections turn finitely but have the rotary inertia of `[E27]`.
+fn turned_across(system: &System) -> bool {
+    let finite = system.model.kinematics == Kinematics::FiniteRotation;
+    finite && system.model.effects.rotary_inertia && !system.layout.waves[1]
+}
+
+/// Rate of turning that rotary inertia resists: `φ_t`, without axial inertia `x'_t`.
+fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
+    if turned_across(system) {
+        (w.v1[c + 1] - w.v1[c]) / system.mesh.h
+    } else {
+        w.angle_rate[c]
+    }
+}
+
 /// Kinetic and elastic energy.
-pub fn energies(system: &System, w: &Workspace<f64>) -> Energies {
+pub fn energies(system: &System, now: &Instant, w: &Workspace<f64>) -> Energies {
     let (mesh, section) = (&system.mesh, &system.model.section);
     let mut e = Energies::default();
     for i in 0..mesh.nodes {
         let length = mesh.node_length(i);
         if system.layout.inertia {
-            e.kinetic += 0.5 * section.mass_per_length * length * (w.v1[i] * w.v1[i] + w.v3[i] * w.v3[i]);
+            let along = carried(system, now, w, i);
+            e.kinetic += 0.5 * section.mass_per_length * length * (w.v1[i] * w.v1[i] + along * along);
         }
         e.bending += 0.5 * length * w.moment[i] * w.moment[i] / section.bending_stiffness;
     }
     for c in 0..mesh.cells {
-        e.axial += 0.5 * mesh.h * w.force[c] * w.force[c] / section.axial_stiffness;
+        if system.model.effects.axial_stretch {
+            e.axial += 0.5 * mesh.h * w.force[c] * w.force[c] / section.axial_stiffness;
+        }
         if system.model.effects.rotary_inertia {
-            e.rotary += 0.5 * mesh.h * spin(system, w, c) * w.angle_rate[c];
+            e.rotary += 0.5 * mesh.h * spin(system, w, c) * turning_rate(system, w, c);
         }
     }
     e
 }
 
-/// Angular momentum of a cell's rotation per length: `m y11 φ_t`, published `m y11 λ² φ_t`.
+/// Angular momentum of a cell's rotation per length and turning: `m y11 φ_t`, published `m y11 λ² φ_t`.
 fn spin(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
     let section = &system.model.section;
-    let factor = match system.model.formulation {
-        Formulation::Conservative => 1.0,
-        Formulation::Published => w.stretch[c] * w.stretch[c],
+    let factor = if system.model.published() && system.layout.waves[1] {
+        w.stretch[c] * w.stretch[c]
+    } else {
+        1.0
     };
-    section.mass_per_length * section.gyration_radius_squared * factor * w.angle_rate[c]
+    section.mass_per_length * section.gyration_radius_squared * factor * turning_rate(system, w, c)
+}
+
+/// Arms (x, z) with which a node's momentum and force turn about the origin, and their rates: its position. A small
+/// rotation ε moves a node by (ε θ, -ε g u1), whatever u3 is: that is what the potential of `[E26]` does not feel.
+fn arms(system: &System, w: &Workspace<f64>, i: usize) -> ([f64; 2], [f64; 2]) {
+    let theta = system.mesh.node_coordinate(i);
+    match system.model.kinematics {
+        Kinematics::Bar | Kinematics::FiniteRotation => ([w.u1[i], theta + w.u3[i]], [w.v1[i], w.v3[i]]),
+        Kinematics::SmallRotation => ([w.u1[i], theta], [w.v1[i], 0.0]),
+        Kinematics::Linear => ([0.0, theta], [0.0, 0.0]),
+    }
 }
 
 /// Momentum (x, z) and angular momentum about the origin.
-pub fn momenta(system: &System, w: &Workspace<f64>) -> ([f64; 2], f64) {
+pub fn momenta(system: &System, now: &Instant, w: &Workspace<f64>) -> ([f64; 2], f64) {
     let (mesh, section) = (&system.mesh, &system.model.section);
     let (mut momentum, mut angular) = ([0.0; 2], 0.0);
     if !system.layout.inertia {
@@ -169,11 +230,15 @@ pub fn momenta(system: &System, w: &Workspace<f64>) -> ([f64; 2], f64) {
     for i in 0..mesh.nodes {
         let mass = section.mass_per_length * mesh.node_length(i);
         momentum[0] += mass * w.v1[i];
-        momentum[1] += mass * w.v3[i];
-        angular += mass * ((mesh.node_coordinate(i) + w.u3[i]) * w.v1[i] - w.u1[i] * w.v3[i]);
+        let along = carried(system, now, w, i);
+        momentum[1] += mass * along;
+        let ([x, z], _) = arms(system, w, i);
+        angular += mass * (z * w.v1[i] - x * along);
     }
     if system.model.effects.rotary_inertia {
-        angular += (0..mesh.cells).map(|c| mesh.h * spin(system, w, c)).sum::<f64>();
+        let arm = |c: usize| if turned_across(system) { w.d3z[c] } else { 1.0 };
+        let cells = (0..mesh.cells).map(|c| mesh.h * arm(c) * spin(system, w, c));
+        angular += cells.sum::<f64>();
     }
     (momentum, angular)
 }

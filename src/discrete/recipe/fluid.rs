@@ -1,14 +1,16 @@
 //! Pressures, what they do to the beam, and the flows they drive.
 
-use crate::discrete::fluid_mesh::Place;
+use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
 use crate::discrete::{Instant, System, Workspace};
-use crate::model::Scalar;
+use crate::model::{Scalar, Storage};
 
 /// `[E8]` Pressure of each cell from its stored area, and each bladder's mean (A.15, A.16 solved for p):
 ///
 /// ```text
 /// p = (a1 - R A_M(Mbar_j) - A_N(Nbar_j))/a_p
 /// ```
+///
+/// A bladder that keeps its volume has one pressure, one that shares its pressure one area, `[E23]`.
 pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -19,13 +21,29 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
         let of_force = law.of_force(w.mean_force[j]);
         for (bladder, row) in [(j, 1.0), (wet.per_row + j, -1.0)] {
             let imposed = of_force + law.of_moment(w.mean_moment[j], row);
-            let mut sum = T::zero();
-            for cell in fluid.cells_of(bladder) {
-                let p = law.pressure(w.area[cell], imposed);
-                w.pressure[cell] = p;
-                sum += p;
-            }
-            w.mean_pressure[bladder] = sum * share;
+            let cells = fluid.cells_of(bladder);
+            w.mean_pressure[bladder] = match wet.storage[bladder] {
+                Storage::Flowing => {
+                    let mut sum = T::zero();
+                    for cell in cells {
+                        let p = law.pressure(w.area[cell], imposed);
+                        w.pressure[cell] = p;
+                        sum += p;
+                    }
+                    sum * share
+                }
+                Storage::Kept => {
+                    let p = law.pressure(w.area[cells.start], imposed);
+                    w.pressure[cells].fill(p);
+                    p
+                }
+                Storage::Shared(pool) => {
+                    let p = w.pool[pool];
+                    w.area[cells.clone()].fill(p * law.per_pressure + imposed);
+                    w.pressure[cells].fill(p);
+                    p
+                }
+            };
         }
     }
 }
@@ -33,10 +51,15 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 /// Stretch and curvature of each segment due to pressure, `[E3]`.
 pub fn pressure_strains<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let Some(wet) = &system.model.wet else { return };
+    let effects = &system.model.effects;
     for j in 0..wet.per_row {
         let (upper, lower) = (w.mean_pressure[j], w.mean_pressure[wet.per_row + j]);
-        w.pressure_stretch[j] = wet.coupling.stretch(&wet.area, w.mean_force[j], upper, lower);
-        w.pressure_curvature[j] = wet.coupling.curvature(&wet.area, w.mean_moment[j], upper, lower);
+        if effects.pressure_to_stretch && effects.axial_stretch {
+            w.pressure_stretch[j] = wet.coupling.stretch(&wet.strains, w.mean_force[j], upper, lower);
+        }
+        if effects.pressure_to_curvature {
+            w.pressure_curvature[j] = wet.coupling.curvature(&wet.strains, w.mean_moment[j], upper, lower);
+        }
     }
 }
 
@@ -59,10 +82,13 @@ pub fn flows<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
+    if !wet.flows {
+        return;
+    }
     let k = fluid.cells_per_bladder;
     w.inflow.fill(T::zero());
     w.junction_inflow.fill(T::zero());
-    for bladder in 0..fluid.bladders {
+    for &bladder in &fluid.flowing {
         for cell in bladder * k + 1..(bladder + 1) * k {
             let q = (w.pressure[cell - 1] - w.pressure[cell]) * fluid.conductance;
             w.inflow[cell - 1] -= q;
@@ -74,10 +100,11 @@ pub fn flows<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
         deliver(link.from, -q, w);
         deliver(link.to, q, w);
     }
-    for (&place, &flow) in fluid.sources.iter().zip(&now.source_flow) {
-        deliver(place, T::constant(flow), w);
+    for &MeshSource { number, into } in &fluid.sources {
+        deliver(into, T::constant(now.source_flow[number]), w);
     }
-    for (k, (bridge, &(from, to))) in wet.network.bridges.iter().zip(&fluid.bridges).enumerate() {
+    for (k, &MeshBridge { number, from, to }) in fluid.bridges.iter().enumerate() {
+        let bridge = &wet.network.bridges[number];
         let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.bridge[k]);
         let q = bridge.valve.flow(forward) - bridge.valve.flow(backward);
         deliver(from, -q, w);

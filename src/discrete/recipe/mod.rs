@@ -1,12 +1,14 @@
 //! The semi-discrete equations in the paper's order: what lies between two instants is nothing but this.
 
+pub mod bar;
 pub mod fluid;
 pub mod rows;
+pub mod small;
 pub mod solid;
 mod unpack;
 
 use super::{Instant, System, Workspace};
-use crate::model::Scalar;
+use crate::model::{Kinematics, Scalar};
 
 pub use unpack::unpack;
 
@@ -15,11 +17,40 @@ pub fn evaluate<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w:
     unpack(system, now, y, yp, w);
     fluid::pressures(system, w);
     fluid::pressure_strains(system, w);
-    solid::kinematics(system, now, w);
-    solid::rates(system, now, w);
-    solid::resultants(system, now, w);
-    solid::section_forces(system, now, w);
+    match system.model.kinematics {
+        Kinematics::Bar => {
+            bar::kinematics(system, w);
+            bar::rates(system, w);
+            solid::normal_forces(system, w);
+            bar::section_forces(system, w);
+        }
+        Kinematics::Linear | Kinematics::SmallRotation => {
+            small::kinematics(system, now, w);
+            small::rates(system, now, w);
+            small::normal_forces(system, now, w);
+            solid::moments(system, now, w);
+            small::section_forces(system, now, w);
+        }
+        Kinematics::FiniteRotation => {
+            solid::kinematics(system, now, w);
+            solid::rates(system, now, w);
+            solid::normal_forces(system, w);
+            solid::moments(system, now, w);
+            solid::shears(system, w);
+            solid::section_forces(system, now, w);
+        }
+    }
     fluid::flows(system, now, w);
+}
+
+/// What balances and samples need besides: velocities and rates of strain, whether or not an equation depends on them.
+pub fn complete<T: Scalar>(system: &System, now: &Instant, yp: &[T], w: &mut Workspace<T>) {
+    unpack::complete_velocities(system, now, yp, w);
+    match system.model.kinematics {
+        Kinematics::Bar => bar::strain_rates(system, w),
+        Kinematics::Linear | Kinematics::SmallRotation => small::strain_rates(system, now, w),
+        Kinematics::FiniteRotation => solid::strain_rates(system, now, w),
+    }
 }
 
 /// The residual `F(t, y, y')`, one equation an unknown, in SI units.
@@ -29,6 +60,7 @@ pub fn residual<T: Scalar>(system: &System, now: &Instant, y: &[T], yp: &[T], w:
     rows::motion(system, y, yp, r);
     rows::means(system, w, r);
     rows::storage(system, w, r);
+    rows::pools(system, now, y, yp, w, r);
     rows::junctions(system, w, r);
     rows::bridges(system, now, w, r);
 }

@@ -1,8 +1,7 @@
 //! Kinematics, resultants and section forces of the beam.
 
-use crate::case::schema::Formulation;
 use crate::discrete::{Instant, System, Workspace};
-use crate::model::Scalar;
+use crate::model::{Kinematics, Scalar};
 
 /// `[E11]` Directors, stretch, tangent and curvature (A.1, A.2, A.19, A.20), curvature positive with the +x fibre in
 /// tension:
@@ -56,7 +55,8 @@ fn direction<T: Scalar>(angle: f64) -> (T, T) {
 
 /// Rates of stretch, angle and curvature, where something depends on them: `λ_t = e_t·d3_t`, `φ_t = d1·d3_t/λ²`.
 pub fn rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
-    if !(system.model.effects.rotary_inertia || system.damped) {
+    let turned = system.model.effects.rotary_inertia && system.layout.waves[1];
+    if !(turned || system.damped) {
         return;
     }
     strain_rates(system, now, w);
@@ -71,6 +71,12 @@ pub fn strain_rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace
         w.stretch_rate[c] = w.tx[c] * dx_t + w.tz[c] * dz_t;
         w.angle_rate[c] = (w.tz[c] * dx_t - w.tx[c] * dz_t) / w.stretch[c];
     }
+    curvature_rates(system, now, w);
+}
+
+/// `κ_t` at nodes from the turning of cells and prescribed slopes.
+pub fn curvature_rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
+    let inverse = 1.0 / system.mesh.h;
     let last = system.mesh.nodes - 1;
     for i in 1..last {
         w.kappa_rate[i] = (w.angle_rate[i - 1] - w.angle_rate[i]) * inverse;
@@ -91,20 +97,31 @@ pub fn strain_rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace
 /// ```
 ///
 /// At an end with given moment M is the value and the curvature follows.
-pub fn resultants<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
+pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let section = &system.model.section;
-    let (ea, ei) = (section.axial_stiffness, section.bending_stiffness);
-    let wet = system.fluid.is_some();
+    let ea = section.axial_stiffness;
+    let pressed = system.fluid.is_some() && system.model.effects.pressure_to_stretch;
     let k = system.mesh.cells_per_segment;
     for c in 0..system.mesh.cells {
-        let elastic = if wet {
+        let elastic = if pressed {
             w.strain[c] - w.pressure_stretch[c / k]
         } else {
             w.strain[c]
         };
         w.force[c] = elastic * ea;
     }
-    let published = system.model.formulation == Formulation::Published;
+    if section.axial_damping_time > 0.0 {
+        for c in 0..system.mesh.cells {
+            w.viscous_force[c] = w.stretch_rate[c] * (ea * section.axial_damping_time);
+        }
+    }
+}
+
+/// Moments and the shear that follows from them, `[E12]`.
+pub fn moments<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
+    let section = &system.model.section;
+    let ei = section.bending_stiffness;
+    let published = system.model.published();
     let last = system.mesh.nodes - 1;
     for i in 0..=last {
         let pressure_curvature = pressure_curvature(system, w, i);
@@ -130,11 +147,6 @@ pub fn resultants<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T
             }
         }
     }
-    if section.axial_damping_time > 0.0 {
-        for c in 0..system.mesh.cells {
-            w.viscous_force[c] = w.stretch_rate[c] * (ea * section.axial_damping_time);
-        }
-    }
     if section.bending_damping_time > 0.0 {
         let first = usize::from(now.ends[0].slope.is_none());
         let end = last + usize::from(now.ends[1].slope.is_some());
@@ -142,20 +154,52 @@ pub fn resultants<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T
             w.viscous_moment[i] = w.kappa_rate[i] * (ei * section.bending_damping_time);
         }
     }
+}
+
+/// Shear, `[E12]`.
+pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     for c in 0..system.mesh.cells {
-        let mut drop = w.moment[c] - w.moment[c + 1];
-        if section.bending_damping_time > 0.0 {
-            drop += w.viscous_moment[c] - w.viscous_moment[c + 1];
-        }
-        w.shear[c] = drop * inverse / w.stretch[c];
+        w.shear[c] = total_moment_drop(system, w, c) * inverse / w.stretch[c];
+    }
+}
+
+/// By how much the moment, viscous part included, falls over a cell [N m].
+#[inline]
+pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
+    let drop = w.moment[c] - w.moment[c + 1];
+    if system.model.section.bending_damping_time > 0.0 {
+        drop + (w.viscous_moment[c] - w.viscous_moment[c + 1])
+    } else {
+        drop
+    }
+}
+
+/// `N_total` of a cell [N].
+#[inline]
+pub fn normal_force<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
+    if system.model.section.axial_damping_time > 0.0 {
+        w.force[c] + w.viscous_force[c]
+    } else {
+        w.force[c]
+    }
+}
+
+/// Couple per length of distributed moments: `d3·m b1`, for small rotations `m b1_z + g φ m b1_x`, `[E26]`.
+#[inline]
+pub fn couple<T: Scalar>(system: &System, now: &Instant, w: &Workspace<T>, c: usize) -> T {
+    match system.model.kinematics {
+        Kinematics::Bar => T::zero(),
+        Kinematics::Linear => T::constant(now.moment_z[c]),
+        Kinematics::SmallRotation => w.d3x[c] * now.moment_x[c] + now.moment_z[c],
+        Kinematics::FiniteRotation => w.d3x[c] * now.moment_x[c] + w.d3z[c] * now.moment_z[c],
     }
 }
 
 /// `alpha_p` at a node: the mean of the segments on its two sides (the transpose of the mean moment's weights).
 #[inline]
 pub fn pressure_curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
-    if system.fluid.is_none() {
+    if system.fluid.is_none() || !system.model.effects.pressure_to_curvature {
         return T::zero();
     }
     let (left, right) = system.mesh.segments_of_node(node);
@@ -188,27 +232,29 @@ pub fn node_stretch<T: Scalar>(w: &Workspace<T>, node: usize, last: usize) -> T 
 /// ```
 pub fn section_forces<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
     let section = &system.model.section;
-    let damped = section.axial_damping_time > 0.0;
     for c in 0..system.mesh.cells {
         let (tx, tz) = (w.tx[c], w.tz[c]);
-        let normal = if damped {
-            w.force[c] + w.viscous_force[c]
-        } else {
-            w.force[c]
-        };
+        let normal = normal_force(system, w, c);
         w.sx[c] = normal * tx - w.shear[c] * tz;
         w.sz[c] = normal * tz + w.shear[c] * tx;
     }
     if system.has_moments {
         for c in 0..system.mesh.cells {
-            let couple = w.d3x[c] * now.moment_x[c] + w.d3z[c] * now.moment_z[c];
+            let couple = couple(system, now, w, c);
             add_couple(couple, c, w);
         }
     }
     if system.model.effects.rotary_inertia {
         let inertia = section.mass_per_length * section.gyration_radius_squared;
         let inverse = 1.0 / system.mesh.h;
-        let published = system.model.formulation == Formulation::Published;
+        let published = system.model.published();
+        if !system.layout.waves[1] {
+            for c in 0..system.mesh.cells {
+                let turned = (w.a1[c + 1] - w.a1[c]) * (inverse * inertia);
+                w.sx[c] += turned;
+            }
+            return;
+        }
         for c in 0..system.mesh.cells {
             let dx_tt = (w.a1[c + 1] - w.a1[c]) * inverse;
             let dz_tt = (w.a3[c + 1] - w.a3[c]) * inverse;

@@ -1,0 +1,43 @@
+//! The beam that does not move across: a bar.
+
+use super::solid::normal_force;
+use crate::discrete::{System, Workspace};
+use crate::model::Scalar;
+
+/// `[E24]` A bar can only stretch; what bends it is taken up by whatever keeps it straight:
+///
+/// ```text
+/// λ - 1 = u3'    N = EA (u3' - λ_p) + EA τ_a u3'_t    n = (0, N)    m a3 = b_z + N'
+/// ```
+///
+/// It is [`super::solid`] with u1 = 0, exact where nothing acts across and upper and lower pressures are alike.
+pub fn kinematics<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+    let inverse = 1.0 / system.mesh.h;
+    for c in 0..system.mesh.cells {
+        let e = (w.u3[c + 1] - w.u3[c]) * inverse;
+        w.strain[c] = e;
+        w.stretch[c] = e + 1.0;
+    }
+}
+
+/// Rate of stretch, where the damping depends on it.
+pub fn rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+    if system.model.section.axial_damping_time > 0.0 {
+        strain_rates(system, w);
+    }
+}
+
+/// Rate of stretch, always.
+pub fn strain_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+    let inverse = 1.0 / system.mesh.h;
+    for c in 0..system.mesh.cells {
+        w.stretch_rate[c] = (w.v3[c + 1] - w.v3[c]) * inverse;
+    }
+}
+
+/// The section force is the normal force.
+pub fn section_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+    for c in 0..system.mesh.cells {
+        w.sz[c] = normal_force(system, w, c);
+    }
+}

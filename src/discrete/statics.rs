@@ -1,0 +1,119 @@
+//! Normal forces of a beam that does not stretch: statics, from the free end on.
+
+use super::System;
+use super::instant::Frame;
+use crate::case::Translation;
+use crate::case::signals::{Clock, Jet};
+use crate::model::loads::LoadKind;
+
+/// `[E28]` Without axial stretch (EA → ∞) a beam that one end holds and whose other end is free moves along as
+///
+/// ```text
+/// u3' = λ_p - g u1'²/2      u3 = U at the end that is held
+/// ```
+///
+/// and needs no unknown for it. Its normal force is what the loads beyond a section and the force that carries the mass
+/// beyond it along make of it, a function of time alone:
+///
+/// ```text
+/// N_c = Σ_{i beyond c} [F_i + h_i (b_z,i - c U' - m U'')]
+/// ```
+///
+/// It acts on bending, `n_x = g N φ - V`, and on areas, `A_N(Nbar)`. The balance of energy is that of `[E27]` with this u3
+/// and without `Σ h N²/2EA`: for `Σ h N u3'_t` is the work of the same loads, of the end that is held, and of `-m U''` on
+/// u3, the shortening by bending and the stretch by pressure in it.
+#[derive(Clone, Debug, Default)]
+pub struct Statics {
+    /// `N` of each cell [N].
+    pub force: Vec<f64>,
+    /// `dN/dt` of each cell [N/s].
+    pub rate: Vec<f64>,
+    /// `Nbar` of each segment [N].
+    pub mean: Vec<f64>,
+    /// `dNbar/dt` of each segment [N/s].
+    pub mean_rate: Vec<f64>,
+    /// Force on each node and its rate.
+    nodes: Vec<(f64, f64)>,
+}
+
+impl Statics {
+    /// Room for the forces of a system.
+    pub fn new(system: &System) -> Self {
+        if system.model.effects.axial_stretch {
+            return Self::default();
+        }
+        let (cells, segments) = (system.mesh.cells, system.mesh.segments);
+        Self {
+            force: vec![0.0; cells],
+            rate: vec![0.0; cells],
+            mean: vec![0.0; segments],
+            mean_rate: vec![0.0; segments],
+            nodes: vec![(0.0, 0.0); cells + 1],
+        }
+    }
+
+    /// Evaluates them at `clock`, with the motion of the end that is held.
+    pub fn update(&mut self, system: &System, frame: Option<Frame>, clock: Clock) {
+        if system.model.effects.axial_stretch {
+            return;
+        }
+        self.load(system, frame.map_or(Jet::default(), |frame| frame.at(0.0)), clock);
+        let root_held = matches!(system.model.ends[0].axial, Translation::Displacement(_));
+        let last = system.mesh.cells;
+        let mut beyond = (0.0, 0.0);
+        for k in 0..last {
+            // The section next to the free end first; its outward side is the tip's or the root's.
+            let (node, cell, outward) = if root_held {
+                (last - k, last - 1 - k, 1.0)
+            } else {
+                (k, k, -1.0)
+            };
+            beyond.0 += self.nodes[node].0;
+            beyond.1 += self.nodes[node].1;
+            (self.force[cell], self.rate[cell]) = (outward * beyond.0, outward * beyond.1);
+        }
+        let k = system.mesh.cells_per_segment;
+        let share = 1.0 / k as f64;
+        for j in 0..system.mesh.segments {
+            self.mean[j] = share * self.force[j * k..(j + 1) * k].iter().sum::<f64>();
+            self.mean_rate[j] = share * self.rate[j * k..(j + 1) * k].iter().sum::<f64>();
+        }
+    }
+
+    /// Forces on nodes: loads, drag, ends, and what carries the mass along.
+    fn load(&mut self, system: &System, held: Jet, clock: Clock) {
+        let (section, mesh) = (&system.model.section, &system.mesh);
+        let mass = if system.layout.inertia {
+            section.mass_per_length
+        } else {
+            0.0
+        };
+        for (i, node) in self.nodes.iter_mut().enumerate() {
+            let length = mesh.node_length(i);
+            *node = (
+                -length * (mass * held.acceleration + section.drag * held.rate),
+                -length * (mass * held.jerk + section.drag * held.acceleration),
+            );
+        }
+        for load in system.loads.iter().filter(|load| load.kind == LoadKind::ForceZ) {
+            let factor = load.signal.jet(clock);
+            for (i, (node, shape)) in self.nodes.iter_mut().zip(&load.shape).enumerate() {
+                let size = mesh.node_length(i) * shape;
+                node.0 += size * factor.value;
+                node.1 += size * factor.rate;
+            }
+        }
+        let last = mesh.nodes - 1;
+        for (end, node, outward) in [(&system.model.ends[0], 0, -1.0), (&system.model.ends[1], last, 1.0)] {
+            let mut force = Jet::default();
+            if let Translation::Force(dead) = &end.axial {
+                force = force + dead.jet(clock);
+            }
+            if let Some(follower) = &end.follower {
+                force = force + follower.normal.jet(clock).scaled(outward);
+            }
+            self.nodes[node].0 += force.value;
+            self.nodes[node].1 += force.rate;
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! What stands against leaving an effect out: something in the case that has a meaning only with it.
+
+use crate::case::profile::Profile;
+use crate::case::schema::{Case, Formulation, Load};
+use crate::case::signals::Signal;
+use crate::case::{ResolvedEnd, Rotation, Translation};
+use crate::model::{Network, Pool};
+
+/// Why an effect must stay, and what to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Obstacle {
+    /// One clause.
+    pub what: String,
+    /// What to do.
+    pub hint: String,
+}
+
+fn obstacle(what: impl Into<String>, hint: &str) -> Option<Obstacle> {
+    Some(Obstacle {
+        what: what.into(),
+        hint: hint.into(),
+    })
+}
+
+fn zero(signal: &Signal) -> bool {
+    signal.is_constant() && signal.value(0.0) == 0.0
+}
+
+/// Nothing may move or load the beam across.
+pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
+    const HINT: &str = "remove it, or leave transverse_motion on";
+    let across = |load: &Load| match load {
+        Load::ForceXNM(d) | Load::BodyXMS2(d) | Load::MomentXN(d) | Load::MomentZN(d) => !zero(&d.signal),
+        Load::Gravity { x_m_s2, .. } => *x_m_s2 != 0.0,
+        Load::ForceZNM(_) | Load::BodyZMS2(_) => false,
+    };
+    if let Some(k) = case.loads.iter().position(across) {
+        return obstacle(format!("/loads/{k} acts across the beam"), HINT);
+    }
+    for (end, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
+        let ResolvedEnd {
+            transverse,
+            rotation,
+            follower,
+            ..
+        } = end.resolve();
+        let (Translation::Displacement(moves) | Translation::Force(moves)) = &transverse;
+        let (Rotation::Slope(turns) | Rotation::Moment(turns)) = &rotation;
+        if !zero(moves) || !zero(turns) || follower.is_some_and(|f| !zero(&f.shear)) {
+            return obstacle(format!("the {name} is moved, turned or loaded across the beam"), HINT);
+        }
+    }
+    let begins = |profile: &Option<Profile>| profile.as_ref().is_some_and(|p| *p != Profile::Constant(0.0));
+    if begins(&case.start.u1_m) || begins(&case.start.u1_rate_m_s) {
+        return obstacle("the beam starts bent or moving across", HINT);
+    }
+    None
+}
+
+/// The published form is one of finite rotations.
+pub fn finite_rotation(case: &Case) -> Option<Obstacle> {
+    if case.formulation == Formulation::Conservative {
+        return None;
+    }
+    obstacle(
+        "the published form has no potential for small rotations",
+        "set \"formulation\" to \"conservative\", or leave finite_rotation on",
+    )
+}
+
+/// Finite rotations turn the normal force with the beam.
+pub fn axial_force_on_bending(finite_rotation: bool) -> Option<Obstacle> {
+    let turns = finite_rotation.then_some("finite_rotation is on, which turns the normal force with the beam")?;
+    obstacle(turns, "leave finite_rotation out too, or axial_force_on_bending on")
+}
+
+/// Something must carry the beam along.
+pub fn axial_inertia(case: &Case) -> Option<Obstacle> {
+    let held = [&case.ends.root, &case.ends.tip].map(|end| end.resolve().axial);
+    if held.iter().any(|axial| matches!(axial, Translation::Displacement(_))) {
+        return None;
+    }
+    obstacle(
+        "neither end holds u3, so nothing but its inertia keeps the beam where it is",
+        "give u3_m at an end, or leave axial_inertia on",
+    )
+}
+
+/// The normal force must follow from the loads.
+pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool) -> Option<Obstacle> {
+    const HINT: &str = "leave axial_stretch on";
+    if !transverse_motion {
+        return obstacle("a beam that neither bends nor stretches is rigid", HINT);
+    }
+    if finite_rotation {
+        return obstacle(
+            "finite_rotation is on, which couples stretch and bending",
+            "leave finite_rotation out too",
+        );
+    }
+    let held = [&case.ends.root, &case.ends.tip].map(|end| end.resolve().axial);
+    match held
+        .iter()
+        .filter(|axial| matches!(axial, Translation::Displacement(_)))
+        .count()
+    {
+        1 => None,
+        0 => obstacle("neither end holds u3", HINT),
+        _ => obstacle(
+            "both ends hold u3, so the normal force does not follow from the loads",
+            HINT,
+        ),
+    }
+}
+
+/// A prescribed flow must have somewhere to go.
+pub fn flow(network: &Network) -> Option<Obstacle> {
+    let source = network.sources.first()?;
+    obstacle(
+        format!("the port \"{}\" prescribes a flow", source.name),
+        "remove the port, or leave flow on",
+    )
+}
+
+/// Every network must be able to have one pressure.
+pub fn network_pressure_differences(network: &Network) -> Option<Obstacle> {
+    let why = (0..network.components).find_map(|component| Pool::new(network, component).err())?;
+    obstacle(why, "remove it, or leave network_pressure_differences on")
+}

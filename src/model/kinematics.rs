@@ -1,0 +1,28 @@
+//! How strains follow from displacements.
+
+use super::EffectSet;
+
+/// The kinematics of a model, from that of a bar to that of finite rotations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kinematics {
+    /// A bar, which can only stretch.
+    Bar,
+    /// Small rotations, and no normal force on bending: the linear beam.
+    Linear,
+    /// Small rotations (von Karman).
+    SmallRotation,
+    /// Rotations of any size.
+    FiniteRotation,
+}
+
+impl Kinematics {
+    /// The least that holds the effects.
+    pub fn of(effects: &EffectSet) -> Self {
+        match effects {
+            e if !e.transverse_motion => Self::Bar,
+            e if e.finite_rotation => Self::FiniteRotation,
+            e if e.axial_force_on_bending => Self::SmallRotation,
+            _ => Self::Linear,
+        }
+    }
+}

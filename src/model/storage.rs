@@ -1,0 +1,131 @@
+//! How each bladder stores fluid: what of it is unknown.
+
+use super::network::{LinkKind, Node, bladder_index};
+use super::{EffectSet, Network};
+use crate::case::schema::Case;
+
+/// `[E23]` What is known of a bladder's area and pressure:
+///
+/// ```text
+/// flowing   Δs da/dt = inflow of each cell       p = (a - R A_M(Mbar) - A_N(Nbar))/a_p
+/// kept      a = a0, what it was at the start     p = (a0 - R A_M(Mbar) - A_N(Nbar))/a_p
+/// shared    a = a_p p + R A_M(Mbar) + A_N(Nbar)  p that of its pool, [E25]
+/// ```
+///
+/// A sealed bladder whose pressure is uniform at the start stays so: "kept" is exact for it. For bladders that are joined
+/// it is the limit of motion fast against the network, ω τ → ∞; "shared" is the other one, ω τ → 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Storage {
+    /// The areas of its cells are unknowns.
+    Flowing,
+    /// Its volume is what it was at the start: no unknown.
+    Kept,
+    /// Its pressure is that of a pool; which.
+    Shared(usize),
+}
+
+/// `[E25]` Bladders joined so well that they have one pressure p:
+///
+/// ```text
+/// closed   l_b Σ_j (a_p p + R A_M(Mbar_j) + A_N(Nbar_j)) = V0        one unknown, p
+/// port     p given                                                   none
+/// fed      l_b Σ_j (a_p p + R A_M + A_N) = V,  dV/dt = Σ q           p and V
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pool {
+    /// Component of the network.
+    pub component: usize,
+    /// Its bladders.
+    pub bladders: Vec<usize>,
+    /// What decides its pressure.
+    pub kind: PoolKind,
+}
+
+/// What decides the pressure of a pool.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PoolKind {
+    /// Its volume, which is what it was at the start.
+    Closed,
+    /// A port; number among the network's ports.
+    Port(usize),
+    /// Its volume, into which sources feed; their numbers.
+    Fed(Vec<usize>),
+}
+
+impl Pool {
+    /// A component of the network as a pool; or why it cannot be one.
+    pub fn new(network: &Network, component: usize) -> Result<Self, String> {
+        let inside = |node: Node| network.component_of(node) == Some(component);
+        let touches = |(from, to): (Node, Node)| inside(from) || inside(to);
+        let bridged = network.bridges.iter().any(|b| touches((b.from, b.to)));
+        let mut ports = vec![];
+        for link in network.links.iter().filter(|l| touches((l.from, l.to)) && !l.is_shut()) {
+            if matches!(link.kind, LinkKind::Turbine(_)) {
+                return Err("a turbine needs them".into());
+            }
+            if link.opening.as_ref().is_some_and(|o| !o.is_constant()) {
+                return Err("a valve moves".into());
+            }
+            ports.extend([link.from, link.to].into_iter().filter_map(|node| match node {
+                Node::Port(p) => Some(p),
+                _ => None,
+            }));
+        }
+        if bridged {
+            return Err("a turbine needs them".into());
+        }
+        let pressure = |p: usize| &network.ports[p].pressure;
+        if let Some(other) = ports.iter().find(|&&p| pressure(p) != pressure(ports[0])) {
+            let (a, b) = (&network.ports[ports[0]].name, &network.ports[*other].name);
+            return Err(format!("the ports \"{a}\" and \"{b}\" prescribe different pressures"));
+        }
+        let sources: Vec<usize> = (0..network.sources.len())
+            .filter(|&s| inside(network.sources[s].into))
+            .collect();
+        let bladders =
+            (0..network.component_of_bladder.len()).filter(|&b| network.component_of_bladder[b] == component);
+        Ok(Self {
+            component,
+            bladders: bladders.collect(),
+            kind: match (ports.first(), sources.is_empty()) {
+                (Some(&port), _) => PoolKind::Port(port),
+                (None, true) => PoolKind::Closed,
+                (None, false) => PoolKind::Fed(sources),
+            },
+        })
+    }
+}
+
+/// Storage of every bladder, and the pools that some share.
+pub fn of_bladders(case: &Case, network: &Network, effects: &EffectSet) -> (Vec<Storage>, Vec<Pool>) {
+    let per_row = network.component_of_bladder.len() / 2;
+    let uneven = |bladder: usize| {
+        case.start.pressures.iter().any(|start| {
+            let here = start.bladders.iter().any(|&b| bladder_index(b, per_row) == bladder);
+            here && !start.pressure_pa.is_uniform()
+        })
+    };
+    let mut storage: Vec<Storage> = network
+        .sealed()
+        .enumerate()
+        .map(|(bladder, sealed)| {
+            if !effects.flow || (sealed && !uneven(bladder)) {
+                Storage::Kept
+            } else {
+                Storage::Flowing
+            }
+        })
+        .collect();
+    let mut pools = vec![];
+    if effects.flow && !effects.network_pressure_differences {
+        for pool in (0..network.components).filter_map(|c| Pool::new(network, c).ok()) {
+            if pool.bladders.iter().any(|&b| storage[b] == Storage::Flowing) {
+                pool.bladders
+                    .iter()
+                    .for_each(|&b| storage[b] = Storage::Shared(pools.len()));
+                pools.push(pool);
+            }
+        }
+    }
+    (storage, pools)
+}

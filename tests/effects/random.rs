@@ -1,0 +1,49 @@
+//! Random cases with random effects left out: a system of index one each time, its derivatives exact.
+
+use std::path::Path;
+
+use slcbeam::case;
+use slcbeam::dae::{BeamDae, Dae};
+use slcbeam::discrete::System;
+use slcbeam::model::{Model, effects::TABLE};
+
+use super::differences::worst_difference;
+use super::fuzz_case::{Random, text};
+
+/// Names that a case may choose: all but those that are there where they are given.
+fn choosable() -> Vec<&'static str> {
+    let given = ["damping", "valves", "turbines", "loads", "gravity"];
+    let names = TABLE.iter().map(|e| e.name);
+    names.filter(|name| !given.contains(name)).collect()
+}
+
+#[test]
+fn derivatives_are_exact_for_random_effects_of_random_cases() {
+    let names = choosable();
+    let (mut refused, mut checked, mut worst) = (0, 0, 0.0_f64);
+    for seed in 0..1000 {
+        let mut r = Random(seed ^ 0xEFFE_C75);
+        let mut sets = vec![r#"/effects={"rotary_inertia":"auto"}"#.to_string()];
+        sets.extend(names.iter().filter_map(|name| {
+            let leave = r.one_in(4);
+            leave.then(|| format!("/effects/{name}=\"off\""))
+        }));
+        let Ok(loaded) = case::parse(&text(seed), Path::new("random.json"), Path::new("."), &sets) else {
+            continue;
+        };
+        if !Model::new(&loaded.case).effects.refusals.is_empty() {
+            refused += 1;
+            continue;
+        }
+        let mut dae = BeamDae::new(System::new(&loaded.case));
+        if dae.is_empty() {
+            continue;
+        }
+        let off = worst_difference(&mut dae, seed, 0.03);
+        worst = worst.max(off);
+        checked += 1;
+        assert!(off < 1e-4, "seed {seed}, {sets:?}: {off:.1e}");
+    }
+    println!("{checked} checked, {refused} refused, worst {worst:.1e}");
+    assert!(checked > 200);
+}
