@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, Matrix2};
 use super::network::{Network, Node};
 use super::{Model, Wet};
 use crate::case::schema::Case;
-use crate::case::{Clock, Rotation, Signal, Translation};
+use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};
 
 /// `κ_1` of the clamped-free beam under axial base acceleration.
 pub const MATHIEU_COUPLING: f64 = 1.570_878_189_99;
@@ -45,7 +45,7 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
     put("slenderness", l / case.beam.height_m);
     let solid_time = (m * l.powi(4) / ei).sqrt();
     put("t_s_s", solid_time);
-    let first = first_wave_number(model);
+    let first = first_wave_number(&model.ends);
     if let Some(beta) = first {
         put("first_bending_frequency_hz", beta * beta / (2.0 * PI * solid_time));
     }
@@ -136,13 +136,12 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
 
 /// Whether the root is clamped and the tip free.
 fn is_cantilever(model: &Model) -> bool {
-    let kind = |k: usize| end_kind(model, k);
+    let kind = |k: usize| end_kind(&model.ends[k]);
     kind(0) == (true, true) && kind(1) == (false, false)
 }
 
 /// Transverse motion held? Slope held?
-fn end_kind(model: &Model, end: usize) -> (bool, bool) {
-    let e = &model.ends[end];
+fn end_kind(e: &ResolvedEnd) -> (bool, bool) {
     (
         matches!(e.transverse, Translation::Displacement(_)),
         matches!(e.rotation, Rotation::Slope(_)),
@@ -150,8 +149,8 @@ fn end_kind(model: &Model, end: usize) -> (bool, bool) {
 }
 
 /// `β l_s` of the first bending mode with a frequency above zero.
-fn first_wave_number(model: &Model) -> Option<f64> {
-    let (a, b) = (end_kind(model, 0), end_kind(model, 1));
+pub fn first_wave_number(ends: &[ResolvedEnd; 2]) -> Option<f64> {
+    let (a, b) = (end_kind(&ends[0]), end_kind(&ends[1]));
     let clamped = (true, true);
     let pinned = (true, false);
     let guided = (false, true);

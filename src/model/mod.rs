@@ -17,13 +17,13 @@ pub mod scalar;
 pub mod scales;
 pub mod storage;
 
-use crate::case::ResolvedEnd;
-use crate::case::schema::{Bladders, Case, Formulation};
+use crate::case::schema::{Bladders, Case, Effects, Formulation};
+use crate::case::{ResolvedEnd, Rotation, Signal, Translation};
 
 pub use beam::Section;
 pub use bladder::AreaLaw;
 pub use coupling::Coupling;
-pub use effects::{Decision, EffectSet};
+pub use effects::{Decision, EffectSet, Scene};
 pub use kinematics::Kinematics;
 pub use loads::Load;
 pub use network::Network;
@@ -128,7 +128,12 @@ impl Model {
         let section = Section::new(case);
         let filled = case.fluid.as_ref().zip(case.bladders.as_ref());
         let network = filled.map(|(fluid, bladders)| Network::new(case, fluid, bladders));
-        let effects = EffectSet::choose(case, &section, network.as_ref());
+        let mut effects = EffectSet::whole(case, network.as_ref());
+        if case.effects != Effects::Full {
+            let whole = filled.zip(network.clone());
+            let whole = whole.map(|((_, bladders), network)| Wet::new(case, bladders, &section, network, &effects));
+            effects = EffectSet::choose(case, network.as_ref(), &Scene::new(case, &section, whole.as_ref()));
+        }
         let mut wet = filled
             .zip(network)
             .filter(|_| effects.fluid)
@@ -169,5 +174,35 @@ impl Model {
     /// Whether forces of the published form act, which bending alone brings about.
     pub fn published(&self) -> bool {
         self.formulation == Formulation::Published && self.kinematics == Kinematics::FiniteRotation
+    }
+}
+
+/// Visits every signal: of ends, loads, valves and ports.
+pub fn each_signal(ends: &[ResolvedEnd; 2], loads: &[Load], network: Option<&Network>, mut visit: impl FnMut(&Signal)) {
+    for end in ends {
+        for motion in [&end.transverse, &end.axial] {
+            match motion {
+                Translation::Displacement(s) | Translation::Force(s) => visit(s),
+            }
+        }
+        match &end.rotation {
+            Rotation::Slope(s) | Rotation::Moment(s) => visit(s),
+        }
+        if let Some(follower) = &end.follower {
+            visit(&follower.normal);
+            visit(&follower.shear);
+        }
+    }
+    for load in loads {
+        visit(&load.signal);
+    }
+    if let Some(network) = network {
+        network
+            .links
+            .iter()
+            .filter_map(|l| l.opening.as_ref())
+            .for_each(&mut visit);
+        network.ports.iter().map(|p| &p.pressure).for_each(&mut visit);
+        network.sources.iter().map(|s| &s.flow).for_each(&mut visit);
     }
 }

@@ -57,26 +57,38 @@ fn profile_size(profile: &crate::case::profile::Profile) -> f64 {
 
 /// What acts on the beam, as magnitudes.
 #[derive(Clone, Copy, Debug, Default)]
-struct Drive {
-    transverse_load: f64,
-    axial_load: f64,
-    transverse_force: f64,
-    axial_force: f64,
-    moment: f64,
-    transverse_motion: f64,
-    transverse_acceleration: f64,
-    axial_acceleration: f64,
+pub struct Drive {
+    /// Force per length across [N/m].
+    pub transverse_load: f64,
+    /// Force per length along [N/m].
+    pub axial_load: f64,
+    /// Forces on the ends across [N].
+    pub transverse_force: f64,
+    /// Forces on the ends along [N].
+    pub axial_force: f64,
+    /// Moments [N m].
+    pub moment: f64,
+    /// Motion of a driven end across [m].
+    pub transverse_motion: f64,
+    /// Its acceleration [m/s^2].
+    pub transverse_acceleration: f64,
+    /// Acceleration of a driven end along [m/s^2].
+    pub axial_acceleration: f64,
     /// Velocity with which a driven end sets off from rest.
-    axial_jump: f64,
+    pub axial_jump: f64,
     /// Axial motions of both ends, where both are driven.
-    axial_pull: f64,
-    slope: f64,
-    pressure: f64,
-    frequency: f64,
+    pub axial_pull: f64,
+    /// Prescribed slope [rad].
+    pub slope: f64,
+    /// Pressures at the start and at ports [Pa].
+    pub pressure: f64,
+    /// Fastest angular frequency [1/s].
+    pub frequency: f64,
 }
 
 impl Drive {
-    fn of(case: &Case, section: &Section, ends: &[ResolvedEnd; 2]) -> Self {
+    /// Of a case with these ends.
+    pub fn of(case: &Case, section: &Section, ends: &[ResolvedEnd; 2]) -> Self {
         let end = case.time.end_s;
         let length = case.beam.length_m;
         let mut d = Self::default();

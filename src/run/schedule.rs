@@ -1,8 +1,7 @@
 //! When a run stops to switch, and when it gives output.
 
 use crate::case::schema::Case;
-use crate::case::{Rotation, Signal, Translation};
-use crate::model::Model;
+use crate::model::{Model, each_signal};
 
 /// A time at which the integrator stops and starts afresh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +19,9 @@ pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
     let end = case.time.end_s;
     let closest = 1e-9 * end;
     let mut switches = Vec::new();
-    each_signal(model, |s| s.breaks(&mut switches));
+    each_signal(&model.ends, &model.loads, model.wet.as_ref().map(|w| &w.network), |s| {
+        s.breaks(&mut switches)
+    });
     let mut all: Vec<Stop> = switches
         .into_iter()
         .map(|t| Stop {
@@ -58,41 +59,12 @@ pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
 /// Shortest time scale of any signal that no stop marks [s].
 pub fn fastest_period(model: &Model) -> Option<f64> {
     let mut fastest: Option<f64> = None;
-    each_signal(model, |s| {
+    each_signal(&model.ends, &model.loads, model.wet.as_ref().map(|w| &w.network), |s| {
         if let Some(period) = s.fastest_unmarked_period_s() {
             fastest = Some(fastest.map_or(period, |f| f.min(period)));
         }
     });
     fastest
-}
-
-fn each_signal(model: &Model, mut visit: impl FnMut(&Signal)) {
-    for end in &model.ends {
-        for motion in [&end.transverse, &end.axial] {
-            match motion {
-                Translation::Displacement(s) | Translation::Force(s) => visit(s),
-            }
-        }
-        match &end.rotation {
-            Rotation::Slope(s) | Rotation::Moment(s) => visit(s),
-        }
-        if let Some(follower) = &end.follower {
-            visit(&follower.normal);
-            visit(&follower.shear);
-        }
-    }
-    for load in &model.loads {
-        visit(&load.signal);
-    }
-    if let Some(wet) = &model.wet {
-        wet.network
-            .links
-            .iter()
-            .filter_map(|l| l.opening.as_ref())
-            .for_each(&mut visit);
-        wet.network.ports.iter().map(|p| &p.pressure).for_each(&mut visit);
-        wet.network.sources.iter().map(|s| &s.flow).for_each(&mut visit);
-    }
 }
 
 /// Output times `k interval`, up to and including the end.

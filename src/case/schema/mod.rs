@@ -61,6 +61,11 @@ pub struct Case {
     /// Which physical effects are simulated.
     #[serde(default)]
     pub effects: Effects,
+    /// Relative change of results that an effect may make and still be left out by `"auto"`; with `--accuracy`, and where absent, a
+    /// tenth of the accuracy asked for.
+    #[serde(default = "thousandth")]
+    #[schemars(range(min = 1e-12, max = 0.5))]
+    pub effects_tolerance: f64,
     /// Resolution in space.
     #[serde(default)]
     pub mesh: Mesh,
@@ -69,6 +74,10 @@ pub struct Case {
     /// Time integration.
     #[serde(default)]
     pub solver: Solver,
+}
+
+fn thousandth() -> f64 {
+    1e-3
 }
 
 impl Case {

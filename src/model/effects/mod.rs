@@ -5,13 +5,15 @@
 //! [`crate::discrete::recipe::evaluate`].
 
 mod obstacles;
+pub mod scene;
 mod table;
 
-use super::{Network, Section};
+use super::Network;
 use crate::case::schema::{Case, Choice, Coupling, EffectChoices, Effects, Load};
 use crate::error::Violation;
 
 use obstacles::Obstacle;
+pub use scene::Scene;
 pub use table::{Effect, TABLE};
 
 /// A decision with its reason.
@@ -66,63 +68,120 @@ pub struct EffectSet {
     pub refusals: Vec<Violation>,
 }
 
-/// Below this relative change of the second bending frequency the automatic choice leaves rotary inertia out.
-const ROTARY_THRESHOLD: f64 = 1e-3;
-
 /// What the program chooses by itself, and why.
 type Automatic = (bool, String);
 
-fn kept() -> Automatic {
-    (true, "kept unless left out by name".into())
+fn kept(why: &str) -> Automatic {
+    (true, format!("kept: {why}"))
+}
+
+/// Left out where what that changes is below the tolerance.
+fn weigh(number: f64, tolerance: f64, what: &str) -> Automatic {
+    let on = number.is_nan() || number >= tolerance;
+    let sign = if on { ">=" } else { "<" };
+    (on, format!("{what}: {number:.1e} {sign} {tolerance:.0e}"))
 }
 
 impl EffectSet {
-    /// Chooses the effects of a case; `network` is that of its bladders.
-    pub fn choose(case: &Case, section: &Section, network: Option<&Network>) -> Self {
-        let choices = match &case.effects {
+    /// Everything that a case describes; `network` is that of its bladders.
+    pub fn whole(case: &Case, network: Option<&Network>) -> Self {
+        Self::decide(case, network, None)
+    }
+
+    /// Chooses the effects of a case for the scene it describes: what it names as it says, the rest so that what is left out
+    /// changes results by less than `effects_tolerance`.
+    pub fn choose(case: &Case, network: Option<&Network>, scene: &Scene) -> Self {
+        Self::decide(case, network, Some(scene))
+    }
+
+    fn decide(case: &Case, network: Option<&Network>, scene: Option<&Scene>) -> Self {
+        let c = match &case.effects {
             Effects::Auto | Effects::Full => &EffectChoices::default(),
             Effects::Chosen(choices) => choices,
         };
+        let scene = scene.filter(|_| case.effects != Effects::Full);
         let mut table = Decisions {
-            full: case.effects == Effects::Full,
+            scene,
             decisions: vec![],
             refusals: vec![],
         };
-        let c = choices;
+        let tolerance = case.effects_tolerance;
         let transverse_motion = table.decide(
             "transverse_motion",
             c.transverse_motion,
             Ok(()),
             || obstacles::transverse_motion(case),
-            kept(),
+            |scene| {
+                if !scene.mirrored() {
+                    kept("the rows of bladders are not each other's mirror image")
+                } else if let Some(why) = scene.unstable() {
+                    kept(&why)
+                } else {
+                    let why = "nothing acts across, the rows mirror each other";
+                    (
+                        false,
+                        format!("{why}, {:.1e} of the buckling load", scene.compression()),
+                    )
+                }
+            },
         );
         let across = if transverse_motion {
             Ok(())
         } else {
             Err("no transverse motion")
         };
+        let bending = |scene: &Scene, choice: Automatic| match scene.unstable() {
+            Some(why) if !choice.0 => kept(&why),
+            None if !choice.0 && scene.resonant() => kept("something acts near or above the first bending frequency"),
+            _ => choice,
+        };
         let finite_rotation = table.decide(
             "finite_rotation",
             c.finite_rotation,
             across,
             || obstacles::finite_rotation(case),
-            kept(),
+            |scene| bending(scene, weigh(scene.rotation(), tolerance, "square of the largest angle")),
         );
         let axial_force_on_bending = table.decide(
             "axial_force_on_bending",
             c.axial_force_on_bending,
             across,
             || obstacles::axial_force_on_bending(finite_rotation),
-            kept(),
+            |scene| {
+                bending(
+                    scene,
+                    weigh(scene.compression(), tolerance, "normal force over the buckling load"),
+                )
+            },
         );
         let axial_stretch = table.decide(
             "axial_stretch",
             c.axial_stretch,
             Ok(()),
             || obstacles::axial_stretch(case, transverse_motion, finite_rotation),
-            kept(),
+            |scene| weigh(scene.stretch(), tolerance, "stretch over how much bending draws in"),
         );
-        let solid_inertia = table.decide("solid_inertia", c.solid_inertia, Ok(()), || None, kept());
+        let solid_inertia = table.decide(
+            "solid_inertia",
+            c.solid_inertia,
+            Ok(()),
+            || None,
+            |scene| {
+                if scene.driven() {
+                    kept("driven ends act by inertia")
+                } else if !scene.held() {
+                    kept("the ends do not hold the beam without it")
+                } else if let Some(why) = scene.unstable() {
+                    kept(&why)
+                } else {
+                    weigh(
+                        scene.bending_inertia(),
+                        tolerance,
+                        "inertia of bending over its stiffness",
+                    )
+                }
+            },
+        );
         let moving = if solid_inertia { Ok(()) } else { Err("no solid inertia") };
         let stretching = if axial_stretch { Ok(()) } else { Err("no axial stretch") };
         let axial_inertia = table.decide(
@@ -130,34 +189,47 @@ impl EffectSet {
             c.axial_inertia,
             moving.and(stretching),
             || obstacles::axial_inertia(case),
-            kept(),
+            |scene| {
+                let shortening = if transverse_motion { scene.shortening() } else { 0.0 };
+                let number = scene.axial_waves().max(shortening);
+                weigh(number, tolerance, "axial waves over the stretch without them")
+            },
         );
-        let rotary = rotary(case, section);
-        let rotary_inertia = table.decide("rotary_inertia", c.rotary_inertia, moving.and(across), || None, rotary);
+        let rotary_inertia = table.decide(
+            "rotary_inertia",
+            c.rotary_inertia,
+            moving.and(across),
+            || None,
+            |scene| weigh(scene.rotary(), tolerance, "change of the second bending frequency"),
+        );
 
         let filled = if case.fluid.is_some() && case.bladders.is_some() {
             Ok(())
         } else {
             Err("no bladders, no fluid")
         };
-        let given = (true, "bladders and fluid are given".into());
+        let given = |_: &Scene| (true, "bladders and fluid are given".into());
         let fluid = table.decide("fluid", c.fluid, filled, || None, given);
         let wet = if fluid { Ok(()) } else { Err("no fluid") };
-        let sealed = network.map_or((0, 0), |n| {
-            (n.sealed().filter(|s| *s).count(), n.component_of_bladder.len())
-        });
         let flow = table.decide(
             "flow",
             c.flow,
             wet,
             || network.and_then(obstacles::flow),
-            (
-                true,
+            |scene| {
+                let sealed = network.map_or((0, 0), |n| {
+                    (n.sealed().filter(|s| *s).count(), n.component_of_bladder.len())
+                });
                 match sealed {
-                    (0, all) => format!("none of {all} bladders is sealed"),
-                    (some, all) => format!("{some} of {all} bladders are sealed: exact without unknowns"),
-                },
-            ),
+                    (some, all) if some == all => {
+                        (true, format!("all {all} bladders are sealed: exact without unknowns"))
+                    }
+                    (some, all) => {
+                        let (on, why) = weigh(scene.leakage(), tolerance, "what leaks in the whole run");
+                        (on, format!("{some} of {all} bladders are sealed; {why}"))
+                    }
+                }
+            },
         );
         let flowing = wet.and(if flow { Ok(()) } else { Err("no flow") });
         let network_pressure_differences = table.decide(
@@ -165,7 +237,7 @@ impl EffectSet {
             c.network_pressure_differences,
             flowing,
             || network.and_then(obstacles::network_pressure_differences),
-            kept(),
+            |_| kept("all that the fluid dissipates goes with them"),
         );
         let differing = flowing.and(if network_pressure_differences {
             Ok(())
@@ -177,15 +249,42 @@ impl EffectSet {
             c.flow_along_bladders,
             differing,
             || None,
-            (true, "as fine as /mesh/cells_per_bladder".into()),
+            |scene| {
+                weigh(
+                    scene.lag_along_bladders(tolerance),
+                    tolerance,
+                    "a bladder's own time against that of the motion",
+                )
+            },
         );
         let bends = wet.and(across);
-        let mut coupling = |name, choice, possible| table.decide(name, choice, possible, || None, kept());
-        let pressure_to_curvature = coupling("pressure_to_curvature", c.pressure_to_curvature, bends);
-        let pressure_to_stretch = coupling("pressure_to_stretch", c.pressure_to_stretch, wet);
-        let moment_to_area = coupling("moment_to_area", c.moment_to_area, bends);
-        let force_to_area = coupling("force_to_area", c.force_to_area, wet);
-        let asymmetry = table.decide("asymmetry", c.asymmetry, kinked(case, fluid), || None, asymmetry(case));
+        let strains = |k: usize| {
+            move |scene: &Scene| {
+                let number = scene.strains_of_pressure()[k];
+                weigh(number, tolerance, "what pressure does over what loads do")
+            }
+        };
+        let pressure_to_curvature = table.decide(
+            "pressure_to_curvature",
+            c.pressure_to_curvature,
+            bends,
+            || None,
+            strains(0),
+        );
+        let pressure_to_stretch = table.decide("pressure_to_stretch", c.pressure_to_stretch, wet, || None, strains(1));
+        let source = |_: &Scene| kept("it is what makes pressure");
+        let moment_to_area = table.decide("moment_to_area", c.moment_to_area, bends, || None, source);
+        let force_to_area = table.decide("force_to_area", c.force_to_area, wet, || None, source);
+        let asymmetry = table.decide(
+            "asymmetry",
+            c.asymmetry,
+            kinked(case, fluid),
+            || None,
+            |scene| {
+                let [m, n] = scene.asymmetries();
+                weigh(m.max(n), tolerance, "larger of dm/am, dn/an")
+            },
+        );
         table.report(case, network);
         Self {
             transverse_motion,
@@ -211,13 +310,14 @@ impl EffectSet {
 }
 
 /// Decisions as they are made.
-struct Decisions {
-    full: bool,
+struct Decisions<'a> {
+    /// What automatic choices look at; without it everything is kept.
+    scene: Option<&'a Scene<'a>>,
     decisions: Vec<Decision>,
     refusals: Vec<Violation>,
 }
 
-impl Decisions {
+impl Decisions<'_> {
     /// Decides on one effect. Where it has no meaning (`possible` says why not) it is off, whatever was asked; where
     /// something stands against leaving it out it stays, and the case is refused if that was asked for.
     fn decide(
@@ -226,12 +326,15 @@ impl Decisions {
         choice: Choice,
         possible: Result<(), &str>,
         obstacle: impl FnOnce() -> Option<Obstacle>,
-        automatic: Automatic,
+        automatic: impl FnOnce(&Scene) -> Automatic,
     ) -> bool {
         let (on, reason) = match (possible, choice) {
             (Err(why), _) => (false, why.to_string()),
-            (Ok(()), _) if self.full => (true, "full model asked for".to_string()),
-            (Ok(()), Choice::Auto) => automatic,
+            (Ok(()), Choice::Auto) => match (self.scene, self.scene.and_then(|_| obstacle())) {
+                (None, _) => (true, "full model asked for".to_string()),
+                (_, Some(obstacle)) => kept(&obstacle.what),
+                (Some(scene), None) => automatic(scene),
+            },
             (Ok(()), Choice::On) => (true, "asked for".to_string()),
             (Ok(()), Choice::Off) => match obstacle() {
                 Some(obstacle) => {
@@ -277,17 +380,6 @@ impl Decisions {
     }
 }
 
-fn rotary(case: &Case, section: &Section) -> Automatic {
-    let wave_number = 4.694_091_132_974 / case.beam.length_m;
-    let shift = 0.5 * section.gyration_radius_squared * wave_number * wave_number;
-    let on = shift >= ROTARY_THRESHOLD;
-    let sign = if on { ">=" } else { "<" };
-    (
-        on,
-        format!("second bending frequency changes by {shift:.1e} {sign} {ROTARY_THRESHOLD:.0e}"),
-    )
-}
-
 /// Whether the coupling has kinks at all.
 fn kinked(case: &Case, fluid: bool) -> Result<(), &'static str> {
     let reciprocal = case
@@ -301,23 +393,4 @@ fn kinked(case: &Case, fluid: bool) -> Result<(), &'static str> {
     } else {
         Ok(())
     }
-}
-
-fn asymmetry(case: &Case) -> Automatic {
-    let reason = case.bladders.as_ref().map_or_else(String::new, |b| {
-        let (m, n) = (&b.area_per_moment_m2_per_n_m, &b.area_per_force_m2_per_n);
-        let ratio = |large: f64, small: f64| {
-            if large + small > 0.0 {
-                (large - small) / (large + small)
-            } else {
-                0.0
-            }
-        };
-        format!(
-            "slopes differ by dm/am = {:.3}, dn/an = {:.3}",
-            ratio(m.closing, m.opening),
-            ratio(n.compression, n.tension)
-        )
-    });
-    (true, reason)
 }
