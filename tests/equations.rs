@@ -122,8 +122,10 @@ fn every_equation_has_a_test() {
     }
 }
 
+/// A shipped case with everything in it, unless effects are named.
 fn load(name: &str, sets: &[&str]) -> Case {
-    let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
+    let mut sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
+    sets.insert(0, r#"/effects="full""#.into());
     match case::load(Path::new(&format!("cases/{name}.json")), &sets) {
         Ok(loaded) => loaded.case,
         Err(error) => panic!("{error}: {error:?}"),

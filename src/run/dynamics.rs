@@ -49,11 +49,15 @@ pub fn resume(case: &Case, checkpoint: &Checkpoint, recorder: &mut dyn Recorder)
     run.go(dae, Some(checkpoint), recorder)
 }
 
-/// Largest step [s]: as given, or a 16th of the shortest time scale of the signals, at most a tenth of the run.
+/// Largest step [s]: as given, or a 16th of the shortest time scale of the signals, at most a tenth of the run. More at tolerances
+/// looser than 1e-3, with the fourth root, so that errors go on to follow the tolerance; a hundredth of the run without inertia,
+/// where a high order would stride over what the ledger integrates.
 pub fn max_step(case: &Case, system: &System) -> f64 {
     case.solver.max_step_s.unwrap_or_else(|| {
-        let tenth = 0.1 * case.time.end_s;
-        schedule::fastest_period(&system.model).map_or(tenth, |p| tenth.min(p / 16.0))
+        let part = if system.layout.inertia { 0.1 } else { 0.01 };
+        let parts = 16.0 * (1e-3 / case.solver.rtol.max(1e-3)).powf(0.25);
+        let largest = part * case.time.end_s;
+        schedule::fastest_period(&system.model).map_or(largest, |p| largest.min(p / parts))
     })
 }
 

@@ -11,13 +11,15 @@ use crate::run::dynamics::{self, Outcome};
 use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::summary::{Accuracy, Estimate, Pilot, Status, Summary};
 
-use estimates::{At, EXPECTED_RATIO, Runs, worst};
+use estimates::{At, EXPECTED_IN_SPACE, EXPECTED_IN_TIME, Runs, worst};
 
 /// Finest mesh and tightest tolerance that are tried: cells a segment, decades.
 const FINEST: usize = 64;
 const TIGHTEST: i32 = 9;
 /// Part of the accuracy asked that an estimate may fill: estimates are no bounds.
 const FILL: f64 = 0.6;
+/// Part of the accuracy asked that leaving out an effect may take, unless the case says.
+const EFFECTS: f64 = 0.1;
 
 /// Asked before every step whether to go on.
 pub type Hook<'a> = &'a dyn Fn(&Progress) -> Control;
@@ -42,6 +44,9 @@ fn variant(case: &Case, (cells, decades): At) -> Case {
 /// `record` runs a case into a result, over an earlier one only when it finishes; the last that finished counts, and its
 /// summary carries the estimates. `hook` may stop everything: what was recorded then stands, with what is known of it.
 pub fn reach(case: &Case, asked: f64, hook: Hook, record: Record) -> Result<Outcome> {
+    let mut case = case.clone();
+    case.effects_tolerance.get_or_insert(EFFECTS * asked);
+    let case = &case;
     let mut search = Search {
         case,
         asked,
@@ -57,7 +62,7 @@ pub fn reach(case: &Case, asked: f64, hook: Hook, record: Record) -> Result<Outc
         outcome.summary.warnings.push(why.into());
         return Ok(outcome);
     }
-    search.runs.take(at, &outcome.summary);
+    search.runs.take(at, &outcome.summary, case.beam.length_m);
     let cut_short = loop {
         if let Some(reason) = search.compare_with_cheaper(at)? {
             break Some(reason);
@@ -84,7 +89,7 @@ pub fn reach(case: &Case, asked: f64, hook: Hook, record: Record) -> Result<Outc
             break finer.summary.reason;
         }
         search.pilots.push(pilot(recorded, &outcome.summary));
-        search.runs.take(at, &finer.summary);
+        search.runs.take(at, &finer.summary, case.beam.length_m);
         (recorded, outcome) = (at, finer);
     };
     search.conclude(recorded, cut_short, &mut outcome.summary);
@@ -104,7 +109,7 @@ impl Search<'_> {
         let summary = dynamics::run(&variant(self.case, at), &mut watch)?.summary;
         self.pilots.push(pilot(at, &summary));
         if summary.status == Status::Finished {
-            self.runs.take(at, &summary);
+            self.runs.take(at, &summary, self.case.beam.length_m);
         }
         Ok(watch.stopped)
     }
@@ -123,8 +128,9 @@ impl Search<'_> {
     /// The cheapest finer setting that should do, and whether it should; one step towards it where that is far.
     fn cheapest(&self, (cells, decades): At, estimates: &BTreeMap<String, Estimate>) -> Option<(At, bool)> {
         let predicted = |refinements: i32, tighter: i32| {
-            let part = |error: Option<f64>, steps: i32| error.unwrap_or(1.0) * EXPECTED_RATIO.powi(steps);
-            let total = |e: &Estimate| part(e.space, refinements) + part(e.time, tighter);
+            let part = |error: Option<f64>, ratio: f64, steps: i32| error.unwrap_or(1.0) * ratio.powi(steps);
+            let total =
+                |e: &Estimate| part(e.space, EXPECTED_IN_SPACE, refinements) + part(e.time, EXPECTED_IN_TIME, tighter);
             estimates.values().map(total).fold(0.0, f64::max) / self.asked
         };
         // Twice the cells are four times the work: unknowns, and steps through stiffness. A decade is 10^(1/3) of steps.

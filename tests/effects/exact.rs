@@ -49,6 +49,7 @@ fn sealed_bladders_need_no_unknowns() {
             "/time/window_s=0.01",
             "/solver/rtol=1e-9",
             "/network={}",
+            r#"/effects={"flow":"on","flow_along_bladders":"on"}"#,
             r#"/loads=[{"force_x_n_m":{"signal":{"sine":{"amplitude":5,"frequency_hz":30}}}}]"#,
         ];
         all.extend(sets);

@@ -9,6 +9,7 @@
 //!
 //! Work is held within bands of steps, never of wall time.
 
+mod chooser;
 mod fluid;
 mod fuzz;
 mod fuzz_case;

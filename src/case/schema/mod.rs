@@ -61,11 +61,11 @@ pub struct Case {
     /// Which physical effects are simulated.
     #[serde(default)]
     pub effects: Effects,
-    /// Relative change of results that an effect may make and still be left out by `"auto"`; with `--accuracy`, and where absent, a
-    /// tenth of the accuracy asked for.
-    #[serde(default = "thousandth")]
+    /// Relative change of results that an effect may make and still be left out by `"auto"`. Absent: a tenth of the accuracy that
+    /// is asked for, or 1e-3.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-12, max = 0.5))]
-    pub effects_tolerance: f64,
+    pub effects_tolerance: Option<f64>,
     /// Resolution in space.
     #[serde(default)]
     pub mesh: Mesh,
@@ -76,16 +76,17 @@ pub struct Case {
     pub solver: Solver,
 }
 
-fn thousandth() -> f64 {
-    1e-3
-}
-
 impl Case {
     /// Segments along the beam: bladders per row, or what the mesh of a dry beam says.
     pub fn segments(&self) -> usize {
         self.bladders
             .as_ref()
             .map_or(self.mesh.segments.unwrap_or(10), |bladders| bladders.per_row)
+    }
+
+    /// What an effect may change and still be left out.
+    pub fn effects_tolerance(&self) -> f64 {
+        self.effects_tolerance.unwrap_or(1e-3)
     }
 
     /// The case with every default filled in; without the editor's schema, which is not where results are.
@@ -96,6 +97,7 @@ impl Case {
         case.time.fields_interval_s = Some(self.time.fields_interval());
         case.time.window_s = Some(self.time.window());
         case.mesh.segments = Some(self.segments());
+        case.effects_tolerance = Some(self.effects_tolerance());
         case
     }
 

@@ -4,15 +4,16 @@
 //! table, a field of [`EffectChoices`], a line in [`EffectSet::choose`], and its place in
 //! [`crate::discrete::recipe::evaluate`].
 
+mod decisions;
 mod obstacles;
 pub mod scene;
 mod table;
 
 use super::Network;
-use crate::case::schema::{Case, Choice, Coupling, EffectChoices, Effects, Load};
+use crate::case::schema::{Case, Coupling, EffectChoices, Effects};
 use crate::error::Violation;
 
-use obstacles::Obstacle;
+use decisions::{Automatic, Decisions, kept, weigh};
 pub use scene::Scene;
 pub use table::{Effect, TABLE};
 
@@ -68,20 +69,6 @@ pub struct EffectSet {
     pub refusals: Vec<Violation>,
 }
 
-/// What the program chooses by itself, and why.
-type Automatic = (bool, String);
-
-fn kept(why: &str) -> Automatic {
-    (true, format!("kept: {why}"))
-}
-
-/// Left out where what that changes is below the tolerance.
-fn weigh(number: f64, tolerance: f64, what: &str) -> Automatic {
-    let on = number.is_nan() || number >= tolerance;
-    let sign = if on { ">=" } else { "<" };
-    (on, format!("{what}: {number:.1e} {sign} {tolerance:.0e}"))
-}
-
 impl EffectSet {
     /// Everything that a case describes; `network` is that of its bladders.
     pub fn whole(case: &Case, network: Option<&Network>) -> Self {
@@ -105,7 +92,7 @@ impl EffectSet {
             decisions: vec![],
             refusals: vec![],
         };
-        let tolerance = case.effects_tolerance;
+        let tolerance = case.effects_tolerance();
         let transverse_motion = table.decide(
             "transverse_motion",
             c.transverse_motion,
@@ -150,7 +137,7 @@ impl EffectSet {
             |scene| {
                 bending(
                     scene,
-                    weigh(scene.compression(), tolerance, "normal force over the buckling load"),
+                    weigh(scene.normal_force(), tolerance, "normal force over the buckling load"),
                 )
             },
         );
@@ -200,7 +187,17 @@ impl EffectSet {
             c.rotary_inertia,
             moving.and(across),
             || None,
-            |scene| weigh(scene.rotary(), tolerance, "change of the second bending frequency"),
+            |scene| {
+                if scene.sudden(tolerance) {
+                    kept("something acts suddenly and excites waves of every length")
+                } else {
+                    weigh(
+                        scene.rotary(),
+                        tolerance,
+                        "phase of the second bending mode in the whole run",
+                    )
+                }
+            },
         );
 
         let filled = if case.fluid.is_some() && case.bladders.is_some() {
@@ -221,6 +218,7 @@ impl EffectSet {
                     (n.sealed().filter(|s| *s).count(), n.component_of_bladder.len())
                 });
                 match sealed {
+                    _ if scene.fed() => kept("ports or turbines take fluid through the network"),
                     (some, all) if some == all => {
                         (true, format!("all {all} bladders are sealed: exact without unknowns"))
                     }
@@ -249,12 +247,13 @@ impl EffectSet {
             c.flow_along_bladders,
             differing,
             || None,
-            |scene| {
-                weigh(
-                    scene.lag_along_bladders(tolerance),
-                    tolerance,
-                    "a bladder's own time against that of the motion",
-                )
+            |scene| match network.and_then(obstacles::network_pressure_differences) {
+                Some(through) => kept(&through.what),
+                None if scene.uneven_start() => kept("the start has differences along a bladder"),
+                None => {
+                    let number = scene.lag_along_bladders(tolerance);
+                    weigh(number, tolerance, "a bladder's own time against that of the motion")
+                }
             },
         );
         let bends = wet.and(across);
@@ -305,77 +304,6 @@ impl EffectSet {
             asymmetry,
             decisions: table.decisions,
             refusals: table.refusals,
-        }
-    }
-}
-
-/// Decisions as they are made.
-struct Decisions<'a> {
-    /// What automatic choices look at; without it everything is kept.
-    scene: Option<&'a Scene<'a>>,
-    decisions: Vec<Decision>,
-    refusals: Vec<Violation>,
-}
-
-impl Decisions<'_> {
-    /// Decides on one effect. Where it has no meaning (`possible` says why not) it is off, whatever was asked; where
-    /// something stands against leaving it out it stays, and the case is refused if that was asked for.
-    fn decide(
-        &mut self,
-        name: &'static str,
-        choice: Choice,
-        possible: Result<(), &str>,
-        obstacle: impl FnOnce() -> Option<Obstacle>,
-        automatic: impl FnOnce(&Scene) -> Automatic,
-    ) -> bool {
-        let (on, reason) = match (possible, choice) {
-            (Err(why), _) => (false, why.to_string()),
-            (Ok(()), Choice::Auto) => match (self.scene, self.scene.and_then(|_| obstacle())) {
-                (None, _) => (true, "full model asked for".to_string()),
-                (_, Some(obstacle)) => kept(&obstacle.what),
-                (Some(scene), None) => automatic(scene),
-            },
-            (Ok(()), Choice::On) => (true, "asked for".to_string()),
-            (Ok(()), Choice::Off) => match obstacle() {
-                Some(obstacle) => {
-                    self.refusals.push(
-                        Violation::new(
-                            format!("/effects/{name}"),
-                            format!("{name} cannot be left out: {}", obstacle.what),
-                        )
-                        .hint(obstacle.hint),
-                    );
-                    (true, format!("cannot be left out: {}", obstacle.what))
-                }
-                None => (false, "left out as asked".to_string()),
-            },
-        };
-        self.decisions.push(Decision { name, on, reason });
-        on
-    }
-
-    /// Effects that are there where the case gives them, and only there.
-    fn report(&mut self, case: &Case, network: Option<&Network>) {
-        let damping = &case.beam.damping;
-        let gravity = |load: &Load| matches!(load, Load::Gravity { .. });
-        let wet = self.decisions.iter().any(|d| d.name == "fluid" && d.on);
-        let network = network.filter(|_| wet);
-        let present = [
-            (
-                "damping",
-                damping.axial_time_s > 0.0 || damping.bending_time_s > 0.0 || damping.drag_n_s_m2 > 0.0,
-            ),
-            (
-                "valves",
-                network.is_some_and(|n| n.links.iter().any(|l| l.opening.is_some())),
-            ),
-            ("turbines", network.is_some_and(|n| !n.turbines.is_empty())),
-            ("loads", case.loads.iter().any(|load| !gravity(load))),
-            ("gravity", case.loads.iter().any(gravity)),
-        ];
-        for (name, on) in present {
-            let reason = if on { "given" } else { "not given" }.to_string();
-            self.decisions.push(Decision { name, on, reason });
         }
     }
 }

@@ -1,11 +1,13 @@
 //! What the scene does to the beam, in the numbers by which effects are left out: each estimates the relative error that
 //! leaving one out makes.
 
+mod stability;
+
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::case::schema::{BladderEnd, Case, Formulation};
 use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};
-use crate::model::characteristic::{MATHIEU_COUPLING, first_wave_number, mathieu_growth};
+use crate::model::characteristic::first_wave_number;
 use crate::model::network::{Link, Node};
 use crate::model::scales::{Drive, largest};
 use crate::model::{Load, Network, Scales, Section, Wet, each_signal};
@@ -26,9 +28,6 @@ pub struct Scene<'a> {
     /// Least buckling load that the ends allow [N].
     buckling: f64,
 }
-
-/// Force beyond which, as a part of the buckling load, nothing that bends is left out.
-const SAFE_COMPRESSION: f64 = 0.3;
 
 impl<'a> Scene<'a> {
     /// Of a case; `wet` with every effect.
@@ -164,14 +163,35 @@ impl<'a> Scene<'a> {
             .powi(2)
     }
 
-    /// `y11 k²/2`, what rotary inertia changes the second bending frequency by.
-    pub fn rotary(&self) -> f64 {
-        let wave_number = 4.694_091_132_974 / self.case.beam.length_m;
-        0.5 * self.section.gyration_radius_squared * wave_number * wave_number
+    /// Second bending frequency [1/s], and its wavenumber [1/m].
+    fn second_mode(&self) -> (f64, f64) {
+        let k = 4.694_091_132_974 / self.case.beam.length_m;
+        let stiffness = self.section.bending_stiffness / self.section.mass_per_length;
+        (k * k * stiffness.sqrt(), k)
     }
 
-    /// Largest normal force over the buckling load.
-    pub fn compression(&self) -> f64 {
+    /// Whether something acts suddenly enough to excite bending waves of every length.
+    pub fn sudden(&self, tolerance: f64) -> bool {
+        self.haste(self.second_mode().0) >= tolerance
+    }
+
+    /// `y11 k²/2 (1 + ω T)`, the phase that rotary inertia changes a vibration of the second bending mode by in the whole run.
+    pub fn rotary(&self) -> f64 {
+        let (omega, k) = self.second_mode();
+        0.5 * self.section.gyration_radius_squared * k * k * (1.0 + omega * self.case.time.end_s)
+    }
+
+    /// Whether a bladder begins with pressures that differ along it.
+    pub fn uneven_start(&self) -> bool {
+        self.case
+            .start
+            .pressures
+            .iter()
+            .any(|start| !start.pressure_pa.is_uniform())
+    }
+
+    /// Largest normal force, of either sign, over the buckling load.
+    pub fn normal_force(&self) -> f64 {
         self.scales.force / self.buckling
     }
 
@@ -179,77 +199,6 @@ impl<'a> Scene<'a> {
     pub fn stretch(&self) -> f64 {
         let (l, w) = (self.case.beam.length_m, self.scales.transverse);
         self.scales.force * l / self.section.axial_stiffness / (0.5 * w * w / l)
-    }
-
-    /// What speaks against leaving out how the beam bends, if anything does: buckling, follower loads, parametric excitation,
-    /// resonance, a coupling that gives energy.
-    pub fn unstable(&self) -> Option<String> {
-        let compression = self.compression();
-        if compression > SAFE_COMPRESSION {
-            return Some(format!(
-                "normal forces may reach {compression:.1e} of the buckling load"
-            ));
-        }
-        if self.ends.iter().any(|e| e.follower.is_some()) {
-            return Some("follower loads may make it flutter".into());
-        }
-        let shaken = self.ends.iter().find_map(|e| match &e.axial {
-            Translation::Displacement(signal) if !signal.is_constant() => Some(signal),
-            _ => None,
-        });
-        if let Some(signal) = shaken
-            && let Some(why) = self.tongue(signal)
-        {
-            return Some(why);
-        }
-        let excess = self.wet.map_or(0.0, |wet| {
-            let sum = wet.coupling.curvature(&wet.area, 0.0, 1.0, 0.0) * self.section.bending_stiffness;
-            2.0 * sum * wet.area.moment_mean / wet.area.per_pressure
-        });
-        (excess > 0.5).then(|| format!("pressure feeds {excess:.1e} of a bending moment back"))
-    }
-
-    /// Whether shaking along the beam may make it bend: Mathieu's equation, with margin in size, frequency and stiffness.
-    fn tongue(&self, signal: &Signal) -> Option<String> {
-        let Signal::Sine(sine) = signal else {
-            return Some("it is shaken along, by more than a sine".into());
-        };
-        let omega = 2.0 * PI * sine.frequency_hz;
-        let pull = MATHIEU_COUPLING * sine.amplitude.abs() * omega * omega / self.case.beam.length_m;
-        let stiffer = 1.0 + self.stiffening();
-        for amplitude in [1.0, 1.5] {
-            for part in [0.8, 0.9, 1.0, 1.1, 1.25] {
-                for stiffness in [1.0, stiffer] {
-                    let growth = mathieu_growth(stiffness * self.bending.powi(2), amplitude * pull, part * omega);
-                    if growth > 0.0 {
-                        return Some(format!(
-                            "shaking along grows bending at {growth:.1} 1/s, {amplitude} times as strong and {part} times as fast"
-                        ));
-                    }
-                }
-            }
-        }
-        None
-    }
-
-    /// `2 EI φ_b l_b am²/a_p`, how much sealed bladders stiffen the beam.
-    fn stiffening(&self) -> f64 {
-        self.wet.map_or(0.0, |wet| {
-            let area = &wet.area;
-            let density = wet.per_row as f64 / self.case.beam.length_m * wet.bladder_length;
-            2.0 * self.section.bending_stiffness * density * area.moment_mean.powi(2) / area.per_pressure
-        })
-    }
-
-    /// Whether a drive comes near the first bending frequency, which then swings up to more than the loads alone tell.
-    pub fn resonant(&self) -> bool {
-        let mut near = false;
-        self.signals(|signal| {
-            if let Some(period) = signal.fastest_period_s() {
-                near |= 2.0 * PI / period > 0.4 * self.bending;
-            }
-        });
-        near
     }
 
     /// Whether the ends hold the beam without its inertia.
@@ -298,6 +247,14 @@ impl<'a> Scene<'a> {
         let steady = network.ports.iter().all(|p| p.pressure.is_constant());
         let fixed = network.links.iter().all(|link| link.opening.is_none());
         plain && quiet_start && steady && fixed && sorted(false) == sorted(true)
+    }
+
+    /// Whether fluid comes from or does work outside: ports of other than no pressure, sources, turbines.
+    pub fn fed(&self) -> bool {
+        self.network().is_some_and(|n| {
+            let pressed = |signal: &Signal| largest(signal, self.case.time.end_s).0 > 0.0;
+            n.ports.iter().any(|p| pressed(&p.pressure)) || !n.sources.is_empty() || !n.turbines.is_empty()
+        })
     }
 
     /// Part of a bladder's volume that its fastest neighbours take in the whole run: bounded by the sum of conductances.

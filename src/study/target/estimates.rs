@@ -8,8 +8,8 @@
 //! e_space = ρ_K/(1 - ρ_K) |x(K, τ) - x(K/2, τ)|        ρ_K = |x(K, τ) - x(K/2, τ)|/|x(K/2, τ) - x(K/4, τ)|
 //! ```
 //!
-//! the sums of geometric series of differences. Where the third run is missing ρ is 0.3, between the 10^(-2/3) of BDF 2, the
-//! 1/4 of second order in space, and what rougher quantities do. An error of a quantity is the largest of its figures',
+//! the sums of geometric series of differences. Where the third run is missing ρ is 1/4: second order in space, and in time
+//! about what ten times the tolerance does between the orders 2 and 4. An error of a quantity is the largest of its figures',
 //! relative to the quantity's largest figure.
 //!
 //! Where finer runs go on to differ by a good part of the quantity, the motion is one of many that start nearly alike: it grows
@@ -19,10 +19,12 @@ use std::collections::BTreeMap;
 
 use crate::run::summary::{Estimate, Judged, Quantity, Summary};
 
-/// Expected ratio of one difference to the one before, where it is not seen.
-pub const EXPECTED_RATIO: f64 = 0.3;
+/// Expected ratio of one difference to the one before, where it is not seen: a decade of tolerance, between orders 2 and 4.
+pub const EXPECTED_IN_TIME: f64 = 0.25;
+/// The same for halved cells, at second order.
+pub const EXPECTED_IN_SPACE: f64 = 0.25;
 /// Ratios that are believed when seen: beyond them differences happen to be small or large.
-const BELIEVED: std::ops::RangeInclusive<f64> = 0.1..=0.7;
+const BELIEVED: std::ops::RangeInclusive<f64> = 0.05..=0.7;
 /// A difference that is this part of the quantity, on a mesh and at a tolerance that should resolve it, and no more than
 /// [`BELIEVED`]'s least part smaller than the one before: the motion cannot be followed.
 const LOST: f64 = 0.3;
@@ -55,9 +57,9 @@ struct Looked {
 }
 
 impl Runs {
-    /// Takes in a run that finished.
-    pub fn take(&mut self, at: At, summary: &Summary) {
-        self.all.insert(at, Looked::new(summary));
+    /// Takes in a run, of a beam of this length [m], that finished.
+    pub fn take(&mut self, at: At, summary: &Summary, length: f64) {
+        self.all.insert(at, Looked::new(summary, length));
     }
 
     /// Whether a run is known.
@@ -110,11 +112,11 @@ impl Runs {
     }
 
     /// `ρ/(1 - ρ)` times the last difference of three runs, coarse to fine.
-    fn series(&self, quantity: &str, [coarsest, coarse, fine]: [At; 3]) -> Option<f64> {
+    fn series(&self, quantity: &str, [coarsest, coarse, fine]: [At; 3], expected: f64) -> Option<f64> {
         let last = self.difference(quantity, fine, coarse)?;
         let ratio = match self.difference(quantity, coarse, coarsest) {
             Some(before) if before > 0.0 => (last / before).clamp(*BELIEVED.start(), *BELIEVED.end()),
-            _ => EXPECTED_RATIO,
+            _ => expected,
         };
         Some(last * ratio / (1.0 - ratio))
     }
@@ -128,7 +130,8 @@ impl Runs {
         let of = |quantity: &String| {
             let time = [(cells, decades - 2), (cells, decades - 1), at];
             let space = [(cells / 4, decades), (cells / 2, decades), at];
-            let (time, space) = (self.series(quantity, time), self.series(quantity, space));
+            let time = self.series(quantity, time, EXPECTED_IN_TIME);
+            let space = self.series(quantity, space, EXPECTED_IN_SPACE);
             let estimate = Estimate {
                 time,
                 space,
@@ -141,15 +144,28 @@ impl Runs {
 }
 
 impl Looked {
-    /// Of the quantities that are more than round-off beside others of their unit.
-    fn new(summary: &Summary) -> Self {
-        let size = |q: &Quantity| q.figures().fold(0.0_f64, |s, (_, x)| s.max(x.abs()));
+    /// Of the quantities that are more than round-off beside others of their unit; an angle beside displacements, over the
+    /// length [m].
+    fn new(summary: &Summary, length: f64) -> Self {
         let all = &summary.quantities;
+        let (unit, size) = (
+            |name: &str| match name.rsplit('_').next() {
+                Some("rad") => "m".to_string(),
+                unit => unit.unwrap_or_default().to_string(),
+            },
+            |name: &str, q: &Quantity| {
+                let largest = q.figures().fold(0.0_f64, |s, (_, x)| s.max(x.abs()));
+                if name.ends_with("_rad") {
+                    largest * length
+                } else {
+                    largest
+                }
+            },
+        );
         let counts = |name: &str, q: &Quantity| {
-            let unit = |n: &str| n.rsplit('_').next().map(str::to_owned);
             let alike = all.iter().filter(|(other, _)| unit(other) == unit(name));
-            let largest = alike.map(|(_, q)| size(q)).fold(0.0, f64::max);
-            size(q) > NOTHING * largest
+            let largest = alike.map(|(name, q)| size(name, q)).fold(0.0, f64::max);
+            size(name, q) > NOTHING * largest
         };
         let counted = all.iter().filter(|(name, q)| counts(name, q));
         let (mut figures, mut statistics) = (Figures::new(), Figures::new());
