@@ -50,11 +50,12 @@ pub fn resume(case: &Case, checkpoint: &Checkpoint, recorder: &mut dyn Recorder)
 }
 
 /// Largest step [s]: as given, or a 16th of the shortest time scale of the signals, at most a tenth of the run. More at tolerances
-/// looser than 1e-3, with the fourth root, so that errors go on to follow the tolerance; a hundredth of the run without inertia,
-/// where a high order would stride over what the ledger integrates.
+/// looser than 1e-3, with the fourth root, so that errors go on to follow the tolerance; a hundredth of the run where something
+/// changes without inertia: a high order would stride over what the ledger integrates.
 pub fn max_step(case: &Case, system: &System) -> f64 {
     case.solver.max_step_s.unwrap_or_else(|| {
-        let part = if system.layout.inertia { 0.1 } else { 0.01 };
+        let strides = system.layout.inertia || !schedule::changes(&system.model);
+        let part = if strides { 0.1 } else { 0.01 };
         let parts = 16.0 * (1e-3 / case.solver.rtol.max(1e-3)).powf(0.25);
         let largest = part * case.time.end_s;
         schedule::fastest_period(&system.model).map_or(largest, |p| largest.min(p / parts))

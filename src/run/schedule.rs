@@ -67,6 +67,15 @@ pub fn fastest_period(model: &Model) -> Option<f64> {
     fastest
 }
 
+/// Whether any signal changes in time.
+pub fn changes(model: &Model) -> bool {
+    let mut changes = false;
+    each_signal(&model.ends, &model.loads, model.wet.as_ref().map(|w| &w.network), |s| {
+        changes |= !s.is_constant()
+    });
+    changes
+}
+
 /// Output times `k interval`, up to and including the end.
 #[derive(Clone, Copy, Debug)]
 pub struct Outputs {

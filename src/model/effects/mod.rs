@@ -135,9 +135,14 @@ impl EffectSet {
             across,
             || obstacles::axial_force_on_bending(finite_rotation),
             |scene| {
+                let (force, drawn_in) = (scene.normal_force(), 1.0 / scene.stretch());
                 bending(
                     scene,
-                    weigh(scene.normal_force(), tolerance, "normal force over the buckling load"),
+                    if drawn_in > force {
+                        weigh(drawn_in, tolerance, "how much bending draws in over the stretch")
+                    } else {
+                        weigh(force, tolerance, "normal force over the buckling load")
+                    },
                 )
             },
         );

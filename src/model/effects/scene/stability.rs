@@ -68,7 +68,8 @@ impl Scene<'_> {
         if self.begins_displaced() {
             force += self.scales.force;
         }
-        (force + 0.5 * m * (self.scales.transverse * self.bending).powi(2)) / self.buckling
+        let swing = self.scales.transverse * self.bending * self.bending_inertia().min(1.0);
+        (force + 0.5 * m * swing * swing) / self.buckling
     }
 
     /// What speaks against leaving out how the beam bends, if anything does: buckling, follower loads, parametric excitation,
