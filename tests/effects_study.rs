@@ -156,6 +156,26 @@ fn unequal_slopes_are_needed_and_nothing_that_is_needed_is_recommended_off() {
     assert!(picture.contains("recommended") && picture.contains("tolerance 1e-3"));
 }
 
+/// A straight beam that is pressed beyond its buckling load stays straight, as nothing disturbs it: a bar does the same at less
+/// cost, and is not recommended.
+#[test]
+fn what_is_kept_for_stability_is_not_recommended_off() {
+    let found = ablated(
+        &SLENDER
+            .replace("force_x_n_m", "force_z_n_m")
+            .replace("0.05, \"freq", "-2, \"freq"),
+        600.0,
+    );
+    println!("{}\n{}", files::table(&found, &Shown::Largest), files::sentence(&found));
+    let across = row(&found, "transverse_motion");
+    assert_eq!(across.verdict, Verdict::Saves);
+    assert!(across.number.contains("buckling load"), "{}", across.number);
+    let recommended = found.recommendation.as_ref().unwrap();
+    assert!(!recommended.off.contains(&"transverse_motion"), "{:?}", recommended.off);
+    let (_, why) = recommended.dropped.iter().find(|d| d.0 == "transverse_motion").unwrap();
+    assert!(why.contains("buckling load"), "{why}");
+}
+
 #[test]
 fn changes_are_judged_beside_the_integrators_own_error() {
     let measure = |name: &str, own| Measure {

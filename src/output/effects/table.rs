@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::Shown;
 use crate::output::numbers::{percent, shortest, significant};
 use crate::run::summary::Judged;
+use crate::study::accuracy::trial::Ending;
 use crate::study::effects::ablation::Compared;
 use crate::study::effects::{Ablation, Row, Verdict};
 
@@ -33,7 +34,7 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
     for row in &found.rows {
         if let Some(compared) = &row.left_out {
             let number = format!("auto {}: {}", if row.auto { "on" } else { "off" }, row.number);
-            lines.push(line(found, shown, &name(row), word(row.verdict), compared, number));
+            lines.push(line(found, shown, &name(row), said(row), compared, number));
         }
     }
     let recommended = found.recommendation.as_ref().and_then(|r| r.run.as_ref());
@@ -51,7 +52,7 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
         match row.verdict {
             Verdict::Kept | Verdict::Failed => {
                 let why = row.reason.as_deref().unwrap_or("no reason given");
-                reasons.push(format!("{}: {}: {why}", row.name, word(row.verdict)));
+                reasons.push(format!("{}: {}: {why}", row.name, said(row)));
             }
             _ if !row.takes.is_empty() => reasons.push(format!("{} takes with it {}", row.name, row.takes.join(", "))),
             _ => {}
@@ -114,6 +115,14 @@ fn name(row: &Row) -> String {
     match row.without.as_slice() {
         [] => row.name.to_string(),
         others => format!("{} (both without {})", row.name, others.join(", ")),
+    }
+}
+
+/// The verdict, or that there is none.
+fn said(row: &Row) -> &'static str {
+    match &row.left_out {
+        Some(c) if c.trial.ending == Ending::Skipped => "not run",
+        _ => word(row.verdict),
     }
 }
 
@@ -220,7 +229,7 @@ pub fn csv(found: &Ablation) -> String {
         let first = format!(
             "{},{},{},{},{},{},{}",
             row.name,
-            word(row.verdict),
+            said(row),
             quoted(row.reason.as_deref().unwrap_or("")),
             if row.auto { "on" } else { "off" },
             quoted(&row.number),

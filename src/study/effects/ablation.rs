@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::change::{Changes, Measure, Reference, Size, judge, largest};
-use super::choices::{Out, candidates, effects, on, reason, with, without};
+use super::choices::{Out, candidates, effects, guards, on, reason, with, without};
 use super::recommend::{Recommendation, recommend};
 use super::trial::{Plan, Runs, Trial, Watch};
 use crate::case::Case;
@@ -264,7 +264,13 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
             }
         });
     }
-    found.recommendation = Some(recommend(case, &found.rows, &judge, &mut runs));
+    found.recommendation = Some(recommend(
+        case,
+        &found.rows,
+        guards(case, &decided).as_ref(),
+        &judge,
+        &mut runs,
+    ));
     found.auto = judge.compare(&runs, full, auto);
     found.given = given.and_then(|given| judge.compare(&runs, full, given));
     found.spent_s = runs.spent_s();

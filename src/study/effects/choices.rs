@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use crate::case::Case;
 use crate::case::schema::{Choice, EffectChoices, Effects};
 use crate::error::Violation;
-use crate::model::effects::{EffectSet, TABLE};
+use crate::model::effects::{Decision, EffectSet, Scene, TABLE};
 use crate::model::{Model, audit};
 
 /// An effect of the table, and what leaving it out takes.
@@ -85,6 +85,26 @@ pub fn refusals(case: &Case) -> Vec<Violation> {
 /// Whether an effect is simulated.
 pub fn on(effects: &EffectSet, name: &str) -> bool {
     effects.decisions.iter().any(|d| d.name == name && d.on)
+}
+
+/// Whether the program keeps an effect, whatever its number, since without it an instability might not show. A run need not
+/// show it either: what is not disturbed stays straight.
+pub fn guards(case: &Case, auto: &EffectSet) -> Option<Guard> {
+    let full = with(case, Effects::Full);
+    let model = Model::new(&full);
+    let why = Scene::new(&full, &model.section, model.wet.as_ref()).unstable()?;
+    let kept = |d: &&Decision| d.on && d.reason == format!("kept: {why}");
+    let effects = auto.decisions.iter().filter(kept).map(|d| d.name).collect();
+    Some(Guard { effects, why })
+}
+
+/// What must not be left out, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guard {
+    /// Names of effects.
+    pub effects: Vec<&'static str>,
+    /// One clause.
+    pub why: String,
 }
 
 /// Why an effect is simulated or not.

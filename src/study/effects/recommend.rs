@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::ablation::{Compared, Judge, Row, Verdict};
-use super::choices::{choosable, effects, on, refusals, with_choices, without};
+use super::choices::{Guard, choosable, effects, on, refusals, with_choices, without};
 use super::trial::Runs;
 use crate::case::Case;
 use crate::case::schema::Choice;
@@ -23,10 +23,13 @@ pub struct Recommendation {
     pub run: Option<Compared>,
 }
 
-/// Leaves out everything that saves, and what is harmless where the program leaves it out by itself, then takes back what changes most until the rest together changes nothing.
-pub fn recommend(case: &Case, rows: &[Row], judge: &Judge, runs: &mut Runs) -> Recommendation {
+/// Never leaves out what the program keeps for the sake of stability. Else leaves out everything that saves, and what is harmless where the program leaves it out by itself, then takes back what changes most until the rest together changes nothing.
+pub fn recommend(case: &Case, rows: &[Row], guard: Option<&Guard>, judge: &Judge, runs: &mut Runs) -> Recommendation {
     let row = |name: &str| rows.iter().find(|r| r.name == name);
-    let small = |name: &&str| row(name).is_some_and(|r| matches!(r.verdict, Verdict::Saves | Verdict::Harmless));
+    let guarded = |name: &str| guard.is_some_and(|g| g.effects.contains(&name));
+    let small = |name: &&str| {
+        !guarded(name) && row(name).is_some_and(|r| matches!(r.verdict, Verdict::Saves | Verdict::Harmless))
+    };
     let mut off: Vec<&'static str> = vec![];
     for r in rows
         .iter()
@@ -41,6 +44,11 @@ pub fn recommend(case: &Case, rows: &[Row], judge: &Judge, runs: &mut Runs) -> R
             .map(|r| r.name),
     );
     let mut dropped = vec![];
+    for name in off.iter().copied().filter(|name| guarded(name)) {
+        let why = guard.map(|g| g.why.clone()).unwrap_or_default();
+        dropped.push((name, format!("{why}, which a run without disturbance does not show")));
+    }
+    off.retain(|name| !guarded(name));
     loop {
         off = choosable().into_iter().filter(|name| off.contains(name)).collect();
         let wanted = without(case, &off);
