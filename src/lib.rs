@@ -18,7 +18,7 @@
 //! | [`sundials`] | IDA and KLU behind safe types; the only `unsafe` code; knows only [`dae::Dae`] |
 //! | [`onestep`] | A-stable one-step methods of order 2 to 5, with the interface of [`sundials::Ida`] |
 //! | [`run`] | a run in time: samples, balances, range checks. Emits what happens, prints nothing |
-//! | [`study`] | many runs to answer one question: exact results, accuracy against cost, comparison |
+//! | [`study`] | many runs to answer one question: exact results, accuracy against cost, effects, comparison |
 //! | [`output`] | result folders: history, arrays, summary, pictures |
 //! | [`cli`] | one file a subcommand; the only place that prints |
 //!

@@ -22,6 +22,8 @@ pub enum Command {
     Check(CheckArguments),
     /// Find what accuracy costs: time against error over tolerances, meshes and orders
     Study(StudyArguments),
+    /// Find what each effect does: the full model without it, what that changes and saves, what to leave out
+    Effects(EffectsArguments),
     /// Compare two result folders: error norms of every field and quantity, cost ratio
     Compare(CompareArguments),
     /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
@@ -121,6 +123,36 @@ pub struct StudyArguments {
     #[arg(long)]
     pub quiet: bool,
     /// Print study.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `effects`.
+#[derive(Debug, Args)]
+pub struct EffectsArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Folder for effects.csv, effects.json, effects.svg [default: out/<case name>-effects]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Wall time for everything, such as 90s or 2m
+    #[arg(long, value_name = "TIME", default_value = "120s")]
+    pub budget: String,
+    /// Timed runs of each model, after one to warm up, as far as the budget allows; with 0 no verdict looks at time
+    #[arg(long, value_name = "COUNT", default_value_t = 3)]
+    pub repeats: usize,
+    /// Quantity that table and picture show, or "largest": of each effect the one that changes most [default: tip_u1_m, else
+    /// tip_u3_m]
+    #[arg(long, value_name = "NAME")]
+    pub measure: Option<String>,
+    /// Write what is recommended into the case file, as its "effects"
+    #[arg(long, conflicts_with = "sets")]
+    pub write: bool,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print effects.json instead of the table
     #[arg(long)]
     pub json: bool,
 }

@@ -3,6 +3,7 @@
 mod arguments;
 mod check;
 mod compare;
+mod effects;
 mod interrupt;
 mod mapping;
 pub mod progress;
@@ -49,6 +50,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Run(asked) => run::run(asked),
         Command::Check(asked) => check::check(asked),
         Command::Study(asked) => study::study(asked),
+        Command::Effects(asked) => effects::effects(asked),
         Command::Compare(asked) => compare::compare(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),

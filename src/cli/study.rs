@@ -59,7 +59,7 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
 }
 
 /// `120`, `120s`, `2m`, `1h` in seconds.
-fn seconds(text: &str) -> Result<f64> {
+pub fn seconds(text: &str) -> Result<f64> {
     let (number, unit) = match text.trim().strip_suffix(['s', 'm', 'h']) {
         Some(number) => (number, text.trim().chars().last()),
         None => (text.trim(), None),

@@ -10,6 +10,7 @@
 //! summary   summary.json, there and back
 //! reading   a result folder back into memory
 //! comparison  the picture of two runs over each other
+//! effects   effects.csv, effects.json, effects.svg, table and sentence
 //! study     study.csv, study.json, study.svg, table and sentence
 //! pictures  from recorded files to the data of each picture
 //! plot      one picture a file, from plain data to SVG text
@@ -19,6 +20,7 @@
 pub mod arrays;
 pub mod checkpoint;
 pub mod comparison;
+pub mod effects;
 pub mod envelope;
 pub mod folder;
 pub mod history;

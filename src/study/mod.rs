@@ -2,5 +2,7 @@
 
 pub mod accuracy;
 pub mod compare;
+mod counted;
+pub mod effects;
 pub mod target;
 pub mod verify;

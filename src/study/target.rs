@@ -1,6 +1,6 @@
 //! The cheapest run that has an accuracy: mesh and tolerance chosen by error estimates from a few cheaper runs.
 
-mod estimates;
+pub mod estimates;
 
 use std::collections::BTreeMap;
 

@@ -7,6 +7,7 @@
 //! panel       a frame with grid, ticks and curves
 //! deflection, pressure, history, energy   the pictures of a run
 //! workprecision   what accuracy costs
+//! ablation    what each effect does
 //! overlay     two runs over each other
 //! ```
 
@@ -15,6 +16,7 @@ mod colour;
 mod panel;
 mod ticks;
 
+pub mod ablation;
 pub mod deflection;
 pub mod energy;
 pub mod history;
@@ -24,6 +26,7 @@ pub mod workprecision;
 
 use super::numbers;
 
+pub use ablation::AblationBars;
 pub use deflection::Deflection;
 pub use energy::Energy;
 pub use history::History;

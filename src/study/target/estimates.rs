@@ -17,7 +17,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::run::summary::{Estimate, Judged, Quantity, Summary};
+use crate::run::summary::{Estimate, Judged, Summary};
+use crate::study::counted::counted;
 
 /// Expected ratio of one difference to the one before, where it is not seen: a decade of tolerance, between orders 2 and 4.
 pub const EXPECTED_IN_TIME: f64 = 0.25;
@@ -27,14 +28,11 @@ pub const EXPECTED_IN_SPACE: f64 = 0.25;
 const BELIEVED: std::ops::RangeInclusive<f64> = 0.05..=0.7;
 /// A difference that is this part of the quantity, on a mesh and at a tolerance that should resolve it, and no more than
 /// [`BELIEVED`]'s least part smaller than the one before: the motion cannot be followed.
-const LOST: f64 = 0.3;
+pub const LOST: f64 = 0.3;
 /// A setting that should resolve a motion.
 const RESOLVED: At = (8, 5);
 /// How a series of meshes is called.
 const MESH: &str = "mesh";
-/// Quantities whose size is below this part of others of their unit are round-off.
-const NOTHING: f64 = 1e-6;
-
 /// One way to compute the case: cells a segment, and `k` of `rtol = 10^-k`.
 pub type At = (usize, i32);
 /// Figures of each quantity of a run.
@@ -144,32 +142,10 @@ impl Runs {
 }
 
 impl Looked {
-    /// Of the quantities that are more than round-off beside others of their unit; an angle beside displacements, over the
-    /// length [m].
+    /// Of the quantities that are more than round-off, of a beam of this length [m].
     fn new(summary: &Summary, length: f64) -> Self {
-        let all = &summary.quantities;
-        let (unit, size) = (
-            |name: &str| match name.rsplit('_').next() {
-                Some("rad") => "m".to_string(),
-                unit => unit.unwrap_or_default().to_string(),
-            },
-            |name: &str, q: &Quantity| {
-                let largest = q.figures().fold(0.0_f64, |s, (_, x)| s.max(x.abs()));
-                if name.ends_with("_rad") {
-                    largest * length
-                } else {
-                    largest
-                }
-            },
-        );
-        let counts = |name: &str, q: &Quantity| {
-            let alike = all.iter().filter(|(other, _)| unit(other) == unit(name));
-            let largest = alike.map(|(name, q)| size(name, q)).fold(0.0, f64::max);
-            size(name, q) > NOTHING * largest
-        };
-        let counted = all.iter().filter(|(name, q)| counts(name, q));
         let (mut figures, mut statistics) = (Figures::new(), Figures::new());
-        for (name, q) in counted {
+        for (name, q) in counted(summary, length) {
             figures.insert(name.clone(), q.figures().map(|f| f.1).collect());
             statistics.insert(name.clone(), q.statistics().map(|f| f.1).collect());
         }

@@ -1,0 +1,83 @@
+//! One value of a case file changed, every other byte as it was.
+
+use std::ops::Range;
+
+use serde_json::Value;
+
+use super::locate::Kind;
+use super::parse::parse;
+
+/// The text with another value of a top-level key, added behind the last one where it is missing. `None` where the text is no
+/// JSON object.
+pub fn rewrite(text: &str, key: &str, value: &Value) -> Option<String> {
+    let root = parse(text).0?;
+    let Kind::Object(members) = &root.kind else { return None };
+    let value = spaced(value);
+    // What the reader takes for a value may have space behind it.
+    let bare = |span: &Range<usize>| span.start..span.start + text[span.clone()].trim_end().len();
+    let (at, new) = if let Some(member) = members.iter().find(|m| m.key == key) {
+        (bare(&member.value.span), value)
+    } else if let Some(last) = members.last() {
+        // On a line of its own, indented as the last one, where that begins its line.
+        let before = &text[..last.key_span.start];
+        let line = &before[before.rfind('\n').map_or(0, |at| at + 1)..];
+        let own_line = line.trim().is_empty() && before.contains('\n');
+        let end = if before.trim_end_matches([' ', '\t']).ends_with("\r\n") {
+            "\r\n"
+        } else {
+            "\n"
+        };
+        let gap = if own_line { format!("{end}{line}") } else { " ".into() };
+        let behind = bare(&last.value.span).end;
+        (behind..behind, format!(",{gap}\"{key}\": {value}"))
+    } else {
+        let end = root.span.end - 1;
+        (end..end, format!("\"{key}\": {value}"))
+    };
+    Some([&text[..at.start], &new, &text[at.end..]].concat())
+}
+
+/// JSON in one line, with spaces after colons and commas.
+pub fn spaced(value: &Value) -> String {
+    match value {
+        Value::Object(members) => {
+            let members = members
+                .iter()
+                .map(|(key, value)| format!("{}: {}", Value::from(key.as_str()), spaced(value)));
+            format!("{{{}}}", members.collect::<Vec<_>>().join(", "))
+        }
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn a_value_is_replaced_or_added_and_nothing_else_changes() {
+        let off = json!({"asymmetry": "off", "flow": "on"});
+        let new = r#""effects": {"asymmetry": "off", "flow": "on"}"#;
+        let cases = [
+            (
+                "{\n  \"a\": 1,\n\t\"b\":  [1,\n 2]\n}\n",
+                format!("{{\n  \"a\": 1,\n\t\"b\":  [1,\n 2],\n\t{new}\n}}\n"),
+            ),
+            ("{\r\n  \"a\": 1\r\n}", format!("{{\r\n  \"a\": 1,\r\n  {new}\r\n}}")),
+            (
+                "{\"a\": {\"effects\": 2}}",
+                format!("{{\"a\": {{\"effects\": 2}}, {new}}}"),
+            ),
+            (
+                "{\"effects\": {\"flow\": [ ]} , \"ä\": 1e5}",
+                format!("{{{new} , \"ä\": 1e5}}"),
+            ),
+            ("{ }", format!("{{ {new}}}")),
+        ];
+        for (before, after) in cases {
+            assert_eq!(rewrite(before, "effects", &off).as_deref(), Some(&*after));
+        }
+        assert_eq!(rewrite("[1]", "effects", &off), None);
+    }
+}

@@ -1,0 +1,120 @@
+//! `slcbeam effects`: what each effect does to a case, and which of them it should leave out.
+
+use std::io::IsTerminal as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::arguments::EffectsArguments;
+use crate::case::schema::Effects;
+use crate::case::{self, LoadedCase};
+use crate::discrete::System;
+use crate::error::{Error, Result};
+use crate::output::effects as files;
+use crate::output::numbers::duration;
+use crate::study::effects::{Ablation, Event, Plan, ablate};
+
+/// Runs the models, writes the folder, prints the table and the recommendation, writes that into the case when asked.
+pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
+    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    super::refuse(&loaded, &System::new(&loaded.case))?;
+    let mut full = loaded.clone();
+    full.case.effects = Effects::Full;
+    super::refuse(&full, &System::new(&full.case))?;
+    let plan = Plan {
+        repeats: asked.repeats,
+        budget_s: super::study::seconds(&asked.budget)?,
+    };
+    let out = asked
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("out").join(format!("{}-effects", loaded.case.name)));
+    let progress = Progress::new(asked.quiet);
+    let found = ablate(&loaded.case, plan, asked.measure.as_deref(), &|event| {
+        progress.show(event)
+    });
+    progress.done();
+    let found = found?;
+    let shown = files::Shown::choose(&found, asked.measure.as_deref());
+    files::write(&out, &found, &shown)?;
+    let written = if asked.write {
+        Some(write(&loaded, &found)?)
+    } else {
+        None
+    };
+    if asked.json {
+        super::print(&files::json(&found))?;
+    } else {
+        let written = written.map_or(String::new(), |words| format!("{words}\n"));
+        let (table, sentence) = (files::table(&found, &shown), files::sentence(&found));
+        super::print(&format!("{table}\n{sentence}\n\n{written}files in {}\n", out.display()))?;
+    }
+    Ok(if found.full.summary.is_none() {
+        ExitCode::from(4)
+    } else {
+        ExitCode::SUCCESS
+    })
+}
+
+/// Writes what is recommended into the case file, which must still be read as a case with just that choice; says what was done.
+fn write(loaded: &LoadedCase, found: &Ablation) -> Result<String> {
+    let path = &loaded.path;
+    let Some(recommended) = &found.recommendation else {
+        return Ok(format!("{} stays as it is", path.display()));
+    };
+    let wanted: Effects = serde_json::from_value(recommended.effects.clone()).unwrap_or_default();
+    if loaded.case.effects == wanted {
+        return Ok(format!("{} says so already", path.display()));
+    }
+    let now = std::fs::read_to_string(path).unwrap_or_default();
+    if now != loaded.text {
+        let what = "changed while its effects were looked for; nothing is written";
+        return Err(Error::Usage(format!("{} {what}", path.display())));
+    }
+    let text = case::rewrite(&loaded.text, "effects", &recommended.effects)
+        .ok_or_else(|| Error::Usage(format!("{} is no JSON object", path.display())))?;
+    let again = case::parse(&text, path, path.parent().unwrap_or(path), &[])?;
+    super::refuse(&again, &System::new(&again.case))?;
+    files::replace(path, &text)?;
+    Ok(format!("written into {}", path.display()))
+}
+
+/// A line on a terminal, one a model elsewhere.
+struct Progress {
+    bar: Option<ProgressBar>,
+    lines: bool,
+}
+
+impl Progress {
+    fn new(quiet: bool) -> Self {
+        let terminal = std::io::stderr().is_terminal();
+        let bar = || {
+            let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+            if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
+                bar.set_style(style);
+            }
+            bar
+        };
+        Self {
+            bar: (terminal && !quiet).then(bar),
+            lines: !terminal && !quiet,
+        }
+    }
+
+    fn show(&self, event: &Event) {
+        let spent = format!("{} of {} used", duration(event.spent_s), duration(event.budget_s));
+        if let Some(bar) = &self.bar {
+            bar.set_message(format!("{} · {spent}", event.what));
+            bar.tick();
+        } else if self.lines && !event.what.ends_with("again") {
+            eprintln!("{}; {spent}", event.what);
+        }
+    }
+
+    fn done(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

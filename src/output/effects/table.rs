@@ -1,0 +1,258 @@
+//! The table of an ablation, for the terminal and as CSV, and the sentence at its end.
+
+use std::fmt::Write as _;
+
+use super::Shown;
+use crate::output::numbers::{percent, shortest, significant};
+use crate::run::summary::Judged;
+use crate::study::accuracy::trial::Ending;
+use crate::study::effects::ablation::Compared;
+use crate::study::effects::{Ablation, Row, Verdict};
+
+const HEADINGS: [&str; 10] = [
+    "left out", "verdict", "change", "largest", "in", "unknowns", "steps", "work", "time", "decides",
+];
+
+/// The table in a measure: each effect, what is left out by nobody, and how changes are to be read.
+pub fn table(found: &Ablation, shown: &Shown) -> String {
+    let full = &found.full;
+    let mut text = format!("{}: what each effect does, to {}\n", found.case, shown.words());
+    let Some(_) = &full.summary else {
+        let why = full.reason.as_deref().unwrap_or("no reason given");
+        let _ = writeln!(text, "\nthe full model did not run to the end: {why}");
+        return text;
+    };
+    let _ = writeln!(
+        text,
+        "full model: {} unknowns, {} steps, {} residuals, {} s\n",
+        full.unknowns,
+        full.counters.steps,
+        full.counters.residual_evaluations,
+        significant(full.wall_s(), 3)
+    );
+    let mut lines = vec![HEADINGS.map(String::from)];
+    for row in &found.rows {
+        if let Some(compared) = &row.left_out {
+            let number = format!("auto {}: {}", if row.auto { "on" } else { "off" }, row.number);
+            lines.push(line(found, shown, &name(row), said(row), compared, number));
+        }
+    }
+    let recommended = found.recommendation.as_ref().and_then(|r| r.run.as_ref());
+    for (name, compared) in [
+        ("as the case says", found.given.as_ref()),
+        ("auto", found.auto.as_ref()),
+        ("recommended", recommended),
+    ] {
+        lines.extend(compared.map(|c| line(found, shown, name, "", c, String::new())));
+    }
+    text += &aligned(&lines);
+    text += &legend(found, shown);
+    let mut reasons = vec![];
+    for row in &found.rows {
+        match row.verdict {
+            Verdict::Kept | Verdict::Failed => {
+                let why = row.reason.as_deref().unwrap_or("no reason given");
+                reasons.push(format!("{}: {}: {why}", row.name, said(row)));
+            }
+            _ if !row.takes.is_empty() => reasons.push(format!("{} takes with it {}", row.name, row.takes.join(", "))),
+            _ => {}
+        }
+    }
+    let absent: Vec<&str> = found
+        .rows
+        .iter()
+        .filter(|r| r.verdict == Verdict::Absent)
+        .map(|r| r.name)
+        .collect();
+    if !absent.is_empty() {
+        reasons.push(format!("not in the full model: {}", absent.join(", ")));
+    }
+    if !reasons.is_empty() {
+        let _ = writeln!(text, "\n{}", reasons.join("\n"));
+    }
+    text
+}
+
+fn aligned(lines: &[[String; 10]]) -> String {
+    let widths: [usize; 10] = std::array::from_fn(|k| lines.iter().map(|l| l[k].chars().count()).max().unwrap_or(0));
+    let mut text = String::new();
+    for line in lines {
+        let cells = line.iter().zip(widths).enumerate().map(|(k, (cell, width))| match k {
+            0 | 1 | 4 | 9 => format!("{cell:<width$}"),
+            _ => format!("{cell:>width$}"),
+        });
+        let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ").trim_end());
+    }
+    text
+}
+
+fn legend(found: &Ablation, shown: &Shown) -> String {
+    let own = |x: Option<f64>| x.map_or_else(|| "unknown".into(), |x| format!("{x:.1e}"));
+    let worst = found
+        .measures
+        .iter()
+        .filter_map(|m| Some((m.own?, m.name.as_str())))
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let mut text = format!(
+        "\nchange: relative to the quantity's largest figure; tolerance {:e}; ~ below the integrator's own error, which at rtol {:e}\n\
+         is {} of {}",
+        found.tolerance,
+        found.rtol,
+        own(shown.own(found)),
+        shown.words(),
+    );
+    if let Some((error, name)) = worst {
+        let _ = write!(text, ", at most {error:.1e} ({name})");
+    }
+    text += "\nwork: residual evaluations times unknowns, time: least wall time; both over those of the model compared with\n";
+    if found.judged_by == Judged::WindowStatistics {
+        text += "the motion cannot be followed to the end at this tolerance: judged are root mean squares and increments over the window\n";
+    }
+    text
+}
+
+fn name(row: &Row) -> String {
+    match row.without.as_slice() {
+        [] => row.name.to_string(),
+        others => format!("{} (both without {})", row.name, others.join(", ")),
+    }
+}
+
+/// The verdict, or that there is none.
+fn said(row: &Row) -> &'static str {
+    match &row.left_out {
+        Some(c) if c.trial.ending == Ending::Skipped => "not run",
+        _ => word(row.verdict),
+    }
+}
+
+/// A verdict in words.
+pub fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Needed => "needed",
+        Verdict::Harmless => "harmless",
+        Verdict::Saves => "saves",
+        Verdict::Undecided => "undecided",
+        Verdict::Failed => "failed",
+        Verdict::Kept => "cannot be left out",
+        Verdict::Absent => "absent",
+    }
+}
+
+fn line(found: &Ablation, shown: &Shown, name: &str, verdict: &str, c: &Compared, number: String) -> [String; 10] {
+    if c.trial.summary.is_none() {
+        let mut line: [String; 10] = Default::default();
+        line[0] = name.into();
+        line[1] = if verdict.is_empty() {
+            "failed".into()
+        } else {
+            verdict.into()
+        };
+        line[9] = number;
+        return line;
+    }
+    let small = |x: f64, own: bool| format!("{}{x:.1e}", if own || x == 0.0 { "" } else { "~" });
+    let change = shown.change(c);
+    let own = shown.own(found).unwrap_or(0.0);
+    let largest = c.largest.as_ref().filter(|l| l.1 > 0.0);
+    [
+        name.into(),
+        verdict.into(),
+        change.map_or("-".into(), |x| small(x, x > own)),
+        largest.map_or("-".into(), |l| small(l.1, c.above_own_error)),
+        largest.map_or(String::new(), |l| l.0.clone()),
+        format!("{:+}", c.unknowns),
+        c.trial.counters.steps.to_string(),
+        format!("{:.2}", c.work),
+        format!("{:.2}", c.wall),
+        number,
+    ]
+}
+
+/// `Leave out rotary_inertia: ... "effects": {...}`
+pub fn sentence(found: &Ablation) -> String {
+    let Some(r) = &found.recommendation else {
+        return "Nothing can be recommended: the full model did not run to the end.".into();
+    };
+    let mut text = match (r.off.as_slice(), &r.run) {
+        ([], _) => "Nothing that can be left out saves anything.".to_string(),
+        (off, Some(run)) => {
+            let change = |(name, x): &(String, f64)| format!(" {name} changes most, by {x:.1e}.");
+            let change = run.largest.as_ref().map_or(String::new(), change);
+            let (off, work) = (off.join(", "), percent(run.work));
+            format!("Without {off} the model needs {work} of the work.{change}")
+        }
+        (off, None) => format!("Leave out {}.", off.join(", ")),
+    };
+    for (name, why) in &r.dropped {
+        let _ = write!(text, " {name} stays after all: {why}.");
+    }
+    let _ = write!(text, "\n\"effects\": {}", crate::case::spaced(&r.effects));
+    text
+}
+
+/// `effects.csv`: one row an effect and quantity; one without changes for an effect that was not run or did not finish.
+pub fn csv(found: &Ablation) -> String {
+    let mut text = String::from(
+        "left_out,verdict,reason,auto,number,without,takes,unknowns,steps,residual_evaluations,jacobian_evaluations,factorizations,\
+         wall_min [s],repeats,work_ratio,wall_ratio,quantity,size,change,own_error\n",
+    );
+    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "'"));
+    let mut rows = |first: String, compared: Option<&Compared>| {
+        let Some(c) = compared else {
+            let _ = writeln!(text, "{first}{}", ",".repeat(13));
+            return;
+        };
+        let n = &c.trial.counters;
+        let first = format!(
+            "{first},{},{},{},{},{},{},{},{},{}",
+            c.trial.unknowns,
+            n.steps,
+            n.residual_evaluations,
+            n.jacobian_evaluations,
+            n.factorizations,
+            number(Some(c.trial.wall_s())),
+            c.trial.repeats,
+            number(Some(c.work)),
+            number(Some(c.wall))
+        );
+        if c.changes.is_empty() {
+            let _ = writeln!(text, "{first}{}", ",".repeat(4));
+        }
+        for m in found.measures.iter().filter(|_| !c.changes.is_empty()) {
+            let change = c.changes.get(&m.name).copied();
+            let [size, change, own] = [Some(m.size), change, m.own].map(number);
+            let _ = writeln!(text, "{first},{},{size},{change},{own}", m.name);
+        }
+    };
+    for row in &found.rows {
+        let first = format!(
+            "{},{},{},{},{},{},{}",
+            row.name,
+            said(row),
+            quoted(row.reason.as_deref().unwrap_or("")),
+            if row.auto { "on" } else { "off" },
+            quoted(&row.number),
+            row.without.join(" "),
+            row.takes.join(" ")
+        );
+        rows(first, row.left_out.as_ref());
+    }
+    let recommended = found.recommendation.as_ref().and_then(|r| r.run.as_ref());
+    for (name, compared) in [
+        ("as the case says", found.given.as_ref()),
+        ("auto", found.auto.as_ref()),
+        ("recommended", recommended),
+    ] {
+        if let Some(c) = compared {
+            let why = quoted(c.trial.reason.as_deref().unwrap_or(""));
+            rows(format!("{name},,{why},,,,"), Some(c));
+        }
+    }
+    text
+}
+
+/// Empty when unknown or not finite.
+fn number(x: Option<f64>) -> String {
+    x.filter(|x| x.is_finite()).map_or_else(String::new, shortest)
+}

@@ -1,0 +1,310 @@
+//! Everything in order: the full model, itself at a tenth of the tolerance, each effect left out, the program's own choice.
+
+use serde::Serialize;
+
+use super::change::{Changes, Measure, Reference, Size, judge, largest};
+use super::choices::{Out, candidates, effects, guards, on, reason, with, without};
+use super::recommend::{Recommendation, recommend};
+use super::trial::{Plan, Runs, Trial, Watch};
+use crate::case::Case;
+use crate::case::schema::Effects;
+use crate::error::{Error, Result};
+use crate::run::summary::Judged;
+use crate::study::target::estimates::LOST;
+
+/// Tightest tolerance that is allowed.
+const TIGHTEST: f64 = 1e-13;
+/// Part of the work, and of the time, that is worth leaving something out for.
+pub const WORTH: f64 = 0.05;
+
+/// The measure that is, for each effect, the quantity that changes most.
+pub const LARGEST: &str = "largest";
+
+/// What became of an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Results change by more than the tolerance.
+    Needed,
+    /// They do not, and nothing is saved.
+    Harmless,
+    /// They do not, and work or time is saved.
+    Saves,
+    /// The integrator's own error is above the tolerance.
+    Undecided,
+    /// The model without it could not be run to the end.
+    Failed,
+    /// It cannot be left out of this case.
+    Kept,
+    /// It is not in the full model.
+    Absent,
+}
+
+/// A run beside another.
+#[derive(Clone, Debug, Serialize)]
+pub struct Compared {
+    /// The run.
+    pub trial: Trial,
+    /// What it is compared with.
+    pub against: String,
+    /// Relative change by quantity.
+    pub changes: Changes,
+    /// Name and change of the quantity that changes most.
+    pub largest: Option<(String, f64)>,
+    /// Whether that is above the integrator's own error.
+    pub above_own_error: bool,
+    /// Unknowns more, or fewer.
+    pub unknowns: i64,
+    /// Work over work.
+    pub work: f64,
+    /// Least wall time over least wall time.
+    pub wall: f64,
+}
+
+/// An effect of the table.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// Its name.
+    pub name: &'static str,
+    /// What became of it.
+    pub verdict: Verdict,
+    /// Why it was not run, or did not finish.
+    pub reason: Option<String>,
+    /// Whether `"auto"` keeps it.
+    pub auto: bool,
+    /// The number by which `"auto"` decides.
+    pub number: String,
+    /// Effects that are left out of both models that are compared.
+    pub without: Vec<&'static str>,
+    /// Effects that have no meaning without it.
+    pub takes: Vec<&'static str>,
+    /// The model without it.
+    pub left_out: Option<Compared>,
+}
+
+/// What each effect does to a case.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ablation {
+    /// Name of the case.
+    pub case: String,
+    /// What was asked for.
+    pub plan: Plan,
+    /// The case's `effects_tolerance`.
+    pub tolerance: f64,
+    /// Relative tolerance of the integrator.
+    pub rtol: f64,
+    /// Which figures count: where the motion cannot be followed, those over the window.
+    pub judged_by: Judged,
+    /// Quantities of the full model.
+    pub measures: Vec<Measure>,
+    /// The full model.
+    pub full: Trial,
+    /// Itself at a tenth of the tolerance.
+    pub tighter: Trial,
+    /// Every effect of the table.
+    pub rows: Vec<Row>,
+    /// The program's own choice.
+    pub auto: Option<Compared>,
+    /// The case's choices by name, if it has any.
+    pub given: Option<Compared>,
+    /// What the case should say.
+    pub recommendation: Option<Recommendation>,
+    /// Wall time of everything [s].
+    pub spent_s: f64,
+}
+
+/// What a comparison needs to know of the full model.
+pub struct Judge {
+    reference: Reference,
+    measures: Vec<Measure>,
+    tolerance: f64,
+    timed: bool,
+}
+
+impl Judge {
+    /// One run beside another that finished; `None` where that did not.
+    pub fn compare(&self, runs: &Runs, base: usize, other: usize) -> Option<Compared> {
+        let (base, trial) = (runs.trial(base), runs.trial(other));
+        let changes = match &trial.summary {
+            Some(summary) => self.reference.changes(base.summary.as_ref()?, summary),
+            None => Changes::new(),
+        };
+        let most = largest(&changes, &self.measures, self.tolerance).filter(|_| trial.summary.is_some());
+        Some(Compared {
+            trial: trial.clone(),
+            against: base.what.clone(),
+            changes,
+            above_own_error: most.is_some_and(|(m, change)| change > m.own.unwrap_or(0.0)),
+            largest: most.map(|(m, change)| (m.name.clone(), change)),
+            unknowns: trial.unknowns as i64 - base.unknowns as i64,
+            work: trial.work / base.work,
+            wall: trial.wall_s() / base.wall_s(),
+        })
+    }
+
+    /// What a comparison says of what was left out.
+    pub fn verdict(&self, compared: &Compared, scatter: f64) -> Verdict {
+        if compared.trial.summary.is_none() {
+            return Verdict::Failed;
+        }
+        match judge(&compared.changes, &self.measures, self.tolerance) {
+            Size::Large => Verdict::Needed,
+            Size::Hidden => Verdict::Undecided,
+            Size::Small => {
+                let timed = self.timed && compared.trial.repeats > 1;
+                let clear = WORTH + scatter.max(compared.trial.scatter());
+                let (faster, slower) = (
+                    timed && compared.wall < 1.0 - clear,
+                    timed && compared.wall > 1.0 + clear,
+                );
+                if faster || compared.work < 1.0 - WORTH && !slower {
+                    Verdict::Saves
+                } else {
+                    Verdict::Harmless
+                }
+            }
+        }
+    }
+}
+
+/// Runs the full model, then each effect left out, then the program's own choice, then what is recommended.
+///
+/// # Errors
+/// [`Error::Usage`] for a measure that the full model has not.
+pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> Result<Ablation> {
+    let auto_case = with(case, Effects::Auto);
+    let decided = effects(&auto_case);
+    let mut found = Ablation {
+        case: case.name.clone(),
+        plan,
+        tolerance: case.effects_tolerance(),
+        rtol: case.solver.rtol,
+        judged_by: Judged::Figures,
+        measures: vec![],
+        full: Trial::skipped("full"),
+        tighter: Trial::skipped("full, a tenth of the tolerance"),
+        rows: vec![],
+        auto: None,
+        given: None,
+        recommendation: None,
+        spent_s: 0.0,
+    };
+    let all = candidates(case);
+    let mut runs = Runs::new(plan, watch);
+    let full_case = with(case, Effects::Full);
+    let full = runs.run("full", full_case.clone());
+    found.full = runs.trial(full).clone();
+    let row = |name: &'static str, out: &Out| Row {
+        name,
+        verdict: Verdict::Failed,
+        reason: None,
+        auto: on(&decided, name),
+        number: reason(&decided, name),
+        without: out.without.clone(),
+        takes: out.takes.clone(),
+        left_out: None,
+    };
+    let Some(summary) = &found.full.summary else {
+        found.spent_s = runs.spent_s();
+        return Ok(found);
+    };
+    known(measure, &Reference::new(summary, case.beam.length_m).measures(None))?;
+    let mut tight_case = full_case;
+    tight_case.solver.rtol = (0.1 * tight_case.solver.rtol).max(TIGHTEST);
+    let tighter = runs.run("full, a tenth of the tolerance", tight_case);
+    let mut pairs = vec![];
+    for candidate in &all {
+        let pair = candidate.out.as_ref().ok().map(|out| {
+            let base = match out.without.as_slice() {
+                [] => full,
+                others => runs.run(&format!("without {}", others.join(", ")), without(case, others)),
+            };
+            let off = [out.without.as_slice(), &[candidate.name]].concat();
+            (
+                base,
+                runs.run(&format!("without {}", off.join(", ")), without(case, &off)),
+            )
+        });
+        pairs.push(pair);
+    }
+    let auto = runs.run("auto", auto_case);
+    let given = matches!(case.effects, Effects::Chosen(_)).then(|| runs.run("as the case says", case.clone()));
+    runs.repeat();
+    found.full = runs.trial(full).clone();
+    found.tighter = runs.trial(tighter).clone();
+    let Some(judge) = judged(&mut found, plan, case.beam.length_m) else {
+        return Ok(found);
+    };
+
+    for (candidate, pair) in all.iter().zip(pairs) {
+        found.rows.push(match (&candidate.out, pair) {
+            (Ok(out), Some((base, other))) => {
+                let left_out = judge.compare(&runs, base, other);
+                let failed = runs
+                    .trial(other)
+                    .reason
+                    .clone()
+                    .or_else(|| runs.trial(base).reason.clone());
+                let verdict = left_out.as_ref().map(|c| judge.verdict(c, runs.trial(base).scatter()));
+                Row {
+                    verdict: verdict.unwrap_or(Verdict::Failed),
+                    reason: failed,
+                    left_out,
+                    ..row(candidate.name, out)
+                }
+            }
+            (out, _) => {
+                let kept = out.as_ref().err();
+                let there = kept.is_some_and(|k| k.there);
+                Row {
+                    verdict: if there { Verdict::Kept } else { Verdict::Absent },
+                    reason: kept.map(|k| k.why.clone()),
+                    ..row(candidate.name, &Out::default())
+                }
+            }
+        });
+    }
+    found.recommendation = Some(recommend(
+        case,
+        &found.rows,
+        guards(case, &decided).as_ref(),
+        &judge,
+        &mut runs,
+    ));
+    found.auto = judge.compare(&runs, full, auto);
+    found.given = given.and_then(|given| judge.compare(&runs, full, given));
+    found.spent_s = runs.spent_s();
+    Ok(found)
+}
+
+/// Refuses a measure that there is not.
+fn known(measure: Option<&str>, measures: &[Measure]) -> Result<()> {
+    let Some(name) = measure else { return Ok(()) };
+    let names: Vec<&str> = [LARGEST]
+        .into_iter()
+        .chain(measures.iter().map(|m| m.name.as_str()))
+        .collect();
+    if names.contains(&name) {
+        return Ok(());
+    }
+    Err(Error::Usage(format!("--measure {name}: one of {}", names.join(", "))))
+}
+
+/// What others are judged by: every figure, or those over the window where the integrator cannot follow the motion.
+fn judged(found: &mut Ablation, plan: Plan, length: f64) -> Option<Judge> {
+    let full = found.full.summary.as_ref()?;
+    let mut reference = Reference::new(full, length);
+    let own = |reference: &Reference| Some(reference.changes(full, found.tighter.summary.as_ref()?));
+    let lost = own(&reference).is_some_and(|own| own.values().any(|error| *error > LOST));
+    if lost {
+        reference.judged_by = Judged::WindowStatistics;
+    }
+    found.judged_by = reference.judged_by;
+    found.measures = reference.measures(own(&reference).as_ref());
+    Some(Judge {
+        measures: found.measures.clone(),
+        reference,
+        tolerance: found.tolerance,
+        timed: plan.repeats > 0,
+    })
+}

@@ -1,0 +1,109 @@
+//! How far the figures of two runs are apart, beside the integrator's own error.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::run::summary::{Judged, Quantity, Summary};
+use crate::study::counted::{counted, size};
+
+/// Relative changes by quantity.
+pub type Changes = BTreeMap<String, f64>;
+
+/// A quantity of the full model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Measure {
+    /// Its name, unit included.
+    pub name: String,
+    /// Its largest figure, in its unit.
+    pub size: f64,
+    /// The integrator's own relative error; unknown when the run at a tenth of the tolerance did not finish.
+    pub own: Option<f64>,
+}
+
+/// The full model's quantities, and what others are compared by.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    quantities: BTreeMap<String, Quantity>,
+    /// Which figures count.
+    pub judged_by: Judged,
+}
+
+impl Reference {
+    /// Of the full model's run, of a beam of this length [m]: the quantities that are more than round-off.
+    pub fn new(full: &Summary, length: f64) -> Self {
+        Self {
+            quantities: counted(full, length).map(|(name, q)| (name.clone(), *q)).collect(),
+            judged_by: Judged::Figures,
+        }
+    }
+
+    /// Change of every quantity from one run to another.
+    pub fn changes(&self, from: &Summary, to: &Summary) -> Changes {
+        let judged = |q: &Quantity| match self.judged_by {
+            Judged::Figures => q.figures().collect::<Vec<_>>(),
+            Judged::WindowStatistics => q.statistics().collect(),
+        };
+        let figures = |run: &Summary, name: &str| run.quantities.get(name).map(judged).unwrap_or_default();
+        let change = |(name, q): (&String, &Quantity)| {
+            let (from, to) = (figures(from, name), figures(to, name));
+            let at = |all: &[(&str, f64)], figure: &str| all.iter().find(|f| f.0 == figure).map_or(0.0, |f| f.1);
+            let apart = judged(q)
+                .into_iter()
+                .map(|(figure, _)| (at(&from, figure) - at(&to, figure)).abs());
+            let apart = apart.fold(0.0, f64::max);
+            let relative = if apart > 0.0 { apart / size(q) } else { 0.0 };
+            (name.clone(), relative)
+        };
+        self.quantities.iter().map(change).collect()
+    }
+
+    /// The quantities with the integrator's own error.
+    pub fn measures(&self, own: Option<&Changes>) -> Vec<Measure> {
+        let measure = |(name, q): (&String, &Quantity)| Measure {
+            name: name.clone(),
+            size: size(q),
+            own: own.and_then(|own| own.get(name)).copied(),
+        };
+        self.quantities.iter().map(measure).collect()
+    }
+}
+
+/// What changes say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// Above the tolerance, and above the integrator's own error.
+    Large,
+    /// Above the tolerance, but the integrator's own error is, too.
+    Hidden,
+    /// Below the tolerance.
+    Small,
+}
+
+/// Judges changes against a tolerance.
+pub fn judge(changes: &Changes, measures: &[Measure], tolerance: f64) -> Size {
+    let beyond: Vec<_> = measures.iter().filter(|m| of(changes, m) > tolerance).collect();
+    if beyond.iter().any(|m| of(changes, m) > m.own.unwrap_or(0.0)) {
+        Size::Large
+    } else if !beyond.is_empty() {
+        Size::Hidden
+    } else {
+        Size::Small
+    }
+}
+
+/// The quantity that changes most: of those that change by more than the integrator's own error, if there is one, and if that
+/// error does not hide whether the tolerance is kept.
+pub fn largest<'a>(changes: &Changes, measures: &'a [Measure], tolerance: f64) -> Option<(&'a Measure, f64)> {
+    let hidden = judge(changes, measures, tolerance) == Size::Hidden;
+    let above = |m: &&Measure| !hidden && of(changes, m) > m.own.unwrap_or(0.0);
+    let most = |all: &mut dyn Iterator<Item = &'a Measure>| {
+        all.max_by(|a, b| of(changes, a).total_cmp(&of(changes, b)))
+            .map(|m| (m, of(changes, m)))
+    };
+    most(&mut measures.iter().filter(above)).or_else(|| most(&mut measures.iter()))
+}
+
+fn of(changes: &Changes, measure: &Measure) -> f64 {
+    changes.get(&measure.name).copied().unwrap_or(1.0)
+}

@@ -1,0 +1,262 @@
+//! One run: work, time, figures. Every set of effects is run once and then, by turns with the others, again for its time.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::choices::{effects, refusals};
+use crate::case::Case;
+use crate::error::Result;
+use crate::model::effects::EffectSet;
+use crate::run::dynamics;
+use crate::run::record::{Control, Header, Progress, Recorder};
+use crate::run::summary::{Counters, Status, Summary};
+use crate::study::accuracy::trial::Ending;
+
+/// Steps between two looks at the clock.
+const LOOK: u64 = 64;
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Plan {
+    /// Timed runs of each model, after one to warm up; with none no verdict looks at time.
+    pub repeats: usize,
+    /// Wall time for everything [s].
+    pub budget_s: f64,
+}
+
+/// A run is about to begin.
+#[derive(Clone, Debug)]
+pub struct Event<'a> {
+    /// Of what.
+    pub what: &'a str,
+    /// Runs so far.
+    pub done: usize,
+    /// Wall time so far [s].
+    pub spent_s: f64,
+    /// What may be spent [s].
+    pub budget_s: f64,
+}
+
+/// Told of every run before it begins.
+pub type Watch<'a> = &'a dyn Fn(&Event);
+
+/// A model, and what came of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Trial {
+    /// Of what.
+    pub what: String,
+    /// How it went.
+    pub ending: Ending,
+    /// Why it did not finish.
+    pub reason: Option<String>,
+    /// Unknowns.
+    pub unknowns: usize,
+    /// Work of one run.
+    pub counters: Counters,
+    /// Residual evaluations times unknowns.
+    pub work: f64,
+    /// Wall times of the timed runs, least first [s]; of the first run where there are no others.
+    pub walls_s: Vec<f64>,
+    /// Timed runs.
+    pub repeats: usize,
+    /// What came out; only of finished runs.
+    #[serde(skip)]
+    pub summary: Option<Summary>,
+}
+
+impl Trial {
+    /// Not begun.
+    pub fn skipped(what: &str) -> Self {
+        Self {
+            what: what.to_string(),
+            ending: Ending::Skipped,
+            reason: None,
+            unknowns: 0,
+            counters: Counters::default(),
+            work: f64::NAN,
+            walls_s: vec![],
+            repeats: 0,
+            summary: None,
+        }
+    }
+
+    /// Least wall time [s].
+    pub fn wall_s(&self) -> f64 {
+        self.walls_s.first().copied().unwrap_or(f64::NAN)
+    }
+
+    /// How far the median of the wall times is above the least, relative; 0 for fewer than two.
+    pub fn scatter(&self) -> f64 {
+        let median = self.walls_s.get(self.walls_s.len() / 2);
+        median.map_or(0.0, |median| median / self.wall_s() - 1.0)
+    }
+}
+
+/// All runs, each set of effects and tolerance once.
+pub struct Runs<'a> {
+    plan: Plan,
+    begin: Instant,
+    watch: Watch<'a>,
+    all: Vec<(Case, EffectSet, Trial)>,
+    done: usize,
+}
+
+impl<'a> Runs<'a> {
+    /// None yet.
+    pub fn new(plan: Plan, watch: Watch<'a>) -> Self {
+        Self {
+            plan,
+            begin: Instant::now(),
+            watch,
+            all: vec![],
+            done: 0,
+        }
+    }
+
+    /// A run by its number.
+    pub fn trial(&self, k: usize) -> &Trial {
+        &self.all[k].2
+    }
+
+    /// Wall time so far [s].
+    pub fn spent_s(&self) -> f64 {
+        self.begin.elapsed().as_secs_f64()
+    }
+
+    fn left_s(&self) -> f64 {
+        self.plan.budget_s - self.spent_s()
+    }
+
+    /// Runs a case, unless one with the same effects and tolerance was run. Returns its number.
+    pub fn run(&mut self, what: &str, case: Case) -> usize {
+        let set = effects(&case);
+        let on = |set: &EffectSet| set.decisions.iter().map(|d| d.on).collect::<Vec<_>>();
+        let alike = |c: &Case, s: &EffectSet| c.solver.rtol == case.solver.rtol && on(s) == on(&set);
+        if set.refusals.is_empty()
+            && let Some(known) = self.all.iter().position(|(c, s, _)| alike(c, s))
+        {
+            return known;
+        }
+        let trial = self.first(what, &case);
+        self.all.push((case, set, trial));
+        self.all.len() - 1
+    }
+
+    fn first(&mut self, what: &str, case: &Case) -> Trial {
+        let mut trial = Trial::skipped(what);
+        if let Some(refusal) = refusals(case).first() {
+            trial.reason = Some(refusal.what.clone());
+            return trial;
+        }
+        let left = self.left_s();
+        if left <= 0.0 {
+            trial.reason = Some("the budget is used up".into());
+            return trial;
+        }
+        self.tell(what);
+        let (summary, wall) = match once(case, left) {
+            Ok(ran) => ran,
+            Err(e) => {
+                trial.ending = Ending::Failed;
+                trial.reason = Some(e.to_string());
+                return trial;
+            }
+        };
+        trial.ending = match summary.status {
+            Status::Finished => Ending::Finished,
+            Status::Stopped => Ending::Stopped,
+            Status::Failed => Ending::Failed,
+        };
+        trial.reason.clone_from(&summary.reason);
+        trial.unknowns = summary.unknowns;
+        trial.work = summary.unknowns as f64 * summary.solver.residual_evaluations as f64;
+        trial.counters = summary.solver.clone();
+        trial.walls_s = vec![wall];
+        let broken = summary
+            .quantities
+            .values()
+            .any(|q| q.figures().any(|f| !f.1.is_finite()));
+        if broken {
+            trial.ending = Ending::Failed;
+            trial.reason = Some("the result has numbers that are not finite".into());
+        }
+        trial.summary = (trial.ending == Ending::Finished).then_some(summary);
+        trial
+    }
+
+    /// Runs what has finished again, by turns, as far as the budget goes.
+    pub fn repeat(&mut self) {
+        for round in 1..=self.plan.repeats {
+            for k in 0..self.all.len() {
+                let (case, _, trial) = &self.all[k];
+                // What is judged by a tighter tolerance is not judged by its time.
+                if case.solver.rtol < self.all[0].0.solver.rtol {
+                    continue;
+                }
+                if trial.summary.is_none() || trial.repeats >= round || 1.2 * trial.wall_s() > self.left_s() {
+                    continue;
+                }
+                let (case, what) = (case.clone(), trial.what.clone());
+                self.tell(&format!("{what}, again"));
+                let again = once(&case, self.left_s());
+                let trial = &mut self.all[k].2;
+                if let Ok((summary, wall)) = again
+                    && summary.status == Status::Finished
+                {
+                    if trial.repeats == 0 {
+                        trial.walls_s.clear();
+                    }
+                    trial.walls_s.push(wall);
+                    trial.walls_s.sort_by(f64::total_cmp);
+                    trial.repeats += 1;
+                }
+            }
+        }
+    }
+
+    fn tell(&mut self, what: &str) {
+        (self.watch)(&Event {
+            what,
+            done: self.done,
+            spent_s: self.spent_s(),
+            budget_s: self.plan.budget_s,
+        });
+        self.done += 1;
+    }
+}
+
+/// Runs a case; returns what came out and the wall time [s].
+fn once(case: &Case, most_s: f64) -> Result<(Summary, f64)> {
+    let begin = Instant::now();
+    let mut clock = Clock { begin, most_s };
+    let summary = dynamics::run(case, &mut clock)?.summary;
+    Ok((summary, begin.elapsed().as_secs_f64()))
+}
+
+/// Records nothing, looks at the clock.
+struct Clock {
+    begin: Instant,
+    most_s: f64,
+}
+
+impl Recorder for Clock {
+    fn begin(&mut self, _: &Header) -> Result<()> {
+        Ok(())
+    }
+    fn history(&mut self, _: &[f64]) -> Result<()> {
+        Ok(())
+    }
+    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
+        Ok(())
+    }
+    fn progress(&mut self, progress: &Progress) -> Result<Control> {
+        let late = progress.steps.is_multiple_of(LOOK) && self.begin.elapsed().as_secs_f64() > self.most_s;
+        Ok(if late {
+            let share = 100.0 * progress.t / progress.end;
+            Control::Stop(format!("the budget is used up at {share:.3} % of the simulated time"))
+        } else {
+            Control::Continue
+        })
+    }
+}
