@@ -176,7 +176,7 @@ fn a_fault_of_an_argument_is_shown_in_the_argument() {
     1 | /slover/rtol=1e-3
       | ^^^^^^^^^^^^
       = allowed: $schema, name, about, beam, fluid, bladders, tubes, network, loads, ends, start,
-                 formulation, effects, mesh, time, solver
+                 formulation, effects, effects_tolerance, mesh, time, solver
       = nearest: did you mean "solver"?
 
     fault: -1 is out of range
