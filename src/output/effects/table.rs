@@ -175,7 +175,8 @@ pub fn sentence(found: &Ablation) -> String {
         return "Nothing can be recommended: the full model did not run to the end.".into();
     };
     let mut text = match (r.off.as_slice(), &r.run) {
-        ([], _) => "Nothing that can be left out saves anything.".to_string(),
+        ([], _) if r.dropped.is_empty() => "Nothing that can be left out saves anything.".to_string(),
+        ([], _) => "Nothing should be left out.".to_string(),
         (off, Some(run)) => {
             let change = |(name, x): &(String, f64)| format!(" {name} changes most, by {x:.1e}.");
             let change = run.largest.as_ref().map_or(String::new(), change);
@@ -185,7 +186,7 @@ pub fn sentence(found: &Ablation) -> String {
         (off, None) => format!("Leave out {}.", off.join(", ")),
     };
     for (name, why) in &r.dropped {
-        let _ = write!(text, " {name} stays after all: {why}.");
+        let _ = write!(text, " {name} saves, but stays: {why}.");
     }
     let _ = write!(text, "\n\"effects\": {}", crate::case::spaced(&r.effects));
     text
