@@ -163,7 +163,7 @@ fn what_is_kept_for_stability_is_not_recommended_off() {
     let found = ablated(
         &SLENDER
             .replace("force_x_n_m", "force_z_n_m")
-            .replace("0.05, \"freq", "-2, \"freq"),
+            .replace("0.05, \"freq", "2, \"freq"),
         600.0,
     );
     println!("{}\n{}", files::table(&found, &Shown::Largest), files::sentence(&found));

@@ -20,7 +20,10 @@ pub fn counted(summary: &Summary, length: f64) -> impl Iterator<Item = (&String,
     };
     all.iter().filter(move |(name, q)| {
         let (unit, own) = weighed(name, q);
-        let alike = all.iter().map(|(other, q)| weighed(other, q)).filter(|(u, _)| *u == unit);
+        let alike = all
+            .iter()
+            .map(|(other, q)| weighed(other, q))
+            .filter(|(u, _)| *u == unit);
         own > NOTHING * alike.map(|(_, size)| size).fold(0.0, f64::max)
     })
 }

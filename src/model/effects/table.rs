@@ -63,7 +63,7 @@ pub const TABLE: [Effect; 21] = [
         name: "rotary_inertia",
         adds: "r = m y11 φ_tt/λ² in n = N e_t + V e_n + r d1",
         brings: "neighbouring accelerations coupled in every cell",
-        number: "y11 k²/2, k the wavenumber of the second bending mode",
+        number: "y11 k²/2 (1 + ω T), k and ω of the second bending mode, T the run; kept where something acts suddenly",
         cost: "arithmetic in every cell",
     },
     Effect {
@@ -77,7 +77,7 @@ pub const TABLE: [Effect; 21] = [
         name: "flow",
         adds: "q = g (p_a - p_b) between bladders; without it a1 = const, p = (a0 - R A_M - A_N)/a_p",
         brings: "an area for each cell of each bladder that is not sealed",
-        number: "1/(ω τ), τ the slowest time of the network",
+        number: "1/(ω τ), τ the slowest time of the network; by itself only where next to nothing leaks in the whole run",
         cost: "cells_per_bladder unknowns a bladder; the stiffness of the network",
     },
     Effect {
