@@ -5,7 +5,7 @@ mod stability;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::case::schema::{BladderEnd, Case, Formulation};
+use crate::case::schema::{BladderEnd, Case};
 use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};
 use crate::model::characteristic::first_wave_number;
 use crate::model::network::{Link, Node};
@@ -83,12 +83,17 @@ impl<'a> Scene<'a> {
     /// How much of its motion something of the angular frequency `ω` owes to inertia, when everything acts on it that the case
     /// prescribes: `s''/(ω² s)` of a smooth signal, `Δs'/(ω s)` and `Δs/s` where it jumps, as it does at the start.
     fn haste(&self, omega: f64) -> f64 {
+        self.haste_under(&self.ends, omega)
+    }
+
+    /// The same with other ends.
+    fn haste_under(&self, ends: &[ResolvedEnd; 2], omega: f64) -> f64 {
         if self.begins_displaced() {
             return 1.0;
         }
         let end = self.case.time.end_s;
         let mut most = 0.0_f64;
-        self.signals(|signal| {
+        each_signal(ends, &self.loads, self.network(), |signal| {
             let (size, _, acceleration) = largest(signal, end);
             if size == 0.0 {
                 return;
@@ -138,17 +143,13 @@ impl<'a> Scene<'a> {
 
     /// [`Self::haste`] of what is not a driven end, for axial waves.
     fn haste_of_loads(&self) -> f64 {
-        let mut others = Self {
-            ends: self.ends.clone(),
-            loads: self.loads.clone(),
-            ..Self::new(self.case, self.section, self.wet)
-        };
-        for end in &mut others.ends {
+        let mut ends = self.ends.clone();
+        for end in &mut ends {
             if matches!(end.axial, Translation::Displacement(_)) {
                 end.axial = Translation::Displacement(Signal::Constant(0.0));
             }
         }
-        others.haste(self.axial)
+        self.haste_under(&ends, self.axial)
     }
 
     /// `(u1/l_s)²`: how much bending shortens the beam.
@@ -320,10 +321,5 @@ impl<'a> Scene<'a> {
             }
         };
         [ratio(m.closing, m.opening), ratio(n.compression, n.tension)]
-    }
-
-    /// Whether the momentum balance is the published one.
-    pub fn published(&self) -> bool {
-        self.case.formulation == Formulation::Published
     }
 }
