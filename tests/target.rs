@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use slcbeam::case::{self, Case};
 use slcbeam::run::dynamics::{self, Outcome};
-use slcbeam::run::record::{Control, Header, Progress, Recorder};
+use slcbeam::run::record::{Control, Progress, Unrecorded};
 use slcbeam::run::summary::{Judged, Quantity, Status, Summary};
 use slcbeam::study::accuracy::plan;
 use slcbeam::study::target;
@@ -18,30 +18,18 @@ fn load(name: &str, sets: &[&str]) -> Case {
     }
 }
 
-/// Keeps nothing, and stops when time is up.
-struct Until(Instant);
-
-impl Recorder for Until {
-    fn begin(&mut self, _: &Header) -> slcbeam::error::Result<()> {
-        Ok(())
-    }
-    fn history(&mut self, _: &[f64]) -> slcbeam::error::Result<()> {
-        Ok(())
-    }
-    fn fields(&mut self, _: f64, _: &[&[f64]]) -> slcbeam::error::Result<()> {
-        Ok(())
-    }
-    fn progress(&mut self, _: &Progress) -> slcbeam::error::Result<Control> {
-        Ok(if Instant::now() < self.0 {
-            Control::Continue
-        } else {
-            Control::Stop("time is up".into())
-        })
-    }
+/// Runs without keeping anything, until time is up.
+fn record(case: &Case, until: Instant) -> Outcome {
+    let mut until = Unrecorded(|_: &Progress| stop_after(until));
+    dynamics::run(case, &mut until).expect("a recorder that keeps nothing does not fail")
 }
 
-fn record(case: &Case, until: Instant) -> Outcome {
-    dynamics::run(case, &mut Until(until)).expect("a recorder that keeps nothing does not fail")
+fn stop_after(until: Instant) -> Control {
+    if Instant::now() < until {
+        Control::Continue
+    } else {
+        Control::Stop("time is up".into())
+    }
 }
 
 fn figures(q: &Quantity, judged_by: Judged) -> Vec<f64> {
@@ -134,13 +122,7 @@ impl Tally {
         let mut runs: Vec<(f64, Summary)> = vec![];
         for &asked in accuracies {
             let until = Instant::now() + time;
-            let hook = |_: &Progress| {
-                if Instant::now() < until {
-                    Control::Continue
-                } else {
-                    Control::Stop("time is up".into())
-                }
-            };
+            let hook = |_: &Progress| stop_after(until);
             let reached = target::reach(case, asked, &hook, &mut |case| Ok(record(case, until)));
             let summary = reached.expect("memory").summary;
             let accuracy = summary.accuracy.as_ref();

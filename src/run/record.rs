@@ -93,6 +93,24 @@ pub trait Recorder {
     }
 }
 
+/// Keeps nothing: asks only whether to go on.
+pub struct Unrecorded<F: FnMut(&Progress) -> Control>(pub F);
+
+impl<F: FnMut(&Progress) -> Control> Recorder for Unrecorded<F> {
+    fn begin(&mut self, _: &Header) -> Result<()> {
+        Ok(())
+    }
+    fn history(&mut self, _: &[f64]) -> Result<()> {
+        Ok(())
+    }
+    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
+        Ok(())
+    }
+    fn progress(&mut self, progress: &Progress) -> Result<Control> {
+        Ok((self.0)(progress))
+    }
+}
+
 /// Keeps everything in memory, for tests and studies.
 #[derive(Clone, Debug, Default)]
 pub struct Memory {

@@ -8,10 +8,10 @@ use super::accuracy::plan;
 use crate::case::Case;
 use crate::error::Result;
 use crate::run::dynamics::{self, Outcome};
-use crate::run::record::{Control, Header, Progress, Recorder};
+use crate::run::record::{Control, Progress, Unrecorded};
 use crate::run::summary::{Accuracy, Estimate, Pilot, Status, Summary};
 
-use estimates::{At, EXPECTED_IN_SPACE, EXPECTED_IN_TIME, Runs, worst};
+use estimates::{At, EXPECTED_RATIO, Runs, worst};
 
 /// Finest mesh and tightest tolerance that are tried: cells a segment, decades.
 const FINEST: usize = 64;
@@ -102,16 +102,20 @@ impl Search<'_> {
         if self.runs.hold(at) {
             return Ok(None);
         }
-        let mut watch = Watch {
-            hook: self.hook,
-            stopped: None,
-        };
+        let mut stopped = None;
+        let mut watch = Unrecorded(|progress: &Progress| {
+            let control = (self.hook)(progress);
+            if let Control::Stop(reason) = &control {
+                stopped = Some(reason.clone());
+            }
+            control
+        });
         let summary = dynamics::run(&variant(self.case, at), &mut watch)?.summary;
         self.pilots.push(pilot(at, &summary));
         if summary.status == Status::Finished {
             self.runs.take(at, &summary, self.case.beam.length_m);
         }
-        Ok(watch.stopped)
+        Ok(stopped)
     }
 
     /// The two runs that the errors of one are estimated by.
@@ -128,9 +132,8 @@ impl Search<'_> {
     /// The cheapest finer setting that should do, and whether it should; one step towards it where that is far.
     fn cheapest(&self, (cells, decades): At, estimates: &BTreeMap<String, Estimate>) -> Option<(At, bool)> {
         let predicted = |refinements: i32, tighter: i32| {
-            let part = |error: Option<f64>, ratio: f64, steps: i32| error.unwrap_or(1.0) * ratio.powi(steps);
-            let total =
-                |e: &Estimate| part(e.space, EXPECTED_IN_SPACE, refinements) + part(e.time, EXPECTED_IN_TIME, tighter);
+            let part = |error: Option<f64>, steps: i32| error.unwrap_or(1.0) * EXPECTED_RATIO.powi(steps);
+            let total = |e: &Estimate| part(e.space, refinements) + part(e.time, tighter);
             estimates.values().map(total).fold(0.0, f64::max) / self.asked
         };
         // Twice the cells are four times the work: unknowns, and steps through stiffness. A decade is 10^(1/3) of steps.
@@ -203,30 +206,5 @@ fn pilot((cells, decades): At, summary: &Summary) -> Pilot {
         rtol: 10_f64.powi(-decades),
         steps: summary.solver.steps,
         wall_s: summary.wall_s.total,
-    }
-}
-
-/// Records nothing, passes progress on.
-struct Watch<'a> {
-    hook: Hook<'a>,
-    stopped: Option<String>,
-}
-
-impl Recorder for Watch<'_> {
-    fn begin(&mut self, _: &Header) -> Result<()> {
-        Ok(())
-    }
-    fn history(&mut self, _: &[f64]) -> Result<()> {
-        Ok(())
-    }
-    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
-        Ok(())
-    }
-    fn progress(&mut self, progress: &Progress) -> Result<Control> {
-        let control = (self.hook)(progress);
-        if let Control::Stop(reason) = &control {
-            self.stopped = Some(reason.clone());
-        }
-        Ok(control)
     }
 }

@@ -14,9 +14,10 @@ use diffsol::{FaerSparseMat, KLU, MatrixCommon, OdeBuilder, OdeSolverMethod};
 use slcbeam::case::{self, Case};
 use slcbeam::dae::{BeamDae, Dae, Fault, Pattern, Seeds};
 use slcbeam::discrete::{System, start};
-use slcbeam::onestep::{Method, OneStep, OneStepOptions};
+use slcbeam::onestep::{Method, OneStepOptions};
+use slcbeam::run::method::{Integrator, Options};
 use slcbeam::sundials::start::{StartOptions, consistent_start};
-use slcbeam::sundials::{Absolute, Ida, IdaOptions, Klu};
+use slcbeam::sundials::{Absolute, IdaOptions, Klu};
 
 use radau::{Radau, Work};
 
@@ -92,39 +93,30 @@ impl Scene {
         Bare(BeamDae::new(System::new(&self.case)))
     }
 
-    /// Deflections at the output times and steps.
     fn one_step(&self, method: Method, rtol: f64) -> (Vec<f64>, usize) {
-        let options = OneStepOptions {
+        self.follow(&Options::OneStep(OneStepOptions {
             method,
             relative: rtol,
             absolute: Absolute::Same(rtol),
             max_step: Some(self.largest_step),
             ..OneStepOptions::default()
-        };
-        let mut solver = OneStep::new(self.dae(), 0.0, &self.y, &self.yp, &options).expect("an integrator");
-        let mut y = self.y.clone();
-        let mut tip = vec![];
-        let end = *self.times.last().expect("times");
-        while tip.len() < self.times.len() {
-            let at = solver.step(end).expect("a step").time;
-            while let Some(&t) = self.times.get(tip.len()).filter(|t| **t <= at) {
-                solver.interpolate(t, 0, &mut y).expect("a value");
-                tip.push(y[self.tip]);
-            }
-        }
-        (tip, solver.steps() as usize)
+        }))
     }
 
     fn ida(&self, rtol: f64) -> (Vec<f64>, usize) {
-        let options = IdaOptions {
+        self.follow(&Options::Ida(IdaOptions {
             relative: rtol,
             absolute: Absolute::Same(rtol),
             max_order: 2,
             max_step: Some(self.largest_step),
             nonlinear_coefficient: 0.033,
             ..IdaOptions::default()
-        };
-        let mut solver = Ida::new(self.dae(), 0.0, &self.y, &self.yp, &options).expect("an integrator");
+        }))
+    }
+
+    /// Deflections at the output times, and steps.
+    fn follow(&self, options: &Options) -> (Vec<f64>, usize) {
+        let mut solver = Integrator::new(self.dae(), 0.0, &self.y, &self.yp, options).expect("an integrator");
         let mut y = self.y.clone();
         let mut tip = vec![];
         let end = *self.times.last().expect("times");

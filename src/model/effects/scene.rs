@@ -1,16 +1,20 @@
 //! What the scene does to the beam, in the numbers by which effects are left out: each estimates the relative error that
 //! leaving one out makes.
 
+mod pace;
 mod stability;
 
+use std::cell::OnceCell;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::case::schema::{BladderEnd, Case};
-use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};
+use crate::case::{ResolvedEnd, Rotation, Signal, Translation};
 use crate::model::characteristic::first_wave_number;
 use crate::model::network::{Link, Node};
 use crate::model::scales::{Drive, largest};
 use crate::model::{Load, Network, Scales, Section, Wet, each_signal};
+
+use pace::Pace;
 
 /// A scene, before anything is left out.
 pub struct Scene<'a> {
@@ -27,6 +31,11 @@ pub struct Scene<'a> {
     axial: f64,
     /// Least buckling load that the ends allow [N].
     buckling: f64,
+    /// Of the motions along that ends prescribe.
+    driven_along: Vec<Pace>,
+    /// Of all other signals.
+    others: Vec<Pace>,
+    instability: OnceCell<Option<String>>,
 }
 
 impl<'a> Scene<'a> {
@@ -43,9 +52,25 @@ impl<'a> Scene<'a> {
             FRAC_PI_2
         };
         let beta = first_wave_number(&ends).unwrap_or(FRAC_PI_2) / length;
+        let loads: Vec<Load> = case.loads.iter().flat_map(|load| Load::resolve(load, mass)).collect();
+        let mut undriven = ends.clone();
+        let mut driven_along = vec![];
+        for end in &mut undriven {
+            if let Translation::Displacement(signal) = &mut end.axial {
+                driven_along.extend(Pace::of(signal, case.time.end_s));
+                *signal = Signal::Constant(0.0);
+            }
+        }
+        let mut others = vec![];
+        each_signal(&undriven, &loads, wet.map(|wet| &wet.network), |signal| {
+            others.extend(Pace::of(signal, case.time.end_s));
+        });
         Self {
             wet,
-            loads: case.loads.iter().flat_map(|load| Load::resolve(load, mass)).collect(),
+            loads,
+            driven_along,
+            others,
+            instability: OnceCell::new(),
             scales: Scales::estimate(case, section, wet),
             bending: beta * beta * (section.bending_stiffness / mass).sqrt(),
             axial: quarter / length * (section.axial_stiffness / mass).sqrt(),
@@ -80,35 +105,16 @@ impl<'a> Scene<'a> {
         self.ends.iter().any(driven)
     }
 
-    /// How much of its motion something of the angular frequency `ω` owes to inertia, when everything acts on it that the case
-    /// prescribes: `s''/(ω² s)` of a smooth signal, `Δs'/(ω s)` and `Δs/s` where it jumps, as it does at the start.
+    /// [`Pace::haste`] of all that acts; 1 where the beam begins displaced.
     fn haste(&self, omega: f64) -> f64 {
-        self.haste_under(&self.ends, omega)
+        self.haste_of(self.others.iter().chain(&self.driven_along), omega)
     }
 
-    /// The same with other ends.
-    fn haste_under(&self, ends: &[ResolvedEnd; 2], omega: f64) -> f64 {
+    fn haste_of<'p>(&self, paces: impl Iterator<Item = &'p Pace>, omega: f64) -> f64 {
         if self.begins_displaced() {
             return 1.0;
         }
-        let end = self.case.time.end_s;
-        let mut most = 0.0_f64;
-        each_signal(ends, &self.loads, self.network(), |signal| {
-            let (size, _, acceleration) = largest(signal, end);
-            if size == 0.0 {
-                return;
-            }
-            most = most.max(acceleration / (omega * omega * size));
-            let mut before = (0.0, 0.0);
-            for (from, to) in signal.smooth_intervals(end) {
-                let within = 0.5 * (from + to);
-                let (a, b) = [from, to].map(|t| signal.jet(Clock { t, within })).into();
-                most = most.max((a.value - before.0).abs() / size);
-                most = most.max((a.rate - before.1).abs() / (omega * size));
-                before = (b.value, b.rate);
-            }
-        });
-        most
+        paces.map(|pace| pace.haste(omega)).fold(0.0, f64::max)
     }
 
     /// Free bending vibrations and the inertia of forced ones, relative to the static deflection.
@@ -118,38 +124,8 @@ impl<'a> Scene<'a> {
 
     /// Axial waves, relative to the stretch without them; a driven end acts by its acceleration, which must begin smoothly.
     pub fn axial_waves(&self) -> f64 {
-        let mut waves = self.haste_of_loads();
-        for end in &self.ends {
-            let Translation::Displacement(signal) = &end.axial else {
-                continue;
-            };
-            let (_, _, acceleration) = largest(signal, self.case.time.end_s);
-            if acceleration == 0.0 {
-                continue;
-            }
-            let period = signal.fastest_period_s().unwrap_or(f64::INFINITY);
-            let mut before = (0.0, 0.0);
-            for (from, to) in signal.smooth_intervals(self.case.time.end_s) {
-                let within = 0.5 * (from + to);
-                let (a, b) = [from, to].map(|t| signal.jet(Clock { t, within })).into();
-                waves = waves.max((a.rate - before.0).abs() * self.axial / acceleration);
-                waves = waves.max((a.acceleration - before.1).abs() / acceleration);
-                before = (b.rate, b.acceleration);
-            }
-            waves = waves.max((2.0 * PI / (period * self.axial)).powi(2));
-        }
-        waves
-    }
-
-    /// [`Self::haste`] of what is not a driven end, for axial waves.
-    fn haste_of_loads(&self) -> f64 {
-        let mut ends = self.ends.clone();
-        for end in &mut ends {
-            if matches!(end.axial, Translation::Displacement(_)) {
-                end.axial = Translation::Displacement(Signal::Constant(0.0));
-            }
-        }
-        self.haste_under(&ends, self.axial)
+        let waves = self.driven_along.iter().map(|pace| pace.waves(self.axial));
+        waves.fold(self.haste_of(self.others.iter(), self.axial), f64::max)
     }
 
     /// `(u1/l_s)²`: how much bending shortens the beam.

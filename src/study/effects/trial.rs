@@ -9,7 +9,7 @@ use crate::case::Case;
 use crate::error::Result;
 use crate::model::effects::EffectSet;
 use crate::run::dynamics;
-use crate::run::record::{Control, Header, Progress, Recorder};
+use crate::run::record::{Control, Progress, Unrecorded};
 use crate::run::summary::{Counters, Status, Summary};
 use crate::study::accuracy::trial::Ending;
 
@@ -229,34 +229,15 @@ impl<'a> Runs<'a> {
 /// Runs a case; returns what came out and the wall time [s].
 fn once(case: &Case, most_s: f64) -> Result<(Summary, f64)> {
     let begin = Instant::now();
-    let mut clock = Clock { begin, most_s };
-    let summary = dynamics::run(case, &mut clock)?.summary;
-    Ok((summary, begin.elapsed().as_secs_f64()))
-}
-
-/// Records nothing, looks at the clock.
-struct Clock {
-    begin: Instant,
-    most_s: f64,
-}
-
-impl Recorder for Clock {
-    fn begin(&mut self, _: &Header) -> Result<()> {
-        Ok(())
-    }
-    fn history(&mut self, _: &[f64]) -> Result<()> {
-        Ok(())
-    }
-    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
-        Ok(())
-    }
-    fn progress(&mut self, progress: &Progress) -> Result<Control> {
-        let late = progress.steps.is_multiple_of(LOOK) && self.begin.elapsed().as_secs_f64() > self.most_s;
-        Ok(if late {
+    let mut clock = Unrecorded(|progress: &Progress| {
+        let late = progress.steps.is_multiple_of(LOOK) && begin.elapsed().as_secs_f64() > most_s;
+        if late {
             let share = 100.0 * progress.t / progress.end;
             Control::Stop(format!("the budget is used up at {share:.3} % of the simulated time"))
         } else {
             Control::Continue
-        })
-    }
+        }
+    });
+    let summary = dynamics::run(case, &mut clock)?.summary;
+    Ok((summary, begin.elapsed().as_secs_f64()))
 }

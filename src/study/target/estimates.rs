@@ -20,10 +20,9 @@ use std::collections::BTreeMap;
 use crate::run::summary::{Estimate, Judged, Summary};
 use crate::study::counted::counted;
 
-/// Expected ratio of one difference to the one before, where it is not seen: a decade of tolerance, between orders 2 and 4.
-pub const EXPECTED_IN_TIME: f64 = 0.25;
-/// The same for halved cells, at second order.
-pub const EXPECTED_IN_SPACE: f64 = 0.25;
+/// Expected ratio of one difference to the one before, where it is not seen: halved cells at second order, and a decade of
+/// tolerance between orders 2 and 4.
+pub const EXPECTED_RATIO: f64 = 0.25;
 /// Ratios that are believed when seen: beyond them differences happen to be small or large.
 const BELIEVED: std::ops::RangeInclusive<f64> = 0.05..=0.7;
 /// A difference that is this part of the quantity, on a mesh and at a tolerance that should resolve it, and no more than
@@ -110,11 +109,11 @@ impl Runs {
     }
 
     /// `ρ/(1 - ρ)` times the last difference of three runs, coarse to fine.
-    fn series(&self, quantity: &str, [coarsest, coarse, fine]: [At; 3], expected: f64) -> Option<f64> {
+    fn series(&self, quantity: &str, [coarsest, coarse, fine]: [At; 3]) -> Option<f64> {
         let last = self.difference(quantity, fine, coarse)?;
         let ratio = match self.difference(quantity, coarse, coarsest) {
             Some(before) if before > 0.0 => (last / before).clamp(*BELIEVED.start(), *BELIEVED.end()),
-            _ => expected,
+            _ => EXPECTED_RATIO,
         };
         Some(last * ratio / (1.0 - ratio))
     }
@@ -128,8 +127,7 @@ impl Runs {
         let of = |quantity: &String| {
             let time = [(cells, decades - 2), (cells, decades - 1), at];
             let space = [(cells / 4, decades), (cells / 2, decades), at];
-            let time = self.series(quantity, time, EXPECTED_IN_TIME);
-            let space = self.series(quantity, space, EXPECTED_IN_SPACE);
+            let (time, space) = (self.series(quantity, time), self.series(quantity, space));
             let estimate = Estimate {
                 time,
                 space,

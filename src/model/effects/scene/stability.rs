@@ -75,6 +75,10 @@ impl Scene<'_> {
     /// What speaks against leaving out how the beam bends, if anything does: buckling, follower loads, parametric excitation,
     /// resonance, a coupling that gives energy.
     pub fn unstable(&self) -> Option<String> {
+        self.instability.get_or_init(|| self.instability()).clone()
+    }
+
+    fn instability(&self) -> Option<String> {
         let compression = self.compression();
         if compression > SAFE_COMPRESSION {
             return Some(format!(
