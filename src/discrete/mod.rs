@@ -45,20 +45,33 @@ impl System {
     /// Discretises a checked case. Bladders that keep their volume keep what the same system with areas as unknowns
     /// starts with.
     pub fn new(case: &Case) -> Self {
-        let mut system = Self::of(case, Model::new(case));
-        let flowing = |s: &Storage| *s == Storage::Flowing;
+        let model = Model::new(case);
+        Self::starting(case, model.clone(), model)
+    }
+
+    /// Discretises another model of a checked case; bladders keep the volume that they have at the start of the case.
+    pub fn with(case: &Case, model: Model) -> Self {
+        Self::starting(case, model, Model::new(case))
+    }
+
+    fn starting(case: &Case, model: Model, start: Model) -> Self {
+        let mut system = Self::of(case, model);
         if let (Some(wet), Some(fluid)) = (&system.model.wet, &mut system.fluid)
-            && !wet.storage.iter().all(flowing)
+            && wet.storage.iter().any(|s| *s != Storage::Flowing)
         {
-            let mut model = system.model.clone();
-            if let Some(wet) = &mut model.wet {
-                wet.flows = true;
-                wet.storage.fill(Storage::Flowing);
-                wet.pools.clear();
-            }
-            fluid.keep(&start::areas(&Self::of(case, model), case), wet);
+            fluid.keep(&Self::areas_at_start(case, start), wet);
         }
         system
+    }
+
+    /// Area change of every cell at the start [m^2].
+    fn areas_at_start(case: &Case, mut model: Model) -> Vec<f64> {
+        if let Some(wet) = &mut model.wet {
+            wet.flows = true;
+            wet.storage.fill(Storage::Flowing);
+            wet.pools.clear();
+        }
+        start::areas(&Self::of(case, model), case)
     }
 
     fn of(case: &Case, model: Model) -> Self {

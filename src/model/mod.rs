@@ -18,7 +18,7 @@ pub mod scales;
 pub mod storage;
 
 use crate::case::schema::{Bladders, Case, Effects, Formulation};
-use crate::case::{ResolvedEnd, Rotation, Signal, Translation};
+use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};
 
 pub use beam::Section;
 pub use bladder::AreaLaw;
@@ -123,7 +123,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// The model of a checked case.
+    /// The model of a checked case: effects chosen as it asks.
     pub fn new(case: &Case) -> Self {
         let section = Section::new(case);
         let filled = case.fluid.as_ref().zip(case.bladders.as_ref());
@@ -134,10 +134,27 @@ impl Model {
             let whole = whole.map(|((_, bladders), network)| Wet::new(case, bladders, &section, network, &effects));
             effects = EffectSet::choose(case, network.as_ref(), &Scene::new(case, &section, whole.as_ref()));
         }
-        let mut wet = filled
+        Self::of(case, section, network, effects)
+    }
+
+    /// Everything that a checked case describes and does not leave out by name; with or without inertia of the solid.
+    pub fn whole(case: &Case, inertia: bool) -> Self {
+        let filled = case.fluid.as_ref().zip(case.bladders.as_ref());
+        let network = filled.map(|(fluid, bladders)| Network::new(case, fluid, bladders));
+        let mut effects = EffectSet::whole(case, network.as_ref());
+        effects.solid_inertia = inertia;
+        effects.axial_inertia &= inertia;
+        effects.rotary_inertia &= inertia;
+        Self::of(case, Section::new(case), network, effects)
+    }
+
+    fn of(case: &Case, section: Section, network: Option<Network>, effects: EffectSet) -> Self {
+        let mut wet = case
+            .bladders
+            .as_ref()
             .zip(network)
             .filter(|_| effects.fluid)
-            .map(|((_, bladders), network)| Wet::new(case, bladders, &section, network, &effects));
+            .map(|(bladders, network)| Wet::new(case, bladders, &section, network, &effects));
         let loads = case
             .loads
             .iter()
@@ -160,6 +177,39 @@ impl Model {
             wet,
             scales,
         }
+    }
+
+    /// Puts another signal in place of every one: of ends, loads, ports and sources by `load`, of valves by `opening`.
+    pub fn replace_signals(&mut self, load: impl Fn(&Signal) -> Signal, opening: impl Fn(&Signal) -> Signal) {
+        let replace = |signal: &mut Signal| *signal = load(signal);
+        for end in &mut self.ends {
+            for motion in [&mut end.transverse, &mut end.axial] {
+                match motion {
+                    Translation::Displacement(s) | Translation::Force(s) => replace(s),
+                }
+            }
+            match &mut end.rotation {
+                Rotation::Slope(s) | Rotation::Moment(s) => replace(s),
+            }
+            if let Some(follower) = &mut end.follower {
+                replace(&mut follower.normal);
+                replace(&mut follower.shear);
+            }
+        }
+        self.loads.iter_mut().for_each(|load| replace(&mut load.signal));
+        if let Some(wet) = &mut self.wet {
+            let network = &mut wet.network;
+            network.ports.iter_mut().for_each(|port| replace(&mut port.pressure));
+            network.sources.iter_mut().for_each(|source| replace(&mut source.flow));
+            let valves = network.links.iter_mut().filter_map(|link| link.opening.as_mut());
+            valves.for_each(|signal| *signal = opening(signal));
+        }
+    }
+
+    /// Holds every signal at its value at an instant [s].
+    pub fn freeze(&mut self, t: f64) {
+        let at = |signal: &Signal| Signal::Constant(signal.jet(Clock { t, within: t }).value);
+        self.replace_signals(at, at);
     }
 
     /// Finite volumes in each bladder: as the mesh says, or one.
