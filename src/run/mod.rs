@@ -5,6 +5,7 @@ pub mod dynamics;
 pub mod figures;
 pub mod growth;
 pub mod method;
+pub mod modes;
 pub mod observe;
 pub mod order;
 pub mod record;
