@@ -6,6 +6,7 @@ pub mod equilibrium;
 pub mod figures;
 pub mod growth;
 pub mod method;
+pub mod modes;
 pub mod observe;
 pub mod order;
 pub mod record;
