@@ -286,7 +286,7 @@ impl Klu {
             (
                 std::slice::from_raw_parts((*self.numeric).Udiag.cast::<f64>(), n),
                 std::slice::from_raw_parts((*self.numeric).Pnum, n),
-                std::slice::from_raw_parts((*self.symbolic).Q, n),
+                std::slice::from_raw_parts((*self.analysis.symbolic).Q, n),
             )
         };
         let negative = pivots.iter().filter(|pivot| **pivot < 0.0).count();
@@ -302,7 +302,16 @@ impl Klu {
         }
         let n = b.len() as i64;
         // SAFETY: symbolic and numeric belong together and b has n entries.
-        unsafe { c::klu_l_solve(self.analysis.symbolic, self.numeric, n, 1, b.as_mut_ptr(), &mut *self.analysis.common) != 0 }
+        unsafe {
+            c::klu_l_solve(
+                self.analysis.symbolic,
+                self.numeric,
+                n,
+                1,
+                b.as_mut_ptr(),
+                &mut *self.analysis.common,
+            ) != 0
+        }
     }
 
     fn free_numeric(&mut self) {
