@@ -101,6 +101,10 @@ pub struct EquilibriumArguments {
     /// Stay on a path that becomes unstable (a column that stays straight) instead of taking the one that crosses it
     #[arg(long)]
     pub keep_branch: bool,
+    /// Differentiate the last state by this number of the case, a JSON pointer such as /bladders/area_per_pressure_m2_per_pa;
+    /// repeatable
+    #[arg(long, value_name = "POINTER")]
+    pub sensitivity: Vec<String>,
     /// Folder for path.csv, shapes.csv, equilibrium.json, path.svg [default: out/<case name>-equilibrium]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -79,6 +79,16 @@ impl StaticBeam {
         &mut self.beam
     }
 
+    /// Characteristic size of each equation, in SI units.
+    pub fn equation_scales(&self) -> Vec<f64> {
+        let layout = &self.system().layout;
+        let mut scales = layout.row_scales.clone();
+        for closed in &self.closed {
+            scales[closed.row] = layout.scales[closed.row];
+        }
+        scales
+    }
+
     /// The system.
     pub fn system(&self) -> &System {
         self.beam.system()

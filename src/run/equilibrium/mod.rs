@@ -5,6 +5,7 @@
 //! natural  coordinates in which paths are nearly straight
 //! predict  where the next point probably is
 //! path     step by step along the path, as far as predictions hold; limit points, bifurcations, branches
+//! sensitivity  derivatives by numbers of the case
 //! state    what is read off a state; one state as the unknowns of another system
 //! ```
 //!
@@ -15,6 +16,7 @@ mod along;
 mod natural;
 mod path;
 mod predict;
+mod sensitivity;
 mod state;
 
 use crate::case::schema::Case;
@@ -28,6 +30,7 @@ use crate::run::record::Control;
 use crate::sundials::Solution;
 
 pub use path::follow;
+pub use sensitivity::{Sensitivity, differentiate};
 pub use state::{Stability, State, columns, restate};
 
 /// What is asked for.
