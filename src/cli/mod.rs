@@ -6,6 +6,7 @@ mod compare;
 mod effects;
 mod interrupt;
 mod mapping;
+mod modes;
 pub mod progress;
 mod run;
 mod schema;
@@ -52,6 +53,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Study(asked) => study::study(asked),
         Command::Effects(asked) => effects::effects(asked),
         Command::Compare(asked) => compare::compare(asked),
+        Command::Modes(asked) => modes::modes(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),
         Command::Schema => schema::schema(),

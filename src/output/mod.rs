@@ -12,6 +12,7 @@
 //! comparison  the picture of two runs over each other
 //! effects   effects.csv, effects.json, effects.svg, table and sentence
 //! study     study.csv, study.json, study.svg, table and sentence
+//! modes     modes.csv, modes.json, modes.npz, modes.svg, table and sentences
 //! pictures  from recorded files to the data of each picture
 //! plot      one picture a file, from plain data to SVG text
 //! numbers   numbers as people read them
@@ -24,6 +25,7 @@ pub mod effects;
 pub mod envelope;
 pub mod folder;
 pub mod history;
+pub mod modes;
 pub mod numbers;
 pub mod pictures;
 pub mod plot;
