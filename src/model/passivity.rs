@@ -58,6 +58,8 @@ fn at(model: &Model, wet: &Wet, moment_sign: f64, force_sign: f64) -> Passivity 
     let eigen = SymmetricEigen::new(symmetric);
     let least = eigen.eigenvalues.imin();
     let v = eigen.eigenvectors.column(least);
+    // what is round-off of the others is nothing
+    let v = v.map(|x| if x.abs() < 1e-12 { 0.0 } else { x });
     let physical = [v[0] * ei, v[1] * ea, v[2] / fluid, v[3] / fluid];
     let pressure = if physical[2].abs() >= physical[3].abs() {
         physical[2]
@@ -101,7 +103,7 @@ impl Passivity {
             (true, true) => format!("the {name} coupling is passive: {least}, {worst}"),
             (true, false) => format!(
                 "the {name} coupling is not passive: it lacks reciprocity (defect {:.3}), so closed cycles of load and pressure gain or \
-                 lose work, although {least}, {worst}",
+                 lose work; {least}, {worst}",
                 self.defect
             ),
             (false, _) => format!("the {name} coupling is not passive: {least}, {worst}; sealed bladders make it grow"),

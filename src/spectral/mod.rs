@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`pencil`] | the pencil, its products and its factors at a shift |
 //! | [`schur`] | Schur form of a small matrix, its order and its vectors |
+//! | `exchange` | rows exchanged so that KLU finds its pivots on the diagonal |
 //! | `dense` | all finite eigenvalues of a small pencil |
 //! | `krylov` | those nearest a shift, of a large one |
 //! | `refine` | each pair improved by itself, with the bound of its error |
@@ -19,6 +20,7 @@
 //! matrices within a few times their own entries, where a library with sparse factors of its own would bring them twice.
 
 mod dense;
+mod exchange;
 mod krylov;
 pub mod pencil;
 mod refine;

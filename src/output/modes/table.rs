@@ -42,11 +42,14 @@ pub fn table(report: &Report) -> String {
     let mut lines = vec![HEADINGS.map(String::from)];
     lines.extend(found.modes.iter().enumerate().map(|(k, mode)| line(k + 1, mode)));
     let widths: [usize; 9] = std::array::from_fn(|k| lines.iter().map(|l| l[k].chars().count()).max().unwrap_or(0));
+    // a column of which no mode has anything says nothing
+    let shown: [bool; 9] = std::array::from_fn(|k| k == 0 || lines[1..].iter().any(|l| !l[k].is_empty()));
     for line in &lines {
         let cells = line.iter().zip(widths).enumerate().map(|(k, (cell, width))| match k {
             1 | 2 => format!("{cell:<width$}"),
             _ => format!("{cell:>width$}"),
         });
+        let cells = cells.zip(shown).filter(|(_, shown)| *shown).map(|(cell, _)| cell);
         let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ").trim_end());
     }
     if found.modes.iter().any(|m| m.undrained.is_some() || m.drained.is_some()) {
@@ -66,7 +69,8 @@ fn line(number: usize, mode: &Mode) -> [String; 9] {
         mode.kind.word().into(),
         moves(mode).into(),
         cell(mode.frequency_hz(), mode.error / std::f64::consts::TAU, "Hz"),
-        cell(mode.damping_ratio(), mode.error / size, "1"),
+        mode.damping_ratio()
+            .map_or(String::new(), |z| significant(z, digits(z, mode.error / size).min(4))),
         if mode.kind.stays() {
             String::new()
         } else {
