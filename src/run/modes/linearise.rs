@@ -21,7 +21,7 @@ pub enum Fluid {
 }
 
 /// Factor of the flows that stands for none of their resistance: the pressure differences left are its inverse.
-const FREE: f64 = 1e9;
+const FREE: f64 = 1e6;
 
 /// `[E31]` Small motions about a state at rest, of the scaled unknowns, with all signals held:
 ///
