@@ -85,11 +85,7 @@ const INDEX: [(&str, &str, &str); 33] = [
         "tests/effects/stretch.rs",
         "stretch_vanishes_with_the_inverse_of_the_stiffness",
     ),
-    (
-        "[E31]",
-        "tests/modes/physics.rs",
-        "a_run_swings_and_decays_as_its_mode",
-    ),
+    ("[E31]", "tests/modes/physics.rs", "a_run_swings_and_decays_as_its_mode"),
     ("[E32]", "tests/modes/spectral.rs", "dense_and_sparse_agree"),
     ("[E33]", "tests/modes/physics.rs", "shapes_are_alike_or_orthogonal"),
     ("[E34]", "tests/modes/spectral.rs", "errors_are_within_their_bounds"),

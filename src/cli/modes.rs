@@ -45,7 +45,10 @@ const MOST: usize = 1000;
 fn plan(asked: &ModesArguments) -> Result<Plan> {
     let usage = |what: String| Err(Error::Usage(what));
     if !(1..=MOST).contains(&asked.count) {
-        return usage(format!("--count {}: from 1 to {MOST} modes can be asked for", asked.count));
+        return usage(format!(
+            "--count {}: from 1 to {MOST} modes can be asked for",
+            asked.count
+        ));
     }
     let near_hz = asked.near.unwrap_or(0.0);
     if !(near_hz.is_finite() && near_hz >= 0.0) {

@@ -96,7 +96,10 @@ impl Passivity {
             Coupling::Published { .. } => "published",
             Coupling::Reciprocal { .. } => "reciprocal",
         };
-        let least = format!("the least work any load does is {:.4} of that without coupling", self.least);
+        let least = format!(
+            "the least work any load does is {:.4} of that without coupling",
+            self.least
+        );
         let [m, n, upper, lower] = self.direction;
         let worst = format!("at M {m:.3e} N m, N {n:.3e} N, p_u {upper:.3e} Pa, p_d {lower:.3e} Pa");
         match (self.least > 0.0, self.reciprocal()) {

@@ -281,7 +281,16 @@ impl Klu {
         }
         let n = b.len() as i64;
         // SAFETY: symbolic and numeric belong together and b has n entries.
-        unsafe { c::klu_l_solve(self.analysis.symbolic, self.numeric, n, 1, b.as_mut_ptr(), &mut *self.analysis.common) != 0 }
+        unsafe {
+            c::klu_l_solve(
+                self.analysis.symbolic,
+                self.numeric,
+                n,
+                1,
+                b.as_mut_ptr(),
+                &mut *self.analysis.common,
+            ) != 0
+        }
     }
 
     fn free_numeric(&mut self) {

@@ -22,7 +22,14 @@ fn a_folder_is_filled_and_a_table_printed() {
     let out = dir.path().join("deep/modes");
     let (code, said, error) = modes(&[SMALL, "--count", "5", "--quiet", "--out", out.to_str().unwrap()]);
     assert_eq!((code, error.as_str()), (0, ""), "quiet means silent");
-    for word in ["oscillation", "Hz", "undrained", "none of the", "coupling is passive", out.to_str().unwrap()] {
+    for word in [
+        "oscillation",
+        "Hz",
+        "undrained",
+        "none of the",
+        "coupling is passive",
+        out.to_str().unwrap(),
+    ] {
         assert!(said.contains(word), "{word}: {said}");
     }
     let csv = fs::read_to_string(out.join("modes.csv")).unwrap();
@@ -38,8 +45,16 @@ fn a_folder_is_filled_and_a_table_printed() {
     let svg = fs::read_to_string(out.join("modes.svg")).unwrap();
     assert!(svg.starts_with("<svg") && svg.contains("two-bladders") && svg.contains("upper row"));
     let mut npz = zip::ZipArchive::new(fs::File::open(out.join("modes.npz")).unwrap()).unwrap();
-    let names: Vec<String> = (0..npz.len()).map(|k| npz.by_index(k).unwrap().name().unwrap().into_owned()).collect();
-    for name in ["theta_m", "u1_amplitude_m", "u1_phase_rad", "pressure_amplitude_pa", "growth_per_s"] {
+    let names: Vec<String> = (0..npz.len())
+        .map(|k| npz.by_index(k).unwrap().name().unwrap().into_owned())
+        .collect();
+    for name in [
+        "theta_m",
+        "u1_amplitude_m",
+        "u1_phase_rad",
+        "pressure_amplitude_pa",
+        "growth_per_s",
+    ] {
         assert!(names.contains(&format!("{name}.npy")), "{names:?}");
     }
 }
@@ -48,7 +63,16 @@ fn a_folder_is_filled_and_a_table_printed() {
 fn modes_near_a_frequency_as_json() {
     let dir = TempDir::new().unwrap();
     let out = dir.path().join("m");
-    let (code, said, _) = modes(&[SMALL, "--count", "1", "--near", "70", "--json", "--out", out.to_str().unwrap()]);
+    let (code, said, _) = modes(&[
+        SMALL,
+        "--count",
+        "1",
+        "--near",
+        "70",
+        "--json",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
     let json: Value = serde_json::from_str(&said).unwrap();
     assert_eq!(code, 0);
     let frequency = json["modes"][0]["frequency_hz"].as_f64().unwrap();
@@ -60,7 +84,10 @@ fn a_dry_beam_has_no_pressures() {
     let dir = TempDir::new().unwrap();
     let out = dir.path().join("m");
     let (code, said, _) = modes(&["cases/dry-cantilever.json", "--quiet", "--out", out.to_str().unwrap()]);
-    assert!(code == 0 && !said.contains("undrained") && !said.contains("coupling"), "{said}");
+    assert!(
+        code == 0 && !said.contains("undrained") && !said.contains("coupling"),
+        "{said}"
+    );
     assert!(!fs::read_to_string(out.join("modes.svg")).unwrap().contains("upper row"));
 }
 

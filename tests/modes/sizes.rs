@@ -19,13 +19,21 @@ fn work_does_not_grow_with_the_unknowns() {
         let moving = found.modes.iter().filter(|m| !m.kind.stays()).count();
         assert_eq!(moving, 12);
         assert_eq!(found.modes.iter().filter(|m| m.kind == Kind::Volume).count(), 2);
-        assert!(found.modes.iter().all(|m| m.residual < 1e-13));
+        assert!(found.modes.iter().all(|m| m.residual < 1e-12));
         work.push((unknowns, found.factorizations, found.solves, found.modes));
     }
-    assert!(work[0].0 < 3000 && (19_000..21_000).contains(&work[1].0), "{} {}", work[0].0, work[1].0);
+    assert!(
+        work[0].0 < 3000 && (19_000..21_000).contains(&work[1].0),
+        "{} {}",
+        work[0].0,
+        work[1].0
+    );
     for (unknowns, factorizations, solves, _) in &work {
         // 28 eigenvalues with conjugates: 57 factorisations; 2 restarts of 76 vectors and 3 each for the bounds
-        assert!(*factorizations < 70 && *solves < 400, "{unknowns}: {factorizations}, {solves}");
+        assert!(
+            *factorizations < 70 && *solves < 400,
+            "{unknowns}: {factorizations}, {solves}"
+        );
     }
     // finer volumes move decay rates by their square, bending hardly
     for (coarse, fine) in work[0].3.iter().zip(&work[1].3).filter(|p| p.0.kind.swings()) {

@@ -51,7 +51,11 @@ impl Report<'_> {
             .enumerate()
             .filter(|(_, mode)| mode.kind.grows())
             .map(|(k, mode)| match mode.frequency_hz() {
-                Some(f) => format!("mode {} by flutter at {f:.5} Hz, growing at {:.4e} 1/s", k + 1, mode.s.re),
+                Some(f) => format!(
+                    "mode {} by flutter at {f:.5} Hz, growing at {:.4e} 1/s",
+                    k + 1,
+                    mode.s.re
+                ),
                 None => format!("mode {} by divergence, growing at {:.4e} 1/s", k + 1, mode.s.re),
             })
             .collect();
@@ -114,9 +118,7 @@ pub fn json(report: &Report) -> String {
 }
 
 fn mode(mode: &Mode) -> Value {
-    let limit = |limit: &Option<Limit>| {
-        limit.map(|l| json!({"frequency_hz": l.frequency_hz, "likeness": l.likeness}))
-    };
+    let limit = |limit: &Option<Limit>| limit.map(|l| json!({"frequency_hz": l.frequency_hz, "likeness": l.likeness}));
     json!({
         "kind": mode.kind, "frequency_hz": mode.frequency_hz(), "damping_ratio": mode.damping_ratio(),
         "growth_per_s": mode.s.re, "time_s": mode.time_s(),
@@ -172,7 +174,12 @@ fn pack(path: &Path, found: &Modes) -> io::Result<()> {
             all.map(move |x| Ok(part(x)))
         };
         let shape = [count, places];
-        write_array(&mut npz, &format!("{name}_amplitude_{unit}"), &shape, values(|x| x.norm()))?;
+        write_array(
+            &mut npz,
+            &format!("{name}_amplitude_{unit}"),
+            &shape,
+            values(|x| x.norm()),
+        )?;
         write_array(&mut npz, &format!("{name}_phase_rad"), &shape, values(|x| x.arg()))?;
     }
     npz.finish()?.flush()

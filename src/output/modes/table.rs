@@ -114,12 +114,7 @@ pub fn csv(report: &Report) -> String {
     );
     let number = |value: Option<f64>| value.filter(|v| v.is_finite()).map_or(String::new(), shortest);
     for (k, mode) in report.found.modes.iter().enumerate() {
-        let limit = |limit: &Option<Limit>| {
-            [
-                number(limit.map(|l| l.frequency_hz)),
-                number(limit.map(|l| l.likeness)),
-            ]
-        };
+        let limit = |limit: &Option<Limit>| [number(limit.map(|l| l.frequency_hz)), number(limit.map(|l| l.likeness))];
         let mut cells = vec![(k + 1).to_string(), mode.kind.word().into()];
         let numbers = [
             mode.frequency_hz(),

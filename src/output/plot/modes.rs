@@ -63,7 +63,10 @@ pub fn draw(data: &ModeShapes) -> Option<String> {
     let rows = shown.len() as f64;
     let x = Scale::exact(start, end, "m", 6);
     Some(picture(sheet, TOP + rows * (HEIGHT + GAP) + 12.0, |canvas| {
-        let about = format!("about {}; full lines in phase, dashed a quarter of a period behind", data.about);
+        let about = format!(
+            "about {}; full lines in phase, dashed a quarter of a period behind",
+            data.about
+        );
         title(canvas, LEFT, &format!("{} · modes", data.case), &about);
         legend(canvas, LEFT, &["u₁ across", "u₃ along"]);
         if wet {
@@ -95,7 +98,15 @@ pub fn draw(data: &ModeShapes) -> Option<String> {
                 let x = Scale::exact(0.5, data.per_row as f64 + 0.5, "1", 10);
                 let (upper, lower) = mode.pressure.split_at(data.per_row);
                 let name = last.then_some("bladder");
-                curves(canvas, place, x, "Pa", [(&numbers, upper), (&numbers, lower)], name, "p");
+                curves(
+                    canvas,
+                    place,
+                    x,
+                    "Pa",
+                    [(&numbers, upper), (&numbers, lower)],
+                    name,
+                    "p",
+                );
             }
         }
     }))

@@ -20,7 +20,8 @@ const START: f64 = 1000.0;
 
 const GOAL: &str = "volume balance, tubes and bladders in series; every decay rate of the linearised network";
 const REASON: &str = "one volume a bladder makes the lumped chain exact: what is left is round-off";
-const IN_TIME: &str = "one volume a bladder makes the lumped network exact: what is left is the integrator's error, rtol 1e-9";
+const IN_TIME: &str =
+    "one volume a bladder makes the lumped network exact: what is left is the integrator's error, rtol 1e-9";
 
 /// All rows.
 pub fn rows() -> Vec<Row> {
@@ -87,7 +88,12 @@ const ALL: usize = 100;
 /// Decay rates `(4/RC) sin²(angle/2)`, the slowest first.
 fn rates(network: Value, angles: impl Iterator<Item = f64>) -> Result<Vec<Figure>> {
     let found = modes(&case(N, network, 1.0, 1.0), ALL)?;
-    let mut rates: Vec<f64> = found.modes.iter().filter(|m| m.kind == Kind::Decay).map(|m| -m.s.re).collect();
+    let mut rates: Vec<f64> = found
+        .modes
+        .iter()
+        .filter(|m| m.kind == Kind::Decay)
+        .map(|m| -m.s.re)
+        .collect();
     rates.sort_by(f64::total_cmp);
     let figures = (1..).zip(angles).map(|(k, angle)| {
         let exact = 4.0 / (R * COMPLIANCE) * (0.5 * angle).sin().powi(2);

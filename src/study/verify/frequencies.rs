@@ -66,7 +66,12 @@ fn transverse(cells: usize, mode: usize, tip: &Value) -> Result<f64> {
     case["ends"]["tip"] = tip.clone();
     let found = modes(&case, mode + 2)?;
     let across = |m: &&Mode| m.kind.swings() && m.shape.transverse() > 0.5;
-    Ok(found.modes.iter().filter(across).nth(mode - 1).map_or(f64::NAN, |m| m.s.im))
+    Ok(found
+        .modes
+        .iter()
+        .filter(across)
+        .nth(mode - 1)
+        .map_or(f64::NAN, |m| m.s.im))
 }
 
 /// The linearisation against the equations themselves.
@@ -81,7 +86,12 @@ fn in_time() -> Row {
         || {
             let beta = FREE[1];
             let expected = transverse(40, 2, &json!("free"))?;
-            Ok(vec![Figure::relative("w L^2 sqrt(m/EI)", measured(40, beta)?, expected, 1e-5)])
+            Ok(vec![Figure::relative(
+                "w L^2 sqrt(m/EI)",
+                measured(40, beta)?,
+                expected,
+                1e-5,
+            )])
         },
     )
 }
