@@ -20,6 +20,8 @@ pub enum Command {
     Run(RunArguments),
     /// Validate a case; print characteristic numbers, coupling audit and chosen effects; write nothing
     Check(CheckArguments),
+    /// Find the static equilibrium under the loads of one instant, along the path from rest
+    Equilibrium(EquilibriumArguments),
     /// Find what accuracy costs: time against error over tolerances, meshes and orders
     Study(StudyArguments),
     /// Find what each effect does: the full model without it, what that changes and saves, what to leave out
@@ -79,6 +81,35 @@ pub struct CheckArguments {
     #[command(flatten)]
     pub case: CaseArguments,
     /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `equilibrium`.
+#[derive(Debug, Args)]
+pub struct EquilibriumArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Instant whose loads, end motions, port pressures and valves are the full ones [default: the end of the run]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub at: Option<f64>,
+    /// Share of these loads at which the path ends
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub load_factor: f64,
+    /// Points along the path at least
+    #[arg(long, value_name = "COUNT")]
+    pub points: Option<usize>,
+    /// Stay on a path that becomes unstable (a column that stays straight) instead of taking the one that crosses it
+    #[arg(long)]
+    pub keep_branch: bool,
+    /// Folder for path.csv, shapes.csv, equilibrium.json, path.svg [default: out/<case name>-equilibrium]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print equilibrium.json instead of the table
     #[arg(long)]
     pub json: bool,
 }
@@ -171,9 +202,9 @@ pub struct ModesArguments {
     /// Find those nearest this frequency [Hz] [default: the slowest]
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub near: Option<f64>,
-    /// Instant at which loads, ends and valves are held [s]
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
-    pub at: f64,
+    /// About the equilibrium under the loads at this instant [s] [default: about the start]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub at: Option<f64>,
     /// Folder for modes.csv, modes.json, modes.npz, modes.svg [default: out/<case name>-modes]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

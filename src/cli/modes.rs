@@ -18,7 +18,14 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     if !asked.quiet {
         eprintln!("modes of {}", loaded.case.name);
     }
-    let found = modes::modes(&loaded.case, &plan)?;
+    let (about, words) = match asked.at {
+        Some(at) => (
+            modes::at_equilibrium(&loaded.case, at)?,
+            format!("the equilibrium under the loads at t = {at} s"),
+        ),
+        None => (modes::linearise(&loaded.case, 0.0, None)?, "the start".into()),
+    };
+    let found = modes::of(about, &plan)?;
     let out = asked
         .out
         .clone()
@@ -27,7 +34,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         case: &loaded.case.name,
         plan: &plan,
         found: &found,
-        about: "the start",
+        about: &words,
     };
     files::write(&out, &report)?;
     if asked.json {
@@ -54,13 +61,12 @@ fn plan(asked: &ModesArguments) -> Result<Plan> {
     if !(near_hz.is_finite() && near_hz >= 0.0) {
         return usage(format!("--near {near_hz}: a frequency [Hz] is 0 or more"));
     }
-    if !(asked.at.is_finite() && asked.at >= 0.0) {
-        return usage(format!("--at {}: a time [s] is 0 or more", asked.at));
+    if let Some(at) = asked.at.filter(|at| !(at.is_finite() && *at >= 0.0)) {
+        return usage(format!("--at {at}: a time [s] is 0 or more"));
     }
     Ok(Plan {
         count: asked.count,
         near_hz,
-        at_s: asked.at,
         limits: true,
     })
 }

@@ -11,6 +11,7 @@
 //! reading   a result folder back into memory
 //! comparison  the picture of two runs over each other
 //! effects   effects.csv, effects.json, effects.svg, table and sentence
+//! equilibrium  path.csv, shapes.csv, equilibrium.json, path.svg, table
 //! study     study.csv, study.json, study.svg, table and sentence
 //! modes     modes.csv, modes.json, modes.npz, modes.svg, table and sentences
 //! pictures  from recorded files to the data of each picture
@@ -23,6 +24,7 @@ pub mod checkpoint;
 pub mod comparison;
 pub mod effects;
 pub mod envelope;
+pub mod equilibrium;
 pub mod folder;
 pub mod history;
 pub mod modes;

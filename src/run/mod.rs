@@ -2,6 +2,7 @@
 
 pub mod checkpoint;
 pub mod dynamics;
+pub mod equilibrium;
 pub mod figures;
 pub mod growth;
 pub mod method;

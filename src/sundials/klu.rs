@@ -273,6 +273,27 @@ impl Klu {
         (done != 0).then_some(self.analysis.common.condest)
     }
 
+    /// Sign of the determinant of the matrix last factored: 1, -1, or 0 without factors. A small one keeps its sign where a product of
+    /// pivots would underflow.
+    pub fn determinant_sign(&self) -> i8 {
+        if self.numeric.is_null() {
+            return 0;
+        }
+        let n = self.columns();
+        // SAFETY: symbolic and numeric belong together; KLU keeps n pivots and two permutations of n. Scale factors of rows are
+        // positive.
+        let (pivots, rows, columns) = unsafe {
+            (
+                std::slice::from_raw_parts((*self.numeric).Udiag.cast::<f64>(), n),
+                std::slice::from_raw_parts((*self.numeric).Pnum, n),
+                std::slice::from_raw_parts((*self.analysis.symbolic).Q, n),
+            )
+        };
+        let negative = pivots.iter().filter(|pivot| **pivot < 0.0).count();
+        let odd = (negative + transpositions(rows) + transpositions(columns)) % 2 == 1;
+        if odd { -1 } else { 1 }
+    }
+
     /// Replaces `b` by the solution of `A x = b`; false without factors. Panics when `b` has another length.
     pub fn solve(&mut self, b: &mut [f64]) -> bool {
         assert_eq!(b.len(), self.columns(), "right-hand side of another size");
@@ -299,6 +320,21 @@ impl Klu {
             unsafe { c::klu_l_free_numeric(&mut self.numeric, &mut *self.analysis.common) };
         }
     }
+}
+
+/// Exchanges that a permutation is made of.
+fn transpositions(permutation: &[i64]) -> usize {
+    let mut seen = vec![false; permutation.len()];
+    let mut exchanges = 0;
+    for start in 0..permutation.len() {
+        let mut at = start;
+        while !seen[at] {
+            seen[at] = true;
+            at = permutation[at] as usize;
+            exchanges += usize::from(at != start);
+        }
+    }
+    exchanges
 }
 
 impl Drop for Klu {

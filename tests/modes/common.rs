@@ -24,7 +24,6 @@ pub fn plan(count: usize) -> Plan {
     Plan {
         count,
         near_hz: 0.0,
-        at_s: 0.0,
         limits: true,
     }
 }

@@ -5,12 +5,13 @@
 
 use nalgebra::Complex;
 use serde_json::{Value, json};
+use slcbeam::case;
 use slcbeam::model::{Model, passivity};
 use slcbeam::run::dynamics;
-use slcbeam::run::modes::{Kind, Mode, Modes, Shape, likeness};
+use slcbeam::run::modes::{self, Kind, Mode, Modes, Shape, likeness};
 use slcbeam::run::record::Memory;
 
-use crate::common::{across, chains, checked, slowest, wet};
+use crate::common::{across, chains, checked, plan, slowest, wet};
 
 fn swinging(found: &Modes) -> Vec<&Mode> {
     found.modes.iter().filter(|m| m.kind.swings()).collect()
@@ -161,6 +162,30 @@ fn a_column_beyond_its_load_diverges() {
     assert_eq!(growing.len(), 1);
     assert_eq!(growing[0].kind, Kind::Divergence);
     assert!(growing[0].s.re > 10.0 && growing[0].damping_ratio().is_none());
+}
+
+/// Source: Euler's column, `f/f0` of the straight one and `P = Pcr` as its zero; the buckled branch is stable (Born 1906).
+/// Goal: modes about the equilibrium under the loads at an instant, straight below the load and bent beyond it.
+#[test]
+fn the_buckled_column_swings() {
+    let case = case::load("cases/elastica.json".as_ref(), &[]).unwrap().case;
+    let first = |share: f64| {
+        // the case's load grows to 5 Pcr in 1 s
+        let found = modes::of(modes::at_equilibrium(&case, share / 5.0).unwrap(), &plan(3)).unwrap();
+        assert!(!found.about.moving(), "{:e}", found.about.rate);
+        assert!(
+            found.modes.iter().all(|m| m.kind == Kind::Oscillation),
+            "stable at {share} Pcr"
+        );
+        swinging(&found)[0].s.im
+    };
+    let (free, near, beyond) = (first(1e-6), first(0.99), first(1.2));
+    // f² falls nearly in proportion to 1 - P/Pcr: the shape is that of buckling within a percent
+    assert!(
+        (near / free).powi(2) < 0.011 && (near / free).powi(2) > 0.009,
+        "{near} {free}"
+    );
+    assert!(beyond > 2.0 * near, "{beyond}");
 }
 
 #[test]

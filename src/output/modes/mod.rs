@@ -107,7 +107,7 @@ pub fn json(report: &Report) -> String {
         })
     });
     let value = json!({
-        "case": report.case, "about": report.about, "at_s": report.plan.at_s, "near_hz": report.plan.near_hz,
+        "case": report.case, "about": report.about, "at_s": report.found.about.at, "near_hz": report.plan.near_hz,
         "unknowns": found.about.y.len(), "finite_eigenvalues": found.finite,
         "stable": !found.modes.iter().any(|m| m.kind.grows()), "verdict": report.verdict(),
         "modes": modes, "coupling": coupling,

@@ -25,10 +25,10 @@ const HEADINGS: [&str; 9] = [
 pub fn table(report: &Report) -> String {
     let found = report.found;
     let mut text = format!(
-        "{}: small motions about {}, loads and valves held as at t = {} s\n{} unknowns, {} finite eigenvalues, {}; {} factorisations, {} solves\n\n",
+        "{}: small motions about {}, signals held as at t = {} s\n{} unknowns, {} finite eigenvalues, {}; {} factorisations, {} solves\n\n",
         report.case,
         report.about,
-        report.plan.at_s,
+        found.about.at,
         found.about.y.len(),
         found.finite,
         if report.plan.near_hz > 0.0 {

@@ -8,6 +8,7 @@
 //! deflection, pressure, history, energy   the pictures of a run
 //! workprecision   what accuracy costs
 //! ablation    what each effect does
+//! loadpath    equilibria under growing loads
 //! modes       shapes of modes with their pressures
 //! overlay     two runs over each other
 //! ```
@@ -21,6 +22,7 @@ pub mod ablation;
 pub mod deflection;
 pub mod energy;
 pub mod history;
+pub mod loadpath;
 pub mod modes;
 pub mod overlay;
 pub mod pressure;
