@@ -26,6 +26,8 @@ pub enum Command {
     Study(StudyArguments),
     /// Find what each effect does: the full model without it, what that changes and saves, what to leave out
     Effects(EffectsArguments),
+    /// Find frequencies, damping, shapes and stability of small motions, with the fluid as it is, sealed in, and free
+    Modes(ModesArguments),
     /// Compare two result folders: error norms of every field and quantity, cost ratio
     Compare(CompareArguments),
     /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
@@ -188,6 +190,32 @@ pub struct EffectsArguments {
     #[arg(long)]
     pub quiet: bool,
     /// Print effects.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `modes`.
+#[derive(Debug, Args)]
+pub struct ModesArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Modes to find; rigid motions and kept volumes come besides
+    #[arg(long, value_name = "COUNT", default_value_t = 12)]
+    pub count: usize,
+    /// Find those nearest this frequency [Hz] [default: the slowest]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub near: Option<f64>,
+    /// About the equilibrium under the loads at this instant [s] [default: about the start]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub at: Option<f64>,
+    /// Folder for modes.csv, modes.json, modes.npz, modes.svg [default: out/<case name>-modes]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print modes.json instead of the table
     #[arg(long)]
     pub json: bool,
 }

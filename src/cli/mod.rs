@@ -7,6 +7,7 @@ mod effects;
 mod equilibrium;
 mod interrupt;
 mod mapping;
+mod modes;
 pub mod progress;
 mod run;
 mod schema;
@@ -54,6 +55,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Study(asked) => study::study(asked),
         Command::Effects(asked) => effects::effects(asked),
         Command::Compare(asked) => compare::compare(asked),
+        Command::Modes(asked) => modes::modes(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),
         Command::Schema => schema::schema(),

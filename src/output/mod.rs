@@ -13,6 +13,7 @@
 //! effects   effects.csv, effects.json, effects.svg, table and sentence
 //! equilibrium  path.csv, shapes.csv, equilibrium.json, path.svg, table
 //! study     study.csv, study.json, study.svg, table and sentence
+//! modes     modes.csv, modes.json, modes.npz, modes.svg, table and sentences
 //! pictures  from recorded files to the data of each picture
 //! plot      one picture a file, from plain data to SVG text
 //! numbers   numbers as people read them
@@ -26,6 +27,7 @@ pub mod envelope;
 pub mod equilibrium;
 pub mod folder;
 pub mod history;
+pub mod modes;
 pub mod numbers;
 pub mod pictures;
 pub mod plot;

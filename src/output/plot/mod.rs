@@ -9,6 +9,7 @@
 //! workprecision   what accuracy costs
 //! ablation    what each effect does
 //! loadpath    equilibria under growing loads
+//! modes       shapes of modes with their pressures
 //! overlay     two runs over each other
 //! ```
 
@@ -22,6 +23,7 @@ pub mod deflection;
 pub mod energy;
 pub mod history;
 pub mod loadpath;
+pub mod modes;
 pub mod overlay;
 pub mod pressure;
 pub mod workprecision;

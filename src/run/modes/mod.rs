@@ -17,7 +17,7 @@ use crate::error::{Error, Result, SolverFault};
 use crate::spectral::{self, Failure, Options, Pair, Pencil};
 
 pub use kind::Kind;
-pub use linearise::{Fluid, Linearised, linearise};
+pub use linearise::{Fluid, Linearised, at_equilibrium, linearise};
 pub use shape::{Shape, Shapes, likeness};
 
 /// What is asked for.
@@ -27,8 +27,6 @@ pub struct Plan {
     pub count: usize,
     /// Frequency near which they are looked for [Hz].
     pub near_hz: f64,
-    /// Instant at which signals are held [s].
-    pub at_s: f64,
     /// Whether the fluid is held and freed too.
     pub limits: bool,
 }
@@ -100,7 +98,7 @@ pub struct Modes {
 /// # Errors
 /// As [`linearise`], and [`Error::Solver`] when eigenvalues do not converge.
 pub fn modes(case: &Case, plan: &Plan) -> Result<Modes> {
-    of(linearise(case, plan.at_s, None)?, plan)
+    of(linearise(case, 0.0, None)?, plan)
 }
 
 /// Modes of a linearisation.
