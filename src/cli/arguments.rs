@@ -209,6 +209,10 @@ pub struct ModesArguments {
     /// About the equilibrium under the loads at this instant [s] [default: about the start]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub at: Option<f64>,
+    /// Differentiate frequencies and growth rates by this number of the case, a JSON pointer such as /beam/young_modulus_pa;
+    /// repeatable
+    #[arg(long, value_name = "POINTER")]
+    pub sensitivity: Vec<String>,
     /// Folder for modes.csv, modes.json, modes.npz, modes.svg [default: out/<case name>-modes]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use super::arguments::ModesArguments;
 use crate::case;
+use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::modes::{self as files, Report};
@@ -25,7 +26,13 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         ),
         None => (modes::linearise(&loaded.case, 0.0, None)?, "the start".into()),
     };
+    let parameters: Vec<Parameter> = asked
+        .sensitivity
+        .iter()
+        .map(|pointer| Parameter::find(&loaded.case, pointer))
+        .collect::<Result<_>>()?;
     let found = modes::of(about, &plan)?;
+    let sensitivities = modes::differentiate(&loaded.case, asked.at, &found.about, &found.modes, &parameters)?;
     let out = asked
         .out
         .clone()
@@ -35,6 +42,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         plan: &plan,
         found: &found,
         about: &words,
+        sensitivities: &sensitivities,
     };
     files::write(&out, &report)?;
     if asked.json {

@@ -8,7 +8,7 @@ use crate::discrete::fluid_mesh::{FluidMesh, Place};
 ///
 /// ```text
 /// F(t, y, 0) = 0,        and for each set of joined cells that no prescribed pressure reaches
-/// Σ Δs (a1 - a1(0)) = 0  in place of the storage of one of its cells
+/// Σ Δs (a1 - t a1(0)) = 0  in place of the storage of one of its cells
 /// ```
 ///
 /// for these storage equations are dependent: flows inside a closed network sum to zero whatever the pressures are. A
@@ -190,7 +190,7 @@ impl Dae for StaticBeam {
         self.beam.residual(t, y, &self.zeros, residual)?;
         for closed in &self.closed {
             let sum: f64 = closed.cells.iter().map(|&c| y[c]).sum();
-            residual[closed.row] = sum - closed.sum;
+            residual[closed.row] = sum - t * closed.sum;
         }
         for (r, more) in residual.iter_mut().zip(&self.imperfection) {
             *r += more;

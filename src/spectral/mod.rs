@@ -64,6 +64,8 @@ pub struct Pair {
     pub s: Complex<f64>,
     /// `x`, of unit length; one entry a column.
     pub x: Vec<Complex<f64>>,
+    /// The left vector y, `yᴴ (A + s B) = 0`; one entry a row.
+    pub left: Vec<Complex<f64>>,
     /// `|(A + s B) x|` over `|A| |x| + |s| |B| |x|`, entry by entry in absolute values: the backward error.
     pub residual: f64,
     /// Bound of the error of `s`, to first order, round-off included, [E34].
@@ -78,6 +80,7 @@ impl Pair {
         Self {
             s: self.s.conj(),
             x: self.x.iter().map(|x| x.conj()).collect(),
+            left: self.left.iter().map(|y| y.conj()).collect(),
             ..*self
         }
     }
@@ -181,6 +184,20 @@ pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Opt
         restarts,
         dense,
     })
+}
+
+/// `yᴴ (A' + s B') x / yᴴ B x` of a pair, for entries A' and B' of the pencil's pattern: what changes of the pencil move its
+/// eigenvalue by, with the opposite sign.
+pub fn quotient(pattern: &crate::dae::Pattern, a: &[f64], b: &[f64], of_b: &[f64], pair: &Pair) -> Complex<f64> {
+    let (mut above, mut below) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
+    for (column, x) in pair.x.iter().enumerate() {
+        for entry in pattern.column(column) {
+            let y = pair.left[pattern.rows[entry] as usize].conj();
+            above += y * (pair.s * b[entry] + a[entry]) * x;
+            below += y * of_b[entry] * x;
+        }
+    }
+    above / below
 }
 
 /// The `count` lowest eigenvalues μ of `K x = μ D x`, D a diagonal without negative entries, lowest magnitude first: the

@@ -57,6 +57,7 @@ fn assess(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, Failure> {
     Ok(Pair {
         s,
         x,
+        left: y,
         residual: length(&residual) / length(&magnitude).max(f64::MIN_POSITIVE),
         error: if error.is_finite() { error } else { f64::INFINITY },
     })

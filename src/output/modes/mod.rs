@@ -13,10 +13,11 @@ use zip::ZipWriter;
 use super::arrays::write_array;
 use super::effects::replace;
 use super::folder::{fault, part_of};
+use super::numbers::significant;
 use super::plot::modes::{self as picture, ModeShapes, Shown};
 use crate::error::Result;
 use crate::model::passivity::{self, Passivity};
-use crate::run::modes::{Kind, Limit, Mode, Modes, Plan};
+use crate::run::modes::{Kind, Limit, Mode, Modes, Plan, Sensitivity};
 
 pub use table::{csv, table};
 
@@ -39,6 +40,8 @@ pub struct Report<'a> {
     pub found: &'a Modes,
     /// State about which, in words: `the start`.
     pub about: &'a str,
+    /// Derivatives by numbers of the case.
+    pub sensitivities: &'a [Sensitivity],
 }
 
 impl Report<'_> {
@@ -78,6 +81,24 @@ impl Report<'_> {
         moving.into_iter().collect()
     }
 
+    /// What a number of the case does to each mode: `mode 2: +0.0608 Hz, −1.2e-5 1/s`, for one percent of it.
+    fn derivatives(&self, s: &Sensitivity) -> String {
+        let percent = 0.01 * s.parameter.value;
+        let mut text = format!(
+            "for 1 % of {} = {}:",
+            s.parameter.pointer,
+            significant(s.parameter.value, 6)
+        );
+        for (k, (mode, ds)) in self.found.modes.iter().zip(&s.s).enumerate() {
+            let growth = significant(percent * ds.re, 4);
+            let swings = mode.frequency_hz().map_or(String::new(), |_| {
+                format!("{} Hz, ", significant(percent * ds.im / std::f64::consts::TAU, 4))
+            });
+            text.push_str(&format!("\n  mode {}: {swings}growth {growth} 1/s", k + 1));
+        }
+        text
+    }
+
     fn passivity(&self) -> Option<(Passivity, String)> {
         let model = &self.found.about.system().model;
         let found = passivity::of(model)?;
@@ -89,7 +110,13 @@ impl Report<'_> {
     pub fn sentences(&self) -> String {
         let coupling = self.passivity().map(|p| p.1);
         let warnings = self.warnings().into_iter().map(|w| format!("warning: {w}"));
-        let all: Vec<String> = [self.verdict()].into_iter().chain(coupling).chain(warnings).collect();
+        let derivatives = self.sensitivities.iter().map(|s| self.derivatives(s));
+        let all: Vec<String> = [self.verdict()]
+            .into_iter()
+            .chain(coupling)
+            .chain(warnings)
+            .chain(derivatives)
+            .collect();
         all.join("\n")
     }
 }
@@ -111,6 +138,11 @@ pub fn json(report: &Report) -> String {
         "unknowns": found.about.y.len(), "finite_eigenvalues": found.finite,
         "stable": !found.modes.iter().any(|m| m.kind.grows()), "verdict": report.verdict(),
         "modes": modes, "coupling": coupling,
+        "sensitivities": report.sensitivities.iter().map(|s| (s.parameter.pointer.clone(), json!({
+            "value": s.parameter.value,
+            "growth_rate_1_s": s.s.iter().map(|ds| ds.re).collect::<Vec<_>>(),
+            "frequency_hz": s.s.iter().map(|ds| ds.im / std::f64::consts::TAU).collect::<Vec<_>>(),
+        }))).collect::<serde_json::Map<_, _>>(),
         "solver": {"factorizations": found.factorizations, "solves": found.solves, "all_at_once": found.dense},
         "warnings": report.warnings()
     });

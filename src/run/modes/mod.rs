@@ -3,11 +3,13 @@
 //! ```text
 //! linearise   the pencil of a case about a state, with the fluid as it is, held, or free
 //! shape       displacements and pressures of an eigenvector; likeness of two
+//! sensitivity  derivatives by numbers of the case
 //! kind        oscillation, decay, growth, rigid motion, kept volume
 //! ```
 
 pub mod kind;
 pub mod linearise;
+pub mod sensitivity;
 pub mod shape;
 
 use nalgebra::Complex;
@@ -18,6 +20,7 @@ use crate::spectral::{self, Failure, Options, Pair, Pencil};
 
 pub use kind::Kind;
 pub use linearise::{Fluid, Linearised, at_equilibrium, linearise};
+pub use sensitivity::{Sensitivity, differentiate};
 pub use shape::{Shape, Shapes, likeness};
 
 /// What is asked for.
