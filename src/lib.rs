@@ -17,6 +17,7 @@
 //! | [`dae`] | the trait [`dae::Dae`]; the beam as one; dual numbers, pattern, Jacobian. Knows no solver |
 //! | [`sundials`] | IDA and KLU behind safe types; the only `unsafe` code; knows only [`dae::Dae`] |
 //! | [`onestep`] | A-stable one-step methods of order 2 to 5, with the interface of [`sundials::Ida`] |
+//! | [`spectral`] | eigenvalues of sparse pencils nearest a shift, with bounds of their errors |
 //! | [`run`] | a run in time: samples, balances, range checks. Emits what happens, prints nothing |
 //! | [`study`] | many runs to answer one question: exact results, accuracy against cost, effects, comparison |
 //! | [`output`] | result folders: history, arrays, summary, pictures |
@@ -114,5 +115,6 @@ pub mod model;
 pub mod onestep;
 pub mod output;
 pub mod run;
+pub mod spectral;
 pub mod study;
 pub mod sundials;

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Rooms from top to bottom: a file imports from its own room and from rooms above it.
-const ROOMS: [&str; 12] = [
-    "error", "case", "model", "discrete", "dae", "sundials", "onestep", "run", "study", "output", "cli", "main",
+const ROOMS: [&str; 13] = [
+    "error", "case", "model", "discrete", "dae", "sundials", "onestep", "spectral", "run", "study", "output", "cli", "main",
 ];
 
 /// Lines of a file beyond which it must be divided.

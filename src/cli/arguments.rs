@@ -20,6 +20,8 @@ pub enum Command {
     Run(RunArguments),
     /// Validate a case; print characteristic numbers, coupling audit and chosen effects; write nothing
     Check(CheckArguments),
+    /// Find the static equilibrium under the loads of one instant, along the path from rest
+    Equilibrium(EquilibriumArguments),
     /// Find what accuracy costs: time against error over tolerances, meshes and orders
     Study(StudyArguments),
     /// Find what each effect does: the full model without it, what that changes and saves, what to leave out
@@ -77,6 +79,35 @@ pub struct CheckArguments {
     #[command(flatten)]
     pub case: CaseArguments,
     /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `equilibrium`.
+#[derive(Debug, Args)]
+pub struct EquilibriumArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Instant whose loads, end motions, port pressures and valves are the full ones [default: the end of the run]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub at: Option<f64>,
+    /// Share of these loads at which the path ends
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub load_factor: f64,
+    /// Points along the path at least
+    #[arg(long, value_name = "COUNT")]
+    pub points: Option<usize>,
+    /// Stay on a path that becomes unstable (a column that stays straight) instead of taking the one that crosses it
+    #[arg(long)]
+    pub keep_branch: bool,
+    /// Folder for path.csv, shapes.csv, equilibrium.json, path.svg [default: out/<case name>-equilibrium]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print equilibrium.json instead of the table
     #[arg(long)]
     pub json: bool,
 }

@@ -4,6 +4,7 @@ mod arguments;
 mod check;
 mod compare;
 mod effects;
+mod equilibrium;
 mod interrupt;
 mod mapping;
 pub mod progress;
@@ -49,6 +50,7 @@ fn act(command: &Command) -> Result<ExitCode> {
     match command {
         Command::Run(asked) => run::run(asked),
         Command::Check(asked) => check::check(asked),
+        Command::Equilibrium(asked) => equilibrium::equilibrium(asked),
         Command::Study(asked) => study::study(asked),
         Command::Effects(asked) => effects::effects(asked),
         Command::Compare(asked) => compare::compare(asked),

@@ -4,10 +4,12 @@ pub mod beam;
 pub mod colour;
 pub mod dual;
 pub mod pattern;
+pub mod statics;
 pub mod trace;
 
 pub use beam::BeamDae;
 pub use pattern::Pattern;
+pub use statics::StaticBeam;
 
 /// Why an evaluation could not be done.
 #[derive(Clone, Debug, PartialEq)]

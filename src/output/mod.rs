@@ -11,6 +11,7 @@
 //! reading   a result folder back into memory
 //! comparison  the picture of two runs over each other
 //! effects   effects.csv, effects.json, effects.svg, table and sentence
+//! equilibrium  path.csv, shapes.csv, equilibrium.json, path.svg, table
 //! study     study.csv, study.json, study.svg, table and sentence
 //! pictures  from recorded files to the data of each picture
 //! plot      one picture a file, from plain data to SVG text
@@ -22,6 +23,7 @@ pub mod checkpoint;
 pub mod comparison;
 pub mod effects;
 pub mod envelope;
+pub mod equilibrium;
 pub mod folder;
 pub mod history;
 pub mod numbers;

@@ -1,11 +1,13 @@
 //! Krylov spaces of a map known only by what it does: the solution of `(1 - M) x = b`, and the largest eigenvalues of M.
 
-use nalgebra::{Complex, DMatrix, DVector, Schur};
+use nalgebra::{Complex, DMatrix, DVector};
+
+use crate::spectral::schur;
 
 /// A vector in which later ones have no part any more counts as none.
 const SPENT: f64 = 1e-13;
-/// Iterations of the dense Schur decomposition.
-const SCHUR: usize = 100_000;
+/// Angle [rad] from the real axis that round-off makes.
+const REAL: f64 = 1e-11;
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
@@ -178,31 +180,21 @@ pub fn largest(
 
 /// Eigenvalues of largest modulus of a dense matrix with unit vectors, and a place for residuals; complex pairs once.
 fn pairs(matrix: &DMatrix<f64>, count: usize) -> Vec<(Complex<f64>, DVector<Complex<f64>>, f64)> {
-    let Some(schur) = Schur::try_new(matrix.clone(), f64::EPSILON, SCHUR) else {
+    let Some((q, t)) = schur::ordered(matrix.map(|x| Complex::new(x, 0.0))) else {
         return vec![];
     };
-    let mut values: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
-    values.retain(|v| v.im >= 0.0);
-    values.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
-    values.truncate(count);
-    let complex = matrix.map(|x| Complex::new(x, 0.0));
     let n = matrix.nrows();
-    values
-        .into_iter()
-        .map(|value| {
-            // inverse iteration just beside the eigenvalue, which is known to round-off: twice is enough
-            let beside = value * (1.0 + 1e-12) + Complex::new(1e-14 * (1.0 + matrix.norm()), 0.0);
-            let lu = (&complex - DMatrix::identity(n, n) * beside).lu();
-            let mut v = DVector::from_fn(n, |i, _| Complex::new(1.0, 0.3 * i as f64 / n as f64));
-            for _ in 0..3 {
-                if let Some(x) = lu.solve(&v) {
-                    let size = x.norm();
-                    if size.is_finite() && size > 0.0 {
-                        v = x.unscale(size);
-                    }
-                }
-            }
-            (value, v, 0.0)
+    // of a pair that round-off has parted from the real axis both halves count as real
+    let upper = |k: &usize| t[(*k, *k)].im >= -REAL * t[(*k, *k)].norm();
+    let chosen = (0..n).filter(upper).take(count);
+    chosen
+        .map(|k| {
+            let mut y = schur::vector(&t, k);
+            y.resize(n, Complex::default());
+            let v = (&q * DVector::from_vec(y)).normalize();
+            let value = t[(k, k)];
+            let real = value.im.abs() <= REAL * value.norm();
+            (if real { Complex::new(value.re, 0.0) } else { value }, v, 0.0)
         })
         .collect()
 }

@@ -3,11 +3,13 @@
 pub mod checkpoint;
 pub mod drive;
 pub mod dynamics;
+pub mod equilibrium;
 pub mod figures;
 pub mod floquet;
 pub mod growth;
 pub mod krylov;
 pub mod method;
+pub mod modes;
 pub mod observe;
 pub mod order;
 pub mod periodic;

@@ -47,6 +47,22 @@ pub(super) struct Bridge<D> {
 }
 
 impl<D: Dae> Bridge<D> {
+    /// Equations with tolerances; nothing has happened yet.
+    pub(super) fn new(dae: D, relative: f64, absolute: Vec<f64>) -> Self {
+        Self {
+            dae,
+            relative,
+            absolute,
+            stop: None,
+            recoverable: None,
+            residuals: 0,
+            jacobians: 0,
+            residual_wall: Duration::ZERO,
+            jacobian_wall: Duration::ZERO,
+            integrand_wall: Duration::ZERO,
+        }
+    }
+
     /// Runs the equations: faults and panics become codes and are kept.
     pub(super) fn call(&mut self, act: impl FnOnce(&mut D) -> Result<(), Fault>) -> c_int {
         let dae = &mut self.dae;

@@ -1,7 +1,6 @@
 //! IDA (SUNDIALS' IDAS without sensitivities): variable-order backward differentiation formulas, step by step.
 
 use std::ffi::{c_int, c_long, c_void};
-use std::time::Duration;
 
 use sundials_sys as s;
 
@@ -79,18 +78,7 @@ impl<D: Dae> Ida<D> {
             Some(vector(&vec![0.0; integrals])?)
         };
         let solver = LinearSolver::new(klu, context.raw()).map_err(refuse)?;
-        let bridge = Shared::new(Bridge {
-            dae,
-            relative: options.relative,
-            absolute: options.absolute.each(n),
-            stop: None,
-            recoverable: None,
-            residuals: 0,
-            jacobians: 0,
-            residual_wall: Duration::ZERO,
-            jacobian_wall: Duration::ZERO,
-            integrand_wall: Duration::ZERO,
-        });
+        let bridge = Shared::new(Bridge::new(dae, options.relative, options.absolute.each(n)));
         let messages = Shared::new(Messages::default());
         // SAFETY: the context is alive; null is checked.
         let raw = unsafe { s::IDACreate(context.raw()) };

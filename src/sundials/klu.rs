@@ -5,6 +5,8 @@
 //! flags and condition estimate in order. What shows it is the growth of the factors, `min_j max_i |aᵢⱼ| / max_i |uᵢⱼ|`,
 //! by which the rounding error is enlarged. When it falls below [`Klu::smallest_growth`] the pivots are chosen anew.
 
+pub mod complex;
+
 use std::ptr;
 
 use crate::dae::Pattern;
@@ -37,33 +39,16 @@ pub enum KluFault {
     },
 }
 
-/// Factors of matrices that share a pattern.
-pub struct Klu {
+/// A pattern as KLU sees it: checked, in blocks, ordered.
+struct Analysis {
     starts: Vec<i64>,
     rows: Vec<i64>,
     common: Box<c::klu_l_common>,
     symbolic: *mut c::klu_l_symbolic,
-    numeric: *mut c::klu_l_numeric,
-    growth_when_fresh: f64,
-    /// Growth below which old pivots are dropped; 0 turns the guard off.
-    ///
-    /// At the default 1e-6 the factors still stand for a matrix within about ε / 1e-6 = 2e-10 of the given one, which
-    /// Newton's iteration does not notice; over the runs of `tests/sundials` the growth stays between 0.5 and 1.
-    pub smallest_growth: f64,
-    /// Numerical factorisations, refactorisations included.
-    pub factorizations: u64,
-    /// Factorisations done anew because old pivots were bad.
-    pub pivot_refreshes: u64,
 }
 
-impl Klu {
-    /// Analyses a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
-    pub fn new(pattern: &Pattern) -> Result<Self, KluFault> {
-        Self::with_scaling(pattern, RowScaling::Max)
-    }
-
-    /// Analyses a square pattern.
-    pub fn with_scaling(pattern: &Pattern, scaling: RowScaling) -> Result<Self, KluFault> {
+impl Analysis {
+    fn new(pattern: &Pattern, scaling: RowScaling) -> Result<Self, KluFault> {
         let n = pattern.columns();
         // all of it is relied upon by the C code
         let sound = pattern.starts[0] == 0
@@ -88,28 +73,91 @@ impl Klu {
         let (mut starts, mut rows) = (pattern.starts.clone(), pattern.rows.clone());
         // SAFETY: the pattern has been checked above; the arrays are only read.
         let symbolic = unsafe { c::klu_l_analyze(n as i64, starts.as_mut_ptr(), rows.as_mut_ptr(), &mut *common) };
-        let klu = Self {
+        let analysis = Self {
             starts,
             rows,
             common,
             symbolic,
+        };
+        if symbolic.is_null() {
+            Err(analysis.fault())
+        } else {
+            Ok(analysis)
+        }
+    }
+
+    fn columns(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// What KLU last complained about.
+    fn fault(&self) -> KluFault {
+        let column = self.common.singular_col;
+        if self.common.status == i64::from(c::KLU_SINGULAR) {
+            KluFault::Singular {
+                column: usize::try_from(column)
+                    .unwrap_or(0)
+                    .min(self.columns().saturating_sub(1)),
+            }
+        } else {
+            KluFault::Package {
+                status: self.common.status,
+            }
+        }
+    }
+}
+
+impl Drop for Analysis {
+    fn drop(&mut self) {
+        if !self.symbolic.is_null() {
+            // SAFETY: made by `klu_l_analyze`, freed once.
+            unsafe { c::klu_l_free_symbolic(&mut self.symbolic, &mut *self.common) };
+        }
+    }
+}
+
+/// Factors of matrices that share a pattern.
+pub struct Klu {
+    analysis: Analysis,
+    numeric: *mut c::klu_l_numeric,
+    growth_when_fresh: f64,
+    /// Growth below which old pivots are dropped; 0 turns the guard off.
+    ///
+    /// At the default 1e-6 the factors still stand for a matrix within about ε / 1e-6 = 2e-10 of the given one, which
+    /// Newton's iteration does not notice; over the runs of `tests/sundials` the growth stays between 0.5 and 1.
+    pub smallest_growth: f64,
+    /// Numerical factorisations, refactorisations included.
+    pub factorizations: u64,
+    /// Factorisations done anew because old pivots were bad.
+    pub pivot_refreshes: u64,
+}
+
+impl Klu {
+    /// Analyses a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
+    pub fn new(pattern: &Pattern) -> Result<Self, KluFault> {
+        Self::with_scaling(pattern, RowScaling::Max)
+    }
+
+    /// Analyses a square pattern.
+    pub fn with_scaling(pattern: &Pattern, scaling: RowScaling) -> Result<Self, KluFault> {
+        Ok(Self {
+            analysis: Analysis::new(pattern, scaling)?,
             numeric: ptr::null_mut(),
             growth_when_fresh: 1.0,
             smallest_growth: 1e-6,
             factorizations: 0,
             pivot_refreshes: 0,
-        };
-        if symbolic.is_null() { Err(klu.fault()) } else { Ok(klu) }
+        })
     }
 
     /// Number of unknowns.
     pub fn columns(&self) -> usize {
-        self.starts.len() - 1
+        self.analysis.columns()
     }
 
     /// Number of stored entries.
     pub fn entries(&self) -> usize {
-        self.rows.len()
+        self.analysis.rows.len()
     }
 
     /// Factors the matrix whose entries, in the order of the pattern, are `values`; with the old pivots while they last.
@@ -138,21 +186,21 @@ impl Klu {
         // SAFETY: pattern, symbolic and numeric belong together, values has the pattern's length; KLU only reads them.
         let done = unsafe {
             c::klu_l_refactor(
-                self.starts.as_mut_ptr(),
-                self.rows.as_mut_ptr(),
+                self.analysis.starts.as_mut_ptr(),
+                self.analysis.rows.as_mut_ptr(),
                 values.as_ptr().cast_mut(),
-                self.symbolic,
+                self.analysis.symbolic,
                 self.numeric,
-                &mut *self.common,
+                &mut *self.analysis.common,
             )
         };
-        if done == 0 || self.common.status != i64::from(c::KLU_OK) {
+        if done == 0 || self.analysis.common.status != i64::from(c::KLU_OK) {
             return false;
         }
         // a block of one row is no sum that could grow: only its zero tells
         // SAFETY: as above.
-        let regular = unsafe { c::klu_l_rcond(self.symbolic, self.numeric, &mut *self.common) } != 0;
-        if !regular || self.common.rcond == 0.0 {
+        let regular = unsafe { c::klu_l_rcond(self.analysis.symbolic, self.numeric, &mut *self.analysis.common) } != 0;
+        if !regular || self.analysis.common.rcond == 0.0 {
             return false;
         }
         if self.smallest_growth <= 0.0 {
@@ -170,15 +218,15 @@ impl Klu {
         // SAFETY: pattern and symbolic belong together, values has the pattern's length; KLU only reads them.
         self.numeric = unsafe {
             c::klu_l_factor(
-                self.starts.as_mut_ptr(),
-                self.rows.as_mut_ptr(),
+                self.analysis.starts.as_mut_ptr(),
+                self.analysis.rows.as_mut_ptr(),
                 values.as_ptr().cast_mut(),
-                self.symbolic,
-                &mut *self.common,
+                self.analysis.symbolic,
+                &mut *self.analysis.common,
             )
         };
-        if self.numeric.is_null() || self.common.status != i64::from(c::KLU_OK) {
-            let fault = self.fault();
+        if self.numeric.is_null() || self.analysis.common.status != i64::from(c::KLU_OK) {
+            let fault = self.analysis.fault();
             self.free_numeric();
             return Err(fault);
         }
@@ -193,15 +241,15 @@ impl Klu {
         // SAFETY: as in `refactor`.
         unsafe {
             c::klu_l_rgrowth(
-                self.starts.as_mut_ptr(),
-                self.rows.as_mut_ptr(),
+                self.analysis.starts.as_mut_ptr(),
+                self.analysis.rows.as_mut_ptr(),
                 values.as_ptr().cast_mut(),
-                self.symbolic,
+                self.analysis.symbolic,
                 self.numeric,
-                &mut *self.common,
+                &mut *self.analysis.common,
             );
         }
-        self.common.rgrowth
+        self.analysis.common.rgrowth
     }
 
     /// Estimate of the condition number (1-norm) of the matrix last factored, given by its `values`.
@@ -215,14 +263,35 @@ impl Klu {
         // SAFETY: as in `refactor`.
         let done = unsafe {
             c::klu_l_condest(
-                self.starts.as_mut_ptr(),
+                self.analysis.starts.as_mut_ptr(),
                 values.as_ptr().cast_mut(),
-                self.symbolic,
+                self.analysis.symbolic,
                 self.numeric,
-                &mut *self.common,
+                &mut *self.analysis.common,
             )
         };
-        (done != 0).then_some(self.common.condest)
+        (done != 0).then_some(self.analysis.common.condest)
+    }
+
+    /// Sign of the determinant of the matrix last factored: 1, -1, or 0 without factors. A small one keeps its sign where a product of
+    /// pivots would underflow.
+    pub fn determinant_sign(&self) -> i8 {
+        if self.numeric.is_null() {
+            return 0;
+        }
+        let n = self.columns();
+        // SAFETY: symbolic and numeric belong together; KLU keeps n pivots and two permutations of n. Scale factors of rows are
+        // positive.
+        let (pivots, rows, columns) = unsafe {
+            (
+                std::slice::from_raw_parts((*self.numeric).Udiag.cast::<f64>(), n),
+                std::slice::from_raw_parts((*self.numeric).Pnum, n),
+                std::slice::from_raw_parts((*self.analysis.symbolic).Q, n),
+            )
+        };
+        let negative = pivots.iter().filter(|pivot| **pivot < 0.0).count();
+        let odd = (negative + transpositions(rows) + transpositions(columns)) % 2 == 1;
+        if odd { -1 } else { 1 }
     }
 
     /// Replaces `b` by the solution of `A x = b`; false without factors. Panics when `b` has another length.
@@ -239,40 +308,36 @@ impl Klu {
             return false;
         }
         let (n, count) = (n as i64, (b.len() / n) as i64);
+        let Analysis { symbolic, common, .. } = &mut self.analysis;
         // SAFETY: symbolic and numeric belong together and b has n entries for each of count right-hand sides.
-        unsafe { c::klu_l_solve(self.symbolic, self.numeric, n, count, b.as_mut_ptr(), &mut *self.common) != 0 }
-    }
-
-    /// What KLU last complained about.
-    fn fault(&self) -> KluFault {
-        let column = self.common.singular_col;
-        if self.common.status == i64::from(c::KLU_SINGULAR) {
-            KluFault::Singular {
-                column: usize::try_from(column)
-                    .unwrap_or(0)
-                    .min(self.columns().saturating_sub(1)),
-            }
-        } else {
-            KluFault::Package {
-                status: self.common.status,
-            }
-        }
+        unsafe { c::klu_l_solve(*symbolic, self.numeric, n, count, b.as_mut_ptr(), &mut **common) != 0 }
     }
 
     fn free_numeric(&mut self) {
         if !self.numeric.is_null() {
             // SAFETY: made by `klu_l_factor`; KLU sets the pointer to null.
-            unsafe { c::klu_l_free_numeric(&mut self.numeric, &mut *self.common) };
+            unsafe { c::klu_l_free_numeric(&mut self.numeric, &mut *self.analysis.common) };
         }
     }
+}
+
+/// Exchanges that a permutation is made of.
+fn transpositions(permutation: &[i64]) -> usize {
+    let mut seen = vec![false; permutation.len()];
+    let mut exchanges = 0;
+    for start in 0..permutation.len() {
+        let mut at = start;
+        while !seen[at] {
+            seen[at] = true;
+            at = permutation[at] as usize;
+            exchanges += usize::from(at != start);
+        }
+    }
+    exchanges
 }
 
 impl Drop for Klu {
     fn drop(&mut self) {
         self.free_numeric();
-        if !self.symbolic.is_null() {
-            // SAFETY: made by `klu_l_analyze`, freed once.
-            unsafe { c::klu_l_free_symbolic(&mut self.symbolic, &mut *self.common) };
-        }
     }
 }

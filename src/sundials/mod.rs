@@ -5,6 +5,7 @@
 //! | file | what stands there |
 //! |---|---|
 //! | [`ida`] | the integrator: one accepted step at a time |
+//! | [`kinsol`] | solutions of `F(t, y, 0) = 0` |
 //! | `integrals` | integrals carried along: the ledgers |
 //! | [`options`] | what can be asked of it |
 //! | [`failure`], `diagnosis` | why it could not go on, in words |
@@ -29,6 +30,7 @@ pub mod failure;
 pub mod ida;
 mod integrals;
 pub mod kernels;
+pub mod kinsol;
 pub mod klu;
 mod linear_solver;
 mod operations;
@@ -42,6 +44,7 @@ pub(crate) use callbacks::not_finite;
 pub use counters::{Counters, Wall};
 pub use failure::{IdaFailure, Worst};
 pub use ida::{Ida, Step};
+pub use kinsol::{Kinsol, KinsolFailure, KinsolOptions, Solution};
 pub use klu::{Klu, KluFault, RowScaling};
 pub use options::{Absolute, IdaOptions};
 pub use start::{Start, StartFailure, StartOptions, consistent_start};

@@ -8,6 +8,7 @@
 //! deflection, pressure, history, energy   the pictures of a run
 //! workprecision   what accuracy costs
 //! ablation    what each effect does
+//! loadpath    equilibria under growing loads
 //! overlay     two runs over each other
 //! ```
 
@@ -20,6 +21,7 @@ pub mod ablation;
 pub mod deflection;
 pub mod energy;
 pub mod history;
+pub mod loadpath;
 pub mod overlay;
 pub mod pressure;
 pub mod workprecision;

@@ -1,0 +1,100 @@
+//! `slcbeam equilibrium`: the path of equilibria from rest to the full load.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::arguments::EquilibriumArguments;
+use super::{interrupt, terminal};
+use crate::case;
+use crate::error::{Error, Result};
+use crate::model::{audit, characteristic};
+use crate::output::equilibrium as files;
+use crate::run::equilibrium::{self, Options};
+use crate::run::record::Control;
+
+/// Follows the path, writes the folder, prints the table.
+pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
+    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let case = &loaded.case;
+    let at_s = asked.at.unwrap_or(case.time.end_s);
+    let system = equilibrium::system(case, at_s);
+    super::refuse(&loaded, &system)?;
+    let options = options(asked, at_s)?;
+    let begin = Instant::now();
+    let stop = interrupt::flag();
+    let bar = bar(asked.quiet);
+    let path = equilibrium::follow(case, &options, &mut |state| {
+        bar.set_message(format!("{:.4} of the loads", state.share));
+        bar.tick();
+        if interrupt::raised(&stop) {
+            Control::Stop("interrupted".into())
+        } else {
+            Control::Continue
+        }
+    });
+    bar.finish_and_clear();
+    let numbers = characteristic::numbers(case, &system.model);
+    let warnings = audit::warnings(case, &system.model, &numbers);
+    let columns = equilibrium::columns(&system);
+    let found = files::Found {
+        case,
+        options: &options,
+        path: &path,
+        columns: &columns,
+        wall_s: begin.elapsed().as_secs_f64(),
+        warnings: &warnings,
+        sensitivities: &[],
+    };
+    let out = asked
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("out").join(format!("{}-equilibrium", case.name)));
+    if !path.states.is_empty() {
+        files::write(&out, &found)?;
+    }
+    if asked.json {
+        super::print(&files::json(&found))?;
+    } else {
+        super::print(&format!("{}\nfiles in {}\n", files::words(&found), out.display()))?;
+    }
+    match path.fault {
+        None => Ok(ExitCode::SUCCESS),
+        Some(fault) => {
+            let error = Error::Solver(Box::new(fault));
+            terminal::report(&error);
+            Ok(ExitCode::from(error.exit_code()))
+        }
+    }
+}
+
+fn options(asked: &EquilibriumArguments, at_s: f64) -> Result<Options> {
+    if !(asked.load_factor.is_finite() && asked.load_factor != 0.0) || !at_s.is_finite() {
+        return Err(Error::Usage(
+            "--load-factor must be a number that is not 0, --at one in seconds".into(),
+        ));
+    }
+    if asked.points == Some(0) {
+        return Err(Error::Usage("--points must be at least 1".into()));
+    }
+    Ok(Options {
+        at_s,
+        share: asked.load_factor,
+        points: asked.points,
+        branches: !asked.keep_branch,
+    })
+}
+
+/// A line on a terminal.
+fn bar(quiet: bool) -> ProgressBar {
+    if quiet {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
+        bar.set_style(style);
+    }
+    bar
+}

@@ -1,0 +1,203 @@
+//! Equilibrium as a system without derivatives: what a beam at rest obeys, with the share of its loads as "time".
+
+use super::{BeamDae, Dae, Fault, Pattern, Seeds};
+use crate::discrete::System;
+use crate::discrete::fluid_mesh::{FluidMesh, Place};
+
+/// `[E29]` The equations of a [`System`] without inertia and without rates, where `t` is the share of the loads that acts:
+///
+/// ```text
+/// F(t, y, 0) = 0,        and for each set of joined cells that no prescribed pressure reaches
+/// Σ Δs (a1 - a1(0)) = 0  in place of the storage of one of its cells
+/// ```
+///
+/// for these storage equations are dependent: flows inside a closed network sum to zero whatever the pressures are. A
+/// network through which ports or turbines drive a steady flow is at rest too. Forces on unknowns, constant in time, may be
+/// added (an imperfection).
+#[derive(Clone, Debug)]
+pub struct StaticBeam {
+    beam: BeamDae,
+    closed: Vec<Closed>,
+    pattern: Pattern,
+    /// Entry of the beam's own pattern behind each entry, where it is not of a volume.
+    from: Vec<Option<usize>>,
+    zeros: Vec<f64>,
+    beam_values: Vec<f64>,
+    none: Vec<bool>,
+    /// Added to the residual.
+    pub imperfection: Vec<f64>,
+}
+
+/// Cells that share a volume which nothing can change.
+#[derive(Clone, Debug)]
+struct Closed {
+    /// Equation that the volume replaces, the unknown of its first cell.
+    row: usize,
+    /// Unknowns of its cells, ascending.
+    cells: Vec<usize>,
+    /// Sum of their areas, over their scale.
+    sum: f64,
+}
+
+impl StaticBeam {
+    /// Equilibria of a system without inertia, each closed network with the areas of `start`, scaled unknowns of the same
+    /// system. Valves are as they are at t = 1.
+    pub fn new(system: System, start: &[f64]) -> Self {
+        let mut beam = BeamDae::new(system);
+        let closed = closed(&mut beam, start);
+        let inner = beam.pattern();
+        let n = beam.len();
+        let replaced = |row: usize| closed.iter().position(|c| c.row == row);
+        let mut starts = vec![0];
+        let (mut rows, mut from) = (vec![], vec![]);
+        for column in 0..n {
+            let kept = inner.column(column).map(|e| (inner.rows[e], Some(e)));
+            let mut entries: Vec<(i64, Option<usize>)> =
+                kept.filter(|(row, _)| replaced(*row as usize).is_none()).collect();
+            let volumes = closed.iter().filter(|c| c.cells.binary_search(&column).is_ok());
+            entries.extend(volumes.map(|c| (c.row as i64, None)));
+            entries.sort_unstable();
+            rows.extend(entries.iter().map(|e| e.0));
+            from.extend(entries.iter().map(|e| e.1));
+            starts.push(rows.len() as i64);
+        }
+        let beam_values = vec![0.0; inner.entries()];
+        Self {
+            beam,
+            closed,
+            pattern: Pattern { starts, rows },
+            from,
+            zeros: vec![0.0; n],
+            beam_values,
+            none: vec![false; n],
+            imperfection: vec![0.0; n],
+        }
+    }
+
+    /// The beam as a DAE.
+    pub fn beam(&mut self) -> &mut BeamDae {
+        &mut self.beam
+    }
+
+    /// The system.
+    pub fn system(&self) -> &System {
+        self.beam.system()
+    }
+}
+
+/// The sets of joined cells that no prescribed pressure reaches, with what is open at t = 1.
+fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
+    let (system, now) = beam.instant(1.0);
+    let (Some(fluid), layout) = (&system.fluid, &system.layout) else {
+        return vec![];
+    };
+    // Cells, then junctions, then whatever prescribes a pressure.
+    let given = fluid.cells + fluid.junctions.len();
+    let mut sets = Sets::new(given + 1);
+    let index = |place: Place| match place {
+        Place::Cell(c) => c,
+        Place::Junction(j) => fluid.cells + j,
+        Place::Port(_) => given,
+    };
+    for &bladder in &fluid.flowing {
+        let cells = fluid.cells_of(bladder);
+        (cells.start + 1..cells.end).for_each(|c| sets.join(c - 1, c));
+    }
+    for (link, &conductance) in fluid.links.iter().zip(&now.conductance) {
+        if conductance > 0.0 {
+            sets.join(index(link.from), index(link.to));
+        }
+    }
+    for bridge in &fluid.bridges {
+        sets.join(index(bridge.from), index(bridge.to));
+    }
+    let given = sets.root(given);
+    let mut closed: Vec<(usize, Closed)> = vec![];
+    for (unknown, cell) in (layout.area..).zip(flowing_cells(fluid)) {
+        let root = sets.root(cell);
+        if root == given {
+            continue;
+        }
+        match closed.iter_mut().find(|(r, _)| *r == root) {
+            Some((_, c)) => {
+                c.cells.push(unknown);
+                c.sum += start[unknown];
+            }
+            None => closed.push((
+                root,
+                Closed {
+                    row: unknown,
+                    cells: vec![unknown],
+                    sum: start[unknown],
+                },
+            )),
+        }
+    }
+    closed.into_iter().map(|(_, c)| c).collect()
+}
+
+/// Cells whose areas are unknowns, in the order of the unknowns.
+fn flowing_cells(fluid: &FluidMesh) -> impl Iterator<Item = usize> + '_ {
+    fluid.runs.iter().cloned().flatten()
+}
+
+/// Disjoint sets.
+struct Sets(Vec<usize>);
+
+impl Sets {
+    fn new(len: usize) -> Self {
+        Self((0..len).collect())
+    }
+
+    fn root(&mut self, mut i: usize) -> usize {
+        while self.0[i] != i {
+            self.0[i] = self.0[self.0[i]];
+            i = self.0[i];
+        }
+        i
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a] = b;
+    }
+}
+
+impl Dae for StaticBeam {
+    fn len(&self) -> usize {
+        self.beam.len()
+    }
+
+    fn differential(&self) -> &[bool] {
+        &self.none
+    }
+
+    fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    fn residual(&mut self, t: f64, y: &[f64], _: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+        self.beam.residual(t, y, &self.zeros, residual)?;
+        for closed in &self.closed {
+            let sum: f64 = closed.cells.iter().map(|&c| y[c]).sum();
+            residual[closed.row] = sum - closed.sum;
+        }
+        for (r, more) in residual.iter_mut().zip(&self.imperfection) {
+            *r += more;
+        }
+        Ok(())
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], _: &[f64], _: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+        let seeds = Seeds::Step { cj: 0.0 };
+        self.beam.jacobian(t, y, &self.zeros, seeds, &mut self.beam_values)?;
+        for (value, from) in values.iter_mut().zip(&self.from) {
+            *value = from.map_or(1.0, |entry| self.beam_values[entry]);
+        }
+        Ok(())
+    }
+
+    fn name(&self, unknown: usize) -> String {
+        self.beam.name(unknown)
+    }
+}

@@ -1,0 +1,134 @@
+//! Static equilibrium: the path from rest to the full load, every point of it solved by KINSOL.
+//!
+//! ```text
+//! along    equilibrium with the share of the loads as one more unknown: the arc length
+//! predict  where the next point probably is
+//! path     step by step along the path, as far as predictions hold; limit points, bifurcations, branches
+//! state    what is read off a state; one state as the unknowns of another system
+//! ```
+//!
+//! Everything that acts grows in proportion from nothing: loads, motions of the ends, pressures and flows of ports, volumes
+//! of closed networks. Valves stand as they do under the full load.
+
+mod along;
+mod path;
+mod predict;
+mod state;
+
+use crate::case::schema::Case;
+use crate::case::signals::Polynomial;
+use crate::case::{Clock, Signal};
+use crate::discrete::{System, start};
+use crate::error::SolverFault;
+use crate::model::{Model, Storage};
+use crate::sundials::Solution;
+
+pub use path::follow;
+pub use state::{Stability, State, columns, restate};
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Instant whose loads are the full ones [s].
+    pub at_s: f64,
+    /// Share of the loads at which the path ends.
+    pub share: f64,
+    /// Largest share of an arc that a step may take, a number of points at least; none: as far as predictions hold.
+    pub points: Option<usize>,
+    /// Whether the path that crosses is taken where this one loses its stability.
+    pub branches: bool,
+}
+
+impl Options {
+    /// Under the loads of an instant [s].
+    pub fn at(at_s: f64) -> Self {
+        Self {
+            at_s,
+            share: 1.0,
+            points: None,
+            branches: true,
+        }
+    }
+}
+
+/// A load path, as far as it was followed.
+#[derive(Clone, Debug)]
+pub struct Path {
+    /// Its states, from rest on.
+    pub states: Vec<State>,
+    /// What happened on the way.
+    pub events: Vec<Event>,
+    /// Work of the solver.
+    pub work: Solution,
+    /// Predictions that had to be shortened.
+    pub rejected: u64,
+    /// Why the path ends before the share that was asked for, if it does.
+    pub fault: Option<SolverFault>,
+}
+
+/// A remarkable point of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// Share of the loads.
+    pub share: f64,
+    /// What is remarkable.
+    pub kind: Kind,
+}
+
+/// What is remarkable about a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The share of the loads turns back: snap-through under a load that keeps growing.
+    LimitPoint,
+    /// Another path crosses: buckling. The path that is followed from there on is the other one.
+    Bifurcation,
+}
+
+impl Event {
+    /// For people.
+    pub fn words(&self) -> &'static str {
+        match self.kind {
+            Kind::LimitPoint => "limit point: the load that the beam carries turns back here",
+            Kind::Bifurcation => {
+                "bifurcation: the path loses its stability where another one crosses it; that one is followed"
+            }
+        }
+    }
+}
+
+impl Path {
+    /// The last state.
+    pub fn last(&self) -> &State {
+        &self.states[self.states.len() - 1]
+    }
+}
+
+/// The system whose equilibria are looked for: everything the case describes without inertia and damping, all areas unknowns,
+/// with signals that grow from nothing to what they are at an instant [s] while t grows from 0 to 1.
+pub fn system(case: &Case, at_s: f64) -> System {
+    let mut model = Model::whole(case, false);
+    let at = |signal: &Signal| signal.jet(Clock { t: at_s, within: at_s }).value;
+    let growing = |signal: &Signal| match at(signal) {
+        0.0 => Signal::Constant(0.0),
+        value => Signal::Polynomial(Polynomial {
+            coefficients: vec![0.0, value],
+        }),
+    };
+    model.replace_signals(growing, |opening| Signal::Constant(at(opening)));
+    let section = &mut model.section;
+    (section.drag, section.axial_damping_time, section.bending_damping_time) = (0.0, 0.0, 0.0);
+    if let Some(wet) = model.wet.as_mut().filter(|wet| wet.flows) {
+        wet.storage.fill(Storage::Flowing);
+        wet.pools.clear();
+    }
+    System::with(case, model)
+}
+
+/// Scaled unknowns of a static system at rest, and of the state that its volumes are those of.
+fn rest(case: &Case, system: System) -> (crate::dae::StaticBeam, Vec<f64>) {
+    let mut beam = crate::dae::BeamDae::new(system.clone());
+    let (of, now) = beam.instant(0.0);
+    let volumes = start::state(of, case, now);
+    let y = vec![0.0; volumes.len()];
+    (crate::dae::StaticBeam::new(system, &volumes), y)
+}

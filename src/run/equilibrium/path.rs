@@ -1,0 +1,373 @@
+//! Along the path of equilibria.
+
+use super::along::Along;
+use super::predict::Trail;
+use super::state::State;
+use super::{Event, Kind, Options, Path, rest, system};
+use crate::case::schema::Case;
+use crate::error::SolverFault;
+use crate::run::record::Control;
+use crate::sundials::{Kinsol, KinsolFailure, KinsolOptions, Solution};
+
+/// Longest step, in lengths of the beam and shares of the load.
+const LONGEST: f64 = 0.5;
+/// Shortest step worth trying.
+const SHORTEST: f64 = 1e-7;
+/// How far a solution may lie from its prediction, in steps: further off it may be on another path.
+const ASTRAY: f64 = 0.2;
+/// The same that steps are chosen for.
+const WANTED: f64 = 0.05;
+/// Newton steps that steps are chosen for, and largest growth of a step.
+const WANTED_ITERATIONS: f64 = 12.0;
+const GROWTH: f64 = 2.5;
+/// Distance to a crossing path at which it is entered, and the first step aside.
+const NEAR: f64 = 1e-4;
+const ASIDE: f64 = 0.02;
+const INVERSE_ITERATIONS: usize = 12;
+/// Newton steps after which a prediction counts as bad.
+const PATIENCE: u32 = 14;
+/// The same at rest.
+const START_PATIENCE: u32 = 60;
+/// Points of a path that has lost its way.
+const MOST_POINTS: usize = 5000;
+/// Shares beyond which a path has lost its way.
+const FURTHEST: f64 = 100.0;
+
+/// Follows the equilibria of a case from rest to a share of its loads. `watch` sees every state and may end the path.
+pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> Control) -> Path {
+    let (statics, y) = rest(case, system(case, options.at_s));
+    let mut path = Path {
+        states: vec![],
+        events: vec![],
+        work: Solution::default(),
+        rejected: 0,
+        fault: None,
+    };
+    let n = y.len();
+    let weights = weights(statics.system());
+    match Kinsol::new(Along::new(statics)) {
+        Err(failure) => path.fault = Some(fault(0.0, &failure.what)),
+        Ok(solver) => {
+            let mut x = y;
+            x.push(0.0);
+            let mut follower = Follower {
+                orientation: 0,
+                solver,
+                weights,
+                n,
+                options: *options,
+                path: &mut path,
+                watch,
+            };
+            if let Err(End(fault)) = follower.go(x) {
+                path.fault = Some(fault);
+            }
+        }
+    }
+    path
+}
+
+/// Squared weight of each unknown and of the share in the length of a step: displacements in lengths of the beam, root mean
+/// square over its nodes; the others follow from these.
+fn weights(system: &crate::discrete::System) -> Vec<f64> {
+    let l = &system.layout;
+    let mut weights = vec![0.0; l.len + 1];
+    for unknown in (l.u1..l.u1 + l.free_u1.len()).chain(l.u3..l.u3 + l.free_u3.len()) {
+        weights[unknown] = (l.scales[unknown] / system.model.length).powi(2) / system.mesh.nodes as f64;
+    }
+    weights[l.len] = 1.0;
+    weights
+}
+
+/// Why a path ends early.
+struct End(SolverFault);
+
+/// What comes after a step.
+enum Next {
+    /// Another one of this length.
+    Step(f64),
+    /// The path is crossed by another one before this share, where the inverse of the matrix is this large.
+    Branch(f64, f64),
+    /// Nothing.
+    Arrived,
+}
+
+struct Follower<'a> {
+    /// Sign of the determinant of the equations: it changes where another path crosses, not at a limit point.
+    orientation: i8,
+    solver: Kinsol<Along>,
+    weights: Vec<f64>,
+    n: usize,
+    options: Options,
+    path: &'a mut Path,
+    watch: &'a mut dyn FnMut(&State) -> Control,
+}
+
+impl Follower<'_> {
+    fn go(&mut self, mut x: Vec<f64>) -> Result<(), End> {
+        self.solver.dae_mut().at_share(0.0);
+        self.solve(&mut x, START_PATIENCE).map_err(|f| self.fail(&f, 0.0))?;
+        self.orientation = self.solver.determinant_sign() * self.options.share.signum() as i8;
+        self.keep(&x)?;
+        let longest = LONGEST.min(self.options.points.map_or(LONGEST, |points| 1.0 / points as f64));
+        let mut direction = self.by_share();
+        let mut step = (self.options.share.abs() * self.norm(&direction)).min(longest);
+        let unit = self.options.share.signum() / self.norm(&direction);
+        direction.iter_mut().for_each(|d| *d *= unit);
+        let mut trail = Trail::along(x, &direction, 1e-3 * step);
+        loop {
+            step = match self.step(&mut trail, step)? {
+                Next::Step(step) => step.min(longest),
+                Next::Branch(share, softness) => self.leave(&mut trail, (share, softness))?,
+                Next::Arrived => return Ok(()),
+            };
+        }
+    }
+
+    /// Takes one step, shortened until it succeeds.
+    fn step(&mut self, trail: &mut Trail, mut step: f64) -> Result<Next, End> {
+        let (n, target) = (self.n, self.options.share);
+        let last = trail.last().to_vec();
+        let mut growth = GROWTH;
+        loop {
+            let mut guess = trail.beyond(step);
+            let arrives = (guess[n] - target) * (last[n] - target) <= 0.0;
+            if arrives {
+                step = crossing(|step| trail.beyond(step)[n] - target, step);
+                guess = trail.beyond(step);
+                self.solver.dae_mut().at_share(target);
+            } else {
+                self.aim(&last, &guess);
+            }
+            let mut x = guess.clone();
+            let solved = self.solve(&mut x, PATIENCE);
+            let off = self.norm(&difference(&x, &guess)) / step;
+            if let Ok(iterations) = solved
+                && off <= ASTRAY
+            {
+                // With the load prescribed the equations are turned around where it falls.
+                let orientation = if arrives && x[n] < last[n] { -1 } else { 1 } * self.solver.determinant_sign();
+                if orientation != self.orientation && self.options.branches {
+                    if step <= NEAR {
+                        let (softness, _) = self.softest();
+                        return Ok(Next::Branch(x[n], softness));
+                    }
+                    step = (0.25 * step).max(NEAR);
+                    growth = 1.0;
+                    continue;
+                }
+                self.orientation = orientation;
+                let taken = self.norm(&difference(&x, &last));
+                let degree = f64::from(trail.degree());
+                trail.push(taken, x.clone());
+                self.keep(&x)?;
+                if arrives {
+                    return Ok(Next::Arrived);
+                }
+                if x[n].abs() > FURTHEST || self.path.states.len() > MOST_POINTS {
+                    return Err(self.lost(x[n]));
+                }
+                let by_distance = (WANTED / off.max(1e-12)).powf(1.0 / degree);
+                let by_work = WANTED_ITERATIONS / iterations as f64;
+                return Ok(Next::Step(taken * by_distance.min(by_work).clamp(0.3, growth)));
+            }
+            self.path.rejected += 1;
+            growth = 1.0;
+            step *= if solved.is_ok() {
+                (0.5 * ASTRAY / off).clamp(0.1, 0.5)
+            } else {
+                0.35
+            };
+            if step < SHORTEST {
+                let astray = || KinsolFailure {
+                    code: 0,
+                    what: "what is found lies far from what was predicted, however short the step".into(),
+                    worst: None,
+                };
+                return Err(self.fail(&solved.err().unwrap_or_else(astray), last[n]));
+            }
+        }
+    }
+
+    /// Leaves a path where another one crosses it: a step along the direction that costs no force, which is where the
+    /// matrix is nearly singular, to the side on which it bends (its largest displacement across, or else along) in the positive sense.
+    fn leave(&mut self, trail: &mut Trail, beyond: (f64, f64)) -> Result<f64, End> {
+        let n = self.n;
+        let last = trail.last().to_vec();
+        let mut x = last.clone();
+        self.solve(&mut x, PATIENCE)
+            .map_err(|failure| self.fail(&failure, last[n]))?;
+        let (softness, mut aside) = self.softest();
+        // The smallest eigenvalue changes sign in between, in proportion to the distance.
+        let crossing = last[n] + (beyond.0 - last[n]) / (1.0 - softness / beyond.1);
+        let share = if crossing.is_finite() { crossing } else { last[n] };
+        self.path.events.push(Event {
+            share,
+            kind: Kind::Bifurcation,
+        });
+        aside[n] = 0.0;
+        let displacements = aside
+            .iter()
+            .zip(&self.weights)
+            .filter(|(_, w)| **w > 0.0)
+            .map(|(x, _)| *x);
+        let largest = displacements.fold(0.0_f64, |m, x| if x.abs() > m.abs() { x } else { m });
+        let unit = largest.signum() / self.norm(&aside).max(f64::MIN_POSITIVE);
+        aside.iter_mut().for_each(|x| *x *= unit);
+        let mut step = ASIDE;
+        loop {
+            let guess: Vec<f64> = last.iter().zip(&aside).map(|(x, d)| x + step * d).collect();
+            self.aim(&last, &guess);
+            let mut x = guess.clone();
+            let solved = self.solve(&mut x, PATIENCE);
+            if solved.is_ok() && self.norm(&difference(&x, &guess)) <= 0.5 * step {
+                self.orientation = self.solver.determinant_sign();
+                let taken = self.norm(&difference(&x, &last));
+                *trail = Trail::through(last, taken, x.clone());
+                self.keep(&x)?;
+                return Ok(taken);
+            }
+            self.path.rejected += 1;
+            step *= 0.5;
+            if step < NEAR {
+                let none = || KinsolFailure {
+                    code: 0,
+                    what: "the path that crosses here is not found".into(),
+                    worst: None,
+                };
+                return Err(self.fail(&solved.err().unwrap_or_else(none), share));
+            }
+        }
+    }
+
+    /// Largest eigenvalue of the inverse of the matrix last factored, with its vector (inverse iteration).
+    fn softest(&mut self) -> (f64, Vec<f64>) {
+        let mut x: Vec<f64> = (0..=self.n).map(|k| (1.0 + k as f64).sin()).collect();
+        let mut eigenvalue = 0.0;
+        for _ in 0..INVERSE_ITERATIONS {
+            let norm = dot(&x, &x).sqrt().max(f64::MIN_POSITIVE);
+            x.iter_mut().for_each(|x| *x /= norm);
+            let before = x.clone();
+            self.solver.apply_inverse(&mut x);
+            eigenvalue = dot(&before, &x);
+        }
+        (eigenvalue, x)
+    }
+
+    /// Asks for the point of the path in the plane through the guess, across the chord from the last point to it.
+    fn aim(&mut self, last: &[f64], guess: &[f64]) {
+        let mut direction = difference(guess, last);
+        let norm = self.norm(&direction);
+        for (d, w) in direction.iter_mut().zip(&self.weights) {
+            *d *= w / norm;
+        }
+        let along = self.solver.dae_mut();
+        along.position = direction.iter().zip(guess).map(|(d, x)| d * x).sum();
+        along.direction = direction;
+    }
+
+    /// `d(y, s)/ds` of the path at the last solution, found with s prescribed.
+    fn by_share(&mut self) -> Vec<f64> {
+        let mut direction = vec![0.0; self.n + 1];
+        direction[self.n] = 1.0;
+        self.solver.apply_inverse(&mut direction);
+        direction
+    }
+
+    /// Solves from a guess; Newton steps done.
+    fn solve(&mut self, x: &mut [f64], patience: u32) -> Result<u64, KinsolFailure> {
+        let options = KinsolOptions {
+            max_iterations: patience,
+            ..KinsolOptions::default()
+        };
+        let solution = self.solver.solve(0.0, x, &options)?;
+        self.path.work.add(&solution);
+        Ok(solution.iterations)
+    }
+
+    /// Keeps a state and shows it.
+    fn keep(&mut self, x: &[f64]) -> Result<(), End> {
+        let state = State::read(self.solver.dae_mut().statics(), x);
+        let control = (self.watch)(&state);
+        if let [.., a, b] = self.path.states.as_slice()
+            && (b.share - a.share) * (state.share - b.share) < 0.0
+        {
+            self.path.events.push(Event {
+                share: b.share,
+                kind: Kind::LimitPoint,
+            });
+        }
+        self.path.states.push(state);
+        match control {
+            Control::Continue => Ok(()),
+            Control::Stop(reason) => {
+                let share = x[self.n];
+                let mut fault = fault(share, &reason);
+                fault.cause = None;
+                Err(End(fault))
+            }
+        }
+    }
+
+    fn norm(&self, x: &[f64]) -> f64 {
+        x.iter().zip(&self.weights).map(|(x, w)| w * x * x).sum::<f64>().sqrt()
+    }
+
+    fn lost(&self, share: f64) -> End {
+        let points = self.path.states.len();
+        let what = format!(
+            "the path does not come to the share of the loads that is asked for: {points} points end at {share:.4}"
+        );
+        End(fault(share, &what))
+    }
+
+    fn fail(&self, failure: &KinsolFailure, share: f64) -> End {
+        End(SolverFault {
+            unknown: failure.worst.clone(),
+            ..fault(
+                share,
+                &format!(
+                    "no equilibrium is found beyond {share:.6} of the loads: {}",
+                    failure.what
+                ),
+            )
+        })
+    }
+}
+
+fn fault(share: f64, what: &str) -> SolverFault {
+    SolverFault {
+        time_s: share,
+        what: what.into(),
+        unknown: None,
+        cause: Some(if share == 0.0 {
+            "nothing holds the beam, or a part of the network has neither bladder nor pressure".into()
+        } else {
+            "two paths that meet, a coupling that is not convex, a bladder that closes".to_string()
+        }),
+        hint: Some("look at the states up to there; a small load across tells which way a symmetric beam bends".into()),
+    }
+}
+
+/// Where a function that changes sign between 0 and `end` is zero (bisection).
+fn crossing(f: impl Fn(f64) -> f64, end: f64) -> f64 {
+    let (mut low, mut high) = (0.0, end);
+    let sign = f(high).signum();
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if f(middle).signum() == sign {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    high
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}

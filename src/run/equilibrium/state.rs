@@ -1,0 +1,155 @@
+//! One state of equilibrium.
+
+use crate::dae::{BeamDae, StaticBeam};
+use crate::discrete::ledger::{self, FLOWS};
+use crate::discrete::sample::{self, ColumnText, EnergyBalance};
+use crate::discrete::{Instant, System, Workspace};
+use crate::run::record::Column;
+
+/// An equilibrium under a share of the loads.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Share of the loads.
+    pub share: f64,
+    /// Scaled unknowns of the static system.
+    pub y: Vec<f64>,
+    /// What is read off it, in the order of [`columns`].
+    pub row: Vec<f64>,
+    /// Displacements of the nodes [m].
+    pub u1: Vec<f64>,
+    /// Displacements of the nodes [m].
+    pub u3: Vec<f64>,
+    /// Whether it holds.
+    pub stability: Option<Stability>,
+}
+
+/// `[E31]` Whether an equilibrium holds: the signs of the eigenvalues μ of its static tangent over the mass of the nodes,
+///
+/// ```text
+/// ∂F/∂y x = μ D x        D the mass of each node at its momentum, 0 elsewhere
+/// ```
+///
+/// each negative one a way in which it gives way (divergence), √μ the angular frequency of what is soft where the network
+/// has time to follow. Flutter under follower loads needs inertia: `slcbeam modes`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stability {
+    /// Negative eigenvalues.
+    pub unstable: usize,
+    /// The one of least magnitude [1/s^2].
+    pub softest: f64,
+}
+
+/// Columns of a history that a state at rest has too.
+fn at_rest(system: &System) -> impl Iterator<Item = (usize, ColumnText)> {
+    let stored = ["axial_energy", "bending_energy", "bladder_energy"];
+    let figures = if system.fluid.is_some() { 8 } else { 4 };
+    let all = sample::columns(system).into_iter().enumerate();
+    all.filter(move |(k, (name, ..))| (1..figures).contains(k) || stored.contains(name))
+}
+
+/// What a [`State`]'s row holds, the share of the loads first.
+pub fn columns(system: &System) -> Vec<Column> {
+    let share = ("load_factor", "1", "share of the loads");
+    let all = std::iter::once(share).chain(at_rest(system).map(|(_, text)| text));
+    all.map(|(name, unit, about)| Column {
+        name: name.into(),
+        unit,
+        about: about.into(),
+    })
+    .collect()
+}
+
+impl State {
+    /// Reads the unknowns with the share of the loads behind them.
+    pub fn read(statics: &mut StaticBeam, x: &[f64]) -> Self {
+        let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
+        let zeros = vec![0.0; y.len()];
+        let (system, now, w) = statics.beam().evaluate(share, y, &zeros);
+        let balance = EnergyBalance {
+            stored: ledger::energies(system, now, w),
+            residual: 0.0,
+        };
+        let mut history = vec![];
+        let none = vec![0.0; FLOWS.len()];
+        sample::row(system, now, share, w, &balance, &none, &mut history);
+        let row = std::iter::once(share)
+            .chain(at_rest(system).map(|(k, _)| history[k]))
+            .collect();
+        Self {
+            share,
+            y: y.to_vec(),
+            row,
+            u1: w.u1.clone(),
+            u3: w.u3.clone(),
+            stability: None,
+        }
+    }
+}
+
+/// The scaled unknowns of another system of the same case in the state `from` of a beam at rest under the loads at `share`:
+/// displacements, areas, junction and turbine pressures; what is algebraic besides is a guess, velocities are zero.
+pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &Instant) -> Vec<f64> {
+    let zeros = vec![0.0; y.len()];
+    let (_, _, w) = from.evaluate(share, y, &zeros);
+    let mut z = vec![0.0; to.layout.len];
+    displacements(w, to, now, &mut z);
+    fluid(w, to, &mut z);
+    for (z, scale) in z.iter_mut().zip(&to.layout.scales) {
+        *z /= scale;
+    }
+    z
+}
+
+fn displacements(w: &Workspace<f64>, to: &System, now: &Instant, z: &mut [f64]) {
+    let l = &to.layout;
+    let last = (to.mesh.nodes - 1) as f64;
+    let lines = [
+        (now.frame_1(), &l.free_u1, l.u1, &w.u1),
+        (now.frame_3(), &l.free_u3, l.u3, &w.u3),
+    ];
+    for (frame, free, first, u) in lines {
+        for (k, node) in free.clone().enumerate() {
+            let carried = frame.map_or(0.0, |f| f.at(node as f64 / last).value);
+            z[first + k] = u[node] - carried;
+        }
+    }
+}
+
+fn fluid(w: &Workspace<f64>, to: &System, z: &mut [f64]) {
+    let (Some(wet), Some(fluid)) = (&to.model.wet, &to.fluid) else {
+        return;
+    };
+    let l = &to.layout;
+    let segments = to.mesh.segments;
+    if wet.takes_moments {
+        z[l.mean_moment..l.mean_moment + segments].copy_from_slice(&w.mean_moment);
+    }
+    if wet.takes_forces {
+        z[l.mean_force..l.mean_force + segments].copy_from_slice(&w.mean_force);
+    }
+    let cells = w.area.len() / (2 * wet.per_row);
+    // As many cells as before, or one for all of a bladder's.
+    let merged = cells / fluid.cells_per_bladder;
+    let mut unknown = l.area;
+    for &bladder in &fluid.flowing {
+        for areas in w.area[bladder * cells..(bladder + 1) * cells].chunks(merged) {
+            z[unknown] = areas.iter().sum::<f64>() / merged as f64;
+            unknown += 1;
+        }
+    }
+    for (k, &junction) in fluid.junctions.iter().enumerate() {
+        z[l.junction + k] = w.junction.get(junction).copied().unwrap_or(0.0);
+    }
+    for (k, drop) in w.bridge.iter().take(fluid.bridges.len()).enumerate() {
+        z[l.bridge + k] = *drop;
+    }
+    for (k, pool) in wet.pools.iter().enumerate() {
+        let of_pool = || pool.bladders.iter().flat_map(|&b| b * cells..(b + 1) * cells);
+        if let Some(unknown) = l.pool_pressure[k] {
+            z[unknown] = of_pool().map(|c| w.pressure[c]).sum::<f64>() / of_pool().count() as f64;
+        }
+        if let Some(unknown) = l.pool_volume[k] {
+            z[unknown] = of_pool().map(|c| w.area[c]).sum::<f64>() * wet.bladder_length / cells as f64;
+        }
+    }
+}

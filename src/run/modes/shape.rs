@@ -1,0 +1,149 @@
+//! What an eigenvector looks like: displacements and pressures.
+
+use nalgebra::Complex;
+
+use super::linearise::Linearised;
+use crate::dae::dual::Dual;
+use crate::discrete::{Instant, Workspace, recipe};
+
+/// Amplitudes of a mode: real parts cos, imaginary parts minus sin of the phase at t = 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shape {
+    /// Transverse displacement of each node [m].
+    pub u1: Vec<Complex<f64>>,
+    /// Axial displacement of each node [m].
+    pub u3: Vec<Complex<f64>>,
+    /// Mean pressure of each bladder, upper row first [Pa]; none in a dry beam.
+    pub pressure: Vec<Complex<f64>>,
+}
+
+/// Largest displacement of a mode as it is shown, over the length of the beam.
+const DISPLACEMENT: f64 = 0.01;
+/// Largest pressure of a mode as it is shown [Pa].
+const PRESSURE: f64 = 1000.0;
+
+/// Shapes from eigenvectors, by the derivative of the model along them.
+pub struct Shapes<'a> {
+    of: &'a Linearised,
+    now: Instant,
+    workspace: Workspace<Dual<2>>,
+}
+
+impl<'a> Shapes<'a> {
+    /// For the vectors of a linearisation.
+    pub fn new(of: &'a Linearised) -> Self {
+        let mut now = Instant::new(of.system());
+        now.update(of.system(), of.clock());
+        Self {
+            of,
+            now,
+            workspace: Workspace::new(of.system()),
+        }
+    }
+
+    /// Shape of a vector: as large as a hundredth of the length or 1 kPa, whichever comes first; where displacements are
+    /// largest (of pure flow: pressures) its phase is zero.
+    pub fn shape(&mut self, x: &[Complex<f64>]) -> Shape {
+        let system = self.of.system();
+        let scales = &system.layout.scales;
+        let along = |k: usize| Dual {
+            value: self.of.y[k] * scales[k],
+            derivative: [x[k].re * scales[k], x[k].im * scales[k]],
+        };
+        let y: Vec<Dual<2>> = (0..x.len()).map(along).collect();
+        let at_rest = Dual {
+            value: 0.0,
+            derivative: [0.0; 2],
+        };
+        let yp = vec![at_rest; x.len()];
+        recipe::evaluate(system, &self.now, &y, &yp, &mut self.workspace);
+        let complex = |values: &[Dual<2>]| -> Vec<Complex<f64>> {
+            let parts = values.iter().map(|v| Complex::new(v.derivative[0], v.derivative[1]));
+            parts.collect()
+        };
+        let w = &self.workspace;
+        Shape {
+            u1: complex(&w.u1),
+            u3: complex(&w.u3),
+            pressure: complex(&w.mean_pressure),
+        }
+        .normalised(system.model.length)
+    }
+}
+
+impl Shape {
+    /// Scaled and turned as told above.
+    fn normalised(mut self, length: f64) -> Self {
+        let moved = largest(self.u1.iter().chain(&self.u3)) / (DISPLACEMENT * length);
+        let pressed = largest(self.pressure.iter()) / PRESSURE;
+        let (by, size) = if moved.norm() > NOTHING * pressed.norm() {
+            (moved, moved.norm().max(pressed.norm()))
+        } else {
+            (pressed, pressed.norm())
+        };
+        if size > 0.0 && by.norm() > 0.0 {
+            let factor = by.conj() / (by.norm() * size);
+            for value in self.u1.iter_mut().chain(&mut self.u3).chain(&mut self.pressure) {
+                *value *= factor;
+            }
+        }
+        self
+    }
+
+    /// Largest displacement [m].
+    pub fn displacement(&self) -> f64 {
+        largest(self.u1.iter().chain(&self.u3)).norm()
+    }
+
+    /// Largest pressure [Pa].
+    pub fn largest_pressure(&self) -> f64 {
+        largest(self.pressure.iter()).norm()
+    }
+
+    /// Share of u1 in the squared displacements.
+    pub fn transverse(&self) -> f64 {
+        let square = |u: &[Complex<f64>]| u.iter().map(|u| u.norm_sqr()).sum::<f64>();
+        let (across, along) = (square(&self.u1), square(&self.u3));
+        across / (across + along).max(f64::MIN_POSITIVE)
+    }
+
+    /// Whether pressures are below round-off of what such displacements would make.
+    pub fn without_pressure(&self, length: f64) -> bool {
+        self.largest_pressure() / PRESSURE <= NOTHING * self.displacement() / (DISPLACEMENT * length)
+    }
+}
+
+/// Share below which displacements, or pressures, are round-off of the others.
+const NOTHING: f64 = 1e-6;
+
+/// `[E33]` Modal assurance criterion (Allemang & Brown) of displacements, weighted by the length `h_i` of each node: 1 for
+/// the same shape, 0 for orthogonal ones:
+///
+/// ```text
+/// MAC = |Σ h_i (ū1 w1 + ū3 w3)|² / (Σ h_i |u|² Σ h_i |w|²)
+/// ```
+pub fn likeness(a: &Shape, b: &Shape) -> f64 {
+    let last = a.u1.len().saturating_sub(1);
+    let inner = |a: &Shape, b: &Shape| -> Complex<f64> {
+        let part = |u: &[Complex<f64>], w: &[Complex<f64>]| -> Complex<f64> {
+            let terms = u.iter().zip(w).enumerate();
+            terms
+                .map(|(i, (u, w))| u.conj() * w * if i == 0 || i == last { 0.5 } else { 1.0 })
+                .sum()
+        };
+        part(&a.u1, &b.u1) + part(&a.u3, &b.u3)
+    };
+    let whole = inner(a, a).re * inner(b, b).re;
+    if whole > 0.0 {
+        inner(a, b).norm_sqr() / whole
+    } else {
+        0.0
+    }
+}
+
+fn largest<'a>(values: impl Iterator<Item = &'a Complex<f64>>) -> Complex<f64> {
+    values.fold(
+        Complex::default(),
+        |m, x| if x.norm_sqr() > m.norm_sqr() { *x } else { m },
+    )
+}

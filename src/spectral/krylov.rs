@@ -1,0 +1,201 @@
+//! Krylov-Schur: an Arnoldi basis, restarted with the Schur vectors of its best part.
+//!
+//! G. W. Stewart, *A Krylov-Schur algorithm for large eigenproblems*, SIAM J. Matrix Anal. Appl. 23 (2002) 601-614:
+//!
+//! ```text
+//! K U = U T + u bᵀ        kept where |bᵢ| ≤ tolerance |Tᵢᵢ|
+//! ```
+//!
+//! A Krylov space holds one vector of a repeated eigenvalue. Once all wanted ones have converged the basis goes on from a
+//! random vector orthogonal to them; only when that brings nothing nearer the shift are they complete.
+
+use nalgebra::{Complex, DMatrix};
+
+use super::pencil::Shifted;
+use super::{Failure, Options, schur};
+
+type C = Complex<f64>;
+
+/// Share of the largest θ below which one is that of an infinite eigenvalue.
+pub(super) const FINITE: f64 = 1e-14;
+/// Change of a θ, relative, by which one that was overlooked is told from round-off.
+const NEW: f64 = 1e-7;
+
+/// Eigenvalues and vectors, nearest the shift first, and the number of restarts.
+pub(super) fn pairs(
+    shifted: &mut Shifted,
+    count: usize,
+    options: &Options,
+) -> Result<(Vec<(C, Vec<C>)>, usize), Failure> {
+    let n = shifted.differential.len();
+    let wanted = count.min(n);
+    let size = (2 * wanted + 20).min(n);
+    let mut space = Space::new(n, size);
+    let mut known: Option<Vec<f64>> = None;
+    for restarts in 0..=options.max_restarts {
+        space.expand(shifted);
+        let slow = |converged| Failure::Slow { converged, restarts };
+        let (q, t) = schur::ordered(space.h.view((0, 0), (size, size)).into_owned()).ok_or(slow(0))?;
+        let last = space.h[(size, size - 1)];
+        let b: Vec<C> = (0..size).map(|i| last * q[(size - 1, i)]).collect();
+        let largest = t[(0, 0)].norm();
+        let good = |i: usize| {
+            let theta = t[(i, i)].norm();
+            theta <= FINITE * largest || b[i].norm() <= options.tolerance * theta
+        };
+        let converged = (0..wanted).take_while(|&i| good(i)).count();
+        if converged == wanted {
+            let sizes: Vec<f64> = (0..wanted).map(|i| t[(i, i)].norm()).collect();
+            let same = |old: &Vec<f64>| old.iter().zip(&sizes).all(|(old, new)| (new / old - 1.0).abs() < NEW);
+            if known.as_ref().is_some_and(same) || size == n {
+                return Ok((space.vectors(shifted, &q, &t, wanted), restarts));
+            }
+            known = Some(sizes);
+            space.restart(&q, &t, &b, wanted, true);
+        } else if restarts == options.max_restarts {
+            return Err(slow(converged));
+        } else {
+            // what has converged leaves room for the others
+            let kept = (wanted + (size - wanted) / 4 + converged / 4).min(size - 2);
+            space.restart(&q, &t, &b, kept, false);
+        }
+    }
+    Err(Failure::Slow {
+        converged: 0,
+        restarts: options.max_restarts,
+    })
+}
+
+/// `K U = U H`, one vector more in U than columns of H.
+struct Space {
+    u: Vec<Vec<C>>,
+    h: DMatrix<C>,
+    size: usize,
+    seed: u64,
+}
+
+impl Space {
+    fn new(n: usize, size: usize) -> Self {
+        let mut space = Self {
+            u: vec![],
+            h: DMatrix::zeros(size + 1, size),
+            size,
+            seed: 0x9e37_79b9_7f4a_7c15,
+        };
+        let first = space.random(n);
+        space.u.push(first);
+        space
+    }
+
+    /// Arnoldi's recursion from where the basis ends.
+    fn expand(&mut self, shifted: &mut Shifted) {
+        let n = self.u[0].len();
+        while self.u.len() <= self.size {
+            let j = self.u.len() - 1;
+            let mut w = vec![C::default(); n];
+            shifted.apply(&self.u[j], &mut w);
+            let before = norm(&w);
+            let coefficients = self.orthogonalise(&mut w);
+            for (i, c) in coefficients.into_iter().enumerate() {
+                self.h[(i, j)] = c;
+            }
+            let after = norm(&w);
+            if after > f64::EPSILON * before && j + 1 < n {
+                self.h[(j + 1, j)] = C::new(after, 0.0);
+                w.iter_mut().for_each(|w| *w /= after);
+                self.u.push(w);
+            } else {
+                self.h[(j + 1, j)] = C::default();
+                let next = if j + 1 < n {
+                    self.random(n)
+                } else {
+                    vec![C::default(); n]
+                };
+                self.u.push(next);
+            }
+        }
+    }
+
+    /// Takes the basis out of `w`, twice, and returns its coefficients.
+    fn orthogonalise(&self, w: &mut [C]) -> Vec<C> {
+        let mut all = vec![C::default(); self.u.len()];
+        for _ in 0..2 {
+            for (u, sum) in self.u.iter().zip(&mut all) {
+                let c: C = u.iter().zip(&*w).map(|(u, w)| u.conj() * w).sum();
+                w.iter_mut().zip(u).for_each(|(w, u)| *w -= u * c);
+                *sum += c;
+            }
+        }
+        all
+    }
+
+    /// A random vector of unit length, orthogonal to the basis.
+    fn random(&mut self, n: usize) -> Vec<C> {
+        let mut next = || {
+            // xorshift: the same run gives the same result
+            self.seed ^= self.seed << 13;
+            self.seed ^= self.seed >> 7;
+            self.seed ^= self.seed << 17;
+            (self.seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let mut w: Vec<C> = (0..n).map(|_| C::new(next(), next())).collect();
+        self.orthogonalise(&mut w);
+        let size = norm(&w);
+        w.iter_mut().for_each(|w| *w /= size);
+        w
+    }
+
+    /// Keeps the first `kept` Schur vectors; goes on from the last vector of the basis, or `anew` from a random one.
+    fn restart(&mut self, q: &DMatrix<C>, t: &DMatrix<C>, b: &[C], kept: usize, anew: bool) {
+        let last = self.u.pop();
+        let n = self.u[0].len();
+        let vectors = (0..kept).map(|k| combined(&self.u, &q.column(k).iter().copied().collect::<Vec<_>>()));
+        self.u = vectors.collect();
+        self.h.fill(C::default());
+        self.h.view_mut((0, 0), (kept, kept)).copy_from(&t.view((0, 0), (kept, kept)));
+        match last {
+            Some(last) if !anew => {
+                for (i, b) in b.iter().take(kept).enumerate() {
+                    self.h[(kept, i)] = *b;
+                }
+                self.u.push(last);
+            }
+            _ => {
+                let next = self.random(n);
+                self.u.push(next);
+            }
+        }
+    }
+
+    /// Eigenvalues and vectors of the first `wanted` Schur vectors.
+    fn vectors(&self, shifted: &mut Shifted, q: &DMatrix<C>, t: &DMatrix<C>, wanted: usize) -> Vec<(C, Vec<C>)> {
+        let largest = t[(0, 0)].norm();
+        let finite = (0..wanted).take_while(|&k| t[(k, k)].norm() > FINITE * largest);
+        finite
+            .map(|k| {
+                let y = schur::vector(t, k);
+                let in_basis: Vec<C> = (0..self.size)
+                    .map(|i| y.iter().enumerate().map(|(j, y)| q[(i, j)] * y).sum())
+                    .collect();
+                let x = combined(&self.u, &in_basis);
+                (shifted.shift - t[(k, k)].inv(), shifted.whole(&x).to_vec())
+            })
+            .collect()
+    }
+}
+
+/// `Σ cᵢ uᵢ` of unit length, over as many vectors as there are coefficients.
+pub(super) fn combined(u: &[Vec<C>], c: &[C]) -> Vec<C> {
+    let mut sum = vec![C::default(); u[0].len()];
+    for (u, c) in u.iter().zip(c) {
+        sum.iter_mut().zip(u).for_each(|(sum, u)| *sum += u * c);
+    }
+    let size = norm(&sum);
+    sum.iter_mut().for_each(|x| *x /= size);
+    sum
+}
+
+/// Euclidean length.
+pub(super) fn norm(x: &[C]) -> f64 {
+    x.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt()
+}

@@ -1,0 +1,181 @@
+//! Eigenvalues of sparse pencils `A + s B` nearest a shift, each with a bound of its error.
+//!
+//! | file | what stands there |
+//! |---|---|
+//! | [`pencil`] | the pencil, its products and its factors at a shift |
+//! | [`schur`] | Schur form of a small matrix, its order and its vectors |
+//! | `dense` | all finite eigenvalues of a small pencil |
+//! | `krylov` | those nearest a shift, of a large one |
+//! | `refine` | each pair improved by itself, with the bound of its error |
+//!
+//! `[E32]` The finite eigenvalues nearest a shift σ are the largest of an operator on the unknowns d whose columns of B are
+//! not zero; the others, which would add infinite ones, are eliminated with the factors:
+//!
+//! ```text
+//! K = P (A + σ B)⁻¹ B Pᵀ        K x_d = θ x_d        s = σ - 1/θ        x = (A + σ B)⁻¹ B x/θ
+//! ```
+//!
+//! A large K is only applied: one solve with KLU's factors a step, Krylov-Schur (Stewart 2002) above. KLU factors these
+//! matrices within a few times their own entries, where a library with sparse factors of its own would bring them twice.
+
+mod dense;
+mod krylov;
+pub mod pencil;
+mod refine;
+pub mod schur;
+
+use std::fmt;
+
+use nalgebra::Complex;
+
+pub use pencil::Pencil;
+
+/// Differential unknowns up to which all eigenvalues are computed at once.
+pub const DENSE: usize = 120;
+
+/// What can be asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Size of the operator up to which it is written out and all its eigenvalues are computed.
+    pub dense_up_to: usize,
+    /// Residual of a Schur vector, relative to its θ, below which it counts as found; pairs are refined afterwards.
+    pub tolerance: f64,
+    /// Restarts allowed.
+    pub max_restarts: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            dense_up_to: DENSE,
+            // refinement converges cubically: half of the digits are enough
+            tolerance: 1e-9,
+            max_restarts: 300,
+        }
+    }
+}
+
+/// An eigenvalue with its vector.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    /// `s`, in the unit of A over B.
+    pub s: Complex<f64>,
+    /// `x`, of unit length; one entry a column.
+    pub x: Vec<Complex<f64>>,
+    /// `|(A + s B) x|` over `|A| |x| + |s| |B| |x|`, entry by entry in absolute values: the backward error.
+    pub residual: f64,
+    /// Bound of the error of `s`, to first order, round-off included, [E34].
+    pub error: f64,
+}
+
+/// Eigenvalues nearest a shift and what they took.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Found {
+    /// Nearest first.
+    pub pairs: Vec<Pair>,
+    /// Finite eigenvalues that there are, at most.
+    pub finite: usize,
+    /// Sparse factorisations.
+    pub factorizations: u64,
+    /// Sparse solves.
+    pub solves: u64,
+    /// Restarts of the Krylov space; 0 when all eigenvalues were computed at once.
+    pub restarts: usize,
+    /// Whether all eigenvalues were computed at once.
+    pub dense: bool,
+}
+
+/// Why no eigenvalues were found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Failure {
+    /// The pencil is singular at the shift and beside it: `A + s B` has no inverse for any s.
+    Singular {
+        /// Column without pivot.
+        column: usize,
+    },
+    /// KLU ran out of memory or indices.
+    Package {
+        /// Its status.
+        status: i64,
+    },
+    /// The iteration did not converge.
+    Slow {
+        /// Eigenvalues that did.
+        converged: usize,
+        /// Restarts done.
+        restarts: usize,
+    },
+    /// An entry is not finite.
+    NotFinite,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Singular { .. } => write!(f, "the linearised equations leave an unknown undetermined"),
+            Self::Package { status } => write!(f, "KLU cannot go on (status {status})"),
+            Self::Slow { converged, restarts } => {
+                write!(f, "only {converged} eigenvalues converged in {restarts} restarts")
+            }
+            Self::NotFinite => write!(f, "the linearised equations are not finite"),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+/// The `count` eigenvalues of a pencil nearest `shift`, or all that there are; every copy of a repeated one counts.
+///
+/// # Errors
+/// [`Failure`].
+pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Options) -> Result<Found, Failure> {
+    if !pencil.finite() {
+        return Err(Failure::NotFinite);
+    }
+    let mut shifted = pencil::Shifted::new(pencil, shift)?;
+    let size = shifted.differential.len();
+    let dense = size <= options.dense_up_to.max(2 * count + 2);
+    let (mut pairs, restarts) = if size == 0 || count == 0 {
+        (vec![], 0)
+    } else if dense {
+        (dense::pairs(&mut shifted)?, 0)
+    } else {
+        krylov::pairs(&mut shifted, count, options)?
+    };
+    pairs.truncate(count);
+    let mut refined = Vec::with_capacity(pairs.len());
+    for (s, x) in pairs {
+        refined.push(refine::refine(&mut shifted, s, x)?);
+    }
+    let far = |pair: &Pair| (pair.s - shift).norm();
+    refined.sort_by(|a, b| far(a).total_cmp(&far(b)));
+    Ok(Found {
+        pairs: refined,
+        finite: size,
+        factorizations: shifted.klu.factorizations,
+        solves: shifted.klu.solves,
+        restarts,
+        dense,
+    })
+}
+
+/// The `count` lowest eigenvalues μ of `K x = μ D x`, D a diagonal without negative entries, lowest magnitude first: the
+/// stability of an equilibrium with the static tangent K. Entries of `k` in the order of the pattern.
+///
+/// # Errors
+/// [`Failure`].
+pub fn lowest(pattern: &crate::dae::Pattern, k: &[f64], diagonal: &[f64], count: usize) -> Result<Found, Failure> {
+    let mut b = vec![0.0; k.len()];
+    for (column, d) in diagonal.iter().enumerate() {
+        let on_diagonal = pattern.column(column).find(|&e| pattern.rows[e] as usize == column);
+        if let Some(entry) = on_diagonal {
+            b[entry] = -d;
+        }
+    }
+    let pencil = Pencil {
+        pattern,
+        a: k,
+        b: &b,
+    };
+    nearest(&pencil, Complex::new(0.0, 0.0), count, &Options::default())
+}

@@ -1,0 +1,137 @@
+//! The pencil `A + s B`, its products and its factors at a shift.
+
+use nalgebra::Complex;
+
+use super::Failure;
+use crate::dae::Pattern;
+use crate::sundials::KluFault;
+use crate::sundials::klu::complex::ComplexKlu;
+
+/// Two real sparse matrices of one pattern.
+#[derive(Clone, Copy, Debug)]
+pub struct Pencil<'a> {
+    /// Positions of entries.
+    pub pattern: &'a Pattern,
+    /// Entries of A.
+    pub a: &'a [f64],
+    /// Entries of B.
+    pub b: &'a [f64],
+}
+
+impl Pencil<'_> {
+    /// Whether every entry is.
+    pub fn finite(&self) -> bool {
+        self.a.iter().chain(self.b).all(|x| x.is_finite())
+    }
+
+    /// `A x` and `B x`.
+    pub fn products(&self, x: &[Complex<f64>]) -> (Vec<Complex<f64>>, Vec<Complex<f64>>) {
+        let (mut ax, mut bx) = (vec![Complex::default(); x.len()], vec![Complex::default(); x.len()]);
+        for (column, x) in x.iter().enumerate() {
+            for entry in self.pattern.column(column) {
+                let row = self.pattern.rows[entry] as usize;
+                ax[row] += x * self.a[entry];
+                bx[row] += x * self.b[entry];
+            }
+        }
+        (ax, bx)
+    }
+
+    /// `|A| |x| + |s| |B| |x|`, entry by entry: what round-off of the residual is measured by.
+    pub fn magnitude(&self, s: Complex<f64>, x: &[Complex<f64>]) -> Vec<f64> {
+        let mut sum = vec![0.0; x.len()];
+        let s = s.norm();
+        for (column, x) in x.iter().enumerate() {
+            let x = x.norm();
+            for entry in self.pattern.column(column) {
+                sum[self.pattern.rows[entry] as usize] += (self.a[entry].abs() + s * self.b[entry].abs()) * x;
+            }
+        }
+        sum
+    }
+}
+
+/// A pencil with the factors of `A + σ B`.
+pub(super) struct Shifted<'a> {
+    pub pencil: Pencil<'a>,
+    /// σ, moved a little where it is an eigenvalue.
+    pub shift: Complex<f64>,
+    pub klu: ComplexKlu,
+    /// Unknowns whose column of B is not zero.
+    pub differential: Vec<usize>,
+    values: Vec<Complex<f64>>,
+    full: Vec<Complex<f64>>,
+}
+
+/// Relative distances by which a shift is moved when no factors can be made there.
+const MOVES: [f64; 4] = [0.0, 1e-7, 1e-5, 1e-3];
+
+impl<'a> Shifted<'a> {
+    pub fn new(pencil: &Pencil<'a>, shift: Complex<f64>) -> Result<Self, Failure> {
+        let klu = ComplexKlu::new(pencil.pattern).map_err(failure)?;
+        let n = pencil.pattern.columns();
+        let differential = (0..n)
+            .filter(|&j| pencil.pattern.column(j).any(|e| pencil.b[e] != 0.0))
+            .collect();
+        let mut shifted = Self {
+            pencil: *pencil,
+            shift,
+            klu,
+            differential,
+            values: vec![Complex::default(); pencil.a.len()],
+            full: vec![Complex::default(); n],
+        };
+        shifted.shift = shifted.factor(shift)?;
+        Ok(shifted)
+    }
+
+    /// Makes the factors at `s` or as near to it as there are any; returns where.
+    pub fn factor(&mut self, s: Complex<f64>) -> Result<Complex<f64>, Failure> {
+        // a shift of zero has no size of its own: that of A over B stands for it
+        let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let size = if s.norm() > 0.0 {
+            s.norm()
+        } else {
+            largest(self.pencil.a) / largest(self.pencil.b).max(f64::MIN_POSITIVE)
+        };
+        let mut last = Failure::Singular { column: 0 };
+        for by in MOVES {
+            let moved = s + Complex::new(0.8, 0.6) * (by * size);
+            for ((value, a), b) in self.values.iter_mut().zip(self.pencil.a).zip(self.pencil.b) {
+                *value = moved * *b + a;
+            }
+            match self.klu.factor(&self.values) {
+                Ok(()) => return Ok(moved),
+                Err(fault) => last = failure(fault),
+            }
+        }
+        Err(last)
+    }
+
+    /// `(A + σ B)⁻¹ B Pᵀ v`, at all unknowns.
+    pub fn whole(&mut self, v: &[Complex<f64>]) -> &[Complex<f64>] {
+        self.full.fill(Complex::default());
+        for (&column, v) in self.differential.iter().zip(v) {
+            for entry in self.pencil.pattern.column(column) {
+                self.full[self.pencil.pattern.rows[entry] as usize] += v * self.pencil.b[entry];
+            }
+        }
+        self.klu.solve(&mut self.full);
+        &self.full
+    }
+
+    /// `K v`.
+    pub fn apply(&mut self, v: &[Complex<f64>], out: &mut [Complex<f64>]) {
+        self.whole(v);
+        for (out, &unknown) in out.iter_mut().zip(&self.differential) {
+            *out = self.full[unknown];
+        }
+    }
+}
+
+pub(super) fn failure(fault: KluFault) -> Failure {
+    match fault {
+        KluFault::Singular { column } => Failure::Singular { column },
+        KluFault::Package { status } => Failure::Package { status },
+    }
+}

@@ -1,0 +1,100 @@
+//! Sparse LU factors of complex matrices, for shifts off the real axis.
+
+use std::ptr;
+
+use nalgebra::Complex;
+
+use super::{Analysis, KluFault, RowScaling};
+use crate::dae::Pattern;
+use crate::sundials::c;
+
+/// Factors of complex matrices that share a pattern; pivots are chosen anew for every matrix.
+pub struct ComplexKlu {
+    analysis: Analysis,
+    numeric: *mut c::klu_l_numeric,
+    /// Numerical factorisations.
+    pub factorizations: u64,
+    /// Right-hand sides solved for.
+    pub solves: u64,
+}
+
+impl ComplexKlu {
+    /// Analyses a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
+    pub fn new(pattern: &Pattern) -> Result<Self, KluFault> {
+        Ok(Self {
+            analysis: Analysis::new(pattern, RowScaling::Max)?,
+            numeric: ptr::null_mut(),
+            factorizations: 0,
+            solves: 0,
+        })
+    }
+
+    /// Factors the matrix whose entries, in the order of the pattern, are `values`.
+    ///
+    /// After a fault there are no factors. Panics when the number of values is not that of the pattern.
+    pub fn factor(&mut self, values: &[Complex<f64>]) -> Result<(), KluFault> {
+        assert_eq!(values.len(), self.analysis.rows.len(), "values of another pattern");
+        self.free_numeric();
+        self.factorizations += 1;
+        let a = &mut self.analysis;
+        // SAFETY: pattern and symbolic belong together; values has the pattern's length, each a pair of doubles as
+        // `repr(C)` lays it out; KLU only reads them.
+        self.numeric = unsafe {
+            c::klu_zl_factor(
+                a.starts.as_mut_ptr(),
+                a.rows.as_mut_ptr(),
+                values.as_ptr().cast::<f64>().cast_mut(),
+                a.symbolic,
+                &mut *a.common,
+            )
+        };
+        if self.numeric.is_null() || self.analysis.common.status != i64::from(c::KLU_OK) {
+            let fault = self.analysis.fault();
+            self.free_numeric();
+            return Err(fault);
+        }
+        Ok(())
+    }
+
+    /// Replaces `b` by the solution of `A x = b`; false without factors. Panics when `b` has another length.
+    pub fn solve(&mut self, b: &mut [Complex<f64>]) -> bool {
+        self.solve_either(b, false)
+    }
+
+    /// Replaces `b` by the solution of `Aᴴ x = b`; false without factors. Panics when `b` has another length.
+    pub fn solve_adjoint(&mut self, b: &mut [Complex<f64>]) -> bool {
+        self.solve_either(b, true)
+    }
+
+    fn solve_either(&mut self, b: &mut [Complex<f64>], adjoint: bool) -> bool {
+        let a = &mut self.analysis;
+        assert_eq!(b.len(), a.columns(), "right-hand side of another size");
+        if self.numeric.is_null() {
+            return false;
+        }
+        self.solves += 1;
+        let (n, values) = (b.len() as i64, b.as_mut_ptr().cast::<f64>());
+        // SAFETY: symbolic and numeric belong together and b has n entries, each a pair of doubles.
+        let done = unsafe {
+            if adjoint {
+                c::klu_zl_tsolve(a.symbolic, self.numeric, n, 1, values, 1, &mut *a.common)
+            } else {
+                c::klu_zl_solve(a.symbolic, self.numeric, n, 1, values, &mut *a.common)
+            }
+        };
+        done != 0
+    }
+
+    fn free_numeric(&mut self) {
+        if !self.numeric.is_null() {
+            // SAFETY: made by `klu_zl_factor`; KLU sets the pointer to null.
+            unsafe { c::klu_zl_free_numeric(&mut self.numeric, &mut *self.analysis.common) };
+        }
+    }
+}
+
+impl Drop for ComplexKlu {
+    fn drop(&mut self) {
+        self.free_numeric();
+    }
+}
