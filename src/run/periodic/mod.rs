@@ -3,8 +3,10 @@
 //! ```text
 //! scene   a case in the long run: what repeats itself, what is conserved, the period map
 //! shoot   Newton's iteration on the period map
+//! record  one period of the cycle as a run
 //! ```
 
+pub mod record;
 pub mod scene;
 pub mod shoot;
 
