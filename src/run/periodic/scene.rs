@@ -117,6 +117,22 @@ impl Scene {
         }
     }
 
+    /// A state of another scene as a first guess here, in this one's scales and with the volumes of this one's start; none
+    /// when the unknowns differ.
+    pub fn take_over(&self, other: &Self, y: &[f64]) -> Option<Vec<f64>> {
+        let (new, old) = (&self.system.layout, &other.system.layout);
+        let same = new.len == old.len && new.differential == old.differential && new.area == old.area;
+        let mut taken: Vec<f64> = same.then(|| {
+            let scales = old.scales.iter().zip(&new.scales);
+            y.iter().zip(scales).map(|(y, (old, new))| y * old / new).collect()
+        })?;
+        for w in &self.conserved {
+            let lost: f64 = w.iter().zip(self.guess.iter().zip(&taken)).map(|(w, (g, t))| w * (g - t)).sum();
+            taken.iter_mut().zip(w).for_each(|(t, w)| *t += lost * w);
+        }
+        Some(taken)
+    }
+
     /// Dimension of the states that a disturbance can reach.
     pub fn dimension(&self) -> usize {
         self.system.layout.differential.iter().filter(|d| **d).count() - self.conserved.len()
