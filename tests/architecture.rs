@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 /// Rooms from top to bottom: a file imports from its own room and from rooms above it.
 const ROOMS: [&str; 13] = [
-    "error", "case", "model", "discrete", "dae", "sundials", "onestep", "spectral", "run", "study", "output", "cli", "main",
+    "error", "case", "model", "discrete", "dae", "sundials", "onestep", "spectral", "run", "study", "output", "cli",
+    "main",
 ];
 
 /// Lines of a file beyond which it must be divided.

@@ -9,7 +9,9 @@ use slcbeam::run::floquet::{self, Stability};
 use slcbeam::run::periodic::{Scene, shoot};
 
 fn case_of(value: &Value) -> Case {
-    case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), &[]).unwrap().case
+    case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), &[])
+        .unwrap()
+        .case
 }
 
 fn shipped(name: &str, sets: &[&str]) -> Case {
@@ -19,17 +21,28 @@ fn shipped(name: &str, sets: &[&str]) -> Case {
 
 #[test]
 fn probe() {
-    for (name, sets) in [("wiring-2", vec![]), ("wiring-2", vec!["/formulation=\"conservative\""]), ("valves-open", vec![]), ("valves-hundredth", vec![])] {
+    for (name, sets) in [
+        ("wiring-2", vec![]),
+        ("wiring-2", vec!["/formulation=\"conservative\""]),
+        ("valves-open", vec![]),
+        ("valves-hundredth", vec![]),
+    ] {
         let case = shipped(name, &sets);
         let begin = Instant::now();
         let scene = Scene::new(&case, None).unwrap();
-        println!("{name}: {} unknowns, dimension {}", scene.system.layout.len, scene.dimension());
+        println!(
+            "{name}: {} unknowns, dimension {}",
+            scene.system.layout.len,
+            scene.dimension()
+        );
         match shoot(&scene, None) {
             Ok(mut cycle) => {
                 println!("{:?} {:?}", cycle.search, begin.elapsed());
                 let f = floquet::multipliers(&scene, &mut cycle, 10);
                 println!("{:?} {}", begin.elapsed(), f.verdict.words);
-                for m in &f.multipliers { println!("  {:?}", m); }
+                for m in &f.multipliers {
+                    println!("  {:?}", m);
+                }
             }
             Err(e) => println!("{e:?} {:?}", begin.elapsed()),
         }

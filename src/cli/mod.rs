@@ -5,8 +5,11 @@ mod check;
 mod compare;
 mod effects;
 mod equilibrium;
+mod floquet;
 mod interrupt;
+mod line;
 mod mapping;
+mod periodic;
 pub mod progress;
 mod run;
 mod schema;
@@ -53,6 +56,8 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Equilibrium(asked) => equilibrium::equilibrium(asked),
         Command::Study(asked) => study::study(asked),
         Command::Effects(asked) => effects::effects(asked),
+        Command::Floquet(asked) => floquet::floquet(asked),
+        Command::Periodic(asked) => periodic::periodic(asked),
         Command::Compare(asked) => compare::compare(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),

@@ -201,7 +201,11 @@ impl<D: Dae> March<D> {
             for ((x, r), mask) in x.iter_mut().zip(&r).zip(&self.mask) {
                 *x -= if *mask > 0.0 { r / scale } else { *r };
             }
-            let size = r.iter().zip(&*y).map(|(r, y)| r.abs() / (1.0 + y.abs())).fold(0.0, f64::max);
+            let size = r
+                .iter()
+                .zip(&*y)
+                .map(|(r, y)| r.abs() / (1.0 + y.abs()))
+                .fold(0.0, f64::max);
             self.lay(scale, base, x, y, yp);
             if size <= SOLVED || size <= ROUND_OFF && size > 0.5 * before {
                 break;
@@ -251,7 +255,9 @@ impl<D: Dae> March<D> {
     }
 
     fn of_y(&mut self, t: f64, y: &[f64], yp: &[f64], mut out: Vec<f64>) -> Result<Vec<f64>, Impasse> {
-        self.equations.jacobian(t, y, yp, 0.0, &mut out).map_err(|o| impasse(t, o))?;
+        self.equations
+            .jacobian(t, y, yp, 0.0, &mut out)
+            .map_err(|o| impasse(t, o))?;
         Ok(out)
     }
 

@@ -96,7 +96,11 @@ pub fn solve(mut map: impl FnMut(&mut [f64]), b: &[f64], tolerance: f64, most: u
         }
         let (a, b) = (column[k - 1], column[k]);
         let radius = a.hypot(b);
-        let (c, s) = if radius > 0.0 { (a / radius, b / radius) } else { (1.0, 0.0) };
+        let (c, s) = if radius > 0.0 {
+            (a / radius, b / radius)
+        } else {
+            (1.0, 0.0)
+        };
         column[k - 1] = radius;
         rotations.push((c, s));
         upper.push(column);
@@ -107,7 +111,11 @@ pub fn solve(mut map: impl FnMut(&mut [f64]), b: &[f64], tolerance: f64, most: u
             let mut y = right[..k].to_vec();
             for i in (0..k).rev() {
                 let known: f64 = (i + 1..k).map(|j| upper[j][i] * y[j]).sum();
-                y[i] = if upper[i][i] == 0.0 { 0.0 } else { (y[i] - known) / upper[i][i] };
+                y[i] = if upper[i][i] == 0.0 {
+                    0.0
+                } else {
+                    (y[i] - known) / upper[i][i]
+                };
             }
             let mut x = vec![0.0; b_len];
             for (q, y) in space.basis.iter().zip(y) {
@@ -228,7 +236,11 @@ mod tests {
         let m = matrix();
         let map = |v: &mut [f64]| v.copy_from_slice((&m * DVector::from_row_slice(v)).as_slice());
         let found = largest(map, &everything(12), 3, 1e-10, 12);
-        let expected = [(1.3 * 1.0_f64.cos(), 1.3 * 1.0_f64.sin()), (0.7 * 0.64, 0.0), (0.7 * 0.512, 0.0)];
+        let expected = [
+            (1.3 * 1.0_f64.cos(), 1.3 * 1.0_f64.sin()),
+            (0.7 * 0.64, 0.0),
+            (0.7 * 0.512, 0.0),
+        ];
         for (eigen, (re, im)) in found.iter().zip(expected) {
             assert!((eigen.value - Complex::new(re, im)).norm() < 1e-12, "{:?}", eigen.value);
             let [a, b] = eigen.vector.clone().map(DVector::from_vec);

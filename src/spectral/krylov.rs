@@ -152,7 +152,9 @@ impl Space {
         let vectors = (0..kept).map(|k| combined(&self.u, &q.column(k).iter().copied().collect::<Vec<_>>()));
         self.u = vectors.collect();
         self.h.fill(C::default());
-        self.h.view_mut((0, 0), (kept, kept)).copy_from(&t.view((0, 0), (kept, kept)));
+        self.h
+            .view_mut((0, 0), (kept, kept))
+            .copy_from(&t.view((0, 0), (kept, kept)));
         match last {
             Some(last) if !anew => {
                 for (i, b) in b.iter().take(kept).enumerate() {

@@ -172,10 +172,6 @@ pub fn lowest(pattern: &crate::dae::Pattern, k: &[f64], diagonal: &[f64], count:
             b[entry] = -d;
         }
     }
-    let pencil = Pencil {
-        pattern,
-        a: k,
-        b: &b,
-    };
+    let pencil = Pencil { pattern, a: k, b: &b };
     nearest(&pencil, Complex::new(0.0, 0.0), count, &Options::default())
 }

@@ -10,6 +10,9 @@
 //! ablation    what each effect does
 //! loadpath    equilibria under growing loads
 //! overlay     two runs over each other
+//! multipliers   about the unit circle
+//! tongue      growth over frequency and amplitude
+//! cycles      steady cycles along a parameter
 //! ```
 
 mod canvas;
@@ -18,12 +21,15 @@ mod panel;
 mod ticks;
 
 pub mod ablation;
+pub mod cycles;
 pub mod deflection;
 pub mod energy;
 pub mod history;
 pub mod loadpath;
+pub mod multipliers;
 pub mod overlay;
 pub mod pressure;
+pub mod tongue;
 pub mod workprecision;
 
 use super::numbers;

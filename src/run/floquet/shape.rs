@@ -66,13 +66,20 @@ impl Modes {
                 bend(&[(end, -2.0 * per), (inner, 2.0 * per)], 0.5 * h);
             }
         }
-        let masses: Vec<f64> = free.clone().map(|i| section.mass_per_length * mesh.node_length(i)).collect();
+        let masses: Vec<f64> = free
+            .clone()
+            .map(|i| section.mass_per_length * mesh.node_length(i))
+            .collect();
         let reduced = DMatrix::from_fn(n, n, |i, j| stiffness[(i, j)] / (masses[i] * masses[j]).sqrt());
         let eigen = SymmetricEigen::new(reduced);
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
         let rigid = 1e-6 * section.bending_stiffness / (section.mass_per_length * system.model.length.powi(4));
-        let kept: Vec<usize> = order.into_iter().filter(|&k| eigen.eigenvalues[k] > rigid).take(MODES).collect();
+        let kept: Vec<usize> = order
+            .into_iter()
+            .filter(|&k| eigen.eigenvalues[k] > rigid)
+            .take(MODES)
+            .collect();
         Self {
             frequencies: kept.iter().map(|&k| eigen.eigenvalues[k].sqrt()).collect(),
             shapes: kept
@@ -108,10 +115,15 @@ impl Modes {
             0.0
         };
         let along = 0.5 * (s.axial_stiffness * stretch + s.mass_per_length * h * speed);
-        let fluid = system.model.wet.as_ref().zip(system.fluid.as_ref()).map_or(0.0, |(wet, fluid)| {
-            let squares: f64 = (l.area..l.junction).map(|k| at(k).powi(2)).sum();
-            0.5 * squares * fluid.ds / wet.area.per_pressure
-        });
+        let fluid = system
+            .model
+            .wet
+            .as_ref()
+            .zip(system.fluid.as_ref())
+            .map_or(0.0, |(wet, fluid)| {
+                let squares: f64 = (l.area..l.junction).map(|k| at(k).powi(2)).sum();
+                0.5 * squares * fluid.ds / wet.area.per_pressure
+            });
         (bending.collect(), along, fluid)
     }
 
@@ -129,7 +141,9 @@ impl Modes {
             }
         }
         let whole: f64 = parts.iter().map(|p| p.1).sum();
-        let (part, energy) = parts.into_iter().fold((Part::Fluid, 0.0), |most, p| if p.1 > most.1 { p } else { most });
+        let (part, energy) = parts
+            .into_iter()
+            .fold((Part::Fluid, 0.0), |most, p| if p.1 > most.1 { p } else { most });
         (part, if whole > 0.0 { energy / whole } else { 0.0 })
     }
 }

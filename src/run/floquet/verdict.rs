@@ -78,7 +78,10 @@ fn unstable(m: &Multiplier, driven: bool) -> String {
         ("subharmonic", format!("{:.4}", m.re))
     } else {
         let degrees = angle.to_degrees();
-        ("at a frequency of its own", format!("{:.4} at {degrees:.1} deg", m.modulus))
+        (
+            "at a frequency of its own",
+            format!("{:.4} at {degrees:.1} deg", m.modulus),
+        )
     };
     let kind = format!("{kind}, multiplier {value}");
     match (m.part, driven) {

@@ -88,14 +88,7 @@ pub fn linearise(case: &Case, at: f64, state: Option<&[f64]>) -> Result<Linearis
             .map_err(|(Fault::Recoverable(what) | Fault::Fatal(what))| fault(what, None))?;
     }
     let [a, b] = parts;
-    Ok(Linearised {
-        dae,
-        at,
-        y,
-        a,
-        b,
-        rate,
-    })
+    Ok(Linearised { dae, at, y, a, b, rate })
 }
 
 impl Linearised {

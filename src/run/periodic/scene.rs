@@ -127,7 +127,11 @@ impl Scene {
             y.iter().zip(scales).map(|(y, (old, new))| y * old / new).collect()
         })?;
         for w in &self.conserved {
-            let lost: f64 = w.iter().zip(self.guess.iter().zip(&taken)).map(|(w, (g, t))| w * (g - t)).sum();
+            let lost: f64 = w
+                .iter()
+                .zip(self.guess.iter().zip(&taken))
+                .map(|(w, (g, t))| w * (g - t))
+                .sum();
             taken.iter_mut().zip(w).for_each(|(t, w)| *t += lost * w);
         }
         Some(taken)
@@ -172,7 +176,9 @@ pub fn fault(impasse: Impasse) -> Error {
         what: impasse.what,
         unknown: None,
         cause: Some("the motion could not be followed over a period".into()),
-        hint: Some("a smaller amplitude, a tighter /solver/rtol, or damping may help; `slcbeam run` shows the motion".into()),
+        hint: Some(
+            "a smaller amplitude, a tighter /solver/rtol, or damping may help; `slcbeam run` shows the motion".into(),
+        ),
     }))
 }
 

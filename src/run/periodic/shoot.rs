@@ -162,7 +162,11 @@ fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Result<Cycle,
                     break;
                 }
                 Ok(_) | Err(_) if part > SHORTEST => part *= 0.5,
-                Ok(_) => return Err(lost(format!("Newton's steps no longer come nearer to one, at {size:.1e} of the tolerance"))),
+                Ok(_) => {
+                    return Err(lost(format!(
+                        "Newton's steps no longer come nearer to one, at {size:.1e} of the tolerance"
+                    )));
+                }
                 Err(impasse) => return Err(impasse),
             }
         }

@@ -8,8 +8,8 @@ use super::workers;
 use crate::case::schema::Case;
 use crate::case::{ResolvedEnd, Signal, Translation};
 use crate::error::{Error, Result};
-use crate::model::characteristic::{MATHIEU_COUPLING, mathieu};
 use crate::model::Model;
+use crate::model::characteristic::{MATHIEU_COUPLING, mathieu};
 use crate::run::drive::{Drive, settled};
 use crate::run::floquet;
 use crate::run::periodic::scene::whole;
@@ -114,7 +114,12 @@ pub fn map(case: &Case, plan: &Plan, tell: &(dyn Fn(usize, usize) + Sync)) -> Re
     let count = factors.len() * columns;
     let done = std::sync::atomic::AtomicUsize::new(0);
     let all = workers::each(count, |k| {
-        let made = column(case, factors[k / columns], plan.frequencies_hz[k % columns], &plan.amplitudes_m);
+        let made = column(
+            case,
+            factors[k / columns],
+            plan.frequencies_hz[k % columns],
+            &plan.amplitudes_m,
+        );
         tell(1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed), count);
         made
     });
@@ -146,10 +151,14 @@ fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64
     amplitudes
         .iter()
         .map(|&amplitude| {
-            let scene = Scene::of(&case, shaken(&case, frequency_hz, amplitude), Drive {
-                period: 1.0 / frequency_hz,
-                driven: true,
-            });
+            let scene = Scene::of(
+                &case,
+                shaken(&case, frequency_hz, amplitude),
+                Drive {
+                    period: 1.0 / frequency_hz,
+                    driven: true,
+                },
+            );
             let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
             let point = match shoot(&scene, from.as_deref()) {
                 Ok(mut cycle) => {
