@@ -127,3 +127,48 @@ fn a_warm_start_keeps_the_volume_of_the_start() {
     // both are found to a part of the tolerance, on grids of their own
     assert!(b.size(&gap, &cold.y) < 10.0, "{}", b.size(&gap, &cold.y));
 }
+
+/// Prints what docs/stability-maps.md says of the work: 25 permeabilities, each cycle found from the one before, beside a run of
+/// 2 s from rest. Run with `cargo test --release --test periodic saving -- --ignored --nocapture`.
+#[test]
+#[ignore = "a minute of figures for the documentation"]
+fn saving_over_transients() {
+    println!("factor      cycle: steps, s      run of 2 s: steps, s      decay [1/s]   run to 1 % [s]");
+    let mut before: Option<(Scene, Vec<f64>)> = None;
+    let mut sums = [0.0; 5];
+    for k in 0..25 {
+        let factor = 0.01_f64.powf(1.0 - f64::from(k) / 24.0);
+        let case = shipped(
+            "valves-open",
+            &[
+                &format!("/network/permeability_factor={factor}"),
+                "/ends/root/clamped/u3_m/sine/amplitude=0.025",
+                "/time/end_s=2",
+            ],
+        );
+        let begin = std::time::Instant::now();
+        let scene = Scene::new(&case, None).unwrap();
+        let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
+        let mut cycle = shoot(&scene, from.as_deref()).unwrap();
+        let found = floquet::multipliers(&scene, &mut cycle, 4);
+        let cycle_wall = begin.elapsed().as_secs_f64();
+        let begin = std::time::Instant::now();
+        let run = dynamics::run(&case, &mut Memory::default()).unwrap().summary;
+        let run_wall = begin.elapsed().as_secs_f64();
+        let decay = -found.verdict.growth_per_s;
+        let (steps, run_steps) = (cycle.search.work.steps as f64, run.solver.steps as f64);
+        let settled = 100.0_f64.ln() / decay;
+        println!(
+            "{factor:<8.4} {steps:>10} {cycle_wall:>8.2} {run_steps:>16} {run_wall:>8.2} {decay:>16.4} {settled:>14.0}"
+        );
+        for (sum, x) in sums.iter_mut().zip([steps, cycle_wall, run_steps, run_wall, run_wall * settled / 2.0]) {
+            *sum += x;
+        }
+        assert_eq!(found.verdict.stability, Stability::Stable, "{factor}: {}", found.verdict.words);
+        before = Some((scene, cycle.y));
+    }
+    println!(
+        "all: cycles {} steps, {:.1} s; runs of 2 s {} steps, {:.1} s; runs to 1 % {:.0} s",
+        sums[0], sums[1], sums[2], sums[3], sums[4]
+    );
+}

@@ -79,10 +79,12 @@ pub fn words(found: &Found) -> String {
             100.0 * m.share
         );
     }
-    if *conserved > 0 {
+    if *conserved == 1 {
+        text += "\nleft out: the multiplier 1 of a conserved volume\n";
+    } else if *conserved > 1 {
         let _ = writeln!(
             text,
-            "\nleft out: {conserved} multipliers exactly 1, of conserved volumes"
+            "\nleft out: the multiplier 1 of {conserved} conserved volumes"
         );
     }
     let _ = writeln!(text, "\n{}", verdict.words);
