@@ -123,7 +123,8 @@ fn conserved_volumes_are_multipliers_of_one() {
 
 /// Source: single-mode Mathieu equation with modal damping ζ, whose growth is that of the undamped one with
 /// `ω²(1 - ζ²)`, less ζ ω. Goal: growth in the tongue. Tolerance: a mesh of 24 cells has the frequency to (β h)²/3 = 2e-3,
-/// of which the growth in the middle of the tongue takes the same share; the second mode adds (ε ω1/ω2)² = 1e-3.
+/// of which the growth in the middle of the tongue takes the same share, and beside the middle, at 0.02 of a half width of 0.05,
+/// ten times as much; the second mode adds (ε ω1/ω2)² = 1e-3.
 #[test]
 fn growth_in_the_tongue_is_mathieus() {
     let (zeta, epsilon, w) = (0.01, 0.2, FIRST * FIRST);
@@ -132,7 +133,7 @@ fn growth_in_the_tongue_is_mathieus() {
         let exact = mathieu_growth(w * w * (1.0 - zeta * zeta), epsilon * w * w, 2.0 * w * ratio) - zeta * w;
         let first = &found.multipliers[0];
         assert!(
-            (first.growth_per_s / exact - 1.0).abs() < 1e-2,
+            (first.growth_per_s / exact - 1.0).abs() < if ratio == 1.0 { 5e-3 } else { 3e-2 },
             "{ratio}: {} against {exact}",
             first.growth_per_s
         );

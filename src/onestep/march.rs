@@ -21,6 +21,11 @@ const SLOW: f64 = 0.2;
 /// Disturbances carried along at once.
 const BLOCK: usize = 64;
 
+/// Bytes kept for an entry of the Jacobian: its value, and with fill about four entries of the factors with their places.
+const BYTES: f64 = 80.0;
+/// Bytes that the factors of all stages may take.
+const MOST_ROOM: f64 = 4e9;
+
 /// Why a march could not be finished.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Impasse {
@@ -79,6 +84,16 @@ impl<D: Dae> March<D> {
         let tableau = method.tableau();
         let n = dae.len();
         let count = 1 + (times.len() - 1) * (tableau.stages - 1);
+        let room = count as f64 * (BYTES * dae.pattern().entries() as f64);
+        if room > MOST_ROOM {
+            return Err(Impasse {
+                time: times[0],
+                what: format!(
+                    "the factors of all {count} stages would take {:.0} GB; a coarser mesh takes less",
+                    1e-9 * room
+                ),
+            });
+        }
         let slots = (0..count).map(|_| {
             let klu = Klu::new(dae.pattern()).map_err(|fault| Impasse {
                 time: times[0],

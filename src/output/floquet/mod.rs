@@ -82,10 +82,7 @@ pub fn words(found: &Found) -> String {
     if *conserved == 1 {
         text += "\nleft out: the multiplier 1 of a conserved volume\n";
     } else if *conserved > 1 {
-        let _ = writeln!(
-            text,
-            "\nleft out: the multiplier 1 of {conserved} conserved volumes"
-        );
+        let _ = writeln!(text, "\nleft out: the multiplier 1 of {conserved} conserved volumes");
     }
     let _ = writeln!(text, "\n{}", verdict.words);
     text

@@ -92,10 +92,7 @@ pub fn multipliers(scene: &Scene, cycle: &mut Cycle, count: usize) -> Floquet {
         .filter(|eigen| eigen.value.norm() > DEAD)
         .map(|eigen| {
             let (part, share) = modes.dominant(&scene.system, &eigen.vector);
-            let own = match part {
-                Part::Bending(mode) => modes.frequencies[mode - 1],
-                _ => 0.0,
-            };
+            let own = modes.frequency(&scene.system, part, &eigen.vector);
             let frequency = nearest(eigen.value.arg(), period, own);
             Multiplier {
                 re: eigen.value.re,

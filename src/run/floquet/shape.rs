@@ -102,13 +102,8 @@ impl Modes {
             let rate = if l.waves[0] { modal(l.v1, shape) } else { 0.0 };
             0.5 * ((w * modal(l.u1, shape)).powi(2) + rate * rate)
         });
+        let (stretch, _) = stretched(system, v);
         let h = system.mesh.h;
-        let held = |k: usize| matches!(system.model.ends[k].axial, Translation::Displacement(_));
-        let u3: Vec<f64> = (held(0).then_some(0.0).into_iter())
-            .chain((0..l.free_u3.len()).map(|k| at(l.u3 + k)))
-            .chain(held(1).then_some(0.0))
-            .collect();
-        let stretch = u3.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum::<f64>() / h;
         let speed: f64 = if l.waves[1] {
             (0..l.free_u3.len()).map(|k| at(l.v3 + k).powi(2)).sum()
         } else {
@@ -125,6 +120,21 @@ impl Modes {
                 0.5 * squares * fluid.ds / wet.area.per_pressure
             });
         (bending.collect(), along, fluid)
+    }
+
+    /// Angular frequency [1/s] that the dry beam has in the shape of a disturbance most of whose energy is in `part`: of motion
+    /// along it by Rayleigh's quotient; 0 for the fluid.
+    pub fn frequency(&self, system: &System, part: Part, v: &[Vec<f64>; 2]) -> f64 {
+        match part {
+            Part::Bending(mode) => self.frequencies[mode - 1],
+            Part::Along => {
+                let [a, b] = v.each_ref().map(|v| stretched(system, v));
+                let s = &system.model.section;
+                let mass = s.mass_per_length * (a.1 + b.1);
+                (s.axial_stiffness * (a.0 + b.0) / mass.max(f64::MIN_POSITIVE)).sqrt()
+            }
+            Part::Fluid => 0.0,
+        }
     }
 
     /// What most of the energy of a disturbance is in, given by real and imaginary part, and its share of the whole.
@@ -146,4 +156,17 @@ impl Modes {
             .fold((Part::Fluid, 0.0), |most, p| if p.1 > most.1 { p } else { most });
         (part, if whole > 0.0 { energy / whole } else { 0.0 })
     }
+}
+
+/// `Σ Δu3²/h` over the cells and `Σ u3² h` over the free nodes of a disturbance.
+fn stretched(system: &System, v: &[f64]) -> (f64, f64) {
+    let (l, h) = (&system.layout, system.mesh.h);
+    let held = |k: usize| matches!(system.model.ends[k].axial, Translation::Displacement(_));
+    let free: Vec<f64> = (0..l.free_u3.len()).map(|k| v[l.u3 + k] * l.scales[l.u3 + k]).collect();
+    let squares = free.iter().map(|u| u * u).sum::<f64>() * h;
+    let u3: Vec<f64> = (held(0).then_some(0.0).into_iter())
+        .chain(free)
+        .chain(held(1).then_some(0.0))
+        .collect();
+    (u3.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum::<f64>() / h, squares)
 }
