@@ -24,7 +24,7 @@ const BLOCK: usize = 64;
 /// Bytes kept for an entry of the Jacobian: its value, and with fill about four entries of the factors with their places.
 const BYTES: f64 = 80.0;
 /// Bytes that the factors of all stages may take.
-const MOST_ROOM: f64 = 4e9;
+const MOST_ROOM: f64 = 2e9;
 
 /// Why a march could not be finished.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,6 +13,8 @@ use crate::sundials::{Absolute, StartOptions, consistent_start};
 
 /// Steps of a period at least: signals are smooth, but a mode that is at rest has no say in the error test.
 const LEAST_STEPS: f64 = 32.0;
+/// Steps of a period at most: what asks for more is no cycle, but a motion that breaks up.
+const MOST_STEPS: usize = 5000;
 
 /// A case in the long run: everything that it describes, signals without their starts, a period.
 #[derive(Clone, Debug)]
@@ -92,6 +94,12 @@ impl Scene {
         let mut times = vec![0.0];
         while solver.time() < end {
             times.push(solver.step(end).map_err(impasse)?.time);
+            if times.len() > MOST_STEPS {
+                return Err(Impasse {
+                    time: solver.time(),
+                    what: format!("the motion asks for more than {MOST_STEPS} steps a period"),
+                });
+            }
         }
         March::new(solver.into_dae(), self.method, times)
     }
