@@ -141,11 +141,16 @@ impl Model {
     pub fn whole(case: &Case, inertia: bool) -> Self {
         let filled = case.fluid.as_ref().zip(case.bladders.as_ref());
         let network = filled.map(|(fluid, bladders)| Network::new(case, fluid, bladders));
-        let mut effects = EffectSet::whole(case, network.as_ref());
-        effects.solid_inertia = inertia;
-        effects.axial_inertia &= inertia;
-        effects.rotary_inertia &= inertia;
+        let effects = EffectSet::whole(case, network.as_ref());
+        let effects = if inertia { effects } else { effects.at_rest() };
         Self::of(case, Section::new(case), network, effects)
+    }
+
+    /// The same model of a case without inertia of the solid.
+    pub fn at_rest(&self, case: &Case) -> Self {
+        let filled = case.fluid.as_ref().zip(case.bladders.as_ref());
+        let network = filled.map(|(fluid, bladders)| Network::new(case, fluid, bladders));
+        Self::of(case, self.section, network, self.effects.clone().at_rest())
     }
 
     fn of(case: &Case, section: Section, network: Option<Network>, effects: EffectSet) -> Self {

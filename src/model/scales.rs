@@ -92,7 +92,7 @@ impl Drive {
         let end = case.time.end_s;
         let length = case.beam.length_m;
         let mut d = Self::default();
-        let size = |s: &Signal| largest(s, end).0;
+        let size = |s: &Signal| largest(s, end).0.max(case.held_at_start(s).abs());
         for load in &case.loads {
             let m = section.mass_per_length;
             let dist = |l: &crate::case::schema::Distributed| size(&l.signal) * profile_size(&l.profile);
@@ -184,7 +184,8 @@ impl Scales {
         let (mut curvature, mut stretch) = (0.0, 0.0);
         if let Some(wet) = wet {
             for port in &wet.network.ports {
-                d.pressure = d.pressure.max(largest(&port.pressure, case.time.end_s).0);
+                let held = case.held_at_start(&port.pressure).abs();
+                d.pressure = d.pressure.max(largest(&port.pressure, case.time.end_s).0).max(held);
             }
             let moment = moment_of_loads + ei * started / (l * l);
             let sealed = (wet.area.force_mean * force_of_loads + wet.area.moment_mean * moment) / wet.area.per_pressure;

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use super::checkpoint::{Checkpoint, VERSION};
+use super::equilibrium;
 use super::growth::Linear;
 use super::method::{self, Integrator, Options};
 use super::observe::Observer;
@@ -194,6 +195,12 @@ impl Run<'_> {
                 dae.look_within(0.5 * self.stops[0].t);
                 let (system, now) = dae.instant(0.0);
                 self.state = start::state(system, self.case, now);
+                if let Some(start) = &self.case.start.equilibrium {
+                    match equilibrium::at_start(self.case, start.loads_at_s, &mut dae, &self.state) {
+                        Ok(state) => self.state = state,
+                        Err(fault) => return Ok(self.finish(End::Failed(fault))),
+                    }
+                }
                 (0.0, 0)
             }
             Some(checkpoint) => {

@@ -12,6 +12,7 @@ use crate::error::Violation;
 
 pub(super) fn check(case: &Case, faults: &mut Faults) {
     pressures(case, faults);
+    equilibrium(case, faults);
     agreement(&case.ends.root, "root", 0.0, case, faults);
     agreement(&case.ends.tip, "tip", 1.0, case, faults);
 }
@@ -34,6 +35,23 @@ fn pressures(case: &Case, faults: &mut Faults) {
     }
 }
 
+/// Displacements are found, not given; ends stand where the loads' instant has them.
+fn equilibrium(case: &Case, faults: &mut Faults) {
+    let Some(start) = &case.start.equilibrium else { return };
+    if !start.loads_at_s.is_finite() {
+        faults.push(Violation::new(
+            "/start/equilibrium/loads_at_s",
+            "the instant is not a finite number",
+        ));
+    }
+    for (key, given) in [("u1_m", &case.start.u1_m), ("u3_m", &case.start.u3_m)] {
+        if given.is_some() {
+            let what = format!("{key} is given, but /start/equilibrium finds the displacements");
+            faults.push(Violation::new(format!("/start/{key}"), what).hint("remove one of the two"));
+        }
+    }
+}
+
 /// Displacement and slope at an end as the start has them and as the end is driven.
 fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Faults) {
     let (form, given) = end.form();
@@ -41,6 +59,10 @@ fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Faults) {
     let resolved = end.resolve();
     let mut compare = |key: &str, start_key: &str, starts: f64, signal: &Signal, tolerance: f64, unit: &str| {
         let driven = signal.at_start(case.time.end_s);
+        let starts = case.start.equilibrium.as_ref().map_or(starts, |start| {
+            let t = start.loads_at_s;
+            signal.jet(Clock { t, within: t }).value
+        });
         if (starts - driven).abs() > tolerance {
             let by_hand = given.given().any(|(k, _)| k == key);
             let pointer = if by_hand {
@@ -50,6 +72,12 @@ fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Faults) {
             };
             let what =
                 format!("at t = 0 the {name} is driven to {key} = {driven} {unit}, but the start has {starts} {unit}");
+            // The pointer of a start by equilibrium is that of its instant.
+            let pointer = if case.start.equilibrium.is_some() {
+                "/start/equilibrium".into()
+            } else {
+                pointer
+            };
             let hint = format!("let the signal begin at {starts}, or change /start/{start_key}");
             faults.push(
                 Violation::new(pointer, what)

@@ -135,6 +135,20 @@ pub struct Start {
     /// Pressures; bladders not named start at zero.
     #[serde(default)]
     pub pressures: Vec<StartPressure>,
+    /// Start in static equilibrium under the loads, end motions and port pressures of one instant, instead of given displacements.
+    /// `pressures` then say how much fluid is in closed networks: that which gives them in the straight beam.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub equilibrium: Option<EquilibriumStart>,
+}
+
+/// Equilibrium in which a run starts.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EquilibriumStart {
+    /// Instant whose loads it holds [s]; a negative one sees signals as they were before the run: a ramp from 5 to 0 that starts
+    /// at t = 0 lets go what it held.
+    #[serde(default)]
+    pub loads_at_s: f64,
 }
 
 /// Initial pressure of some bladders.

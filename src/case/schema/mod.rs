@@ -6,6 +6,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::case::signals::{Clock, Signal};
+
 mod beam;
 mod bladders;
 mod effects;
@@ -82,6 +84,15 @@ impl Case {
         self.bladders
             .as_ref()
             .map_or(self.mesh.segments.unwrap_or(10), |bladders| bladders.per_row)
+    }
+
+    /// Value of a signal that the beam is at rest with when the run begins: 0, or that which holds its equilibrium.
+    pub fn held_at_start(&self, signal: &Signal) -> f64 {
+        let value = |t: f64| signal.jet(Clock { t, within: t }).value;
+        self.start
+            .equilibrium
+            .as_ref()
+            .map_or(0.0, |start| value(start.loads_at_s))
     }
 
     /// What an effect may change and still be left out.

@@ -70,6 +70,16 @@ pub struct EffectSet {
 }
 
 impl EffectSet {
+    /// The same without inertia of the solid.
+    pub fn at_rest(self) -> Self {
+        Self {
+            solid_inertia: false,
+            axial_inertia: false,
+            rotary_inertia: false,
+            ..self
+        }
+    }
+
     /// Everything that a case describes; `network` is that of its bladders.
     pub fn whole(case: &Case, network: Option<&Network>) -> Self {
         Self::decide(case, network, None)

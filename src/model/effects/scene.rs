@@ -57,13 +57,13 @@ impl<'a> Scene<'a> {
         let mut driven_along = vec![];
         for end in &mut undriven {
             if let Translation::Displacement(signal) = &mut end.axial {
-                driven_along.extend(Pace::of(signal, case.time.end_s));
+                driven_along.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
                 *signal = Signal::Constant(0.0);
             }
         }
         let mut others = vec![];
         each_signal(&undriven, &loads, wet.map(|wet| &wet.network), |signal| {
-            others.extend(Pace::of(signal, case.time.end_s));
+            others.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
         });
         Self {
             wet,
@@ -94,7 +94,7 @@ impl<'a> Scene<'a> {
     fn begins_displaced(&self) -> bool {
         let s = &self.case.start;
         let given = [&s.u1_m, &s.u3_m, &s.u1_rate_m_s, &s.u3_rate_m_s];
-        given.iter().any(|profile| profile.is_some()) || !s.pressures.is_empty()
+        given.iter().any(|profile| profile.is_some()) || (!s.pressures.is_empty() && s.equilibrium.is_none())
     }
 
     /// Whether an end moves otherwise than at rest, which acts on the beam by its inertia.
@@ -229,7 +229,9 @@ impl<'a> Scene<'a> {
     /// Whether fluid comes from or does work outside: ports of other than no pressure, sources, turbines.
     pub fn fed(&self) -> bool {
         self.network().is_some_and(|n| {
-            let pressed = |signal: &Signal| largest(signal, self.case.time.end_s).0 > 0.0;
+            let pressed = |signal: &Signal| {
+                largest(signal, self.case.time.end_s).0 > 0.0 || self.case.held_at_start(signal) != 0.0
+            };
             n.ports.iter().any(|p| pressed(&p.pressure)) || !n.sources.is_empty() || !n.turbines.is_empty()
         })
     }

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! along    equilibrium with the share of the loads as one more unknown: the arc length
+//! natural  coordinates in which paths are nearly straight
 //! predict  where the next point probably is
 //! path     step by step along the path, as far as predictions hold; limit points, bifurcations, branches
 //! state    what is read off a state; one state as the unknowns of another system
@@ -11,6 +12,7 @@
 //! of closed networks. Valves stand as they do under the full load.
 
 mod along;
+mod natural;
 mod path;
 mod predict;
 mod state;
@@ -18,9 +20,11 @@ mod state;
 use crate::case::schema::Case;
 use crate::case::signals::Polynomial;
 use crate::case::{Clock, Signal};
+use crate::dae::{BeamDae, StaticBeam};
 use crate::discrete::{System, start};
 use crate::error::SolverFault;
 use crate::model::{Model, Storage};
+use crate::run::record::Control;
 use crate::sundials::Solution;
 
 pub use path::follow;
@@ -106,7 +110,10 @@ impl Path {
 /// The system whose equilibria are looked for: everything the case describes without inertia and damping, all areas unknowns,
 /// with signals that grow from nothing to what they are at an instant [s] while t grows from 0 to 1.
 pub fn system(case: &Case, at_s: f64) -> System {
-    let mut model = Model::whole(case, false);
+    growing(case, Model::whole(case, false), at_s)
+}
+
+fn growing(case: &Case, mut model: Model, at_s: f64) -> System {
     let at = |signal: &Signal| signal.jet(Clock { t: at_s, within: at_s }).value;
     let growing = |signal: &Signal| match at(signal) {
         0.0 => Signal::Constant(0.0),
@@ -124,11 +131,35 @@ pub fn system(case: &Case, at_s: f64) -> System {
     System::with(case, model)
 }
 
+/// The state in which a run begins, where the case asks for an equilibrium: the scaled unknowns of the run's system, with the
+/// velocities that stand in `y`. Everything that the run leaves out is left out of the equilibrium too.
+///
+/// # Errors
+/// There is no equilibrium, or no way to it from rest.
+pub fn at_start(case: &Case, at_s: f64, dae: &mut BeamDae, y: &[f64]) -> Result<Vec<f64>, SolverFault> {
+    let statics = growing(case, dae.system().model.at_rest(case), at_s);
+    let mut from = BeamDae::new(statics.clone());
+    let path = path::follow_of(case, statics, &Options::at(at_s), &mut |_| Control::Continue);
+    if let Some(fault) = path.fault {
+        return Err(SolverFault {
+            time_s: 0.0,
+            what: format!("no equilibrium to start from: {}", fault.what),
+            ..fault
+        });
+    }
+    let last = &path.states[path.states.len() - 1];
+    let (system, now) = dae.instant(0.0);
+    let mut z = restate(&mut from, last.share, &last.y, system, now);
+    let l = &system.layout;
+    z[l.v1..l.mean_moment].copy_from_slice(&y[l.v1..l.mean_moment]);
+    Ok(z)
+}
+
 /// Scaled unknowns of a static system at rest, and of the state that its volumes are those of.
-fn rest(case: &Case, system: System) -> (crate::dae::StaticBeam, Vec<f64>) {
-    let mut beam = crate::dae::BeamDae::new(system.clone());
+fn rest(case: &Case, system: System) -> (StaticBeam, Vec<f64>) {
+    let mut beam = BeamDae::new(system.clone());
     let (of, now) = beam.instant(0.0);
     let volumes = start::state(of, case, now);
     let y = vec![0.0; volumes.len()];
-    (crate::dae::StaticBeam::new(system, &volumes), y)
+    (StaticBeam::new(system, &volumes), y)
 }

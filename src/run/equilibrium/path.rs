@@ -1,10 +1,12 @@
 //! Along the path of equilibria.
 
 use super::along::Along;
+use super::natural::Natural;
 use super::predict::Trail;
-use super::state::State;
+use super::state::{Stability, State};
 use super::{Event, Kind, Options, Path, rest, system};
 use crate::case::schema::Case;
+use crate::discrete::System;
 use crate::error::SolverFault;
 use crate::run::record::Control;
 use crate::sundials::{Kinsol, KinsolFailure, KinsolOptions, Solution};
@@ -35,7 +37,17 @@ const FURTHEST: f64 = 100.0;
 
 /// Follows the equilibria of a case from rest to a share of its loads. `watch` sees every state and may end the path.
 pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> Control) -> Path {
-    let (statics, y) = rest(case, system(case, options.at_s));
+    follow_of(case, system(case, options.at_s), options, watch)
+}
+
+/// The same of another static system of the case.
+pub(super) fn follow_of(
+    case: &Case,
+    system: System,
+    options: &Options,
+    watch: &mut dyn FnMut(&State) -> Control,
+) -> Path {
+    let (statics, y) = rest(case, system);
     let mut path = Path {
         states: vec![],
         events: vec![],
@@ -45,6 +57,7 @@ pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> C
     };
     let n = y.len();
     let weights = weights(statics.system());
+    let natural = Natural::of(&statics);
     match Kinsol::new(Along::new(statics)) {
         Err(failure) => path.fault = Some(fault(0.0, &failure.what)),
         Ok(solver) => {
@@ -52,6 +65,8 @@ pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> C
             x.push(0.0);
             let mut follower = Follower {
                 orientation: 0,
+                branch: 0,
+                natural,
                 solver,
                 weights,
                 n,
@@ -69,7 +84,7 @@ pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> C
 
 /// Squared weight of each unknown and of the share in the length of a step: displacements in lengths of the beam, root mean
 /// square over its nodes; the others follow from these.
-fn weights(system: &crate::discrete::System) -> Vec<f64> {
+fn weights(system: &System) -> Vec<f64> {
     let l = &system.layout;
     let mut weights = vec![0.0; l.len + 1];
     for unknown in (l.u1..l.u1 + l.free_u1.len()).chain(l.u3..l.u3 + l.free_u3.len()) {
@@ -86,8 +101,8 @@ struct End(SolverFault);
 enum Next {
     /// Another one of this length.
     Step(f64),
-    /// The path is crossed by another one before this share, where the inverse of the matrix is this large.
-    Branch(f64, f64),
+    /// The path is crossed by another one before this share, where it is as stable as this.
+    Branch(f64, Option<Stability>),
     /// Nothing.
     Arrived,
 }
@@ -95,12 +110,41 @@ enum Next {
 struct Follower<'a> {
     /// Sign of the determinant of the equations: it changes where another path crosses, not at a limit point.
     orientation: i8,
+    /// State with which the present branch begins.
+    branch: usize,
+    natural: Natural,
     solver: Kinsol<Along>,
     weights: Vec<f64>,
     n: usize,
     options: Options,
     path: &'a mut Path,
     watch: &'a mut dyn FnMut(&State) -> Control,
+}
+
+/// The way so far: its last points in natural coordinates, the last one in unknowns too.
+struct Way {
+    natural: Trail,
+    last: Vec<f64>,
+}
+
+impl Way {
+    /// Two points at a distance.
+    fn new(follower: &mut Follower, before: Vec<f64>, distance: f64, last: Vec<f64>) -> Self {
+        let statics = follower.solver.dae_mut().statics();
+        let first = follower.natural.of_unknowns(statics, &before, None);
+        let second = follower.natural.of_unknowns(statics, &last, Some(&first));
+        Self {
+            natural: Trail::through(first, distance, second),
+            last,
+        }
+    }
+
+    fn push(&mut self, follower: &mut Follower, distance: f64, x: Vec<f64>) {
+        let statics = follower.solver.dae_mut().statics();
+        let z = follower.natural.of_unknowns(statics, &x, Some(self.natural.last()));
+        self.natural.push(distance, z);
+        self.last = x;
+    }
 }
 
 impl Follower<'_> {
@@ -114,27 +158,33 @@ impl Follower<'_> {
         let mut step = (self.options.share.abs() * self.norm(&direction)).min(longest);
         let unit = self.options.share.signum() / self.norm(&direction);
         direction.iter_mut().for_each(|d| *d *= unit);
-        let mut trail = Trail::along(x, &direction, 1e-3 * step);
+        let behind = 1e-3 * step;
+        let before: Vec<f64> = x.iter().zip(&direction).map(|(x, d)| x - behind * d).collect();
+        let mut trail = Way::new(self, before, behind, x);
         loop {
             step = match self.step(&mut trail, step)? {
                 Next::Step(step) => step.min(longest),
-                Next::Branch(share, softness) => self.leave(&mut trail, (share, softness))?,
+                Next::Branch(share, stability) => self.leave(&mut trail, (share, stability))?,
                 Next::Arrived => return Ok(()),
             };
         }
     }
 
     /// Takes one step, shortened until it succeeds.
-    fn step(&mut self, trail: &mut Trail, mut step: f64) -> Result<Next, End> {
+    fn step(&mut self, trail: &mut Way, mut step: f64) -> Result<Next, End> {
         let (n, target) = (self.n, self.options.share);
-        let last = trail.last().to_vec();
+        let last = trail.last.clone();
         let mut growth = GROWTH;
         loop {
-            let mut guess = trail.beyond(step);
-            let arrives = (guess[n] - target) * (last[n] - target) <= 0.0;
+            let mut guess = trail.natural.beyond(step);
+            let share = |z: &[f64]| z[z.len() - 1];
+            let arrives = (share(&guess) - target) * (last[n] - target) <= 0.0;
             if arrives {
-                step = crossing(|step| trail.beyond(step)[n] - target, step);
-                guess = trail.beyond(step);
+                step = crossing(|step| share(&trail.natural.beyond(step)) - target, step);
+                guess = trail.natural.beyond(step);
+            }
+            let guess = self.natural.to_unknowns(self.solver.dae_mut().statics(), &guess);
+            if arrives {
                 self.solver.dae_mut().at_share(target);
             } else {
                 self.aim(&last, &guess);
@@ -149,8 +199,8 @@ impl Follower<'_> {
                 let orientation = if arrives && x[n] < last[n] { -1 } else { 1 } * self.solver.determinant_sign();
                 if orientation != self.orientation && self.options.branches {
                     if step <= NEAR {
-                        let (softness, _) = self.softest();
-                        return Ok(Next::Branch(x[n], softness));
+                        let beyond = Stability::of(self.solver.dae_mut().statics(), x[n], &x[..n]);
+                        return Ok(Next::Branch(x[n], beyond));
                     }
                     step = (0.25 * step).max(NEAR);
                     growth = 1.0;
@@ -158,8 +208,8 @@ impl Follower<'_> {
                 }
                 self.orientation = orientation;
                 let taken = self.norm(&difference(&x, &last));
-                let degree = f64::from(trail.degree());
-                trail.push(taken, x.clone());
+                let degree = f64::from(trail.natural.degree());
+                trail.push(self, taken, x.clone());
                 self.keep(&x)?;
                 if arrives {
                     return Ok(Next::Arrived);
@@ -191,20 +241,20 @@ impl Follower<'_> {
 
     /// Leaves a path where another one crosses it: a step along the direction that costs no force, which is where the
     /// matrix is nearly singular, to the side on which it bends (its largest displacement across, or else along) in the positive sense.
-    fn leave(&mut self, trail: &mut Trail, beyond: (f64, f64)) -> Result<f64, End> {
+    fn leave(&mut self, trail: &mut Way, beyond: (f64, Option<Stability>)) -> Result<f64, End> {
         let n = self.n;
-        let last = trail.last().to_vec();
+        let last = trail.last.clone();
         let mut x = last.clone();
         self.solve(&mut x, PATIENCE)
             .map_err(|failure| self.fail(&failure, last[n]))?;
-        let (softness, mut aside) = self.softest();
-        // The smallest eigenvalue changes sign in between, in proportion to the distance.
-        let crossing = last[n] + (beyond.0 - last[n]) / (1.0 - softness / beyond.1);
-        let share = if crossing.is_finite() { crossing } else { last[n] };
+        let mut aside = self.softest();
+        // The eigenvalue that changes sign does so in proportion to the distance.
+        let share = last[n] + (beyond.0 - last[n]) * between(self.path.last().stability, beyond.1);
         self.path.events.push(Event {
             share,
             kind: Kind::Bifurcation,
         });
+        self.branch = self.path.states.len();
         aside[n] = 0.0;
         let displacements = aside
             .iter()
@@ -223,7 +273,7 @@ impl Follower<'_> {
             if solved.is_ok() && self.norm(&difference(&x, &guess)) <= 0.5 * step {
                 self.orientation = self.solver.determinant_sign();
                 let taken = self.norm(&difference(&x, &last));
-                *trail = Trail::through(last, taken, x.clone());
+                *trail = Way::new(self, last, taken, x.clone());
                 self.keep(&x)?;
                 return Ok(taken);
             }
@@ -240,18 +290,15 @@ impl Follower<'_> {
         }
     }
 
-    /// Largest eigenvalue of the inverse of the matrix last factored, with its vector (inverse iteration).
-    fn softest(&mut self) -> (f64, Vec<f64>) {
+    /// Vector that the matrix last factored makes shortest (inverse iteration).
+    fn softest(&mut self) -> Vec<f64> {
         let mut x: Vec<f64> = (0..=self.n).map(|k| (1.0 + k as f64).sin()).collect();
-        let mut eigenvalue = 0.0;
         for _ in 0..INVERSE_ITERATIONS {
+            self.solver.apply_inverse(&mut x);
             let norm = dot(&x, &x).sqrt().max(f64::MIN_POSITIVE);
             x.iter_mut().for_each(|x| *x /= norm);
-            let before = x.clone();
-            self.solver.apply_inverse(&mut x);
-            eigenvalue = dot(&before, &x);
         }
-        (eigenvalue, x)
+        x
     }
 
     /// Asks for the point of the path in the plane through the guess, across the chord from the last point to it.
@@ -289,7 +336,7 @@ impl Follower<'_> {
     fn keep(&mut self, x: &[f64]) -> Result<(), End> {
         let state = State::read(self.solver.dae_mut().statics(), x);
         let control = (self.watch)(&state);
-        if let [.., a, b] = self.path.states.as_slice()
+        if let [.., a, b] = &self.path.states[self.branch..]
             && (b.share - a.share) * (state.share - b.share) < 0.0
         {
             self.path.events.push(Event {
@@ -362,6 +409,12 @@ fn crossing(f: impl Fn(f64) -> f64, end: f64) -> f64 {
         }
     }
     high
+}
+
+/// Where between two states an eigenvalue is zero, a share of the distance; halfway when they do not tell.
+fn between(before: Option<Stability>, beyond: Option<Stability>) -> f64 {
+    let share = before.zip(beyond).map(|(a, b)| a.softest / (a.softest - b.softest));
+    share.filter(|share| (0.0..=1.0).contains(share)).unwrap_or(0.5)
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

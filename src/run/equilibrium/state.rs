@@ -1,10 +1,11 @@
 //! One state of equilibrium.
 
-use crate::dae::{BeamDae, StaticBeam};
+use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
 use crate::discrete::ledger::{self, FLOWS};
 use crate::discrete::sample::{self, ColumnText, EnergyBalance};
 use crate::discrete::{Instant, System, Workspace};
 use crate::run::record::Column;
+use crate::spectral;
 
 /// An equilibrium under a share of the loads.
 #[derive(Clone, Debug)]
@@ -63,6 +64,7 @@ impl State {
     /// Reads the unknowns with the share of the loads behind them.
     pub fn read(statics: &mut StaticBeam, x: &[f64]) -> Self {
         let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
+        let stability = Stability::of(statics, share, y);
         let zeros = vec![0.0; y.len()];
         let (system, now, w) = statics.beam().evaluate(share, y, &zeros);
         let balance = EnergyBalance {
@@ -81,8 +83,36 @@ impl State {
             row,
             u1: w.u1.clone(),
             u3: w.u3.clone(),
-            stability: None,
+            stability,
         }
+    }
+}
+
+/// Eigenvalues looked at: further ones are stiffer.
+const LOWEST: usize = 6;
+
+impl Stability {
+    /// Of a state, scaled unknowns `y` under a share of the loads; none where the eigenvalues were not found.
+    pub fn of(statics: &mut StaticBeam, share: f64, y: &[f64]) -> Option<Self> {
+        let mut values = vec![0.0; statics.pattern().entries()];
+        statics
+            .jacobian(share, y, &[], Seeds::Step { cj: 0.0 }, &mut values)
+            .ok()?;
+        let system = statics.system();
+        let l = &system.layout;
+        let mut mass = vec![0.0; l.len];
+        for (first, free) in [(l.u1, &l.free_u1), (l.u3, &l.free_u3)] {
+            for (unknown, node) in (first..).zip(free.clone()) {
+                let of_node = system.model.section.mass_per_length * system.mesh.node_length(node);
+                mass[unknown] = of_node * l.scales[unknown] / l.row_scales[unknown];
+            }
+        }
+        let found = spectral::lowest(statics.pattern(), &values, &mass, LOWEST).ok()?;
+        let unstable = found.pairs.iter().filter(|pair| pair.s.re < -pair.error).count();
+        Some(Self {
+            unstable,
+            softest: found.pairs.first()?.s.re,
+        })
     }
 }
 

@@ -6,8 +6,8 @@ use serde_json::Value;
 
 use crate::case;
 use crate::error::{Error, Result};
-use crate::run::dynamics;
-use crate::run::record::Memory;
+use crate::run::record::{Column, Control, Memory};
+use crate::run::{dynamics, equilibrium};
 
 /// What a run recorded.
 pub struct Solved {
@@ -42,6 +42,49 @@ impl Solved {
     /// A field, one array a time; empty when there is none of that name.
     pub fn field(&self, name: &str) -> &[Vec<f64>] {
         self.memory.field(name).unwrap_or_default()
+    }
+}
+
+/// A load path of equilibria.
+pub struct Balanced {
+    columns: Vec<Column>,
+    path: equilibrium::Path,
+}
+
+/// Checks a case and follows its equilibria from rest to `share` of the loads at the end of its run.
+///
+/// # Errors
+/// A case that is not valid, a path that ends before.
+pub fn balance(case: &Value, share: f64) -> Result<Balanced> {
+    let loaded = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    let at_s = loaded.case.time.end_s;
+    let options = equilibrium::Options {
+        share,
+        ..equilibrium::Options::at(at_s)
+    };
+    let path = equilibrium::follow(&loaded.case, &options, &mut |_| Control::Continue);
+    match path.fault {
+        Some(fault) => Err(Error::Solver(Box::new(fault))),
+        None => Ok(Balanced {
+            columns: equilibrium::columns(&equilibrium::system(&loaded.case, at_s)),
+            path,
+        }),
+    }
+}
+
+impl Balanced {
+    /// A quantity in the last state; NaN when there is none of that name.
+    pub fn last(&self, name: &str) -> f64 {
+        let column = self.columns.iter().position(|c| c.name == name);
+        column.map_or(f64::NAN, |k| self.path.last().row[k])
+    }
+
+    /// Share of the loads at which another path first crosses; NaN when none does.
+    pub fn bifurcation(&self) -> f64 {
+        let mut events = self.path.events.iter();
+        events
+            .find(|e| e.kind == equilibrium::Kind::Bifurcation)
+            .map_or(f64::NAN, |e| e.share)
     }
 }
 

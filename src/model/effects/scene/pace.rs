@@ -16,14 +16,15 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// Of a signal until `end` [s]; none where it is zero all along.
-    pub fn of(signal: &Signal, end: f64) -> Option<Self> {
+    /// Of a signal until `end` [s], with the value that the beam is at rest with before; none where it is zero all along.
+    pub fn of(signal: &Signal, end: f64, held: f64) -> Option<Self> {
         let (size, _, acceleration) = largest(signal, end);
+        let size = size.max(held.abs());
         if size == 0.0 {
             return None;
         }
         let mut jumps = [0.0_f64; 3];
-        let mut before = [0.0; 3];
+        let mut before = [held, 0.0, 0.0];
         for (from, to) in signal.smooth_intervals(end) {
             let within = 0.5 * (from + to);
             let [a, b] = [from, to].map(|t| {
