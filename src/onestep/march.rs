@@ -242,10 +242,11 @@ impl<D: Dae> March<D> {
 
     /// Values and rates of a stage from its own unknowns.
     fn lay(&self, scale: f64, base: &[f64], x: &[f64], y: &mut [f64], yp: &mut [f64]) {
-        for i in 0..x.len() {
-            let differential = self.mask[i] > 0.0;
-            y[i] = base[i] + if differential { scale * x[i] } else { x[i] };
-            yp[i] = if differential { x[i] } else { 0.0 };
+        for ((y, base), (x, mask)) in y.iter_mut().zip(base).zip(x.iter().zip(&self.mask)) {
+            *y = base + if *mask > 0.0 { scale * x } else { *x };
+        }
+        for ((yp, x), mask) in yp.iter_mut().zip(x).zip(&self.mask) {
+            *yp = mask * x;
         }
     }
 

@@ -160,7 +160,7 @@ fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64
                 },
             );
             let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
-            let point = match shoot(&scene, from.as_deref()) {
+            match shoot(&scene, from.as_deref()) {
                 Ok(mut cycle) => {
                     let found = floquet::multipliers(&scene, &mut cycle, COUNT);
                     before = Some((scene, cycle.y));
@@ -175,8 +175,7 @@ fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64
                     multiplier: None,
                     words: impasse.what,
                 },
-            };
-            point
+            }
         })
         .collect()
 }
