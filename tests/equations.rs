@@ -16,7 +16,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 38] = [
+const INDEX: [(&str, &str, &str); 42] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -107,6 +107,18 @@ const INDEX: [(&str, &str, &str); 38] = [
         "tests/equilibrium.rs",
         "sensitivities_are_those_of_differences",
     ),
+    (
+        "[E36]",
+        "tests/floquet.rs",
+        "carried_disturbances_are_differences_of_the_period_map",
+    ),
+    ("[E37]", "tests/periodic.rs", "the_cycle_is_the_tail_of_a_long_run"),
+    (
+        "[E38]",
+        "tests/floquet.rs",
+        "multipliers_of_what_nothing_drives_are_those_of_its_modes",
+    ),
+    ("[E39]", "tests/floquet.rs", "growth_in_the_tongue_is_mathieus"),
 ];
 
 #[test]

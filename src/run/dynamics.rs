@@ -34,6 +34,18 @@ pub fn run(case: &Case, recorder: &mut dyn Recorder) -> Result<Outcome> {
     run.go(dae, None, recorder)
 }
 
+/// Runs a system of the case from consistent values and rates of its scaled unknowns at t = 0.
+pub fn go_on(case: &Case, system: System, y: &[f64], yp: &[f64], recorder: &mut dyn Recorder) -> Result<Outcome> {
+    let (mut run, mut dae) = Run::of(case, system);
+    dae.look_within(0.5 * run.stops[0].t);
+    run.prepare(&dae);
+    run.state.copy_from_slice(y);
+    run.rates.copy_from_slice(yp);
+    let header = Observer::header(case, dae.system());
+    let end = run.solve(dae, 0.0, 0, Some(header), recorder)?;
+    Ok(run.finish(end))
+}
+
 /// What a run of the case records.
 pub fn header(case: &Case) -> Header {
     Observer::header(case, &System::new(case))
@@ -93,8 +105,11 @@ enum End {
 
 impl<'a> Run<'a> {
     fn new(case: &'a Case) -> (Self, BeamDae) {
+        Self::of(case, System::new(case))
+    }
+
+    fn of(case: &'a Case, system: System) -> (Self, BeamDae) {
         let begin = Instant::now();
-        let system = System::new(case);
         let interval = case.time.output_interval();
         let characteristic = characteristic::numbers(case, &system.model);
         let warnings = audit::warnings(case, &system.model, &characteristic);
@@ -174,9 +189,7 @@ impl<'a> Run<'a> {
 
 impl Run<'_> {
     fn go(mut self, mut dae: BeamDae, from: Option<&Checkpoint>, recorder: &mut dyn Recorder) -> Result<Outcome> {
-        self.rates = vec![0.0; dae.len()];
-        self.integrals = vec![0.0; dae.integrals()];
-        self.carried = vec![0.0; dae.integrals()];
+        self.prepare(&dae);
         let (t, first_stop) = match from {
             None => {
                 dae.look_within(0.5 * self.stops[0].t);
@@ -214,17 +227,37 @@ impl Run<'_> {
         let header = from.is_none().then(|| Observer::header(self.case, dae.system()));
         let end = match consistent {
             Some(fault) => End::Failed(fault),
-            None => match Integrator::new(dae, t, &self.state, &self.rates, &self.options) {
-                Err(failure) => End::Failed(fault(&failure)),
-                Ok(mut solver) => {
-                    header.map_or(Ok(()), |header| recorder.begin(&header))?;
-                    let end = self.integrate(&mut solver, first_stop, recorder)?;
-                    self.count(&solver);
-                    end
-                }
-            },
+            None => self.solve(dae, t, first_stop, header, recorder)?,
         };
         Ok(self.finish(end))
+    }
+
+    /// Room for the values of a system.
+    fn prepare(&mut self, dae: &BeamDae) {
+        self.state = vec![0.0; dae.len()];
+        self.rates = vec![0.0; dae.len()];
+        self.integrals = vec![0.0; dae.integrals()];
+        self.carried = vec![0.0; dae.integrals()];
+    }
+
+    /// From the present state, which is consistent, to the end.
+    fn solve(
+        &mut self,
+        dae: BeamDae,
+        t: f64,
+        first_stop: usize,
+        header: Option<Header>,
+        recorder: &mut dyn Recorder,
+    ) -> Result<End> {
+        match Integrator::new(dae, t, &self.state, &self.rates, &self.options) {
+            Err(failure) => Ok(End::Failed(fault(&failure))),
+            Ok(mut solver) => {
+                header.map_or(Ok(()), |header| recorder.begin(&header))?;
+                let end = self.integrate(&mut solver, first_stop, recorder)?;
+                self.count(&solver);
+                Ok(end)
+            }
+        }
     }
 
     fn take_up(&mut self, checkpoint: &Checkpoint) {
