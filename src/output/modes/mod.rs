@@ -60,6 +60,7 @@ impl Report<'_> {
             })
             .collect();
         match growing.as_slice() {
+            [] if self.found.modes.is_empty() => "there are no modes".into(),
             [] => format!("none of the {} modes shown grows", self.found.modes.len()),
             all => format!("unstable: {}", all.join("; ")),
         }
@@ -75,7 +76,11 @@ impl Report<'_> {
                 self.about, about.at, about.rate
             )
         });
-        moving.into_iter().collect()
+        let still = self.found.modes.is_empty().then(|| {
+            "nothing can move: the case leaves out inertia of the solid (/effects/solid_inertia) and no bladder exchanges fluid"
+                .to_string()
+        });
+        moving.into_iter().chain(still).collect()
     }
 
     fn passivity(&self) -> Option<(Passivity, String)> {
