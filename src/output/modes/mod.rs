@@ -63,6 +63,7 @@ impl Report<'_> {
             })
             .collect();
         match growing.as_slice() {
+            [] if self.found.modes.is_empty() => "there are no modes".into(),
             [] => format!("none of the {} modes shown grows", self.found.modes.len()),
             all => format!("unstable: {}", all.join("; ")),
         }
@@ -78,7 +79,11 @@ impl Report<'_> {
                 self.about, about.at, about.rate
             )
         });
-        moving.into_iter().collect()
+        let still = self.found.modes.is_empty().then(|| {
+            "nothing can move: the case leaves out inertia of the solid (/effects/solid_inertia) and no bladder exchanges fluid"
+                .to_string()
+        });
+        moving.into_iter().chain(still).collect()
     }
 
     /// What a number of the case does to each mode: `mode 2: +0.0608 Hz, −1.2e-5 1/s`, for one percent of it.
