@@ -14,6 +14,7 @@ mod load;
 pub mod locate;
 mod number_or_object;
 mod numbers;
+pub mod parameter;
 mod parse;
 pub mod profile;
 mod render;

@@ -26,6 +26,8 @@ pub enum Command {
     Study(StudyArguments),
     /// Find what each effect does: the full model without it, what that changes and saves, what to leave out
     Effects(EffectsArguments),
+    /// Find frequencies, damping, shapes and stability of small motions, with the fluid as it is, sealed in, and free
+    Modes(ModesArguments),
     /// Find the steady cycle of a periodically driven case and whether it is stable, or a map of where shaking is stable
     Floquet(FloquetArguments),
     /// Find the steady cycle of a periodically driven case directly, without its transient; or along a parameter
@@ -105,6 +107,10 @@ pub struct EquilibriumArguments {
     /// Stay on a path that becomes unstable (a column that stays straight) instead of taking the one that crosses it
     #[arg(long)]
     pub keep_branch: bool,
+    /// Differentiate the last state by this number of the case, a JSON pointer such as /bladders/area_per_pressure_m2_per_pa;
+    /// repeatable
+    #[arg(long, value_name = "POINTER")]
+    pub sensitivity: Vec<String>,
     /// Folder for path.csv, shapes.csv, equilibrium.json, path.svg [default: out/<case name>-equilibrium]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -188,6 +194,36 @@ pub struct EffectsArguments {
     #[arg(long)]
     pub quiet: bool,
     /// Print effects.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `modes`.
+#[derive(Debug, Args)]
+pub struct ModesArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Modes to find; rigid motions and kept volumes come besides
+    #[arg(long, value_name = "COUNT", default_value_t = 12)]
+    pub count: usize,
+    /// Find those nearest this frequency [Hz] [default: the slowest]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub near: Option<f64>,
+    /// About the equilibrium under the loads at this instant [s] [default: about the start]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub at: Option<f64>,
+    /// Differentiate frequencies and growth rates by this number of the case, a JSON pointer such as /beam/young_modulus_pa;
+    /// repeatable
+    #[arg(long, value_name = "POINTER")]
+    pub sensitivity: Vec<String>,
+    /// Folder for modes.csv, modes.json, modes.npz, modes.svg [default: out/<case name>-modes]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print modes.json instead of the table
     #[arg(long)]
     pub json: bool,
 }

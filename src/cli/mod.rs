@@ -9,6 +9,7 @@ mod floquet;
 mod interrupt;
 mod line;
 mod mapping;
+mod modes;
 mod periodic;
 pub mod progress;
 mod run;
@@ -59,6 +60,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Floquet(asked) => floquet::floquet(asked),
         Command::Periodic(asked) => periodic::periodic(asked),
         Command::Compare(asked) => compare::compare(asked),
+        Command::Modes(asked) => modes::modes(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),
         Command::Schema => schema::schema(),

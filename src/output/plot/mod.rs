@@ -9,6 +9,7 @@
 //! workprecision   what accuracy costs
 //! ablation    what each effect does
 //! loadpath    equilibria under growing loads
+//! modes       shapes of modes with their pressures
 //! overlay     two runs over each other
 //! multipliers   about the unit circle
 //! tongue      growth over frequency and amplitude
@@ -26,6 +27,7 @@ pub mod deflection;
 pub mod energy;
 pub mod history;
 pub mod loadpath;
+pub mod modes;
 pub mod multipliers;
 pub mod overlay;
 pub mod pressure;

@@ -3,11 +3,13 @@
 //! ```text
 //! linearise   the pencil of a case about a state, with the fluid as it is, held, or free
 //! shape       displacements and pressures of an eigenvector; likeness of two
+//! sensitivity  derivatives by numbers of the case
 //! kind        oscillation, decay, growth, rigid motion, kept volume
 //! ```
 
 pub mod kind;
 pub mod linearise;
+pub mod sensitivity;
 pub mod shape;
 
 use nalgebra::Complex;
@@ -17,7 +19,8 @@ use crate::error::{Error, Result, SolverFault};
 use crate::spectral::{self, Failure, Options, Pair, Pencil};
 
 pub use kind::Kind;
-pub use linearise::{Fluid, Linearised, linearise};
+pub use linearise::{Fluid, Linearised, at_equilibrium, linearise};
+pub use sensitivity::{Sensitivity, differentiate};
 pub use shape::{Shape, Shapes, likeness};
 
 /// What is asked for.
@@ -27,8 +30,6 @@ pub struct Plan {
     pub count: usize,
     /// Frequency near which they are looked for [Hz].
     pub near_hz: f64,
-    /// Instant at which signals are held [s].
-    pub at_s: f64,
     /// Whether the fluid is held and freed too.
     pub limits: bool,
 }
@@ -100,7 +101,7 @@ pub struct Modes {
 /// # Errors
 /// As [`linearise`], and [`Error::Solver`] when eigenvalues do not converge.
 pub fn modes(case: &Case, plan: &Plan) -> Result<Modes> {
-    of(linearise(case, plan.at_s, None)?, plan)
+    of(linearise(case, 0.0, None)?, plan)
 }
 
 /// Modes of a linearisation.
