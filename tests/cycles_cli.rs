@@ -79,7 +79,7 @@ fn a_map_has_a_row_a_point_and_a_panel_a_permeability() {
     assert_eq!(table.lines().count(), 1 + 2 * 2 * 2);
     let picture = std::fs::read_to_string(dir.path().join("map.svg")).unwrap();
     assert!(
-        picture.contains("permeabilities × 1<") && picture.contains("permeabilities × 0.01"),
+        picture.contains("permeabilities × 1\n") && picture.contains("permeabilities × 0.01"),
         "panels"
     );
     assert_eq!(

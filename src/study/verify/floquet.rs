@@ -17,6 +17,8 @@ use crate::run::periodic::scene::fault;
 use crate::run::periodic::{Scene, shoot};
 
 const BETA: f64 = 1.875104068712;
+/// Multipliers looked at: without damping several modes stand beside the first on the unit circle.
+const COUNT: usize = 16;
 /// Modulation of the edges.
 const NARROW: f64 = 0.1;
 /// Modulation and damping ratio of the growth.
@@ -81,7 +83,7 @@ fn first(cells: usize, ratio: f64, (epsilon, zeta): (f64, f64)) -> Result<Vec<Mu
     let loaded = case::parse(&text.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
     let scene = Scene::new(&loaded.case, None)?;
     let mut cycle = shoot(&scene, None).map_err(fault)?;
-    let mut found = floquet::multipliers(&scene, &mut cycle, 2 * cells).multipliers;
+    let mut found = floquet::multipliers(&scene, &mut cycle, COUNT).multipliers;
     found.retain(|m| m.part == Part::Bending(1));
     Ok(found)
 }
