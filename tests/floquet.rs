@@ -183,7 +183,6 @@ fn multipliers_of_what_nothing_drives_are_those_of_its_modes() {
     let plan = modes::Plan {
         count: 60,
         near_hz: 0.0,
-        at_s: 0.0,
         limits: false,
     };
     let rates = modes::modes(&case, &plan).unwrap();
