@@ -16,7 +16,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 42] = [
+const INDEX: [(&str, &str, &str); 43] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -100,6 +100,11 @@ const INDEX: [(&str, &str, &str); 42] = [
     ("[E33]", "tests/modes/physics.rs", "shapes_are_alike_or_orthogonal"),
     ("[E34]", "tests/modes/spectral.rs", "errors_are_within_their_bounds"),
     ("[E35]", "tests/modes/physics.rs", "passive_as_the_audit_has_it"),
+    (
+        "[E45]",
+        "tests/modes/physics.rs",
+        "half_the_cells_tell_the_error_of_the_mesh",
+    ),
     ("[E44]", "tests/modes/physics.rs", "eigenvalues_move_as_differences_say"),
     ("[E42]", "tests/equilibrium.rs", "column_buckles_onto_the_stable_branch"),
     (

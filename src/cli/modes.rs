@@ -31,7 +31,8 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         .iter()
         .map(|pointer| Parameter::find(&loaded.case, pointer))
         .collect::<Result<_>>()?;
-    let found = modes::of(about, &plan)?;
+    let mut found = modes::of(about, &plan)?;
+    modes::halve_the_mesh(&loaded.case, asked.at, &plan, &mut found)?;
     let sensitivities = modes::differentiate(&loaded.case, asked.at, &found.about, &found.modes, &parameters)?;
     let out = asked
         .out

@@ -279,3 +279,24 @@ fn eigenvalues_move_as_differences_say() {
         }
     }
 }
+
+/// Goal: the first four frequencies of a cantilever to 3e-3 with 64 cells: from 32 and 64 they point within 1e-4 of the exact
+/// ones, (βh)⁴ for the fourth 9e-4 over ten; and the error told for the mesh is the one there is, within a tenth.
+#[test]
+fn half_the_cells_tell_the_error_of_the_mesh() {
+    let case = checked(&json!({
+        "name": "cantilever", "ends": {"root": "clamped", "tip": "free"}, "effects": {"rotary_inertia": "off"},
+        "beam": {"length_m": 1.0, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1.2e9, "density_kg_m3": 1e4},
+        "mesh": {"segments": 64, "cells_per_segment": 1}, "time": {"end_s": 1.0}
+    }));
+    let mut found = modes::modes(&case, &plan(4)).unwrap();
+    modes::halve_the_mesh(&case, None, &plan(4), &mut found).unwrap();
+    let exact = [1.875104068712, 4.694091132974, 7.854757438238, 10.995540734875_f64];
+    for (mode, beta) in swinging(&found).into_iter().zip(exact) {
+        let exact = beta * beta / std::f64::consts::TAU;
+        let (f, extrapolated) = (mode.frequency_hz().unwrap(), mode.extrapolated_hz().unwrap());
+        assert!((extrapolated / exact - 1.0).abs() < 1e-4, "{f} {extrapolated} {exact}");
+        let told = mode.mesh_error().unwrap() / (f / exact - 1.0).abs();
+        assert!((told - 1.0).abs() < 0.1, "{told}");
+    }
+}

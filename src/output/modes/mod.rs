@@ -161,7 +161,8 @@ fn mode(mode: &Mode) -> Value {
         "growth_per_s": mode.s.re, "time_s": mode.time_s(),
         "angular_frequency_per_s": mode.s.im, "error_per_s": mode.error, "residual": mode.residual,
         "transverse_share": mode.shape.transverse(),
-        "undrained": limit(&mode.undrained), "drained": limit(&mode.drained)
+        "undrained": limit(&mode.undrained), "drained": limit(&mode.drained),
+        "on_half_the_cells": limit(&mode.coarse), "extrapolated_frequency_hz": mode.extrapolated_hz()
     })
 }
 

@@ -3,17 +3,18 @@
 use std::fmt::Write as _;
 
 use super::{Report, moves};
-use crate::output::numbers::{quantity, shortest, significant};
+use crate::output::numbers::{percent, quantity, shortest, significant};
 use crate::run::modes::{Limit, Mode};
 
 /// Digits shown at most.
 const DIGITS: f64 = 6.0;
 
-const HEADINGS: [&str; 9] = [
+const HEADINGS: [&str; 10] = [
     "",
     "mode",
     "moves",
     "frequency",
+    "mesh error",
     "damping ratio",
     "growth rate",
     "time constant",
@@ -41,9 +42,9 @@ pub fn table(report: &Report) -> String {
     );
     let mut lines = vec![HEADINGS.map(String::from)];
     lines.extend(found.modes.iter().enumerate().map(|(k, mode)| line(k + 1, mode)));
-    let widths: [usize; 9] = std::array::from_fn(|k| lines.iter().map(|l| l[k].chars().count()).max().unwrap_or(0));
+    let widths: [usize; 10] = std::array::from_fn(|k| lines.iter().map(|l| l[k].chars().count()).max().unwrap_or(0));
     // a column of which no mode has anything says nothing
-    let shown: [bool; 9] = std::array::from_fn(|k| k == 0 || lines[1..].iter().any(|l| !l[k].is_empty()));
+    let shown: [bool; 10] = std::array::from_fn(|k| k == 0 || lines[1..].iter().any(|l| !l[k].is_empty()));
     for line in &lines {
         let cells = line.iter().zip(widths).enumerate().map(|(k, (cell, width))| match k {
             1 | 2 => format!("{cell:<width$}"),
@@ -52,13 +53,16 @@ pub fn table(report: &Report) -> String {
         let cells = cells.zip(shown).filter(|(_, shown)| *shown).map(|(cell, _)| cell);
         let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ").trim_end());
     }
+    if found.modes.iter().any(|m| m.coarse.is_some()) {
+        text += "\nmesh error: how far the frequency on half the cells says that this one is off, to second order\n";
+    }
     if found.modes.iter().any(|m| m.undrained.is_some() || m.drained.is_some()) {
         text += "\nundrained: the same shape with every bladder sealed; drained: with networks of one pressure\n";
     }
     text
 }
 
-fn line(number: usize, mode: &Mode) -> [String; 9] {
+fn line(number: usize, mode: &Mode) -> [String; 10] {
     let cell = |value: Option<f64>, error: f64, unit: &str| {
         value.map_or(String::new(), |value| quantity(value, unit, digits(value, error)))
     };
@@ -69,6 +73,7 @@ fn line(number: usize, mode: &Mode) -> [String; 9] {
         mode.kind.word().into(),
         moves(mode).into(),
         cell(mode.frequency_hz(), mode.error / std::f64::consts::TAU, "Hz"),
+        mode.mesh_error().map_or(String::new(), percent),
         mode.damping_ratio()
             .map_or(String::new(), |z| significant(z, digits(z, mode.error / size).min(4))),
         if mode.kind.stays() {
@@ -110,7 +115,8 @@ pub fn words(mode: &Mode) -> String {
 pub fn csv(report: &Report) -> String {
     let mut text = String::from(
         "mode [1],kind,frequency [Hz],damping ratio [1],growth rate [1/s],time constant [s],error bound [1/s],residual [1],\
-         transverse share [1],undrained frequency [Hz],undrained likeness [1],drained frequency [Hz],drained likeness [1]\n",
+         transverse share [1],undrained frequency [Hz],undrained likeness [1],drained frequency [Hz],drained likeness [1],\
+         frequency on half the cells [Hz],extrapolated frequency [Hz]\n",
     );
     let number = |value: Option<f64>| value.filter(|v| v.is_finite()).map_or(String::new(), shortest);
     for (k, mode) in report.found.modes.iter().enumerate() {
@@ -128,6 +134,8 @@ pub fn csv(report: &Report) -> String {
         cells.extend(numbers.map(number));
         cells.extend(limit(&mode.undrained));
         cells.extend(limit(&mode.drained));
+        cells.push(number(mode.coarse.map(|l| l.frequency_hz)));
+        cells.push(number(mode.extrapolated_hz()));
         let _ = writeln!(text, "{}", cells.join(","));
     }
     text

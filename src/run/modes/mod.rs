@@ -60,12 +60,32 @@ pub struct Mode {
     pub undrained: Option<Limit>,
     /// With networks of one pressure.
     pub drained: Option<Limit>,
+    /// On a mesh of half the cells.
+    pub coarse: Option<Limit>,
 }
 
 impl Mode {
     /// Frequency [Hz]; None where nothing swings.
     pub fn frequency_hz(&self) -> Option<f64> {
         self.kind.swings().then(|| self.s.im / std::f64::consts::TAU)
+    }
+
+    /// `[E45]` What halving the cells says of the mesh (Richardson, second order): the frequency to which the two point [Hz],
+    ///
+    /// ```text
+    /// f(h) = f + c h² + ..        f ≈ f(h) + (f(h) - f(2h))/3
+    /// ```
+    ///
+    /// None where nothing swings or the coarser mesh has no such mode.
+    pub fn extrapolated_hz(&self) -> Option<f64> {
+        let (fine, coarse) = (self.frequency_hz()?, self.coarse?.frequency_hz);
+        Some(fine + (fine - coarse) / 3.0)
+    }
+
+    /// Error that the mesh makes of the frequency, relative to it, as [`Mode::extrapolated_hz`] has it.
+    pub fn mesh_error(&self) -> Option<f64> {
+        let fine = self.frequency_hz()?;
+        Some((self.extrapolated_hz()? - fine).abs() / fine)
     }
 
     /// Damping ratio, negative where the mode grows; None where nothing swings.
@@ -136,6 +156,45 @@ pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
     })
 }
 
+/// Looks for the same modes on half the cells, about the start or the equilibrium under the loads of an instant [s]: what the mesh
+/// does to them. Does nothing where the cells cannot be halved.
+///
+/// # Errors
+/// As [`modes`] and [`at_equilibrium`].
+pub fn halve_the_mesh(case: &Case, at_rest_under: Option<f64>, plan: &Plan, found: &mut Modes) -> Result<()> {
+    let mut case = case.clone();
+    let mesh = &mut case.mesh;
+    match (&case.bladders, mesh.segments) {
+        _ if mesh.cells_per_segment.is_multiple_of(2) => mesh.cells_per_segment /= 2,
+        (None, Some(segments)) if segments.is_multiple_of(2) => mesh.segments = Some(segments / 2),
+        _ => return Ok(()),
+    }
+    let about = match at_rest_under {
+        Some(at) => at_equilibrium(&case, at)?,
+        None => linearise(&case, found.about.at, None)?,
+    };
+    let wider = Plan {
+        count: plan.count + 4,
+        ..*plan
+    };
+    let mut tally = Tally::default();
+    let others = search(&about, Fluid::Flowing, &wider, &mut tally)?;
+    let every_other: Vec<Mode> = found
+        .modes
+        .iter()
+        .map(|mode| Mode {
+            shape: mode.shape.on_every_other_node(),
+            ..mode.clone()
+        })
+        .collect();
+    for (k, limit) in matched(&every_other, &others) {
+        found.modes[k].coarse = Some(limit);
+    }
+    found.factorizations += tally.factorizations;
+    found.solves += tally.solves;
+    Ok(())
+}
+
 #[derive(Default)]
 struct Tally {
     finite: usize,
@@ -203,6 +262,7 @@ fn mode(about: &Linearised, shapes: &mut Shapes, pair: &Pair) -> Option<Mode> {
         shape,
         undrained: None,
         drained: None,
+        coarse: None,
     })
 }
 
