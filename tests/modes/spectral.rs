@@ -71,9 +71,6 @@ fn a_negative_eigenvalue_tells_an_unstable_tangent() {
     // Far inside what the last four steps must not have moved.
     let least = found.iter().map(|mu| mu.re).fold(f64::INFINITY, f64::min);
     assert!((least / (exact[0] - by) - 1.0).abs() < 1e-8);
-    // Alone on the diagonal a zero mass has no eigenvalue.
-    let light: Vec<f64> = (0..300).map(|j| if j % 2 == 0 { 1.0 } else { 0.0 }).collect();
-    assert!(spectral::softest(&pattern, &k, &light).unwrap().len() < 24);
 }
 
 /// Largest distance of an eigenvalue of one to the nearest of the other.
