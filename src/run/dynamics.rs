@@ -328,7 +328,12 @@ impl Run<'_> {
             })?;
         }
         let dae = solver.dae_mut();
-        dae.look_within(0.5 * (t + next));
+        let ahead = 0.5 * (t + next);
+        if switches {
+            dae.switch(t, ahead, &mut self.state);
+        } else {
+            dae.look_within(ahead);
+        }
         if switches
             && let Err(failure) = consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
         {
