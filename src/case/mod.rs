@@ -35,3 +35,4 @@ pub use rewrite::{rewrite, spaced};
 pub use schema::Case;
 pub use schema_json::schema_json;
 pub use signals::{Clock, Jet, Signal};
+pub use wording::nearest;

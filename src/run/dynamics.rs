@@ -10,6 +10,8 @@ use super::observe::Observer;
 use super::order;
 use super::record::{Control, Header, Progress, Recorder};
 use super::schedule::{self, Outputs, Stop};
+use super::sensitivity::Parameter;
+use super::sensitivity::forward::Forward;
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae};
@@ -30,7 +32,15 @@ pub struct Outcome {
 
 /// Runs a checked case. An error means that the recorder failed; a failing solver is an [`Outcome`].
 pub fn run(case: &Case, recorder: &mut dyn Recorder) -> Result<Outcome> {
-    let (run, dae) = Run::new(case);
+    run_with(case, &[], recorder)
+}
+
+/// Runs a checked case with derivatives by some of its numbers, as [`run`].
+///
+/// # Errors
+/// Besides the recorder's, [`Error::Usage`] for a number by which there is no derivative.
+pub fn run_with(case: &Case, parameters: &[Parameter], recorder: &mut dyn Recorder) -> Result<Outcome> {
+    let (run, dae) = Run::new(case, parameters)?;
     run.go(dae, None, recorder)
 }
 
@@ -46,7 +56,7 @@ pub fn resume(case: &Case, checkpoint: &Checkpoint, recorder: &mut dyn Recorder)
             "the checkpoint belongs to another case or another version of the program".into(),
         ));
     }
-    let (run, dae) = Run::new(case);
+    let (run, dae) = Run::new(case, &[])?;
     run.go(dae, Some(checkpoint), recorder)
 }
 
@@ -72,6 +82,7 @@ struct Run<'a> {
     options: Options,
     linear: Linear,
     inertia: bool,
+    forward: Option<Forward<'a>>,
     held: Option<String>,
     begin: Instant,
     output_wall: f64,
@@ -92,14 +103,18 @@ enum End {
 }
 
 impl<'a> Run<'a> {
-    fn new(case: &'a Case) -> (Self, BeamDae) {
+    fn new(case: &'a Case, parameters: &'a [Parameter]) -> Result<(Self, BeamDae)> {
         let begin = Instant::now();
         let system = System::new(case);
         let interval = case.time.output_interval();
         let characteristic = characteristic::numbers(case, &system.model);
         let warnings = audit::warnings(case, &system.model, &characteristic);
         let decisions = &system.model.effects.decisions;
-        let chosen = method::choose(case, &system);
+        let chosen = if parameters.is_empty() {
+            method::choose(case, &system)
+        } else {
+            method::with_sensitivities(case, &system)
+        };
         let options = Options::new(case, &system, &chosen, max_step(case, &system));
         let inertia = system.layout.inertia;
         let mathieu = characteristic::mathieu(&system.model);
@@ -107,7 +122,7 @@ impl<'a> Run<'a> {
             mathieu,
             euler_load: characteristic.get("euler_load_n").copied(),
         };
-        let run = Self {
+        let mut run = Self {
             case,
             observer: Observer::new(case, &system, interval),
             outputs: Outputs::new(interval, case.time.end_s),
@@ -153,12 +168,14 @@ impl<'a> Run<'a> {
                     .collect(),
                 growth: None,
                 accuracy: None,
+                sensitivities: Default::default(),
                 characteristic,
                 warnings,
             },
             options,
             linear,
             inertia,
+            forward: None,
             held: None,
             begin,
             output_wall: 0.0,
@@ -168,7 +185,12 @@ impl<'a> Run<'a> {
             carried: vec![],
             earlier: Counters::default(),
         };
-        (run, BeamDae::new(system))
+        let mut dae = BeamDae::new(system);
+        if !parameters.is_empty() {
+            let (forward, with_neighbours) = Forward::new(case, dae, parameters)?;
+            (run.forward, dae) = (Some(forward), with_neighbours);
+        }
+        Ok((run, dae))
     }
 }
 
@@ -211,12 +233,18 @@ impl Run<'_> {
         } else {
             None
         };
-        let header = from.is_none().then(|| Observer::header(self.case, dae.system()));
+        let consistent = consistent.or_else(|| self.begin_forward(&mut dae).err());
+        let header = from.is_none().then(|| self.header(dae.system()));
         let end = match consistent {
             Some(fault) => End::Failed(fault),
             None => match Integrator::new(dae, t, &self.state, &self.rates, &self.options) {
                 Err(failure) => End::Failed(fault(&failure)),
                 Ok(mut solver) => {
+                    if let (Some(forward), Some(ida)) = (&self.forward, solver.ida_mut())
+                        && let Err(failure) = forward.hand_over(ida, false)
+                    {
+                        return Ok(self.finish(End::Failed(fault(&failure))));
+                    }
                     header.map_or(Ok(()), |header| recorder.begin(&header))?;
                     let end = self.integrate(&mut solver, first_stop, recorder)?;
                     self.count(&solver);
@@ -225,6 +253,22 @@ impl Run<'_> {
             },
         };
         Ok(self.finish(end))
+    }
+
+    fn header(&self, system: &System) -> Header {
+        let mut header = Observer::header(self.case, system);
+        if let Some(forward) = &self.forward {
+            header.sensitivities = forward.names(&header.columns);
+        }
+        header
+    }
+
+    fn begin_forward(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverFault> {
+        let Some(forward) = &mut self.forward else {
+            return Ok(());
+        };
+        forward.begin(dae)?;
+        forward.complete(dae, 0.0, [&self.state, &self.rates])
     }
 
     fn take_up(&mut self, checkpoint: &Checkpoint) {
@@ -327,6 +371,13 @@ impl Run<'_> {
                 observed: self.observer.seen.clone(),
             })?;
         }
+        let before = match (&mut self.forward, solver.ida_mut()) {
+            (Some(forward), Some(ida)) => match forward.leave(ida, t, [&self.state, &self.rates]) {
+                Ok(before) => Some(before),
+                Err(failure) => return Ok(Some(fault(&failure))),
+            },
+            _ => None,
+        };
         let dae = solver.dae_mut();
         let ahead = 0.5 * (t + next);
         if switches {
@@ -339,10 +390,20 @@ impl Run<'_> {
         {
             return Ok(Some(inconsistent(t, &failure)));
         }
-        Ok(solver
+        if let (Some(forward), Some(before)) = (&mut self.forward, &before) {
+            if !switches {
+                forward.go_on(dae, stop);
+            } else if let Err(fault) = forward.pass(dae, stop, t, before, [&self.state, &self.rates]) {
+                return Ok(Some(fault));
+            }
+        }
+        let restarted = solver
             .restart(t, &self.state, &self.rates)
-            .err()
-            .map(|failure| fault(&failure)))
+            .and_then(|()| match (&self.forward, solver.ida_mut()) {
+                (Some(forward), Some(ida)) => forward.hand_over(ida, true),
+                _ => Ok(()),
+            });
+        Ok(restarted.err().map(|failure| fault(&failure)))
     }
 
     /// Takes every sample that is due, from the integrator's own polynomial.
@@ -384,6 +445,14 @@ impl Run<'_> {
                 &self.integrals,
                 recorder,
             )?;
+            if let (Some(forward), Some(ida)) = (&mut self.forward, solver.ida_mut()) {
+                match forward.sample(ida, t, [&self.state, &self.rates], self.observer.row()) {
+                    Ok(row) => recorder.sensitivities(row)?,
+                    Err(failure) => {
+                        return Ok(Some(format!("sensitivities at t = {t:.6} s could not be read: {failure}")));
+                    }
+                }
+            }
             if ended.is_some() {
                 return Ok(ended);
             }
@@ -438,6 +507,7 @@ impl Run<'_> {
         };
         let o = &self.observer.seen;
         s.quantities = o.figures.quantities();
+        s.sensitivities = self.forward.as_ref().map(Forward::summary).unwrap_or_default();
         let b = &mut s.balances;
         b.energy_residual_relative = o.residuals.energy_relative();
         b.volume_residual_relative = o.residuals.volume_relative();

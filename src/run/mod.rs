@@ -11,4 +11,5 @@ pub mod observe;
 pub mod order;
 pub mod record;
 pub mod schedule;
+pub mod sensitivity;
 pub mod summary;
