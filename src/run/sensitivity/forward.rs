@@ -9,7 +9,7 @@ use super::Parameter;
 use super::figures::{Figures, Sensitivity};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, Neighbours};
-use crate::discrete::{System, ledger, sample, start};
+use crate::discrete::{ledger, sample, start};
 use crate::error::{Error, Result, SolverFault};
 use crate::run::equilibrium;
 use crate::run::record::Column;
