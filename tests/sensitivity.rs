@@ -49,7 +49,8 @@ fn wet(end_s: f64) -> Value {
     });
     case["tubes"] = json!({"length_m": 0.02, "radius_m": 0.001, "permeability_m4": 6.72e-13});
     case["network"] = json!({"chains": [{"bladders": [1, 2], "ends": ["sealed", "sealed"]}]});
-    case["start"] = json!({"pressures": [{"bladders": [1], "pressure_pa": 1000.0}, {"bladders": [-2], "pressure_pa": 300.0}]});
+    case["start"] =
+        json!({"pressures": [{"bladders": [1], "pressure_pa": 1000.0}, {"bladders": [-2], "pressure_pa": 300.0}]});
     case
 }
 
@@ -60,14 +61,15 @@ fn finished(case: &Case, parameters: &[Parameter]) -> (Memory, Summary) {
     (memory, outcome.summary)
 }
 
-/// Largest deviation of every column's derivative from differences of complete runs (fourth order over 1 and 2 % of the
-/// number), relative to the largest derivative of the column or, where that says less, to the column's own size over the number.
-fn deviations(value: &Value, pointer: &str) -> Vec<(String, f64)> {
+/// Largest deviation of every column's derivative from differences of complete runs (fourth order over `part` and twice that of
+/// the number), relative to the largest derivative of the column or, where that says less, to a tenth of the column's own size over
+/// the number.
+fn deviations(value: &Value, pointer: &str, part: f64) -> Vec<(String, f64)> {
     let case = parse(value, &[]);
     let parameter = Parameter::of(&case, pointer).unwrap();
     let p = parameter.value;
     let runs = [1.0, -1.0, 2.0, -2.0].map(|k| {
-        let set = format!("{pointer}={:e}", p * (1.0 + 0.01 * k));
+        let set = format!("{pointer}={:e}", p * (1.0 + part * k));
         finished(&parse(value, &[set]), &[]).0
     });
     let (run, _) = finished(&case, &[parameter]);
@@ -77,21 +79,29 @@ fn deviations(value: &Value, pointer: &str) -> Vec<(String, f64)> {
         let own = run.column(&name)?;
         let [a, b, c, d] = runs.each_ref().map(|run| run.column(&name).unwrap());
         let exact: Vec<f64> = (0..own.len())
-            .map(|i| (8.0 * (a[i] - b[i]) - (c[i] - d[i])) / (12.0 * 0.01 * p))
+            .map(|i| (8.0 * (a[i] - b[i]) - (c[i] - d[i])) / (12.0 * part * p))
             .collect();
         let size = |all: &[f64]| all.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let scale = size(&exact).max(0.1 * size(&own) / p.abs());
-        let worst = exact.iter().zip(&slopes).fold(0.0_f64, |m, (e, s)| m.max((e - s).abs()));
+        let worst = exact
+            .iter()
+            .zip(&slopes)
+            .fold(0.0_f64, |m, (e, s)| m.max((e - s).abs()));
         (scale > 0.0).then(|| (name, worst / scale))
     });
     compared.collect()
 }
 
-/// Every column within a tolerance, but for some with their own.
-fn agree(value: &Value, pointer: &str, tolerance: f64, others: &[(&str, f64)]) {
-    for (name, deviation) in deviations(value, pointer) {
-        let own = others.iter().find(|o| o.0 == name).map_or(tolerance, |o| o.1);
-        assert!(deviation < own, "{name} by {pointer}: {deviation:.1e}");
+/// Every column agrees: to 5e-5 what is read off the state, to 1e-3 what is integrated. Runs at rtol 1e-8 leave some 1e-7 in the state
+/// and, over differences of `part`, a hundred times that in the reference; integrals are carried without error control.
+fn agree(value: &Value, pointer: &str, part: f64) {
+    for (name, deviation) in deviations(value, pointer, part) {
+        println!("{name} by {pointer}: {deviation:.1e}");
+        let integral = ["work", "dissipated", "harvested"]
+            .iter()
+            .any(|start| name.starts_with(start));
+        let tolerance = if integral { 1e-3 } else { 5e-5 };
+        assert!(deviation < tolerance, "{name} by {pointer}: {deviation:.1e}");
     }
 }
 
@@ -107,8 +117,7 @@ fn dry_beam() {
         "/beam/damping/bending_time_s",
         "/start/u1_m/polynomial/coefficients/2",
     ] {
-        println!("{pointer} {:?}", deviations(&value, pointer));
-        agree(&value, pointer, 1e-4, &[]);
+        agree(&value, pointer, 0.01);
     }
 }
 
@@ -125,8 +134,7 @@ fn wet_beam() {
         "/beam/young_modulus_pa",
         "/start/pressures/0/pressure_pa",
     ] {
-        println!("{pointer} {:?}", deviations(&value, pointer));
-        agree(&value, pointer, 1e-4, &[]);
+        agree(&value, pointer, 0.01);
     }
 }
 
@@ -135,25 +143,31 @@ fn wet_beam() {
 #[test]
 fn force_that_switches() {
     let mut value = beam(0.02);
-    value["ends"]["tip"] = json!({"free": {"force_x_n": {"ramp": {"from": 0.0, "to": 0.05, "start_s": 0.0043, "duration_s": 0.0}}}});
+    value["ends"]["tip"] =
+        json!({"free": {"force_x_n": {"ramp": {"from": 0.0, "to": 0.05, "start_s": 0.0043, "duration_s": 0.0}}}});
     let ramp = "/ends/tip/free/force_x_n/ramp";
     for key in ["to", "start_s"] {
-        println!("{key} {:?}", deviations(&value, &format!("{ramp}/{key}")));
-        agree(&value, &format!("{ramp}/{key}"), 1e-4, &[]);
+        agree(&value, &format!("{ramp}/{key}"), 0.01);
     }
 }
 
 /// A root pulled to and fro in a zigzag: where its velocity jumps the unknowns, counted from the root, are restated. How far
-/// it goes, and when it turns.
+/// it goes, and when it turns (differences over 4 and 9 us: the jump excites waves of 1e4 rad/s). The energy balance closes, which it
+/// does not when free nodes are jerked along.
 #[test]
 fn driven_end_that_turns() {
     let mut value = beam(0.02);
     let table = json!({"times_s": [0.0, 0.0043, 0.03], "values": [0.0, 0.001, -0.002], "interpolation": "linear"});
     value["ends"]["root"] = json!({"clamped": {"u1_m": {"table": table}}});
+    let (_, summary) = finished(&parse(&value, &[]), &[]);
+    assert!(
+        summary.balances.energy_residual_relative < 1e-5,
+        "{:?}",
+        summary.balances
+    );
     for key in ["values/1", "times_s/1"] {
         let pointer = format!("/ends/root/clamped/u1_m/table/{key}");
-        println!("{key} {:?}", deviations(&value, &pointer));
-        agree(&value, &pointer, 1e-4, &[]);
+        agree(&value, &pointer, 0.001);
     }
 }
 
@@ -176,15 +190,22 @@ fn figures_of_a_shaken_beam() {
         let (_, summary) = finished(&case, &[parameter]);
         for (name, slopes) in &summary.sensitivities[&pointer].quantities {
             let of = |s: &Summary, figure: &str| s.quantities[name].figures().find(|f| f.0 == figure).unwrap().1;
+            // what is final may be passing through zero
+            let size = summary.quantities[name]
+                .figures()
+                .fold(0.0_f64, |m, f| m.max(f.1.abs()));
             for (figure, slope) in slopes.figures() {
                 let [a, b, c, d] = runs.each_ref().map(|s| of(s, figure));
                 let exact = (8.0 * (a - b) - (c - d)) / (12.0 * 0.005 * p);
-                let scale = exact.abs().max(0.1 * of(&summary, figure).abs() / p);
+                let scale = exact.abs().max(0.1 * size / p);
                 let deviation = (slope - exact).abs() / scale;
                 println!("{name} {figure} {deviation:.1e}");
                 // the largest sample of a run changed by 1 % may be the next one: of second order in the change
                 let tolerance = if figure.contains("max") { 2e-3 } else { 1e-4 };
-                assert!(deviation < tolerance, "{name} {figure} by {key}: {slope:e} for {exact:e}");
+                assert!(
+                    deviation < tolerance,
+                    "{name} {figure} by {key}: {slope:e} for {exact:e}"
+                );
             }
         }
     }
@@ -197,8 +218,7 @@ fn start_in_equilibrium() {
     value["ends"]["tip"] = json!({"free": {"force_x_n": {"sine": {"amplitude": 0.05, "frequency_hz": 20.0, "phase_rad": 1.5707963267948966, "ramp_cycles": 0.0}}}});
     value["start"] = json!({"equilibrium": {"loads_at_s": 0.0}});
     for pointer in ["/beam/young_modulus_pa", "/ends/tip/free/force_x_n/sine/amplitude"] {
-        println!("{pointer} {:?}", deviations(&value, pointer));
-        agree(&value, pointer, 1e-4, &[]);
+        agree(&value, pointer, 0.01);
     }
 }
 
@@ -206,7 +226,10 @@ fn start_in_equilibrium() {
 fn with_parameter(case: &Case, pointer: &str) -> BeamDae {
     let dae = BeamDae::new(System::new(case));
     let parameter = Parameter::of(case, pointer).unwrap();
-    let systems = parameter.cases.each_ref().map(|case| dae.system().like(case).expect("the same unknowns"));
+    let systems = parameter
+        .cases
+        .each_ref()
+        .map(|case| dae.system().like(case).expect("the same unknowns"));
     let neighbours = Neighbours::new(&dae, systems);
     dae.with_neighbours(vec![neighbours])
 }
@@ -219,7 +242,9 @@ fn closed_network_keeps_its_volume() {
     let mut dae = with_parameter(&case, "/fluid/viscosity_pa_s");
     let (system, now) = dae.instant(0.0);
     let layout = system.layout.clone();
-    let chain: Vec<usize> = (0..2 * system.fluid.as_ref().unwrap().cells_per_bladder).map(|i| layout.area + i).collect();
+    let chain: Vec<usize> = (0..2 * system.fluid.as_ref().unwrap().cells_per_bladder)
+        .map(|i| layout.area + i)
+        .collect();
     let mut y = start::state(system, &case, now);
     let mut yp = vec![0.0; y.len()];
     consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default()).unwrap();
@@ -276,8 +301,10 @@ fn tangent_is_the_jacobian_applied() {
     let wave = |k: usize| -> Vec<f64> { (0..n).map(|i| ((i * (k + 2)) as f64).sin()).collect() };
     let (y, yp): (Vec<f64>, Vec<f64>) = (wave(50).iter().map(|y| 0.1 * y).collect(), wave(51));
     let (along, rates): (Vec<_>, Vec<_>) = ((0..11).map(wave).collect(), (20..31).map(wave).collect());
-    let (along, rates): (Vec<&[f64]>, Vec<&[f64]>) =
-        (along.iter().map(Vec::as_slice).collect(), rates.iter().map(Vec::as_slice).collect());
+    let (along, rates): (Vec<&[f64]>, Vec<&[f64]>) = (
+        along.iter().map(Vec::as_slice).collect(),
+        rates.iter().map(Vec::as_slice).collect(),
+    );
     let all = |dae: &mut dyn FnMut(&mut [&mut [f64]])| {
         let mut out = vec![vec![f64::NAN; n]; 11];
         dae(&mut out.iter_mut().map(Vec::as_mut_slice).collect::<Vec<_>>());
@@ -324,7 +351,13 @@ fn difference_formula_is_of_fourth_order() {
     dae.slope(0, 0.0, &y, &yp, &mut out).unwrap();
     let largest = f.iter().chain(&g).fold(0.0_f64, |m, x| m.max(x.abs()));
     for i in 0..n {
-        assert!((out[i] - (g[i] - f[i])).abs() < 1e-11 * largest, "{}: {} {}", dae.name(i), out[i], g[i] - f[i]);
+        assert!(
+            (out[i] - (g[i] - f[i])).abs() < 1e-11 * largest,
+            "{}: {} {}",
+            dae.name(i),
+            out[i],
+            g[i] - f[i]
+        );
     }
 }
 

@@ -96,17 +96,23 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     rows
 }
 
-/// By how many per cent the largest deflection or pressure changes with one per cent of each number.
+/// What one per cent more of each number does to the largest deflections and the largest pressure.
 fn sensitivities(summary: &Summary) -> Option<String> {
     let of = |(pointer, s): (&String, &Sensitivity)| -> String {
         let relative = |name: &str, word: &str| {
             let (value, slope) = (summary.quantities.get(name)?.max_abs?, s.quantities.get(name)?.max_abs?);
             let ratio = slope * s.value / value;
-            ratio.is_finite().then(|| format!("{} % of {word}", significant(ratio, 3)))
+            let sign = if ratio > 0.0 { "+" } else { "" };
+            ratio
+                .is_finite()
+                .then(|| format!("{word} {sign}{} %", significant(ratio, 3)))
         };
-        let shown = [("tip_u1_m", "largest |u1|"), ("tip_u3_m", "largest |u3|"), ("max_pressure_pa", "largest |p|")];
-        let shown: Vec<String> = shown.into_iter().filter_map(|(name, word)| relative(name, word)).collect();
-        format!("1 % of {pointer} is {}", shown.join(", "))
+        let shown = [("tip_u1_m", "u₁"), ("tip_u3_m", "u₃"), ("max_pressure_pa", "p")];
+        let shown: Vec<String> = shown
+            .into_iter()
+            .filter_map(|(name, word)| relative(name, word))
+            .collect();
+        format!("{pointer} +1 %: largest {}", shown.join(", "))
     };
     Some(summary.sensitivities.iter().map(of).collect::<Vec<_>>().join(BETWEEN))
 }

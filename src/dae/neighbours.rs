@@ -85,12 +85,17 @@ impl BeamDae {
         out: &mut [f64],
         mut read: impl FnMut(&System, &Instant, &[f64], &mut Workspace<f64>, &mut [f64]),
     ) {
-        let largest = s.iter().zip(y).fold(0.0_f64, |m, (s, y)| m.max(s.abs() / (1.0 + y.abs())));
+        let largest = s
+            .iter()
+            .zip(y)
+            .fold(0.0_f64, |m, (s, y)| m.max(s.abs() / (1.0 + y.abs())));
         let h = if largest > 0.0 { NUDGE / largest } else { 1.0 };
         let mut values = CHANGES.map(|_| vec![0.0; out.len()]);
         for (change, values) in CHANGES.iter().zip(&mut values) {
             let go = |y: &[f64], s: &[f64]| -> Vec<f64> { y.iter().zip(s).map(|(y, s)| y + change * h * s).collect() };
-            self.visit(t, &go(y, s), &go(yp, sp), |system, now, rates, w| read(system, now, rates, w, values));
+            self.visit(t, &go(y, s), &go(yp, sp), |system, now, rates, w| {
+                read(system, now, rates, w, values)
+            });
         }
         let by_parameter = self.neighbours_mut()[k].slope(out, |_, beam, out| {
             beam.visit(t, y, yp, |system, now, rates, w| read(system, now, rates, w, out));

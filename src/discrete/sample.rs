@@ -138,7 +138,8 @@ pub struct Extremes {
 pub fn extremes(system: &System, w: &Workspace<f64>) -> Extremes {
     let place = |values: &[f64], sign: f64| {
         let all = values.iter().enumerate();
-        all.max_by(|a, b| (sign * a.1).total_cmp(&(sign * b.1))).map_or(0, |(i, _)| i)
+        all.max_by(|a, b| (sign * a.1).total_cmp(&(sign * b.1)))
+            .map_or(0, |(i, _)| i)
     };
     Extremes {
         high: place(&w.pressure, 1.0),
@@ -158,7 +159,12 @@ pub fn instantaneous(system: &System, now: &Instant, w: &Workspace<f64>, at: &Ex
     let mut all = vec![w.u1[last], w.u3[last], angle];
     if let Some(wet) = &system.model.wet {
         let opening = 1.0 + w.area[at.closed] / wet.area_at_rest;
-        all.extend([w.pressure[at.high], w.pressure[at.low], turbine_power(system, now, w), opening]);
+        all.extend([
+            w.pressure[at.high],
+            w.pressure[at.low],
+            turbine_power(system, now, w),
+            opening,
+        ]);
     }
     let e = ledger::energies(system, now, w);
     all.extend([e.kinetic, e.rotary, e.axial, e.bending, e.bladders]);

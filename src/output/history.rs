@@ -25,7 +25,10 @@ pub struct HistoryWriter {
 impl HistoryWriter {
     /// Creates the file with its line of names, `name [unit]`.
     pub fn create(path: &Path, columns: &[Column]) -> Result<Self> {
-        Self::with_names(path, columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect())
+        Self::with_names(
+            path,
+            columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect(),
+        )
     }
 
     /// Creates the file with its line of names, which hold the units already.

@@ -397,12 +397,13 @@ impl Run<'_> {
                 return Ok(Some(fault));
             }
         }
-        let restarted = solver
-            .restart(t, &self.state, &self.rates)
-            .and_then(|()| match (&self.forward, solver.ida_mut()) {
-                (Some(forward), Some(ida)) => forward.hand_over(ida, true),
-                _ => Ok(()),
-            });
+        let restarted =
+            solver
+                .restart(t, &self.state, &self.rates)
+                .and_then(|()| match (&self.forward, solver.ida_mut()) {
+                    (Some(forward), Some(ida)) => forward.hand_over(ida, true),
+                    _ => Ok(()),
+                });
         Ok(restarted.err().map(|failure| fault(&failure)))
     }
 
@@ -449,7 +450,9 @@ impl Run<'_> {
                 match forward.sample(ida, t, [&self.state, &self.rates], self.observer.row()) {
                     Ok(row) => recorder.sensitivities(row)?,
                     Err(failure) => {
-                        return Ok(Some(format!("sensitivities at t = {t:.6} s could not be read: {failure}")));
+                        return Ok(Some(format!(
+                            "sensitivities at t = {t:.6} s could not be read: {failure}"
+                        )));
                     }
                 }
             }

@@ -77,7 +77,10 @@ pub fn with_sensitivities(case: &Case, system: &System) -> MethodChoice {
     }
     MethodChoice {
         one_step: None,
-        reason: format!("sensitivities are carried along by IDA alone; without them it would be {}", usual.name()),
+        reason: format!(
+            "sensitivities are carried along by IDA alone; without them it would be {}",
+            usual.name()
+        ),
         order: order::choose(case, system),
     }
 }

@@ -144,7 +144,11 @@ impl Memory {
     /// One column of derivatives by the names of the history's column and of the number: `("tip_u1", "/fluid/viscosity_pa_s")`.
     pub fn sensitivity(&self, column: &str, pointer: &str) -> Option<Vec<f64>> {
         let start = format!("d {column}/d {pointer} [");
-        let k = self.header.sensitivities.iter().position(|name| name.starts_with(&start))?;
+        let k = self
+            .header
+            .sensitivities
+            .iter()
+            .position(|name| name.starts_with(&start))?;
         Some(self.sensitivities.iter().map(|r| r[k]).collect())
     }
 

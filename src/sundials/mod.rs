@@ -49,8 +49,8 @@ pub use failure::{IdaFailure, Worst};
 pub use ida::{Ida, Step};
 pub use kinsol::{Kinsol, KinsolFailure, KinsolOptions, Solution};
 pub use klu::{Klu, KluFault, RowScaling};
-pub use sensitivity_start::consistent_sensitivities;
 pub use options::{Absolute, IdaOptions};
+pub use sensitivity_start::consistent_sensitivities;
 pub use start::{Start, StartFailure, StartOptions, consistent_start};
 
 /// Declarations written by `build.rs`.

@@ -196,7 +196,10 @@ impl<D: Dae> Ida<D> {
             integrals: vectors(&vec![vec![0.0; integrals]; if integrals == 0 { 0 } else { count }])?,
         };
         let bridge = self.bridge.get();
-        let (relative, least) = (bridge.relative, bridge.absolute.iter().copied().fold(f64::INFINITY, f64::min));
+        let (relative, least) = (
+            bridge.relative,
+            bridge.absolute.iter().copied().fold(f64::INFINITY, f64::min),
+        );
         let (mut from, mut rates, mut absolute) = (raws(&carried.s), raws(&carried.sp), vec![least; count]);
         let mut zeros = raws(&carried.integrals);
         let memory = self.memory.0;
@@ -238,7 +241,10 @@ impl<D: Dae> Ida<D> {
         for (vector, from) in carried.s.iter_mut().zip(from).chain(carried.sp.iter_mut().zip(rates)) {
             vector.entries_mut().copy_from_slice(from);
         }
-        carried.integrals.iter_mut().for_each(|zeros| zeros.entries_mut().fill(0.0));
+        carried
+            .integrals
+            .iter_mut()
+            .for_each(|zeros| zeros.entries_mut().fill(0.0));
         let (mut from, mut rates, mut zeros) = (raws(&carried.s), raws(&carried.sp), raws(&carried.integrals));
         // SAFETY: IDA and the vectors, which it copies, are alive; the arrays have one entry a parameter.
         let flag = unsafe {
@@ -261,9 +267,8 @@ impl<D: Dae> Ida<D> {
         if self.stepped {
             for (derivative, place) in places.iter().enumerate() {
                 // SAFETY: IDA and the vector are alive.
-                let next = unsafe {
-                    s::IDAGetSensDky1(self.memory.0, time, derivative as c_int, k as c_int, place.raw())
-                };
+                let next =
+                    unsafe { s::IDAGetSensDky1(self.memory.0, time, derivative as c_int, k as c_int, place.raw()) };
                 flag = flag.min(next);
             }
         }

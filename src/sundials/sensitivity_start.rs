@@ -43,7 +43,8 @@ pub fn consistent_sensitivities<D: Dae>(
         dae.slope(k, t, y, yp, &mut slope).map_err(text)?;
         for _ in 0..2 {
             let out = &mut [residual.as_mut_slice()];
-            dae.tangent(t, y, yp, [&[s.as_slice()], &[sp.as_slice()]], out).map_err(text)?;
+            dae.tangent(t, y, yp, [&[s.as_slice()], &[sp.as_slice()]], out)
+                .map_err(text)?;
             residual.iter_mut().zip(&slope).for_each(|(r, slope)| *r += slope);
             klu.solve(&mut residual);
             for (i, correction) in residual.iter().enumerate() {

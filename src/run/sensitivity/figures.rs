@@ -79,7 +79,11 @@ impl Track {
 }
 
 /// Columns that are quantities by themselves, with their names as such.
-const PLAIN: [(&str, &str); 3] = [("tip_u1", "tip_u1_m"), ("tip_u3", "tip_u3_m"), ("tip_angle", "tip_angle_rad")];
+const PLAIN: [(&str, &str); 3] = [
+    ("tip_u1", "tip_u1_m"),
+    ("tip_u3", "tip_u3_m"),
+    ("tip_angle", "tip_angle_rad"),
+];
 
 /// Follows a history and its derivatives; the quantities are those of [`crate::run::figures::Figures`].
 #[derive(Clone, Debug)]
@@ -127,7 +131,9 @@ impl Figures {
             let energy = name.ends_with("_j");
             all.insert(name.to_owned(), if energy { track.energy() } else { track.sizes() });
         }
-        if let (Some(harvested), Some(input)) = (self.tracks.get("harvested_energy_j"), self.tracks.get("input_energy_j")) {
+        if let (Some(harvested), Some(input)) =
+            (self.tracks.get("harvested_energy_j"), self.tracks.get("input_energy_j"))
+        {
             let efficiency = Quantity {
                 last: ratio(harvested.last, input.last),
                 window: ratio(harvested.increment(), input.increment()),

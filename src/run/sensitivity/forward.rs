@@ -51,7 +51,12 @@ impl<'a> Forward<'a> {
         let (mut neighbours, mut all_stops) = (vec![], vec![]);
         let own = schedule::stops(case, &dae.system().model);
         for parameter in parameters {
-            let refuse = |what: &str| Error::Usage(format!("--sensitivity '{}': a small change of it {what}", parameter.pointer));
+            let refuse = |what: &str| {
+                Error::Usage(format!(
+                    "--sensitivity '{}': a small change of it {what}",
+                    parameter.pointer
+                ))
+            };
             let like = |case: &Case| {
                 let system = dae.system().like(case);
                 system.ok_or_else(|| refuse("changes which unknowns there are"))
@@ -61,15 +66,25 @@ impl<'a> Forward<'a> {
             let stops = [0, 1, 2, 3].map(|j| schedule::stops(&parameter.cases[j], &systems[j].model));
             let kinds = |stops: &[Stop]| -> Vec<_> { stops.iter().map(|s| (s.switches, s.checkpoint)).collect() };
             if stops.iter().any(|other| kinds(other) != kinds(&own)) {
-                return Err(refuse("changes the order of switching times, or moves one past the end of the run"));
+                return Err(refuse(
+                    "changes the order of switching times, or moves one past the end of the run",
+                ));
             }
             neighbours.push(Neighbours::new(&dae, systems));
             all_stops.push(stops);
         }
         let count = parameters.len();
         let all = sample::columns(dae.system());
-        let columns: Vec<_> = all.iter().map(|c| c.0).enumerate().filter(|(_, name)| !WITHOUT.contains(name)).collect();
-        let instant = columns.iter().position(|(_, name)| *name == "work_loads").unwrap_or(columns.len());
+        let columns: Vec<_> = all
+            .iter()
+            .map(|c| c.0)
+            .enumerate()
+            .filter(|(_, name)| !WITHOUT.contains(name))
+            .collect();
+        let instant = columns
+            .iter()
+            .position(|(_, name)| *name == "work_loads")
+            .unwrap_or(columns.len());
         let turbines = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
         let window_start = case.time.end_s - case.time.window() * (1.0 + 1e-9);
         let forward = Self {
@@ -146,7 +161,12 @@ impl<'a> Forward<'a> {
     }
 
     /// Reads sensitivities off the integrator at a time [s] within its last step, and those of integrals into `integrals`.
-    fn read(&mut self, ida: &mut Ida<BeamDae>, t: f64, integrals: &mut [Vec<f64>]) -> std::result::Result<(), Box<IdaFailure>> {
+    fn read(
+        &mut self,
+        ida: &mut Ida<BeamDae>,
+        t: f64,
+        integrals: &mut [Vec<f64>],
+    ) -> std::result::Result<(), Box<IdaFailure>> {
         for (k, integrals) in integrals.iter_mut().enumerate() {
             ida.sensitivity(k, t, [&mut self.s[k], &mut self.sp[k]])?;
             ida.integral_sensitivity(k, t, integrals)?;
@@ -240,14 +260,25 @@ impl<'a> Forward<'a> {
         self.row.push(t);
         let mut slopes = vec![0.0; self.instant];
         for k in 0..self.parameters.len() {
-            dae.read_slope(k, t, [y, yp], [&self.s[k], &self.sp[k]], &mut slopes, |system, now, rates, w, out| {
-                ledger::complete(system, now, rates, w);
-                sample::instantaneous(system, now, w, &extremes, out);
-            });
-            let flows = ledger::FLOWS.iter().filter(|f| f.energy_sign() != 0.0).map(|f| integrals[k][*f as usize]);
+            dae.read_slope(
+                k,
+                t,
+                [y, yp],
+                [&self.s[k], &self.sp[k]],
+                &mut slopes,
+                |system, now, rates, w, out| {
+                    ledger::complete(system, now, rates, w);
+                    sample::instantaneous(system, now, w, &extremes, out);
+                },
+            );
+            let flows = ledger::FLOWS
+                .iter()
+                .filter(|f| f.energy_sign() != 0.0)
+                .map(|f| integrals[k][*f as usize]);
             let value = self.parameters[k].value;
             let first = self.row.len();
-            self.row.extend(slopes.iter().copied().chain(flows).map(|slope| slope / value));
+            self.row
+                .extend(slopes.iter().copied().chain(flows).map(|slope| slope / value));
             let (columns, row) = (&self.columns, &self.row[first..]);
             self.figures[k].take(t, |name| {
                 let i = columns.iter().position(|c| c.1 == name)?;

@@ -79,7 +79,10 @@ fn number(whole: &Value, pointer: &str) -> std::result::Result<f64, String> {
             let names: Vec<&str> = members.keys().map(String::as_str).collect();
             Err(format!("it is an object, not a number; it has {}", names.join(", ")))
         }
-        Value::Array(items) => Err(format!("it is an array of {}, not a number; name one of its places", items.len())),
+        Value::Array(items) => Err(format!(
+            "it is an array of {}, not a number; name one of its places",
+            items.len()
+        )),
         Value::Null => Err("it has no value in this case".into()),
         other => Err(format!("it is {other}, not a number")),
     }
@@ -93,7 +96,10 @@ fn unknown(place: &Value, here: &str, token: &str) -> String {
             let near = near.map_or(String::new(), |name| format!("; did you mean `{name}`?"));
             format!("{of} has no `{token}`{near}")
         }
-        Value::Array(items) => format!("{of} is an array of {}; `{token}` is not one of its places", items.len()),
+        Value::Array(items) => format!(
+            "{of} is an array of {}; `{token}` is not one of its places",
+            items.len()
+        ),
         other => format!("{of} is {other}, which has no member `{token}`"),
     }
 }
