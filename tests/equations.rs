@@ -16,7 +16,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 28] = [
+const INDEX: [(&str, &str, &str); 43] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -85,6 +85,45 @@ const INDEX: [(&str, &str, &str); 28] = [
         "tests/effects/stretch.rs",
         "stretch_vanishes_with_the_inverse_of_the_stiffness",
     ),
+    (
+        "[E29]",
+        "tests/equilibrium.rs",
+        "static_jacobian_is_that_of_differences",
+    ),
+    (
+        "[E30]",
+        "tests/equilibrium.rs",
+        "stubby_column_loses_load_as_it_buckles",
+    ),
+    ("[E31]", "tests/modes/physics.rs", "a_run_swings_and_decays_as_its_mode"),
+    ("[E32]", "tests/modes/spectral.rs", "dense_and_sparse_agree"),
+    ("[E33]", "tests/modes/physics.rs", "shapes_are_alike_or_orthogonal"),
+    ("[E34]", "tests/modes/spectral.rs", "errors_are_within_their_bounds"),
+    ("[E35]", "tests/modes/physics.rs", "passive_as_the_audit_has_it"),
+    (
+        "[E45]",
+        "tests/modes/physics.rs",
+        "half_the_cells_tell_the_error_of_the_mesh",
+    ),
+    ("[E44]", "tests/modes/physics.rs", "eigenvalues_move_as_differences_say"),
+    ("[E42]", "tests/equilibrium.rs", "column_buckles_onto_the_stable_branch"),
+    (
+        "[E43]",
+        "tests/equilibrium.rs",
+        "sensitivities_are_those_of_differences",
+    ),
+    (
+        "[E36]",
+        "tests/floquet.rs",
+        "carried_disturbances_are_differences_of_the_period_map",
+    ),
+    ("[E37]", "tests/periodic.rs", "the_cycle_is_the_tail_of_a_long_run"),
+    (
+        "[E38]",
+        "tests/floquet.rs",
+        "multipliers_of_what_nothing_drives_are_those_of_its_modes",
+    ),
+    ("[E39]", "tests/floquet.rs", "growth_in_the_tongue_is_mathieus"),
 ];
 
 #[test]

@@ -4,10 +4,11 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use serde_json::{Value, json};
+use slcbeam::case::parameter::Parameter;
 use slcbeam::case::{self, Case};
 use slcbeam::dae::{Dae as _, Seeds, StaticBeam};
 use slcbeam::discrete::start;
-use slcbeam::run::equilibrium::{self, Kind, Options, columns, follow, system};
+use slcbeam::run::equilibrium::{self, Kind, Options, columns, differentiate, follow, system};
 use slcbeam::run::record::{Control, Memory};
 use slcbeam::run::{dynamics, summary::Status};
 
@@ -293,4 +294,83 @@ fn beam_that_nothing_holds_is_refused() {
     let fault = path.fault.expect("no equilibrium");
     assert!(fault.what.contains("no equilibrium"), "{}", fault.what);
     assert!(fault.cause.is_some_and(|c| c.contains("nothing holds")));
+}
+
+/// Goal: derivatives by numbers of the case are those of complete solutions. Fourth-order differences of solutions whose
+/// corrections are below 1e-10, over steps of 1e-3 and 2e-3: 1e-6 of the derivative.
+#[test]
+fn sensitivities_are_those_of_differences() {
+    let columns_and_case = [
+        (
+            shipped("curl", &[]),
+            vec![
+                "/bladders/area_per_moment_m2_per_n_m/opening",
+                "/beam/young_modulus_pa",
+                "/network/chains/0/ends/0/pressure_pa/ramp/to",
+                "/beam/length_m",
+            ],
+        ),
+        (
+            shipped(
+                "pluck",
+                &[
+                    "/start/equilibrium/loads_at_s=0",
+                    "/ends/tip={\"free\":{\"force_x_n\":1}}",
+                ],
+            ),
+            vec![
+                "/ends/tip/free/force_x_n",
+                "/tubes/permeability_m4",
+                "/bladders/area_per_pressure_m2_per_pa",
+            ],
+        ),
+    ];
+    for (case, pointers) in columns_and_case {
+        let options = Options::at(case.time.end_s);
+        let base = path_of(&case, &options);
+        let names = columns(&system(&case, options.at_s));
+        let parameters: Vec<Parameter> = pointers
+            .iter()
+            .map(|p| Parameter::find(&case, p).expect("a number"))
+            .collect();
+        let found = differentiate(&case, &options, base.last(), &parameters).expect("derivatives");
+        for s in found {
+            let at = |steps: f64| {
+                let value = s.parameter.value * (1.0 + 1e-3 * steps);
+                let changed = s.parameter.changed(&case, value).expect("a valid case");
+                path_of(&changed, &options).last().row.clone()
+            };
+            let rows = [at(1.0), at(-1.0), at(2.0), at(-2.0)];
+            for k in 0..base.last().row.len() {
+                let difference =
+                    (8.0 * (rows[0][k] - rows[1][k]) - (rows[2][k] - rows[3][k])) / (12e-3 * s.parameter.value);
+                // Round-off is that of what a column is made of: of a vented bladder's pressure, the pressures of the others.
+                let made_of = if names[k].name == "min_pressure" { k - 1 } else { k };
+                let size = base.last().row[made_of].abs() / s.parameter.value.abs();
+                let error = (s.row[k] - difference).abs();
+                assert!(
+                    error <= 1e-6 * difference.abs() + 1e-7 * size,
+                    "{} {k}: {} {difference}",
+                    s.parameter.pointer,
+                    s.row[k]
+                );
+            }
+        }
+    }
+}
+
+/// Goal: what cannot be differentiated by is refused in one sentence.
+#[test]
+fn parameters_that_are_none_are_refused() {
+    let case = shipped("curl", &[]);
+    for (pointer, words) in [
+        ("/bladders/per_row", "count"),
+        ("/solver/rtol", "not a part of the model"),
+        ("/fluid/viscosity", "/fluid/viscosity_pa_s"),
+        ("/ends/tip", "no number"),
+        ("/network/chains/1/ends/0/pressure_pa", "it is 0"),
+    ] {
+        let error = Parameter::find(&case, pointer).expect_err("refused").to_string();
+        assert!(error.contains(words), "{pointer}: {error}");
+    }
 }

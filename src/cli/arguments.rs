@@ -26,6 +26,12 @@ pub enum Command {
     Study(StudyArguments),
     /// Find what each effect does: the full model without it, what that changes and saves, what to leave out
     Effects(EffectsArguments),
+    /// Find frequencies, damping, shapes and stability of small motions, with the fluid as it is, sealed in, and free
+    Modes(ModesArguments),
+    /// Find the steady cycle of a periodically driven case and whether it is stable, or a map of where shaking is stable
+    Floquet(FloquetArguments),
+    /// Find the steady cycle of a periodically driven case directly, without its transient; or along a parameter
+    Periodic(PeriodicArguments),
     /// Compare two result folders: error norms of every field and quantity, cost ratio
     Compare(CompareArguments),
     /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
@@ -104,6 +110,10 @@ pub struct EquilibriumArguments {
     /// Stay on a path that becomes unstable (a column that stays straight) instead of taking the one that crosses it
     #[arg(long)]
     pub keep_branch: bool,
+    /// Differentiate the last state by this number of the case, a JSON pointer such as /bladders/area_per_pressure_m2_per_pa;
+    /// repeatable
+    #[arg(long, value_name = "POINTER")]
+    pub sensitivity: Vec<String>,
     /// Folder for path.csv, shapes.csv, equilibrium.json, path.svg [default: out/<case name>-equilibrium]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -187,6 +197,98 @@ pub struct EffectsArguments {
     #[arg(long)]
     pub quiet: bool,
     /// Print effects.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `modes`.
+#[derive(Debug, Args)]
+pub struct ModesArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Modes to find; rigid motions and kept volumes come besides
+    #[arg(long, value_name = "COUNT", default_value_t = 12)]
+    pub count: usize,
+    /// Find those nearest this frequency [Hz] [default: the slowest]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub near: Option<f64>,
+    /// About the equilibrium under the loads at this instant [s] [default: about the start]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub at: Option<f64>,
+    /// Differentiate frequencies and growth rates by this number of the case, a JSON pointer such as /beam/young_modulus_pa;
+    /// repeatable
+    #[arg(long, value_name = "POINTER")]
+    pub sensitivity: Vec<String>,
+    /// Folder for modes.csv, modes.json, modes.npz, modes.svg [default: out/<case name>-modes]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print modes.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `floquet`.
+#[derive(Debug, Args)]
+pub struct FloquetArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Multipliers, the largest first
+    #[arg(long, value_name = "COUNT", default_value_t = 12)]
+    pub count: usize,
+    /// Period of a case in which nothing is periodic
+    #[arg(long, value_name = "SECONDS", conflicts_with = "map")]
+    pub period: Option<f64>,
+    /// Map growth over these two parameters of a root that is shaken along the beam: frequency,amplitude
+    #[arg(long, value_name = "PARAMETERS")]
+    pub map: Option<String>,
+    /// Ranges of the map: Hz from:to, m from:to [default: 0.6 to 1.6 of the case's frequency, up to 1.5 of its amplitude]
+    #[arg(long, value_name = "FROM:TO,FROM:TO", requires = "map")]
+    pub range: Option<String>,
+    /// Points of the map along each parameter
+    #[arg(long, value_name = "COUNT,COUNT", default_value = "21,12", requires = "map")]
+    pub points: String,
+    /// Permeability factors of the map, a panel each
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "1,0.01",
+        requires = "map"
+    )]
+    pub permeability: Vec<f64>,
+    /// Folder for the files [default: out/<case name>-floquet or -map]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print floquet.json or map.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `periodic`.
+#[derive(Debug, Args)]
+pub struct PeriodicArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Cycles along a parameter, each found from the one before: a JSON pointer, its range and how many values, spread evenly or
+    /// by their logarithms, such as /network/permeability_factor=0.01:1:25:log
+    #[arg(long, value_name = "POINTER=FROM:TO:COUNT[:log]")]
+    pub sweep: Option<String>,
+    /// Result folder [default: out/<case name>-periodic or -cycles]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print cycle.json or sweep.json instead of the words
     #[arg(long)]
     pub json: bool,
 }

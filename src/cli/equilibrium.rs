@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::arguments::EquilibriumArguments;
 use super::{interrupt, terminal};
 use crate::case;
+use crate::case::parameter::Parameter;
 use crate::error::{Error, Result};
 use crate::model::{audit, characteristic};
 use crate::output::equilibrium as files;
@@ -23,6 +24,11 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let system = equilibrium::system(case, at_s);
     super::refuse(&loaded, &system)?;
     let options = options(asked, at_s)?;
+    let parameters: Vec<Parameter> = asked
+        .sensitivity
+        .iter()
+        .map(|pointer| Parameter::find(case, pointer))
+        .collect::<Result<_>>()?;
     let begin = Instant::now();
     let stop = interrupt::flag();
     let bar = bar(asked.quiet);
@@ -39,6 +45,10 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let numbers = characteristic::numbers(case, &system.model);
     let warnings = audit::warnings(case, &system.model, &numbers);
     let columns = equilibrium::columns(&system);
+    let sensitivities = match path.states.last() {
+        Some(last) if path.fault.is_none() => equilibrium::differentiate(case, &options, last, &parameters)?,
+        _ => vec![],
+    };
     let found = files::Found {
         case,
         options: &options,
@@ -46,7 +56,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         columns: &columns,
         wall_s: begin.elapsed().as_secs_f64(),
         warnings: &warnings,
-        sensitivities: &[],
+        sensitivities: &sensitivities,
     };
     let out = asked
         .out

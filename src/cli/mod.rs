@@ -5,8 +5,12 @@ mod check;
 mod compare;
 mod effects;
 mod equilibrium;
+mod floquet;
 mod interrupt;
+mod line;
 mod mapping;
+mod modes;
+mod periodic;
 pub mod progress;
 mod run;
 mod schema;
@@ -53,7 +57,10 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Equilibrium(asked) => equilibrium::equilibrium(asked),
         Command::Study(asked) => study::study(asked),
         Command::Effects(asked) => effects::effects(asked),
+        Command::Floquet(asked) => floquet::floquet(asked),
+        Command::Periodic(asked) => periodic::periodic(asked),
         Command::Compare(asked) => compare::compare(asked),
+        Command::Modes(asked) => modes::modes(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),
         Command::Schema => schema::schema(),

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use super::arguments::RunArguments;
 use super::progress::Watcher;
 use super::{interrupt, summary_box, terminal};
+use crate::case::parameter::Parameter;
 use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
@@ -19,7 +20,6 @@ use crate::output::recorder::{FolderRecorder, Hook, Labels};
 use crate::output::summary;
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::{Control, Progress};
-use crate::run::sensitivity::Parameter;
 use crate::run::summary::Status;
 use crate::study::target;
 
@@ -102,7 +102,7 @@ fn parameters(case: &Case, pointers: &[String]) -> Result<Vec<Parameter>> {
     let mut all: Vec<Parameter> = Vec::new();
     for pointer in pointers {
         if all.iter().all(|other| other.pointer != *pointer) {
-            all.push(Parameter::of(case, pointer)?);
+            all.push(Parameter::find(case, pointer)?);
         }
     }
     Ok(all)

@@ -1,27 +1,14 @@
 //! The equations with one parameter changed a little, and derivatives by that parameter from them.
 
 use super::BeamDae;
+use crate::case::parameter::{CHANGE, STEPS};
 use crate::discrete::{Instant, System, Workspace};
-
-/// Relative change of the parameter: σ in p (1 + σ).
-pub const STEP: f64 = 1e-3;
-
-/// Relative changes in units of [`STEP`].
-pub const CHANGES: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
-
-/// Their weights in a derivative by σ.
-const WEIGHTS: [f64; 4] = [8.0, -8.0, -1.0, 1.0];
 
 /// Change of an unknown, relative to 1 + |unknown|, over which what is read off a state is differenced: small beside the width
 /// of the smoothed kinks, large beside round-off.
 const NUDGE: f64 = 1e-5;
 
-fn weighted(f: [f64; 4]) -> f64 {
-    let sum = |k: usize| WEIGHTS[k] * f[k] + WEIGHTS[k + 1] * f[k + 1];
-    sum(0) + sum(2)
-}
-
-/// The equations at p (1 ± ε) and p (1 ± 2ε), in the order of [`CHANGES`]; unknowns and equations are scaled as those at p.
+/// The equations at p (1 ± ε) and p (1 ± 2ε), in the order of [`STEPS`]; unknowns and equations are scaled as those at p.
 #[derive(Clone, Debug)]
 pub struct Neighbours {
     beams: Box<[BeamDae; 4]>,
@@ -37,13 +24,13 @@ impl Neighbours {
         }
     }
 
-    /// The equations in the order of [`CHANGES`].
+    /// The equations in the order of [`STEPS`].
     pub fn beams_mut(&mut self) -> &mut [BeamDae; 4] {
         &mut self.beams
     }
 
     /// `[E40]` Writes the derivative by the relative change σ of a parameter p of what `value` writes for each of the equations,
-    /// given its place in [`CHANGES`]:
+    /// given its place in [`STEPS`]:
     ///
     /// ```text
     /// ∂f/∂σ = (8 (f(p(1+ε)) - f(p(1-ε))) - (f(p(1+2ε)) - f(p(1-2ε)))) / 12ε        ε = 1e-3
@@ -63,7 +50,7 @@ impl Neighbours {
             value(pair, &mut self.beams[pair], &mut first)?;
             value(pair + 1, &mut self.beams[pair + 1], &mut self.out)?;
             for ((out, f), g) in out.iter_mut().zip(&first).zip(&self.out) {
-                let part = WEIGHTS[pair] * (f - g) / (12.0 * STEP);
+                let part = STEPS[pair].1 * (f - g) / CHANGE;
                 *out = if pair == 2 { part } else { *out + part };
             }
         }
@@ -90,9 +77,9 @@ impl BeamDae {
             .zip(y)
             .fold(0.0_f64, |m, (s, y)| m.max(s.abs() / (1.0 + y.abs())));
         let h = if largest > 0.0 { NUDGE / largest } else { 1.0 };
-        let mut values = CHANGES.map(|_| vec![0.0; out.len()]);
-        for (change, values) in CHANGES.iter().zip(&mut values) {
-            let go = |y: &[f64], s: &[f64]| -> Vec<f64> { y.iter().zip(s).map(|(y, s)| y + change * h * s).collect() };
+        let mut values = STEPS.map(|_| vec![0.0; out.len()]);
+        for ((step, _), values) in STEPS.iter().zip(&mut values) {
+            let go = |y: &[f64], s: &[f64]| -> Vec<f64> { y.iter().zip(s).map(|(y, s)| y + step * h * s).collect() };
             self.visit(t, &go(y, s), &go(yp, sp), |system, now, rates, w| {
                 read(system, now, rates, w, values)
             });
@@ -102,9 +89,10 @@ impl BeamDae {
             Ok::<(), std::convert::Infallible>(())
         });
         debug_assert!(by_parameter.is_ok());
-        let [a, b, c, d] = &values;
         for (i, out) in out.iter_mut().enumerate() {
-            *out += weighted([a[i], b[i], c[i], d[i]]) / (12.0 * h);
+            for pair in [2, 0] {
+                *out += STEPS[pair].1 * (values[pair][i] - values[pair + 1][i]) / h;
+            }
         }
     }
 }

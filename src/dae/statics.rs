@@ -8,7 +8,7 @@ use crate::discrete::fluid_mesh::{FluidMesh, Place};
 ///
 /// ```text
 /// F(t, y, 0) = 0,        and for each set of joined cells that no prescribed pressure reaches
-/// Σ Δs (a1 - a1(0)) = 0  in place of the storage of one of its cells
+/// Σ Δs (a1 - t a1(0)) = 0  in place of the storage of one of its cells
 /// ```
 ///
 /// for these storage equations are dependent: flows inside a closed network sum to zero whatever the pressures are. A
@@ -77,6 +77,16 @@ impl StaticBeam {
     /// The beam as a DAE.
     pub fn beam(&mut self) -> &mut BeamDae {
         &mut self.beam
+    }
+
+    /// Characteristic size of each equation, in SI units.
+    pub fn equation_scales(&self) -> Vec<f64> {
+        let layout = &self.system().layout;
+        let mut scales = layout.row_scales.clone();
+        for closed in &self.closed {
+            scales[closed.row] = layout.scales[closed.row];
+        }
+        scales
     }
 
     /// The system.
@@ -180,7 +190,7 @@ impl Dae for StaticBeam {
         self.beam.residual(t, y, &self.zeros, residual)?;
         for closed in &self.closed {
             let sum: f64 = closed.cells.iter().map(|&c| y[c]).sum();
-            residual[closed.row] = sum - closed.sum;
+            residual[closed.row] = sum - t * closed.sum;
         }
         for (r, more) in residual.iter_mut().zip(&self.imperfection) {
             *r += more;

@@ -13,6 +13,7 @@ pub mod kinematics;
 pub mod loads;
 pub mod mapping;
 pub mod network;
+pub mod passivity;
 pub mod scalar;
 pub mod scales;
 pub mod storage;

@@ -79,6 +79,22 @@ impl Tableau {
         self.a[1][1]
     }
 
+    /// Factor by which a step multiplies the solution of `y' = λ y`, `z = h λ`, real and imaginary part: `1 + z bᵀ(1 - zA)⁻¹ 1`.
+    pub fn stability(&self, (re, im): (f64, f64)) -> (f64, f64) {
+        let mul = |a: (f64, f64), b: (f64, f64)| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
+        let mut u = [(0.0, 0.0); STAGES];
+        for i in 0..self.stages {
+            let before = (0..i).fold((0.0, 0.0), |s, j| {
+                (s.0 + self.a[i][j] * u[j].0, s.1 + self.a[i][j] * u[j].1)
+            });
+            let before = mul((re, im), before);
+            let (p, q) = (1.0 - self.a[i][i] * re, -self.a[i][i] * im);
+            let square = p * p + q * q;
+            u[i] = mul((1.0 + before.0, before.1), (p / square, -q / square));
+        }
+        u[self.stages - 1]
+    }
+
     /// Weights of the result.
     pub fn b(&self) -> [f64; STAGES] {
         self.a[self.stages - 1]
@@ -358,18 +374,9 @@ mod tests {
     /// substitution, whose numbers reach some hundred.
     #[test]
     fn methods_are_l_stable() {
-        let growth = |t: &Tableau, (re, im): (f64, f64)| {
-            let mul = |a: (f64, f64), b: (f64, f64)| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
-            let mut u = [(0.0, 0.0); STAGES];
-            for i in 0..t.stages {
-                let before = (0..i).fold((0.0, 0.0), |s, j| (s.0 + t.a[i][j] * u[j].0, s.1 + t.a[i][j] * u[j].1));
-                let rhs = mul((re, im), before);
-                let (p, q) = (1.0 - t.a[i][i] * re, -t.a[i][i] * im);
-                let square = p * p + q * q;
-                let value = mul((1.0 + rhs.0, rhs.1), (p / square, -q / square));
-                u[i] = value;
-            }
-            u[t.stages - 1].0.hypot(u[t.stages - 1].1)
+        let growth = |t: &Tableau, z: (f64, f64)| {
+            let (re, im) = t.stability(z);
+            re.hypot(im)
         };
         for method in Method::ALL {
             let t = method.tableau();

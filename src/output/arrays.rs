@@ -169,7 +169,8 @@ impl ArraysWriter {
     }
 }
 
-fn write_array(
+/// Writes one array of a zip archive of arrays.
+pub(super) fn write_array(
     npz: &mut ZipWriter<BufWriter<File>>,
     name: &str,
     shape: &[u64],

@@ -122,6 +122,19 @@ impl ResultFolder {
     }
 }
 
+/// Writes files into a folder, which is made; each whole or not at all, other files in it stay. Returns their paths.
+pub(crate) fn put(dir: &Path, files: Vec<(&str, String)>) -> Result<Vec<PathBuf>> {
+    fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
+    files
+        .into_iter()
+        .map(|(name, text)| {
+            let path = dir.join(name);
+            super::effects::replace(&path, &text)?;
+            Ok(path)
+        })
+        .collect()
+}
+
 /// The name under which a file grows before it takes its own.
 pub(crate) fn part_of(target: &Path) -> PathBuf {
     let name = target.file_name().map(|n| n.to_string_lossy()).unwrap_or_default();

@@ -12,7 +12,10 @@
 //! comparison  the picture of two runs over each other
 //! effects   effects.csv, effects.json, effects.svg, table and sentence
 //! equilibrium  path.csv, shapes.csv, equilibrium.json, path.svg, table
+//! floquet   floquet.csv, floquet.json, floquet.svg; map.csv, map.json, map.svg, and their words
+//! periodic  cycle.json; sweep.csv, sweep.json, sweep.svg, and their words
 //! study     study.csv, study.json, study.svg, table and sentence
+//! modes     modes.csv, modes.json, modes.npz, modes.svg, table and sentences
 //! pictures  from recorded files to the data of each picture
 //! plot      one picture a file, from plain data to SVG text
 //! numbers   numbers as people read them
@@ -24,9 +27,12 @@ pub mod comparison;
 pub mod effects;
 pub mod envelope;
 pub mod equilibrium;
+pub mod floquet;
 pub mod folder;
 pub mod history;
+pub mod modes;
 pub mod numbers;
+pub mod periodic;
 pub mod pictures;
 pub mod plot;
 pub mod reading;

@@ -10,9 +10,9 @@ use super::observe::Observer;
 use super::order;
 use super::record::{Control, Header, Progress, Recorder};
 use super::schedule::{self, Outputs, Stop};
-use super::sensitivity::Parameter;
 use super::sensitivity::forward::Forward;
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
+use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::ledger::FLOWS;
@@ -42,6 +42,18 @@ pub fn run(case: &Case, recorder: &mut dyn Recorder) -> Result<Outcome> {
 pub fn run_with(case: &Case, parameters: &[Parameter], recorder: &mut dyn Recorder) -> Result<Outcome> {
     let (run, dae) = Run::new(case, parameters)?;
     run.go(dae, None, recorder)
+}
+
+/// Runs a system of the case from consistent values and rates of its scaled unknowns at t = 0.
+pub fn go_on(case: &Case, system: System, y: &[f64], yp: &[f64], recorder: &mut dyn Recorder) -> Result<Outcome> {
+    let (mut run, mut dae) = Run::of(case, system, &[])?;
+    dae.look_within(0.5 * run.stops[0].t);
+    run.prepare(&dae);
+    run.state.copy_from_slice(y);
+    run.rates.copy_from_slice(yp);
+    let header = Observer::header(case, dae.system());
+    let end = run.solve(dae, 0.0, 0, Some(header), recorder)?;
+    Ok(run.finish(end))
 }
 
 /// What a run of the case records.
@@ -104,8 +116,11 @@ enum End {
 
 impl<'a> Run<'a> {
     fn new(case: &'a Case, parameters: &'a [Parameter]) -> Result<(Self, BeamDae)> {
+        Self::of(case, System::new(case), parameters)
+    }
+
+    fn of(case: &'a Case, system: System, parameters: &'a [Parameter]) -> Result<(Self, BeamDae)> {
         let begin = Instant::now();
-        let system = System::new(case);
         let interval = case.time.output_interval();
         let characteristic = characteristic::numbers(case, &system.model);
         let warnings = audit::warnings(case, &system.model, &characteristic);
@@ -196,9 +211,7 @@ impl<'a> Run<'a> {
 
 impl Run<'_> {
     fn go(mut self, mut dae: BeamDae, from: Option<&Checkpoint>, recorder: &mut dyn Recorder) -> Result<Outcome> {
-        self.rates = vec![0.0; dae.len()];
-        self.integrals = vec![0.0; dae.integrals()];
-        self.carried = vec![0.0; dae.integrals()];
+        self.prepare(&dae);
         let (t, first_stop) = match from {
             None => {
                 dae.look_within(0.5 * self.stops[0].t);
@@ -237,20 +250,7 @@ impl Run<'_> {
         let header = from.is_none().then(|| self.header(dae.system()));
         let end = match consistent {
             Some(fault) => End::Failed(fault),
-            None => match Integrator::new(dae, t, &self.state, &self.rates, &self.options) {
-                Err(failure) => End::Failed(fault(&failure)),
-                Ok(mut solver) => {
-                    if let (Some(forward), Some(ida)) = (&self.forward, solver.ida_mut())
-                        && let Err(failure) = forward.hand_over(ida, false)
-                    {
-                        return Ok(self.finish(End::Failed(fault(&failure))));
-                    }
-                    header.map_or(Ok(()), |header| recorder.begin(&header))?;
-                    let end = self.integrate(&mut solver, first_stop, recorder)?;
-                    self.count(&solver);
-                    end
-                }
-            },
+            None => self.solve(dae, t, first_stop, header, recorder)?,
         };
         Ok(self.finish(end))
     }
@@ -269,6 +269,39 @@ impl Run<'_> {
         };
         forward.begin(dae)?;
         forward.complete(dae, 0.0, [&self.state, &self.rates])
+    }
+
+    /// Room for the values of a system.
+    fn prepare(&mut self, dae: &BeamDae) {
+        self.state = vec![0.0; dae.len()];
+        self.rates = vec![0.0; dae.len()];
+        self.integrals = vec![0.0; dae.integrals()];
+        self.carried = vec![0.0; dae.integrals()];
+    }
+
+    /// From the present state, which is consistent, to the end.
+    fn solve(
+        &mut self,
+        dae: BeamDae,
+        t: f64,
+        first_stop: usize,
+        header: Option<Header>,
+        recorder: &mut dyn Recorder,
+    ) -> Result<End> {
+        match Integrator::new(dae, t, &self.state, &self.rates, &self.options) {
+            Err(failure) => Ok(End::Failed(fault(&failure))),
+            Ok(mut solver) => {
+                if let (Some(forward), Some(ida)) = (&self.forward, solver.ida_mut())
+                    && let Err(failure) = forward.hand_over(ida, false)
+                {
+                    return Ok(End::Failed(fault(&failure)));
+                }
+                header.map_or(Ok(()), |header| recorder.begin(&header))?;
+                let end = self.integrate(&mut solver, first_stop, recorder)?;
+                self.count(&solver);
+                Ok(end)
+            }
+        }
     }
 
     fn take_up(&mut self, checkpoint: &Checkpoint) {

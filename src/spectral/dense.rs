@@ -2,12 +2,12 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use super::krylov::{FINITE, combined};
+use super::krylov::{FINITE, Vectors, combined};
 use super::pencil::Shifted;
 use super::{Failure, schur};
 
 /// Eigenvalues and vectors, nearest the shift first.
-pub(super) fn pairs(shifted: &mut Shifted) -> Result<Vec<(Complex<f64>, Vec<Complex<f64>>)>, Failure> {
+pub(super) fn pairs(shifted: &mut Shifted) -> Result<Vectors, Failure> {
     let n = shifted.differential.len();
     let mut k = DMatrix::zeros(n, n);
     let mut unit = vec![Complex::default(); n];

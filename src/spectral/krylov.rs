@@ -15,6 +15,8 @@ use super::pencil::Shifted;
 use super::{Failure, Options, schur};
 
 type C = Complex<f64>;
+/// Eigenvalues with their vectors.
+pub(super) type Vectors = Vec<(C, Vec<C>)>;
 
 /// Share of the largest θ below which one is that of an infinite eigenvalue.
 pub(super) const FINITE: f64 = 1e-14;
@@ -22,11 +24,7 @@ pub(super) const FINITE: f64 = 1e-14;
 const NEW: f64 = 1e-7;
 
 /// Eigenvalues and vectors, nearest the shift first, and the number of restarts.
-pub(super) fn pairs(
-    shifted: &mut Shifted,
-    count: usize,
-    options: &Options,
-) -> Result<(Vec<(C, Vec<C>)>, usize), Failure> {
+pub(super) fn pairs(shifted: &mut Shifted, count: usize, options: &Options) -> Result<(Vectors, usize), Failure> {
     let n = shifted.differential.len();
     let wanted = count.min(n);
     let size = (2 * wanted + 20).min(n);
@@ -170,7 +168,7 @@ impl Space {
     }
 
     /// Eigenvalues and vectors of the first `wanted` Schur vectors.
-    fn vectors(&self, shifted: &mut Shifted, q: &DMatrix<C>, t: &DMatrix<C>, wanted: usize) -> Vec<(C, Vec<C>)> {
+    fn vectors(&self, shifted: &mut Shifted, q: &DMatrix<C>, t: &DMatrix<C>, wanted: usize) -> Vectors {
         let largest = t[(0, 0)].norm();
         let finite = (0..wanted).take_while(|&k| t[(k, k)].norm() > FINITE * largest);
         finite

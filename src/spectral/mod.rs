@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`pencil`] | the pencil, its products and its factors at a shift |
 //! | [`schur`] | Schur form of a small matrix, its order and its vectors |
+//! | `exchange` | rows exchanged so that KLU finds its pivots on the diagonal |
 //! | `dense` | all finite eigenvalues of a small pencil |
 //! | `krylov` | those nearest a shift, of a large one |
 //! | `refine` | each pair improved by itself, with the bound of its error |
@@ -15,10 +16,12 @@
 //! K = P (A + σ B)⁻¹ B Pᵀ        K x_d = θ x_d        s = σ - 1/θ        x = (A + σ B)⁻¹ B x/θ
 //! ```
 //!
-//! A large K is only applied: one solve with KLU's factors a step, Krylov-Schur (Stewart 2002) above. KLU factors these
-//! matrices within a few times their own entries, where a library with sparse factors of its own would bring them twice.
+//! A large K is only applied: one solve with KLU's factors a step, Krylov-Schur (Stewart 2002) above; small Schur forms are
+//! nalgebra's. The parts of faer that are needed took 143 s of one core to build for the same, and Debian's ARPACK brings
+//! Fortran, BLAS and LAPACK and keeps no copies of repeated eigenvalues apart.
 
 mod dense;
+mod exchange;
 mod krylov;
 pub mod pencil;
 mod refine;
@@ -62,10 +65,26 @@ pub struct Pair {
     pub s: Complex<f64>,
     /// `x`, of unit length; one entry a column.
     pub x: Vec<Complex<f64>>,
+    /// The left vector y, `yᴴ (A + s B) = 0`; one entry a row.
+    pub left: Vec<Complex<f64>>,
     /// `|(A + s B) x|` over `|A| |x| + |s| |B| |x|`, entry by entry in absolute values: the backward error.
     pub residual: f64,
     /// Bound of the error of `s`, to first order, round-off included, [E34].
     pub error: f64,
+}
+
+/// Distance, relative, of a conjugate before it has been refined.
+const CONJUGATE: f64 = 1e-6;
+
+impl Pair {
+    fn conjugate(&self) -> Self {
+        Self {
+            s: self.s.conj(),
+            x: self.x.iter().map(|x| x.conj()).collect(),
+            left: self.left.iter().map(|y| y.conj()).collect(),
+            ..*self
+        }
+    }
 }
 
 /// Eigenvalues nearest a shift and what they took.
@@ -143,9 +162,18 @@ pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Opt
         krylov::pairs(&mut shifted, count, options)?
     };
     pairs.truncate(count);
-    let mut refined = Vec::with_capacity(pairs.len());
+    let mut refined: Vec<Pair> = Vec::with_capacity(pairs.len());
+    let mut alone: Vec<usize> = vec![];
     for (s, x) in pairs {
-        refined.push(refine::refine(&mut shifted, s, x)?);
+        // A and B are real: the conjugate of a pair is one too, and as good
+        let other = |k: &usize| (refined[*k].s.conj() - s).norm() < CONJUGATE * s.norm() && s.im != 0.0;
+        if let Some(at) = alone.iter().position(|k| refined[*k].s.im * s.im < 0.0 && other(k)) {
+            let conjugate = refined[alone.swap_remove(at)].conjugate();
+            refined.push(conjugate);
+        } else {
+            alone.push(refined.len());
+            refined.push(refine::refine(&mut shifted, s, x)?);
+        }
     }
     let far = |pair: &Pair| (pair.s - shift).norm();
     refined.sort_by(|a, b| far(a).total_cmp(&far(b)));
@@ -157,6 +185,20 @@ pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Opt
         restarts,
         dense,
     })
+}
+
+/// `yᴴ (A' + s B') x / yᴴ B x` of a pair, for entries A' and B' of the pencil's pattern: what changes of the pencil move its
+/// eigenvalue by, with the opposite sign.
+pub fn quotient(pattern: &crate::dae::Pattern, a: &[f64], b: &[f64], of_b: &[f64], pair: &Pair) -> Complex<f64> {
+    let (mut above, mut below) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
+    for (column, x) in pair.x.iter().enumerate() {
+        for entry in pattern.column(column) {
+            let y = pair.left[pattern.rows[entry] as usize].conj();
+            above += y * (pair.s * b[entry] + a[entry]) * x;
+            below += y * of_b[entry] * x;
+        }
+    }
+    above / below
 }
 
 /// The `count` lowest eigenvalues μ of `K x = μ D x`, D a diagonal without negative entries, lowest magnitude first: the

@@ -3,6 +3,7 @@
 use nalgebra::Complex;
 
 use super::Failure;
+use super::exchange::Exchanged;
 use crate::dae::Pattern;
 use crate::sundials::KluFault;
 use crate::sundials::klu::complex::ComplexKlu;
@@ -57,9 +58,11 @@ pub(super) struct Shifted<'a> {
     /// σ, moved a little where it is an eigenvalue.
     pub shift: Complex<f64>,
     pub klu: ComplexKlu,
+    exchanged: Exchanged,
     /// Unknowns whose column of B is not zero.
     pub differential: Vec<usize>,
     values: Vec<Complex<f64>>,
+    reordered: Vec<Complex<f64>>,
     full: Vec<Complex<f64>>,
 }
 
@@ -68,8 +71,11 @@ const MOVES: [f64; 4] = [0.0, 1e-7, 1e-5, 1e-3];
 
 impl<'a> Shifted<'a> {
     pub fn new(pencil: &Pencil<'a>, shift: Complex<f64>) -> Result<Self, Failure> {
-        let klu = ComplexKlu::new(pencil.pattern).map_err(failure)?;
         let n = pencil.pattern.columns();
+        let entries = pencil.a.iter().zip(pencil.b);
+        let values: Vec<_> = entries.map(|(a, b)| shift * *b + a).collect();
+        let exchanged = Exchanged::new(pencil.pattern, &values);
+        let klu = ComplexKlu::new(&exchanged.pattern).map_err(failure)?;
         let differential = (0..n)
             .filter(|&j| pencil.pattern.column(j).any(|e| pencil.b[e] != 0.0))
             .collect();
@@ -77,8 +83,10 @@ impl<'a> Shifted<'a> {
             pencil: *pencil,
             shift,
             klu,
+            exchanged,
             differential,
-            values: vec![Complex::default(); pencil.a.len()],
+            reordered: Vec::with_capacity(values.len()),
+            values,
             full: vec![Complex::default(); n],
         };
         shifted.shift = shifted.factor(shift)?;
@@ -100,7 +108,8 @@ impl<'a> Shifted<'a> {
             for ((value, a), b) in self.values.iter_mut().zip(self.pencil.a).zip(self.pencil.b) {
                 *value = moved * *b + a;
             }
-            match self.klu.factor(&self.values) {
+            self.exchanged.values(&self.values, &mut self.reordered);
+            match self.klu.factor(&self.reordered) {
                 Ok(()) => return Ok(moved),
                 Err(fault) => last = failure(fault),
             }
@@ -116,8 +125,21 @@ impl<'a> Shifted<'a> {
                 self.full[self.pencil.pattern.rows[entry] as usize] += v * self.pencil.b[entry];
             }
         }
+        self.exchanged.rows(&mut self.full);
         self.klu.solve(&mut self.full);
         &self.full
+    }
+
+    /// Replaces `b` by the solution of `(A + σ B) x = b`.
+    pub fn solve(&mut self, b: &mut [Complex<f64>]) {
+        self.exchanged.rows(b);
+        self.klu.solve(b);
+    }
+
+    /// Replaces `b` by the solution of `(A + σ B)ᴴ x = b`.
+    pub fn solve_adjoint(&mut self, b: &mut [Complex<f64>]) {
+        self.klu.solve_adjoint(b);
+        self.exchanged.rows(b);
     }
 
     /// `K v`.

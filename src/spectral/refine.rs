@@ -26,7 +26,7 @@ pub(super) fn refine(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, Fai
     let first = assess(shifted, s, unit(x))?;
     // at a nearly singular matrix solutions are huge: right in direction, and in length of no interest
     let (_, mut x) = pencil.products(&first.x);
-    shifted.klu.solve(&mut x);
+    shifted.solve(&mut x);
     if x.iter().any(|x| !x.is_finite()) {
         return Ok(first);
     }
@@ -39,7 +39,7 @@ fn assess(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, Failure> {
     let pencil = shifted.pencil;
     shifted.factor(s)?;
     let mut y = x.clone();
-    shifted.klu.solve_adjoint(&mut y);
+    shifted.solve_adjoint(&mut y);
     let (ax, bx) = pencil.products(&x);
     let dot = |a: &[C]| y.iter().zip(a).map(|(y, a)| y.conj() * a).sum::<C>();
     let weight = dot(&bx);
@@ -57,6 +57,7 @@ fn assess(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, Failure> {
     Ok(Pair {
         s,
         x,
+        left: y,
         residual: length(&residual) / length(&magnitude).max(f64::MIN_POSITIVE),
         error: if error.is_finite() { error } else { f64::INFINITY },
     })

@@ -4,5 +4,6 @@ pub mod accuracy;
 pub mod compare;
 mod counted;
 pub mod effects;
+pub mod stability;
 pub mod target;
 pub mod verify;

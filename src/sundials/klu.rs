@@ -297,21 +297,20 @@ impl Klu {
     /// Replaces `b` by the solution of `A x = b`; false without factors. Panics when `b` has another length.
     pub fn solve(&mut self, b: &mut [f64]) -> bool {
         assert_eq!(b.len(), self.columns(), "right-hand side of another size");
+        self.solve_block(b)
+    }
+
+    /// As [`Klu::solve`] for several right-hand sides, one after the other in `b`.
+    pub fn solve_block(&mut self, b: &mut [f64]) -> bool {
+        let n = self.columns();
+        assert!(n > 0 && b.len().is_multiple_of(n), "right-hand sides of another size");
         if self.numeric.is_null() {
             return false;
         }
-        let n = b.len() as i64;
-        // SAFETY: symbolic and numeric belong together and b has n entries.
-        unsafe {
-            c::klu_l_solve(
-                self.analysis.symbolic,
-                self.numeric,
-                n,
-                1,
-                b.as_mut_ptr(),
-                &mut *self.analysis.common,
-            ) != 0
-        }
+        let (n, count) = (n as i64, (b.len() / n) as i64);
+        let Analysis { symbolic, common, .. } = &mut self.analysis;
+        // SAFETY: symbolic and numeric belong together and b has n entries for each of count right-hand sides.
+        unsafe { c::klu_l_solve(*symbolic, self.numeric, n, count, b.as_mut_ptr(), &mut **common) != 0 }
     }
 
     fn free_numeric(&mut self) {

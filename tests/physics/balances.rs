@@ -104,6 +104,9 @@ fn balances_of_loaded_beams_close() {
         ("dry-cantilever", 0.01),
         ("roll-up", 0.5),
         ("spin-up", 2.0),
+        ("pluck", 0.1),
+        ("curl", 0.1),
+        ("elastica", 1.0),
     ] {
         closes(name, end);
     }

@@ -14,7 +14,7 @@ use super::plot::Curve;
 use super::plot::loadpath::{self, LoadPath};
 use crate::case::schema::Case;
 use crate::error::Result;
-use crate::run::equilibrium::{Kind, Options, Path, State};
+use crate::run::equilibrium::{Kind, Options, Path, Sensitivity, State};
 use crate::run::record::Column;
 
 pub use words::words;
@@ -49,17 +49,6 @@ pub struct Found<'a> {
     pub sensitivities: &'a [Sensitivity],
 }
 
-/// Derivatives by one parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sensitivity {
-    /// Where the parameter stands in the case.
-    pub pointer: String,
-    /// Its value.
-    pub value: f64,
-    /// Derivative of each column.
-    pub derivatives: Vec<f64>,
-}
-
 /// The text of `equilibrium.json`.
 pub fn json(found: &Found) -> String {
     let Found { case, path, .. } = found;
@@ -82,7 +71,7 @@ pub fn json(found: &Found) -> String {
         })),
         "events": path.events.iter().map(|e| json!({"load_factor": e.share, "what": e.words()})).collect::<Vec<_>>(),
         "sensitivities": found.sensitivities.iter().map(|s| {
-            (s.pointer.clone(), json!({"value": s.value, "derivatives": keyed(&s.derivatives)}))
+            (s.parameter.pointer.clone(), json!({"value": s.parameter.value, "derivatives": keyed(&s.row)}))
         }).collect::<Map<_, _>>(),
         "solver": {
             "newton_iterations": path.work.iterations, "residual_evaluations": path.work.residual_evaluations,

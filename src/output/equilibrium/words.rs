@@ -42,11 +42,11 @@ pub fn words(found: &Found) -> String {
     for s in found.sensitivities {
         text.push_str(&format!(
             "\nderivatives by {} = {}\n",
-            s.pointer,
-            significant(s.value, 6)
+            s.parameter.pointer,
+            significant(s.parameter.value, 6)
         ));
-        for (column, derivative) in found.columns.iter().zip(&s.derivatives).skip(1) {
-            let relative = s.value * derivative;
+        for (column, derivative) in found.columns.iter().zip(&s.row).skip(1) {
+            let relative = s.parameter.value * derivative;
             text.push_str(&format!(
                 "  {:<16} {:>14} {} per unit, {} {} per 1 %\n",
                 column.name,

@@ -9,7 +9,11 @@
 //! workprecision   what accuracy costs
 //! ablation    what each effect does
 //! loadpath    equilibria under growing loads
+//! modes       shapes of modes with their pressures
 //! overlay     two runs over each other
+//! multipliers   about the unit circle
+//! tongue      growth over frequency and amplitude
+//! cycles      steady cycles along a parameter
 //! ```
 
 mod canvas;
@@ -18,12 +22,16 @@ mod panel;
 mod ticks;
 
 pub mod ablation;
+pub mod cycles;
 pub mod deflection;
 pub mod energy;
 pub mod history;
 pub mod loadpath;
+pub mod modes;
+pub mod multipliers;
 pub mod overlay;
 pub mod pressure;
+pub mod tongue;
 pub mod workprecision;
 
 use super::numbers;

@@ -4,7 +4,9 @@
 //! along    equilibrium with the share of the loads as one more unknown: the arc length
 //! natural  coordinates in which paths are nearly straight
 //! predict  where the next point probably is
-//! path     step by step along the path, as far as predictions hold; limit points, bifurcations, branches
+//! path     step by step along the path, as far as predictions hold; limit points, bifurcations
+//! sensitivity  derivatives by numbers of the case
+//! branch   from one path onto another that crosses it
 //! state    what is read off a state; one state as the unknowns of another system
 //! ```
 //!
@@ -12,9 +14,11 @@
 //! of closed networks. Valves stand as they do under the full load.
 
 mod along;
+mod branch;
 mod natural;
 mod path;
 mod predict;
+mod sensitivity;
 mod state;
 
 use crate::case::schema::Case;
@@ -28,6 +32,7 @@ use crate::run::record::Control;
 use crate::sundials::Solution;
 
 pub use path::follow;
+pub use sensitivity::{Sensitivity, differentiate};
 pub use state::{Stability, State, columns, restate};
 
 /// What is asked for.

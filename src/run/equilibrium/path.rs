@@ -22,12 +22,10 @@ const WANTED: f64 = 0.05;
 /// Newton steps that steps are chosen for, and largest growth of a step.
 const WANTED_ITERATIONS: f64 = 12.0;
 const GROWTH: f64 = 2.5;
-/// Distance to a crossing path at which it is entered, and the first step aside.
-const NEAR: f64 = 1e-4;
-const ASIDE: f64 = 0.02;
-const INVERSE_ITERATIONS: usize = 12;
+/// Distance to a crossing path at which it is entered.
+pub(super) const NEAR: f64 = 1e-4;
 /// Newton steps after which a prediction counts as bad.
-const PATIENCE: u32 = 14;
+pub(super) const PATIENCE: u32 = 14;
 /// The same at rest.
 const START_PATIENCE: u32 = 60;
 /// Points of a path that has lost its way.
@@ -95,7 +93,7 @@ fn weights(system: &System) -> Vec<f64> {
 }
 
 /// Why a path ends early.
-struct End(SolverFault);
+pub(super) struct End(pub SolverFault);
 
 /// What comes after a step.
 enum Next {
@@ -107,29 +105,30 @@ enum Next {
     Arrived,
 }
 
-struct Follower<'a> {
+pub(super) struct Follower<'a> {
     /// Sign of the determinant of the equations: it changes where another path crosses, not at a limit point.
-    orientation: i8,
+    pub(super) orientation: i8,
     /// State with which the present branch begins.
-    branch: usize,
+    pub(super) branch: usize,
     natural: Natural,
-    solver: Kinsol<Along>,
-    weights: Vec<f64>,
-    n: usize,
+    pub(super) solver: Kinsol<Along>,
+    pub(super) weights: Vec<f64>,
+    pub(super) n: usize,
     options: Options,
-    path: &'a mut Path,
+    pub(super) path: &'a mut Path,
     watch: &'a mut dyn FnMut(&State) -> Control,
 }
 
 /// The way so far: its last points in natural coordinates, the last one in unknowns too.
-struct Way {
+pub(super) struct Way {
     natural: Trail,
-    last: Vec<f64>,
+    /// The last point.
+    pub last: Vec<f64>,
 }
 
 impl Way {
     /// Two points at a distance.
-    fn new(follower: &mut Follower, before: Vec<f64>, distance: f64, last: Vec<f64>) -> Self {
+    pub fn new(follower: &mut Follower, before: Vec<f64>, distance: f64, last: Vec<f64>) -> Self {
         let statics = follower.solver.dae_mut().statics();
         let first = follower.natural.of_unknowns(statics, &before, None);
         let second = follower.natural.of_unknowns(statics, &last, Some(&first));
@@ -239,70 +238,8 @@ impl Follower<'_> {
         }
     }
 
-    /// Leaves a path where another one crosses it: a step along the direction that costs no force, which is where the
-    /// matrix is nearly singular, to the side on which it bends (its largest displacement across, or else along) in the positive sense.
-    fn leave(&mut self, trail: &mut Way, beyond: (f64, Option<Stability>)) -> Result<f64, End> {
-        let n = self.n;
-        let last = trail.last.clone();
-        let mut x = last.clone();
-        self.solve(&mut x, PATIENCE)
-            .map_err(|failure| self.fail(&failure, last[n]))?;
-        let mut aside = self.softest();
-        // The eigenvalue that changes sign does so in proportion to the distance.
-        let share = last[n] + (beyond.0 - last[n]) * between(self.path.last().stability, beyond.1);
-        self.path.events.push(Event {
-            share,
-            kind: Kind::Bifurcation,
-        });
-        self.branch = self.path.states.len();
-        aside[n] = 0.0;
-        let displacements = aside
-            .iter()
-            .zip(&self.weights)
-            .filter(|(_, w)| **w > 0.0)
-            .map(|(x, _)| *x);
-        let largest = displacements.fold(0.0_f64, |m, x| if x.abs() > m.abs() { x } else { m });
-        let unit = largest.signum() / self.norm(&aside).max(f64::MIN_POSITIVE);
-        aside.iter_mut().for_each(|x| *x *= unit);
-        let mut step = ASIDE;
-        loop {
-            let guess: Vec<f64> = last.iter().zip(&aside).map(|(x, d)| x + step * d).collect();
-            self.aim(&last, &guess);
-            let mut x = guess.clone();
-            let solved = self.solve(&mut x, PATIENCE);
-            if solved.is_ok() && self.norm(&difference(&x, &guess)) <= 0.5 * step {
-                self.orientation = self.solver.determinant_sign();
-                let taken = self.norm(&difference(&x, &last));
-                *trail = Way::new(self, last, taken, x.clone());
-                self.keep(&x)?;
-                return Ok(taken);
-            }
-            self.path.rejected += 1;
-            step *= 0.5;
-            if step < NEAR {
-                let none = || KinsolFailure {
-                    code: 0,
-                    what: "the path that crosses here is not found".into(),
-                    worst: None,
-                };
-                return Err(self.fail(&solved.err().unwrap_or_else(none), share));
-            }
-        }
-    }
-
-    /// Vector that the matrix last factored makes shortest (inverse iteration).
-    fn softest(&mut self) -> Vec<f64> {
-        let mut x: Vec<f64> = (0..=self.n).map(|k| (1.0 + k as f64).sin()).collect();
-        for _ in 0..INVERSE_ITERATIONS {
-            self.solver.apply_inverse(&mut x);
-            let norm = dot(&x, &x).sqrt().max(f64::MIN_POSITIVE);
-            x.iter_mut().for_each(|x| *x /= norm);
-        }
-        x
-    }
-
     /// Asks for the point of the path in the plane through the guess, across the chord from the last point to it.
-    fn aim(&mut self, last: &[f64], guess: &[f64]) {
+    pub(super) fn aim(&mut self, last: &[f64], guess: &[f64]) {
         let mut direction = difference(guess, last);
         let norm = self.norm(&direction);
         for (d, w) in direction.iter_mut().zip(&self.weights) {
@@ -322,7 +259,7 @@ impl Follower<'_> {
     }
 
     /// Solves from a guess; Newton steps done.
-    fn solve(&mut self, x: &mut [f64], patience: u32) -> Result<u64, KinsolFailure> {
+    pub(super) fn solve(&mut self, x: &mut [f64], patience: u32) -> Result<u64, KinsolFailure> {
         let options = KinsolOptions {
             max_iterations: patience,
             ..KinsolOptions::default()
@@ -333,7 +270,7 @@ impl Follower<'_> {
     }
 
     /// Keeps a state and shows it.
-    fn keep(&mut self, x: &[f64]) -> Result<(), End> {
+    pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), End> {
         let state = State::read(self.solver.dae_mut().statics(), x);
         let control = (self.watch)(&state);
         if let [.., a, b] = &self.path.states[self.branch..]
@@ -356,7 +293,7 @@ impl Follower<'_> {
         }
     }
 
-    fn norm(&self, x: &[f64]) -> f64 {
+    pub(super) fn norm(&self, x: &[f64]) -> f64 {
         x.iter().zip(&self.weights).map(|(x, w)| w * x * x).sum::<f64>().sqrt()
     }
 
@@ -368,7 +305,7 @@ impl Follower<'_> {
         End(fault(share, &what))
     }
 
-    fn fail(&self, failure: &KinsolFailure, share: f64) -> End {
+    pub(super) fn fail(&self, failure: &KinsolFailure, share: f64) -> End {
         End(SolverFault {
             unknown: failure.worst.clone(),
             ..fault(
@@ -411,16 +348,6 @@ fn crossing(f: impl Fn(f64) -> f64, end: f64) -> f64 {
     high
 }
 
-/// Where between two states an eigenvalue is zero, a share of the distance; halfway when they do not tell.
-fn between(before: Option<Stability>, beyond: Option<Stability>) -> f64 {
-    let share = before.zip(beyond).map(|(a, b)| a.softest / (a.softest - b.softest));
-    share.filter(|share| (0.0..=1.0).contains(share)).unwrap_or(0.5)
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+pub(super) fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }

@@ -24,7 +24,7 @@ pub struct State {
     pub stability: Option<Stability>,
 }
 
-/// `[E31]` Whether an equilibrium holds: the signs of the eigenvalues μ of its static tangent over the mass of the nodes,
+/// `[E42]` Whether an equilibrium holds: the signs of the eigenvalues μ of its static tangent over the mass of the nodes,
 ///
 /// ```text
 /// ∂F/∂y x = μ D x        D the mass of each node at its momentum, 0 elsewhere

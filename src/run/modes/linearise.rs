@@ -6,6 +6,7 @@ use crate::dae::{BeamDae, Dae as _, Fault, Seeds};
 use crate::discrete::{System, start};
 use crate::error::{Error, Result, SolverFault};
 use crate::model::Model;
+use crate::run::equilibrium;
 use crate::spectral::Pencil;
 use crate::sundials::{StartOptions, consistent_start};
 
@@ -21,7 +22,7 @@ pub enum Fluid {
 }
 
 /// Factor of the flows that stands for none of their resistance: the pressure differences left are its inverse.
-const FREE: f64 = 1e9;
+const FREE: f64 = 1e6;
 
 /// `[E31]` Small motions about a state at rest, of the scaled unknowns, with all signals held:
 ///
@@ -45,21 +46,46 @@ pub struct Linearised {
 }
 
 /// Linearises everything that a case describes, with signals held at `at` [s], about `state` (scaled unknowns of
-/// `System::with(case, Model::whole(case, true))`, velocities zero) or about the start.
+/// `System::with(case, Model::whole(case, true))`, velocities zero) or about the start, which may be an equilibrium under
+/// loads of another instant.
 ///
 /// # Errors
 /// [`Error::Solver`] when there are no consistent pressures, or derivatives are not finite.
 pub fn linearise(case: &Case, at: f64, state: Option<&[f64]>) -> Result<Linearised> {
+    if let (None, Some(start)) = (state, &case.start.equilibrium) {
+        return at_equilibrium(case, start.loads_at_s);
+    }
+    let mut dae = held(case, at);
+    let (system, now) = dae.instant(at);
+    let y = state.map_or_else(|| start::state(system, case, now), <[f64]>::to_vec);
+    about(dae, at, y)
+}
+
+/// Linearises everything that a case describes about the equilibrium under the loads at an instant [s].
+///
+/// # Errors
+/// As [`linearise`], and [`Error::Solver`] when there is no equilibrium.
+pub fn at_equilibrium(case: &Case, at: f64) -> Result<Linearised> {
+    let mut dae = held(case, at);
+    let at_rest = vec![0.0; dae.len()];
+    let y = equilibrium::at_start(case, at, &mut dae, &at_rest).map_err(|mut fault| {
+        fault.time_s = at;
+        Error::Solver(Box::new(fault))
+    })?;
+    about(dae, at, y)
+}
+
+/// Everything that a case describes, signals held at an instant [s].
+fn held(case: &Case, at: f64) -> BeamDae {
     let mut model = Model::whole(case, true);
     model.freeze(at);
     let mut dae = BeamDae::new(System::with(case, model));
     dae.look_within(at);
-    let (system, now) = dae.instant(at);
-    let mut y = match state {
-        Some(state) => state.to_vec(),
-        None => start::state(system, case, now),
-    };
-    let l = system.layout.clone();
+    dae
+}
+
+fn about(mut dae: BeamDae, at: f64, mut y: Vec<f64>) -> Result<Linearised> {
+    let l = dae.system().layout.clone();
     for (first, nodes, waves) in [(l.v1, &l.free_u1, l.waves[0]), (l.v3, &l.free_u3, l.waves[1])] {
         if waves {
             y[first..first + nodes.len()].fill(0.0);
@@ -140,9 +166,10 @@ impl Linearised {
         l.junction > l.area
     }
 
-    /// Whether the state changes noticeably in a period of the beam.
+    /// Whether the state would change noticeably in the time of the beam. An equilibrium as Newton's iteration leaves it has
+    /// rates of a few thousandths: what is left of forces acts on stiff axial waves, which hardly move for it.
     pub fn moving(&self) -> bool {
-        self.rate > 1e-6 * self.frequency()
+        self.rate > 1e-2 * self.frequency()
     }
 
     /// The clock of the linearisation.

@@ -3,11 +3,13 @@
 //! ```text
 //! linearise   the pencil of a case about a state, with the fluid as it is, held, or free
 //! shape       displacements and pressures of an eigenvector; likeness of two
+//! sensitivity  derivatives by numbers of the case
 //! kind        oscillation, decay, growth, rigid motion, kept volume
 //! ```
 
 pub mod kind;
 pub mod linearise;
+pub mod sensitivity;
 pub mod shape;
 
 use nalgebra::Complex;
@@ -17,7 +19,8 @@ use crate::error::{Error, Result, SolverFault};
 use crate::spectral::{self, Failure, Options, Pair, Pencil};
 
 pub use kind::Kind;
-pub use linearise::{Fluid, Linearised, linearise};
+pub use linearise::{Fluid, Linearised, at_equilibrium, linearise};
+pub use sensitivity::{Sensitivity, differentiate};
 pub use shape::{Shape, Shapes, likeness};
 
 /// What is asked for.
@@ -27,8 +30,6 @@ pub struct Plan {
     pub count: usize,
     /// Frequency near which they are looked for [Hz].
     pub near_hz: f64,
-    /// Instant at which signals are held [s].
-    pub at_s: f64,
     /// Whether the fluid is held and freed too.
     pub limits: bool,
 }
@@ -59,12 +60,32 @@ pub struct Mode {
     pub undrained: Option<Limit>,
     /// With networks of one pressure.
     pub drained: Option<Limit>,
+    /// On a mesh of half the cells.
+    pub coarse: Option<Limit>,
 }
 
 impl Mode {
     /// Frequency [Hz]; None where nothing swings.
     pub fn frequency_hz(&self) -> Option<f64> {
         self.kind.swings().then(|| self.s.im / std::f64::consts::TAU)
+    }
+
+    /// `[E45]` What halving the cells says of the mesh (Richardson, second order): the frequency to which the two point [Hz],
+    ///
+    /// ```text
+    /// f(h) = f + c h² + ..        f ≈ f(h) + (f(h) - f(2h))/3
+    /// ```
+    ///
+    /// None where nothing swings or the coarser mesh has no such mode.
+    pub fn extrapolated_hz(&self) -> Option<f64> {
+        let (fine, coarse) = (self.frequency_hz()?, self.coarse?.frequency_hz);
+        Some(fine + (fine - coarse) / 3.0)
+    }
+
+    /// Error that the mesh makes of the frequency, relative to it, as [`Mode::extrapolated_hz`] has it.
+    pub fn mesh_error(&self) -> Option<f64> {
+        let fine = self.frequency_hz()?;
+        Some((self.extrapolated_hz()? - fine).abs() / fine)
     }
 
     /// Damping ratio, negative where the mode grows; None where nothing swings.
@@ -100,7 +121,7 @@ pub struct Modes {
 /// # Errors
 /// As [`linearise`], and [`Error::Solver`] when eigenvalues do not converge.
 pub fn modes(case: &Case, plan: &Plan) -> Result<Modes> {
-    of(linearise(case, plan.at_s, None)?, plan)
+    of(linearise(case, 0.0, None)?, plan)
 }
 
 /// Modes of a linearisation.
@@ -133,6 +154,45 @@ pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
         solves: tally.solves,
         dense: tally.dense,
     })
+}
+
+/// Looks for the same modes on half the cells, about the start or the equilibrium under the loads of an instant [s]: what the mesh
+/// does to them. Does nothing where the cells cannot be halved.
+///
+/// # Errors
+/// As [`modes`] and [`at_equilibrium`].
+pub fn halve_the_mesh(case: &Case, at_rest_under: Option<f64>, plan: &Plan, found: &mut Modes) -> Result<()> {
+    let mut case = case.clone();
+    let mesh = &mut case.mesh;
+    match (&case.bladders, mesh.segments) {
+        _ if mesh.cells_per_segment.is_multiple_of(2) => mesh.cells_per_segment /= 2,
+        (None, Some(segments)) if segments.is_multiple_of(2) => mesh.segments = Some(segments / 2),
+        _ => return Ok(()),
+    }
+    let about = match at_rest_under {
+        Some(at) => at_equilibrium(&case, at)?,
+        None => linearise(&case, found.about.at, None)?,
+    };
+    let wider = Plan {
+        count: plan.count + 4,
+        ..*plan
+    };
+    let mut tally = Tally::default();
+    let others = search(&about, Fluid::Flowing, &wider, &mut tally)?;
+    let every_other: Vec<Mode> = found
+        .modes
+        .iter()
+        .map(|mode| Mode {
+            shape: mode.shape.on_every_other_node(),
+            ..mode.clone()
+        })
+        .collect();
+    for (k, limit) in matched(&every_other, &others) {
+        found.modes[k].coarse = Some(limit);
+    }
+    found.factorizations += tally.factorizations;
+    found.solves += tally.solves;
+    Ok(())
 }
 
 #[derive(Default)]
@@ -202,6 +262,7 @@ fn mode(about: &Linearised, shapes: &mut Shapes, pair: &Pair) -> Option<Mode> {
         shape,
         undrained: None,
         drained: None,
+        coarse: None,
     })
 }
 

@@ -5,8 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use super::Parameter;
 use super::figures::{Figures, Sensitivity};
+use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, Neighbours};
 use crate::discrete::{ledger, sample, start};
@@ -22,7 +22,9 @@ const WITHOUT: [&str; 2] = ["t", "energy_residual"];
 /// Sensitivities of a run to some numbers of its case.
 pub struct Forward<'a> {
     parameters: &'a [Parameter],
-    /// Stops of the changed cases, a number's four in the order of [`crate::dae::neighbours::CHANGES`].
+    /// The changed cases, a number's four in the order of [`STEPS`].
+    cases: Vec<[Case; 4]>,
+    /// Their stops.
     stops: Vec<[Vec<Stop>; 4]>,
     /// Places and names of the columns of the history that are differentiated; the first `instant` are read off a state, the others
     /// are integrals.
@@ -48,12 +50,12 @@ impl<'a> Forward<'a> {
     /// # Errors
     /// [`Error::Usage`] when a change of a number changes the unknowns or the number of switching times.
     pub fn new(case: &Case, dae: BeamDae, parameters: &'a [Parameter]) -> Result<(Self, BeamDae)> {
-        let (mut neighbours, mut all_stops) = (vec![], vec![]);
+        let (mut neighbours, mut all_cases, mut all_stops) = (vec![], vec![], vec![]);
         let own = schedule::stops(case, &dae.system().model);
         for parameter in parameters {
             let refuse = |what: &str| {
                 Error::Usage(format!(
-                    "--sensitivity '{}': a small change of it {what}",
+                    "--sensitivity {}: a small change of it {what}",
                     parameter.pointer
                 ))
             };
@@ -61,9 +63,11 @@ impl<'a> Forward<'a> {
                 let system = dae.system().like(case);
                 system.ok_or_else(|| refuse("changes which unknowns there are"))
             };
-            let [a, b, c, d] = parameter.cases.each_ref().map(like);
+            let [a, b, c, d] = STEPS.map(|(step, _)| parameter.changed(case, parameter.value * (1.0 + step * CHANGE)));
+            let cases = [a?, b?, c?, d?];
+            let [a, b, c, d] = cases.each_ref().map(like);
             let systems = [a?, b?, c?, d?];
-            let stops = [0, 1, 2, 3].map(|j| schedule::stops(&parameter.cases[j], &systems[j].model));
+            let stops = [0, 1, 2, 3].map(|j| schedule::stops(&cases[j], &systems[j].model));
             let kinds = |stops: &[Stop]| -> Vec<_> { stops.iter().map(|s| (s.switches, s.checkpoint)).collect() };
             if stops.iter().any(|other| kinds(other) != kinds(&own)) {
                 return Err(refuse(
@@ -71,6 +75,7 @@ impl<'a> Forward<'a> {
                 ));
             }
             neighbours.push(Neighbours::new(&dae, systems));
+            all_cases.push(cases);
             all_stops.push(stops);
         }
         let count = parameters.len();
@@ -89,6 +94,7 @@ impl<'a> Forward<'a> {
         let window_start = case.time.end_s - case.time.window() * (1.0 + 1e-9);
         let forward = Self {
             parameters,
+            cases: all_cases,
             stops: all_stops,
             columns,
             instant,
@@ -125,9 +131,9 @@ impl<'a> Forward<'a> {
     /// Sensitivities at t = 0 of the differential unknowns: of the state from which the run starts.
     pub fn begin(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverFault> {
         self.look(dae, 0);
-        for ((neighbours, parameter), s) in dae.neighbours_mut().iter_mut().zip(self.parameters).zip(&mut self.s) {
+        for ((neighbours, cases), s) in dae.neighbours_mut().iter_mut().zip(&self.cases).zip(&mut self.s) {
             neighbours.slope(s, |j, beam, out| {
-                let case = &parameter.cases[j];
+                let case = &cases[j];
                 let (system, now) = beam.instant(0.0);
                 let mut state = start::state(system, case, now);
                 if let Some(start) = &case.start.equilibrium {

@@ -1,7 +1,4 @@
-//! Derivatives of what a case gives with respect to its numbers.
+//! Derivatives of a run with respect to numbers of its case.
 
 pub mod figures;
 pub mod forward;
-pub mod parameter;
-
-pub use parameter::Parameter;

@@ -1,13 +1,13 @@
 //! Beck's column: flutter under a tip load that stays tangential.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::figure::Figure;
-use super::fit::{growth_of_spans, oscillation, through};
+use super::fit::growth_of_spans;
 use super::frequencies::free_shape;
 use super::row::Row;
 use super::scene::{SMALL, motion, unit_beam};
-use super::solve::{on_three_meshes, solve};
+use super::solve::{modes, on_three_meshes, solve};
 use crate::error::Result;
 
 /// Flutter load `P L²/EI` and frequency `ω L² √(m/EI)`.
@@ -22,46 +22,73 @@ pub fn rows() -> Vec<Row> {
     vec![flutter(), below()]
 }
 
-/// Tip displacement after a small push under the load `p`, and the interval of its samples [s].
-fn tip(cells: usize, p: f64, end: f64) -> Result<(Vec<f64>, f64)> {
-    let interval = 0.02;
+/// The straight, compressed column under the load `p`.
+fn column(cells: usize, p: f64, end: f64, interval: f64) -> Value {
     let mut case = motion(cells, |x| free_shape(1.875104068712, x), end, interval);
     case["beam"] = unit_beam(100.0);
     case["ends"]["tip"] = json!({"free": {"follower_normal_n": -p}});
     // Compressed from the start, else an axial wave of the size of the load would run to and fro.
     case["start"]["u3_m"] = json!({"polynomial": {"coefficients": [0.0, -p / 1.2e7]}});
+    case
+}
+
+/// Tip displacement after a small push under the load `p`, and the interval of its samples [s].
+fn tip(cells: usize, p: f64, end: f64) -> Result<(Vec<f64>, f64)> {
+    let interval = 0.02;
+    let mut case = column(cells, p, end, interval);
     case["start"]["u1_m"] = json!({"product": [START / SMALL, case["start"]["u1_m"]]});
     case["solver"]["transverse_scale_m"] = json!(START);
     Ok((solve(&case)?.column("tip_u1"), interval))
 }
 
-/// Where two modes meet, `λ²` has a square root of `P - Pc`: the square of its imaginary part goes through zero at the
-/// flutter load, its real part is `-ω²` there; both are smooth in P.
+/// Discriminant `((s1² - s2²)/2)²` and mean `-(s1² + s2²)/2` of the two slowest modes of the column: both are smooth in the
+/// load where the modes meet, and the discriminant goes through zero there.
+fn slowest(cells: usize, p: f64) -> Result<(f64, f64)> {
+    let mut case = column(cells, p, 1.0, 1.0);
+    case["start"]["u1_m"] = json!(0.0);
+    let found = modes(&case, 3)?;
+    let [a, b, ..] = found.modes.as_slice() else {
+        return Ok((f64::NAN, f64::NAN));
+    };
+    let (a, b) = (a.s * a.s, b.s * b.s);
+    let half = (a - b) * 0.5;
+    Ok(((half * half).re, -0.5 * (a + b).re))
+}
+
+/// Loads between which flutter is looked for.
+const BETWEEN: [f64; 2] = [19.5, 21.5];
+/// Steps of the secant, each of which gains about two thirds more digits.
+const STEPS: usize = 8;
+
+/// Flutter load and frequency on a mesh: the root of the discriminant by secants.
+fn onset(cells: usize) -> Result<[f64; 2]> {
+    let [mut a, mut b] = BETWEEN;
+    let (mut fa, mut fb) = (slowest(cells, a)?, slowest(cells, b)?);
+    for _ in 0..STEPS {
+        let next = b - fb.0 * (b - a) / (fb.0 - fa.0);
+        // beyond this the discriminant of two eigenvalues that meet is round-off
+        if (next - b).abs() < 1e-7 {
+            break;
+        }
+        (a, fa) = (b, fb);
+        (b, fb) = (next, slowest(cells, next)?);
+    }
+    Ok([b, fb.1.sqrt()])
+}
+
 fn flutter() -> Row {
     Row::new(
         "beck-flutter",
         [
             "Beck 1952; Bolotin: P L^2/EI = 20.0509536, w L^2 sqrt(m/EI) = 11.0155576, undamped",
-            "follower loads; loss of stability by flutter. Growth rates and frequencies at 20.6 to 21.5 taken back to where growth begins",
-            "second order: (pi h)^2 times a constant below 1, 1.5e-3 with 80 cells; the limit keeps h^4, the curvature beyond a cubic through four loads, the shortening P/EA = 2e-6 and the integrator, rtol 1e-6",
+            "follower loads; loss of stability by flutter: the load at which the two slowest modes of the column meet",
+            "second order: (pi h)^2 times a constant below 1, 1.5e-3 with 80 cells; the limit keeps h^4, (pi h)^4 = 3.8e-5 with 40, and              the shortening P/EA = 2e-6",
         ],
         || {
-            let [load, frequency] = on_three_meshes(20, |cells| {
-                let mut growth = vec![];
-                let mut square = vec![];
-                for p in [20.6, 20.9, 21.2, 21.5] {
-                    let (tip, interval) = tip(cells, p, 5.0)?;
-                    // After 3 s the growing pair of modes is alone: the others are less than e^-10 of it.
-                    let (rate, w) = oscillation(&tip[3 * tip.len() / 5..], interval);
-                    growth.push(((2.0 * rate * w).powi(2), p));
-                    square.push((p, w * w - rate * rate));
-                }
-                let load = through(&growth, 0.0);
-                Ok([load, through(&square, load).sqrt()])
-            })?;
+            let [load, frequency] = on_three_meshes(20, onset)?;
             Ok(vec![
-                Figure::relative("P L^2/EI", load[2], LOAD, 1.5e-3).on_meshes(load, 2e-4),
-                Figure::relative("w L^2 sqrt(m/EI)", frequency[2], FREQUENCY, 1.5e-3).on_meshes(frequency, 2e-4),
+                Figure::relative("P L^2/EI", load[2], LOAD, 1.5e-3).on_meshes(load, 4e-5),
+                Figure::relative("w L^2 sqrt(m/EI)", frequency[2], FREQUENCY, 1.5e-3).on_meshes(frequency, 4e-5),
             ])
         },
     )

@@ -34,18 +34,6 @@ pub fn slope(x: &[f64], y: &[f64]) -> f64 {
     top / x.iter().map(|x| (x - mx) * (x - mx)).sum::<f64>()
 }
 
-/// Value at `at` of the polynomial through all points (Neville).
-pub fn through(points: &[(f64, f64)], at: f64) -> f64 {
-    let mut p: Vec<f64> = points.iter().map(|point| point.1).collect();
-    for k in 1..p.len() {
-        for i in 0..p.len() - k {
-            let (a, b) = (points[i].0, points[i + k].0);
-            p[i] = ((at - b) * p[i] + (a - at) * p[i + 1]) / (a - b);
-        }
-    }
-    p.first().copied().unwrap_or(f64::NAN)
-}
-
 /// Growth rate of the largest magnitude in consecutive spans of `span` samples; the first `skipped` spans are left out.
 pub fn growth_of_spans(samples: &[f64], span: usize, interval: f64, skipped: usize) -> f64 {
     let (times, logs): (Vec<f64>, Vec<f64>) = samples

@@ -12,6 +12,7 @@
 //! frequencies  free bending vibrations
 //! spin_up      Simo and Vu-Quoc's rotating arm
 //! mathieu      axial base acceleration
+//! floquet      the same from multipliers of the period map
 //! wet          the nearly unloaded beam with bladders that the network problems use
 //! decay        relaxation of chains and rings, dissipation
 //! kirchhoff    a steady network as resistors
@@ -24,6 +25,7 @@ mod decay;
 mod ducts;
 mod figure;
 mod fit;
+mod floquet;
 mod frequencies;
 mod kirchhoff;
 mod mathieu;
@@ -45,6 +47,7 @@ pub fn rows() -> Vec<Row> {
     all.extend(frequencies::rows());
     all.extend(spin_up::rows());
     all.extend(mathieu::rows());
+    all.extend(floquet::rows());
     all.extend(decay::rows());
     all.extend(kirchhoff::rows());
     all.extend(ducts::rows());

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use crate::case;
 use crate::error::{Error, Result};
+use crate::run::modes::{self, Modes, Plan};
 use crate::run::record::{Column, Control, Memory};
 use crate::run::{dynamics, equilibrium};
 
@@ -26,6 +27,20 @@ pub fn solve(case: &Value) -> Result<Solved> {
         Some(fault) => Err(Error::Solver(Box::new(fault))),
         None => Ok(Solved { memory }),
     }
+}
+
+/// Checks a case and finds its slowest modes.
+///
+/// # Errors
+/// A case that is not valid, eigenvalues that do not converge.
+pub fn modes(case: &Value, count: usize) -> Result<Modes> {
+    let loaded = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    let plan = Plan {
+        count,
+        near_hz: 0.0,
+        limits: false,
+    };
+    modes::modes(&loaded.case, &plan)
 }
 
 impl Solved {

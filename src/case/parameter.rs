@@ -1,0 +1,102 @@
+//! A number of a case by which results are differentiated.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::parse;
+use super::schema::Case;
+use super::wording::nearest;
+use crate::error::{Error, Result};
+
+/// Parts of a case that describe what is simulated, not how.
+const PARTS: [&str; 8] = [
+    "beam", "fluid", "bladders", "tubes", "network", "loads", "ends", "start",
+];
+
+/// A number of a case, found by its JSON pointer; defaults that are not written count too.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Where it stands.
+    pub pointer: String,
+    /// Its value.
+    pub value: f64,
+}
+
+impl Parameter {
+    /// Finds the number at a pointer.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] when there is no number, or one that nothing can be differentiated by.
+    pub fn find(case: &Case, pointer: &str) -> Result<Self> {
+        let usage = |what: String| Err(Error::Usage(format!("--sensitivity {pointer}: {what}")));
+        let resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
+        let part = pointer.split('/').nth(1).unwrap_or_default();
+        if pointer.starts_with('/') && resolved.get(part).is_some() && !PARTS.contains(&part) {
+            return usage(format!(
+                "/{part} is not a part of the model; parameters stand under /{}",
+                PARTS.join(", /")
+            ));
+        }
+        match resolved.pointer(pointer) {
+            Some(Value::Number(number)) if number.is_f64() => {
+                let value = number.as_f64().unwrap_or_default();
+                if value == 0.0 {
+                    return usage("it is 0, which gives no size to differ by; set it to a small value".into());
+                }
+                let pointer = pointer.to_owned();
+                Ok(Self { pointer, value })
+            }
+            Some(Value::Number(_)) => usage("a count is not differentiated by".into()),
+            Some(_) => usage("no number stands there".into()),
+            None => {
+                let mut all = vec![];
+                numbers(&resolved, String::new(), &mut all);
+                all.retain(|p| PARTS.contains(&p.split('/').nth(1).unwrap_or_default()));
+                let meant = nearest(pointer, all.iter().map(String::as_str));
+                let meant = meant.map_or(String::new(), |p| format!("; nearest is {p}"));
+                usage(format!("the case has nothing there{meant}"))
+            }
+        }
+    }
+
+    /// The case with another value of the parameter.
+    ///
+    /// # Errors
+    /// The case is not valid with it.
+    pub fn changed(&self, case: &Case, value: f64) -> Result<Case> {
+        let mut resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
+        if let Some(number) = resolved.pointer_mut(&self.pointer) {
+            *number = value.into();
+        }
+        let name = format!("{} with {} = {value}", case.name, self.pointer);
+        Ok(parse(&resolved.to_string(), Path::new(&name), Path::new(""), &[])?.case)
+    }
+}
+
+/// Pointers of all numbers that are not counts.
+fn numbers(value: &Value, at: String, all: &mut Vec<String>) {
+    match value {
+        Value::Object(members) => members
+            .iter()
+            .for_each(|(key, v)| numbers(v, format!("{at}/{key}"), all)),
+        Value::Array(items) => items
+            .iter()
+            .enumerate()
+            .for_each(|(k, v)| numbers(v, format!("{at}/{k}"), all)),
+        Value::Number(number) if number.is_f64() => all.push(at),
+        _ => {}
+    }
+}
+
+/// Steps of a difference over the relative change of the parameter, and their weights: fourth order.
+pub const STEPS: [(f64, f64); 4] = [
+    (1.0, 8.0 / 12.0),
+    (-1.0, -8.0 / 12.0),
+    (2.0, -1.0 / 12.0),
+    (-2.0, 1.0 / 12.0),
+];
+
+/// Relative change of a parameter in a difference: what is differentiated so is a smooth function of it, written out in closed
+/// form, and the fourth order leaves 1e-12 of it.
+pub const CHANGE: f64 = 1e-3;

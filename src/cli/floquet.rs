@@ -1,0 +1,119 @@
+//! `slcbeam floquet`: the steady cycle's multipliers, or a map of where shaking is stable.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use super::arguments::FloquetArguments;
+use super::line;
+use crate::case::{self, LoadedCase};
+use crate::discrete::System;
+use crate::error::{Error, Result};
+use crate::output::floquet as files;
+use crate::run::floquet;
+use crate::run::periodic::scene::{fault, whole};
+use crate::run::periodic::{Scene, shoot};
+use crate::study::stability::tongue::{self, Plan};
+
+/// Points of a map at most.
+const MOST_POINTS: usize = 100_000;
+
+/// Finds cycle and multipliers, or the map; writes the folder, prints the words.
+pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
+    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    super::refuse(&loaded, &System::with(&loaded.case, whole(&loaded.case)))?;
+    match &asked.map {
+        Some(parameters) => map(asked, &loaded, parameters),
+        None => one(asked, &loaded),
+    }
+}
+
+fn folder(asked: &FloquetArguments, name: &str, what: &str) -> PathBuf {
+    let usual = || PathBuf::from("out").join(format!("{name}-{what}"));
+    asked.out.clone().unwrap_or_else(usual)
+}
+
+fn one(asked: &FloquetArguments, loaded: &LoadedCase) -> Result<ExitCode> {
+    if asked.count == 0 {
+        return Err(Error::Usage("--count 0: at least one multiplier".into()));
+    }
+    let case = &loaded.case;
+    let scene = Scene::new(case, asked.period)?;
+    scene.held(&case.name)?;
+    let bar = line::line(asked.quiet);
+    bar.set_message("looking for the cycle");
+    let mut cycle = shoot(&scene, None).map_err(fault)?;
+    bar.set_message("carrying disturbances over the period");
+    let found = floquet::multipliers(&scene, &mut cycle, asked.count);
+    bar.finish_and_clear();
+    let found = files::Found {
+        case: &case.name,
+        search: &cycle.search,
+        floquet: &found,
+    };
+    let out = folder(asked, &case.name, "floquet");
+    files::write(&out, &found)?;
+    if asked.json {
+        super::print(&files::json(&found))?;
+    } else {
+        super::print(&format!("{}\nfiles in {}\n", files::words(&found), out.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn map(asked: &FloquetArguments, loaded: &LoadedCase, parameters: &str) -> Result<ExitCode> {
+    if parameters != "frequency,amplitude" {
+        return Err(Error::Usage(format!(
+            "--map {parameters}: a map is drawn over frequency,amplitude"
+        )));
+    }
+    let case = &loaded.case;
+    let plan = plan(asked, tongue::shaking(case)?)?;
+    let bar = line::line(asked.quiet);
+    let found = tongue::map(case, &plan, &|done, count| {
+        bar.set_message(format!("{done} of {count} columns"));
+        bar.tick();
+    });
+    bar.finish_and_clear();
+    let found = found?;
+    let out = folder(asked, &case.name, "map");
+    files::write_map(&out, &found)?;
+    if asked.json {
+        super::print(&files::map_json(&found))?;
+    } else {
+        super::print(&format!("{}\nfiles in {}\n", files::map_words(&found), out.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What is asked for, around the case's own frequency [Hz] and amplitude [m].
+fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<Plan> {
+    let both = |text: &str| {
+        text.split_once(',')
+            .map(|(a, b)| (a.trim().to_owned(), b.trim().to_owned()))
+    };
+    let counts = both(&asked.points).and_then(|(a, b)| Some((a.parse::<usize>().ok()?, b.parse::<usize>().ok()?)));
+    let Some((columns, rows)) = counts.filter(|(a, b)| *a > 0 && *b > 0 && a.saturating_mul(*b) <= MOST_POINTS) else {
+        return Err(Error::Usage(format!(
+            "--points {}: two counts such as 21,12, at most {MOST_POINTS} points in all",
+            asked.points
+        )));
+    };
+    let (frequency, amplitude) = match &asked.range {
+        None => ((0.6 * own.0, 1.6 * own.0), (1.5 * own.1 / rows as f64, 1.5 * own.1)),
+        Some(text) => both(text)
+            .and_then(|(a, b)| Some((line::range(&a)?, line::range(&b)?)))
+            .filter(|((f, _), (a, _))| *f > 0.0 && *a >= 0.0)
+            .ok_or_else(|| {
+                let what = "two ranges, Hz and m, such as 14:24,0:0.05, frequencies > 0, amplitudes >= 0";
+                Error::Usage(format!("--range {text}: {what}"))
+            })?,
+    };
+    if let Some(wrong) = asked.permeability.iter().find(|f| !(f.is_finite() && **f > 0.0)) {
+        return Err(Error::Usage(format!("--permeability {wrong}: factors > 0")));
+    }
+    Ok(Plan {
+        frequencies_hz: line::spread(frequency.0, frequency.1, columns, false),
+        amplitudes_m: line::spread(amplitude.0, amplitude.1, rows, false),
+        permeability_factors: asked.permeability.clone(),
+    })
+}

@@ -1,0 +1,38 @@
+//! A line on a terminal that says how far something is.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// The line; nothing is shown where it was asked to be quiet, or where there is no terminal.
+pub fn line(quiet: bool) -> ProgressBar {
+    if quiet {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// `from:to` as two finite numbers, ascending.
+pub fn range(text: &str) -> Option<(f64, f64)> {
+    let (from, to) = text.split_once(':')?;
+    let (from, to): (f64, f64) = (from.trim().parse().ok()?, to.trim().parse().ok()?);
+    (from.is_finite() && to.is_finite() && from < to).then_some((from, to))
+}
+
+/// `count` numbers from `from` to `to`, evenly spread, or by their logarithms.
+pub fn spread(from: f64, to: f64, count: usize, logarithmic: bool) -> Vec<f64> {
+    let last = (count - 1).max(1) as f64;
+    (0..count)
+        .map(|k| {
+            let share = k as f64 / last;
+            match k {
+                0 => from,
+                _ if k + 1 == count => to,
+                _ if logarithmic => from * (to / from).powf(share),
+                _ => from + (to - from) * share,
+            }
+        })
+        .collect()
+}

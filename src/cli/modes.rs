@@ -1,0 +1,81 @@
+//! `slcbeam modes`: frequencies, damping, shapes and stability of small motions.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use super::arguments::ModesArguments;
+use crate::case;
+use crate::case::parameter::Parameter;
+use crate::discrete::System;
+use crate::error::{Error, Result};
+use crate::output::modes::{self as files, Report};
+use crate::run::modes::{self, Plan};
+
+/// Finds the modes, writes the folder, prints the table and what follows from it.
+pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
+    let plan = plan(asked)?;
+    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    super::refuse(&loaded, &System::new(&loaded.case))?;
+    if !asked.quiet {
+        eprintln!("modes of {}", loaded.case.name);
+    }
+    let (about, words) = match asked.at {
+        Some(at) => (
+            modes::at_equilibrium(&loaded.case, at)?,
+            format!("the equilibrium under the loads at t = {at} s"),
+        ),
+        None => (modes::linearise(&loaded.case, 0.0, None)?, "the start".into()),
+    };
+    let parameters: Vec<Parameter> = asked
+        .sensitivity
+        .iter()
+        .map(|pointer| Parameter::find(&loaded.case, pointer))
+        .collect::<Result<_>>()?;
+    let mut found = modes::of(about, &plan)?;
+    modes::halve_the_mesh(&loaded.case, asked.at, &plan, &mut found)?;
+    let sensitivities = modes::differentiate(&loaded.case, asked.at, &found.about, &found.modes, &parameters)?;
+    let out = asked
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("out").join(format!("{}-modes", loaded.case.name)));
+    let report = Report {
+        case: &loaded.case.name,
+        plan: &plan,
+        found: &found,
+        about: &words,
+        sensitivities: &sensitivities,
+    };
+    files::write(&out, &report)?;
+    if asked.json {
+        super::print(&files::json(&report))?;
+    } else {
+        let (table, sentences) = (files::table(&report), report.sentences());
+        super::print(&format!("{table}\n{sentences}\n\nfiles in {}\n", out.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Modes that can be asked for: beyond, a spectrum is no answer to anything, and shapes fill the memory.
+const MOST: usize = 1000;
+
+fn plan(asked: &ModesArguments) -> Result<Plan> {
+    let usage = |what: String| Err(Error::Usage(what));
+    if !(1..=MOST).contains(&asked.count) {
+        return usage(format!(
+            "--count {}: from 1 to {MOST} modes can be asked for",
+            asked.count
+        ));
+    }
+    let near_hz = asked.near.unwrap_or(0.0);
+    if !(near_hz.is_finite() && near_hz >= 0.0) {
+        return usage(format!("--near {near_hz}: a frequency [Hz] is 0 or more"));
+    }
+    if let Some(at) = asked.at.filter(|at| !(at.is_finite() && *at >= 0.0)) {
+        return usage(format!("--at {at}: a time [s] is 0 or more"));
+    }
+    Ok(Plan {
+        count: asked.count,
+        near_hz,
+        limits: true,
+    })
+}

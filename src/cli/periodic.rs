@@ -1,0 +1,128 @@
+//! `slcbeam periodic`: the steady cycle of a driven case, or cycles along a parameter.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use super::arguments::PeriodicArguments;
+use super::{line, terminal};
+use crate::case::{self, LoadedCase};
+use crate::discrete::System;
+use crate::error::{Error, Result};
+use crate::output::floquet as stability;
+use crate::output::folder::ResultFolder;
+use crate::output::periodic as files;
+use crate::output::recorder::{FolderRecorder, Labels};
+use crate::run::floquet;
+use crate::run::periodic::scene::{fault, whole};
+use crate::run::periodic::{Scene, record, shoot};
+use crate::run::record::Control;
+use crate::study::stability::along;
+
+/// Multipliers told.
+const COUNT: usize = 6;
+/// Values of a sweep at most.
+const MOST_VALUES: usize = 10_000;
+
+/// Finds the cycle or the cycles, writes the folder, prints the words.
+pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
+    match &asked.sweep {
+        Some(text) => sweep(asked, text),
+        None => one(asked),
+    }
+}
+
+fn load(asked: &PeriodicArguments, more: Option<String>) -> Result<LoadedCase> {
+    let sets: Vec<String> = asked.case.sets.iter().cloned().chain(more).collect();
+    let loaded = case::load(&asked.case.case, &sets)?;
+    super::refuse(&loaded, &System::with(&loaded.case, whole(&loaded.case)))?;
+    Ok(loaded)
+}
+
+fn folder(asked: &PeriodicArguments, name: &str, what: &str) -> PathBuf {
+    let usual = || PathBuf::from("out").join(format!("{name}-{what}"));
+    asked.out.clone().unwrap_or_else(usual)
+}
+
+fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
+    let loaded = load(asked, None)?;
+    let case = &loaded.case;
+    let scene = Scene::new(case, None)?;
+    scene.held(&case.name)?;
+    let out = folder(asked, &case.name, "periodic");
+    let result = ResultFolder::create(&out)?;
+    let bar = line::line(asked.quiet);
+    bar.set_message("looking for the cycle");
+    let mut cycle = shoot(&scene, None).map_err(fault)?;
+    let found = floquet::multipliers(&scene, &mut cycle, COUNT);
+    bar.finish_and_clear();
+    let labels = Labels {
+        case_name: case.name.clone(),
+        case_json: case.resolved_json(),
+        frequency_hz: Some(1.0 / scene.drive.period),
+    };
+    let mut recorder = FolderRecorder::new(result, labels, Box::new(|_| Control::Continue));
+    let outcome = record::record(case, &scene, &cycle, &mut recorder)?;
+    recorder.finish(&outcome.summary)?;
+    let told = stability::Found {
+        case: &case.name,
+        search: &cycle.search,
+        floquet: &found,
+    };
+    ResultFolder::create(&out)?.write(files::CYCLE, stability::json(&told).as_bytes())?;
+    if asked.json {
+        super::print(&stability::json(&told))?;
+    } else {
+        let figures = files::figures(&outcome.summary.quantities);
+        let (search, words) = (files::search(&cycle.search), stability::words(&told));
+        super::print(&format!("{words}\n{figures}{search}\nfiles in {}\n", out.display()))?;
+    }
+    Ok(match outcome.fault {
+        None => ExitCode::SUCCESS,
+        Some(fault) => {
+            eprintln!("{}", terminal::diagnosis(&fault));
+            ExitCode::from(4)
+        }
+    })
+}
+
+fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
+    let (pointer, values, logarithmic) = parse(text)?;
+    let cases = values
+        .into_iter()
+        .map(|value| Ok((value, load(asked, Some(format!("{pointer}={value}")))?.case)))
+        .collect::<Result<Vec<_>>>()?;
+    let bar = line::line(asked.quiet);
+    let found = along(&pointer, logarithmic, &cases, &|done| {
+        bar.set_message(format!("{done} of {} cycles", cases.len()));
+        bar.tick();
+    });
+    bar.finish_and_clear();
+    let found = found?;
+    let out = folder(asked, &found.case, "cycles");
+    files::write(&out, &found)?;
+    if asked.json {
+        super::print(&files::json(&found))?;
+    } else {
+        super::print(&format!("{}\nfiles in {}\n", files::words(&found), out.display()))?;
+    }
+    Ok(ExitCode::from(if found.members.is_empty() { 4 } else { 0 }))
+}
+
+/// Pointer, values, and whether they are spread by their logarithms.
+fn parse(text: &str) -> Result<(String, Vec<f64>, bool)> {
+    let wrong = || {
+        Error::Usage(format!(
+            "--sweep {text}: a pointer, its range and how many values, such as /network/permeability_factor=0.01:1:25:log; at most \
+             {MOST_VALUES} values, logarithms of values > 0 alone"
+        ))
+    };
+    let (pointer, rest) = text.rsplit_once('=').ok_or_else(wrong)?;
+    let (rest, logarithmic) = rest.strip_suffix(":log").map_or((rest, false), |rest| (rest, true));
+    let (range, count) = rest.rsplit_once(':').ok_or_else(wrong)?;
+    let (from, to) = line::range(range).ok_or_else(wrong)?;
+    let count: usize = count.trim().parse().map_err(|_| wrong())?;
+    if !(2..=MOST_VALUES).contains(&count) || (logarithmic && from <= 0.0) {
+        return Err(wrong());
+    }
+    Ok((pointer.into(), line::spread(from, to, count, logarithmic), logarithmic))
+}

@@ -1,0 +1,115 @@
+//! Whether the coupling can give more than it takes.
+
+use nalgebra::{Matrix4, SymmetricEigen};
+
+use super::{Coupling, Model, Wet};
+
+/// What the local law does with the work put into it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Passivity {
+    /// Smallest eigenvalue of the symmetric part, 1 without coupling: above 0 every small load does work on the section.
+    pub least: f64,
+    /// M [N m], N [N], p_u [Pa], p_d [Pa] that take least work; the larger pressure is 1 kPa.
+    pub direction: [f64; 4],
+    /// Antisymmetric part over the coupling: 0 reciprocal, 1 where only one side acts on the other.
+    pub defect: f64,
+}
+
+/// Times the width of a kink at which its slope is that of one side.
+const FAR: f64 = 1e6;
+
+/// `[E35]` The law that maps `(M, N, p_u, p_d)` to `(α, λ - 1, a_u, a_d)`, each over the square root of its own compliance,
+/// so that the work per length of any of them alone is half its square; with `r = φ_b l_b`:
+///
+/// ```text
+/// M/√EI ... N/√EA ... p √(r a_p)         L = 1 + [0 C; D 0]
+/// C = [√EI ∂α_p/∂p; √EA ∂λ_p/∂p]/√(r a_p)       D = √(r/a_p) [√EI (R A_M)', √EA A_N']
+/// passive: least eigenvalue of (L + Lᵀ)/2 > 0      reciprocal: L = Lᵀ      defect |L - Lᵀ|/|L + Lᵀ - 2|
+/// ```
+///
+/// Where areas have a kink, the worst of its sides. None without bladders.
+pub fn of(model: &Model) -> Option<Passivity> {
+    let wet = model.wet.as_ref()?;
+    let signs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+    let all = signs.map(|(m, n)| at(model, wet, m, n));
+    all.into_iter().reduce(|a, b| if b.least < a.least { b } else { a })
+}
+
+fn at(model: &Model, wet: &Wet, moment_sign: f64, force_sign: f64) -> Passivity {
+    let law = &wet.area;
+    let moment = moment_sign * FAR * law.moment_width.max(f64::MIN_POSITIVE.sqrt());
+    let force = force_sign * FAR * law.force_width.max(f64::MIN_POSITIVE.sqrt());
+    let (ei, ea) = (
+        model.section.bending_stiffness.sqrt(),
+        model.section.axial_stiffness.sqrt(),
+    );
+    let ratio = wet.per_row as f64 / model.length * wet.bladder_length;
+    let fluid = (ratio * law.per_pressure).sqrt();
+    let mut l = Matrix4::identity();
+    for (column, (upper, lower)) in [(2, (1.0, 0.0)), (3, (0.0, 1.0))] {
+        l[(0, column)] = ei * wet.coupling.curvature(&wet.strains, moment, upper, lower) / fluid;
+        l[(1, column)] = ea * wet.coupling.stretch(&wet.strains, force, upper, lower) / fluid;
+    }
+    for (row, side) in [(2, 1.0), (3, -1.0)] {
+        l[(row, 0)] = ei * law.moment_slope(moment, side) * ratio / fluid;
+        l[(row, 1)] = ea * law.force_slope(force) * ratio / fluid;
+    }
+    let symmetric = (l + l.transpose()) * 0.5;
+    let eigen = SymmetricEigen::new(symmetric);
+    let least = eigen.eigenvalues.imin();
+    let v = eigen.eigenvectors.column(least);
+    // what is round-off of the others is nothing
+    let v = v.map(|x| if x.abs() < 1e-12 { 0.0 } else { x });
+    let physical = [v[0] * ei, v[1] * ea, v[2] / fluid, v[3] / fluid];
+    let pressure = if physical[2].abs() >= physical[3].abs() {
+        physical[2]
+    } else {
+        physical[3]
+    };
+    let by = if pressure == 0.0 { 1.0 } else { 1000.0 / pressure };
+    let coupling = (symmetric - Matrix4::identity()).norm();
+    let odd = (l - l.transpose()).norm() * 0.5;
+    Passivity {
+        least: eigen.eigenvalues[least],
+        direction: physical.map(|x| x * by),
+        defect: if odd > 0.0 { odd / coupling } else { 0.0 },
+    }
+}
+
+impl Passivity {
+    /// Antisymmetric parts below this are round-off.
+    const ROUND_OFF: f64 = 1e-12;
+
+    /// Whether the law stores energy and gives back what it stores.
+    pub fn passive(&self) -> bool {
+        self.least > 0.0 && self.reciprocal()
+    }
+
+    /// Whether strains and areas have one potential.
+    pub fn reciprocal(&self) -> bool {
+        self.defect <= Self::ROUND_OFF
+    }
+
+    /// The verdict in words.
+    pub fn words(&self, coupling: &Coupling) -> String {
+        let name = match coupling {
+            Coupling::Published { .. } => "published",
+            Coupling::Reciprocal { .. } => "reciprocal",
+        };
+        let least = format!(
+            "the least work any load does is {:.4} of that without coupling",
+            self.least
+        );
+        let [m, n, upper, lower] = self.direction;
+        let worst = format!("at M {m:.3e} N m, N {n:.3e} N, p_u {upper:.3e} Pa, p_d {lower:.3e} Pa");
+        match (self.least > 0.0, self.reciprocal()) {
+            (true, true) => format!("the {name} coupling is passive: {least}, {worst}"),
+            (true, false) => format!(
+                "the {name} coupling is not passive: it lacks reciprocity (defect {:.3}), so closed cycles of load and pressure gain or \
+                 lose work; {least}, {worst}",
+                self.defect
+            ),
+            (false, _) => format!("the {name} coupling is not passive: {least}, {worst}; sealed bladders make it grow"),
+        }
+    }
+}

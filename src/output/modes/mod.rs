@@ -1,0 +1,256 @@
+//! What a search for modes leaves behind: `modes.csv`, `modes.json`, `modes.npz`, `modes.svg`, and its words.
+
+mod table;
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write as _};
+use std::path::{Path, PathBuf};
+
+use nalgebra::Complex;
+use serde_json::{Value, json};
+use zip::ZipWriter;
+
+use super::arrays::write_array;
+use super::effects::replace;
+use super::folder::{fault, part_of};
+use super::numbers::significant;
+use super::plot::modes::{self as picture, ModeShapes, Shown};
+use crate::error::Result;
+use crate::model::passivity::{self, Passivity};
+use crate::run::modes::{Kind, Limit, Mode, Modes, Plan, Sensitivity};
+
+pub use table::{csv, table};
+
+/// One row a mode.
+pub const CSV: &str = "modes.csv";
+/// Everything but shapes.
+pub const JSON: &str = "modes.json";
+/// Shapes.
+pub const ARRAYS: &str = "modes.npz";
+/// Shapes with pressures.
+pub const PICTURE: &str = "modes.svg";
+
+/// Modes with the case they are of.
+pub struct Report<'a> {
+    /// Name of the case.
+    pub case: &'a str,
+    /// What was asked.
+    pub plan: &'a Plan,
+    /// What was found.
+    pub found: &'a Modes,
+    /// State about which, in words: `the start`.
+    pub about: &'a str,
+    /// Derivatives by numbers of the case.
+    pub sensitivities: &'a [Sensitivity],
+}
+
+impl Report<'_> {
+    /// Whether the state is stable, in one sentence.
+    pub fn verdict(&self) -> String {
+        let growing: Vec<String> = self
+            .found
+            .modes
+            .iter()
+            .enumerate()
+            .filter(|(_, mode)| mode.kind.grows())
+            .map(|(k, mode)| match mode.frequency_hz() {
+                Some(f) => format!(
+                    "mode {} by flutter at {f:.5} Hz, growing at {:.4e} 1/s",
+                    k + 1,
+                    mode.s.re
+                ),
+                None => format!("mode {} by divergence, growing at {:.4e} 1/s", k + 1, mode.s.re),
+            })
+            .collect();
+        match growing.as_slice() {
+            [] if self.found.modes.is_empty() => "there are no modes".into(),
+            [] => format!("none of the {} modes shown grows", self.found.modes.len()),
+            all => format!("unstable: {}", all.join("; ")),
+        }
+    }
+
+    /// What to know before trusting the modes.
+    pub fn warnings(&self) -> Vec<String> {
+        let about = &self.found.about;
+        let moving = about.moving().then(|| {
+            format!(
+                "{} is no equilibrium under the loads at t = {} s: unknowns would change at up to {:.2e} of their size a second; \
+                 the modes are those of the state held where it is",
+                self.about, about.at, about.rate
+            )
+        });
+        let still = self.found.modes.is_empty().then(|| {
+            "nothing can move: the case leaves out inertia of the solid (/effects/solid_inertia) and no bladder exchanges fluid"
+                .to_string()
+        });
+        moving.into_iter().chain(still).collect()
+    }
+
+    /// What a number of the case does to each mode: `mode 2: +0.0608 Hz, −1.2e-5 1/s`, for one percent of it.
+    fn derivatives(&self, s: &Sensitivity) -> String {
+        let percent = 0.01 * s.parameter.value;
+        let mut text = format!(
+            "for 1 % of {} = {}:",
+            s.parameter.pointer,
+            significant(s.parameter.value, 6)
+        );
+        for (k, (mode, ds)) in self.found.modes.iter().zip(&s.s).enumerate() {
+            let growth = significant(percent * ds.re, 4);
+            let swings = mode.frequency_hz().map_or(String::new(), |_| {
+                format!("{} Hz, ", significant(percent * ds.im / std::f64::consts::TAU, 4))
+            });
+            text.push_str(&format!("\n  mode {}: {swings}growth {growth} 1/s", k + 1));
+        }
+        text
+    }
+
+    fn passivity(&self) -> Option<(Passivity, String)> {
+        let model = &self.found.about.system().model;
+        let found = passivity::of(model)?;
+        let words = found.words(&model.wet.as_ref()?.coupling);
+        Some((found, words))
+    }
+
+    /// Sentences below the table.
+    pub fn sentences(&self) -> String {
+        let coupling = self.passivity().map(|p| p.1);
+        let warnings = self.warnings().into_iter().map(|w| format!("warning: {w}"));
+        let derivatives = self.sensitivities.iter().map(|s| self.derivatives(s));
+        let all: Vec<String> = [self.verdict()]
+            .into_iter()
+            .chain(coupling)
+            .chain(warnings)
+            .chain(derivatives)
+            .collect();
+        all.join("\n")
+    }
+}
+
+/// The text of `modes.json`; what is not finite is null.
+pub fn json(report: &Report) -> String {
+    let found = report.found;
+    let modes: Vec<Value> = found.modes.iter().map(mode).collect();
+    let coupling = report.passivity().map(|(p, words)| {
+        json!({
+            "passive": p.passive(), "least_eigenvalue": p.least, "reciprocity_defect": p.defect,
+            "direction": {"moment_n_m": p.direction[0], "force_n": p.direction[1],
+                          "upper_pressure_pa": p.direction[2], "lower_pressure_pa": p.direction[3]},
+            "words": words
+        })
+    });
+    let value = json!({
+        "case": report.case, "about": report.about, "at_s": report.found.about.at, "near_hz": report.plan.near_hz,
+        "unknowns": found.about.y.len(), "finite_eigenvalues": found.finite,
+        "stable": !found.modes.iter().any(|m| m.kind.grows()), "verdict": report.verdict(),
+        "modes": modes, "coupling": coupling,
+        "sensitivities": report.sensitivities.iter().map(|s| (s.parameter.pointer.clone(), json!({
+            "value": s.parameter.value,
+            "growth_rate_1_s": s.s.iter().map(|ds| ds.re).collect::<Vec<_>>(),
+            "frequency_hz": s.s.iter().map(|ds| ds.im / std::f64::consts::TAU).collect::<Vec<_>>(),
+        }))).collect::<serde_json::Map<_, _>>(),
+        "solver": {"factorizations": found.factorizations, "solves": found.solves, "all_at_once": found.dense},
+        "warnings": report.warnings()
+    });
+    format!("{value:#}\n")
+}
+
+fn mode(mode: &Mode) -> Value {
+    let limit = |limit: &Option<Limit>| limit.map(|l| json!({"frequency_hz": l.frequency_hz, "likeness": l.likeness}));
+    json!({
+        "kind": mode.kind, "frequency_hz": mode.frequency_hz(), "damping_ratio": mode.damping_ratio(),
+        "growth_per_s": mode.s.re, "time_s": mode.time_s(),
+        "angular_frequency_per_s": mode.s.im, "error_per_s": mode.error, "residual": mode.residual,
+        "transverse_share": mode.shape.transverse(),
+        "undrained": limit(&mode.undrained), "drained": limit(&mode.drained),
+        "on_half_the_cells": limit(&mode.coarse), "extrapolated_frequency_hz": mode.extrapolated_hz()
+    })
+}
+
+/// Writes the files into a folder, which is made; other files in it stay.
+pub fn write(dir: &Path, report: &Report) -> Result<Vec<PathBuf>> {
+    fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
+    let mut texts = vec![(CSV, csv(report)), (JSON, json(report))];
+    texts.extend(picture::draw(&shapes(report)).map(|text| (PICTURE, text)));
+    let mut written = vec![];
+    for (name, text) in texts {
+        let path = dir.join(name);
+        replace(&path, &text)?;
+        written.push(path);
+    }
+    let target = dir.join(ARRAYS);
+    let part = part_of(&target);
+    let packed = pack(&part, report.found).and_then(|()| fs::rename(&part, &target));
+    packed.map_err(|e| fault("write", &target, e))?;
+    written.push(target);
+    Ok(written)
+}
+
+/// Arrays mode × place; `u1_m` is that of `u1_amplitude_m cos(ω t + u1_phase_rad) e^{σ t}`.
+fn pack(path: &Path, found: &Modes) -> io::Result<()> {
+    let mut npz = ZipWriter::new(BufWriter::new(File::create(path)?));
+    let system = found.about.system();
+    let count = found.modes.len() as u64;
+    let one = |f: fn(&Mode) -> f64| found.modes.iter().map(move |m| Ok(f(m)));
+    let nodes = system.mesh.nodes;
+    let theta = (0..nodes).map(|i| Ok(system.mesh.node_coordinate(i)));
+    write_array(&mut npz, "theta_m", &[nodes as u64], theta)?;
+    write_array(&mut npz, "growth_per_s", &[count], one(|m| m.s.re))?;
+    write_array(&mut npz, "angular_frequency_per_s", &[count], one(|m| m.s.im))?;
+    type Field = fn(&Mode) -> &[Complex<f64>];
+    let fields: [(&str, &str, Field); 3] = [
+        ("u1", "m", |m| &m.shape.u1),
+        ("u3", "m", |m| &m.shape.u3),
+        ("pressure", "pa", |m| &m.shape.pressure),
+    ];
+    for (name, unit, field) in fields {
+        let places = found.modes.first().map_or(0, |m| field(m).len()) as u64;
+        if places == 0 {
+            continue;
+        }
+        let values = |part: fn(&Complex<f64>) -> f64| {
+            let all = found.modes.iter().flat_map(field);
+            all.map(move |x| Ok(part(x)))
+        };
+        let shape = [count, places];
+        write_array(
+            &mut npz,
+            &format!("{name}_amplitude_{unit}"),
+            &shape,
+            values(|x| x.norm()),
+        )?;
+        write_array(&mut npz, &format!("{name}_phase_rad"), &shape, values(|x| x.arg()))?;
+    }
+    npz.finish()?.flush()
+}
+
+/// The picture's data.
+fn shapes(report: &Report) -> ModeShapes {
+    let system = report.found.about.system();
+    let per_row = system.model.wet.as_ref().map_or(0, |w| w.per_row);
+    let modes = report.found.modes.iter().enumerate().map(|(k, mode)| Shown {
+        number: k + 1,
+        words: table::words(mode),
+        grows: mode.kind.grows(),
+        u1: mode.shape.u1.clone(),
+        u3: mode.shape.u3.clone(),
+        pressure: mode.shape.pressure.clone(),
+    });
+    ModeShapes {
+        case: report.case.into(),
+        about: report.about.into(),
+        theta: (0..system.mesh.nodes).map(|i| system.mesh.node_coordinate(i)).collect(),
+        per_row,
+        modes: modes.collect(),
+    }
+}
+
+/// Where a mode moves.
+fn moves(mode: &Mode) -> &'static str {
+    let shape = &mode.shape;
+    match shape.transverse() {
+        _ if mode.kind == Kind::Volume || shape.displacement() == 0.0 => "fluid",
+        share if share > 0.9 => "across",
+        share if share < 0.1 => "along",
+        _ => "both",
+    }
+}

@@ -1,0 +1,142 @@
+//! Modes as a table, for people and as CSV. Numbers are shown as far as the bound of their error lets them.
+
+use std::fmt::Write as _;
+
+use super::{Report, moves};
+use crate::output::numbers::{percent, quantity, shortest, significant};
+use crate::run::modes::{Limit, Mode};
+
+/// Digits shown at most.
+const DIGITS: f64 = 6.0;
+
+const HEADINGS: [&str; 10] = [
+    "",
+    "mode",
+    "moves",
+    "frequency",
+    "mesh error",
+    "damping ratio",
+    "growth rate",
+    "time constant",
+    "undrained",
+    "drained",
+];
+
+/// The table, with what it is about above and how to read it below.
+pub fn table(report: &Report) -> String {
+    let found = report.found;
+    let mut text = format!(
+        "{}: small motions about {}, signals held as at t = {} s\n{} unknowns, {} finite eigenvalues, {}; {} factorisations, {} solves\n\n",
+        report.case,
+        report.about,
+        found.about.at,
+        found.about.y.len(),
+        found.finite,
+        if report.plan.near_hz > 0.0 {
+            format!("those nearest {} Hz", report.plan.near_hz)
+        } else {
+            "the slowest".into()
+        },
+        found.factorizations,
+        found.solves
+    );
+    let mut lines = vec![HEADINGS.map(String::from)];
+    lines.extend(found.modes.iter().enumerate().map(|(k, mode)| line(k + 1, mode)));
+    let widths: [usize; 10] = std::array::from_fn(|k| lines.iter().map(|l| l[k].chars().count()).max().unwrap_or(0));
+    // a column of which no mode has anything says nothing
+    let shown: [bool; 10] = std::array::from_fn(|k| k == 0 || lines[1..].iter().any(|l| !l[k].is_empty()));
+    for line in &lines {
+        let cells = line.iter().zip(widths).enumerate().map(|(k, (cell, width))| match k {
+            1 | 2 => format!("{cell:<width$}"),
+            _ => format!("{cell:>width$}"),
+        });
+        let cells = cells.zip(shown).filter(|(_, shown)| *shown).map(|(cell, _)| cell);
+        let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ").trim_end());
+    }
+    if found.modes.iter().any(|m| m.coarse.is_some()) {
+        text += "\nmesh error: how far the frequency on half the cells says that this one is off, to second order\n";
+    }
+    if found.modes.iter().any(|m| m.undrained.is_some() || m.drained.is_some()) {
+        text += "\nundrained: the same shape with every bladder sealed; drained: with networks of one pressure\n";
+    }
+    text
+}
+
+fn line(number: usize, mode: &Mode) -> [String; 10] {
+    let cell = |value: Option<f64>, error: f64, unit: &str| {
+        value.map_or(String::new(), |value| quantity(value, unit, digits(value, error)))
+    };
+    let limit = |limit: &Option<Limit>| limit.map_or(String::new(), |l| quantity(l.frequency_hz, "Hz", 5));
+    let size = mode.s.norm();
+    [
+        number.to_string(),
+        mode.kind.word().into(),
+        moves(mode).into(),
+        cell(mode.frequency_hz(), mode.error / std::f64::consts::TAU, "Hz"),
+        mode.mesh_error().map_or(String::new(), percent),
+        mode.damping_ratio()
+            .map_or(String::new(), |z| significant(z, digits(z, mode.error / size).min(4))),
+        if mode.kind.stays() {
+            String::new()
+        } else {
+            format!("{} 1/s", significant(mode.s.re, digits(mode.s.re, mode.error)))
+        },
+        cell(mode.time_s(), mode.error / mode.s.re.powi(2), "s"),
+        limit(&mode.undrained),
+        limit(&mode.drained),
+    ]
+}
+
+/// Digits of a value that its error leaves, one at least.
+fn digits(value: f64, error: f64) -> usize {
+    let known = (value.abs() / error).log10();
+    if known.is_finite() {
+        known.clamp(1.0, DIGITS) as usize
+    } else {
+        DIGITS as usize
+    }
+}
+
+/// A mode in a few words.
+pub fn words(mode: &Mode) -> String {
+    let kind = mode.kind.word();
+    match (mode.frequency_hz(), mode.time_s()) {
+        (Some(f), Some(_)) => {
+            let ratio = significant(mode.damping_ratio().unwrap_or(0.0), 3);
+            format!("{kind}, {}, damping ratio {ratio}", quantity(f, "Hz", 4))
+        }
+        (Some(f), None) => format!("{kind}, {}, undamped", quantity(f, "Hz", 4)),
+        (None, Some(t)) => format!("{kind}, {}", quantity(t, "s", 4)),
+        (None, None) => kind.into(),
+    }
+}
+
+/// The text of `modes.csv`: one row a mode, empty where there is no such number.
+pub fn csv(report: &Report) -> String {
+    let mut text = String::from(
+        "mode [1],kind,frequency [Hz],damping ratio [1],growth rate [1/s],time constant [s],error bound [1/s],residual [1],\
+         transverse share [1],undrained frequency [Hz],undrained likeness [1],drained frequency [Hz],drained likeness [1],\
+         frequency on half the cells [Hz],extrapolated frequency [Hz]\n",
+    );
+    let number = |value: Option<f64>| value.filter(|v| v.is_finite()).map_or(String::new(), shortest);
+    for (k, mode) in report.found.modes.iter().enumerate() {
+        let limit = |limit: &Option<Limit>| [number(limit.map(|l| l.frequency_hz)), number(limit.map(|l| l.likeness))];
+        let mut cells = vec![(k + 1).to_string(), mode.kind.word().into()];
+        let numbers = [
+            mode.frequency_hz(),
+            mode.damping_ratio(),
+            Some(mode.s.re),
+            mode.time_s(),
+            Some(mode.error),
+            Some(mode.residual),
+            Some(mode.shape.transverse()),
+        ];
+        cells.extend(numbers.map(number));
+        cells.extend(limit(&mode.undrained));
+        cells.extend(limit(&mode.drained));
+        cells.push(number(mode.coarse.map(|l| l.frequency_hz)));
+        cells.push(number(mode.extrapolated_hz()));
+        let _ = writeln!(text, "{}", cells.join(","));
+    }
+    text
+}

@@ -1,0 +1,99 @@
+//! `sweep.svg`: cycles along a parameter, a panel a quantity; open rings: cycles that are not stable.
+
+use plotters::style::RGBColor;
+
+use super::canvas::{Canvas, Stroke, picture};
+use super::extent;
+use super::panel::{Panel, Place, title};
+use super::ticks::Scale;
+use crate::output::numbers::significant;
+
+/// A quantity along the parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// What it is.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Values, one a cycle.
+    pub values: Vec<f64>,
+}
+
+/// All that is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cycles {
+    /// Name of the case.
+    pub case: String,
+    /// The parameter.
+    pub pointer: String,
+    /// Whether its axis is logarithmic.
+    pub logarithmic: bool,
+    /// Its values.
+    pub parameter: Vec<f64>,
+    /// Whether each cycle is stable.
+    pub stable: Vec<bool>,
+    /// Panels from top to bottom.
+    pub quantities: Vec<Quantity>,
+}
+
+const LEFT: f64 = 96.0;
+const TOP: f64 = 64.0;
+const WIDTH: f64 = 560.0;
+const HEIGHT: f64 = 170.0;
+const GAP: f64 = 26.0;
+const LINE: RGBColor = RGBColor(0x00, 0x72, 0xb2);
+const WARNING: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
+
+/// Draws it; `None` when there is nothing to draw.
+pub fn draw(data: &Cycles) -> Option<String> {
+    let on_axis = |x: f64| if data.logarithmic { x.log10() } else { x };
+    let xs: Vec<f64> = data.parameter.iter().map(|&x| on_axis(x)).collect();
+    let (lo, hi) = extent(xs.iter().copied())?;
+    let margin = 0.03 * (hi - lo).max(1e-12);
+    let mut x = Scale::exact(lo - margin, hi + margin, "1", 7);
+    if data.logarithmic {
+        let decades = lo.floor() as i32..=hi.ceil() as i32;
+        let marks = decades.flat_map(|n| [1.0, 2.0, 5.0].map(|m| m * 10_f64.powi(n)));
+        let seen = |v: &f64| (x.lo..=x.hi).contains(&v.log10());
+        x.ticks = marks.filter(seen).map(|v| (v.log10(), significant(v, 1))).collect();
+    }
+    let count = data.quantities.len() as f64;
+    let height = TOP + count * HEIGHT + (count - 1.0) * GAP + 52.0;
+    Some(picture(LEFT + WIDTH + 30.0, height, |canvas| {
+        let about = "one cycle a value, found by shooting; orange rings: cycles that are not stable";
+        title(canvas, 16.0, &format!("{} · steady cycles", data.case), about);
+        for (k, quantity) in data.quantities.iter().enumerate() {
+            let panel = Panel {
+                place: Place {
+                    left: LEFT,
+                    top: TOP + k as f64 * (HEIGHT + GAP),
+                    width: WIDTH,
+                    height: HEIGHT,
+                },
+                x: x.clone(),
+                y: Scale::around(
+                    extent(quantity.values.iter().copied().chain([0.0])),
+                    0.0,
+                    &quantity.unit,
+                    5,
+                ),
+            };
+            panel.grid(canvas);
+            let points = xs.iter().copied().zip(quantity.values.iter().copied());
+            panel.curve(canvas, points.clone(), Stroke::solid(LINE, 1.4));
+            for (point, stable) in points.zip(&data.stable) {
+                ring(canvas, panel.at(point), if *stable { LINE } else { WARNING });
+            }
+            let last = k + 1 == data.quantities.len();
+            panel.axes(canvas, last.then_some(data.pointer.as_str()), &quantity.name);
+        }
+    }))
+}
+
+fn ring(canvas: &mut Canvas, (x, y): (f64, f64), colour: RGBColor) {
+    let points: Vec<_> = (0..=16)
+        .map(|k| f64::from(k) * std::f64::consts::TAU / 16.0)
+        .map(|angle| (x + 3.4 * angle.cos(), y + 3.4 * angle.sin()))
+        .collect();
+    canvas.line(&points, Stroke::solid(colour, 1.4));
+}

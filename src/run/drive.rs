@@ -1,0 +1,153 @@
+//! The common period of everything that acts on a case, once whatever starts smoothly has started.
+
+use crate::case::schema::Case;
+use crate::case::signals::{Signal, Sine};
+use crate::error::{Error, Result};
+use crate::model::{Model, each_signal};
+
+/// Periods of two signals that fit into a common one this often are told apart.
+const MOST_CYCLES: u32 = 64;
+/// Frequencies count as commensurable when their ratio is within this of a ratio of small integers.
+const COMMENSURABLE: f64 = 1e-9;
+
+/// What drives a case in the long run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// Common period [s].
+    pub period: f64,
+    /// Whether any signal changes in the long run; else the period is the one that was asked for.
+    pub driven: bool,
+}
+
+/// The common period of all signals of a case, their smooth starts left aside: constants have any, ramps and tables come
+/// to rest, sines, their sums and products go on. `asked` [s] is the period of a case in which nothing goes on.
+///
+/// # Errors
+/// [`Error::Usage`] that names the signal which is not periodic, the frequencies that have no common period, or says that
+/// nothing goes on and no period was asked for.
+pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
+    let mut frequencies = vec![];
+    let mut endless = None;
+    each_signal(&model.ends, &model.loads, model.wet.as_ref().map(|w| &w.network), |s| {
+        let settled = settled(s);
+        if !is_periodic(&settled) {
+            endless.get_or_insert(settled);
+        } else {
+            collect(&settled, &mut frequencies);
+        }
+    });
+    let name = &case.name;
+    if let Some(signal) = endless {
+        return Err(Error::Usage(format!(
+            "{name} has no period: the signal {} goes on without repeating itself; sines, their sums and products, and whatever \
+             comes to rest are periodic",
+            serde_json::to_string(&signal).unwrap_or_default()
+        )));
+    }
+    if frequencies.is_empty() {
+        return match asked {
+            Some(period) if period.is_finite() && period > 0.0 => Ok(Drive { period, driven: false }),
+            Some(period) => Err(Error::Usage(format!("--period {period}: a time > 0, in seconds"))),
+            None => Err(Error::Usage(format!(
+                "nothing drives {name} periodically: give an end, a load, a valve or a port a sine, or name a period with \
+                 --period SECONDS"
+            ))),
+        };
+    }
+    let period = common_period(&frequencies).ok_or_else(|| {
+        let list: Vec<String> = frequencies.iter().map(f64::to_string).collect();
+        Error::Usage(format!(
+            "the frequencies of {name}, {} Hz, have no common period of at most {MOST_CYCLES} cycles; choose them in ratios \
+             of small integers",
+            list.join(", ")
+        ))
+    })?;
+    match asked {
+        Some(asked) => Err(Error::Usage(format!(
+            "--period {asked}: {name} has a period of its own, {period} s; leave it out"
+        ))),
+        None => Ok(Drive { period, driven: true }),
+    }
+}
+
+/// What a signal becomes in the long run: sines without their smooth start, ramps and tables at their last value.
+///
+/// Polynomials of degree one and more stay what they are: they come to no rest.
+pub fn settled(signal: &Signal) -> Signal {
+    match signal {
+        _ if signal.is_constant() => Signal::Constant(signal.value(0.0)),
+        Signal::Constant(value) => Signal::Constant(*value),
+        Signal::Sine(sine) => Signal::Sine(Sine {
+            ramp_cycles: 0.0,
+            ..sine.clone()
+        }),
+        Signal::Sigmoid(s) => Signal::Constant(if s.steepness_per_s > 0.0 { s.amplitude } else { 0.0 }),
+        Signal::Ramp(ramp) => Signal::Constant(ramp.to),
+        Signal::Polynomial(polynomial) => Signal::Polynomial(polynomial.clone()),
+        Signal::Table(table) => Signal::Constant(table.values.last().copied().unwrap_or(0.0)),
+        Signal::Sum(terms) => Signal::Sum(terms.iter().map(settled).collect()),
+        Signal::Product(factors) => Signal::Product(factors.iter().map(settled).collect()),
+    }
+}
+
+/// A settled signal repeats itself, if its frequencies do.
+fn is_periodic(signal: &Signal) -> bool {
+    match signal {
+        Signal::Polynomial(_) => false,
+        Signal::Sum(parts) | Signal::Product(parts) => parts.iter().all(is_periodic),
+        _ => true,
+    }
+}
+
+/// Frequencies of the sines in a settled signal [Hz].
+fn collect(signal: &Signal, out: &mut Vec<f64>) {
+    match signal {
+        Signal::Sine(sine) if !signal.is_constant() => out.push(sine.frequency_hz),
+        Signal::Sum(parts) | Signal::Product(parts) => parts.iter().for_each(|part| collect(part, out)),
+        _ => {}
+    }
+}
+
+/// The shortest time [s] that is a whole number of cycles of every frequency [Hz].
+fn common_period(frequencies: &[f64]) -> Option<f64> {
+    let slowest = frequencies.iter().copied().fold(f64::INFINITY, f64::min);
+    (1..=MOST_CYCLES).map(f64::from).find_map(|cycles| {
+        let whole = |f: &f64| {
+            let count = f / slowest * cycles;
+            (count - count.round()).abs() <= COMMENSURABLE * count
+        };
+        frequencies.iter().all(whole).then_some(cycles / slowest)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frequencies_in_small_ratios_have_a_common_period() {
+        assert_eq!(common_period(&[20.0]), Some(0.05));
+        assert_eq!(common_period(&[2.0, 3.0]), Some(1.0));
+        assert_eq!(common_period(&[1.5, 4.5, 2.5]), Some(2.0));
+        assert_eq!(common_period(&[1.0, std::f64::consts::SQRT_2]), None);
+    }
+
+    #[test]
+    fn what_starts_smoothly_goes_on_without_its_start() {
+        let started = Signal::Sum(vec![
+            Signal::Sine(Sine {
+                amplitude: 2.0,
+                frequency_hz: 3.0,
+                phase_rad: 0.4,
+                ramp_cycles: 2.0,
+            }),
+            Signal::Constant(1.0),
+        ]);
+        let settled = settled(&started);
+        // after the start both are the same formula
+        for t in [2.0 / 3.0, 1.0, 7.3] {
+            assert_eq!(settled.value(t), started.value(t));
+        }
+        assert_ne!(settled.value(0.1), started.value(0.1));
+    }
+}

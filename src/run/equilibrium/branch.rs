@@ -1,0 +1,84 @@
+//! From one path onto another that crosses it.
+
+use super::path::{End, Follower, NEAR, PATIENCE, Way, difference};
+use super::state::Stability;
+use super::{Event, Kind};
+use crate::sundials::KinsolFailure;
+
+/// First step aside.
+const ASIDE: f64 = 0.02;
+const INVERSE_ITERATIONS: usize = 12;
+
+impl Follower<'_> {
+    /// Leaves a path where another one crosses it: a step along the direction that costs no force, which is where the
+    /// matrix is nearly singular, to the side on which it bends (its largest displacement across, or else along) in the positive sense.
+    pub(super) fn leave(&mut self, trail: &mut Way, beyond: (f64, Option<Stability>)) -> Result<f64, End> {
+        let n = self.n;
+        let last = trail.last.clone();
+        let mut x = last.clone();
+        self.solve(&mut x, PATIENCE)
+            .map_err(|failure| self.fail(&failure, last[n]))?;
+        let mut aside = self.softest();
+        // The eigenvalue that changes sign does so in proportion to the distance.
+        let share = last[n] + (beyond.0 - last[n]) * between(self.path.last().stability, beyond.1);
+        self.path.events.push(Event {
+            share,
+            kind: Kind::Bifurcation,
+        });
+        self.branch = self.path.states.len();
+        aside[n] = 0.0;
+        let displacements = aside
+            .iter()
+            .zip(&self.weights)
+            .filter(|(_, w)| **w > 0.0)
+            .map(|(x, _)| *x);
+        let largest = displacements.fold(0.0_f64, |m, x| if x.abs() > m.abs() { x } else { m });
+        let unit = largest.signum() / self.norm(&aside).max(f64::MIN_POSITIVE);
+        aside.iter_mut().for_each(|x| *x *= unit);
+        let mut step = ASIDE;
+        loop {
+            let guess: Vec<f64> = last.iter().zip(&aside).map(|(x, d)| x + step * d).collect();
+            self.aim(&last, &guess);
+            let mut x = guess.clone();
+            let solved = self.solve(&mut x, PATIENCE);
+            if solved.is_ok() && self.norm(&difference(&x, &guess)) <= 0.5 * step {
+                self.orientation = self.solver.determinant_sign();
+                let taken = self.norm(&difference(&x, &last));
+                *trail = Way::new(self, last, taken, x.clone());
+                self.keep(&x)?;
+                return Ok(taken);
+            }
+            self.path.rejected += 1;
+            step *= 0.5;
+            if step < NEAR {
+                let none = || KinsolFailure {
+                    code: 0,
+                    what: "the path that crosses here is not found".into(),
+                    worst: None,
+                };
+                return Err(self.fail(&solved.err().unwrap_or_else(none), share));
+            }
+        }
+    }
+
+    /// Vector that the matrix last factored makes shortest (inverse iteration).
+    fn softest(&mut self) -> Vec<f64> {
+        let mut x: Vec<f64> = (0..=self.n).map(|k| (1.0 + k as f64).sin()).collect();
+        for _ in 0..INVERSE_ITERATIONS {
+            self.solver.apply_inverse(&mut x);
+            let norm = dot(&x, &x).sqrt().max(f64::MIN_POSITIVE);
+            x.iter_mut().for_each(|x| *x /= norm);
+        }
+        x
+    }
+}
+
+/// Where between two states an eigenvalue is zero, a share of the distance; halfway when they do not tell.
+fn between(before: Option<Stability>, beyond: Option<Stability>) -> f64 {
+    let share = before.zip(beyond).map(|(a, b)| a.softest / (a.softest - b.softest));
+    share.filter(|share| (0.0..=1.0).contains(share)).unwrap_or(0.5)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

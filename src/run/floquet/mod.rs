@@ -1,0 +1,141 @@
+//! Floquet multipliers of a cycle: what a small disturbance is multiplied by from one period to the next.
+//!
+//! ```text
+//! shape    what a disturbance is made of
+//! verdict  stable or not, and by what, in words
+//! ```
+
+pub mod shape;
+pub mod verdict;
+
+use std::f64::consts::TAU;
+
+use serde::Serialize;
+
+use super::krylov;
+use super::periodic::{Cycle, Scene};
+use shape::{Modes, Part};
+
+pub use verdict::{Stability, Verdict};
+
+/// Residual of a multiplier's vector, relative to one.
+const RESIDUAL: f64 = 1e-8;
+/// Multipliers below this have died before a period is over: no frequency or rate can be read from them.
+const DEAD: f64 = 1e-9;
+/// Vectors of the Krylov space at most.
+const MOST_VECTORS: usize = 600;
+
+/// One multiplier; of a complex pair the one with positive angle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Multiplier {
+    /// Real part.
+    pub re: f64,
+    /// Imaginary part, >= 0.
+    pub im: f64,
+    /// Modulus.
+    pub modulus: f64,
+    /// Growth rate [1/s], negative when it decays.
+    pub growth_per_s: f64,
+    /// Frequency [Hz]: of those that the angle allows the nearest to the mode's own.
+    pub frequency_hz: f64,
+    /// What most of its energy is in.
+    pub part: Part,
+    /// Its share of the energy.
+    pub share: f64,
+    /// Rate at which the integrator's steps would damp that frequency [1/s]: to be far below the growth rate.
+    pub numerical_damping_per_s: f64,
+    /// `|M v - μ v|` of its vector of norm one.
+    pub residual: f64,
+}
+
+/// What is known of a cycle's stability.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Floquet {
+    /// Period [s].
+    pub period_s: f64,
+    /// Whether anything is driven.
+    pub driven: bool,
+    /// Multipliers exactly one that stand for conserved volumes; left out below.
+    pub conserved: usize,
+    /// The others, largest first.
+    pub multipliers: Vec<Multiplier>,
+    /// Stable or not, and by what.
+    pub verdict: Verdict,
+}
+
+/// `[E38]` The `count` largest multipliers of a cycle.
+///
+/// ```text
+/// M v = μ v     growth ln|μ|/T     frequency (arg μ + 2π k)/(2π T), k whole
+/// ```
+///
+/// M is the derivative of the period map as its steps are. Conserved volumes make as many left vectors `wᵀ M = wᵀ`; M leaves
+/// the states across them to themselves, and there their multipliers, exactly one, do not occur.
+pub fn multipliers(scene: &Scene, cycle: &mut Cycle, count: usize) -> Floquet {
+    let mut start = krylov::everything(cycle.y.len());
+    scene.admit(&mut start);
+    let modes = Modes::new(&scene.system);
+    let most = scene.dimension().min(MOST_VECTORS);
+    let found = krylov::largest(
+        |v| {
+            cycle.march.carry(v);
+            scene.admit(v);
+        },
+        &start,
+        count.min(most),
+        RESIDUAL,
+        most,
+    );
+    let period = scene.drive.period;
+    let multipliers: Vec<Multiplier> = found
+        .into_iter()
+        .filter(|eigen| eigen.value.norm() > DEAD)
+        .map(|eigen| {
+            let (part, share) = modes.dominant(&scene.system, &eigen.vector);
+            let own = modes.frequency(&scene.system, part, &eigen.vector);
+            let frequency = nearest(eigen.value.arg(), period, own);
+            Multiplier {
+                re: eigen.value.re,
+                im: eigen.value.im,
+                modulus: eigen.value.norm(),
+                growth_per_s: eigen.value.norm().ln() / period,
+                frequency_hz: frequency / TAU,
+                part,
+                share,
+                numerical_damping_per_s: numerical_damping(scene, cycle.march.times(), frequency),
+                residual: eigen.residual,
+            }
+        })
+        .collect();
+    let verdict = verdict::judge(&multipliers, scene.drive.driven, scene.rtol, period);
+    Floquet {
+        period_s: period,
+        driven: scene.drive.driven,
+        conserved: scene.conserved.len(),
+        multipliers,
+        verdict,
+    }
+}
+
+/// The angular frequency [1/s] `(±angle + 2π k)/period` nearest to `own`.
+fn nearest(angle: f64, period: f64, own: f64) -> f64 {
+    let candidate = |angle: f64| {
+        let k = ((own * period - angle) / TAU).round();
+        ((angle + TAU * k) / period).abs()
+    };
+    let (a, b) = (candidate(angle), candidate(-angle));
+    if (a - own).abs() <= (b - own).abs() { a } else { b }
+}
+
+/// Rate [1/s] at which the steps damp an undamped oscillation of angular frequency `w` [1/s].
+fn numerical_damping(scene: &Scene, times: &[f64], w: f64) -> f64 {
+    let tableau = scene.method.tableau();
+    let lost: f64 = times
+        .windows(2)
+        .map(|t| {
+            let (re, im) = tableau.stability((0.0, w * (t[1] - t[0])));
+            -re.hypot(im).ln()
+        })
+        .sum();
+    lost / scene.drive.period
+}

@@ -1,0 +1,93 @@
+//! Stable or not, and by what, in words.
+
+use serde::Serialize;
+
+use super::Multiplier;
+use super::shape::Part;
+
+/// Growth over a period below which a disturbance counts as neither growing nor decaying: what the steps' own error makes of
+/// a multiplier of one.
+const NEUTRAL: f64 = 1e-5;
+/// Angle [rad] from the real axis within which a multiplier counts as real.
+const REAL: f64 = 1e-6;
+
+/// Whether disturbances die.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stability {
+    /// All of them.
+    Stable,
+    /// None grows, but some do not die either.
+    Neutral,
+    /// One grows.
+    Unstable,
+}
+
+/// What is to be said of a cycle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verdict {
+    /// In one word.
+    pub stability: Stability,
+    /// Growth rate of the largest multiplier [1/s].
+    pub growth_per_s: f64,
+    /// In a sentence.
+    pub words: String,
+}
+
+/// Judges by the largest multiplier.
+pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -> Verdict {
+    let Some(first) = multipliers.first() else {
+        return Verdict {
+            stability: Stability::Stable,
+            growth_per_s: f64::NEG_INFINITY,
+            words: "stable: every disturbance has died after one period".into(),
+        };
+    };
+    let growth = first.growth_per_s;
+    let threshold = NEUTRAL.max(rtol) / period;
+    let (stability, words) = if growth > threshold {
+        (Stability::Unstable, unstable(first, driven))
+    } else if growth > -threshold {
+        let words = format!(
+            "neutral: {} at {:.4} Hz neither grows nor decays (multiplier of modulus 1 to {:.0e})",
+            first.part,
+            first.frequency_hz,
+            (first.modulus - 1.0).abs().max(1e-16)
+        );
+        (Stability::Neutral, words)
+    } else {
+        let words = format!(
+            "stable: the slowest disturbance, {} at {:.4} Hz, decays at {:.4} /s",
+            first.part, first.frequency_hz, -growth
+        );
+        (Stability::Stable, words)
+    };
+    Verdict {
+        stability,
+        growth_per_s: growth,
+        words,
+    }
+}
+
+fn unstable(m: &Multiplier, driven: bool) -> String {
+    let rate = format!("with growth {:.4} /s", m.growth_per_s);
+    let angle = m.im.atan2(m.re);
+    let (kind, value) = if angle < REAL {
+        ("harmonic", format!("{:.4}", m.re))
+    } else if std::f64::consts::PI - angle < REAL {
+        ("subharmonic", format!("{:.4}", m.re))
+    } else {
+        let degrees = angle.to_degrees();
+        (
+            "at a frequency of its own",
+            format!("{:.4} at {degrees:.1} deg", m.modulus),
+        )
+    };
+    let kind = format!("{kind}, multiplier {value}");
+    match (m.part, driven) {
+        (Part::Bending(_), true) => format!("parametric resonance of {} ({kind}) {rate}", m.part),
+        (_, true) => format!("instability of {} ({kind}) {rate}", m.part),
+        (_, false) if angle < REAL => format!("divergence of {} {rate}", m.part),
+        (_, false) => format!("flutter of {} at {:.4} Hz {rate}", m.part, m.frequency_hz),
+    }
+}

@@ -1,0 +1,265 @@
+//! Krylov spaces of a map known only by what it does: the solution of `(1 - M) x = b`, and the largest eigenvalues of M.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use crate::spectral::schur;
+
+/// A vector in which later ones have no part any more counts as none.
+const SPENT: f64 = 1e-13;
+/// Angle [rad] from the real axis that round-off makes.
+const REAL: f64 = 1e-11;
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+fn subtract(a: &mut [f64], factor: f64, b: &[f64]) {
+    a.iter_mut().zip(b).for_each(|(a, b)| *a -= factor * b);
+}
+
+/// An orthonormal basis that grows by what the map makes of its last vector, and the map in it.
+struct Space {
+    basis: Vec<Vec<f64>>,
+    /// Columns of the map in the basis: one entry more than the basis was long.
+    columns: Vec<Vec<f64>>,
+}
+
+impl Space {
+    fn new(start: &[f64]) -> Self {
+        let size = norm(start);
+        Self {
+            basis: vec![start.iter().map(|x| x / size).collect()],
+            columns: vec![],
+        }
+    }
+
+    /// Takes one vector more; false when the space is closed under the map.
+    fn grow(&mut self, map: &mut dyn FnMut(&mut [f64])) -> bool {
+        let k = self.columns.len();
+        let mut v = self.basis[k].clone();
+        map(&mut v);
+        let before = norm(&v);
+        let mut column = vec![0.0; k + 2];
+        // twice is enough (Kahan and Parlett)
+        for _ in 0..2 {
+            for (q, h) in self.basis.iter().zip(&mut column) {
+                let part = dot(q, &v);
+                *h += part;
+                subtract(&mut v, part, q);
+            }
+        }
+        let left = norm(&v);
+        let open = left > SPENT * before.max(f64::MIN_POSITIVE);
+        if open {
+            column[k + 1] = left;
+            v.iter_mut().for_each(|v| *v /= left);
+            self.basis.push(v);
+        }
+        self.columns.push(column);
+        open
+    }
+
+    /// The map in the basis, square.
+    fn square(&self) -> DMatrix<f64> {
+        let k = self.columns.len();
+        DMatrix::from_fn(k, k, |i, j| self.columns[j].get(i).copied().unwrap_or(0.0))
+    }
+}
+
+/// Solves `(1 - M) x = b` by GMRES to a residual of `tolerance |b|`, in at most `most` applications of M. Returns x and the
+/// residual reached relative to b.
+pub fn solve(mut map: impl FnMut(&mut [f64]), b: &[f64], tolerance: f64, most: usize) -> (Vec<f64>, f64) {
+    let (size, b_len) = (norm(b), b.len());
+    if size == 0.0 {
+        return (vec![0.0; b_len], 0.0);
+    }
+    let mut less = |v: &mut [f64]| {
+        let before = v.to_vec();
+        map(v);
+        v.iter_mut().zip(before).for_each(|(v, before)| *v = before - *v);
+    };
+    let mut space = Space::new(b);
+    // QR of the map in the basis by rotations, and what they make of the right-hand side
+    let (mut rotations, mut upper) = (Vec::<(f64, f64)>::new(), Vec::<Vec<f64>>::new());
+    let mut right = vec![size];
+    loop {
+        let open = space.grow(&mut less);
+        let k = space.columns.len();
+        let mut column = space.columns[k - 1].clone();
+        for (i, (c, s)) in rotations.iter().enumerate() {
+            let (a, b) = (column[i], column[i + 1]);
+            (column[i], column[i + 1]) = (c * a + s * b, c * b - s * a);
+        }
+        let (a, b) = (column[k - 1], column[k]);
+        let radius = a.hypot(b);
+        let (c, s) = if radius > 0.0 {
+            (a / radius, b / radius)
+        } else {
+            (1.0, 0.0)
+        };
+        column[k - 1] = radius;
+        rotations.push((c, s));
+        upper.push(column);
+        right.push(-s * right[k - 1]);
+        right[k - 1] *= c;
+        let residual = right[k].abs() / size;
+        if residual <= tolerance || !open || k >= most {
+            let mut y = right[..k].to_vec();
+            for i in (0..k).rev() {
+                let known: f64 = (i + 1..k).map(|j| upper[j][i] * y[j]).sum();
+                y[i] = if upper[i][i] == 0.0 {
+                    0.0
+                } else {
+                    (y[i] - known) / upper[i][i]
+                };
+            }
+            let mut x = vec![0.0; b_len];
+            for (q, y) in space.basis.iter().zip(y) {
+                subtract(&mut x, -y, q);
+            }
+            return (x, residual);
+        }
+    }
+}
+
+/// An eigenvalue with its vector, real and imaginary part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Eigen {
+    /// Eigenvalue.
+    pub value: Complex<f64>,
+    /// Vector of norm one.
+    pub vector: [Vec<f64>; 2],
+    /// `|M v - μ v|`.
+    pub residual: f64,
+}
+
+/// The `count` eigenvalues of largest modulus of a map on vectors of length `start.len()`, by Arnoldi's method from `start`,
+/// each to a residual of `tolerance`; complex pairs once, with positive imaginary part. The space grows up to `most` vectors.
+/// Where `most` is the dimension all eigenvalues are found.
+pub fn largest(
+    mut map: impl FnMut(&mut [f64]),
+    start: &[f64],
+    count: usize,
+    tolerance: f64,
+    most: usize,
+) -> Vec<Eigen> {
+    if norm(start) == 0.0 {
+        return vec![];
+    }
+    let mut space = Space::new(start);
+    let mut next = (2 * count).max(16);
+    loop {
+        let open = space.grow(&mut map);
+        let k = space.columns.len();
+        let last = !open || k >= most;
+        if k < next && !last {
+            continue;
+        }
+        next = k + (k / 4).max(8);
+        let square = space.square();
+        let left = space.columns[k - 1][k];
+        let mut found = pairs(&square, count);
+        for (_, vector, residual) in &mut found {
+            *residual = left * vector[k - 1].norm();
+        }
+        if last || found.iter().all(|(_, _, residual)| *residual <= tolerance) {
+            return found
+                .into_iter()
+                .map(|(value, vector, residual)| {
+                    let mut parts = [vec![0.0; start.len()], vec![0.0; start.len()]];
+                    for (q, y) in space.basis.iter().zip(vector.iter()) {
+                        subtract(&mut parts[0], -y.re, q);
+                        subtract(&mut parts[1], -y.im, q);
+                    }
+                    Eigen {
+                        value,
+                        vector: parts,
+                        residual,
+                    }
+                })
+                .collect();
+        }
+    }
+}
+
+/// Eigenvalues of largest modulus of a dense matrix with unit vectors, and a place for residuals; complex pairs once.
+fn pairs(matrix: &DMatrix<f64>, count: usize) -> Vec<(Complex<f64>, DVector<Complex<f64>>, f64)> {
+    let Some((q, t)) = schur::ordered(matrix.map(|x| Complex::new(x, 0.0))) else {
+        return vec![];
+    };
+    let n = matrix.nrows();
+    // of a pair that round-off has parted from the real axis both halves count as real
+    let upper = |k: &usize| t[(*k, *k)].im >= -REAL * t[(*k, *k)].norm();
+    let chosen = (0..n).filter(upper).take(count);
+    chosen
+        .map(|k| {
+            let mut y = schur::vector(&t, k);
+            y.resize(n, Complex::default());
+            let v = (&q * DVector::from_vec(y)).normalize();
+            let value = t[(k, k)];
+            let real = value.im.abs() <= REAL * value.norm();
+            (if real { Complex::new(value.re, 0.0) } else { value }, v, 0.0)
+        })
+        .collect()
+}
+
+/// A vector of which every eigenvector has a part, the same every time.
+pub fn everything(len: usize) -> Vec<f64> {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    (1..=len).map(|k| (k as f64 * GOLDEN).fract() - 0.5 + 1e-3).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn matrix() -> DMatrix<f64> {
+        // a rotation by 1 rad that grows by 1.3, and shrinking rest, in a skew basis
+        let n = 12;
+        let mut block = DMatrix::from_fn(n, n, |i, j| if i == j { 0.8_f64.powi(i as i32) * 0.7 } else { 0.0 });
+        let (s, c) = 1.0_f64.sin_cos();
+        for (i, j, x) in [(0, 0, c), (0, 1, -s), (1, 0, s), (1, 1, c)] {
+            block[(i, j)] = 1.3 * x;
+        }
+        let skew = DMatrix::from_fn(n, n, |i, j| if i == j { 1.0 } else { 0.3 / (1.0 + (i + 2 * j) as f64) });
+        let inverse = skew.clone().try_inverse().unwrap();
+        skew * block * inverse
+    }
+
+    /// Tolerances: round-off of 12 by 12 products, condition of the basis about 3.
+    #[test]
+    fn eigenvalues_of_a_known_matrix() {
+        let m = matrix();
+        let map = |v: &mut [f64]| v.copy_from_slice((&m * DVector::from_row_slice(v)).as_slice());
+        let found = largest(map, &everything(12), 3, 1e-10, 12);
+        let expected = [
+            (1.3 * 1.0_f64.cos(), 1.3 * 1.0_f64.sin()),
+            (0.7 * 0.64, 0.0),
+            (0.7 * 0.512, 0.0),
+        ];
+        for (eigen, (re, im)) in found.iter().zip(expected) {
+            assert!((eigen.value - Complex::new(re, im)).norm() < 1e-12, "{:?}", eigen.value);
+            let [a, b] = eigen.vector.clone().map(DVector::from_vec);
+            let gap = (&m * &a - (&a * re - &b * im)).norm() + (&m * &b - (&a * im + &b * re)).norm();
+            assert!(gap < 1e-9, "{gap:e}");
+        }
+    }
+
+    #[test]
+    fn a_system_is_solved_as_far_as_asked() {
+        let m = matrix();
+        let map = |v: &mut [f64]| v.copy_from_slice((&m * DVector::from_row_slice(v)).as_slice());
+        let b = everything(12);
+        for tolerance in [1e-2, 1e-11] {
+            let (x, residual) = solve(map, &b, tolerance, 12);
+            let x = DVector::from_vec(x);
+            let left = (&x - &m * &x - DVector::from_vec(b.clone())).norm() / norm(&b);
+            assert!(left <= 1.001 * tolerance + 1e-13, "{left:e}");
+            assert!((left - residual).abs() < 1e-13);
+        }
+    }
+}

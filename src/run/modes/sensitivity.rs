@@ -1,0 +1,92 @@
+//! Derivatives of eigenvalues with respect to numbers of the case.
+
+use nalgebra::Complex;
+
+use super::linearise::{Linearised, at_equilibrium, linearise};
+use super::{Mode, failed};
+use crate::case::Case;
+use crate::case::parameter::{CHANGE, Parameter, STEPS};
+use crate::dae::Dae as _;
+use crate::error::{Error, Result};
+use crate::spectral::{self, Options, Pair};
+
+/// Derivatives by one parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Derivative of s of each mode [1/s over the parameter's unit].
+    pub s: Vec<Complex<f64>>,
+}
+
+/// `[E44]` Derivatives of eigenvalues by a parameter p, from the vectors on either side,
+///
+/// ```text
+/// ds/dp = -yᴴ (dA/dp + s dB/dp) x / yᴴ B x
+/// ```
+///
+/// where A and B change with the state about which they are taken too: they are differenced to fourth order, each at an
+/// equilibrium of its own. Of no meaning where two eigenvalues meet.
+///
+/// # Errors
+/// A changed case that is not valid, has other unknowns or no such state.
+pub fn differentiate(
+    case: &Case,
+    at_rest_under: Option<f64>,
+    about: &Linearised,
+    modes: &[Mode],
+    parameters: &[Parameter],
+) -> Result<Vec<Sensitivity>> {
+    let pairs: Vec<Pair> = modes
+        .iter()
+        .map(|mode| {
+            let found =
+                spectral::nearest(&about.pencil(), mode.s, 1, &Options::default()).map_err(|f| failed(about, &f))?;
+            found
+                .pairs
+                .into_iter()
+                .next()
+                .ok_or_else(|| Error::Usage("a mode is not found again".into()))
+        })
+        .collect::<Result<_>>()?;
+    let of = |parameter: &Parameter| -> Result<Sensitivity> {
+        let mut a = vec![0.0; about.a.len()];
+        let mut b = a.clone();
+        for (steps, weight) in STEPS {
+            let case = parameter.changed(case, parameter.value * (1.0 + steps * CHANGE))?;
+            let changed = match at_rest_under {
+                Some(at) => at_equilibrium(&case, at)?,
+                None => linearise(&case, about.at, None)?,
+            };
+            if changed.dae.pattern() != about.dae.pattern() {
+                let what = "the unknowns, or what depends on what, change with it";
+                return Err(Error::Usage(format!("--sensitivity {}: {what}", parameter.pointer)));
+            }
+            let weight = weight / (CHANGE * parameter.value);
+            add(&mut a, weight, about, &changed, &changed.a);
+            add(&mut b, weight, about, &changed, &changed.b);
+        }
+        let s = pairs
+            .iter()
+            .map(|pair| -spectral::quotient(about.dae.pattern(), &a, &b, &about.b, pair))
+            .collect();
+        Ok(Sensitivity {
+            parameter: parameter.clone(),
+            s,
+        })
+    };
+    parameters.iter().map(of).collect()
+}
+
+/// Adds the entries of a changed pencil, in the scales of the unchanged one.
+fn add(sum: &mut [f64], weight: f64, about: &Linearised, changed: &Linearised, entries: &[f64]) {
+    let (here, there) = (&about.system().layout, &changed.system().layout);
+    let pattern = about.dae.pattern();
+    for column in 0..pattern.columns() {
+        let of_column = here.scales[column] / there.scales[column];
+        for entry in pattern.column(column) {
+            let row = pattern.rows[entry] as usize;
+            sum[entry] += weight * entries[entry] * of_column * there.row_scales[row] / here.row_scales[row];
+        }
+    }
+}

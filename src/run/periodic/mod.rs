@@ -1,0 +1,14 @@
+//! The steady cycle of a periodically driven case, found directly.
+//!
+//! ```text
+//! scene   a case in the long run: what repeats itself, what is conserved, the period map
+//! shoot   Newton's iteration on the period map
+//! record  one period of the cycle as a run
+//! ```
+
+pub mod record;
+pub mod scene;
+pub mod shoot;
+
+pub use scene::Scene;
+pub use shoot::{Cycle, Search, shoot};

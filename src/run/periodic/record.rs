@@ -1,0 +1,32 @@
+//! One period of a cycle as a run of its own, recorded like any other.
+
+use super::scene::Scene;
+use super::shoot::Cycle;
+use crate::case::schema::Case;
+use crate::error::Result;
+use crate::run::dynamics::{self, Outcome};
+use crate::run::record::Recorder;
+
+/// Output times in a period.
+const OUTPUTS: f64 = 200.0;
+
+/// Runs a cycle over one period from its beginning, with the case's own integrator and tolerance: window and end are the
+/// period. Time counts from the beginning of the period, a whole number of periods after whatever starts smoothly.
+///
+/// # Errors
+/// When the recorder fails; a failing solver is an [`Outcome`].
+pub fn record(case: &Case, scene: &Scene, cycle: &Cycle, recorder: &mut dyn Recorder) -> Result<Outcome> {
+    let case = one_period(case, scene.drive.period);
+    dynamics::go_on(&case, scene.system.clone(), &cycle.y, &cycle.yp, recorder)
+}
+
+/// The case with times that fit one period [s].
+pub fn one_period(case: &Case, period: f64) -> Case {
+    let mut case = case.clone();
+    case.time.end_s = period;
+    case.time.output_interval_s = Some(period / OUTPUTS);
+    case.time.fields_interval_s = Some(period / OUTPUTS);
+    case.time.window_s = Some(period);
+    case.time.checkpoint_interval_s = None;
+    case
+}

@@ -1,0 +1,239 @@
+//! What repeats itself: a case in the long run, as one map of its state over a period.
+
+use crate::case::Translation;
+use crate::case::schema::{Case, Choice, Effects};
+use crate::dae::BeamDae;
+use crate::discrete::{System, start};
+use crate::error::{Error, Result, SolverFault};
+use crate::model::Model;
+use crate::onestep::march::Impasse;
+use crate::onestep::{March, Method, OneStep, OneStepOptions};
+use crate::run::drive::{Drive, drive, settled};
+use crate::sundials::{Absolute, StartOptions, consistent_start};
+
+/// Steps of a period at least: signals are smooth, but a mode that is at rest has no say in the error test.
+const LEAST_STEPS: f64 = 32.0;
+/// Steps of a period at most: what asks for more is no cycle, but a motion that breaks up.
+const MOST_STEPS: usize = 5000;
+
+/// A case in the long run: everything that it describes, signals without their starts, a period.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The system.
+    pub system: System,
+    /// What repeats itself.
+    pub drive: Drive,
+    /// Tolerance of a step.
+    pub rtol: f64,
+    /// Method of the steps.
+    pub method: Method,
+    /// State from which the search sets out, scaled: the start of the case, at rest beside its ends.
+    pub guess: Vec<f64>,
+    /// What is conserved: `w · y` of the scaled unknowns does not change. Of norm one, across each other.
+    pub conserved: Vec<Vec<f64>>,
+}
+
+impl Scene {
+    /// The case in the long run; `period` [s] where nothing in it is periodic.
+    ///
+    /// Everything that the case describes and does not leave out by name is there, whatever `auto` would leave out: what a
+    /// motion can do without, a disturbance may grow from.
+    ///
+    /// # Errors
+    /// A case without a period, see [`drive`].
+    pub fn new(case: &Case, period: Option<f64>) -> Result<Self> {
+        let mut model = whole(case);
+        let drive = drive(case, &model, period)?;
+        model.replace_signals(settled, settled);
+        Ok(Self::of(case, model, drive))
+    }
+
+    /// Another model of the case, its signals settled.
+    pub fn of(case: &Case, model: Model, drive: Drive) -> Self {
+        let system = System::with(case, model);
+        Self {
+            guess: guess(&system, case),
+            conserved: conserved(&system),
+            system,
+            drive,
+            rtol: case.solver.rtol,
+            method: Method::Esdirk46,
+        }
+    }
+
+    /// The equations, looking at signals as they are in the long run.
+    pub fn dae(&self) -> BeamDae {
+        let mut dae = BeamDae::new(self.system.clone());
+        dae.look_within(0.5 * self.drive.period);
+        dae
+    }
+
+    /// The period map around a state: the steps that the error test asks for from there.
+    ///
+    /// # Errors
+    /// When the integrator cannot follow the motion for a period.
+    pub fn map(&self, dae: BeamDae, y: &[f64]) -> std::result::Result<March<BeamDae>, Impasse> {
+        let end = self.drive.period;
+        let (mut dae, mut y, mut yp) = (dae, y.to_vec(), vec![0.0; y.len()]);
+        consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default()).map_err(|failure| Impasse {
+            time: 0.0,
+            what: failure.to_string(),
+        })?;
+        let options = OneStepOptions {
+            method: self.method,
+            relative: self.rtol,
+            absolute: Absolute::Same(self.rtol),
+            max_step: Some(end / LEAST_STEPS),
+            ..OneStepOptions::default()
+        };
+        let impasse = |failure: Box<crate::sundials::IdaFailure>| Impasse {
+            time: failure.time,
+            what: failure.to_string(),
+        };
+        let mut solver = OneStep::new(dae, 0.0, &y, &yp, &options).map_err(impasse)?;
+        let mut times = vec![0.0];
+        while solver.time() < end {
+            times.push(solver.step(end).map_err(impasse)?.time);
+            if times.len() > MOST_STEPS {
+                return Err(Impasse {
+                    time: solver.time(),
+                    what: format!("the motion asks for more than {MOST_STEPS} steps a period"),
+                });
+            }
+        }
+        March::new(solver.into_dae(), self.method, times)
+    }
+
+    /// Weighted root mean square of a change of state: 1 is the tolerance.
+    pub fn size(&self, change: &[f64], y: &[f64]) -> f64 {
+        let square: f64 = change
+            .iter()
+            .zip(y)
+            .map(|(d, y)| (d / (self.rtol * (1.0 + y.abs()))).powi(2))
+            .sum();
+        (square / y.len() as f64).sqrt()
+    }
+
+    /// Takes what is conserved out of a disturbance, and what is no disturbance of a state: algebraic unknowns.
+    pub fn admit(&self, v: &mut [f64]) {
+        for (v, differential) in v.iter_mut().zip(&self.system.layout.differential) {
+            *v *= f64::from(u8::from(*differential));
+        }
+        for w in &self.conserved {
+            let part: f64 = w.iter().zip(&*v).map(|(w, v)| w * v).sum();
+            v.iter_mut().zip(w).for_each(|(v, w)| *v -= part * w);
+        }
+    }
+
+    /// A state of another scene as a first guess here, in this one's scales and with the volumes of this one's start; none
+    /// when the unknowns differ.
+    pub fn take_over(&self, other: &Self, y: &[f64]) -> Option<Vec<f64>> {
+        let (new, old) = (&self.system.layout, &other.system.layout);
+        let same = new.len == old.len && new.differential == old.differential && new.area == old.area;
+        let mut taken: Vec<f64> = same.then(|| {
+            let scales = old.scales.iter().zip(&new.scales);
+            y.iter().zip(scales).map(|(y, (old, new))| y * old / new).collect()
+        })?;
+        for w in &self.conserved {
+            let lost: f64 = w
+                .iter()
+                .zip(self.guess.iter().zip(&taken))
+                .map(|(w, (g, t))| w * (g - t))
+                .sum();
+            taken.iter_mut().zip(w).for_each(|(t, w)| *t += lost * w);
+        }
+        Some(taken)
+    }
+
+    /// Dimension of the states that a disturbance can reach.
+    pub fn dimension(&self) -> usize {
+        self.system.layout.differential.iter().filter(|d| **d).count() - self.conserved.len()
+    }
+
+    /// Says why there is no isolated cycle, when a beam may drift.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a beam that nothing holds along or across.
+    pub fn held(&self, name: &str) -> Result<()> {
+        let [root, tip] = &self.system.model.ends;
+        let driven = |m: &Translation| matches!(m, Translation::Displacement(_));
+        for (what, held) in [
+            ("along", driven(&root.axial) || driven(&tip.axial)),
+            ("across", driven(&root.transverse) || driven(&tip.transverse)),
+        ] {
+            if !held {
+                return Err(Error::Usage(format!(
+                    "{name}: nothing holds the beam {what}, so that every displaced cycle is a cycle too; hold one end"
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Everything that a case describes; with inertia unless that is left out by name.
+pub fn whole(case: &Case) -> Model {
+    let off = matches!(&case.effects, Effects::Chosen(chosen) if chosen.solid_inertia == Choice::Off);
+    Model::whole(case, !off)
+}
+
+/// What happened, as the house says it.
+pub fn fault(impasse: Impasse) -> Error {
+    Error::Solver(Box::new(SolverFault {
+        time_s: impasse.time,
+        what: impasse.what,
+        unknown: None,
+        cause: Some("the motion could not be followed over a period".into()),
+        hint: Some(
+            "a smaller amplitude, a tighter /solver/rtol, or damping may help; `slcbeam run` shows the motion".into(),
+        ),
+    }))
+}
+
+/// The start of the case, as if its ends were at rest where they are.
+fn guess(system: &System, case: &Case) -> Vec<f64> {
+    let mut dae = BeamDae::new(system.clone());
+    dae.look_within(1.0);
+    let (system, now) = dae.instant(0.0);
+    let mut y = start::state(system, case, now);
+    let l = &system.layout;
+    let last = (system.mesh.nodes - 1) as f64;
+    for (frame, free, u, v, waves) in [
+        (now.frame_1(), &l.free_u1, l.u1, l.v1, l.waves[0]),
+        (now.frame_3(), &l.free_u3, l.u3, l.v3, l.waves[1]),
+    ] {
+        for (k, node) in free.clone().enumerate() {
+            let frame = frame.map_or(Default::default(), |f| f.at(node as f64 / last));
+            y[u + k] += frame.value / l.scales[u + k];
+            if waves {
+                y[v + k] = 0.0;
+            }
+        }
+    }
+    y
+}
+
+/// The volume of every closed network whose areas are unknowns, as a weight of every unknown.
+fn conserved(system: &System) -> Vec<Vec<f64>> {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return vec![];
+    };
+    let l = &system.layout;
+    let closed = (0..wet.network.components).filter(|&c| wet.network.is_closed(c));
+    closed
+        .filter_map(|component| {
+            let mut w = vec![0.0; l.len];
+            let mut count = 0;
+            for (slot, &bladder) in fluid.flowing.iter().enumerate() {
+                if wet.network.component_of_bladder[bladder] == component {
+                    let first = l.area + slot * fluid.cells_per_bladder;
+                    w[first..first + fluid.cells_per_bladder].fill(1.0);
+                    count += fluid.cells_per_bladder;
+                }
+            }
+            let size = (count as f64).sqrt();
+            w.iter_mut().for_each(|w| *w /= size);
+            (count > 0).then_some(w)
+        })
+        .collect()
+}

@@ -1,0 +1,211 @@
+//! The steady cycle by shooting: Newton's iteration on the period map.
+
+use serde::Serialize;
+
+use super::scene::Scene;
+use crate::dae::BeamDae;
+use crate::onestep::March;
+use crate::onestep::march::{Impasse, MarchWork};
+use crate::run::krylov;
+use crate::sundials::{StartOptions, consistent_start};
+
+/// Correction over the tolerance at which a cycle is found.
+const FOUND: f64 = 0.05;
+/// The same at which the steps are chosen anew.
+const NEAR: f64 = 10.0;
+/// Residual of the linear equations, relative.
+const LINEAR: f64 = 1e-3;
+/// Disturbances carried at most in one Newton step.
+const MOST_DISTURBANCES: usize = 300;
+/// Newton steps allowed.
+const ITERATIONS: usize = 30;
+/// Shortest part of a Newton step.
+const SHORTEST: f64 = 1.0 / 64.0;
+/// Periods gone before a second try.
+const PATIENCE: usize = 12;
+
+/// A state that comes back after a period.
+pub struct Cycle {
+    /// All unknowns at the beginning of the period, scaled, consistent.
+    pub y: Vec<f64>,
+    /// Their rates [1/s].
+    pub yp: Vec<f64>,
+    /// The period map around it, its steps gone.
+    pub march: March<BeamDae>,
+    /// How it was found.
+    pub search: Search,
+}
+
+/// How a cycle was found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Search {
+    /// Periods gone: one a Newton step, more where a step was shortened or a start was sought by patience.
+    pub periods: u64,
+    /// Newton steps.
+    pub newton_steps: u64,
+    /// Last Newton correction over the tolerance.
+    pub correction: f64,
+    /// Return after a period less departure, over the tolerance.
+    pub residual: f64,
+    /// Steps of the period map.
+    pub steps_per_period: usize,
+    /// Work of all.
+    pub work: Total,
+}
+
+/// Work of several marches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Total {
+    /// Steps.
+    pub steps: u64,
+    /// Residuals.
+    pub residual_evaluations: u64,
+    /// Jacobians.
+    pub jacobian_evaluations: u64,
+    /// Factorisations.
+    pub factorizations: u64,
+    /// Linear solves.
+    pub linear_solves: u64,
+    /// Disturbances carried over a period.
+    pub disturbances: u64,
+}
+
+impl Total {
+    /// Adds the work of a march.
+    pub fn add(&mut self, work: MarchWork) {
+        self.steps += work.steps;
+        self.residual_evaluations += work.residual_evaluations;
+        self.jacobian_evaluations += work.jacobian_evaluations;
+        self.factorizations += work.factorizations;
+        self.linear_solves += work.linear_solves;
+        self.disturbances += work.disturbances;
+    }
+}
+
+/// `[E37]` Finds a cycle from a state near one, `None`: from the start of the case.
+///
+/// ```text
+/// P(y) = y     (1 - M) δ = P(y) - y,   M = ∂P/∂y     w · δ = 0 for every conserved w · y
+/// ```
+///
+/// P the period map with steps held, M its exact derivative, applied to vectors; δ by GMRES within the states of the same
+/// conserved volumes, where `1 - M` is regular. The steps are chosen anew once the cycle is near.
+///
+/// # Errors
+/// Where and why no cycle was found.
+pub fn shoot(scene: &Scene, from: Option<&[f64]>) -> Result<Cycle, Impasse> {
+    let mut search = Search::default();
+    let begin = from.unwrap_or(&scene.guess);
+    match attempt(scene, begin.to_vec(), &mut search) {
+        Ok(cycle) => Ok(cycle),
+        Err(_) => {
+            let later = go_on(scene, scene.guess.clone(), PATIENCE, &mut search)?;
+            attempt(scene, later, &mut search)
+        }
+    }
+}
+
+/// The state after some periods.
+fn go_on(scene: &Scene, mut y: Vec<f64>, periods: usize, search: &mut Search) -> Result<Vec<f64>, Impasse> {
+    let mut dae = scene.dae();
+    for _ in 0..periods {
+        let mut march = scene.map(dae, &y)?;
+        let mut yp = vec![0.0; y.len()];
+        let gone = march.go(&mut y, &mut yp);
+        search.periods += 1;
+        search.work.add(march.work());
+        gone?;
+        dae = march.into_dae();
+    }
+    Ok(y)
+}
+
+fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Result<Cycle, Impasse> {
+    let mut march = scene.map(scene.dae(), &y)?;
+    let mut fresh = false;
+    let mut back = depart(scene, &mut march, &y, search)?;
+    for _ in 0..ITERATIONS {
+        let size = scene.size(&back, &y);
+        let most = scene.dimension().min(MOST_DISTURBANCES);
+        let (step, _) = krylov::solve(
+            |v| {
+                march.carry(v);
+                scene.admit(v);
+            },
+            &back,
+            LINEAR,
+            most,
+        );
+        search.newton_steps += 1;
+        let correction = scene.size(&step, &y);
+        if correction <= FOUND && fresh {
+            (search.correction, search.residual) = (correction, size);
+            search.steps_per_period = march.times().len() - 1;
+            search.work.add(march.work());
+            return finish(scene, march, y, search);
+        }
+        if !fresh && correction <= NEAR {
+            move_by(&mut y, &step, 1.0);
+            search.work.add(march.work());
+            march = scene.map(march.into_dae(), &y)?;
+            fresh = true;
+            back = depart(scene, &mut march, &y, search)?;
+            continue;
+        }
+        let mut part = 1.0;
+        loop {
+            let mut trial = y.clone();
+            move_by(&mut trial, &step, part);
+            match depart(scene, &mut march, &trial, search) {
+                Ok(again) if scene.size(&again, &trial) < size * (1.0 - 0.25 * part) || correction <= 1.0 => {
+                    (y, back) = (trial, again);
+                    break;
+                }
+                Ok(_) | Err(_) if part > SHORTEST => part *= 0.5,
+                Ok(_) => {
+                    return Err(lost(format!(
+                        "Newton's steps no longer come nearer to one, at {size:.1e} of the tolerance"
+                    )));
+                }
+                Err(impasse) => return Err(impasse),
+            }
+        }
+    }
+    Err(lost(format!("none was reached in {ITERATIONS} Newton steps")))
+}
+
+fn lost(how: String) -> Impasse {
+    Impasse {
+        time: 0.0,
+        what: format!("no cycle was found: {how}"),
+    }
+}
+
+fn move_by(y: &mut [f64], step: &[f64], part: f64) {
+    y.iter_mut().zip(step).for_each(|(y, step)| *y += part * step);
+}
+
+/// Goes one period; what the return differs from the departure by.
+fn depart(scene: &Scene, march: &mut March<BeamDae>, y: &[f64], search: &mut Search) -> Result<Vec<f64>, Impasse> {
+    let (mut end, mut yp) = (y.to_vec(), vec![0.0; y.len()]);
+    search.periods += 1;
+    march.go(&mut end, &mut yp)?;
+    let mut back: Vec<f64> = end.iter().zip(y).map(|(end, y)| end - y).collect();
+    scene.admit(&mut back);
+    Ok(back)
+}
+
+fn finish(scene: &Scene, march: March<BeamDae>, mut y: Vec<f64>, search: &Search) -> Result<Cycle, Impasse> {
+    let mut yp = vec![0.0; y.len()];
+    let mut dae = scene.dae();
+    consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default()).map_err(|failure| Impasse {
+        time: 0.0,
+        what: failure.to_string(),
+    })?;
+    Ok(Cycle {
+        y,
+        yp,
+        march,
+        search: search.clone(),
+    })
+}

@@ -1,0 +1,92 @@
+//! The cycle along one parameter, each found from the one before.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use crate::case::schema::Case;
+use crate::error::Result;
+use crate::run::floquet::{self, Floquet};
+use crate::run::periodic::{Scene, Search, record, shoot};
+use crate::run::record::{Control, Unrecorded};
+use crate::run::summary::{Quantity, Status};
+
+/// Multipliers looked at.
+const COUNT: usize = 4;
+
+/// The cycle of one value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Member {
+    /// Value of the parameter.
+    pub value: f64,
+    /// Unknowns.
+    pub unknowns: usize,
+    /// How the cycle was found.
+    pub search: Search,
+    /// Its stability.
+    pub floquet: Floquet,
+    /// Quantities over the period.
+    pub quantities: std::collections::BTreeMap<String, Quantity>,
+    /// Wall time of search and stability [s].
+    pub wall_s: f64,
+}
+
+/// All values.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Along {
+    /// Name of the case.
+    pub case: String,
+    /// JSON pointer of the parameter.
+    pub pointer: String,
+    /// Whether the values are spread evenly in their logarithms.
+    pub logarithmic: bool,
+    /// Cycles.
+    pub members: Vec<Member>,
+    /// Values for which none was found, and why.
+    pub missing: Vec<(f64, String)>,
+}
+
+/// Finds the cycle of every case; `tell` hears how many of them are done.
+///
+/// # Errors
+/// A case without a period, a beam that nothing holds.
+pub fn along(pointer: &str, logarithmic: bool, cases: &[(f64, Case)], tell: &dyn Fn(usize)) -> Result<Along> {
+    let mut found = Along {
+        case: cases.first().map_or(String::new(), |(_, case)| case.name.clone()),
+        pointer: pointer.into(),
+        logarithmic,
+        members: vec![],
+        missing: vec![],
+    };
+    let mut before: Option<(Scene, Vec<f64>)> = None;
+    for (k, (value, case)) in cases.iter().enumerate() {
+        let begin = Instant::now();
+        let scene = Scene::new(case, None)?;
+        scene.held(&case.name)?;
+        let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
+        match shoot(&scene, from.as_deref()) {
+            Ok(mut cycle) => {
+                let floquet = floquet::multipliers(&scene, &mut cycle, COUNT);
+                let wall_s = begin.elapsed().as_secs_f64();
+                let run = record::record(case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?;
+                if run.summary.status == Status::Finished {
+                    found.members.push(Member {
+                        value: *value,
+                        unknowns: scene.system.layout.len,
+                        search: cycle.search,
+                        floquet,
+                        quantities: run.summary.quantities,
+                        wall_s,
+                    });
+                } else {
+                    let why = run.summary.reason.unwrap_or_default();
+                    found.missing.push((*value, why));
+                }
+                before = Some((scene, cycle.y));
+            }
+            Err(impasse) => found.missing.push((*value, impasse.what)),
+        }
+        tell(k + 1);
+    }
+    Ok(found)
+}

@@ -1,0 +1,132 @@
+//! Mathieu's tongue from multipliers of the period map: its edges, and growth with damping.
+
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use serde_json::json;
+
+use super::figure::Figure;
+use super::row::Row;
+use super::scene::unit_beam;
+use super::solve::on_three_meshes;
+use crate::case;
+use crate::error::Result;
+use crate::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
+use crate::run::floquet::{self, Multiplier, shape::Part};
+use crate::run::periodic::scene::fault;
+use crate::run::periodic::{Scene, shoot};
+
+const BETA: f64 = 1.875104068712;
+/// Multipliers looked at: without damping several modes stand beside the first on the unit circle.
+const COUNT: usize = 16;
+/// Modulation of the edges.
+const NARROW: f64 = 0.1;
+/// Modulation and damping ratio of the growth.
+const WIDE: (f64, f64) = (0.2, 0.01);
+
+/// All rows.
+pub fn rows() -> Vec<Row> {
+    let source = "Mathieu: q'' + 2 z w1 q' + [w1^2 - 1.57087818999 a(t)/L] q = 0; edges a1(q), b1(q) = 1 -/+ q - q^2/8 +/- q^3/64, \
+                  a = (2 w1/W)^2, q = a eps/2 (Abramowitz & Stegun 20.2.25); growth from its monodromy matrix";
+    vec![
+        Row::new(
+            "floquet-tongue-edges",
+            [
+                source,
+                "edges of the principal tongue from multipliers, eps = 0.1; to first order they lie at 1 -/+ eps/4",
+                "second order: w1 and with it the edges are off by (beta h)^2/3; the limit keeps what the second mode adds, below (eps w1/w2)^2, and the stretch of the axis, eps/4 (W/w_axial)^2 = 5e-6",
+            ],
+            || {
+                let [lower, upper] = on_three_meshes(10, |cells| Ok([edge(cells, -1.0)?, edge(cells, 1.0)?]))?;
+                let bound = (BETA / 40.0).powi(2) / 3.0;
+                Ok(vec![
+                    Figure::relative("lower edge W/(2 w1)", lower[2], exact_edge(-1.0), bound).on_meshes(lower, 3e-4),
+                    Figure::relative("upper edge W/(2 w1)", upper[2], exact_edge(1.0), bound).on_meshes(upper, 3e-4),
+                ])
+            },
+        ),
+        Row::new(
+            "floquet-damped-growth",
+            [
+                source,
+                "growth in the middle of the tongue with damping, eps = 0.2, z = 0.01: that of the undamped beam of w1^2 (1 - z^2), less z w1",
+                "second order: the growth follows w1; a single mode leaves out the second, (eps w1/w2)^2 = 1e-3, and its stiffness moves W = 2 w1 off the middle",
+            ],
+            || {
+                let (epsilon, zeta) = WIDE;
+                let w = BETA * BETA;
+                let exact = mathieu_growth(w * w * (1.0 - zeta * zeta), epsilon * w * w, 2.0 * w) - zeta * w;
+                let [growth] = on_three_meshes(10, |cells| Ok([first(cells, 1.0, WIDE)?[0].growth_per_s]))?;
+                Ok(vec![Figure::relative("growth L^2 sqrt(m/EI)", growth[2], exact, 3e-3)])
+            },
+        ),
+    ]
+}
+
+/// Multipliers of the first mode, largest first: two real ones, or one of a complex pair. Shaken at `ratio` of `2 ω1`.
+fn first(cells: usize, ratio: f64, (epsilon, zeta): (f64, f64)) -> Result<Vec<Multiplier>> {
+    let w = BETA * BETA;
+    let omega = 2.0 * w * ratio;
+    let amplitude = epsilon * w * w / MATHIEU_COUPLING / (omega * omega);
+    let mut beam = unit_beam(1.0);
+    beam["damping"] = json!({"bending_time_s": 2.0 * zeta / w});
+    let text = json!({
+        "name": "tongue", "beam": beam,
+        "ends": {
+            "root": {"clamped": {"u3_m": {"sine": {"amplitude": amplitude, "frequency_hz": omega / TAU}}}}, "tip": "free"
+        },
+        "effects": {"rotary_inertia": "off"},
+        "mesh": {"segments": cells, "cells_per_segment": 1},
+        "time": {"end_s": 1.0},
+        "solver": {"rtol": 1e-7}
+    });
+    let loaded = case::parse(&text.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    let scene = Scene::new(&loaded.case, None)?;
+    let mut cycle = shoot(&scene, None).map_err(fault)?;
+    let mut found = floquet::multipliers(&scene, &mut cycle, COUNT).multipliers;
+    found.retain(|m| m.part == Part::Bending(1));
+    Ok(found)
+}
+
+/// Half the trace of the first mode's map, plus one: 0 on the edges, negative in the tongue.
+fn above(cells: usize, ratio: f64) -> Result<f64> {
+    let found = first(cells, ratio, (NARROW, 0.0))?;
+    Ok(1.0
+        + match found.as_slice() {
+            [a, b, ..] if a.im == 0.0 => 0.5 * (a.re + b.re),
+            [a, ..] => a.re,
+            [] => f64::NAN,
+        })
+}
+
+/// Edge of the tongue on a mesh, below (`side = -1`) or above `2 ω1`, by the secant method.
+fn edge(cells: usize, side: f64) -> Result<f64> {
+    let guess = 1.0 + 0.25 * side * NARROW;
+    let (mut a, mut b) = (guess - 2e-3 * side, guess + 2e-3 * side);
+    let mut at_a = above(cells, a)?;
+    for _ in 0..8 {
+        let at_b = above(cells, b)?;
+        let next = b - at_b * (b - a) / (at_b - at_a);
+        (a, at_a, b) = (b, at_b, next);
+        if (b - a).abs() < 1e-8 {
+            break;
+        }
+    }
+    Ok(b)
+}
+
+/// The same of Mathieu's equation: `1/x² = 1 ∓ q - q²/8 ± q³/64`, `q = ε/(2x²)`, by bisection.
+fn exact_edge(side: f64) -> f64 {
+    let gap = |x: f64| {
+        let a = 1.0 / (x * x);
+        let q = 0.5 * a * NARROW;
+        // the lower edge of the frequency is the upper one of a
+        a - (1.0 - side * q - q * q / 8.0 + side * q * q * q / 64.0)
+    };
+    let (mut lo, mut hi) = (0.8, 1.2);
+    for _ in 0..60 {
+        let middle = 0.5 * (lo + hi);
+        if gap(middle) > 0.0 { lo = middle } else { hi = middle }
+    }
+    0.5 * (lo + hi)
+}

@@ -1,0 +1,164 @@
+//! `slcbeam floquet` and `slcbeam periodic` from outside: exit codes, streams, files. Meshes are coarse: the tests are about the
+//! command line.
+
+use std::path::Path;
+
+use assert_cmd::Command;
+use serde_json::Value;
+use tempfile::TempDir;
+
+const COARSE: [&str; 2] = ["--set", "/mesh/cells_per_segment=1"];
+
+struct Said {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+fn say(arguments: &[&str], folder: &Path) -> Said {
+    let mut command = Command::cargo_bin("slcbeam").unwrap();
+    command.args(arguments).args(["--quiet", "--out"]).arg(folder);
+    let output = command.output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    Said {
+        code: output.status.code().unwrap(),
+        out: text(output.stdout),
+        err: text(output.stderr),
+    }
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+#[test]
+fn floquet_tells_whether_a_cycle_is_stable() {
+    let dir = TempDir::new().unwrap();
+    let said = say(
+        &[&["floquet", "cases/valves-open.json"], &COARSE[..]].concat(),
+        dir.path(),
+    );
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(
+        said.out.contains("parametric resonance of mode 1 (subharmonic"),
+        "{}",
+        said.out
+    );
+    let found = json(&dir.path().join("floquet.json"));
+    assert_eq!(found["floquet"]["verdict"]["stability"], "unstable");
+    let table = std::fs::read_to_string(dir.path().join("floquet.csv")).unwrap();
+    assert!(table.starts_with("real part [1],imaginary part [1]"));
+    assert_eq!(
+        table.lines().count() - 1,
+        found["floquet"]["multipliers"].as_array().unwrap().len()
+    );
+    assert!(
+        std::fs::read_to_string(dir.path().join("floquet.svg"))
+            .unwrap()
+            .contains("Floquet multipliers")
+    );
+}
+
+#[test]
+fn a_map_has_a_row_a_point_and_a_panel_a_permeability() {
+    let dir = TempDir::new().unwrap();
+    let map = [
+        "--map",
+        "frequency,amplitude",
+        "--range",
+        "16:20,0.01:0.03",
+        "--points",
+        "2,2",
+    ];
+    let said = say(
+        &[&["floquet", "cases/valves-open.json"], &COARSE[..], &map].concat(),
+        dir.path(),
+    );
+    assert_eq!(said.code, 0, "{}", said.err);
+    let table = std::fs::read_to_string(dir.path().join("map.csv")).unwrap();
+    assert_eq!(table.lines().count(), 1 + 2 * 2 * 2);
+    let picture = std::fs::read_to_string(dir.path().join("map.svg")).unwrap();
+    assert!(
+        picture.contains("permeabilities × 1\n") && picture.contains("permeabilities × 0.01"),
+        "panels"
+    );
+    assert_eq!(
+        json(&dir.path().join("map.json"))["sheets"].as_array().unwrap().len(),
+        2
+    );
+}
+
+#[test]
+fn periodic_leaves_a_result_folder_and_a_sweep_a_table() {
+    let dir = TempDir::new().unwrap();
+    let said = say(
+        &[&["periodic", "cases/wiring-1.json"], &COARSE[..]].concat(),
+        dir.path(),
+    );
+    assert_eq!(said.code, 0, "{}", said.err);
+    for name in [
+        "summary.json",
+        "history.csv",
+        "fields.npz",
+        "cycle.json",
+        "deflection.svg",
+    ] {
+        assert!(dir.path().join(name).is_file(), "{name}");
+    }
+    assert_eq!(json(&dir.path().join("summary.json"))["status"], "finished");
+    let sweep = ["--sweep", "/network/permeability_factor=0.5:1:2"];
+    let beside = dir.path().join("sweep");
+    let said = say(
+        &[&["periodic", "cases/wiring-1.json"], &COARSE[..], &sweep].concat(),
+        &beside,
+    );
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(
+        std::fs::read_to_string(beside.join("sweep.csv"))
+            .unwrap()
+            .lines()
+            .count(),
+        3
+    );
+}
+
+#[test]
+fn what_makes_no_sense_is_a_usage_error() {
+    let dir = TempDir::new().unwrap();
+    let valves = "cases/valves-open.json";
+    for (arguments, words) in [
+        (vec!["floquet", "cases/bend-dry.json"], "period"),
+        (vec!["periodic", "cases/bend-dry.json"], "period"),
+        (vec!["floquet", valves, "--map", "amplitude"], "frequency,amplitude"),
+        (
+            vec!["floquet", valves, "--map", "frequency,amplitude", "--points", "0,3"],
+            "--points",
+        ),
+        (
+            vec!["floquet", valves, "--map", "frequency,amplitude", "--range", "3:1,0:1"],
+            "--range",
+        ),
+        (vec!["floquet", valves, "--count", "0"], "--count"),
+        (vec!["floquet", valves, "--period", "1"], "a period of its own"),
+        (
+            vec![
+                "floquet",
+                "cases/harvester-parallel-uniform.json",
+                "--map",
+                "frequency,amplitude",
+            ],
+            "shaken",
+        ),
+        (
+            vec!["periodic", valves, "--sweep", "/network/permeability_factor=0:1:5:log"],
+            "--sweep",
+        ),
+        (vec!["periodic", valves, "--sweep", "nothing"], "--sweep"),
+    ] {
+        let said = say(&arguments, dir.path());
+        assert_eq!(said.code, 2, "{arguments:?}: {}", said.err);
+        assert!(said.err.contains(words), "{arguments:?}: {}", said.err);
+    }
+    let said = say(&["periodic", valves, "--sweep", "/nowhere=1:2:2"], dir.path());
+    assert_eq!(said.code, 3, "{}", said.err);
+}

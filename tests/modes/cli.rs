@@ -1,0 +1,111 @@
+//! `slcbeam modes` from outside: exit codes, streams, files.
+
+use std::fs;
+
+use assert_cmd::Command;
+use serde_json::Value;
+use tempfile::TempDir;
+
+const SMALL: &str = "cases/two-bladders.json";
+
+/// Exit code, standard output and standard error of `slcbeam modes`.
+fn modes(arguments: &[&str]) -> (i32, String, String) {
+    let mut command = Command::cargo_bin("slcbeam").unwrap();
+    let output = command.arg("modes").args(arguments).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn a_folder_is_filled_and_a_table_printed() {
+    let dir = TempDir::new().unwrap();
+    let out = dir.path().join("deep/modes");
+    let (code, said, error) = modes(&[SMALL, "--count", "5", "--quiet", "--out", out.to_str().unwrap()]);
+    assert_eq!((code, error.as_str()), (0, ""), "quiet means silent");
+    for word in [
+        "oscillation",
+        "Hz",
+        "undrained",
+        "none of the",
+        "coupling is passive",
+        out.to_str().unwrap(),
+    ] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+    let csv = fs::read_to_string(out.join("modes.csv")).unwrap();
+    assert!(csv.starts_with("mode [1],kind,frequency [Hz],damping ratio [1],growth rate [1/s],"));
+    let widths: Vec<usize> = csv.lines().map(|l| l.split(',').count()).collect();
+    assert!(widths.iter().all(|w| *w == 13), "{csv}");
+    let json: Value = serde_json::from_str(&fs::read_to_string(out.join("modes.json")).unwrap()).unwrap();
+    let all = json["modes"].as_array().unwrap();
+    assert_eq!(all.len() + 1, csv.lines().count());
+    let moving = all.iter().filter(|m| m["kind"] != "volume").count();
+    assert_eq!((moving, &json["stable"]), (5, &Value::Bool(true)));
+    assert!(json["coupling"]["least_eigenvalue"].as_f64().unwrap() > 0.0);
+    let svg = fs::read_to_string(out.join("modes.svg")).unwrap();
+    assert!(svg.starts_with("<svg") && svg.contains("two-bladders") && svg.contains("upper row"));
+    let mut npz = zip::ZipArchive::new(fs::File::open(out.join("modes.npz")).unwrap()).unwrap();
+    let names: Vec<String> = (0..npz.len())
+        .map(|k| npz.by_index(k).unwrap().name().unwrap().into_owned())
+        .collect();
+    for name in [
+        "theta_m",
+        "u1_amplitude_m",
+        "u1_phase_rad",
+        "pressure_amplitude_pa",
+        "growth_per_s",
+    ] {
+        assert!(names.contains(&format!("{name}.npy")), "{names:?}");
+    }
+}
+
+#[test]
+fn modes_near_a_frequency_as_json() {
+    let dir = TempDir::new().unwrap();
+    let out = dir.path().join("m");
+    let (code, said, _) = modes(&[
+        SMALL,
+        "--count",
+        "1",
+        "--near",
+        "70",
+        "--json",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    let json: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(code, 0);
+    let frequency = json["modes"][0]["frequency_hz"].as_f64().unwrap();
+    assert!((60.0..90.0).contains(&frequency), "{said}");
+}
+
+#[test]
+fn a_dry_beam_has_no_pressures() {
+    let dir = TempDir::new().unwrap();
+    let out = dir.path().join("m");
+    let (code, said, _) = modes(&["cases/dry-cantilever.json", "--quiet", "--out", out.to_str().unwrap()]);
+    assert!(
+        code == 0 && !said.contains("undrained") && !said.contains("coupling"),
+        "{said}"
+    );
+    assert!(!fs::read_to_string(out.join("modes.svg")).unwrap().contains("upper row"));
+}
+
+#[test]
+fn bad_input_is_told() {
+    for (arguments, code, words) in [
+        (&["--count", "0"][..], 2, "--count 0"),
+        (&["--count", "1001"], 2, "from 1 to 1000"),
+        (&["--near", "-1"], 2, "--near -1: a frequency [Hz] is 0 or more"),
+        (&["--near", "nan"], 2, "--near NaN"),
+        (&["--at", "-0.5"], 2, "--at -0.5: a time [s] is 0 or more"),
+        (&["--set", "/beam/length_m=-1"], 3, "length"),
+    ] {
+        let said = modes(&[&[SMALL, "--out", "/nowhere/to/write"], arguments].concat());
+        assert_eq!(said.0, code, "{arguments:?}: {}", said.2);
+        assert!(said.2.contains(words) && said.1.is_empty(), "{arguments:?}: {}", said.2);
+    }
+    // what cannot be written is told as such
+    let said = modes(&[SMALL, "--count", "1", "--out", "/dev/null/modes"]);
+    assert_eq!(said.0, 5, "{}", said.2);
+}

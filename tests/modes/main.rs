@@ -1,0 +1,7 @@
+//! Modes of small motions: eigenvalues of pencils, what they say of beams and bladders, and the command that prints them.
+
+mod cli;
+mod common;
+mod physics;
+mod sizes;
+mod spectral;

@@ -1,0 +1,131 @@
+//! Eigenvalues of sparse pencils.
+//!
+//! Sources: second differences with fixed ends, `4 sin²(kπ/2(n + 1))`; the pencils of shipped cases. Goal: dense and sparse
+//! ways agree, every copy of a repeated eigenvalue is found, and the error of each is within the bound that comes with it.
+
+use std::f64::consts::PI;
+
+use nalgebra::Complex;
+use slcbeam::dae::Pattern;
+use slcbeam::run::modes::linearise;
+use slcbeam::spectral::{self, Failure, Found, Options, Pencil};
+
+use crate::common::{chains, checked};
+
+/// `copies` times the second differences of n points, side by side, and their exact eigenvalues, ascending.
+fn differences(n: usize, copies: usize) -> (Pattern, Vec<f64>, Vec<f64>) {
+    let near = |j: usize| {
+        let first = j / n * n;
+        (j.saturating_sub(1).max(first)..(j + 2).min(first + n)).collect::<Vec<_>>()
+    };
+    let pattern = Pattern::from_columns(&(0..n * copies).map(near).collect::<Vec<_>>());
+    let mut values = vec![];
+    for j in 0..n * copies {
+        let rows = &pattern.rows[pattern.column(j)];
+        values.extend(rows.iter().map(|&i| if i as usize == j { 2.0 } else { -1.0 }));
+    }
+    let exact = |k: usize| 4.0 * (k as f64 * PI / (2.0 * (n + 1) as f64)).sin().powi(2);
+    let mut all: Vec<f64> = (1..=n).flat_map(|k| vec![exact(k); copies]).collect();
+    all.sort_by(f64::total_cmp);
+    (pattern, values, all)
+}
+
+#[test]
+fn errors_are_within_their_bounds() {
+    // 3 times over: a Krylov space from one vector holds one copy
+    let (pattern, k, exact) = differences(300, 3);
+    let found = spectral::lowest(&pattern, &k, &vec![1.0; 900], 20).unwrap();
+    assert!(!found.dense && found.restarts > 0);
+    let mut computed: Vec<f64> = found.pairs.iter().map(|p| p.s.re).collect();
+    computed.sort_by(f64::total_cmp);
+    for (pair, (s, exact)) in found.pairs.iter().zip(computed.iter().zip(&exact)) {
+        assert!((s - exact).abs() <= pair.error, "{s:e} {exact:e} {:e}", pair.error);
+        // the bound is no larger than round-off of a row over the smallest eigenvalue allows
+        assert!(pair.error < 1e-14 && pair.s.im.abs() <= pair.error);
+        assert!(pair.residual < 1e-14, "{:e}", pair.residual);
+    }
+}
+
+#[test]
+fn a_negative_eigenvalue_tells_an_unstable_tangent() {
+    let (pattern, mut k, exact) = differences(300, 1);
+    // between the second and the third eigenvalue: two directions are unstable
+    let by = 0.5 * (exact[1] + exact[2]);
+    for j in 0..300 {
+        let entry = pattern.column(j).find(|&e| pattern.rows[e] as usize == j).unwrap();
+        k[entry] -= by;
+    }
+    let found = spectral::lowest(&pattern, &k, &[1.0; 300], 6).unwrap();
+    let negative = found.pairs.iter().filter(|p| p.s.re < -p.error).count();
+    assert_eq!(negative, 2);
+    let least = found.pairs.iter().map(|p| p.s.re).fold(f64::INFINITY, f64::min);
+    assert!((least - (exact[0] - by)).abs() < 1e-14);
+}
+
+/// Largest distance of an eigenvalue of one to the nearest of the other.
+fn apart(a: &Found, b: &Found) -> f64 {
+    let nearest = |s: Complex<f64>| b.pairs.iter().map(|p| (p.s - s).norm()).fold(f64::INFINITY, f64::min);
+    a.pairs.iter().map(|p| nearest(p.s)).fold(0.0, f64::max)
+}
+
+#[test]
+fn dense_and_sparse_agree() {
+    // Two equal chains: volumes, and the decay rates that bending does not see, come twice.
+    let case = checked(&chains(10, 8.68e-4, 5e-6));
+    let about = linearise(&case, 0.0, None).unwrap();
+    let pencil = about.pencil();
+    for shift in [Complex::new(2.0, 0.0), Complex::new(0.0, 480.0)] {
+        let options = |dense_up_to| Options {
+            dense_up_to,
+            ..Options::default()
+        };
+        let dense = spectral::nearest(&pencil, shift, 24, &options(1000)).unwrap();
+        let sparse = spectral::nearest(&pencil, shift, 24, &options(0)).unwrap();
+        assert!(dense.dense && !sparse.dense);
+        assert_eq!((dense.pairs.len(), sparse.pairs.len()), (24, 24));
+        // what stands last may be one of two conjugates, or of two copies, at the same distance
+        for (a, b) in dense.pairs.iter().zip(&sparse.pairs) {
+            let (da, db) = ((a.s - shift).norm(), (b.s - shift).norm());
+            assert!((da - db).abs() <= 2.0 * (a.error + b.error) + 1e-12 * da, "{da} {db}");
+        }
+        let largest = dense.pairs.iter().map(|p| p.error).fold(0.0, f64::max);
+        let conjugate = |found: &Found| {
+            let mut all = found.clone();
+            all.pairs.iter_mut().for_each(|p| p.s.im = p.s.im.abs());
+            all
+        };
+        let (dense, sparse) = (conjugate(&dense), conjugate(&sparse));
+        assert!(apart(&dense, &sparse) <= 1e-9 + 2.0 * largest);
+        assert!(apart(&sparse, &dense) <= 1e-9 + 2.0 * largest);
+    }
+}
+
+#[test]
+fn all_finite_eigenvalues_and_no_other() {
+    let case = checked(&chains(2, 8.68e-4, 5e-6));
+    let about = linearise(&case, 0.0, None).unwrap();
+    let found = spectral::nearest(&about.pencil(), Complex::new(2.0, 0.0), 1000, &Options::default()).unwrap();
+    // u1, u3, v1, v3 of 8 free nodes and 4 areas; means are algebraic
+    assert_eq!((found.pairs.len(), found.finite), (36, 36));
+    assert!(found.pairs.iter().all(|p| p.residual < 1e-12));
+}
+
+#[test]
+fn a_singular_pencil_is_told() {
+    // Two columns that are the same in A and absent in B.
+    let pattern = Pattern::from_columns(&[vec![0, 1], vec![0, 1]]);
+    let pencil = Pencil {
+        pattern: &pattern,
+        a: &[1.0, 1.0, 1.0, 1.0],
+        b: &[0.0; 4],
+    };
+    let one = Complex::new(1.0, 0.0);
+    let failed = spectral::nearest(&pencil, one, 1, &Options::default());
+    assert!(matches!(failed, Err(Failure::Singular { .. })), "{failed:?}");
+    let pencil = Pencil {
+        a: &[f64::NAN, 1.0, 1.0, 1.0],
+        ..pencil
+    };
+    let failed = spectral::nearest(&pencil, one, 1, &Options::default());
+    assert!(matches!(failed, Err(Failure::NotFinite)), "{failed:?}");
+}

@@ -1,0 +1,182 @@
+//! Steady cycles found by shooting.
+
+use slcbeam::case::{self, Case};
+use slcbeam::run::dynamics;
+use slcbeam::run::floquet::{self, Stability};
+use slcbeam::run::periodic::{Scene, record, shoot};
+use slcbeam::run::record::Memory;
+use slcbeam::run::summary::Status;
+
+fn shipped(name: &str, sets: &[&str]) -> Case {
+    let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
+    case::load(format!("cases/{name}.json").as_ref(), &sets).unwrap().case
+}
+
+/// Source: a run into which the shaking grows over 40 of its 44 cycles. Nothing but the fluid damps the first mode, at 0.003 1/s:
+/// after a start at once the run would have to be an hour long. So smooth a start excites it by some 1/(ω t)³ = 3e-7 of the
+/// forces. Goal: the last cycle of the run is the cycle. Tolerance: the run's own error, its tolerance of 1e-5 gathered over 44
+/// cycles, of the largest value.
+#[test]
+fn the_cycle_is_the_tail_of_a_long_run() {
+    let sets = [
+        "/ends/root/clamped/u3_m/sine/ramp_cycles=40",
+        "/time/end_s=2.2",
+        "/time/output_interval_s=2.5e-4",
+        "/time/window_s=0.05",
+        "/solver/rtol=1e-6",
+        "/effects=\"full\"",
+    ];
+    let case = shipped("wiring-2", &sets);
+    let mut long = Memory::default();
+    assert_eq!(
+        dynamics::run(&case, &mut long).unwrap().summary.status,
+        Status::Finished
+    );
+
+    let scene = Scene::new(&case, None).unwrap();
+    let mut cycle = shoot(&scene, None).unwrap();
+    assert_eq!(
+        floquet::multipliers(&scene, &mut cycle, 4).verdict.stability,
+        Stability::Stable
+    );
+    let mut period = Memory::default();
+    assert_eq!(
+        record::record(&case, &scene, &cycle, &mut period)
+            .unwrap()
+            .summary
+            .status,
+        Status::Finished
+    );
+    for (name, tolerance) in [("tip_u3", 1e-5), ("max_pressure", 1e-4), ("tip_u1", 1e-3)] {
+        let (run, cycle) = (long.column(name).unwrap(), period.column(name).unwrap());
+        let tail = &run[run.len() - cycle.len()..];
+        let largest = cycle.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let gap = tail.iter().zip(&cycle).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        println!("{name}: {gap:e} of {largest:e}");
+        assert!(gap < tolerance * largest, "{name}: {gap:e} of {largest:e}");
+    }
+}
+
+/// A cycle comes back: the run over one period ends where it began.
+#[test]
+fn a_cycle_comes_back() {
+    let case = shipped("wiring-1", &["/mesh/cells_per_segment=2"]);
+    let scene = Scene::new(&case, None).unwrap();
+    let cycle = shoot(&scene, None).unwrap();
+    assert!(cycle.search.correction < 0.05);
+    let mut period = Memory::default();
+    record::record(&case, &scene, &cycle, &mut period).unwrap();
+    for name in ["tip_u3", "max_pressure", "axial_energy"] {
+        let column = period.column(name).unwrap();
+        let largest = column.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let gap = (column[column.len() - 1] - column[0]).abs();
+        // a period at the tolerance of the case
+        assert!(
+            gap < 100.0 * case.solver.rtol * largest,
+            "{name}: {gap:e} of {largest:e}"
+        );
+    }
+}
+
+/// Source: the paper's Fig. 4, within a Mathieu tongue. Goal: the cycle is found although no run would stay on it, and said to be
+/// unstable; with a smaller amplitude it is stable.
+#[test]
+fn an_unstable_cycle_is_recognised() {
+    let mesh = "/mesh/cells_per_segment=2";
+    for (amplitude, expected) in [("0.033", Stability::Unstable), ("0.015", Stability::Stable)] {
+        let case = shipped(
+            "valves-open",
+            &[mesh, &format!("/ends/root/clamped/u3_m/sine/amplitude={amplitude}")],
+        );
+        let scene = Scene::new(&case, None).unwrap();
+        let mut cycle = shoot(&scene, None).unwrap();
+        let found = floquet::multipliers(&scene, &mut cycle, 4);
+        assert_eq!(
+            found.verdict.stability, expected,
+            "{amplitude}: {}",
+            found.verdict.words
+        );
+        if expected == Stability::Unstable {
+            assert!(found.verdict.words.contains("subharmonic"), "{}", found.verdict.words);
+        }
+    }
+}
+
+/// What a sweep takes over from one value to the next is a state of the same volumes.
+#[test]
+fn a_warm_start_keeps_the_volume_of_the_start() {
+    let first = shipped("wiring-1", &["/mesh/cells_per_segment=1"]);
+    let second = shipped(
+        "wiring-1",
+        &[
+            "/mesh/cells_per_segment=1",
+            "/start={\"pressures\": [{\"bladders\": [1, 2], \"pressure_pa\": 400.0}]}",
+        ],
+    );
+    let (a, b) = (Scene::new(&first, None).unwrap(), Scene::new(&second, None).unwrap());
+    let cycle = shoot(&a, None).unwrap();
+    let taken = b.take_over(&a, &cycle.y).unwrap();
+    let warm = shoot(&b, Some(&taken)).unwrap();
+    let cold = shoot(&b, None).unwrap();
+    for w in &b.conserved {
+        let volume = |y: &[f64]| w.iter().zip(y).map(|(w, y)| w * y).sum::<f64>();
+        // Newton's steps keep a linear sum to round-off
+        assert!((volume(&warm.y) - volume(&b.guess)).abs() < 1e-9 * (1.0 + volume(&b.guess).abs()));
+    }
+    let gap: Vec<f64> = warm.y.iter().zip(&cold.y).map(|(a, b)| a - b).collect();
+    // both are found to a part of the tolerance, on grids of their own
+    assert!(b.size(&gap, &cold.y) < 10.0, "{}", b.size(&gap, &cold.y));
+}
+
+/// Prints what docs/stability-maps.md says of the work: 25 permeabilities, each cycle found from the one before, beside a run of
+/// 2 s from rest. Run with `cargo test --release --test periodic saving -- --ignored --nocapture`.
+#[test]
+#[ignore = "a minute of figures for the documentation"]
+fn saving_over_transients() {
+    println!("factor      cycle: steps, s      run of 2 s: steps, s      decay [1/s]   run to 1 % [s]");
+    let mut before: Option<(Scene, Vec<f64>)> = None;
+    let mut sums = [0.0; 5];
+    for k in 0..25 {
+        let factor = 0.01_f64.powf(1.0 - f64::from(k) / 24.0);
+        let case = shipped(
+            "valves-open",
+            &[
+                &format!("/network/permeability_factor={factor}"),
+                "/ends/root/clamped/u3_m/sine/amplitude=0.025",
+                "/time/end_s=2",
+            ],
+        );
+        let begin = std::time::Instant::now();
+        let scene = Scene::new(&case, None).unwrap();
+        let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
+        let mut cycle = shoot(&scene, from.as_deref()).unwrap();
+        let found = floquet::multipliers(&scene, &mut cycle, 4);
+        let cycle_wall = begin.elapsed().as_secs_f64();
+        let begin = std::time::Instant::now();
+        let run = dynamics::run(&case, &mut Memory::default()).unwrap().summary;
+        let run_wall = begin.elapsed().as_secs_f64();
+        let decay = -found.verdict.growth_per_s;
+        let (steps, run_steps) = (cycle.search.work.steps as f64, run.solver.steps as f64);
+        let settled = 100.0_f64.ln() / decay;
+        println!(
+            "{factor:<8.4} {steps:>10} {cycle_wall:>8.2} {run_steps:>16} {run_wall:>8.2} {decay:>16.4} {settled:>14.0}"
+        );
+        for (sum, x) in sums
+            .iter_mut()
+            .zip([steps, cycle_wall, run_steps, run_wall, run_wall * settled / 2.0])
+        {
+            *sum += x;
+        }
+        assert_eq!(
+            found.verdict.stability,
+            Stability::Stable,
+            "{factor}: {}",
+            found.verdict.words
+        );
+        before = Some((scene, cycle.y));
+    }
+    println!(
+        "all: cycles {} steps, {:.1} s; runs of 2 s {} steps, {:.1} s; runs to 1 % {:.0} s",
+        sums[0], sums[1], sums[2], sums[3], sums[4]
+    );
+}
