@@ -265,7 +265,7 @@ impl<'a> Forward<'a> {
         self.row.clear();
         self.row.push(t);
         let mut slopes = vec![0.0; self.instant];
-        for k in 0..self.parameters.len() {
+        for (k, (parameter, integrals)) in self.parameters.iter().zip(&integrals).enumerate() {
             dae.read_slope(
                 k,
                 t,
@@ -280,11 +280,10 @@ impl<'a> Forward<'a> {
             let flows = ledger::FLOWS
                 .iter()
                 .filter(|f| f.energy_sign() != 0.0)
-                .map(|f| integrals[k][*f as usize]);
-            let value = self.parameters[k].value;
+                .map(|f| integrals[*f as usize]);
             let first = self.row.len();
             self.row
-                .extend(slopes.iter().copied().chain(flows).map(|slope| slope / value));
+                .extend(slopes.iter().copied().chain(flows).map(|slope| slope / parameter.value));
             let (columns, row) = (&self.columns, &self.row[first..]);
             self.figures[k].take(t, |name| {
                 let i = columns.iter().position(|c| c.1 == name)?;
