@@ -516,3 +516,48 @@ fn an_accuracy_is_asked_for() {
     ]);
     assert_eq!(said.code, 2, "{}", said.err);
 }
+
+/// Derivatives: a file with a column for each of the history's and each number, an entry of the summary, a line of the box; not
+/// together with what they cannot be had with.
+#[test]
+fn a_run_gives_derivatives() {
+    let dir = TempDir::new().unwrap();
+    let folder = dir.path().join("result");
+    let pointer = "/fluid/viscosity_pa_s";
+    let asked = ["--sensitivity", pointer, "--sensitivity", "/beam/young_modulus_pa"];
+    let said = run(&folder, &asked);
+    assert_eq!((said.code, said.err.as_str()), (0, ""));
+    assert!(
+        said.out.contains("sensitivity") && said.out.contains(pointer),
+        "{}",
+        said.out
+    );
+    let text = fs::read_to_string(folder.join("sensitivities.csv")).unwrap();
+    let first = text.lines().next().unwrap();
+    assert!(
+        first.starts_with("t [s],d tip_u1/d /fluid/viscosity_pa_s [m per unit],"),
+        "{first}"
+    );
+    let history = fs::read_to_string(folder.join("history.csv")).unwrap();
+    let columns = |text: &str| text.lines().next().unwrap().split(',').count();
+    // each of the history's but for time and the residual, twice, and time
+    assert_eq!(columns(&text), 2 * (columns(&history) - 2) + 1);
+    assert_eq!(text.lines().count(), history.lines().count());
+    let summary = json(&folder.join("summary.json"));
+    let slope = &summary["sensitivities"][pointer]["quantities"]["max_pressure_pa"]["final"];
+    assert!(
+        slope.as_f64().is_some_and(|x| x > 0.0),
+        "more viscous fluid flows off later: {slope}"
+    );
+
+    // a run without them leaves no old ones behind
+    assert_eq!(run(&folder, &["--set", "/time/end_s=0.0002"]).code, 0);
+    assert!(!folder.join("sensitivities.csv").exists());
+    for more in [&["--resume"][..], &["--accuracy", "0.01"]] {
+        let said = run(&folder, &[&asked[..], more].concat());
+        assert_eq!(said.code, 2, "{}", said.err);
+    }
+    let said = run(&folder, &["--sensitivity", "/fluid/viscosty_pa_s"]);
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("nearest is /fluid/viscosity_pa_s"), "{}", said.err);
+}

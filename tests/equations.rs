@@ -16,7 +16,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 43] = [
+const INDEX: [(&str, &str, &str); 45] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -124,6 +124,8 @@ const INDEX: [(&str, &str, &str); 43] = [
         "multipliers_of_what_nothing_drives_are_those_of_its_modes",
     ),
     ("[E39]", "tests/floquet.rs", "growth_in_the_tongue_is_mathieus"),
+    ("[E40]", "tests/sensitivity.rs", "difference_formula_is_of_fourth_order"),
+    ("[E41]", "tests/sensitivity.rs", "tangent_is_the_jacobian_applied"),
 ];
 
 #[test]

@@ -69,6 +69,7 @@ fn header() -> Header {
             field("u3_m", "m", "theta_node_m", 41),
             field("pressure_pa", "Pa", "x_f", 40),
         ],
+        sensitivities: vec![],
     }
 }
 
@@ -159,6 +160,7 @@ fn summary_of(status: Status) -> Summary {
         characteristic: [("f_u".to_string(), f64::INFINITY), ("t_s_s".to_string(), 0.0457)].into(),
         growth: None,
         accuracy: None,
+        sensitivities: Default::default(),
         warnings: Vec::new(),
     }
 }

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use super::arguments::RunArguments;
 use super::progress::Watcher;
 use super::{interrupt, summary_box, terminal};
+use crate::case::parameter::Parameter;
 use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
@@ -36,7 +37,7 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
     let outcome = match (accuracy, asked.resume) {
         (Some(accuracy), _) => reach(case, accuracy, &out, &hook)?,
         (None, true) => resume(case, &out, &hook)?,
-        (None, false) => record(case, &out, &hook)?,
+        (None, false) => record(case, &parameters(case, &asked.sensitivities)?, &out, &hook)?,
     };
     if asked.json {
         super::print(&summary::to_json(&outcome.summary))?;
@@ -96,9 +97,20 @@ fn own(hook: &SharedHook) -> Hook {
     Box::new(move |progress| hook.borrow_mut()(progress))
 }
 
-fn record(case: &Case, out: &Path, hook: &SharedHook) -> Result<Outcome> {
+/// The numbers by which derivatives are asked for, each once.
+fn parameters(case: &Case, pointers: &[String]) -> Result<Vec<Parameter>> {
+    let mut all: Vec<Parameter> = Vec::new();
+    for pointer in pointers {
+        if all.iter().all(|other| other.pointer != *pointer) {
+            all.push(Parameter::find(case, pointer)?);
+        }
+    }
+    Ok(all)
+}
+
+fn record(case: &Case, parameters: &[Parameter], out: &Path, hook: &SharedHook) -> Result<Outcome> {
     let mut recorder = FolderRecorder::new(ResultFolder::create(out)?, labels(case), own(hook));
-    let outcome = dynamics::run(case, &mut recorder)?;
+    let outcome = dynamics::run_with(case, parameters, &mut recorder)?;
     recorder.finish(&outcome.summary)?;
     Ok(outcome)
 }
@@ -113,7 +125,7 @@ fn reach(case: &Case, accuracy: f64, out: &Path, hook: &SharedHook) -> Result<Ou
     let ask = |progress: &Progress| hook.borrow_mut()(progress);
     let mut placed = false;
     let mut candidate = |case: &Case| -> Result<Outcome> {
-        let outcome = record(case, &beside, hook)?;
+        let outcome = record(case, &[], &beside, hook)?;
         let begun = beside.join(HISTORY).exists() || !result.holds_older();
         if outcome.summary.status == Status::Finished || !placed && begun {
             result.replace(&beside)?;

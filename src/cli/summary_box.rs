@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
+use crate::run::sensitivity::figures::Sensitivity;
 use crate::run::summary::{Quantity, Status, Summary};
 
 /// Warnings shown; the rest is counted.
@@ -85,6 +86,7 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     add("deflection", deflection(summary), Tone::Plain);
     add("pressure", pressure(summary), Tone::Plain);
     add("energy", energy(summary), Tone::Plain);
+    add("sensitivity", sensitivities(summary), Tone::Plain);
     add("accuracy", accuracy(summary), Tone::Plain);
     add("balances", Some(balances(summary)), Tone::Plain);
     add("integrator", Some(integrator(summary)), Tone::Plain);
@@ -92,6 +94,27 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     let ended_well = summary.status != Status::Failed;
     add("spent on", spent(summary).filter(|_| ended_well), Tone::Plain);
     rows
+}
+
+/// What one per cent more of each number does to the largest deflections and the largest pressure.
+fn sensitivities(summary: &Summary) -> Option<String> {
+    let of = |(pointer, s): (&String, &Sensitivity)| -> String {
+        let relative = |name: &str, word: &str| {
+            let (value, slope) = (summary.quantities.get(name)?.max_abs?, s.quantities.get(name)?.max_abs?);
+            let ratio = slope * s.value / value;
+            let sign = if ratio > 0.0 { "+" } else { "" };
+            ratio
+                .is_finite()
+                .then(|| format!("{word} {sign}{} %", significant(ratio, 3)))
+        };
+        let shown = [("tip_u1_m", "u₁"), ("tip_u3_m", "u₃"), ("max_pressure_pa", "p")];
+        let shown: Vec<String> = shown
+            .into_iter()
+            .filter_map(|(name, word)| relative(name, word))
+            .collect();
+        format!("{pointer} +1 %: largest {}", shown.join(", "))
+    };
+    Some(summary.sensitivities.iter().map(of).collect::<Vec<_>>().join(BETWEEN))
 }
 
 fn push_row(out: &mut String, row: &Row, width: usize, colour: bool) {

@@ -1,7 +1,7 @@
 //! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
 
 use super::dual::Dual;
-use super::{Dae, Fault, Pattern, Seeds, colour, trace};
+use super::{Dae, Fault, Neighbours, Pattern, Seeds, colour, trace};
 use crate::case::signals::Clock;
 use crate::discrete::{Instant, System, Workspace, ledger, recipe, start};
 
@@ -18,6 +18,7 @@ pub struct BeamDae {
     sweeps: Vec<Vec<(usize, usize)>>,
     plain: Buffers<f64>,
     dual: Buffers<Dual<LANES>>,
+    neighbours: Vec<Neighbours>,
 }
 
 #[derive(Clone, Debug)]
@@ -36,6 +37,21 @@ impl<T: crate::model::Scalar> Buffers<T> {
             y: zeros.clone(),
             yp: zeros.clone(),
             residual: zeros,
+        }
+    }
+}
+
+impl Buffers<Dual<LANES>> {
+    /// The same unknowns and rates, with no derivatives.
+    fn take(&mut self, plain: &Buffers<f64>) {
+        let pairs = [(&mut self.y, &plain.y), (&mut self.yp, &plain.yp)];
+        for (dual, plain) in pairs {
+            for (dual, &value) in dual.iter_mut().zip(plain) {
+                *dual = Dual {
+                    value,
+                    derivative: [0.0; LANES],
+                };
+            }
         }
     }
 }
@@ -60,7 +76,29 @@ impl BeamDae {
             sweeps,
             plain,
             dual,
+            neighbours: vec![],
         }
+    }
+
+    /// The same equations of a system with the same unknowns.
+    pub(super) fn of(&self, system: System) -> Self {
+        Self {
+            plain: Buffers::new(&system),
+            now: Instant::new(&system),
+            neighbours: vec![],
+            system,
+            ..self.clone()
+        }
+    }
+
+    /// Carries along the systems of changed parameters: the sensitivities to these can be computed then.
+    pub fn with_neighbours(self, neighbours: Vec<Neighbours>) -> Self {
+        Self { neighbours, ..self }
+    }
+
+    /// The systems of changed parameters.
+    pub fn neighbours_mut(&mut self) -> &mut [Neighbours] {
+        &mut self.neighbours
     }
 
     /// The system that is solved.
@@ -95,6 +133,20 @@ impl BeamDae {
         recipe::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
         ledger::complete(&self.system, &self.now, &b.yp, &mut b.workspace);
         (&self.system, &self.now, &mut b.workspace)
+    }
+
+    /// Evaluates the model at a scaled state and lets `read` look at time's values, rates in SI units and the workspace.
+    pub(super) fn visit<R>(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        read: impl FnOnce(&System, &Instant, &[f64], &mut Workspace<f64>) -> R,
+    ) -> R {
+        self.unscale(t, y, yp);
+        let b = &mut self.plain;
+        recipe::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
+        read(&self.system, &self.now, &b.yp, &mut b.workspace)
     }
 
     fn unscale(&mut self, t: f64, y: &[f64], yp: &[f64]) {
@@ -135,16 +187,7 @@ impl Dae for BeamDae {
         let scales = &self.system.layout.scales;
         let rows = &self.system.layout.row_scales;
         let b = &mut self.dual;
-        for k in 0..scales.len() {
-            b.y[k] = Dual {
-                value: self.plain.y[k],
-                derivative: [0.0; LANES],
-            };
-            b.yp[k] = Dual {
-                value: self.plain.yp[k],
-                derivative: [0.0; LANES],
-            };
-        }
+        b.take(&self.plain);
         for sweep in &self.sweeps {
             for &(column, lane) in sweep {
                 let (of_y, of_yp) = match seeds {
@@ -164,6 +207,57 @@ impl Dae for BeamDae {
                 b.yp[column].derivative = [0.0; LANES];
             }
         }
+        Ok(())
+    }
+
+    /// Eight directions a sweep; allocates nothing.
+    fn tangent(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        [dy, dyp]: [&[&[f64]]; 2],
+        out: &mut [&mut [f64]],
+    ) -> Result<(), Fault> {
+        self.unscale(t, y, yp);
+        let scales = &self.system.layout.scales;
+        let rows = &self.system.layout.row_scales;
+        let b = &mut self.dual;
+        for (first, out) in (0..).step_by(LANES).zip(out.chunks_mut(LANES)) {
+            b.take(&self.plain);
+            for lane in 0..out.len() {
+                for (k, scale) in scales.iter().enumerate() {
+                    b.y[k].derivative[lane] = dy[first + lane][k] * scale;
+                    b.yp[k].derivative[lane] = dyp[first + lane][k] * scale;
+                }
+            }
+            recipe::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
+            for (lane, out) in out.iter_mut().enumerate() {
+                for (k, row) in rows.iter().enumerate() {
+                    out[k] = b.residual[k].derivative[lane] / row;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn parameters(&self) -> usize {
+        self.neighbours.len()
+    }
+
+    fn slope(&mut self, k: usize, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Fault> {
+        self.neighbours[k].slope(out, |_, beam, out| beam.residual(t, y, yp, out))
+    }
+
+    fn integrand_slope(
+        &mut self,
+        k: usize,
+        t: f64,
+        state: [&[f64]; 2],
+        along: [&[f64]; 2],
+        out: &mut [f64],
+    ) -> Result<(), Fault> {
+        self.read_slope(k, t, state, along, out, ledger::flows);
         Ok(())
     }
 

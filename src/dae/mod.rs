@@ -3,11 +3,13 @@
 pub mod beam;
 pub mod colour;
 pub mod dual;
+pub mod neighbours;
 pub mod pattern;
 pub mod statics;
 pub mod trace;
 
 pub use beam::BeamDae;
+pub use neighbours::Neighbours;
 pub use pattern::Pattern;
 pub use statics::StaticBeam;
 
@@ -61,6 +63,52 @@ pub trait Dae {
 
     /// Writes the integrands `g(t, y, y')`; `out` has length [`Dae::integrals`]. Allocates nothing.
     fn integrands(&mut self, _t: f64, _y: &[f64], _yp: &[f64], _out: &mut [f64]) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    /// Writes `F_y dyₖ + F_y' dy'ₖ` into `out[k]` for every direction k: `dy`, `dyp` and `out` are equally many slices of length
+    /// `len`. This one goes through the Jacobian, whose columns add up to it; it allocates.
+    fn tangent(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        [dy, dyp]: [&[&[f64]]; 2],
+        out: &mut [&mut [f64]],
+    ) -> Result<(), Fault> {
+        let mut values = vec![0.0; self.pattern().rows.len()];
+        for ((dy, dyp), out) in dy.iter().zip(dyp).zip(out) {
+            self.jacobian(t, y, yp, Seeds::Columns { y: dy, yp: dyp }, &mut values)?;
+            out.fill(0.0);
+            for (&row, value) in self.pattern().rows.iter().zip(&values) {
+                out[row as usize] += value;
+            }
+        }
+        Ok(())
+    }
+
+    /// Number of parameters whose sensitivities `∂y/∂σₖ` the solver may carry along.
+    fn parameters(&self) -> usize {
+        0
+    }
+
+    /// Writes `∂F/∂σₖ` at fixed unknowns and rates into `out`, of length `len`; k is below [`Dae::parameters`].
+    fn slope(&mut self, _k: usize, _t: f64, _y: &[f64], _yp: &[f64], out: &mut [f64]) -> Result<(), Fault> {
+        out.fill(0.0);
+        Ok(())
+    }
+
+    /// Writes `g_y s + g_y' s' + ∂g/∂σₖ` of the integrands g along a sensitivity `[s, s']`; `out` has length
+    /// [`Dae::integrals`].
+    fn integrand_slope(
+        &mut self,
+        _k: usize,
+        _t: f64,
+        _state: [&[f64]; 2],
+        _along: [&[f64]; 2],
+        out: &mut [f64],
+    ) -> Result<(), Fault> {
+        out.fill(0.0);
         Ok(())
     }
 

@@ -54,6 +54,18 @@ impl System {
         Self::starting(case, model, Model::new(case))
     }
 
+    /// Discretises a changed case with the effects of this system and its scales of unknowns and equations; `None` when the
+    /// unknowns are then others.
+    pub fn like(&self, case: &Case) -> Option<Self> {
+        let model = self.model.like(case);
+        let mut system = Self::starting(case, model.clone(), model);
+        let same = system.layout.differential == self.layout.differential && system.layout.waves == self.layout.waves;
+        same.then(|| {
+            system.layout = self.layout.clone();
+            system
+        })
+    }
+
     fn starting(case: &Case, model: Model, start: Model) -> Self {
         let mut system = Self::of(case, model);
         if let (Some(wet), Some(fluid)) = (&system.model.wet, &mut system.fluid)

@@ -1,7 +1,7 @@
 //! What is read off a state: the columns of the history and the fields.
 
 use super::{Instant, System, Workspace};
-use crate::discrete::ledger::{Energies, FLOWS};
+use crate::discrete::ledger::{self, Energies, FLOWS};
 use crate::discrete::recipe::fluid::pressure_at;
 use crate::discrete::recipe::solid::node_stretch;
 use crate::model::Kinematics;
@@ -123,6 +123,52 @@ pub fn row(
             .map(|f| integrals[*f as usize]),
     );
     row.push(balance.residual);
+}
+
+/// Where the largest and smallest values of a state are, and its slope angle at the tip: what a derivative holds on to.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extremes {
+    high: usize,
+    low: usize,
+    closed: usize,
+    angle: f64,
+}
+
+/// Of the state in the workspace.
+pub fn extremes(system: &System, w: &Workspace<f64>) -> Extremes {
+    let place = |values: &[f64], sign: f64| {
+        let all = values.iter().enumerate();
+        all.max_by(|a, b| (sign * a.1).total_cmp(&(sign * b.1)))
+            .map_or(0, |(i, _)| i)
+    };
+    Extremes {
+        high: place(&w.pressure, 1.0),
+        low: place(&w.pressure, -1.0),
+        closed: place(&w.area, -1.0),
+        angle: tip_angle(system, w),
+    }
+}
+
+/// What a [`row`] reads off a state after time and before the integrals, smooth in the state: largest and smallest values where
+/// they are at `extremes`, the angle without full turns between. The workspace must hold [`ledger::complete`] of the state.
+pub fn instantaneous(system: &System, now: &Instant, w: &Workspace<f64>, at: &Extremes, out: &mut [f64]) {
+    let last = system.mesh.nodes - 1;
+    let turn = std::f64::consts::TAU;
+    let angle = tip_angle(system, w);
+    let angle = angle - turn * ((angle - at.angle) / turn).round();
+    let mut all = vec![w.u1[last], w.u3[last], angle];
+    if let Some(wet) = &system.model.wet {
+        let opening = 1.0 + w.area[at.closed] / wet.area_at_rest;
+        all.extend([
+            w.pressure[at.high],
+            w.pressure[at.low],
+            turbine_power(system, now, w),
+            opening,
+        ]);
+    }
+    let e = ledger::energies(system, now, w);
+    all.extend([e.kinetic, e.rotary, e.axial, e.bending, e.bladders]);
+    out.copy_from_slice(&all);
 }
 
 /// `φ` of the tip, followed along the beam so that full turns count.

@@ -147,6 +147,16 @@ impl Model {
         Self::of(case, Section::new(case), network, effects)
     }
 
+    /// The model of a changed case with the effects and scales of this one.
+    pub fn like(&self, case: &Case) -> Self {
+        let filled = case.fluid.as_ref().zip(case.bladders.as_ref());
+        let network = filled.map(|(fluid, bladders)| Network::new(case, fluid, bladders));
+        Self {
+            scales: self.scales,
+            ..Self::of(case, Section::new(case), network, self.effects.clone())
+        }
+    }
+
     /// The same model of a case without inertia of the solid.
     pub fn at_rest(&self, case: &Case) -> Self {
         let filled = case.fluid.as_ref().zip(case.bladders.as_ref());

@@ -12,6 +12,8 @@ pub const CASE: &str = "case.json";
 pub const SUMMARY: &str = "summary.json";
 /// One row an output time.
 pub const HISTORY: &str = "history.csv";
+/// Derivatives of the history's columns, one row an output time.
+pub const SENSITIVITIES: &str = "sensitivities.csv";
 /// Arrays over time and space.
 pub const FIELDS: &str = "fields.npz";
 /// Raw arrays while a run is under way.
@@ -88,7 +90,7 @@ impl ResultFolder {
     /// Removes the files of an older result, by name; whatever else lies there stays.
     pub fn clear(&mut self) -> Result<()> {
         // The summary goes first: without it the rest does not pass for a finished run.
-        for name in [SUMMARY, CHECKPOINT, REPORT, FIELDS, HISTORY]
+        for name in [SUMMARY, CHECKPOINT, REPORT, FIELDS, HISTORY, SENSITIVITIES]
             .into_iter()
             .chain(PICTURES)
         {

@@ -25,15 +25,22 @@ pub struct HistoryWriter {
 impl HistoryWriter {
     /// Creates the file with its line of names, `name [unit]`.
     pub fn create(path: &Path, columns: &[Column]) -> Result<Self> {
+        Self::with_names(
+            path,
+            columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect(),
+        )
+    }
+
+    /// Creates the file with its line of names, which hold the units already.
+    pub fn with_names(path: &Path, names: Vec<String>) -> Result<Self> {
         let file = File::create(path).map_err(|e| fault("create", path, e))?;
         let mut writer = Self {
             path: path.to_path_buf(),
             out: csv::Writer::from_writer(file),
-            columns: columns.len(),
+            columns: names.len(),
             flushed: Instant::now(),
         };
-        let names = columns.iter().map(|c| format!("{} [{}]", c.name, c.unit));
-        let written = writer.out.write_record(names);
+        let written = writer.out.write_record(&names);
         writer.settle(written)?;
         writer.flush()?;
         Ok(writer)

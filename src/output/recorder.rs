@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::arrays::ArraysWriter;
 use super::checkpoint::{self, Saved};
 use super::envelope::Envelope;
-use super::folder::{CASE, CHECKPOINT, FIELDS, HISTORY, RAW_FIELDS, ResultFolder, SUMMARY};
+use super::folder::{CASE, CHECKPOINT, FIELDS, HISTORY, RAW_FIELDS, ResultFolder, SENSITIVITIES, SUMMARY};
 use super::history::HistoryWriter;
 use super::pictures::{self, STRETCHES};
 use super::summary;
@@ -37,6 +37,7 @@ pub struct FolderRecorder {
     labels: Labels,
     hook: Hook,
     open: Option<(HistoryWriter, ArraysWriter)>,
+    sensitivities: Option<HistoryWriter>,
 }
 
 impl FolderRecorder {
@@ -47,6 +48,7 @@ impl FolderRecorder {
             labels,
             hook,
             open: None,
+            sensitivities: None,
         }
     }
 
@@ -66,6 +68,10 @@ impl FolderRecorder {
     /// A run that failed before it began leaves an older result alone, and otherwise case and summary only.
     pub fn finish(mut self, summary: &Summary) -> Result<Vec<PathBuf>> {
         let mut files = Vec::new();
+        let derivatives = self.sensitivities.take().map_or(Ok(()), |mut rows| {
+            files.push(self.folder.path(SENSITIVITIES));
+            rows.flush()
+        });
         let completed = match self.open.take() {
             Some((history, arrays)) => {
                 let resumable = summary.status != Status::Finished && self.folder.path(CHECKPOINT).exists();
@@ -78,7 +84,7 @@ impl FolderRecorder {
         let case = self.labels.case_json.as_bytes();
         files.push(self.folder.write(CASE, case)?);
         files.push(summary::write(&self.folder, summary)?);
-        completed?;
+        completed.and(derivatives)?;
         Ok(files)
     }
 
@@ -116,12 +122,20 @@ impl Recorder for FolderRecorder {
         let history = HistoryWriter::create(&self.folder.path(HISTORY), &header.columns)?;
         let arrays = ArraysWriter::create(&self.folder.path(RAW_FIELDS), header)?;
         self.folder.write(CASE, self.labels.case_json.as_bytes())?;
+        if !header.sensitivities.is_empty() {
+            let path = self.folder.path(SENSITIVITIES);
+            self.sensitivities = Some(HistoryWriter::with_names(&path, header.sensitivities.clone())?);
+        }
         self.open = Some((history, arrays));
         Ok(())
     }
 
     fn history(&mut self, row: &[f64]) -> Result<()> {
         self.open.as_mut().map_or(Ok(()), |(history, _)| history.row(row))
+    }
+
+    fn sensitivities(&mut self, row: &[f64]) -> Result<()> {
+        self.sensitivities.as_mut().map_or(Ok(()), |rows| rows.row(row))
     }
 
     fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()> {

@@ -16,7 +16,11 @@ pub fn to_json(summary: &Summary) -> String {
     // serde_json turns what is not finite into null; where a key can be left out, it is.
     summary.balances.energy_j.retain(|_, x| x.is_finite());
     summary.characteristic.retain(|_, x| x.is_finite());
-    for q in summary.quantities.values_mut() {
+    let derivatives = summary
+        .sensitivities
+        .values_mut()
+        .flat_map(|s| s.quantities.values_mut());
+    for q in summary.quantities.values_mut().chain(derivatives) {
         *q = Quantity {
             last: finite(q.last),
             max_abs: finite(q.max_abs),

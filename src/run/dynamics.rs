@@ -10,7 +10,9 @@ use super::observe::Observer;
 use super::order;
 use super::record::{Control, Header, Progress, Recorder};
 use super::schedule::{self, Outputs, Stop};
+use super::sensitivity::forward::Forward;
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
+use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::ledger::FLOWS;
@@ -30,13 +32,21 @@ pub struct Outcome {
 
 /// Runs a checked case. An error means that the recorder failed; a failing solver is an [`Outcome`].
 pub fn run(case: &Case, recorder: &mut dyn Recorder) -> Result<Outcome> {
-    let (run, dae) = Run::new(case);
+    run_with(case, &[], recorder)
+}
+
+/// Runs a checked case with derivatives by some of its numbers, as [`run`].
+///
+/// # Errors
+/// Besides the recorder's, [`Error::Usage`] for a number by which there is no derivative.
+pub fn run_with(case: &Case, parameters: &[Parameter], recorder: &mut dyn Recorder) -> Result<Outcome> {
+    let (run, dae) = Run::new(case, parameters)?;
     run.go(dae, None, recorder)
 }
 
 /// Runs a system of the case from consistent values and rates of its scaled unknowns at t = 0.
 pub fn go_on(case: &Case, system: System, y: &[f64], yp: &[f64], recorder: &mut dyn Recorder) -> Result<Outcome> {
-    let (mut run, mut dae) = Run::of(case, system);
+    let (mut run, mut dae) = Run::of(case, system, &[])?;
     dae.look_within(0.5 * run.stops[0].t);
     run.prepare(&dae);
     run.state.copy_from_slice(y);
@@ -58,7 +68,7 @@ pub fn resume(case: &Case, checkpoint: &Checkpoint, recorder: &mut dyn Recorder)
             "the checkpoint belongs to another case or another version of the program".into(),
         ));
     }
-    let (run, dae) = Run::new(case);
+    let (run, dae) = Run::new(case, &[])?;
     run.go(dae, Some(checkpoint), recorder)
 }
 
@@ -84,6 +94,7 @@ struct Run<'a> {
     options: Options,
     linear: Linear,
     inertia: bool,
+    forward: Option<Forward<'a>>,
     held: Option<String>,
     begin: Instant,
     output_wall: f64,
@@ -104,17 +115,21 @@ enum End {
 }
 
 impl<'a> Run<'a> {
-    fn new(case: &'a Case) -> (Self, BeamDae) {
-        Self::of(case, System::new(case))
+    fn new(case: &'a Case, parameters: &'a [Parameter]) -> Result<(Self, BeamDae)> {
+        Self::of(case, System::new(case), parameters)
     }
 
-    fn of(case: &'a Case, system: System) -> (Self, BeamDae) {
+    fn of(case: &'a Case, system: System, parameters: &'a [Parameter]) -> Result<(Self, BeamDae)> {
         let begin = Instant::now();
         let interval = case.time.output_interval();
         let characteristic = characteristic::numbers(case, &system.model);
         let warnings = audit::warnings(case, &system.model, &characteristic);
         let decisions = &system.model.effects.decisions;
-        let chosen = method::choose(case, &system);
+        let chosen = if parameters.is_empty() {
+            method::choose(case, &system)
+        } else {
+            method::with_sensitivities(case, &system)
+        };
         let options = Options::new(case, &system, &chosen, max_step(case, &system));
         let inertia = system.layout.inertia;
         let mathieu = characteristic::mathieu(&system.model);
@@ -122,7 +137,7 @@ impl<'a> Run<'a> {
             mathieu,
             euler_load: characteristic.get("euler_load_n").copied(),
         };
-        let run = Self {
+        let mut run = Self {
             case,
             observer: Observer::new(case, &system, interval),
             outputs: Outputs::new(interval, case.time.end_s),
@@ -168,12 +183,14 @@ impl<'a> Run<'a> {
                     .collect(),
                 growth: None,
                 accuracy: None,
+                sensitivities: Default::default(),
                 characteristic,
                 warnings,
             },
             options,
             linear,
             inertia,
+            forward: None,
             held: None,
             begin,
             output_wall: 0.0,
@@ -183,7 +200,12 @@ impl<'a> Run<'a> {
             carried: vec![],
             earlier: Counters::default(),
         };
-        (run, BeamDae::new(system))
+        let mut dae = BeamDae::new(system);
+        if !parameters.is_empty() {
+            let (forward, with_neighbours) = Forward::new(case, dae, parameters)?;
+            (run.forward, dae) = (Some(forward), with_neighbours);
+        }
+        Ok((run, dae))
     }
 }
 
@@ -224,12 +246,29 @@ impl Run<'_> {
         } else {
             None
         };
-        let header = from.is_none().then(|| Observer::header(self.case, dae.system()));
+        let consistent = consistent.or_else(|| self.begin_forward(&mut dae).err());
+        let header = from.is_none().then(|| self.header(dae.system()));
         let end = match consistent {
             Some(fault) => End::Failed(fault),
             None => self.solve(dae, t, first_stop, header, recorder)?,
         };
         Ok(self.finish(end))
+    }
+
+    fn header(&self, system: &System) -> Header {
+        let mut header = Observer::header(self.case, system);
+        if let Some(forward) = &self.forward {
+            header.sensitivities = forward.names(&header.columns);
+        }
+        header
+    }
+
+    fn begin_forward(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverFault> {
+        let Some(forward) = &mut self.forward else {
+            return Ok(());
+        };
+        forward.begin(dae)?;
+        forward.complete(dae, 0.0, [&self.state, &self.rates])
     }
 
     /// Room for the values of a system.
@@ -252,6 +291,11 @@ impl Run<'_> {
         match Integrator::new(dae, t, &self.state, &self.rates, &self.options) {
             Err(failure) => Ok(End::Failed(fault(&failure))),
             Ok(mut solver) => {
+                if let (Some(forward), Some(ida)) = (&self.forward, solver.ida_mut())
+                    && let Err(failure) = forward.hand_over(ida, false)
+                {
+                    return Ok(End::Failed(fault(&failure)));
+                }
                 header.map_or(Ok(()), |header| recorder.begin(&header))?;
                 let end = self.integrate(&mut solver, first_stop, recorder)?;
                 self.count(&solver);
@@ -360,17 +404,40 @@ impl Run<'_> {
                 observed: self.observer.seen.clone(),
             })?;
         }
+        let before = match (&mut self.forward, solver.ida_mut()) {
+            (Some(forward), Some(ida)) => match forward.leave(ida, t, [&self.state, &self.rates]) {
+                Ok(before) => Some(before),
+                Err(failure) => return Ok(Some(fault(&failure))),
+            },
+            _ => None,
+        };
         let dae = solver.dae_mut();
-        dae.look_within(0.5 * (t + next));
+        let ahead = 0.5 * (t + next);
+        if switches {
+            dae.switch(t, ahead, &mut self.state);
+        } else {
+            dae.look_within(ahead);
+        }
         if switches
             && let Err(failure) = consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
         {
             return Ok(Some(inconsistent(t, &failure)));
         }
-        Ok(solver
-            .restart(t, &self.state, &self.rates)
-            .err()
-            .map(|failure| fault(&failure)))
+        if let (Some(forward), Some(before)) = (&mut self.forward, &before) {
+            if !switches {
+                forward.go_on(dae, stop);
+            } else if let Err(fault) = forward.pass(dae, stop, t, before, [&self.state, &self.rates]) {
+                return Ok(Some(fault));
+            }
+        }
+        let restarted =
+            solver
+                .restart(t, &self.state, &self.rates)
+                .and_then(|()| match (&self.forward, solver.ida_mut()) {
+                    (Some(forward), Some(ida)) => forward.hand_over(ida, true),
+                    _ => Ok(()),
+                });
+        Ok(restarted.err().map(|failure| fault(&failure)))
     }
 
     /// Takes every sample that is due, from the integrator's own polynomial.
@@ -412,6 +479,16 @@ impl Run<'_> {
                 &self.integrals,
                 recorder,
             )?;
+            if let (Some(forward), Some(ida)) = (&mut self.forward, solver.ida_mut()) {
+                match forward.sample(ida, t, [&self.state, &self.rates], self.observer.row()) {
+                    Ok(row) => recorder.sensitivities(row)?,
+                    Err(failure) => {
+                        return Ok(Some(format!(
+                            "sensitivities at t = {t:.6} s could not be read: {failure}"
+                        )));
+                    }
+                }
+            }
             if ended.is_some() {
                 return Ok(ended);
             }
@@ -466,6 +543,7 @@ impl Run<'_> {
         };
         let o = &self.observer.seen;
         s.quantities = o.figures.quantities();
+        s.sensitivities = self.forward.as_ref().map(Forward::summary).unwrap_or_default();
         let b = &mut s.balances;
         b.energy_residual_relative = o.residuals.energy_relative();
         b.volume_residual_relative = o.residuals.volume_relative();

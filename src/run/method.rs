@@ -69,6 +69,22 @@ pub fn choose(case: &Case, system: &System) -> MethodChoice {
     }
 }
 
+/// Method for a case whose sensitivities are asked for: IDA, which carries them along.
+pub fn with_sensitivities(case: &Case, system: &System) -> MethodChoice {
+    let usual = choose(case, system);
+    if usual.one_step.is_none() {
+        return usual;
+    }
+    MethodChoice {
+        one_step: None,
+        reason: format!(
+            "sensitivities are carried along by IDA alone; without them it would be {}",
+            usual.name()
+        ),
+        order: order::choose(case, system),
+    }
+}
+
 /// IDA's Newton iteration ends at this part of the tolerance where the solid has inertia. IDA's own third leaves noise that
 /// its error test takes for truncation, step after step, on slow motions; it costs a tenth less elsewhere.
 const NONLINEAR: f64 = 0.033;
@@ -200,6 +216,14 @@ impl<D: Dae> Integrator<D> {
     /// Wall time spent in the equations and the linear solver.
     pub fn wall(&self) -> Wall {
         either!(self, one => one.wall())
+    }
+
+    /// IDA, when it is that.
+    pub fn ida_mut(&mut self) -> Option<&mut Ida<D>> {
+        match self {
+            Self::Ida(ida) => Some(ida),
+            Self::OneStep(_) => None,
+        }
     }
 
     /// The equations.

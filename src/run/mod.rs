@@ -15,4 +15,5 @@ pub mod order;
 pub mod periodic;
 pub mod record;
 pub mod schedule;
+pub mod sensitivity;
 pub mod summary;

@@ -207,7 +207,12 @@ impl Observer {
                 about: about.into(),
             })
             .collect();
-        Header { columns, axes, fields }
+        Header {
+            columns,
+            axes,
+            fields,
+            sensitivities: vec![],
+        }
     }
 
     /// Takes the sample number `number` at a scaled state. Returns why the run must end here, if it must.
@@ -305,6 +310,11 @@ impl Observer {
         Ok((opening <= 0.0).then(|| {
             format!("a bladder is closed at t = {t:.6} s: its cross-section h_b w_b + a1 has reached zero, where the model ends")
         }))
+    }
+
+    /// The last row of the history.
+    pub fn row(&self) -> &[f64] {
+        &self.row
     }
 
     /// Limits of the model's range that were passed.

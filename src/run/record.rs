@@ -51,6 +51,8 @@ pub struct Header {
     pub axes: Vec<Axis>,
     /// Fields.
     pub fields: Vec<Field>,
+    /// Columns of derivatives, names with units, the first `t [s]`; empty when none were asked for.
+    pub sensitivities: Vec<String>,
 }
 
 /// Where the run stands.
@@ -83,6 +85,10 @@ pub trait Recorder {
     fn begin(&mut self, header: &Header) -> Result<()>;
     /// One row of the history; length of `header.columns`.
     fn history(&mut self, row: &[f64]) -> Result<()>;
+    /// One row of derivatives, after the row of the history of the same instant; length of `header.sensitivities`.
+    fn sensitivities(&mut self, _: &[f64]) -> Result<()> {
+        Ok(())
+    }
     /// One instant of all fields, in the order of `header.fields`.
     fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()>;
     /// Called after every accepted step; cheap.
@@ -118,6 +124,8 @@ pub struct Memory {
     pub header: Header,
     /// Rows of the history.
     pub rows: Vec<Vec<f64>>,
+    /// Rows of derivatives.
+    pub sensitivities: Vec<Vec<f64>>,
     /// Times of the fields.
     pub field_times: Vec<f64>,
     /// Fields: `fields[f][time]` is the array of field f.
@@ -131,6 +139,17 @@ impl Memory {
     pub fn column(&self, name: &str) -> Option<Vec<f64>> {
         let k = self.header.columns.iter().position(|c| c.name == name)?;
         Some(self.rows.iter().map(|r| r[k]).collect())
+    }
+
+    /// One column of derivatives by the names of the history's column and of the number: `("tip_u1", "/fluid/viscosity_pa_s")`.
+    pub fn sensitivity(&self, column: &str, pointer: &str) -> Option<Vec<f64>> {
+        let start = format!("d {column}/d {pointer} [");
+        let k = self
+            .header
+            .sensitivities
+            .iter()
+            .position(|name| name.starts_with(&start))?;
+        Some(self.sensitivities.iter().map(|r| r[k]).collect())
     }
 
     /// One field by name: an array for each recorded time.
@@ -148,6 +167,10 @@ impl Recorder for Memory {
     }
     fn history(&mut self, row: &[f64]) -> Result<()> {
         self.rows.push(row.to_vec());
+        Ok(())
+    }
+    fn sensitivities(&mut self, row: &[f64]) -> Result<()> {
+        self.sensitivities.push(row.to_vec());
         Ok(())
     }
     fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()> {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::growth::Growing;
+use super::sensitivity::figures::Sensitivity;
 pub use crate::sundials::Counters;
 
 /// How a run ended.
@@ -190,6 +191,9 @@ pub struct Summary {
     /// Estimated errors, when an accuracy was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<Accuracy>,
+    /// Derivatives of the quantities, by the JSON pointers of the numbers asked for.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub sensitivities: BTreeMap<String, Sensitivity>,
     /// Everything the user should know before trusting the result.
     pub warnings: Vec<String>,
 }

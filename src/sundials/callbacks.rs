@@ -11,6 +11,7 @@ use sundials_sys::{N_Vector, SUNMatrix};
 
 use super::kernels;
 use super::linear_solver::system_of;
+use super::sensitivities::Slopes;
 use super::vector::{entries, entries_mut};
 use crate::dae::{Dae, Fault, Seeds};
 
@@ -44,6 +45,8 @@ pub(super) struct Bridge<D> {
     pub jacobian_wall: Duration,
     /// Wall time of integrands.
     pub integrand_wall: Duration,
+    /// Derivatives of the residual by parameters, at the state of the last step.
+    pub slopes: Slopes,
 }
 
 impl<D: Dae> Bridge<D> {
@@ -60,6 +63,7 @@ impl<D: Dae> Bridge<D> {
             residual_wall: Duration::ZERO,
             jacobian_wall: Duration::ZERO,
             integrand_wall: Duration::ZERO,
+            slopes: Slopes::default(),
         }
     }
 

@@ -111,6 +111,10 @@ pub(super) fn meaning(code: i32) -> &'static str {
         s::IDA_BAD_K => "a derivative of this order is not available",
         s::IDA_BAD_T => "the time is outside the last step",
         s::IDA_VECTOROP_ERR => "a vector operation failed",
+        s::IDA_SRES_FAIL | s::IDA_QSRHS_FAIL => "the equations of a sensitivity could not be evaluated",
+        s::IDA_REP_SRES_ERR | s::IDA_REP_QSRHS_ERR => {
+            "the equations of a sensitivity could not be evaluated, however short the step"
+        }
         _ => "the integrator failed",
     }
 }

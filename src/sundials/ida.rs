@@ -1,4 +1,4 @@
-//! IDA (SUNDIALS' IDAS without sensitivities): variable-order backward differentiation formulas, step by step.
+//! IDA (of SUNDIALS' IDAS): variable-order backward differentiation formulas, step by step.
 
 use std::ffi::{c_int, c_long, c_void};
 
@@ -12,6 +12,7 @@ use super::integrals;
 use super::linear_solver::LinearSolver;
 use super::options::IdaOptions;
 use super::request;
+use super::sensitivities::Carried;
 use super::shared::Shared;
 use super::vector::Vector;
 use crate::dae::Dae;
@@ -49,9 +50,10 @@ pub struct Ida<D: Dae> {
     yp: Vector,
     pub(super) scratch: Vector,
     pub(super) quadratures: Option<Vector>,
+    pub(super) sensitivities: Option<Carried>,
     pub(super) messages: Shared<Messages>,
     pub(super) bridge: Shared<Bridge<D>>,
-    _context: Context,
+    pub(super) context: Context,
     pub(super) time: f64,
     pub(super) stepped: bool,
     base: Counters,
@@ -127,9 +129,10 @@ impl<D: Dae> Ida<D> {
             yp,
             scratch,
             quadratures,
+            sensitivities: None,
             messages,
             bridge,
-            _context: context,
+            context,
             time: t0,
             stepped: false,
             base,

@@ -7,6 +7,7 @@
 //! | [`ida`] | the integrator: one accepted step at a time |
 //! | [`kinsol`] | solutions of `F(t, y, 0) = 0` |
 //! | `integrals` | integrals carried along: the ledgers |
+//! | [`sensitivities`], [`sensitivity_start`] | derivatives by parameters carried along, and their initial values |
 //! | [`options`] | what can be asked of it |
 //! | [`failure`], `diagnosis` | why it could not go on, in words |
 //! | [`counters`] | what it did, and where the time went |
@@ -36,6 +37,8 @@ mod linear_solver;
 mod operations;
 pub mod options;
 pub(crate) mod request;
+pub mod sensitivities;
+pub mod sensitivity_start;
 mod shared;
 pub mod start;
 mod vector;
@@ -47,6 +50,7 @@ pub use ida::{Ida, Step};
 pub use kinsol::{Kinsol, KinsolFailure, KinsolOptions, Solution};
 pub use klu::{Klu, KluFault, RowScaling};
 pub use options::{Absolute, IdaOptions};
+pub use sensitivity_start::consistent_sensitivities;
 pub use start::{Start, StartFailure, StartOptions, consistent_start};
 
 /// Declarations written by `build.rs`.

@@ -1,0 +1,320 @@
+//! Sensitivities along a run: their start, what happens to them at switching times, and what is read off them.
+//!
+//! Inside, a sensitivity is `s = ∂y/∂σ` to the relative change σ of a number p, so that it is of the order of the unknowns and
+//! their tolerances serve; what is handed out is `∂/∂p = (∂/∂σ)/p`.
+
+use std::collections::BTreeMap;
+
+use super::figures::{Figures, Sensitivity};
+use crate::case::parameter::{CHANGE, Parameter, STEPS};
+use crate::case::schema::Case;
+use crate::dae::{BeamDae, Dae as _, Neighbours};
+use crate::discrete::{ledger, sample, start};
+use crate::error::{Error, Result, SolverFault};
+use crate::run::equilibrium;
+use crate::run::record::Column;
+use crate::run::schedule::{self, Stop};
+use crate::sundials::{Ida, IdaFailure, consistent_sensitivities};
+
+/// Columns of the history of which no derivative is given: time, and the integrator's own error.
+const WITHOUT: [&str; 2] = ["t", "energy_residual"];
+
+/// Sensitivities of a run to some numbers of its case.
+pub struct Forward<'a> {
+    parameters: &'a [Parameter],
+    /// The changed cases, a number's four in the order of [`STEPS`].
+    cases: Vec<[Case; 4]>,
+    /// Their stops.
+    stops: Vec<[Vec<Stop>; 4]>,
+    /// Places and names of the columns of the history that are differentiated; the first `instant` are read off a state, the others
+    /// are integrals.
+    columns: Vec<(usize, &'static str)>,
+    instant: usize,
+    s: Vec<Vec<f64>>,
+    sp: Vec<Vec<f64>>,
+    /// Derivatives of the integrals up to the last restart.
+    carried: Vec<Vec<f64>>,
+    figures: Vec<Figures>,
+    row: Vec<f64>,
+}
+
+/// What must be known of the moment before a switch.
+pub struct Before {
+    rates: Vec<f64>,
+    integrands: Vec<f64>,
+}
+
+impl<'a> Forward<'a> {
+    /// Sensitivities of a run of a case to some of its numbers, and the equations with the changed systems beside them.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] when a change of a number changes the unknowns or the number of switching times.
+    pub fn new(case: &Case, dae: BeamDae, parameters: &'a [Parameter]) -> Result<(Self, BeamDae)> {
+        let (mut neighbours, mut all_cases, mut all_stops) = (vec![], vec![], vec![]);
+        let own = schedule::stops(case, &dae.system().model);
+        for parameter in parameters {
+            let refuse = |what: &str| {
+                Error::Usage(format!(
+                    "--sensitivity {}: a small change of it {what}",
+                    parameter.pointer
+                ))
+            };
+            let like = |case: &Case| {
+                let system = dae.system().like(case);
+                system.ok_or_else(|| refuse("changes which unknowns there are"))
+            };
+            let [a, b, c, d] = STEPS.map(|(step, _)| parameter.changed(case, parameter.value * (1.0 + step * CHANGE)));
+            let cases = [a?, b?, c?, d?];
+            let [a, b, c, d] = cases.each_ref().map(like);
+            let systems = [a?, b?, c?, d?];
+            let stops = [0, 1, 2, 3].map(|j| schedule::stops(&cases[j], &systems[j].model));
+            let kinds = |stops: &[Stop]| -> Vec<_> { stops.iter().map(|s| (s.switches, s.checkpoint)).collect() };
+            if stops.iter().any(|other| kinds(other) != kinds(&own)) {
+                return Err(refuse(
+                    "changes the order of switching times, or moves one past the end of the run",
+                ));
+            }
+            neighbours.push(Neighbours::new(&dae, systems));
+            all_cases.push(cases);
+            all_stops.push(stops);
+        }
+        let count = parameters.len();
+        let all = sample::columns(dae.system());
+        let columns: Vec<_> = all
+            .iter()
+            .map(|c| c.0)
+            .enumerate()
+            .filter(|(_, name)| !WITHOUT.contains(name))
+            .collect();
+        let instant = columns
+            .iter()
+            .position(|(_, name)| *name == "work_loads")
+            .unwrap_or(columns.len());
+        let turbines = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
+        let window_start = case.time.end_s - case.time.window() * (1.0 + 1e-9);
+        let forward = Self {
+            parameters,
+            cases: all_cases,
+            stops: all_stops,
+            columns,
+            instant,
+            s: vec![vec![0.0; dae.len()]; count],
+            sp: vec![vec![0.0; dae.len()]; count],
+            carried: vec![vec![0.0; dae.integrals()]; count],
+            figures: vec![Figures::new(window_start, turbines); count],
+            row: vec![],
+        };
+        Ok((forward, dae.with_neighbours(neighbours)))
+    }
+
+    /// Names of the columns that are recorded, units included; a derivative is per unit of the number that its pointer names.
+    pub fn names(&self, columns: &[Column]) -> Vec<String> {
+        let of = |parameter: &Parameter| -> Vec<String> {
+            let name = |&(place, name): &(usize, &str)| {
+                format!("d {name}/d {} [{} per unit]", parameter.pointer, columns[place].unit)
+            };
+            self.columns.iter().map(name).collect()
+        };
+        let names = self.parameters.iter().flat_map(of);
+        std::iter::once("t [s]".to_owned()).chain(names).collect()
+    }
+
+    /// Lets the changed systems look at signals in their own smooth interval before stop number `stop`.
+    fn look(&self, dae: &mut BeamDae, stop: usize) {
+        for (neighbours, stops) in dae.neighbours_mut().iter_mut().zip(&self.stops) {
+            for (beam, stops) in neighbours.beams_mut().iter_mut().zip(stops) {
+                beam.look_within(middle(stops, stop));
+            }
+        }
+    }
+
+    /// Sensitivities at t = 0 of the differential unknowns: of the state from which the run starts.
+    pub fn begin(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverFault> {
+        self.look(dae, 0);
+        for ((neighbours, cases), s) in dae.neighbours_mut().iter_mut().zip(&self.cases).zip(&mut self.s) {
+            neighbours.slope(s, |j, beam, out| {
+                let case = &cases[j];
+                let (system, now) = beam.instant(0.0);
+                let mut state = start::state(system, case, now);
+                if let Some(start) = &case.start.equilibrium {
+                    state = equilibrium::at_start(case, start.loads_at_s, beam, &state)?;
+                }
+                out.copy_from_slice(&state);
+                Ok(())
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Completes the sensitivities at a consistent state.
+    pub fn complete(&mut self, dae: &mut BeamDae, t: f64, state: [&[f64]; 2]) -> std::result::Result<(), SolverFault> {
+        consistent_sensitivities(dae, t, state, &mut self.s, &mut self.sp).map_err(|what| SolverFault {
+            time_s: t,
+            what: format!("no consistent sensitivities at t = {t:.6} s: {what}"),
+            unknown: None,
+            cause: Some("a state that is not unique: buckled, or with a coupling that is not convex".into()),
+            hint: Some("run without --sensitivity".into()),
+        })
+    }
+
+    /// Hands them to the integrator: at the start of the run, or after a restart.
+    pub fn hand_over(&self, ida: &mut Ida<BeamDae>, again: bool) -> std::result::Result<(), Box<IdaFailure>> {
+        if again {
+            ida.carry_on(&self.s, &self.sp)
+        } else {
+            ida.carry(&self.s, &self.sp)
+        }
+    }
+
+    /// Reads sensitivities off the integrator at a time [s] within its last step, and those of integrals into `integrals`.
+    fn read(
+        &mut self,
+        ida: &mut Ida<BeamDae>,
+        t: f64,
+        integrals: &mut [Vec<f64>],
+    ) -> std::result::Result<(), Box<IdaFailure>> {
+        for (k, integrals) in integrals.iter_mut().enumerate() {
+            ida.sensitivity(k, t, [&mut self.s[k], &mut self.sp[k]])?;
+            ida.integral_sensitivity(k, t, integrals)?;
+            for (total, carried) in integrals.iter_mut().zip(&self.carried[k]) {
+                *total += carried;
+            }
+        }
+        Ok(())
+    }
+
+    /// Leaves a stop's left side, at the state that the integrator has reached there.
+    pub fn leave(
+        &mut self,
+        ida: &mut Ida<BeamDae>,
+        t: f64,
+        [y, yp]: [&[f64]; 2],
+    ) -> std::result::Result<Before, Box<IdaFailure>> {
+        let mut totals = self.carried.clone();
+        self.read(ida, t, &mut totals)?;
+        self.carried = totals;
+        Ok(Before {
+            rates: yp.to_vec(),
+            integrands: integrands(ida.dae_mut(), t, [y, yp]),
+        })
+    }
+
+    /// Passes a switch, at the consistent state after it. Where the number moves the switching time t*, or the ends' signals at it,
+    /// sensitivities of differential unknowns and of integrals jump:
+    ///
+    /// ```text
+    /// s⁺ = s⁻ + (y'⁻ - y'⁺) dt*/dσ + dΔ/dσ        (∂I/∂σ)⁺ = (∂I/∂σ)⁻ + (g⁻ - g⁺) dt*/dσ
+    /// ```
+    ///
+    /// Δ is what [`BeamDae::switch`] adds to unknowns that are counted from the driven ends.
+    pub fn pass(
+        &mut self,
+        dae: &mut BeamDae,
+        stop: usize,
+        t: f64,
+        before: &Before,
+        state: [&[f64]; 2],
+    ) -> std::result::Result<(), SolverFault> {
+        let after = integrands(dae, t, state);
+        let differential = dae.differential().to_vec();
+        let mut restated = vec![0.0; differential.len()];
+        for (k, neighbours) in dae.neighbours_mut().iter_mut().enumerate() {
+            let stops = &self.stops[k];
+            let mut moved = [0.0];
+            let never = neighbours.slope(&mut moved, |j, _, out| {
+                out[0] = stops[j][stop].t;
+                Ok::<(), std::convert::Infallible>(())
+            });
+            let never = never.and_then(|()| {
+                neighbours.slope(&mut restated, |j, beam, out| {
+                    out.fill(0.0);
+                    beam.switch(stops[j][stop].t, middle(&stops[j], stop + 1), out);
+                    Ok(())
+                })
+            });
+            let Ok(()) = never;
+            let [moved] = moved;
+            for (i, s) in self.s[k].iter_mut().enumerate().filter(|(i, _)| differential[*i]) {
+                *s += (before.rates[i] - state[1][i]) * moved + restated[i];
+            }
+            for ((total, before), after) in self.carried[k].iter_mut().zip(&before.integrands).zip(&after) {
+                *total += (before - after) * moved;
+            }
+        }
+        self.complete(dae, t, state)
+    }
+
+    /// Passes a stop at which nothing switches.
+    pub fn go_on(&self, dae: &mut BeamDae, stop: usize) {
+        self.look(dae, stop + 1);
+    }
+
+    /// Takes a sample at a state within the last step, whose row of the history is `values`; returns the row of derivatives.
+    pub fn sample(
+        &mut self,
+        ida: &mut Ida<BeamDae>,
+        t: f64,
+        [y, yp]: [&[f64]; 2],
+        values: &[f64],
+    ) -> std::result::Result<&[f64], Box<IdaFailure>> {
+        let mut integrals = self.carried.clone();
+        self.read(ida, t, &mut integrals)?;
+        let dae = ida.dae_mut();
+        let (system, _, w) = dae.evaluate(t, y, yp);
+        let extremes = sample::extremes(system, w);
+        self.row.clear();
+        self.row.push(t);
+        let mut slopes = vec![0.0; self.instant];
+        for (k, (parameter, integrals)) in self.parameters.iter().zip(&integrals).enumerate() {
+            dae.read_slope(
+                k,
+                t,
+                [y, yp],
+                [&self.s[k], &self.sp[k]],
+                &mut slopes,
+                |system, now, rates, w, out| {
+                    ledger::complete(system, now, rates, w);
+                    sample::instantaneous(system, now, w, &extremes, out);
+                },
+            );
+            let flows = ledger::FLOWS
+                .iter()
+                .filter(|f| f.energy_sign() != 0.0)
+                .map(|f| integrals[*f as usize]);
+            let first = self.row.len();
+            self.row
+                .extend(slopes.iter().copied().chain(flows).map(|slope| slope / parameter.value));
+            let (columns, row) = (&self.columns, &self.row[first..]);
+            self.figures[k].take(t, |name| {
+                let i = columns.iter().position(|c| c.1 == name)?;
+                Some([values[columns[i].0], row[i]])
+            });
+        }
+        Ok(&self.row)
+    }
+
+    /// What the summary says.
+    pub fn summary(&self) -> BTreeMap<String, Sensitivity> {
+        let of = |(parameter, figures): (&Parameter, &Figures)| {
+            let sensitivity = Sensitivity {
+                value: parameter.value,
+                quantities: figures.quantities(),
+            };
+            (parameter.pointer.clone(), sensitivity)
+        };
+        self.parameters.iter().zip(&self.figures).map(of).collect()
+    }
+}
+
+/// The middle of the interval before a stop [s].
+fn middle(stops: &[Stop], stop: usize) -> f64 {
+    let start = stop.checked_sub(1).map_or(0.0, |before| stops[before].t);
+    0.5 * (start + stops[stop].t)
+}
+
+fn integrands(dae: &mut BeamDae, t: f64, [y, yp]: [&[f64]; 2]) -> Vec<f64> {
+    let mut out = vec![0.0; dae.integrals()];
+    // the beam's integrands have no faults of their own
+    let _ = dae.integrands(t, y, yp, &mut out);
+    out
+}

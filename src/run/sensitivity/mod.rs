@@ -1,0 +1,4 @@
+//! Derivatives of a run with respect to numbers of its case.
+
+pub mod figures;
+pub mod forward;

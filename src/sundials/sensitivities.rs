@@ -1,0 +1,300 @@
+//! Sensitivities to parameters carried along by IDA's own formula (IDAS), and those of the integrals.
+//!
+//! `[E41]` Of `F(t, y, y', σ) = 0` with integrals `I' = g(t, y, y', σ)`, every `s = ∂y/∂σ` satisfies
+//!
+//! ```text
+//! F_y s + F_y' s' + ∂F/∂σ = 0        (∂I/∂σ)' = g_y s + g_y' s' + ∂g/∂σ
+//! ```
+//!
+//! Staggered: sensitivities are solved for after a step's state has converged and passed its error test, so that a step refused
+//! costs none, the state is that of a run without them but for the steps, and ∂F/∂σ is evaluated once a step. Their own
+//! error test takes part in the choice of steps.
+
+use std::ffi::{c_int, c_void};
+
+use sundials_sys as s;
+
+use super::callbacks::Bridge;
+use super::failure::IdaFailure;
+use super::ida::Ida;
+use super::kernels;
+use super::vector::{Vector, entries, entries_mut};
+use crate::dae::{Dae, Fault};
+
+/// `∂F/∂σₖ` at one state, kept because a corrector asks for it again and again.
+#[derive(Default)]
+pub(super) struct Slopes {
+    t: f64,
+    y: Vec<f64>,
+    yp: Vec<f64>,
+    of: Vec<Vec<f64>>,
+}
+
+impl Slopes {
+    /// Evaluates them unless they are those of this state.
+    fn look<D: Dae>(&mut self, dae: &mut D, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Fault> {
+        if self.t == t && self.y == y && self.yp == yp {
+            return Ok(());
+        }
+        self.forget();
+        self.of.resize_with(dae.parameters(), Vec::new);
+        for (k, slope) in self.of.iter_mut().enumerate() {
+            slope.resize(y.len(), 0.0);
+            dae.slope(k, t, y, yp, slope)?;
+        }
+        self.t = t;
+        self.y.extend_from_slice(y);
+        self.yp.extend_from_slice(yp);
+        Ok(())
+    }
+
+    /// The equations are others now.
+    fn forget(&mut self) {
+        self.y.clear();
+        self.yp.clear();
+    }
+}
+
+/// What an integrator keeps for its sensitivities.
+pub(super) struct Carried {
+    s: Vec<Vector>,
+    sp: Vec<Vector>,
+    integrals: Vec<Vector>,
+}
+
+fn raws(vectors: &[Vector]) -> Vec<s::N_Vector> {
+    vectors.iter().map(Vector::raw).collect()
+}
+
+/// Slices of `count` vectors that C passes as an array.
+///
+/// # Safety
+/// The array holds as many living serial vectors, which nobody writes to while the slices are used.
+unsafe fn slices<'v>(array: *mut s::N_Vector, count: usize) -> Vec<&'v [f64]> {
+    // SAFETY: by contract.
+    (0..count).map(|k| unsafe { entries(*array.add(k)) }).collect()
+}
+
+/// Slices of `count` vectors that C passes as an array, to be written to.
+///
+/// # Safety
+/// The array holds as many different living serial vectors, which nobody else touches while the slices are used.
+unsafe fn slices_mut<'v>(array: *mut s::N_Vector, count: usize) -> Vec<&'v mut [f64]> {
+    // SAFETY: by contract.
+    (0..count).map(|k| unsafe { entries_mut(*array.add(k)) }).collect()
+}
+
+/// `IDASensResFn` with a [`Bridge`] as user data.
+#[allow(clippy::too_many_arguments)] // SUNDIALS' signature
+unsafe extern "C" fn residuals<D: Dae>(
+    count: c_int,
+    t: f64,
+    y: s::N_Vector,
+    yp: s::N_Vector,
+    _: s::N_Vector,
+    along: *mut s::N_Vector,
+    along_rates: *mut s::N_Vector,
+    out: *mut s::N_Vector,
+    data: *mut c_void,
+    _: s::N_Vector,
+    _: s::N_Vector,
+    _: s::N_Vector,
+) -> c_int {
+    let count = count as usize;
+    // SAFETY: user data is the bridge, borrowed by nobody else while C runs; the arrays hold `count` vectors each, and those
+    // of `out` are other ones than all that are read.
+    let (bridge, y, yp, along, along_rates, mut out) = unsafe {
+        (
+            &mut *data.cast::<Bridge<D>>(),
+            entries(y),
+            entries(yp),
+            slices(along, count),
+            slices(along_rates, count),
+            slices_mut(out, count),
+        )
+    };
+    let begin = std::time::Instant::now();
+    let mut slopes = std::mem::take(&mut bridge.slopes);
+    let code = bridge.call(|dae| {
+        slopes.look(dae, t, y, yp)?;
+        dae.tangent(t, y, yp, [&along, &along_rates], &mut out)?;
+        for (out, slope) in out.iter_mut().zip(&slopes.of) {
+            out.iter_mut().zip(slope).for_each(|(out, slope)| *out += slope);
+            if let Some(i) = kernels::first_not_finite(out) {
+                let what = format!("the equation of the sensitivity of {} gives {}", dae.name(i), out[i]);
+                return Err(Fault::Recoverable(what));
+            }
+        }
+        Ok(())
+    });
+    bridge.slopes = slopes;
+    bridge.residual_wall += begin.elapsed();
+    code
+}
+
+/// `IDAQuadSensRhsFn` with a [`Bridge`] as user data.
+#[allow(clippy::too_many_arguments)] // SUNDIALS' signature
+unsafe extern "C" fn integrands<D: Dae>(
+    count: c_int,
+    t: f64,
+    y: s::N_Vector,
+    yp: s::N_Vector,
+    along: *mut s::N_Vector,
+    along_rates: *mut s::N_Vector,
+    _: s::N_Vector,
+    out: *mut s::N_Vector,
+    data: *mut c_void,
+    _: s::N_Vector,
+    _: s::N_Vector,
+    _: s::N_Vector,
+) -> c_int {
+    let count = count as usize;
+    // SAFETY: as in `residuals`.
+    let (bridge, y, yp, along, along_rates, mut out) = unsafe {
+        (
+            &mut *data.cast::<Bridge<D>>(),
+            entries(y),
+            entries(yp),
+            slices(along, count),
+            slices(along_rates, count),
+            slices_mut(out, count),
+        )
+    };
+    let begin = std::time::Instant::now();
+    let code = bridge.call(|dae| {
+        for (k, out) in out.iter_mut().enumerate() {
+            dae.integrand_slope(k, t, [y, yp], [along[k], along_rates[k]], out)?;
+        }
+        Ok(())
+    });
+    bridge.integrand_wall += begin.elapsed();
+    code
+}
+
+impl<D: Dae> Ida<D> {
+    /// Carries sensitivities along from the present time on, `sₖ` and `sₖ'` for each of the equations' parameters, consistent
+    /// with [`super::consistent_sensitivities`]. Their tolerances are those of the unknowns, relative one and smallest absolute one.
+    /// To be called before the first step.
+    ///
+    /// Panics when a sensitivity has another length than the unknowns.
+    pub fn carry(&mut self, from: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Box<IdaFailure>> {
+        let (count, n) = (self.dae().parameters(), self.dae().len());
+        let integrals = self.dae().integrals();
+        assert!(from.len() == count && rates.len() == count && from.iter().chain(rates).all(|s| s.len() == n));
+        if count == 0 {
+            return Ok(());
+        }
+        let time = self.time;
+        let vectors = |all: &[Vec<f64>]| -> Result<Vec<Vector>, Box<IdaFailure>> {
+            let vector = |entries: &Vec<f64>| Vector::new(entries, self.context.raw());
+            let made: Result<_, _> = all.iter().map(vector).collect();
+            made.map_err(|message| IdaFailure::request(message, time))
+        };
+        let carried = Carried {
+            s: vectors(from)?,
+            sp: vectors(rates)?,
+            integrals: vectors(&vec![vec![0.0; integrals]; if integrals == 0 { 0 } else { count }])?,
+        };
+        let bridge = self.bridge.get();
+        let (relative, least) = (
+            bridge.relative,
+            bridge.absolute.iter().copied().fold(f64::INFINITY, f64::min),
+        );
+        let (mut from, mut rates, mut absolute) = (raws(&carried.s), raws(&carried.sp), vec![least; count]);
+        let mut zeros = raws(&carried.integrals);
+        let memory = self.memory.0;
+        // SAFETY: IDA is alive and copies vectors and tolerances; the arrays have `count` entries each.
+        let flags = unsafe {
+            [
+                s::IDASensInit(
+                    memory,
+                    count as c_int,
+                    s::IDA_STAGGERED,
+                    Some(residuals::<D>),
+                    from.as_mut_ptr(),
+                    rates.as_mut_ptr(),
+                ),
+                s::IDASensSStolerances(memory, relative, absolute.as_mut_ptr()),
+                s::IDASetSensErrCon(memory, 1),
+                if zeros.is_empty() {
+                    s::IDA_SUCCESS
+                } else {
+                    s::IDAQuadSensInit(memory, Some(integrands::<D>), zeros.as_mut_ptr())
+                },
+            ]
+        };
+        self.sensitivities = Some(carried);
+        match flags.into_iter().find(|&flag| flag < 0) {
+            Some(flag) => Err(self.failure(flag)),
+            None => Ok(()),
+        }
+    }
+
+    /// Goes on with other sensitivities after [`Ida::restart`]; those of the integrals start at zero.
+    ///
+    /// Panics when a sensitivity has another length than the unknowns.
+    pub fn carry_on(&mut self, from: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Box<IdaFailure>> {
+        self.bridge.get_mut().slopes.forget();
+        let Some(carried) = &mut self.sensitivities else {
+            return Ok(());
+        };
+        for (vector, from) in carried.s.iter_mut().zip(from).chain(carried.sp.iter_mut().zip(rates)) {
+            vector.entries_mut().copy_from_slice(from);
+        }
+        carried
+            .integrals
+            .iter_mut()
+            .for_each(|zeros| zeros.entries_mut().fill(0.0));
+        let (mut from, mut rates, mut zeros) = (raws(&carried.s), raws(&carried.sp), raws(&carried.integrals));
+        // SAFETY: IDA and the vectors, which it copies, are alive; the arrays have one entry a parameter.
+        let flag = unsafe {
+            match s::IDASensReInit(self.memory.0, s::IDA_STAGGERED, from.as_mut_ptr(), rates.as_mut_ptr()) {
+                s::IDA_SUCCESS if !zeros.is_empty() => s::IDAQuadSensReInit(self.memory.0, zeros.as_mut_ptr()),
+                flag => flag,
+            }
+        };
+        if flag < 0 { Err(self.failure(flag)) } else { Ok(()) }
+    }
+
+    /// Sensitivity to parameter k and its rate, at a time [s] within the last step; the first ones before the first step.
+    ///
+    /// Panics when a slice has another length than the unknowns.
+    pub fn sensitivity(&mut self, k: usize, time: f64, out: [&mut [f64]; 2]) -> Result<(), Box<IdaFailure>> {
+        let Some(carried) = &self.sensitivities else {
+            return Ok(());
+        };
+        let (places, mut flag) = ([&carried.s[k], &carried.sp[k]], s::IDA_SUCCESS);
+        if self.stepped {
+            for (derivative, place) in places.iter().enumerate() {
+                // SAFETY: IDA and the vector are alive.
+                let next =
+                    unsafe { s::IDAGetSensDky1(self.memory.0, time, derivative as c_int, k as c_int, place.raw()) };
+                flag = flag.min(next);
+            }
+        }
+        for (out, place) in out.into_iter().zip(places) {
+            out.copy_from_slice(place.entries());
+        }
+        if flag < 0 { Err(self.failure(flag)) } else { Ok(()) }
+    }
+
+    /// Sensitivities of the integrals since the last restart to parameter k, at a time [s] within the last step.
+    ///
+    /// Panics when `out` has another length than the integrals.
+    pub fn integral_sensitivity(&mut self, k: usize, time: f64, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
+        let Some(vector) = self.sensitivities.as_ref().and_then(|carried| carried.integrals.get(k)) else {
+            return Ok(());
+        };
+        if !self.stepped {
+            out.fill(0.0);
+            return Ok(());
+        }
+        // SAFETY: IDA and the vector are alive.
+        let flag = unsafe { s::IDAGetQuadSensDky1(self.memory.0, time, 0, k as c_int, vector.raw()) };
+        if flag < 0 {
+            return Err(self.failure(flag));
+        }
+        out.copy_from_slice(vector.entries());
+        Ok(())
+    }
+}
