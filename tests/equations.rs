@@ -87,12 +87,12 @@ const INDEX: [(&str, &str, &str); 45] = [
     ),
     (
         "[E29]",
-        "tests/equilibrium.rs",
+        "tests/equilibrium/fluid.rs",
         "static_jacobian_is_that_of_differences",
     ),
     (
         "[E30]",
-        "tests/equilibrium.rs",
+        "tests/equilibrium/paths.rs",
         "stubby_column_loses_load_as_it_buckles",
     ),
     ("[E31]", "tests/modes/physics.rs", "a_run_swings_and_decays_as_its_mode"),
@@ -106,10 +106,14 @@ const INDEX: [(&str, &str, &str); 45] = [
         "half_the_cells_tell_the_error_of_the_mesh",
     ),
     ("[E44]", "tests/modes/physics.rs", "eigenvalues_move_as_differences_say"),
-    ("[E42]", "tests/equilibrium.rs", "column_buckles_onto_the_stable_branch"),
+    (
+        "[E42]",
+        "tests/equilibrium/paths.rs",
+        "column_buckles_onto_the_stable_branch",
+    ),
     (
         "[E43]",
-        "tests/equilibrium.rs",
+        "tests/equilibrium/derivatives.rs",
         "sensitivities_are_those_of_differences",
     ),
     (

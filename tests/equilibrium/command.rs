@@ -1,0 +1,96 @@
+//! The command from outside.
+
+use std::path::Path;
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+fn slcbeam(arguments: &[&str], out: &Path) -> std::process::Output {
+    let mut command = Command::cargo_bin("slcbeam").expect("the program");
+    command
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(arguments)
+        .arg("--out")
+        .arg(out)
+        .arg("--quiet");
+    command.output().expect("it runs")
+}
+
+/// Goal: the command leaves table, shapes, numbers and picture, and says on standard output what happened.
+#[test]
+fn command_fills_its_folder() {
+    let out = tempfile::tempdir().expect("a folder");
+    let run = slcbeam(
+        &[
+            "equilibrium",
+            "cases/elastica.json",
+            "--sensitivity",
+            "/beam/young_modulus_pa",
+        ],
+        out.path(),
+    );
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let text = String::from_utf8_lossy(&run.stdout);
+    for word in [
+        "bifurcation",
+        "stable",
+        "derivatives by /beam/young_modulus_pa",
+        "files in",
+    ] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    for file in ["path.csv", "shapes.csv", "equilibrium.json", "path.svg", "case.json"] {
+        assert!(out.path().join(file).exists(), "{file}");
+    }
+    let json = std::fs::read_to_string(out.path().join("equilibrium.json")).expect("a file");
+    let json: Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(json["status"], "finished");
+    assert!(json["stability"]["stable"].as_bool().expect("a verdict"));
+    assert!(json["quantities"]["tip_u1_m"].as_f64().expect("a number") > 0.5);
+    let table = std::fs::read_to_string(out.path().join("path.csv")).expect("a file");
+    let head = "load_factor [1],tip_u1 [m],tip_u3 [m],tip_angle [rad],axial_energy [J],bending_energy [J],bladder_energy [J],unstable_modes [1]";
+    assert_eq!(table.lines().next(), Some(head));
+}
+
+/// Goal: mistakes get one message and the house's exit codes; a path that ends early keeps its states.
+#[test]
+fn command_says_what_cannot_be() {
+    let out = tempfile::tempdir().expect("a folder");
+    for (arguments, code, words) in [
+        (
+            vec![
+                "equilibrium",
+                "cases/elastica.json",
+                "--sensitivity",
+                "/beam/young_modulus",
+            ],
+            2,
+            "young_modulus_pa",
+        ),
+        (
+            vec!["equilibrium", "cases/elastica.json", "--load-factor", "0"],
+            2,
+            "--load-factor",
+        ),
+        (
+            vec!["equilibrium", "cases/elastica.json", "--set", "/ends/root=\"free\""],
+            4,
+            "nothing holds",
+        ),
+        (
+            vec!["equilibrium", "cases/elastica.json", "--set", "/beam/length=1"],
+            3,
+            "length_m",
+        ),
+        (
+            vec!["equilibrium", "cases/pluck.json", "--set", "/start/u1_m=0.001"],
+            3,
+            "/start/equilibrium finds",
+        ),
+    ] {
+        let run = slcbeam(&arguments, out.path());
+        let text = String::from_utf8_lossy(&run.stderr);
+        assert_eq!(run.status.code(), Some(code), "{arguments:?}: {text}");
+        assert!(text.contains(words), "{arguments:?}: {text}");
+    }
+}

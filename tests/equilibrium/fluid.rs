@@ -1,0 +1,163 @@
+//! Equilibria with fluid, and runs that start in them.
+
+use std::f64::consts::PI;
+
+use serde_json::json;
+use slcbeam::dae::{Dae as _, Seeds, StaticBeam};
+use slcbeam::discrete::start;
+use slcbeam::run::equilibrium::{Options, system};
+use slcbeam::run::record::Memory;
+use slcbeam::run::{dynamics, summary::Status};
+
+use crate::common::{path_of, shipped, solved};
+
+/// Goal: the exact tangent. The static Jacobian, volumes of closed networks included, against central differences.
+#[test]
+fn static_jacobian_is_that_of_differences() {
+    for name in [
+        "wiring-3",
+        "network-tour",
+        "harvester-crossover-wave",
+        "curl",
+        "ring-network",
+    ] {
+        let case = shipped(name, &[]);
+        let of = system(&case, case.time.end_s);
+        let mut beam = slcbeam::dae::BeamDae::new(of.clone());
+        let (inside, now) = beam.instant(0.0);
+        let rest = start::state(inside, &case, now);
+        let mut statics = StaticBeam::new(of, &rest);
+        let n = statics.len();
+        let y: Vec<f64> = (0..n).map(|k| 0.03 * (1.7 * k as f64).sin()).collect();
+        let mut values = vec![0.0; statics.pattern().entries()];
+        statics
+            .jacobian(0.7, &y, &[], Seeds::Step { cj: 0.0 }, &mut values)
+            .expect("a Jacobian");
+        let pattern = statics.pattern().clone();
+        let (mut above, mut below) = (vec![0.0; n], vec![0.0; n]);
+        for column in (0..n).step_by(7) {
+            let step = 1e-6;
+            let mut moved = y.clone();
+            moved[column] += step;
+            statics.residual(0.7, &moved, &[], &mut above).expect("a residual");
+            moved[column] -= 2.0 * step;
+            statics.residual(0.7, &moved, &[], &mut below).expect("a residual");
+            let mut exact = vec![0.0; n];
+            for entry in pattern.column(column) {
+                exact[pattern.rows[entry] as usize] = values[entry];
+            }
+            let size = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            for row in 0..n {
+                let difference = (above[row] - below[row]) / (2.0 * step);
+                // Round-off of the residuals, 1e-16 of their size, over 1e-6; and the third derivative.
+                assert!(
+                    (difference - exact[row]).abs() < 1e-6 * size.max(1.0),
+                    "{name}: {row}, {column}"
+                );
+            }
+        }
+    }
+}
+
+/// Goal: a steady flow is an equilibrium too. Ports of different pressures drive fluid through the chain; the pressures
+/// are those of Kirchhoff's equations, linear along equal resistances.
+#[test]
+fn steady_streaming_is_an_equilibrium() {
+    let case = shipped(
+        "wiring-2",
+        &[
+            "/network/chains/1/ends=[{\"pressure_pa\":1000},{\"pressure_pa\":0}]",
+            "/bladders/coupling=\"reciprocal\"",
+            "/ends/root=\"clamped\"",
+        ],
+    );
+    let (path, last) = solved(&case);
+    // The first cell lies half of half a bladder's resistance behind the port: 1/4 of 19 resistances.
+    let resistances = 10.0 + 9.0 * (0.020 / 6.72e-13) / (0.046 / 1.55e-12);
+    let first = 1000.0 * (1.0 - 0.25 / resistances);
+    assert!(
+        (last("max_pressure") / first - 1.0).abs() < 1e-6,
+        "{} {first}",
+        last("max_pressure")
+    );
+    assert!(path.last().stability.is_some_and(|s| s.unstable == 0));
+}
+
+/// Goal: 400 bladders within a second: 23 Newton steps measured, some milliseconds each.
+#[test]
+fn four_hundred_bladders_take_few_newton_steps() {
+    let upper: Vec<i64> = (1..=200).collect();
+    let lower: Vec<i64> = upper.iter().map(|b| -b).collect();
+    let case = shipped(
+        "curl",
+        &[
+            "/beam/length_m=2.0",
+            "/bladders/per_row=200",
+            &format!(
+                "/network/chains={}",
+                json!([
+                    {"bladders": upper, "ends": [{"pressure_pa": 50000}, "sealed"]},
+                    {"bladders": lower, "ends": ["sealed", "sealed"]},
+                ])
+            ),
+        ],
+    );
+    let (path, last) = solved(&case);
+    assert!(last("tip_angle").abs() > 1.0, "{}", last("tip_angle"));
+    assert!(path.work.factorizations < 60, "{:?}", path.work);
+}
+
+/// Goal: an actuator curls up by more than half a turn from rest under pressure.
+#[test]
+fn actuator_curls_beyond_half_a_turn() {
+    let (path, last) = solved(&shipped("curl", &[]));
+    assert!(last("tip_angle").abs() > PI, "{}", last("tip_angle"));
+    assert!(path.events.is_empty());
+}
+
+/// Goal: a run that starts in equilibrium stays there, whatever it leaves out: velocities at round-off of the solution,
+/// 1e-10 of the deflection times the first frequencies.
+#[test]
+fn run_stays_in_its_equilibrium() {
+    for effects in [
+        "\"full\"",
+        "\"auto\"",
+        "{\"finite_rotation\":\"off\"}",
+        "{\"network_pressure_differences\":\"off\"}",
+    ] {
+        let case = shipped(
+            "pluck",
+            &[
+                "/ends/tip={\"free\":{\"force_x_n\":0.5}}",
+                "/start={\"equilibrium\":{},\"pressures\":[{\"bladders\":[1,2,3,4,5,6,7,8,9,10],\"pressure_pa\":2000}]}",
+                "/time/end_s=0.05",
+                &format!("/effects={effects}"),
+            ],
+        );
+        let mut record = Memory::default();
+        let outcome = dynamics::run(&case, &mut record).expect("memory");
+        assert_eq!(outcome.summary.status, Status::Finished, "{:?}", outcome.summary.reason);
+        let tip = record.column("tip_u1").expect("a column");
+        let pressure = record.column("max_pressure").expect("a column");
+        assert!(tip[0].abs() > 1e-3 && pressure[0] > 1000.0);
+        for (now, first) in [(&tip, tip[0]), (&pressure, pressure[0])] {
+            let moved = now.iter().fold(0.0_f64, |m, x| m.max((x / first - 1.0).abs()));
+            assert!(moved < 1e-6, "{effects}: {moved:e}");
+        }
+    }
+}
+
+/// Goal: what was held is let go. The run begins bent as the force before t = 0 has it and with the energy of that state.
+#[test]
+fn plucked_beam_is_let_go() {
+    let case = shipped("pluck", &["/time/end_s=0.1"]);
+    let mut record = Memory::default();
+    let outcome = dynamics::run(&case, &mut record).expect("memory");
+    assert_eq!(outcome.summary.status, Status::Finished);
+    let held = path_of(&case, &Options::at(-1.0));
+    let tip = record.column("tip_u1").expect("a column");
+    let last = held.last().u1.last().copied().expect("a node");
+    assert!((tip[0] / last - 1.0).abs() < 1e-9, "{} {last}", tip[0]);
+    assert!(outcome.summary.balances.energy_residual_relative < 1e-3);
+    assert!(tip.iter().any(|u| u * last < 0.0), "it swings through");
+}

@@ -1,0 +1,104 @@
+//! Paths of dry beams: large loads, limit points, branches.
+
+use std::f64::consts::PI;
+
+use serde_json::json;
+use slcbeam::run::equilibrium::{self, Kind, Options};
+
+use crate::common::{parse, path_of, solved, unit};
+
+/// Goal: roll-up to a closed ring and to two turns converges from rest and closes to 1e-6 (here 1e-9: the mesh's chords
+/// close exactly, Newton leaves 1e-10), whether the beam stretches easily or hardly.
+#[test]
+fn beam_rolls_up_to_two_turns() {
+    for factor in [1.0, 1000.0] {
+        for turns in [1.0, 2.0] {
+            let moment = -2.0 * PI * turns;
+            let (path, last) = solved(&parse(&unit(64, factor, json!({"moment_n_m": moment}))));
+            assert!(last("tip_u1").abs() < 1e-9 && (last("tip_u3") + 1.0).abs() < 1e-9);
+            assert!((last("tip_angle") - 2.0 * PI * turns).abs() < 1e-8);
+            assert!(path.events.is_empty());
+            assert!(path.states.iter().all(|s| s.stability.is_some_and(|s| s.unstable == 0)));
+            // 22 to 37 Newton steps measured: angles are proportional to the moment, which predictions know.
+            assert!(path.work.iterations < 80, "{:?}", path.work);
+        }
+    }
+}
+
+/// Goal: follower loads to `F L²/EI = 16` and dead ones to 10 converge from rest; the dead one to Bisshopp & Drucker's
+/// rows within 3e-4 at 64 cells (second order: the constant is near 1, h² 2.4e-4).
+#[test]
+fn large_loads_converge_from_rest() {
+    for factor in [1.0, 1000.0] {
+        let (_, last) = solved(&parse(&unit(64, factor, json!({"follower_shear_n": -16.0}))));
+        assert!(last("tip_angle") > 3.0, "the tip has turned by {}", last("tip_angle"));
+    }
+    let exact = [0.554995597754, 0.810609024880, 1.43028553880];
+    let (_, last) = solved(&parse(&unit(64, 1000.0, json!({"force_x_n": 10.0}))));
+    for (value, exact) in [-last("tip_u3"), last("tip_u1"), last("tip_angle")]
+        .into_iter()
+        .zip(exact)
+    {
+        assert!((value / exact - 1.0).abs() < 3e-4, "{value} {exact}");
+    }
+}
+
+/// Goal: a perfect column leaves the straight path at Euler's load on its mesh, is stable on the branch, and bends to
+/// 160 degrees; kept on the straight path it is unstable.
+#[test]
+fn column_buckles_onto_the_stable_branch() {
+    let euler = PI * PI / 4.0;
+    let column = parse(&unit(64, 1000.0, json!({"force_z_n": -5.0 * euler})));
+    let (path, last) = solved(&column);
+    let [event] = path.events.as_slice() else {
+        panic!("{:?}", path.events)
+    };
+    assert_eq!(event.kind, Kind::Bifurcation);
+    // (pi h/2)²/12 of the mesh: 5e-5
+    assert!((5.0 * event.share - 1.0).abs() < 1e-4, "{event:?}");
+    assert!(last("tip_angle").to_degrees() > 160.0 && last("tip_u1") > 0.0);
+    assert!(path.states.iter().all(|s| s.stability.is_some_and(|s| s.unstable == 0)));
+    let straight = path_of(
+        &column,
+        &Options {
+            branches: false,
+            ..Options::at(1.0)
+        },
+    );
+    assert!(straight.last().u1.iter().all(|u| u.abs() < 1e-12));
+    // Euler's second load is nine times the first.
+    assert_eq!(straight.last().stability.expect("eigenvalues").unstable, 1);
+}
+
+/// Goal: a path is followed over limit points (Magnusson, Ristinmaa & Ljung 2001, the extensible elastica): a column so stubby
+/// that it is squeezed by a quarter before it buckles, at `P (1 - P/EA) = π² EI/4 L²`, loses load as it bends, and carries
+/// more again when it is bent far.
+#[test]
+fn stubby_column_loses_load_as_it_buckles() {
+    let column = parse(&unit(64, 1.05e-4, json!({"force_z_n": -8.0})));
+    let (path, last) = solved(&column);
+    let kinds: Vec<Kind> = path.events.iter().map(|e| e.kind).collect();
+    assert_eq!(kinds, [Kind::Bifurcation, Kind::LimitPoint]);
+    let stiffness = 12.6;
+    let exact = 0.5 * stiffness * (1.0 - (1.0 - PI * PI / stiffness).sqrt());
+    // The chain of links, (pi h/2)²/12 = 5e-5, enlarged where load and squeeze nearly balance.
+    assert!(
+        (8.0 * path.events[0].share / exact - 1.0).abs() < 2e-4,
+        "{:?} {exact}",
+        path.events
+    );
+    let unstable = |s: &&equilibrium::State| s.stability.is_some_and(|s| s.unstable == 1);
+    assert!(path.states.iter().any(|s| unstable(&s)), "it falls back");
+    assert!(last("tip_u1") > 0.6 && path.last().stability.is_some_and(|s| s.unstable == 0));
+}
+
+/// Goal: what cannot be is said. Nothing holds a beam that is free at both ends.
+#[test]
+fn beam_that_nothing_holds_is_refused() {
+    let mut free = unit(8, 1.0, json!({"force_x_n": 1.0}));
+    free["ends"]["root"] = json!("free");
+    let path = path_of(&parse(&free), &Options::at(1.0));
+    let fault = path.fault.expect("no equilibrium");
+    assert!(fault.what.contains("no equilibrium"), "{}", fault.what);
+    assert!(fault.cause.is_some_and(|c| c.contains("nothing holds")));
+}
