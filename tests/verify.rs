@@ -108,6 +108,8 @@ mod driven_motion {
         simo_vu_quoc_spin_up: "spin-up",
         mathieu_growth: "mathieu-inside",
         mathieu_stable: "mathieu-outside",
+        tongue_edges: "floquet-tongue-edges",
+        damped_growth: "floquet-damped-growth",
     }
 }
 

@@ -43,7 +43,7 @@ pub enum Command {
 }
 
 /// A case file and changes to it.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct CaseArguments {
     /// Case file (JSON)
     pub case: PathBuf,
@@ -105,8 +105,8 @@ pub struct EquilibriumArguments {
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
     pub load_factor: f64,
     /// Points along the path at least
-    #[arg(long, value_name = "COUNT")]
-    pub points: Option<usize>,
+    #[arg(long, value_name = "COUNT", default_value_t = 16)]
+    pub points: usize,
     /// Stay on a path that becomes unstable (a column that stays straight) instead of taking the one that crosses it
     #[arg(long)]
     pub keep_branch: bool,
@@ -220,6 +220,9 @@ pub struct ModesArguments {
     /// repeatable
     #[arg(long, value_name = "POINTER")]
     pub sensitivity: Vec<String>,
+    /// A map instead: that of `floquet`.
+    #[command(flatten)]
+    pub map: MapArguments,
     /// Folder for modes.csv, modes.json, modes.npz, modes.svg [default: out/<case name>-modes]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -231,18 +234,9 @@ pub struct ModesArguments {
     pub json: bool,
 }
 
-/// `floquet`.
-#[derive(Debug, Args)]
-pub struct FloquetArguments {
-    /// The case.
-    #[command(flatten)]
-    pub case: CaseArguments,
-    /// Multipliers, the largest first
-    #[arg(long, value_name = "COUNT", default_value_t = 12)]
-    pub count: usize,
-    /// Period of a case in which nothing is periodic
-    #[arg(long, value_name = "SECONDS", conflicts_with = "map")]
-    pub period: Option<f64>,
+/// A map of where a shaken beam is stable.
+#[derive(Clone, Debug, Args)]
+pub struct MapArguments {
     /// Map growth over these two parameters of a root that is shaken along the beam: frequency,amplitude
     #[arg(long, value_name = "PARAMETERS")]
     pub map: Option<String>,
@@ -261,6 +255,23 @@ pub struct FloquetArguments {
         requires = "map"
     )]
     pub permeability: Vec<f64>,
+}
+
+/// `floquet`.
+#[derive(Debug, Args)]
+pub struct FloquetArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Multipliers, the largest first
+    #[arg(long, value_name = "COUNT", default_value_t = 12)]
+    pub count: usize,
+    /// Period of a case in which nothing is periodic
+    #[arg(long, value_name = "SECONDS", conflicts_with = "map")]
+    pub period: Option<f64>,
+    /// A map instead.
+    #[command(flatten)]
+    pub map: MapArguments,
     /// Folder for the files [default: out/<case name>-floquet or -map]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

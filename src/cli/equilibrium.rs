@@ -86,13 +86,13 @@ fn options(asked: &EquilibriumArguments, at_s: f64) -> Result<Options> {
             "--load-factor must be a number that is not 0, --at one in seconds".into(),
         ));
     }
-    if asked.points == Some(0) {
+    if asked.points == 0 {
         return Err(Error::Usage("--points must be at least 1".into()));
     }
     Ok(Options {
         at_s,
         share: asked.load_factor,
-        points: asked.points,
+        points: Some(asked.points),
         branches: !asked.keep_branch,
     })
 }

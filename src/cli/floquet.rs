@@ -21,7 +21,7 @@ const MOST_POINTS: usize = 100_000;
 pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
     let loaded = case::load(&asked.case.case, &asked.case.sets)?;
     super::refuse(&loaded, &System::with(&loaded.case, whole(&loaded.case)))?;
-    match &asked.map {
+    match &asked.map.map {
         Some(parameters) => map(asked, &loaded, parameters),
         None => one(asked, &loaded),
     }
@@ -91,14 +91,14 @@ fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<Plan> {
         text.split_once(',')
             .map(|(a, b)| (a.trim().to_owned(), b.trim().to_owned()))
     };
-    let counts = both(&asked.points).and_then(|(a, b)| Some((a.parse::<usize>().ok()?, b.parse::<usize>().ok()?)));
+    let counts = both(&asked.map.points).and_then(|(a, b)| Some((a.parse::<usize>().ok()?, b.parse::<usize>().ok()?)));
     let Some((columns, rows)) = counts.filter(|(a, b)| *a > 0 && *b > 0 && a.saturating_mul(*b) <= MOST_POINTS) else {
         return Err(Error::Usage(format!(
             "--points {}: two counts such as 21,12, at most {MOST_POINTS} points in all",
-            asked.points
+            asked.map.points
         )));
     };
-    let (frequency, amplitude) = match &asked.range {
+    let (frequency, amplitude) = match &asked.map.range {
         None => ((0.6 * own.0, 1.6 * own.0), (1.5 * own.1 / rows as f64, 1.5 * own.1)),
         Some(text) => both(text)
             .and_then(|(a, b)| Some((line::range(&a)?, line::range(&b)?)))
@@ -108,12 +108,12 @@ fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<Plan> {
                 Error::Usage(format!("--range {text}: {what}"))
             })?,
     };
-    if let Some(wrong) = asked.permeability.iter().find(|f| !(f.is_finite() && **f > 0.0)) {
+    if let Some(wrong) = asked.map.permeability.iter().find(|f| !(f.is_finite() && **f > 0.0)) {
         return Err(Error::Usage(format!("--permeability {wrong}: factors > 0")));
     }
     Ok(Plan {
         frequencies_hz: line::spread(frequency.0, frequency.1, columns, false),
         amplitudes_m: line::spread(amplitude.0, amplitude.1, rows, false),
-        permeability_factors: asked.permeability.clone(),
+        permeability_factors: asked.map.permeability.clone(),
     })
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use super::arguments::ModesArguments;
+use super::arguments::{FloquetArguments, ModesArguments};
 use crate::case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
@@ -13,6 +13,17 @@ use crate::run::modes::{self, Plan};
 
 /// Finds the modes, writes the folder, prints the table and what follows from it.
 pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
+    if asked.map.map.is_some() {
+        return super::floquet::floquet(&FloquetArguments {
+            case: asked.case.clone(),
+            count: asked.count,
+            period: None,
+            map: asked.map.clone(),
+            out: asked.out.clone(),
+            quiet: asked.quiet,
+            json: asked.json,
+        });
+    }
     let plan = plan(asked)?;
     let loaded = case::load(&asked.case.case, &asked.case.sets)?;
     super::refuse(&loaded, &System::new(&loaded.case))?;

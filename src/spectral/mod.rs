@@ -7,6 +7,7 @@
 //! | `exchange` | rows exchanged so that KLU finds its pivots on the diagonal |
 //! | `dense` | all finite eigenvalues of a small pencil |
 //! | `krylov` | those nearest a shift, of a large one |
+//! | `softest` | lowest eigenvalues of a static tangent |
 //! | `refine` | each pair improved by itself, with the bound of its error |
 //!
 //! `[E32]` The finite eigenvalues nearest a shift σ are the largest of an operator on the unknowns d whose columns of B are
@@ -26,12 +27,14 @@ mod krylov;
 pub mod pencil;
 mod refine;
 pub mod schur;
+mod softest;
 
 use std::fmt;
 
 use nalgebra::Complex;
 
 pub use pencil::Pencil;
+pub use softest::softest;
 
 /// Differential unknowns up to which all eigenvalues are computed at once.
 pub const DENSE: usize = 120;
@@ -199,21 +202,4 @@ pub fn quotient(pattern: &crate::dae::Pattern, a: &[f64], b: &[f64], of_b: &[f64
         }
     }
     above / below
-}
-
-/// The `count` lowest eigenvalues μ of `K x = μ D x`, D a diagonal without negative entries, lowest magnitude first: the
-/// stability of an equilibrium with the static tangent K. Entries of `k` in the order of the pattern.
-///
-/// # Errors
-/// [`Failure`].
-pub fn lowest(pattern: &crate::dae::Pattern, k: &[f64], diagonal: &[f64], count: usize) -> Result<Found, Failure> {
-    let mut b = vec![0.0; k.len()];
-    for (column, d) in diagonal.iter().enumerate() {
-        let on_diagonal = pattern.column(column).find(|&e| pattern.rows[e] as usize == column);
-        if let Some(entry) = on_diagonal {
-            b[entry] = -d;
-        }
-    }
-    let pencil = Pencil { pattern, a: k, b: &b };
-    nearest(&pencil, Complex::new(0.0, 0.0), count, &Options::default())
 }

@@ -41,7 +41,7 @@ pub fn draw(data: &LoadPath) -> Option<String> {
     let columns = curves.len() as f64;
     let sheet = LEFT + columns * (WIDTH + GAP);
     let shapes = Shapes::of(data, sheet - LEFT - GAP);
-    let bottom = TOP + HEIGHT + 40.0 + shapes.as_ref().map_or(0.0, |s| 36.0 + s.height);
+    let bottom = TOP + HEIGHT + 40.0 + shapes.as_ref().map_or(0.0, |s| 50.0 + s.height);
     Some(picture(sheet, bottom + 30.0, |canvas| {
         title(canvas, LEFT, &format!("{} · equilibria", data.case), &data.about);
         for (k, curve) in curves.iter().enumerate() {
@@ -54,7 +54,7 @@ pub fn draw(data: &LoadPath) -> Option<String> {
             over_displacement(canvas, place, data, curve);
         }
         if let Some(shapes) = shapes {
-            shapes.draw(canvas, data, TOP + HEIGHT + 66.0);
+            shapes.draw(canvas, data, TOP + HEIGHT + 80.0);
         }
     }))
 }
@@ -146,6 +146,6 @@ impl Shapes {
         );
         let faint = Words::new(11.0, Anchor::Left).coloured(FAINT_INK);
         let words = "squares: states; dashed: unstable; B bifurcation, L limit point";
-        canvas.text((LEFT, top - 22.0), words, faint);
+        canvas.text((LEFT, top - 18.0), words, faint);
     }
 }

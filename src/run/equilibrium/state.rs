@@ -88,9 +88,6 @@ impl State {
     }
 }
 
-/// Eigenvalues looked at: further ones are stiffer.
-const LOWEST: usize = 6;
-
 impl Stability {
     /// Of a state, scaled unknowns `y` under a share of the loads; none where the eigenvalues were not found.
     pub fn of(statics: &mut StaticBeam, share: f64, y: &[f64]) -> Option<Self> {
@@ -107,11 +104,10 @@ impl Stability {
                 mass[unknown] = of_node * l.scales[unknown] / l.row_scales[unknown];
             }
         }
-        let found = spectral::lowest(statics.pattern(), &values, &mass, LOWEST).ok()?;
-        let unstable = found.pairs.iter().filter(|pair| pair.s.re < -pair.error).count();
+        let found = spectral::softest(statics.pattern(), &values, &mass).ok()?;
         Some(Self {
-            unstable,
-            softest: found.pairs.first()?.s.re,
+            unstable: found.iter().filter(|mu| mu.re < 0.0).count(),
+            softest: found.first()?.re,
         })
     }
 }
