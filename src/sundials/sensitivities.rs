@@ -1,14 +1,4 @@
 //! Sensitivities to parameters carried along by IDA's own formula (IDAS), and those of the integrals.
-//!
-//! `[E41]` Of `F(t, y, y', σ) = 0` with integrals `I' = g(t, y, y', σ)`, every `s = ∂y/∂σ` satisfies
-//!
-//! ```text
-//! F_y s + F_y' s' + ∂F/∂σ = 0        (∂I/∂σ)' = g_y s + g_y' s' + ∂g/∂σ
-//! ```
-//!
-//! Staggered: sensitivities are solved for after a step's state has converged and passed its error test, so that a step refused
-//! costs none, the state is that of a run without them but for the steps, and ∂F/∂σ is evaluated once a step. Their own
-//! error test takes part in the choice of steps.
 
 use std::ffi::{c_int, c_void};
 
@@ -172,6 +162,16 @@ unsafe extern "C" fn integrands<D: Dae>(
 }
 
 impl<D: Dae> Ida<D> {
+    /// `[E41]` Of `F(t, y, y', σ) = 0` with integrals `I' = g(t, y, y', σ)`, every `s = ∂y/∂σ` satisfies
+    ///
+    /// ```text
+    /// F_y s + F_y' s' + ∂F/∂σ = 0        (∂I/∂σ)' = g_y s + g_y' s' + ∂g/∂σ
+    /// ```
+    ///
+    /// Staggered: sensitivities are solved for after a step's state has converged and passed its error test, so that a step refused
+    /// costs none, the state is that of a run without them but for the steps, and ∂F/∂σ is evaluated once a step. Their own error
+    /// test takes part in the choice of steps.
+    ///
     /// Carries sensitivities along from the present time on, `sₖ` and `sₖ'` for each of the equations' parameters, consistent
     /// with [`super::consistent_sensitivities`]. Their tolerances are those of the unknowns, relative one and smallest absolute one.
     /// To be called before the first step.

@@ -3,7 +3,7 @@
 use super::klu::{Klu, KluFault};
 use crate::dae::{Dae, Fault, Seeds};
 
-/// Solves `F_y s + F_y' s' + ∂F/∂σₖ = 0` ([`super::sensitivities`]) for the sensitivities of algebraic unknowns and the rates of
+/// Solves `F_y s + F_y' s' + ∂F/∂σₖ = 0` ([E41]) for the sensitivities of algebraic unknowns and the rates of
 /// those of differential ones, for every parameter k of the equations; `(y, yp)` is consistent.
 ///
 /// Differential entries of `s[k]` are kept; rates of algebraic ones are set to 0. One correction removes what the factors' round-off
