@@ -81,7 +81,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
 }
 
 fn options(asked: &EquilibriumArguments, at_s: f64) -> Result<Options> {
-    if !(asked.load_factor.is_finite() && asked.load_factor != 0.0) || !at_s.is_finite() {
+    if !(asked.load_factor.is_finite() && asked.load_factor != 0.0 && at_s.is_finite()) {
         return Err(Error::Usage(
             "--load-factor must be a number that is not 0, --at one in seconds".into(),
         ));

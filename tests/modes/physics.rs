@@ -258,7 +258,8 @@ fn eigenvalues_move_as_differences_say() {
             "/ends/tip/free/force_x_n",
         ] {
             let parameter = Parameter::find(&case, pointer).unwrap();
-            let found = modes::differentiate(&case, at, &base.about, &base.modes, &[parameter.clone()]).unwrap();
+            let found =
+                modes::differentiate(&case, at, &base.about, &base.modes, std::slice::from_ref(&parameter)).unwrap();
             let s = |steps: f64, k: usize| {
                 let value = parameter.value * (1.0 + 1e-3 * steps);
                 find(&parameter.changed(&case, value).unwrap()).unwrap().modes[k].s

@@ -67,7 +67,7 @@ pub fn json(found: &Found) -> String {
         "states": path.states.len(),
         "quantities": last.map(|s| keyed(&s.row)),
         "stability": last.and_then(|s| s.stability.as_ref()).map(|s| json!({
-            "stable": s.unstable == 0, "unstable_modes": s.unstable, "softest_1_s2": finite(s.softest),
+            "stable": s.unstable == 0, "unstable_modes": s.unstable, "softest_1_s2": s.softest,
         })),
         "events": path.events.iter().map(|e| json!({"load_factor": e.share, "what": e.words()})).collect::<Vec<_>>(),
         "sensitivities": found.sensitivities.iter().map(|s| {

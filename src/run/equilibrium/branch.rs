@@ -20,12 +20,14 @@ impl Follower<'_> {
             .map_err(|failure| self.fail(&failure, last[n]))?;
         let mut aside = self.softest();
         // The eigenvalue that changes sign does so in proportion to the distance.
-        let share = last[n] + (beyond.0 - last[n]) * between(self.path.last().stability, beyond.1);
+        let here = Stability::of(self.solver.dae_mut().statics(), last[n], &last[..n]);
+        let share = last[n] + (beyond.0 - last[n]) * between(here, beyond.1);
         self.path.events.push(Event {
             share,
             kind: Kind::Bifurcation,
         });
         self.branch = self.path.states.len();
+        self.bounds.push(self.branch);
         aside[n] = 0.0;
         let displacements = aside
             .iter()
@@ -75,7 +77,8 @@ impl Follower<'_> {
 
 /// Where between two states an eigenvalue is zero, a share of the distance; halfway when they do not tell.
 fn between(before: Option<Stability>, beyond: Option<Stability>) -> f64 {
-    let share = before.zip(beyond).map(|(a, b)| a.softest / (a.softest - b.softest));
+    let softest = |s: Option<Stability>| s.and_then(|s| s.softest);
+    let share = softest(before).zip(softest(beyond)).map(|(a, b)| a / (a - b));
     share.filter(|share| (0.0..=1.0).contains(share)).unwrap_or(0.5)
 }
 

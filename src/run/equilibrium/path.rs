@@ -65,6 +65,7 @@ pub(super) fn follow_of(
                 orientation: 0,
                 branch: 0,
                 natural,
+                bounds: vec![0],
                 solver,
                 weights,
                 n,
@@ -72,9 +73,9 @@ pub(super) fn follow_of(
                 path: &mut path,
                 watch,
             };
-            if let Err(End(fault)) = follower.go(x) {
-                path.fault = Some(fault);
-            }
+            let ended = follower.go(x);
+            follower.judge();
+            path.fault = ended.err().map(|End(fault)| fault);
         }
     }
     path
@@ -111,6 +112,8 @@ pub(super) struct Follower<'a> {
     /// State with which the present branch begins.
     pub(super) branch: usize,
     natural: Natural,
+    /// States where stability may change: after a limit point, on a new branch.
+    pub(super) bounds: Vec<usize>,
     pub(super) solver: Kinsol<Along>,
     pub(super) weights: Vec<f64>,
     pub(super) n: usize,
@@ -269,6 +272,30 @@ impl Follower<'_> {
         Ok(solution.iterations)
     }
 
+    /// Says of every state whether it holds. Between events the determinant keeps its sign: where the first and the last state of
+    /// such a stretch give way in as many directions, those in between do too; else each is looked at.
+    fn judge(&mut self) {
+        self.bounds.push(self.path.states.len());
+        for k in 1..self.bounds.len() {
+            let (first, last) = (self.bounds[k - 1], self.bounds[k].saturating_sub(1));
+            if first > last {
+                continue;
+            }
+            let ends = [first, last].map(|k| self.stability(k));
+            let same = ends[0].map(|s| s.unstable) == ends[1].map(|s| s.unstable);
+            for state in first + 1..last {
+                let inherited = ends[0].map(|s| Stability { softest: None, ..s });
+                self.path.states[state].stability = if same { inherited } else { self.stability(state) };
+            }
+            (self.path.states[first].stability, self.path.states[last].stability) = (ends[0], ends[1]);
+        }
+    }
+
+    fn stability(&mut self, k: usize) -> Option<Stability> {
+        let state = &self.path.states[k];
+        Stability::of(self.solver.dae_mut().statics(), state.share, &state.y)
+    }
+
     /// Keeps a state and shows it.
     pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), End> {
         let state = State::read(self.solver.dae_mut().statics(), x);
@@ -280,6 +307,7 @@ impl Follower<'_> {
                 share: b.share,
                 kind: Kind::LimitPoint,
             });
+            self.bounds.push(self.path.states.len() - 1);
         }
         self.path.states.push(state);
         match control {
