@@ -277,10 +277,11 @@ impl Follower<'_> {
     fn judge(&mut self) {
         self.bounds.push(self.path.states.len());
         for k in 1..self.bounds.len() {
-            let (first, last) = (self.bounds[k - 1], self.bounds[k].saturating_sub(1));
-            if first > last {
+            let (first, next) = (self.bounds[k - 1], self.bounds[k]);
+            if first >= next {
                 continue;
             }
+            let last = next - 1;
             let ends = [first, last].map(|k| self.stability(k));
             let same = ends[0].map(|s| s.unstable) == ends[1].map(|s| s.unstable);
             for state in first + 1..last {
