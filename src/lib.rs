@@ -15,10 +15,10 @@
 //! | [`model`] | physics of one cross-section, one bladder, one network: pure functions generic over the scalar; effects chosen |
 //! | [`discrete`] | space: mesh, unknowns with their scales, the residual in the paper's order, the exact balances |
 //! | [`dae`] | the trait [`dae::Dae`]; the beam as one; dual numbers, pattern, Jacobian. Knows no solver |
-//! | [`sundials`] | IDA and KLU behind safe types; the only `unsafe` code; knows only [`dae::Dae`] |
+//! | [`sundials`] | IDA, KINSOL and KLU behind safe types; the only `unsafe` code; knows only [`dae::Dae`] |
 //! | [`onestep`] | A-stable one-step methods of order 2 to 5, with the interface of [`sundials::Ida`] |
 //! | [`spectral`] | eigenvalues of sparse pencils nearest a shift, with bounds of their errors |
-//! | [`run`] | a run in time: samples, balances, range checks. Emits what happens, prints nothing |
+//! | [`run`] | a run in time, equilibria, modes, cycles: samples, balances, range checks. Emits what happens, prints nothing |
 //! | [`study`] | many runs to answer one question: exact results, accuracy against cost, effects, comparison |
 //! | [`output`] | result folders: history, arrays, summary, pictures |
 //! | [`cli`] | one file a subcommand; the only place that prints |

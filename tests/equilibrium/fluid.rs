@@ -161,3 +161,17 @@ fn plucked_beam_is_let_go() {
     assert!(outcome.summary.balances.energy_residual_relative < 1e-3);
     assert!(tip.iter().any(|u| u * last < 0.0), "it swings through");
 }
+
+/// Goal: fluid that goes in and cannot get out leaves no equilibrium; as much out as in does.
+#[test]
+fn closed_network_that_is_fed_is_refused() {
+    let with = |outlet: &str| {
+        let ends = format!("/network/chains/1/ends=[{{\"flow_m3_s\":1e-7}},{outlet}]");
+        let case = shipped("pluck", &[&ends, "/start={}"]);
+        path_of(&case, &Options::at(case.time.end_s))
+    };
+    let fault = with("\"sealed\"").fault.expect("no equilibrium");
+    assert!(fault.what.contains("1.000e-7 m^3/s"), "{}", fault.what);
+    assert!(with("{\"flow_m3_s\":-1e-7}").fault.is_none());
+    assert!(with("{\"pressure_pa\":0}").fault.is_none());
+}

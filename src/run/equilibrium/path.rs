@@ -53,6 +53,16 @@ pub(super) fn follow_of(
         rejected: 0,
         fault: None,
     };
+    if let Some(inflow) = statics.fed() {
+        let what =
+            format!("there is no equilibrium: a closed network takes in {inflow:.3e} m^3/s which nothing lets out");
+        path.fault = Some(SolverFault {
+            cause: Some("a port of prescribed flow without one of prescribed pressure in the same network".into()),
+            hint: Some("open the network by a port with pressure_pa, or let the flows sum to zero".into()),
+            ..fault(0.0, &what)
+        });
+        return path;
+    }
     let n = y.len();
     let weights = weights(statics.system());
     let natural = Natural::of(&statics);
