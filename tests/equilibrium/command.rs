@@ -24,6 +24,8 @@ fn command_fills_its_folder() {
         &[
             "equilibrium",
             "cases/elastica.json",
+            "--at",
+            "0",
             "--sensitivity",
             "/beam/young_modulus_pa",
         ],

@@ -106,7 +106,7 @@ fn balances_of_loaded_beams_close() {
         ("spin-up", 2.0),
         ("pluck", 0.1),
         ("curl", 0.1),
-        ("elastica", 1.0),
+        ("elastica", 0.2),
     ] {
         closes(name, end);
     }
