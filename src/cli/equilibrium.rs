@@ -4,10 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
 use super::arguments::EquilibriumArguments;
-use super::{interrupt, terminal};
+use super::{interrupt, line, terminal};
 use crate::case;
 use crate::case::parameter::Parameter;
 use crate::error::{Error, Result};
@@ -31,7 +29,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         .collect::<Result<_>>()?;
     let begin = Instant::now();
     let stop = interrupt::flag();
-    let bar = bar(asked.quiet);
+    let bar = line::line(asked.quiet);
     let path = equilibrium::follow(case, &options, &mut |state| {
         bar.set_message(format!("{:.4} of the loads", state.share));
         bar.tick();
@@ -95,16 +93,4 @@ fn options(asked: &EquilibriumArguments, at_s: f64) -> Result<Options> {
         points: Some(asked.points),
         branches: !asked.keep_branch,
     })
-}
-
-/// A line on a terminal.
-fn bar(quiet: bool) -> ProgressBar {
-    if quiet {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
-        bar.set_style(style);
-    }
-    bar
 }

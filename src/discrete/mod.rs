@@ -45,20 +45,18 @@ impl System {
     /// Discretises a checked case. Bladders that keep their volume keep what the same system with areas as unknowns
     /// starts with.
     pub fn new(case: &Case) -> Self {
-        let model = Model::new(case);
-        Self::starting(case, model.clone(), model)
+        Self::starting(case, Model::new(case), Model::clone)
     }
 
     /// Discretises another model of a checked case; bladders keep the volume that they have at the start of the case.
     pub fn with(case: &Case, model: Model) -> Self {
-        Self::starting(case, model, Model::new(case))
+        Self::starting(case, model, |_| Model::new(case))
     }
 
     /// Discretises a changed case with the effects of this system and its scales of unknowns and equations; `None` when the
     /// unknowns are then others.
     pub fn like(&self, case: &Case) -> Option<Self> {
-        let model = self.model.like(case);
-        let mut system = Self::starting(case, model.clone(), model);
+        let mut system = Self::starting(case, self.model.like(case), Model::clone);
         let same = system.layout.differential == self.layout.differential && system.layout.waves == self.layout.waves;
         same.then(|| {
             system.layout = self.layout.clone();
@@ -66,12 +64,13 @@ impl System {
         })
     }
 
-    fn starting(case: &Case, model: Model, start: Model) -> Self {
+    /// `start` gives the model with which the case starts; it is asked only where something of the start is kept.
+    fn starting(case: &Case, model: Model, start: impl FnOnce(&Model) -> Model) -> Self {
         let mut system = Self::of(case, model);
         if let (Some(wet), Some(fluid)) = (&system.model.wet, &mut system.fluid)
             && wet.storage.iter().any(|s| *s != Storage::Flowing)
         {
-            fluid.keep(&Self::areas_at_start(case, start), wet);
+            fluid.keep(&Self::areas_at_start(case, start(&system.model)), wet);
         }
         system
     }

@@ -3,15 +3,12 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::spectral::schur;
+use crate::sundials::kernels::dot;
 
 /// A vector in which later ones have no part any more counts as none.
 const SPENT: f64 = 1e-13;
 /// Angle [rad] from the real axis that round-off makes.
 const REAL: f64 = 1e-11;
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
 
 fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()

@@ -3,7 +3,7 @@
 use super::path::{End, Follower, NEAR, PATIENCE, Way, difference};
 use super::state::Stability;
 use super::{Event, Kind};
-use crate::sundials::KinsolFailure;
+use crate::sundials::{KinsolFailure, kernels};
 
 /// First step aside.
 const ASIDE: f64 = 0.02;
@@ -68,7 +68,7 @@ impl Follower<'_> {
         let mut x: Vec<f64> = (0..=self.n).map(|k| (1.0 + k as f64).sin()).collect();
         for _ in 0..INVERSE_ITERATIONS {
             self.solver.apply_inverse(&mut x);
-            let norm = dot(&x, &x).sqrt().max(f64::MIN_POSITIVE);
+            let norm = kernels::dot(&x, &x).sqrt().max(f64::MIN_POSITIVE);
             x.iter_mut().for_each(|x| *x /= norm);
         }
         x
@@ -80,8 +80,4 @@ fn between(before: Option<Stability>, beyond: Option<Stability>) -> f64 {
     let softest = |s: Option<Stability>| s.and_then(|s| s.softest);
     let share = softest(before).zip(softest(beyond)).map(|(a, b)| a / (a - b));
     share.filter(|share| (0.0..=1.0).contains(share)).unwrap_or(0.5)
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

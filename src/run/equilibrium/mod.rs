@@ -25,7 +25,7 @@ use crate::case::schema::Case;
 use crate::case::signals::Polynomial;
 use crate::case::{Clock, Signal};
 use crate::dae::{BeamDae, StaticBeam};
-use crate::discrete::{System, start};
+use crate::discrete::{Instant, System, start};
 use crate::error::SolverFault;
 use crate::model::{Model, Storage};
 use crate::run::record::Control;
@@ -162,9 +162,9 @@ pub fn at_start(case: &Case, at_s: f64, dae: &mut BeamDae, y: &[f64]) -> Result<
 
 /// Scaled unknowns of a static system at rest, and of the state that its volumes are those of.
 fn rest(case: &Case, system: System) -> (StaticBeam, Vec<f64>) {
-    let mut beam = BeamDae::new(system.clone());
-    let (of, now) = beam.instant(0.0);
-    let volumes = start::state(of, case, now);
+    let mut now = Instant::new(&system);
+    now.update(&system, Clock { t: 0.0, within: 0.0 });
+    let volumes = start::state(&system, case, &now);
     let y = vec![0.0; volumes.len()];
     (StaticBeam::new(system, &volumes), y)
 }
