@@ -3,13 +3,16 @@
 mod arguments;
 mod check;
 mod compare;
+mod completions;
 mod effects;
 mod equilibrium;
+mod explain;
 mod floquet;
 mod interrupt;
 mod line;
 mod mapping;
 mod modes;
+mod new;
 mod periodic;
 pub mod progress;
 mod run;
@@ -45,6 +48,9 @@ pub fn main() -> ExitCode {
         Ok(code) => code,
         Err(error) => {
             terminal::report(&error);
+            if arguments.command.json() {
+                let _ = print(&format!("{:#}\n", terminal::json(&error)));
+            }
             ExitCode::from(error.exit_code())
         }
     }
@@ -63,7 +69,10 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Modes(asked) => modes::modes(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),
-        Command::Schema => schema::schema(),
+        Command::Schema(_) => schema::schema(),
+        Command::Explain(asked) => explain::explain(asked),
+        Command::New(asked) => new::new(asked),
+        Command::Completions(asked) => completions::completions(asked),
     }
 }
 

@@ -304,3 +304,12 @@ fn half_the_cells_tell_the_error_of_the_mesh() {
         assert!((told - 1.0).abs() < 0.1, "{told}");
     }
 }
+
+#[test]
+fn as_many_networks_as_bladders_keep_as_many_volumes() {
+    // Ten pairs: an eigenvalue of zero ten times over, beside those that pencils of algebraic unknowns have at infinity.
+    let found = slowest(&across(10, 0.1, 5e-6), 4);
+    let kept = found.modes.iter().filter(|m| m.kind == Kind::Volume).count();
+    assert_eq!(kept, 10);
+    assert_eq!(found.modes.len(), kept + 4);
+}
