@@ -34,6 +34,8 @@ pub enum Command {
     Periodic(PeriodicArguments),
     /// Compare two result folders: error norms of every field and quantity, cost ratio
     Compare(CompareArguments),
+    /// Write a result in other formats: tables of its fields (CSV), surfaces that ParaView opens (VTK)
+    Export(ExportArguments),
     /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
     Mapping(MappingArguments),
     /// Compute exact results of beam and network theory and compare, with observed orders
@@ -317,6 +319,37 @@ pub struct CompareArguments {
     /// Print as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// `export`.
+#[derive(Debug, Args)]
+pub struct ExportArguments {
+    /// Result folder of a run
+    pub dir: PathBuf,
+    /// Formats: csv/FIELD.csv with a row an instant and a column a place; vtk/CASE.pvd with beam, bladders and tubes
+    #[arg(long, value_enum, value_name = "LIST", value_delimiter = ',', default_value = "csv,vtk")]
+    pub format: Vec<Format>,
+    /// Only these instants of the fields, in seconds: times and ranges, such as 0.1,0.45:0.5 [default: all]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub times: Option<String>,
+    /// Only every so many of these instants
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub every: u32,
+    /// Folder in which csv and vtk are made [default: the result folder]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print what was written as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Formats of `export`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Tables.
+    Csv,
+    /// Surfaces.
+    Vtk,
 }
 
 /// `mapping`.

@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod effects;
 mod equilibrium;
+mod export;
 mod floquet;
 mod interrupt;
 mod line;
@@ -61,6 +62,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Periodic(asked) => periodic::periodic(asked),
         Command::Compare(asked) => compare::compare(asked),
         Command::Modes(asked) => modes::modes(asked),
+        Command::Export(asked) => export::export(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),
         Command::Schema => schema::schema(),
