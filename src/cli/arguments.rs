@@ -327,7 +327,13 @@ pub struct ExportArguments {
     /// Result folder of a run
     pub dir: PathBuf,
     /// Formats: csv/FIELD.csv with a row an instant and a column a place; vtk/CASE.pvd with beam, bladders and tubes
-    #[arg(long, value_enum, value_name = "LIST", value_delimiter = ',', default_value = "csv,vtk")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "csv,vtk"
+    )]
     pub format: Vec<Format>,
     /// Only these instants of the fields, in seconds: times and ranges, such as 0.1,0.45:0.5 [default: all]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]

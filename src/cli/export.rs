@@ -43,7 +43,11 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
         );
         for (name, w) in &all {
             let size = significant(w.bytes as f64 / 1e6, 3);
-            text += &format!("{name}  {}  {} files, {size} MB\n", w.path.display(), count(w.files as u64));
+            text += &format!(
+                "{name}  {}  {} files, {size} MB\n",
+                w.path.display(),
+                count(w.files as u64)
+            );
         }
         super::print(&text)?;
     }

@@ -54,7 +54,9 @@ pub fn read(dir: &Path) -> Result<Recording> {
     }
     if !dir.join(FIELDS).is_file() {
         return if dir.join(RAW_FIELDS).is_dir() {
-            usage("has no fields.npz yet: its run goes on, or was killed; `slcbeam run CASE --out DIR --resume` goes on from its checkpoint")
+            usage(
+                "has no fields.npz yet: its run goes on, or was killed; `slcbeam run CASE --out DIR --resume` goes on from its checkpoint",
+            )
         } else {
             usage("has no fields.npz: it holds no fields over time")
         };

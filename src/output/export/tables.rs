@@ -24,7 +24,10 @@ pub fn write(dir: &Path, from: &Recording, instants: &[usize]) -> Result<Written
         names.extend(places(from, field));
         let mut table = HistoryWriter::with_names(&path, names)?;
         for &k in instants {
-            let row: Vec<f64> = [from.field_times[k]].into_iter().chain(field.row(k).iter().copied()).collect();
+            let row: Vec<f64> = [from.field_times[k]]
+                .into_iter()
+                .chain(field.row(k).iter().copied())
+                .collect();
             table.row(&row)?;
         }
         written.count(table.secure()?);
@@ -39,7 +42,11 @@ fn places(from: &Recording, field: &Array) -> Vec<String> {
     if let Some(bladders) = from.axis("bladder").filter(|b| fluid && b.len() == field.len) {
         return in_bladders(from, bladders);
     }
-    let axis = if field.name == "normal_force_n" { "theta_cell_m" } else { "theta_node_m" };
+    let axis = if field.name == "normal_force_n" {
+        "theta_cell_m"
+    } else {
+        "theta_node_m"
+    };
     match from.axis(axis).filter(|a| a.len() == field.len) {
         Some(theta) => theta.iter().map(|&x| format!("theta={} m", shortest(x))).collect(),
         None => (0..field.len).map(|k| format!("place={k}")).collect(),
@@ -47,7 +54,10 @@ fn places(from: &Recording, field: &Array) -> Vec<String> {
 }
 
 fn in_bladders(from: &Recording, bladders: &[f64]) -> Vec<String> {
-    let length = from.case.pointer("/bladders/length_m").and_then(serde_json::Value::as_f64);
+    let length = from
+        .case
+        .pointer("/bladders/length_m")
+        .and_then(serde_json::Value::as_f64);
     let first = bladders.iter().take_while(|b| **b == bladders[0]).count();
     let ds = length.unwrap_or(1.0) / first as f64;
     let name = |(k, b): (usize, &f64)| format!("bladder={b} s={} m", shortest(((k % first) as f64 + 0.5) * ds));

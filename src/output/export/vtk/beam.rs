@@ -36,17 +36,27 @@ pub(super) fn surface(hollow: &Hollow, curve: &Curve, sections: &[Section], fiel
         let open = hollow.beside_bladder(pair[0].theta, pair[1].theta);
         // Sides are divided at the rows' edges; a row is every second strip.
         for i in (0..m - 1).filter(|i| !(open && i % 2 == 1)) {
-            out.quads.push([at(k, 1, i), at(k + 1, 1, i), at(k + 1, 1, i + 1), at(k, 1, i + 1)]);
-            out.quads.push([at(k, 0, i), at(k, 0, i + 1), at(k + 1, 0, i + 1), at(k + 1, 0, i)]);
+            out.quads
+                .push([at(k, 1, i), at(k + 1, 1, i), at(k + 1, 1, i + 1), at(k, 1, i + 1)]);
+            out.quads
+                .push([at(k, 0, i), at(k, 0, i + 1), at(k + 1, 0, i + 1), at(k + 1, 0, i)]);
         }
-        out.quads.push([at(k, 0, 0), at(k + 1, 0, 0), at(k + 1, 1, 0), at(k, 1, 0)]);
-        out.quads.push([at(k, 0, m - 1), at(k, 1, m - 1), at(k + 1, 1, m - 1), at(k + 1, 0, m - 1)]);
+        out.quads
+            .push([at(k, 0, 0), at(k + 1, 0, 0), at(k + 1, 1, 0), at(k, 1, 0)]);
+        out.quads.push([
+            at(k, 0, m - 1),
+            at(k, 1, m - 1),
+            at(k + 1, 1, m - 1),
+            at(k + 1, 0, m - 1),
+        ]);
         cells.resize(out.quads.len(), curve.cell(pair[0].theta, pair[1].theta));
     }
     let last = sections.len() - 1;
-    out.quads.extend((0..m - 1).map(|i| [at(0, 0, i), at(0, 1, i), at(0, 1, i + 1), at(0, 0, i + 1)]));
+    out.quads
+        .extend((0..m - 1).map(|i| [at(0, 0, i), at(0, 1, i), at(0, 1, i + 1), at(0, 0, i + 1)]));
     cells.resize(out.quads.len(), 0);
-    out.quads.extend((0..m - 1).map(|i| [at(last, 0, i), at(last, 0, i + 1), at(last, 1, i + 1), at(last, 1, i)]));
+    out.quads
+        .extend((0..m - 1).map(|i| [at(last, 0, i), at(last, 0, i + 1), at(last, 1, i + 1), at(last, 1, i)]));
     cells.resize(out.quads.len(), fields.force.len() - 1);
 
     let each = |field: &[f64]| -> Vec<f64> {
@@ -55,7 +65,11 @@ pub(super) fn surface(hollow: &Hollow, curve: &Curve, sections: &[Section], fiel
     };
     let vector = |parts: [&[f64]; 2]| -> Vec<f64> {
         let (axial, transverse) = (each(parts[0]), each(parts[1]));
-        axial.into_iter().zip(transverse).flat_map(|(a, t)| [a, t, 0.0]).collect()
+        axial
+            .into_iter()
+            .zip(transverse)
+            .flat_map(|(a, t)| [a, t, 0.0])
+            .collect()
     };
     out.of_points = vec![
         Data::vector("u_m", vector(fields.u)),
@@ -64,6 +78,9 @@ pub(super) fn surface(hollow: &Hollow, curve: &Curve, sections: &[Section], fiel
         Data::scalar("moment_n_m", each(fields.moment)),
         Data::scalar("theta_m", sections.iter().flat_map(|s| vec![s.theta; 2 * m]).collect()),
     ];
-    out.of_cells = vec![Data::scalar("normal_force_n", cells.iter().map(|&c| fields.force[c]).collect())];
+    out.of_cells = vec![Data::scalar(
+        "normal_force_n",
+        cells.iter().map(|&c| fields.force[c]).collect(),
+    )];
     out
 }

@@ -35,7 +35,11 @@ impl Layout {
         let bladders = labels.iter().enumerate().step_by(cells).map(|(first, &label)| {
             let label = label.round() as i64;
             let index = bladder_index(label, wet.per_row);
-            let place = wet.network.chains.iter().find_map(|c| c.iter().position(|b| *b == index));
+            let place = wet
+                .network
+                .chains
+                .iter()
+                .find_map(|c| c.iter().position(|b| *b == index));
             Bladder {
                 label,
                 network: wet.network.component_of_bladder[index] as i32 + 1,
@@ -51,7 +55,13 @@ impl Layout {
 }
 
 /// The boxes, with pressure [Pa] and area change [m^2] of each fluid cell.
-pub(super) fn surface(hollow: &Hollow, layout: &Layout, sections: &[Section], pressure: &[f64], area: &[f64]) -> Surface {
+pub(super) fn surface(
+    hollow: &Hollow,
+    layout: &Layout,
+    sections: &[Section],
+    pressure: &[f64],
+    area: &[f64],
+) -> Surface {
     let mut out = Surface::default();
     let mut owners: Vec<(usize, usize)> = vec![];
     for (number, bladder) in layout.bladders.iter().enumerate() {
@@ -59,10 +69,17 @@ pub(super) fn surface(hollow: &Hollow, layout: &Layout, sections: &[Section], pr
         let apart = 1e-9 * hollow.length;
         let within = |s: &&Section| s.theta >= window[0] - apart && s.theta <= window[1] + apart;
         let along: Vec<&Section> = sections.iter().filter(within).collect();
-        shape(&mut out, hollow, bladder, &along, layout.cells, |cell| owners.push((number, cell)));
+        shape(&mut out, hollow, bladder, &along, layout.cells, |cell| {
+            owners.push((number, cell))
+        });
     }
     let of = |f: &dyn Fn(&Bladder) -> i64| owners.iter().map(|o| f(&layout.bladders[o.0]) as i32).collect();
-    let field = |values: &[f64]| owners.iter().map(|o| values[layout.bladders[o.0].first + o.1]).collect();
+    let field = |values: &[f64]| {
+        owners
+            .iter()
+            .map(|o| values[layout.bladders[o.0].first + o.1])
+            .collect()
+    };
     out.of_cells = vec![
         Data::scalar("pressure_pa", field(pressure)),
         Data::scalar("area_change_m2", field(area)),
@@ -74,7 +91,14 @@ pub(super) fn surface(hollow: &Hollow, layout: &Layout, sections: &[Section], pr
 }
 
 /// One box: points and quadrilaterals; `owned` hears the fluid cell of each.
-fn shape(out: &mut Surface, hollow: &Hollow, bladder: &Bladder, along: &[&Section], cells: usize, mut owned: impl FnMut(usize)) {
+fn shape(
+    out: &mut Surface,
+    hollow: &Hollow,
+    bladder: &Bladder,
+    along: &[&Section],
+    cells: usize,
+    mut owned: impl FnMut(usize),
+) {
     let first = out.points.len();
     let [low, high] = match bladder.label > 0 {
         true => hollow.row,
@@ -102,7 +126,12 @@ fn shape(out: &mut Surface, hollow: &Hollow, bladder: &Bladder, along: &[&Sectio
                 face([at(k, 0, 0), at(k, 0, 1), at(k + 1, 0, 1), at(k + 1, 0, 0)]);
             }
             if s + 1 == cells {
-                face([at(k, s + 1, 0), at(k + 1, s + 1, 0), at(k + 1, s + 1, 1), at(k, s + 1, 1)]);
+                face([
+                    at(k, s + 1, 0),
+                    at(k + 1, s + 1, 0),
+                    at(k + 1, s + 1, 1),
+                    at(k, s + 1, 1),
+                ]);
             }
         }
         face([at(0, s, 0), at(0, s + 1, 0), at(0, s + 1, 1), at(0, s, 1)]);

@@ -73,8 +73,13 @@ fn put(path: &Path, bytes: &[u8]) -> Result<u64> {
 /// Films of another choice of instants would mix with this one.
 fn remove_older(dir: &Path) -> Result<()> {
     let ours = |path: &PathBuf| {
-        let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-        let frame = PARTS.iter().any(|part| name.strip_prefix(part).is_some_and(|rest| rest.starts_with('-')));
+        let name = path
+            .file_name()
+            .map(|n| n.to_string_lossy().into_owned())
+            .unwrap_or_default();
+        let frame = PARTS
+            .iter()
+            .any(|part| name.strip_prefix(part).is_some_and(|rest| rest.starts_with('-')));
         frame && name.ends_with(".vtp")
     };
     let entries = fs::read_dir(dir).map_err(|e| fault("read", dir, e))?;

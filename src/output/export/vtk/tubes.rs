@@ -32,14 +32,19 @@ pub(super) fn all(case: &Case, wet: &Wet, hollow: &Hollow, layout: &Layout) -> V
     let network = &wet.network;
     let drawn = |kind: &LinkKind| !matches!(kind, LinkKind::Opening);
     let links = network.links.iter().map(|l| (l.from, l.to, l.kind));
-    let bridges = network.bridges.iter().map(|b| (b.from, b.to, LinkKind::Turbine(b.turbine)));
+    let bridges = network
+        .bridges
+        .iter()
+        .map(|b| (b.from, b.to, LinkKind::Turbine(b.turbine)));
     let joints: Vec<(Node, Node, LinkKind)> = links.chain(bridges).collect();
     let length = case.tubes.as_ref().map_or(0.0, |t| t.length_m);
     let mouth = |node: Node| mouth(node, wet, hollow, layout);
     let place = |node: Node| {
         mouth(node).map(|m| m.0).or_else(|| {
             // A junction or port lies outside of the mouths that it is joined to.
-            let others = joints.iter().filter_map(|(a, b, _)| (*a == node).then_some(*b).or((*b == node).then_some(*a)));
+            let others = joints
+                .iter()
+                .filter_map(|(a, b, _)| (*a == node).then_some(*b).or((*b == node).then_some(*a)));
             let mouths: Vec<Place> = others.filter_map(mouth).map(|m| m.0).collect();
             let mean = |k: usize| mouths.iter().map(|m| m[k]).sum::<f64>() / mouths.len() as f64;
             let outside = |across: f64| across + across.signum() * 0.5 * length;
@@ -61,7 +66,10 @@ pub(super) fn all(case: &Case, wet: &Wet, hollow: &Hollow, layout: &Layout) -> V
 /// Where a bladder's end meets the beam's side, and its outermost fluid cell.
 fn mouth(node: Node, wet: &Wet, hollow: &Hollow, layout: &Layout) -> Option<(Place, usize)> {
     let Node::Cell { bladder, end } = node else { return None };
-    let owner = layout.bladders.iter().find(|b| bladder_index(b.label, wet.per_row) == bladder)?;
+    let owner = layout
+        .bladders
+        .iter()
+        .find(|b| bladder_index(b.label, wet.per_row) == bladder)?;
     let window = hollow.windows[owner.label.unsigned_abs() as usize - 1];
     let height = 0.5 * (hollow.row[0] + hollow.row[1]) * owner.label.signum() as f64;
     let (side, cell) = match end {
@@ -76,8 +84,14 @@ fn arc(from: Place, to: Place, length: f64) -> Vec<Place> {
     let distance = (0..3).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();
     let half = 0.5 * distance;
     // Perimeter of an ellipse with half axes a, b: nearly 2 pi sqrt((a^2 + b^2)/2).
-    let bulge = (2.0 * (length / PI).powi(2) - half * half).max(0.04 * half * half).sqrt();
-    let bulge = if from[2] * to[2] > 0.0 { bulge * from[2].signum() } else { 0.0 };
+    let bulge = (2.0 * (length / PI).powi(2) - half * half)
+        .max(0.04 * half * half)
+        .sqrt();
+    let bulge = if from[2] * to[2] > 0.0 {
+        bulge * from[2].signum()
+    } else {
+        0.0
+    };
     let point = |i: usize| {
         let turn = PI * i as f64 / (POINTS - 1) as f64;
         let share = 0.5 - 0.5 * turn.cos();
@@ -93,7 +107,8 @@ pub(super) fn lines(tubes: &[Tube], curve: &Curve, pressure: &[f64]) -> Surface 
     let mut out = Surface::default();
     for tube in tubes {
         let first = out.points.len();
-        out.points.extend(tube.line.iter().map(|p| curve.at(p[0]).point(p[1], p[2])));
+        out.points
+            .extend(tube.line.iter().map(|p| curve.at(p[0]).point(p[1], p[2])));
         out.lines.push((first..out.points.len()).collect());
     }
     let mean = |t: &Tube| t.cells.iter().map(|&c| pressure[c]).sum::<f64>() / t.cells.len() as f64;
