@@ -164,7 +164,11 @@ fn collection(path: &Path) -> Vec<(f64, String, Piece)> {
 }
 
 /// 10 and 11 instants of wiring-3, in which pressure, both rows and both networks differ.
-const SHORT: [&str; 2] = ["/time/end_s=0.02", "/time/fields_interval_s=0.002"];
+const SHORT: [&str; 3] = [
+    "/time/end_s=0.02",
+    "/time/window_s=0.01",
+    "/time/fields_interval_s=0.002",
+];
 
 fn the_beam(piece: &Piece, from: &Recording, k: usize) {
     let row = |name: &str| from.field(name).unwrap().row(k);
@@ -281,7 +285,11 @@ fn paraview_is_given_what_the_fields_hold() {
 #[test]
 fn tubes_on_one_side_are_as_long_as_they_are() {
     let dir = TempDir::new().unwrap();
-    run("valves-open", dir.path(), &["/time/end_s=0.001"]);
+    run(
+        "valves-open",
+        dir.path(),
+        &["/time/end_s=0.001", "/time/window_s=0.001"],
+    );
     export(dir.path(), &["--format", "vtk", "--times", "0"]);
     let parts = collection(&dir.path().join("vtk/valves-open.pvd"));
     let points = parts[2].2.points();
@@ -309,7 +317,7 @@ fn a_dry_beam_is_a_closed_block() {
 #[test]
 fn every_kind_of_connection_is_drawn() {
     let dir = TempDir::new().unwrap();
-    run("network-tour", dir.path(), &["/time/end_s=0.01"]);
+    run("network-tour", dir.path(), &["/time/end_s=0.01", "/time/window_s=0.01"]);
     export(dir.path(), &["--every", "5"]);
     let parts = collection(&dir.path().join("vtk/network-tour.pvd"));
     let (_, _, tubes) = &parts[2];

@@ -1,0 +1,38 @@
+#!/usr/bin/python3
+"""Draws a result folder: scripts/plot.py DIR [OUT.png]. Deflection, pressure and tip, from fields.npz and history.csv."""
+import csv, json, pathlib, sys
+
+try:
+    import matplotlib
+    import numpy as np
+except ModuleNotFoundError as missing:
+    sys.exit(f"{missing.name} is missing: scripts/install python3-numpy python3-matplotlib, then run /usr/bin/python3 {sys.argv[0]}")
+matplotlib.use("Agg")
+from matplotlib import cm, pyplot as plt
+
+if len(sys.argv) < 2:
+    sys.exit(__doc__)
+result = pathlib.Path(sys.argv[1])
+if not (result / "fields.npz").exists():
+    sys.exit(f"{result} has no fields.npz: is it the folder of a finished run?")
+out = sys.argv[2] if len(sys.argv) > 2 else result / "plot.png"
+fields, case = np.load(result / "fields.npz"), json.loads((result / "case.json").read_text())
+columns = dict(zip(*[(rows := list(csv.reader(open(result / "history.csv"))))[0], np.array(rows[1:], float).T]))
+t, theta, wet = fields["t_fields_s"], fields["theta_node_m"], "pressure_pa" in fields
+
+figure, axes = plt.subplots(2 + wet, figsize=(8, 5.2 + 2.6 * wet), layout="constrained")
+figure.suptitle(case["name"])
+last = np.flatnonzero(t >= t[-1] - min(0.05, t[-1] / 2))  # the end of the run; a cycle of the shaken cases
+for k in last[:: max(1, len(last) // 24)]:
+    axes[0].plot(1e3 * theta, 1e3 * fields["u1_m"][k], color=cm.coolwarm((t[k] - t[last[0]]) / (t[-1] - t[last[0]])), lw=1)
+axes[0].set(xlabel="θ [mm]", ylabel="$u_1$ [mm]", title=f"deflection from {t[last[0]]:.3f} s (blue) to {t[-1]:.3f} s (red)")
+axes[1].plot(columns["t [s]"], 1e3 * columns["tip_u1 [m]"], "k", lw=0.8)
+axes[1].set(xlabel="t [s]", ylabel="$u_1$ [mm]", title="tip", xlim=(0, t[-1]))
+if wet:
+    most = abs(fields["pressure_pa"]).max() / 1e3
+    image = axes[2].pcolormesh(t, np.arange(len(fields["x_f"])), fields["pressure_pa"].T / 1e3, cmap="RdBu_r", vmin=-most, vmax=most)
+    starts = np.flatnonzero(np.diff(fields["bladder"], prepend=0))
+    axes[2].set(xlabel="t [s]", ylabel="bladder", title="pressure [kPa]", yticks=starts, yticklabels=fields["bladder"][starts].astype(int))
+    figure.colorbar(image, ax=axes[2])
+figure.savefig(out, dpi=110)
+print(out)
