@@ -23,15 +23,16 @@ t, theta, wet = fields["t_fields_s"], fields["theta_node_m"], "pressure_pa" in f
 figure, axes = plt.subplots(2 + wet, figsize=(8, 5.2 + 2.6 * wet), layout="constrained")
 figure.suptitle(case["name"])
 last = np.flatnonzero(t >= t[-1] - min(0.05, t[-1] / 2))  # the end of the run; a cycle of the shaken cases
+unit, scale = ("mm", 1e3) if abs(fields["u1_m"]).max() > 1e-4 else ("µm", 1e6)
 for k in last[:: max(1, len(last) // 24)]:
-    axes[0].plot(1e3 * theta, 1e3 * fields["u1_m"][k], color=cm.coolwarm((t[k] - t[last[0]]) / (t[-1] - t[last[0]])), lw=1)
-axes[0].set(xlabel="θ [mm]", ylabel="$u_1$ [mm]", title=f"deflection from {t[last[0]]:.3f} s (blue) to {t[-1]:.3f} s (red)")
-axes[1].plot(columns["t [s]"], 1e3 * columns["tip_u1 [m]"], "k", lw=0.8)
-axes[1].set(xlabel="t [s]", ylabel="$u_1$ [mm]", title="tip", xlim=(0, t[-1]))
+    axes[0].plot(1e3 * theta, scale * fields["u1_m"][k], color=cm.turbo((t[k] - t[last[0]]) / (t[-1] - t[last[0]])), lw=1)
+axes[0].set(xlabel="θ [mm]", ylabel=f"$u_1$ [{unit}]", title=f"deflection from {t[last[0]]:.3f} s (blue) to {t[-1]:.3f} s (red)")
+axes[1].plot(columns["t [s]"], scale * columns["tip_u1 [m]"], lw=0.9)
+axes[1].set(xlabel="t [s]", ylabel=f"tip $u_1$ [{unit}]", xlim=(0, t[-1]))
 if wet:
-    most = abs(fields["pressure_pa"]).max() / 1e3
+    most = np.percentile(abs(fields["pressure_pa"]), 99) / 1e3
     image = axes[2].pcolormesh(t, np.arange(len(fields["x_f"])), fields["pressure_pa"].T / 1e3, cmap="RdBu_r", vmin=-most, vmax=most)
-    starts = np.flatnonzero(np.diff(fields["bladder"], prepend=0))
+    starts = np.flatnonzero(np.diff(fields["bladder"], prepend=0))[::2]
     axes[2].set(xlabel="t [s]", ylabel="bladder", title="pressure [kPa]", yticks=starts, yticklabels=fields["bladder"][starts].astype(int))
     figure.colorbar(image, ax=axes[2])
 figure.savefig(out, dpi=110)

@@ -1,6 +1,7 @@
 """Results read back, and what the figures have in common: colours of time, beams drawn as wired, pressure over X_f."""
 import csv
 import json
+import os
 import pathlib
 
 import matplotlib
@@ -12,9 +13,11 @@ from matplotlib.colors import LinearSegmentedColormap  # noqa: E402
 from matplotlib.patches import FancyBboxPatch, Rectangle  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("SLCBEAM", ROOT / "target/release/slcbeam")
+RESULTS = pathlib.Path(os.environ.get("SLCBEAM_RESULTS", ROOT / "out"))
 plt.rcParams.update({
     "svg.hashsalt": "slcbeam", "font.size": 9, "axes.titlesize": 9, "legend.fontsize": 8, "legend.frameon": False,
-    "axes.spines.top": False, "axes.spines.right": False, "lines.linewidth": 0.9, "figure.constrained_layout.use": True,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.titlelocation": "center", "lines.linewidth": 0.9, "figure.constrained_layout.use": True,
 })
 TIME = LinearSegmentedColormap.from_list("time", ["#1f4fd8", "#7b3fa0", "#d8231f"])
 BLUE, RED, GREY = "#1f4fd8", "#d8231f", "#9a9a9a"
@@ -29,7 +32,7 @@ class Result:
     """A result folder: arrays by name, history's columns by name and unit, summary, case."""
 
     def __init__(self, folder):
-        at = ROOT / "out" / folder
+        at = RESULTS / folder
         self.fields = np.load(at / "fields.npz")
         with open(at / "history.csv") as file:
             rows = list(csv.reader(file))
@@ -65,11 +68,10 @@ def over_time(ax, x, rows, instants, **style):
 
 
 def over_network(ax, result, rows, instants):
-    """Pressure over X_f, a line an array of bladders, with the ranges of their indices in brackets."""
+    """Pressure over X_f, broken between arrays of bladders, with the ranges of their indices in brackets."""
     x, array, bladder = (result.fields[name] for name in ("x_f", "array", "bladder"))
-    for a in np.unique(array):
-        here = array == a
-        over_time(ax, x[here], rows[:, here], instants)
+    breaks = np.flatnonzero(np.diff(array)) + 1
+    over_time(ax, np.insert(x, breaks, np.nan), np.insert(rows, breaks, np.nan, axis=1), instants)
     for first, last, where in ranges(bladder):
         label = f"[{first} … {last}]" if first != last else f"[{first}]"
         ax.annotate(label, (x[where].mean(), 1.0), xycoords=("data", "axes fraction"), ha="center", va="bottom", fontsize=7)
@@ -100,25 +102,32 @@ def wired(ax, case, turbine=False):
     for chain, c in zip(chains, (BLUE, RED)):
         for a, b in zip(chain["bladders"], chain["bladders"][1:]):
             (xa, ya), (xb, yb) = centre(a), centre(b)
-            side = 0.2 if xb > xa else -0.2
-            ax.plot([xa + side, xb - side], [ya + 0.2, yb + 0.2 if ya == yb else yb - 0.2], color=c, lw=1.4, solid_capstyle="round")
+            side = 0.39 if xb > xa else -0.39
+            ax.plot([xa + side, xb - side], [ya, yb] if ya == yb else [0.6 * ya, 0.6 * yb], color=c, lw=2)
         for b, end in zip((chain["bladders"][0], chain["bladders"][-1]), chain["ends"]):
             if isinstance(end, dict) and "pressure_pa" in end:
-                x, y = centre(b)
-                ax.plot([x, x], [y, y + np.sign(y) * 0.85], color=c, lw=1.4)
-                ax.plot(x, y + np.sign(y) * 0.9, "o", mfc="white", mec=c, ms=3.5)
+                (x, y), out = centre(b), 1 if b > 0 else -1
+                ax.plot([x, x], [y + 0.39 * out, y + 0.85 * out], color=c, lw=1.4)
+                ax.plot(x, y + 0.95 * out, "o", mfc="white", mec=c, ms=3.5)
     if turbine:
-        ax.plot([-0.55, 0.2], [0, 0.35], color=BLUE, lw=1.4)
-        ax.plot([-0.55, 0.2], [0, -0.35], color=RED, lw=1.4)
+        ax.plot([-0.7, 0.11], [0, 0.5], color=BLUE, lw=1.4)
+        ax.plot([-0.7, 0.11], [0, -0.5], color=RED, lw=1.4)
         ax.plot(-0.7, 0, "o", mfc="#ffd24d", mec="k", ms=9)
     ax.plot([0, 0], [-1.5, 1.5], "k", lw=2.5)
     ax.set(xlim=(-1.1, count + 0.3), ylim=(-1.8, 1.8), aspect="equal")
     ax.axis("off")
 
 
-def panel(ax, label):
-    """The panel's letter, as the paper has it."""
-    ax.set_title(f"({label})", loc="left", fontweight="bold")
+def power_of_ten(rows, symbol):
+    """Factor that brings small numbers near one, and the label of what is scaled so."""
+    largest = np.nanmax(abs(rows))
+    power = 0 if largest == 0 or largest > 0.1 else int(np.ceil(-np.log10(largest)))
+    return 10.0**power, f"$10^{{{power}}}\\ {symbol}$" if power else f"${symbol}$"
+
+
+def panel(ax, label, pad=6):
+    """The panel's letter, as the paper has it; what is not in the paper has a prime."""
+    ax.set_title(f"({label})", loc="left", fontweight="bold", pad=pad)
 
 
 def rounded(value, digits=4):

@@ -14,7 +14,7 @@ B_STAR = 46.189
 
 
 def draw():
-    figure, axes = plt.subplots(4, 2, figsize=(10, 10.5), height_ratios=[0.6, 1, 1, 1])
+    figure, axes = plt.subplots(4, 2, figsize=(10, 9.5), height_ratios=[0.55, 1, 1, 1])
     numbers = {}
     for ax, (wiring, _), letter in zip(axes[0], WIRINGS, "ab"):
         wired(ax, Result(f"harvester-{wiring}-uniform").case, turbine=True)
@@ -23,15 +23,16 @@ def draw():
     for column, (name, load, what) in enumerate(LOADS):
         force(axes[1, column], Result(f"harvester-parallel-{load}"), what)
         panel(axes[1, column], f"c {name}")
-        for row, suffix, coupling in ((2, "", "published"), (3, "-reciprocal", "reciprocal")):
+        for row, folder, coupling in ((2, "{}", "published"), (3, "figures/{}-reciprocal", "reciprocal")):
             ax = axes[row, column]
             for wiring, colour in WIRINGS:
-                result = Result(f"harvester-{wiring}-{load}{suffix}")
+                result = Result(folder.format(f"harvester-{wiring}-{load}"))
                 found = efficiency(ax, result, wiring, colour)
                 numbers.setdefault(name, {}).setdefault(coupling, {})[wiring] = found
             ax.set(xlabel="t [s]", ylabel="η", xlim=(0, 2))
             ax.set_title(f"{coupling} coupling", loc="right")
-            ax.legend(loc="upper left")
+            ax.set_ylim(None, 1.3 * ax.get_ylim()[1])
+            ax.legend(loc="upper left", ncol=2)
             if coupling == "published":
                 ax.axhline(1, color="k", lw=0.6, ls="--")
             panel(ax, f"d {name}" if coupling == "published" else f"d′ {name}")
@@ -55,7 +56,7 @@ def efficiency(ax, result, wiring, colour):
     put_in = result.summary["quantities"]["input_energy_j"]["final"]
     harvested = result.summary["quantities"]["harvested_energy_j"]["final"]
     eta = h["turbine_power [W]"] / (put_in / h["t [s]"][-1])
-    ax.plot(h["t [s]"], eta, color=colour, label=f"{wiring}, mean {ratio['final']:.3g}")
+    ax.plot(h["t [s]"], eta, color=colour, label=f"{wiring}, mean η {ratio['final']:.3g}")
     return {
         "efficiency_of_run": rounded(ratio["final"]), "largest_eta": rounded(eta.max()),
         "harvested_j": rounded(harvested), "put_in_j": rounded(put_in),

@@ -2,7 +2,7 @@
 import csv
 import subprocess
 
-from .common import ROOT, panel, plt
+from .common import PROGRAM, ROOT, panel, plt
 
 WIRINGS = [
     ("a", "upper serpentine", "valves-open", "upper-serpentine"),
@@ -23,7 +23,7 @@ def draw(table, x_label, y_label):
     figure, axes = plt.subplots(1, 3, figsize=(10, 3.2))
     numbers = {}
     for ax, (letter, name, case, printed) in zip(axes, WIRINGS):
-        command = [ROOT / "target/release/slcbeam", "mapping", ROOT / f"cases/{case}.json", "--table", table]
+        command = [PROGRAM, "mapping", ROOT / f"cases/{case}.json", "--table", table]
         text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
         rows = [[float(x) for x in row] for row in list(csv.reader(text.splitlines()))[1:]]
         if table == "xf-to-theta":

@@ -3,11 +3,12 @@ import json
 
 import numpy as np
 
-from .common import ROOT, TIME, Result, over_time, panel, plt, rounded, shipped
+from .common import RESULTS, TIME, Result, over_time, panel, plt, rounded, shipped
 
 NEEDS_STRETCH = [*shipped("stretch-dry"), ("figures/stretch-dry-static", "stretch-dry", [], ["equilibrium"])]
 NEEDS_BEND = [*shipped("bend-dry"), ("figures/bend-dry-static", "bend-dry", [], ["equilibrium"])]
 POINTS = (0.25, 0.5, 0.75, 1.0)
+RISE = 0.15  # [s]: S rises from 0.01 to 0.997
 
 
 def stretch():
@@ -23,7 +24,7 @@ def draw(case, moved, load):
     u1, u3 = (1e3 * result.fields[f"{u}_m"] for u in ("u1", "u3"))
     shown = u3 if moved == "u3" else u1
     theta = result.theta
-    static = json.loads((ROOT / f"out/figures/{case}-static/equilibrium.json").read_text())["quantities"]
+    static = json.loads((RESULTS / f"figures/{case}-static/equilibrium.json").read_text())["quantities"]
     end = {"u1": 1e3 * static["tip_u1_m"], "u3": 1e3 * static["tip_u3_m"]}
     figure, axes = plt.subplots(2, 2, figsize=(9, 6))
     loaded(axes[0, 0], moved, load)
@@ -32,15 +33,16 @@ def draw(case, moved, load):
         axes[0, 1].plot(result.t, shown[:, node], color=plt.cm.viridis(0.85 * n / 3), label=f"Θ = {point}")
     axes[0, 1].axhline(end[moved], color="k", lw=0.6, ls="--", label="static, Θ = 1")
     axes[0, 1].set(xlabel="t [s]", ylabel=f"${moved[0]}_{moved[1]}$ [mm]", xlim=(0, result.t[-1]))
-    axes[0, 1].legend(ncol=3, loc="upper left", fontsize=7, bbox_to_anchor=(0, 1.17))
-    instants = result.instants(0, result.t[-1], 26)
+    axes[0, 1].set_ylim(None, 1.3 * axes[0, 1].get_ylim()[1])
+    axes[0, 1].legend(ncol=3, loc="upper left", fontsize=8)
+    instants = result.instants(0, RISE, 26)
     for ax, field, label in ((axes[1, 0], u1, "$u_1$ [mm]"), (axes[1, 1], u3, "$u_3$ [mm]")):
         over_time(ax, theta, field, instants)
         ax.set(xlabel="Θ", ylabel=label, xlim=(0, 1))
         if abs(field).max() < 1e-9:
             ax.set_ylim(-1, 1)
             ax.text(0.5, 0.2, "exactly zero", ha="center", color="k")
-    bar = figure.colorbar(plt.cm.ScalarMappable(plt.Normalize(0, result.t[-1]), TIME), ax=axes[1, :], aspect=30, pad=0.01)
+    bar = figure.colorbar(plt.cm.ScalarMappable(plt.Normalize(0, RISE), TIME), ax=axes[1, :], aspect=30, pad=0.01)
     bar.set_label("t [s]")
     for ax, letter in zip(axes.flat, "abcd"):
         panel(ax, letter)
@@ -60,7 +62,7 @@ def loaded(ax, moved, load):
     for x in np.linspace(0.06, 0.94, 10):
         across, along = ((0, 0.14), (x, 0.13)) if moved == "u1" else ((0.07, 0), (x - 0.035, 0))
         ax.annotate("", (along[0] + across[0], along[1] + across[1]), along, arrowprops={"arrowstyle": "->", "color": "#d8231f", "lw": 1})
-    ax.text(0.5, -0.2, f"{load} · S(t)", ha="center")
+    ax.text(0.55, -0.24, f"{load} · S(t)", ha="center")
     for tip, name in (((0.16, -0.36), "z, $u_3$"), ((0.0, -0.2), "x, $u_1$")):
         ax.annotate("", tip, (0.0, -0.36), arrowprops={"arrowstyle": "->", "lw": 0.8})
         ax.text(tip[0] + 0.02, tip[1] - 0.01, name, fontsize=8, va="center")

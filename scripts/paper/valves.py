@@ -3,7 +3,7 @@ import csv
 
 import numpy as np
 
-from .common import BLUE, RED, ROOT, Result, over_network, over_time, panel, plt, rounded, shipped, wired
+from .common import BLUE, RED, RESULTS, Result, over_network, over_time, panel, plt, rounded, shipped, wired
 
 CASES = [("I", "valves-hundredth", "$Q_1/100$"), ("II", "valves-half", "$Q_1/2$"), ("III", "valves-open", "$Q_1$, open")]
 FACTORS = (0.01, 0.03, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0)
@@ -20,9 +20,9 @@ NEEDS = [
 
 
 def draw():
-    figure = plt.figure(figsize=(10.5, 10))
-    top, bottom = figure.subfigures(2, 1, height_ratios=[2.6, 1])
-    axes = top.subplots(3, 3, height_ratios=[0.7, 1, 1])
+    figure = plt.figure(figsize=(10.5, 9.5))
+    top, bottom = figure.subfigures(2, 1, height_ratios=[2.3, 1])
+    axes = top.subplots(3, 3, height_ratios=[0.5, 1, 1])
     numbers = {}
     for column, (name, case, what) in enumerate(CASES):
         result = Result(case)
@@ -35,7 +35,7 @@ def draw():
         over_network(axes[2, column], result, p, instants)
         axes[2, column].set(xlabel="$X_f$", ylabel="P", ylim=(-0.032, 0.052))
         for letter, ax in zip("abc", axes[:, column]):
-            panel(ax, f"{letter} {name}")
+            panel(ax, f"{letter} {name}", 14 if letter == "c" else 6)
         drawn = slice(instants[0], instants[-1] + 1)
         tip = abs(u[:, -1])
         period = lambda n: tip[(result.t >= (n - 1) / FREQUENCY) & (result.t <= n / FREQUENCY)].max()
@@ -65,18 +65,18 @@ def cycles(ax, numbers):
     """Steady cycles below the tongue: no growth, no start."""
     found = {}
     for coupling, colour in (("published", BLUE), ("reciprocal", RED)):
-        with open(ROOT / f"out/figures/valves-cycles-{coupling}/sweep.csv") as file:
+        with open(RESULTS / f"figures/valves-cycles-{coupling}/sweep.csv") as file:
             rows = list(csv.DictReader(file))
         factor = np.array([float(r["/network/permeability_factor [as in the case]"]) for r in rows])
         tip = np.array([float(r["largest |tip_u1| [m]"]) for r in rows]) / 0.1
-        ax.semilogx(factor, tip / tip[-1], "o-", color=colour, ms=3.5, label=f"{coupling} coupling, open: {tip[-1]:.2e}")
+        ax.semilogx(factor, tip / tip[-1], "o-", color=colour, ms=3.5, label=f"{coupling} coupling (open: {tip[-1]:.2e})")
         half = float(np.exp(np.interp((tip[0] + tip[-1]) / 2, tip, np.log(factor))))
         found[coupling] = {"shut": rounded(tip[0], 3), "open": rounded(tip[-1], 3), "half_way_at": rounded(half, 2)}
     ax.axvspan(0.3, 0.7, color="#eeeeee")
     ax.axvline(0.48, color="k", lw=0.6, ls="--")
-    ax.text(0.46, 0.04, "ωτ = 1", ha="right", fontsize=8)
-    ax.set(xlabel="$Q_1^b/Q_{1,open}^b$", ylabel="largest $U_1$ of the steady cycle, over open", ylim=(0, 1.25))
-    ax.set_title("$U_{3,in}$ = 0.25, below the tongue", loc="center")
+    ax.text(0.455, 0.04, "ωτ = 1", ha="right", fontsize=8)
+    ax.set(xlabel="$Q_1^b/Q_{1,open}^b$", ylabel="$U_1$ of the steady cycle", ylim=(0, 1.3))
+    ax.set_title("$U_{3,in}$ = 0.25, over open valves")
     ax.legend(loc="upper left")
     panel(ax, "d′")
     numbers["steady cycles at U3 0.25"] = found

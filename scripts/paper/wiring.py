@@ -9,7 +9,7 @@ FREQUENCY, U1_MAX, P_MAX = 20, 0.137e-3, 7.3e-3
 
 
 def draw():
-    figure, axes = plt.subplots(4, 3, figsize=(10.5, 9.5), height_ratios=[0.75, 1, 1, 0.8])
+    figure, axes = plt.subplots(4, 3, figsize=(10.5, 9), height_ratios=[0.5, 1, 1, 0.8])
     numbers = {"printed": {"u1_max": U1_MAX, "p_max": P_MAX}}
     for column, (name, case) in enumerate(CASES):
         result = Result(case)
@@ -19,7 +19,7 @@ def draw():
         over_time(axes[1, column], result.theta, u / U1_MAX, instants)
         axes[1, column].set(xlabel="Θ", ylabel="$U_1/U_{1,max}$", xlim=(0, 1), ylim=(-0.62, 0.62))
         over_network(axes[2, column], result, p / P_MAX, instants)
-        axes[2, column].set(xlabel="$X_f$", ylabel="$P/P_{max}$", ylim=(-0.8, 0.8))
+        axes[2, column].set(xlabel="$X_f$", ylabel="$P/P_{max}$", ylim=(-0.3, 0.42))
         cycles = np.arange(1, round(result.t[-1] * FREQUENCY) + 1)
         most = lambda field: np.array([abs(field[within(result, n)]).max() for n in cycles])
         ax = axes[3, column]
@@ -29,8 +29,8 @@ def draw():
         ax.set(xlabel="cycle", ylabel="largest in the cycle", ylim=(-0.05, 2), xticks=cycles)
         if column == 0:
             ax.legend(loc="upper right")
-        for letter, ax in zip("abc", axes[:, column]):
-            panel(ax, f"{letter} {name}")
+        for letter, ax in zip(("a", "b", "c", "d′"), axes[:, column]):
+            panel(ax, f"{letter} {name}", 14 if letter == "c" else 6)
         numbers[name] = {
             "largest_u1": rounded(abs(u).max()), "largest_p": rounded(abs(p).max()),
             "last_cycle_u1": rounded(most(u)[-1]), "last_cycle_p": rounded(most(p)[-1]),
