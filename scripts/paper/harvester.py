@@ -15,7 +15,7 @@ B_STAR = 46.189
 
 def draw():
     figure, axes = plt.subplots(4, 2, figsize=(10, 9.5), height_ratios=[0.55, 1, 1, 1])
-    numbers = {}
+    numbers = {"f_u": rounded(Result("harvester-parallel-uniform").summary["characteristic"]["f_u"], 3)}
     for ax, (wiring, _), letter in zip(axes[0], WIRINGS, "ab"):
         wired(ax, Result(f"harvester-{wiring}-uniform").case, turbine=True)
         ax.text(5, -1.65, f"{wiring}, turbine at the root", ha="center", va="top")
@@ -36,6 +36,9 @@ def draw():
             if coupling == "published":
                 ax.axhline(1, color="k", lw=0.6, ls="--")
             panel(ax, f"d {name}" if coupling == "published" else f"d′ {name}")
+    for name, _, _ in LOADS:
+        for found in numbers[name].values():
+            found["parallel_over_crossover_harvest"] = rounded(found["parallel"]["harvested_j"] / found["crossover"]["harvested_j"], 3)
     return figure, numbers
 
 

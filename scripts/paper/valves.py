@@ -11,8 +11,11 @@ FREQUENCY = 18
 SWEEP = ["periodic", "--sweep", "/network/permeability_factor=0.01:1:13:log"]
 BELOW = "/ends/root/clamped/u3_m/sine/amplitude=0.025"
 RECIPROCAL = ['/bladders/coupling="reciprocal"', '/formulation="conservative"']
+LONGER, RAMPED = "/time/end_s=1", "/ends/root/clamped/u3_m/sine/ramp_cycles=1"
 NEEDS = [
     *shipped(*(case for _, case, _ in CASES)),
+    *((f"figures/{case}-longer", case, [LONGER], ["run"]) for _, case, _ in CASES),
+    *((f"figures/{case}-ramped", case, [RAMPED], ["run"]) for _, case, _ in CASES),
     *((f"figures/valves-{f}", "valves-open", [f"/network/permeability_factor={f}"], ["run"]) for f in FACTORS),
     ("figures/valves-cycles-published", "valves-open", [BELOW], SWEEP),
     ("figures/valves-cycles-reciprocal", "valves-open", [BELOW, *RECIPROCAL], SWEEP),
@@ -37,17 +40,24 @@ def draw():
         for letter, ax in zip("abc", axes[:, column]):
             panel(ax, f"{letter} {name}", 14 if letter == "c" else 6)
         drawn = slice(instants[0], instants[-1] + 1)
-        tip = abs(u[:, -1])
-        period = lambda n: tip[(result.t >= (n - 1) / FREQUENCY) & (result.t <= n / FREQUENCY)].max()
+        longer, ramped = Result(f"figures/{case}-longer"), Result(f"figures/{case}-ramped")
         numbers[name] = {
-            "largest_u1": rounded(abs(u).max()), "last_cycle_u1": rounded(abs(u[drawn]).max()), "cycle_1_u1": rounded(period(1)),
+            "f_u": rounded(result.summary["characteristic"]["f_u"], 3),
+            "largest_u1": rounded(abs(u).max()), "last_cycle_u1": rounded(abs(u[drawn]).max()),
             "last_cycle_p": rounded(p[drawn].max()), "largest_p": rounded(p.max()),
-            "growth_cycles_5_to_9_1_s": rounded(np.log(period(9) / period(5)) * FREQUENCY / 4, 3),
+            "largest_u1_ramped": rounded(abs(ramped.u(1)).max()), "largest_u1_in_1_s": rounded(abs(longer.u(1)).max()),
+            "growth_from_cycle_9_to_18_per_s": rounded(np.log(cycle(longer, 18) / cycle(longer, 9)) * FREQUENCY / 9, 3),
         }
     left, right = bottom.subplots(1, 2)
     transition(left, numbers)
     cycles(right, numbers)
     return figure, numbers
+
+
+def cycle(result, number):
+    """Largest deflection of the tip in a cycle, the first is 1."""
+    within = (result.t >= (number - 1) / FREQUENCY) & (result.t <= number / FREQUENCY)
+    return abs(result.u(1)[within, -1]).max()
 
 
 def transition(ax, numbers):

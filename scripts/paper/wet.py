@@ -27,6 +27,7 @@ def draw():
             panel(ax, f"{letter} {name}", 14 if letter == "d" else 6)
         drawn = slice(instants[0], instants[-1] + 1)
         numbers[name] = {
+            "f_u": rounded(result.summary["characteristic"].get("f_u", 0), 3),
             "shown_from_s": rounded(result.t[instants[0]]), "shown_to_s": rounded(result.t[instants[-1]]),
             "largest_u1": rounded(abs(result.u(1)[drawn]).max()), "largest_u3": rounded(abs(result.u(3)[drawn]).max()),
             "largest_p": rounded(pressure[drawn].max()), "smallest_p": rounded(pressure[drawn].min()),

@@ -32,6 +32,7 @@ def draw():
         for letter, ax in zip(("a", "b", "c", "d′"), axes[:, column]):
             panel(ax, f"{letter} {name}", 14 if letter == "c" else 6)
         numbers[name] = {
+            "f_u": rounded(result.summary["characteristic"]["f_u"], 3),
             "largest_u1": rounded(abs(u).max()), "largest_p": rounded(abs(p).max()),
             "last_cycle_u1": rounded(most(u)[-1]), "last_cycle_p": rounded(most(p)[-1]),
             "u1_over_printed": rounded(abs(u).max() / U1_MAX), "p_over_printed": rounded(abs(p).max() / P_MAX),
