@@ -19,6 +19,8 @@ out = sys.argv[2] if len(sys.argv) > 2 else result / "plot.png"
 fields, case = np.load(result / "fields.npz"), json.loads((result / "case.json").read_text())
 columns = dict(zip(*[(rows := list(csv.reader(open(result / "history.csv"))))[0], np.array(rows[1:], float).T]))
 t, theta, wet = fields["t_fields_s"], fields["theta_node_m"], "pressure_pa" in fields
+if len(t) < 2:
+    sys.exit(f"{result} holds one instant only")
 
 figure, axes = plt.subplots(2 + wet, figsize=(8, 5.2 + 2.6 * wet), layout="constrained")
 figure.suptitle(case["name"])

@@ -1,7 +1,5 @@
 //! Surfaces and lines against the recorded fields.
 
-use std::path::Path;
-
 use slcbeam::output::reading;
 use slcbeam::study::compare::Recording;
 use tempfile::TempDir;
@@ -14,9 +12,9 @@ fn the_beam(piece: &Piece, from: &Recording, k: usize) {
     let theta = from.axis("theta_node_m").unwrap();
     let (points, at) = (piece.points(), piece.get("PointData theta_m"));
     for (node, &x) in theta.iter().enumerate() {
-        // Twelve points a section: two sides, six heights; opposite corners are the first and the last.
+        // Twelve points a section on the beam's sides, at six heights, before those of the windows' walls.
         let section: Vec<usize> = (0..at.len()).filter(|&i| at[i] == x).collect();
-        assert_eq!(section.len(), 12, "node {node}");
+        assert!(section.len() >= 12, "node {node}");
         for &i in &section {
             let vector = |name: &str| &piece.get(name)[3 * i..3 * i + 3];
             assert_eq!(vector("PointData u_m"), [row("u3_m")[node], row("u1_m")[node], 0.0]);
@@ -64,7 +62,7 @@ fn the_bladders(piece: &Piece, from: &Recording, k: usize) {
             // The segment of the bladder.
             let middle = (label.abs() - 0.5) * 0.01;
             let u3 = from.field("u3_m").unwrap().row(k);
-            let moved = middle + 0.5 * (u3[4 * label.abs() as usize - 2] + u3[4 * label.abs() as usize - 2]);
+            let moved = middle + u3[4 * label.abs() as usize - 2];
             let mean = own.iter().flat_map(|&q| quads[q]).map(|p| points[p][0]);
             let (sum, count) = mean.fold((0.0, 0.0), |(s, n), x| (s + x, n + 1.0));
             // Strains reach some per cent over half a bladder, 4 mm.
