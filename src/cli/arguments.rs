@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::completions::CompletionsArguments;
 use super::explain::ExplainArguments;
+use super::export::ExportArguments;
 use super::new::NewArguments;
 use super::schema::SchemaArguments;
 
@@ -39,6 +40,8 @@ pub enum Command {
     Periodic(PeriodicArguments),
     /// Compare two result folders: error norms of every field and quantity, cost ratio
     Compare(CompareArguments),
+    /// Write a result in other formats: tables of its fields (CSV), surfaces that ParaView opens (VTK)
+    Export(ExportArguments),
     /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
     Mapping(MappingArguments),
     /// Compute exact results of beam and network theory and compare, with observed orders
@@ -69,6 +72,7 @@ impl Command {
             Self::Mapping(a) => a.json,
             Self::Verify(a) => a.json,
             Self::Schema(a) => a.json,
+            Self::Export(a) => a.json,
             Self::Explain(a) => a.json,
             Self::New(a) => a.json,
             Self::Completions(_) => false,

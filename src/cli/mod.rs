@@ -7,6 +7,7 @@ mod completions;
 mod effects;
 mod equilibrium;
 mod explain;
+mod export;
 mod floquet;
 mod interrupt;
 mod line;
@@ -67,6 +68,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Periodic(asked) => periodic::periodic(asked),
         Command::Compare(asked) => compare::compare(asked),
         Command::Modes(asked) => modes::modes(asked),
+        Command::Export(asked) => export::export(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),
         Command::Schema(_) => schema::schema(),
