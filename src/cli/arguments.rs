@@ -34,6 +34,8 @@ pub enum Command {
     Periodic(PeriodicArguments),
     /// Compare two result folders: error norms of every field and quantity, cost ratio
     Compare(CompareArguments),
+    /// Make one self-contained HTML page of a result folder, whichever command filled it
+    Report(ReportArguments),
     /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
     Mapping(MappingArguments),
     /// Compute exact results of beam and network theory and compare, with observed orders
@@ -315,6 +317,20 @@ pub struct CompareArguments {
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `report`.
+#[derive(Debug, Args)]
+pub struct ReportArguments {
+    /// Result folder
+    #[arg(value_name = "DIR")]
+    pub dir: PathBuf,
+    /// Write the page here [default: report.html in the folder]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Print the page's path and size as JSON
     #[arg(long)]
     pub json: bool,
 }

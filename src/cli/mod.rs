@@ -12,6 +12,7 @@ mod mapping;
 mod modes;
 mod periodic;
 pub mod progress;
+mod report;
 mod run;
 mod schema;
 mod study;
@@ -61,6 +62,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Periodic(asked) => periodic::periodic(asked),
         Command::Compare(asked) => compare::compare(asked),
         Command::Modes(asked) => modes::modes(asked),
+        Command::Report(asked) => report::report(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),
         Command::Schema => schema::schema(),
