@@ -165,7 +165,7 @@ pub fn effects(summary: &Summary) -> Vec<Value> {
     let described = |name: &str| {
         let text = schema.pointer(&format!("/$defs/EffectChoices/properties/{name}/description"));
         let own = OTHERS.iter().find(|o| o.0 == name).map(|o| o.1);
-        text.and_then(Value::as_str).or(own).unwrap_or("").to_string()
+        text.and_then(Value::as_str).or(own).unwrap_or("").replace('`', "")
     };
     let row = |(name, chosen): (&String, &crate::run::summary::Chosen)| json!({"name": name, "value": chosen.value, "reason": chosen.reason, "about": described(name)});
     summary.effects.iter().map(row).collect()

@@ -13,7 +13,6 @@ const STYLES: [&str; 4] = [
 
 /// In the order in which they are read: each uses what stands before it.
 const SCRIPTS: [&str; 17] = [
-    include_str!("vendor/uPlot.iife.min.js"),
     include_str!("page/base.js"),
     include_str!("page/colour.js"),
     include_str!("page/clock.js"),
@@ -29,9 +28,11 @@ const SCRIPTS: [&str; 17] = [
     include_str!("page/tables.js"),
     include_str!("page/facts.js"),
     include_str!("page/kinds.js"),
+    include_str!("page/states.js"),
     include_str!("page/main.js"),
 ];
 
+const VENDOR: &str = include_str!("vendor/uPlot.iife.min.js");
 const LICENCE: &str = include_str!("vendor/LICENSE");
 
 /// The page that shows the data.
@@ -46,6 +47,7 @@ pub fn assemble(data: &Map<String, Value>) -> String {
         ("{{style}}", STYLES.map(str::trim).join("\n")),
         // Within a script element only `<` could end it, or begin a comment.
         ("{{data}}", json.replace('<', "\\u003c")),
+        ("{{vendor}}", VENDOR.trim().to_string()),
         ("{{script}}", scripts.join("\n")),
     ];
     let mut out = String::new();
