@@ -8,7 +8,7 @@ use super::{Kind, Place, pack, sheet};
 use crate::error::Result;
 use crate::output::equilibrium::{CSV, JSON, SHAPES};
 use crate::output::folder::CASE;
-use crate::output::numbers::{count, duration, quantity, significant};
+use crate::output::numbers::{count, duration, quantity, significant, trimmed};
 
 /// States whose shapes the page holds, at most.
 const MOST_STATES: usize = 240;
@@ -89,8 +89,8 @@ pub fn data(place: &Place) -> Result<Map<String, Value>> {
 fn answer(found: &Value, share: f64, at: f64) -> String {
     let loads = format!(
         "{} % of the loads at t = {} s",
-        significant(100.0 * share, 4),
-        significant(at, 4)
+        trimmed(&significant(100.0 * share, 4)),
+        trimmed(&significant(at, 4))
     );
     let stability = match found.pointer("/stability/unstable_modes").and_then(Value::as_u64) {
         None => "whether it is stable is not known".to_string(),

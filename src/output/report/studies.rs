@@ -25,7 +25,7 @@ pub fn study(place: &Place) -> Result<Map<String, Value>> {
         .cloned()
         .unwrap_or_default();
     put("label", "What accuracy costs".into());
-    put("answer", text("sentence").into());
+    put("answer", capital(&text("sentence")).into());
     put("warnings", found.get("notes").cloned().unwrap_or_default());
     put(
         "facts",
@@ -97,11 +97,18 @@ pub fn study(place: &Place) -> Result<Map<String, Value>> {
                       \"Judged\" says whether that reference is exact enough to tell."),
             "headings": ["cells a segment", "method", "tolerance", "unknowns", "steps", "least wall time [s]", "largest error",
                          "judged", "worth using"],
-            "rows": points.iter().map(row).collect::<Vec<_>>(), "file": study_files::CSV,
+            "rows": points.iter().filter(|p| p.pointer("/trial/counters/steps").and_then(Value::as_u64) != Some(0)).map(row).collect::<Vec<_>>(), "file": study_files::CSV,
         }),
     );
     put("command", format!("slcbeam study {CASE}{}", plan(&found)).into());
     Ok(all)
+}
+
+/// With a capital at its start.
+fn capital(text: &str) -> String {
+    let mut all = text.chars();
+    all.next()
+        .map_or(String::new(), |first| first.to_uppercase().chain(all).collect())
 }
 
 /// Options of the command that made a study.

@@ -90,12 +90,7 @@ function showAnimation(host, scene, motion, clock) {
     ctx.globalAlpha = 0.012;
     const every = Math.max(1, Math.floor(motion.frames / 70));
     for (let f = 0; f < motion.frames; f += every) {
-      const curve = shape(f, 0);
-      ctx.beginPath();
-      const edge = (k, e) => ctx.lineTo(view.X(curve.x[k] + e * curve.nx[k]), view.Y(curve.y[k] + e * curve.ny[k]));
-      for (let k = 0; k < curve.n; k++) edge(k, scene.height / 2);
-      for (let k = curve.n - 1; k >= 0; k--) edge(k, -scene.height / 2);
-      ctx.fill();
+      paintShade(ctx, view, shape(f, 0), scene);
     }
     const parts = [];
     if (factor.across !== 1) parts.push(`deflection across drawn ${count(factor.across)} times larger`);

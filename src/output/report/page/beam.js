@@ -92,6 +92,16 @@ function paintBeam(ctx, view, curve, scene, layout, pressure) {
   });
 }
 
+/** The outline of a shape filled with the present colour, for what is shown behind. */
+function paintShade(ctx, view, curve, scene) {
+  const half = scene.height / 2;
+  const edge = (k, e) => ctx.lineTo(view.X(curve.x[k] + e * curve.nx[k]), view.Y(curve.y[k] + e * curve.ny[k]));
+  ctx.beginPath();
+  for (let k = 0; k < curve.n; k++) edge(k, half);
+  for (let k = curve.n - 1; k >= 0; k--) edge(k, -half);
+  ctx.fill();
+}
+
 /** More points on long lines, so that they bend with the beam. */
 function refined(points, segment) {
   const out = [[points[0].a, points[0].e]];

@@ -69,7 +69,7 @@ function showWarnings(main) {
 
 function showTiles(main) {
   if (!data.tiles?.length) return;
-  main.append(el("div", { class: "tiles", id: "tiles" }, data.tiles.map((t) =>
+  main.append(el("div", { class: data.tiles.length > 6 ? "tiles four" : "tiles", id: "tiles" }, data.tiles.map((t) =>
     el("div", { class: "tile" }, el("div", { class: "label", text: t.label }), el("div", { class: "value", text: t.value }), el("div", { class: "note", text: t.note })))));
 }
 

@@ -116,7 +116,8 @@ function showHistories(host, history, clock) {
       const series = family.map((c) => ({ label: c.label, unit: c.unit, values: c.values, colour: named(colour++) }));
       group.add(series, 210, family.length > 1 ? family[0].group.toLowerCase() : family[0].label);
     }
-    group.mark();
+    // Once more when the plots stand: their first picture comes a moment later.
+    setTimeout(group.mark, 0);
   };
   const groups = new Map();
   for (const column of all) groups.set(column.group, [...(groups.get(column.group) || []), column]);

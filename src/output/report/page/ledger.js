@@ -51,7 +51,7 @@ function showEnergies(host, ledger, history, clock) {
     group.clear();
     group.add(lines.map(([label, values], k) => ({ label, values, unit: "J", colour: named(k) })), 280, "energy");
     if (residual) group.add([{ label: spoken(residual.name), values: residual.values, unit: "J", colour: css("--bad") }], 150, "residual");
-    group.mark();
+    setTimeout(group.mark, 0);
   };
   host.append(figure("Over time", "What was put in equals what is stored, lost and harvested; the small picture below shows by how much it does not.", zoomTools(group), slot));
   redrawn(paint);

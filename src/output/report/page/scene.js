@@ -69,7 +69,7 @@ function sceneDrawing(scene, layout, width, chosen) {
   if (layout.bladders.length) drawBladders(add, layout, X, Y, scale, thicker);
   drawWires(add, layout, X, Y, scale);
   drawMarks(add, layout, X, Y, scene, thicker);
-  drawLoads(add, scene, X, Y(scene.height / 2) - (layout.marks.some((m) => m.kind !== "sealed" && m.row > 0) ? 34 : 8), width);
+  drawLoads(add, scene, X, Y(scene.height / 2) - (layout.marks.some((m) => m.kind !== "sealed" && m.row > 0) ? 34 : 8), width, height);
   scaleBar(add, scene, X, height, scale);
   node.nearest = (x, y) => {
     let best = [22 ** 2 + (layout.size[0] * scale) ** 2, -1];
@@ -180,14 +180,14 @@ function drawEnds(add, scene, X, Y, thick) {
   });
 }
 
-function drawLoads(add, scene, X, base, width) {
+function drawLoads(add, scene, X, base, width, height) {
   const colour = css("--accent");
   let y = base;
   const few = width < 560 ? 4 : 2;
   for (const load of scene.loads) {
     if (load.kind === "gravity") {
       const size = Math.hypot(load.x, load.z) || 1;
-      const [gx, gy] = [width - 26, 26];
+      const [gx, gy] = [width - 26, height - 22];
       add(arrow(gx - (14 * load.z) / size, gy + (14 * load.x) / size, gx + (14 * load.z) / size, gy - (14 * load.x) / size, colour, false));
       add(svg("text", { x: gx - 16 - Math.abs((14 * load.z) / size), y: gy + 4, "text-anchor": "end", text: "g" }));
       continue;

@@ -32,29 +32,29 @@ function showPath() {
       return curveOf(theta, x.subarray(s * n, (s + 1) * n), u3, factor);
     };
     const note = factor.across === 1 ? "To scale, nothing exaggerated." : `Deflection across drawn ${count(factor.across)} times larger.`;
-    body.append(figure(null, `${note} Faint lines: the other states of the path.`, canvas, el("div", { class: "controls" }, el("label", { style: "flex:1 1 200px" }, "State", slider)), words));
+    body.append(figure(null, `${note} The faint shade is where the other states of the path lie.`, canvas, el("div", { class: "controls" }, el("label", { style: "flex:1 1 200px" }, "State", slider)), words));
     slider.style.flex = "1 1 auto";
     const columns = (path?.headings || []).map((h) => /^(.*) \[(.*)\]$/.exec(h)).map((m) => (m ? [m[1], m[2]] : null));
     const paint = () => {
       const view = viewOf(Math.max(canvas.clientWidth, 260), bounds, 460);
       const now = Number(slider.value);
       painted(canvas, view.height, (ctx) => {
-        ctx.strokeStyle = css("--faint");
-        ctx.globalAlpha = 0.35;
+        ctx.fillStyle = css("--faint");
+        ctx.globalAlpha = 0.05;
         const every = Math.max(1, Math.floor(states.length / 60));
         for (let s = 0; s < states.length; s += every) {
           const c = curve(s);
-          ctx.beginPath();
-          for (let k = 0; k < n; k++) ctx.lineTo(view.X(c.x[k]), view.Y(c.y[k]));
-          ctx.stroke();
+          paintShade(ctx, view, c, scene);
         }
         ctx.globalAlpha = 1;
         paintBeam(ctx, view, curve(now), scene, layout, null);
       });
       const row = path?.rows?.[states[now]] || [];
-      const wanted = ["tip_u1", "tip_u3", "max_pressure", "unstable_modes"];
+      const wanted = ["tip_u1", "tip_u3", "max_pressure"];
+      const ways = row[columns.findIndex((c) => c && c[0] === "unstable_modes")];
+      const verdict = ways === 0 ? "stable" : ways > 0 ? `unstable in ${ways} way${ways === 1 ? "" : "s"}` : "stability unknown";
       const parts = columns.map((c, k) => (c && wanted.includes(c[0]) && typeof row[k] === "number" ? `${spoken(c[0])} ${quantity(row[k], c[1])}` : null)).filter(Boolean);
-      words.textContent = `${significant(100 * share[now], 4)} % of the loads · ${parts.join(" · ")}`;
+      words.textContent = `${shortest(100 * share[now])} % of the loads · ${parts.join(" · ")} · ${verdict}`;
       for (const act of follow) act(states[now]);
     };
     const follow = [];
@@ -118,10 +118,12 @@ function showEvents() {
 
 /** Shapes of small motions, moving. */
 function showModes() {
-  const { shapes, modes, scene } = data;
-  if (shapes && scene && modes?.length) {
+  const { shapes, modes } = data;
+  if (shapes && modes?.length) {
     const get = (name) => floats(shapes[name]);
     const theta = get("theta_m");
+    // Without the case only the line of the beam is known.
+    const scene = data.scene || { length: theta.at(-1), height: 0.06 * theta.at(-1), ends: [], loads: [], bladders: null };
     const n = theta.length;
     const layout = layOut(scene);
     const [a1, f1, a3, f3, ap, fp] = ["u1_amplitude_m", "u1_phase_rad", "u3_amplitude_m", "u3_phase_rad", "pressure_amplitude_pa", "pressure_phase_rad"].map(get);
@@ -188,12 +190,12 @@ function showModes() {
     paint();
     if (playing) requestAnimationFrame(frame);
   }
-  if (data.passivity) body_note(data.passivity);
+  if (data.passivity) showPassivity(data.passivity);
   if (data.table) section("table", "Every mode", null).append(tableCard({ ...data.table, title: null, about: "Undrained: the same shape with every bladder sealed. Drained: with one pressure in each network. The growth rate is negative where the motion dies away." }));
   if (data.picture) section("picture", "All shapes at once", null).append(pictureCard({ picture: data.picture, title: null, about: "Displacement along the beam of every mode, with the pressures of the bladders." }));
-  if (scene) showScene();
+  if (data.scene) showScene();
 }
 
-function body_note(text) {
+function showPassivity(text) {
   document.getElementById("main").append(figure("Passivity of the coupling", text));
 }

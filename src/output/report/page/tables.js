@@ -2,7 +2,7 @@
 
 /** `headings`: texts; `rows`: arrays of numbers, texts or nulls. Numbers are shown with their significant digits. */
 function sortable(headings, rows, options = {}) {
-  const shown = (x, k) => (typeof x === "number" ? (options.format?.[k] ? options.format[k](x) : Number.isInteger(x) && Math.abs(x) < 1e6 ? count(x).replace("-", "−") : significant(x, 4)) : x === null || x === undefined || x === "" ? "–" : String(x));
+  const shown = (x, k) => (typeof x === "number" ? (options.format?.[k] ? options.format[k](x) : Number.isInteger(x) && Math.abs(x) < 1e6 ? count(x).replace("-", "−") : shortest(x)) : x === null || x === undefined || x === "" ? "–" : String(x));
   const numeric = headings.map((_, k) => rows.some((r) => typeof r[k] === "number") && rows.every((r) => typeof r[k] === "number" || r[k] === null || r[k] === ""));
   const wordy = headings.map((_, k) => rows.some((r) => String(r[k] ?? "").length > 40));
   const body = el("tbody");
@@ -29,6 +29,13 @@ function sortable(headings, rows, options = {}) {
   };
   fill(rows);
   return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": options.label || "Table", "data-keys": "" }, el("table", {}, el("thead", {}, el("tr", {}, cells)), body));
+}
+
+/** Four figures, without zeros that say nothing. */
+function shortest(x) {
+  const text = significant(x, 4);
+  const [digits, power] = text.split("·");
+  return `${digits.includes(".") ? digits.replace(/\.?0+$/, "") : digits}${power ? `·${power}` : ""}`;
 }
 
 /** A table of the data with title, sentence and the file that has all of it. */

@@ -60,7 +60,7 @@ function layOut(scene) {
     if (apart < 1.2 * segment && A.e === B.e) return [A, B];
     const far = apart > 2 * segment;
     // Long ones run along the middle of the beam, side by side.
-    const e = far ? [0, 0.05, -0.05, 0.1, -0.1][lane++ % 5] * scene.height : A.e === 0 || B.e === 0 ? 0 : 0;
+    const e = far ? [0.06, -0.06, 0.1, -0.1, 0][lane++ % 5] * scene.height : 0;
     return [A, { a: A.a, e }, { a: B.a, e }, B];
   };
   for (const tube of tubes) {
