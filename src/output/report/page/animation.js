@@ -87,7 +87,7 @@ function showAnimation(host, scene, motion, clock) {
     const ratio = canvas.width / Math.max(canvas.clientWidth, 40);
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     ctx.fillStyle = css("--faint");
-    ctx.globalAlpha = 0.012;
+    ctx.globalAlpha = 0.009;
     const every = Math.max(1, Math.floor(motion.frames / 70));
     for (let f = 0; f < motion.frames; f += every) {
       paintShade(ctx, view, shape(f, 0), scene);

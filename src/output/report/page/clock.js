@@ -85,7 +85,12 @@ function player(clock, numbers) {
     return value;
   });
   play.addEventListener("click", () => clock.play(!clock.playing));
-  slider.addEventListener("input", () => (clock.play(false), clock.go(Number(slider.value))));
+  slider.addEventListener("input", () => {
+    // Read first: stopping sets the slider to where the clock was.
+    const index = Number(slider.value);
+    clock.play(false);
+    clock.go(index);
+  });
   speed.addEventListener("change", () => (clock.rate = Number(speed.value) * clock.natural));
   let state = null;
   clock.onTick(() => {
