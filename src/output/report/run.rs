@@ -15,6 +15,9 @@ use crate::output::periodic::CYCLE;
 use crate::output::summary;
 use crate::run::summary::{Status, Summary};
 
+/// Displacements below this [m] are round-off.
+const ROUND_OFF: f64 = 1e-14;
+
 /// Everything the page shows.
 pub fn data(place: &Place) -> Result<Map<String, Value>> {
     let summary = match place.path(SUMMARY).is_file() {
@@ -103,7 +106,10 @@ fn facts_line(summary: &Summary) -> Vec<String> {
     vec![
         format!("{simulated} simulated in {}", duration(summary.wall_s.total)),
         format!("{} unknowns", count(summary.unknowns as u64)),
-        format!("{} steps", count(summary.solver.steps)),
+        match summary.solver.steps {
+            1 => "1 step".into(),
+            n => format!("{} steps", count(n)),
+        },
     ]
 }
 
@@ -116,7 +122,10 @@ fn tiles(summary: &Summary) -> Vec<Value> {
             all.push(json!({"label": label, "value": value, "note": note}));
         }
     };
-    let length = |name: &str| largest(name).map(|x| quantity(x, "m", 3));
+    let length = |name: &str| {
+        let settled = |x: f64| if x < ROUND_OFF { 0.0 } else { x };
+        largest(name).map(|x| quantity(settled(x), "m", 3))
+    };
     tile("Tip, across", length("tip_u1_m"), "largest deflection u₁ at any time");
     tile("Tip, along", length("tip_u3_m"), "largest displacement u₃ at any time");
     let window = summary.quantities.get("max_pressure_pa").and_then(|q| q.window_max_abs);

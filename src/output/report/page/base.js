@@ -101,6 +101,11 @@ function quantity(value, unit, digits = 3) {
   return name.startsWith("·") ? number + name : `${number} ${name}`.trim();
 }
 
+/** Zero for what is only round-off beside `size`. */
+function settled(value, size) {
+  return Math.abs(value) < 1e-12 * size ? 0 : value;
+}
+
 /** A time without the zeros behind its point. */
 function timeText(t) {
   const [number, unit] = quantity(t, "s", 4).split(" ");
@@ -123,6 +128,11 @@ function redrawn(draw) {
 }
 function redraw() {
   for (const draw of redraws) draw();
+}
+
+/** Text whose parts between backticks are code. */
+function prose(text) {
+  return String(text).split("`").map((part, k) => (k % 2 ? el("code", { text: part }) : part));
 }
 
 const contents = [];

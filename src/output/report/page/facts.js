@@ -43,7 +43,7 @@ function showHead(main) {
   const status = data.status;
   main.append(el("div", { class: "head" },
     el("div", { class: "titleline" }, el("h1", { text: data.name }), status ? el("span", { class: `badge ${status.tone}`, text: status.word }) : null),
-    data.about ? el("p", { class: "about", text: data.about }) : null,
+    data.about ? el("p", { class: "about" }, prose(data.about)) : null,
     data.answer ? el("p", { class: "answer", text: data.answer }) : null,
     data.facts ? el("ul", { class: "factline" }, data.facts.map((text) => el("li", { text }))) : null));
   if (status?.reason) {
@@ -117,22 +117,21 @@ function showCase() {
   }
   const groups = new Map();
   for (const row of data.parameters || []) groups.set(row.group, [...(groups.get(row.group) || []), row]);
+  const value = (text) => (text === "[]" || text === "{}" ? "none" : /^[[{]/.test(text) ? el("code", { text }) : text);
+  const row = (about, shown, name) => el("tr", {}, el("td", { class: "why" }, about, el("code", { class: "key", text: name })), el("td", {}, shown));
   const rows = [...groups].flatMap(([group, list]) => [
-    el("tr", { class: "group" }, el("td", { colspan: 3, text: group.replace(/_/g, " ") })),
-    ...list.map((r) => el("tr", {}, el("td", { class: "why", text: r.about || r.pointer.split("/").pop().replace(/_/g, " ") }), el("td", { text: r.value }), el("td", {}, el("code", { text: r.pointer })))),
+    el("tr", { class: "group" }, el("td", { colspan: 2, text: group.replace(/_/g, " ") })),
+    ...list.map((r) => row(r.about || r.pointer.split("/").pop().replace(/_/g, " "), value(r.value), r.pointer)),
   ]);
-  if (rows.length) {
-    body.append(figure(null, null, el("details", { class: "fold", open: rows.length < 30 }, el("summary", { text: `All ${(data.parameters || []).length} parameters` }),
-      el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Parameters", "data-keys": "" }, el("table", {}, el("tbody", {}, rows))))));
-  }
-  if (data.characteristic?.length) {
-    const list = data.characteristic.map((c) => [c.about || c.name.replace(/_/g, " "), c.value, c.name]);
-    const table = el("table", {}, el("tbody", {}, list.map(([about, value, name]) => el("tr", {}, el("td", { class: "why", text: about }), el("td", { text: value }), el("td", {}, el("code", { text: name }))))));
-    body.append(figure(null, null, el("details", { class: "fold" }, el("summary", { text: `${list.length} characteristic numbers` }), el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Characteristic numbers", "data-keys": "" }, table))));
-  }
-  if (data.case_text) {
-    body.append(figure(null, null, el("details", { class: "fold" }, el("summary", { text: "case.json" }), el("div", { class: "toolbar" }, copyButton("Copy", data.case_text)), el("pre", { class: "raw", tabindex: "0", "data-keys": "", text: data.case_text }))));
-  }
+  const numbers = (data.characteristic || []).map((c) => row(c.about || c.name.replace(/_/g, " "), c.value, c.name));
+  const fold = (title, label, list) => el("details", { class: "fold" }, el("summary", { text: title }),
+    el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": label, "data-keys": "" }, el("table", { class: "pairs" }, el("tbody", {}, list))));
+  const folds = [
+    rows.length ? fold(`All ${(data.parameters || []).length} parameters`, "Parameters", rows) : null,
+    numbers.length ? fold(`${numbers.length} characteristic numbers: what the parameters mean together`, "Characteristic numbers", numbers) : null,
+    data.case_text ? el("details", { class: "fold" }, el("summary", { text: "case.json as it is" }), el("div", { class: "toolbar" }, copyButton("Copy", data.case_text)), el("pre", { class: "raw", tabindex: "0", "data-keys": "", text: data.case_text })) : null,
+  ].filter(Boolean);
+  if (folds.length) body.append(figure(null, null, ...folds));
 }
 
 function showFoot() {

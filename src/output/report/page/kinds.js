@@ -10,9 +10,12 @@ function showScene(tell) {
   const host = el("div");
   const readout = el("div", { class: "readout dim", "aria-live": "polite", text: half ? "Point at a bladder or a tube, or move among bladders with the arrow keys." : "" });
   const legend = el("ul", { class: "legend" });
-  const card = figure(null, "To scale, from the root on the left to the tip on the right; a beam thinner than 16 pixels is drawn thicker. Bladders lie across the beam, one behind its number; tubes leave their ends in front and behind and are drawn as lines between them.", host, half ? readout : null, legend);
+  const note = el("p", { class: "caption" });
+  const card = figure(null, null, host, half ? readout : null, legend, note);
+  const parts = half ? " Squares are bladders, which lie across the beam; lines are tubes, which join their ends in front and behind." : "";
+  const scale = (thicker) => (note.textContent = `${thicker > 1.01 ? `To scale along the beam; its height is drawn ${shortest(thicker)} times larger.` : "To scale."} Root on the left, tip on the right.${parts}`);
   body.append(card);
-  const drawn = drawScene(scene, host, readout, tell || ((b, layout) => bladderWords(b, layout, scene)));
+  const drawn = drawScene(scene, host, readout, tell || ((b, layout) => bladderWords(b, layout, scene)), scale);
   const paint = () => legend.replaceChildren(...sceneWords(scene, drawn.layout).map(([mark, strong, text]) => el("li", {}, mark, el("span", {}, el("b", { text: strong }), ` ${text}`))));
   redrawn(paint);
   paint();
@@ -79,7 +82,8 @@ function showRun() {
     if (motion?.ofBladder) {
       const own = Array.from({ length: motion.frames }, (_, f) => motion.ofBladder[f * motion.bladders + b.index]);
       const [low, high] = extent(own);
-      text += ` Pressure now ${quantity(own[clock.index], "Pa")}; least ${quantity(low, "Pa")}, largest ${quantity(high, "Pa")}.`;
+      const shown = (p) => quantity(settled(p, motion.pressureScale.most), "Pa");
+      text += ` Pressure now ${shown(own[clock.index])}; least ${shown(low)}, largest ${shown(high)}.`;
     }
     return text;
   };
@@ -93,18 +97,20 @@ function showRun() {
     if (kept) host.append(el("p", { class: "caption", text: kept }));
     const tip = motion.nodes - 1;
     body.append(player(clock, (c) => {
-      const all = [["time", quantity(c.time, "s", 4)], ["tip across", quantity(motion.u1[c.index * motion.nodes + tip], "m")], ["tip along", quantity(motion.u3[c.index * motion.nodes + tip], "m")]];
+      const all = [["time", quantity(c.time, "s", 4)], ["tip across", quantity(settled(motion.u1[c.index * motion.nodes + tip], scene.length), "m")], ["tip along", quantity(settled(motion.u3[c.index * motion.nodes + tip], scene.length), "m")]];
       if (motion.pressure) {
         const [low, high] = extent(motion.pressure.subarray(c.index * motion.cells, (c.index + 1) * motion.cells));
-        all.push(["pressure", `${quantity(low, "Pa")} to ${quantity(high, "Pa")}`]);
+        all.push(["pressure", `${quantity(settled(low, motion.pressureScale.most), "Pa")} to ${quantity(settled(high, motion.pressureScale.most), "Pa")}`]);
       }
       return all;
     }));
     clock.onTick(() => !clock.playing && drawn.again());
     body.append(el("div", { class: "grid2", id: "profiles" }));
     showProfiles(body.lastChild, motion, clock, scene);
-    body.append(el("div", { class: "grid2", id: "maps" }));
-    showMaps(body.lastChild, motion, clock, scene);
+    if (motion.frames > 1) {
+      body.append(el("div", { class: "grid2", id: "maps" }));
+      showMaps(body.lastChild, motion, clock, scene);
+    }
   }
   const within = document.getElementById("motion") || document.getElementById("main");
   if (history) {

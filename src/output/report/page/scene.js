@@ -1,6 +1,6 @@
 // What was simulated: the beam from the side, to scale.
 
-function drawScene(scene, host, readout, tell) {
+function drawScene(scene, host, readout, tell, scale) {
   const layout = layOut(scene);
   const frame = el("div");
   host.append(frame);
@@ -9,6 +9,7 @@ function drawScene(scene, host, readout, tell) {
     const width = Math.max(host.clientWidth, 280);
     frame.replaceChildren(sceneDrawing(scene, layout, width, chosen));
     const picture = frame.firstChild;
+    scale(picture.thicker);
     if (!layout.bladders.length) return;
     picture.setAttribute("tabindex", "0");
     picture.setAttribute("data-keys", "");
@@ -71,6 +72,7 @@ function sceneDrawing(scene, layout, width, chosen) {
   drawMarks(add, layout, X, Y, scene, thicker);
   drawLoads(add, scene, X, Y(scene.height / 2) - (layout.marks.some((m) => m.kind !== "sealed" && m.row > 0) ? 34 : 8), width, height);
   scaleBar(add, scene, X, height, scale);
+  node.thicker = thicker;
   node.nearest = (x, y) => {
     let best = [22 ** 2 + (layout.size[0] * scale) ** 2, -1];
     for (const b of layout.bladders) {

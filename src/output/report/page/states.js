@@ -79,7 +79,7 @@ function loadCurves(body, path, columns, follow) {
     if (!(largest(values) > 1e-12)) continue;
     const share = path.rows.map((r) => r[0]);
     const slot = el("div");
-    grid.append(figure(title, `At the end of the path ${quantity(values.at(-1), columns[k][1])}. The ring is the state shown above.`, slot));
+    grid.append(figure(title, `At the end of the path ${quantity(values.at(-1), columns[k][1])}. The ring is the state shown above.${data.events?.length ? " Dashed: where something happens on the way." : ""}`, slot));
     let mark = null;
     let drawn = null;
     let at = path.rows.length - 1;
@@ -93,6 +93,10 @@ function loadCurves(body, path, columns, follow) {
       const [x0, x1] = roomy(extent(share));
       drawn = chart(Math.max(slot.clientWidth, 260), 240, { low: x0, high: x1, unit: "1", name: "share of the loads" }, { low, high, unit: columns[k][1], name: spoken(name) }, title);
       drawn.area.append(svg("path", { d: linePath(values.length, (i) => [drawn.px(share[i]), drawn.py(values[i])]), style: `fill:none;stroke:${css("--accent")};stroke-width:2.2` }));
+      for (const e of data.events || []) {
+        const x = drawn.px(e.load_factor);
+        drawn.area.append(svg("line", { x1: x, x2: x, y1: 0, y2: 240, "stroke-dasharray": "3 4", style: `stroke:${css("--faint")}` }));
+      }
       mark = svg("circle", { r: 6, style: `fill:${css("--card")};stroke:${css("--accent")};stroke-width:2.6` });
       drawn.area.append(mark);
       slot.replaceChildren(drawn.node);
@@ -138,12 +142,12 @@ function showModes() {
     const button = el("button", { type: "button", class: "main", "aria-label": playing ? "Pause" : "Play" }, icon(playing ? "pause" : "play"));
     const slider = el("input", { type: "range", min: 0, max: 100, value: 0, "aria-label": "Phase", style: "flex:1 1 160px", "data-keys": "" });
     body.append(figure(null, null, el("div", { class: "controls" }, el("label", {}, "Mode", select), button, slider), canvas, words));
-    const bounds = { x0: -0.02 * scene.length, x1: 1.05 * scene.length, y0: -0.2 * scene.length - scene.height, y1: 0.2 * scene.length + scene.height };
+    const bounds = { x0: -0.02 * scene.length, x1: 1.05 * scene.length, y0: -0.13 * scene.length - 0.6 * scene.height, y1: 0.13 * scene.length + 0.6 * scene.height };
     const paint = () => {
       const k = Number(select.value);
       const part = (values, count) => values.subarray(k * count, (k + 1) * count);
       const size = Math.max(largest(part(a1, n)), largest(part(a3, n)), 1e-300);
-      const factor = (0.14 * scene.length) / size;
+      const factor = (0.11 * scene.length) / size;
       const oscillates = Boolean(modes[k].frequency_hz);
       // What decays without swinging is drawn swinging too: its shape is what is to be seen.
       const at = (a, f, i) => a[i] * Math.cos(2 * Math.PI * phase + (oscillates ? f[i] : Math.cos(f[i]) < 0 ? Math.PI : 0));

@@ -2,16 +2,19 @@
 
 /** `headings`: texts; `rows`: arrays of numbers, texts or nulls. Numbers are shown with their significant digits. */
 function sortable(headings, rows, options = {}) {
-  const shown = (x, k) => (typeof x === "number" ? (options.format?.[k] ? options.format[k](x) : Number.isInteger(x) && Math.abs(x) < 1e6 ? count(x).replace("-", "−") : shortest(x)) : x === null || x === undefined || x === "" ? "–" : String(x));
+  // A column of round numbers is shown as they are, another with four figures throughout.
+  const round = headings.map((_, k) => rows.every((r) => typeof r[k] !== "number" || Number(r[k].toPrecision(3)) === r[k]));
+  const text = (x, k) => (Number.isInteger(x) && Math.abs(x) < 1e6 ? count(x).replace("-", "−") : round[k] ? shortest(x) : significant(x, 4));
+  const shown = (x, k) => (typeof x === "number" ? text(x, k) : x === null || x === undefined || x === "" ? "–" : String(x));
   const numeric = headings.map((_, k) => rows.some((r) => typeof r[k] === "number") && rows.every((r) => typeof r[k] === "number" || r[k] === null || r[k] === ""));
   const wordy = headings.map((_, k) => rows.some((r) => String(r[k] ?? "").length > 40));
   const body = el("tbody");
   const kinds = new Set(["needed", "on", "off"]);
   const fill = (list) => body.replaceChildren(...list.map((r) => el("tr", { class: options.dim?.(r) ? "off" : null }, r.map((x, k) =>
     kinds.has(x) ? el("td", {}, el("span", { class: `pill ${x}`, text: x })) : el("td", { class: numeric[k] ? "n" : wordy[k] ? "why" : null, text: shown(x, k) })))));
-  const cells = headings.map((text, k) => {
+  const cells = headings.map((heading, k) => {
     const cell = el("th", { scope: "col", class: numeric[k] ? "n" : null, "aria-sort": "none" });
-    cell.append(el("button", { type: "button", text, on: { click: () => sort(k) } }));
+    cell.append(el("button", { type: "button", text: heading.startsWith("/") ? heading : heading.replace(/ \[1\]$/, "").replace(/_/g, " "), on: { click: () => sort(k) } }));
     return cell;
   });
   const sort = (k) => {
