@@ -168,3 +168,45 @@ fn a_harvester_shows_turbine_loads_and_efficiency() {
     let head = |k: usize| sums[k].as_str().map(|s| s.chars().take(4).collect::<String>());
     assert_eq!(head(0), head(1), "{sums}");
 }
+
+#[test]
+fn the_tab_key_leads_through_the_page() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = made(folder.path(), &["run", "cases/two-bladders.json"]);
+    let mut browser = Browser::start();
+    browser.set(1280, "light");
+    browser.open(&page);
+    browser.eval("document.body.focus()");
+    let mut seen = vec![];
+    for _ in 0..40 {
+        browser.press("Tab");
+        let what = "(() => { const e = document.activeElement; const s = getComputedStyle(e); \
+            return [e.className.baseVal ?? e.className, e.id, e.getAttribute('aria-label') ?? e.textContent.slice(0, 40), s.outlineStyle]; })()";
+        seen.push(browser.eval(what));
+    }
+    let at = |k: usize, wanted: &str| {
+        let found = seen
+            .iter()
+            .position(|s| s[k].as_str().is_some_and(|text| text.starts_with(wanted)));
+        found.unwrap_or_else(|| panic!("never {wanted}: {seen:?}"))
+    };
+    let order = [
+        at(0, "skip"),
+        at(1, "theme"),
+        at(2, "Side view"),
+        at(2, "Play"),
+        at(1, "time"),
+        at(2, "Speed"),
+        at(0, "map"),
+    ];
+    assert!(order.windows(2).all(|w| w[0] < w[1]), "{order:?} in {seen:?}");
+    assert!(
+        seen.iter().all(|s| s[3] != "none"),
+        "a focus that cannot be seen: {seen:?}"
+    );
+    // What has the focus can be used: Enter on Play plays.
+    browser.eval("document.querySelector('.player .main').focus()");
+    browser.press("Enter");
+    browser.until("document.querySelector('.player .main').getAttribute('aria-label') === 'Pause'");
+    assert_eq!(browser.problems(), Vec::<String>::new());
+}

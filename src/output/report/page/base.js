@@ -117,8 +117,11 @@ function count(n) {
 }
 
 /** Value of a colour or other custom property in the present theme. */
+const cssKept = new Map();
 function css(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  // Asked for every bladder of every frame.
+  if (!cssKept.has(name)) cssKept.set(name, getComputedStyle(document.documentElement).getPropertyValue(name).trim());
+  return cssKept.get(name);
 }
 
 // Figures draw themselves anew when the theme or the width of the page changes.
@@ -127,6 +130,7 @@ function redrawn(draw) {
   redraws.push(draw);
 }
 function redraw() {
+  cssKept.clear();
   for (const draw of redraws) draw();
 }
 

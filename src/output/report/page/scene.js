@@ -102,7 +102,7 @@ function drawBladders(add, layout, X, Y, scale, thicker) {
 
 function drawWires(add, layout, X, Y, scale) {
   const touchable = layout.wires.length <= 1200;
-  const strong = layout.segment * scale > 9 ? 3 : 1.2;
+  const strong = layout.segment * scale > 34 ? 3 : layout.segment * scale > 9 ? 2 : 1.2;
   layout.wires.forEach((wire, k) => {
     const d = linePath(wire.points.length, (i) => [X(wire.points[i].a), Y(wire.points[i].e)]);
     const colour = wireColour(wire.colour);
@@ -111,7 +111,7 @@ function drawWires(add, layout, X, Y, scale) {
     if (touchable && wire.words) add(svg("path", { d, "data-wire": k, style: "fill:none;stroke:transparent;stroke-width:9;pointer-events:stroke" }));
     const m = middleOf(wire.points);
     const [x, y] = [X(m.a), Y(m.e)];
-    if (wire.valve && strong > 2) {
+    if (wire.valve && strong > 1.5) {
       const turn = m.along ? 0 : 90;
       add(svg("path", { d: "M-6 -5V5L6 -5V5Z", transform: `translate(${x} ${y}) rotate(${turn})`, style: `fill:${css("--card")};stroke:${colour};stroke-width:1.6;stroke-linejoin:round` }));
     }
