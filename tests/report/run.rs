@@ -8,7 +8,9 @@ use crate::common::{made, sound};
 
 /// Sum over the pixels of the animation: another picture has another sum.
 const PIXELS: &str = "(() => { const c = document.querySelector('#motion canvas'); \
-    const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; let s = 0; \
+    const own = document.createElement('canvas'); own.width = c.width; own.height = c.height; \
+    const x = own.getContext('2d', {willReadFrequently: true}); x.drawImage(c, 0, 0); \
+    const d = x.getImageData(0, 0, c.width, c.height).data; let s = 0; \
     for (let k = 0; k < d.length; k++) s = (s * 31 + d[k]) % 1000000007; return s; })()";
 
 const INDEX: &str = "Number(document.getElementById('time').value)";
