@@ -82,6 +82,7 @@ fn a_run_fills_a_result_folder() {
         "history.csv",
         "history.svg",
         "pressure.svg",
+        "report.html",
         "summary.json",
     ];
     assert_eq!(names(&folder), files);

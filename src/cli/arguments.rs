@@ -8,6 +8,7 @@ use super::completions::CompletionsArguments;
 use super::explain::ExplainArguments;
 use super::export::ExportArguments;
 use super::new::NewArguments;
+use super::report::ReportArguments;
 use super::schema::SchemaArguments;
 
 /// Elastic beams with fluid-filled bladders joined by slender tubes: dynamics with error control.
@@ -42,6 +43,8 @@ pub enum Command {
     Compare(CompareArguments),
     /// Write a result in other formats: tables of its fields (CSV), surfaces that ParaView opens (VTK)
     Export(ExportArguments),
+    /// Make one self-contained HTML page of a result folder, whichever command filled it
+    Report(ReportArguments),
     /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
     Mapping(MappingArguments),
     /// Compute exact results of beam and network theory and compare, with observed orders
@@ -73,6 +76,7 @@ impl Command {
             Self::Verify(a) => a.json,
             Self::Schema(a) => a.json,
             Self::Export(a) => a.json,
+            Self::Report(a) => a.json,
             Self::Explain(a) => a.json,
             Self::New(a) => a.json,
             Self::Completions(_) => false,

@@ -13,6 +13,7 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::effects as files;
 use crate::output::numbers::duration;
+use crate::output::report;
 use crate::study::effects::{Ablation, Event, Plan, ablate};
 
 /// Runs the models, writes the folder, prints the table and the recommendation, writes that into the case when asked.
@@ -38,6 +39,7 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
     let found = found?;
     let shown = files::Shown::choose(&found, asked.measure.as_deref());
     files::write(&out, &found, &shown)?;
+    report::complete(&out, report::Kind::Effects, &loaded.case)?;
     let written = if asked.write {
         Some(write(&loaded, &found)?)
     } else {

@@ -11,6 +11,7 @@ use crate::case::parameter::Parameter;
 use crate::error::{Error, Result};
 use crate::model::{audit, characteristic};
 use crate::output::equilibrium as files;
+use crate::output::report;
 use crate::run::equilibrium::{self, Options};
 use crate::run::record::Control;
 
@@ -62,6 +63,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         .unwrap_or_else(|| PathBuf::from("out").join(format!("{}-equilibrium", case.name)));
     if !path.states.is_empty() {
         files::write(&out, &found)?;
+        report::complete(&out, report::Kind::Equilibrium, case)?;
     }
     if asked.json {
         super::print(&files::json(&found))?;

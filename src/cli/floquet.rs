@@ -9,6 +9,7 @@ use crate::case::{self, LoadedCase};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::floquet as files;
+use crate::output::report;
 use crate::run::floquet;
 use crate::run::periodic::scene::{fault, whole};
 use crate::run::periodic::{Scene, shoot};
@@ -52,6 +53,7 @@ fn one(asked: &FloquetArguments, loaded: &LoadedCase) -> Result<ExitCode> {
     };
     let out = folder(asked, &case.name, "floquet");
     files::write(&out, &found)?;
+    report::complete(&out, report::Kind::Floquet, case)?;
     if asked.json {
         super::print(&files::json(&found))?;
     } else {
@@ -77,6 +79,7 @@ fn map(asked: &FloquetArguments, loaded: &LoadedCase, parameters: &str) -> Resul
     let found = found?;
     let out = folder(asked, &case.name, "map");
     files::write_map(&out, &found)?;
+    report::complete(&out, report::Kind::Map, case)?;
     if asked.json {
         super::print(&files::map_json(&found))?;
     } else {

@@ -16,6 +16,7 @@ mod modes;
 mod new;
 mod periodic;
 pub mod progress;
+mod report;
 mod run;
 mod schema;
 mod study;
@@ -69,6 +70,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Compare(asked) => compare::compare(asked),
         Command::Modes(asked) => modes::modes(asked),
         Command::Export(asked) => export::export(asked),
+        Command::Report(asked) => report::report(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),
         Command::Schema(_) => schema::schema(),

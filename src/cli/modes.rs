@@ -9,6 +9,7 @@ use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::modes::{self as files, Report};
+use crate::output::report;
 use crate::run::modes::{self, Plan};
 
 /// Finds the modes, writes the folder, prints the table and what follows from it.
@@ -57,6 +58,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         sensitivities: &sensitivities,
     };
     files::write(&out, &report)?;
+    report::complete(&out, report::Kind::Modes, &loaded.case)?;
     if asked.json {
         super::print(&files::json(&report))?;
     } else {

@@ -12,6 +12,7 @@ use crate::output::floquet as stability;
 use crate::output::folder::ResultFolder;
 use crate::output::periodic as files;
 use crate::output::recorder::{FolderRecorder, Labels};
+use crate::output::report;
 use crate::run::floquet;
 use crate::run::periodic::scene::{fault, whole};
 use crate::run::periodic::{Scene, record, shoot};
@@ -69,6 +70,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         floquet: &found,
     };
     ResultFolder::create(&out)?.write(files::CYCLE, stability::json(&told).as_bytes())?;
+    report::write(&out, None)?;
     if asked.json {
         super::print(&stability::json(&told))?;
     } else {
@@ -100,6 +102,9 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     let found = found?;
     let out = folder(asked, &found.case, "cycles");
     files::write(&out, &found)?;
+    if let Some((_, case)) = cases.first() {
+        report::complete(&out, report::Kind::Sweep, case)?;
+    }
     if asked.json {
         super::print(&files::json(&found))?;
     } else {

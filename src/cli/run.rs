@@ -17,6 +17,7 @@ use crate::model::characteristic;
 use crate::output::checkpoint;
 use crate::output::folder::{HISTORY, ResultFolder};
 use crate::output::recorder::{FolderRecorder, Hook, Labels};
+use crate::output::report;
 use crate::output::summary;
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::{Control, Progress};
@@ -45,6 +46,7 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
         let box_text = summary_box::render(&outcome.summary, &out, terminal::colour_out(), terminal::width());
         super::print(&box_text)?;
     }
+    report::write(&out, None)?;
     Ok(match outcome.fault {
         None => ExitCode::SUCCESS,
         Some(fault) => {

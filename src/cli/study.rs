@@ -13,6 +13,7 @@ use crate::case;
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::numbers::duration;
+use crate::output::report;
 use crate::output::study as files;
 use crate::study::accuracy::trial::Role;
 use crate::study::accuracy::{Budget, Event, Plan, Scheme, study as run_study};
@@ -39,6 +40,7 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
     let found = run_study(case, plan, asked.measure.as_deref(), &|event| progress.show(event))?;
     progress.done();
     files::write(&out, &found)?;
+    report::complete(&out, report::Kind::Study, case)?;
     if asked.json {
         super::print(&files::json(&found))?;
     } else {

@@ -146,6 +146,29 @@ impl Envelope {
         }
         points
     }
+
+    /// All columns over common times, time first: of a stretch of several rows its ends, with least and largest value in the
+    /// order in which they occurred.
+    pub fn columns(&self) -> Vec<Vec<f64>> {
+        let width = self.names.len();
+        let mut columns = vec![Vec::new(); width];
+        for stretch in self.stretches.chunks_exact(width.max(1)) {
+            let time = stretch[0];
+            let single = time.largest.1 <= time.least.1;
+            for (column, e) in columns.iter_mut().zip(stretch) {
+                let (first, second) = if e.least.0 <= e.largest.0 {
+                    (e.least, e.largest)
+                } else {
+                    (e.largest, e.least)
+                };
+                column.push(first.1);
+                if !single {
+                    column.push(second.1);
+                }
+            }
+        }
+        columns
+    }
 }
 
 /// `tip_u1 [m]` into name and unit.
@@ -173,6 +196,10 @@ mod tests {
         assert!(points.contains(&(7777.0, 5.0)));
         assert!(points.windows(2).all(|w| w[0].0 < w[1].0), "in order of time");
         assert_eq!(envelope.points(0).last(), Some(&(12_344.0, 12_344.0)));
+        let columns = envelope.columns();
+        assert!(columns[0].len() <= 202 && columns[0].len() == columns[1].len());
+        assert!(columns[0].windows(2).all(|w| w[0] < w[1]), "in order of time");
+        assert!(columns[1].contains(&5.0));
     }
 
     #[test]

@@ -17,6 +17,7 @@
 //! periodic  cycle.json; sweep.csv, sweep.json, sweep.svg, and their words
 //! study     study.csv, study.json, study.svg, table and sentence
 //! modes     modes.csv, modes.json, modes.npz, modes.svg, table and sentences
+//! report    report.html: a result folder as one page
 //! pictures  from recorded files to the data of each picture
 //! plot      one picture a file, from plain data to SVG text
 //! numbers   numbers as people read them
@@ -39,6 +40,7 @@ pub mod pictures;
 pub mod plot;
 pub mod reading;
 pub mod recorder;
+pub mod report;
 pub mod study;
 pub mod summary;
 

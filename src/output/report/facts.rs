@@ -1,0 +1,226 @@
+//! Effects, the solver's work, wall time and characteristic numbers, in words.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use crate::case::{Case, schema_json};
+use crate::discrete::System;
+use crate::model::characteristic;
+use crate::output::numbers::{count, duration, pretty_unit, significant};
+use crate::run::summary::Summary;
+
+/// Characteristic numbers: name, unit, meaning. Those of networks are matched by the start of their names.
+const CHARACTERISTIC: [(&str, &str, &str); 35] = [
+    (
+        "area_change_estimate",
+        "1",
+        "how far pressure is expected to close a bladder, as a share of its cross-section",
+    ),
+    (
+        "axial_stiffness_n",
+        "N",
+        "force that would double the beam's length, EA",
+    ),
+    ("base_acceleration_m_s2", "m/s^2", "acceleration of the shaken root"),
+    ("bending_stiffness_n_m2", "N m^2", "resistance to bending, EI"),
+    (
+        "bladder_compliance_m3_pa",
+        "m^3/Pa",
+        "volume that a bladder takes up per pressure",
+    ),
+    ("bladder_fill", "1", "share of the beam's length that bladders take up"),
+    (
+        "bladder_resistance_pa_s_m3",
+        "Pa s/m^3",
+        "pressure drop along a bladder per flow",
+    ),
+    (
+        "bladder_tube_time_s",
+        "s",
+        "time in which a bladder empties through its tube",
+    ),
+    ("euler_load_n", "N", "compression under which the beam buckles (Euler)"),
+    (
+        "f_u",
+        "1",
+        "how fast the drive is for the fluid: forcing frequency times fluid time",
+    ),
+    (
+        "first_axial_frequency_hz",
+        "Hz",
+        "lowest frequency of waves along the beam",
+    ),
+    ("first_bending_frequency_hz", "Hz", "lowest frequency of bending"),
+    ("force_scale_n", "N", "force that is expected in the beam"),
+    ("forcing_frequency_hz", "Hz", "frequency of the drive"),
+    (
+        "gyration_radius_squared_m2",
+        "m^2",
+        "squared radius of gyration of a section, y11",
+    ),
+    (
+        "inertial_compression_n_m",
+        "N/m",
+        "load along the beam by shaking its root",
+    ),
+    (
+        "largest_strain_estimate",
+        "1",
+        "strain that is expected; the model wants it small",
+    ),
+    ("mass_factor", "1", "mass over that of a solid beam of the same size"),
+    ("mass_per_length_kg_m", "kg/m", "mass per length, m"),
+    (
+        "mathieu_frequency_ratio",
+        "1",
+        "drive over twice the first bending frequency; near 1 shaking along makes bending grow",
+    ),
+    (
+        "mathieu_growth_rate_per_s",
+        "1/s",
+        "growth of the first bending mode by shaking along, without fluid; 0 is stable",
+    ),
+    (
+        "mathieu_modulation",
+        "1",
+        "how strongly shaking along changes the bending stiffness",
+    ),
+    (
+        "reynolds_estimate",
+        "1",
+        "inertia over viscosity in the tubes; creeping flow needs it small",
+    ),
+    (
+        "self_weight_buckling_load_n_m",
+        "N/m",
+        "load along the beam under which it buckles",
+    ),
+    ("slenderness", "1", "length over height"),
+    ("t_f_s", "s", "time scale of the fluid, t_f*"),
+    ("t_s_over_t_f", "1", "time of the solid over that of the fluid"),
+    ("t_s_s", "s", "time scale of the solid, t_s*"),
+    (
+        "tube_resistance_pa_s_m3",
+        "Pa s/m^3",
+        "pressure drop along a tube per flow",
+    ),
+    (
+        "womersley",
+        "1",
+        "tube radius over the reach of viscosity in a cycle; the model wants it below 1",
+    ),
+    (
+        "slowest_time_of_network_",
+        "s",
+        "slowest time in which pressures of a network become equal",
+    ),
+    (
+        "damping_ratio",
+        "1",
+        "damping of the first bending mode by the material",
+    ),
+    (
+        "window_s",
+        "s",
+        "last part of the run, over which window figures are taken",
+    ),
+    ("mass_kg", "kg", "mass of the beam"),
+    ("volume_m3", "m^3", "volume of the fluid"),
+];
+
+/// Characteristic numbers of a case that was not run.
+pub fn characteristic_of(case: &Case) -> Vec<Value> {
+    characteristic(&characteristic::numbers(case, &System::new(case).model))
+}
+
+/// Rows: name, value, meaning.
+pub fn characteristic(numbers: &BTreeMap<String, f64>) -> Vec<Value> {
+    let row = |(name, value): (&String, &f64)| {
+        let known = CHARACTERISTIC
+            .iter()
+            .find(|(key, ..)| name == key || key.ends_with('_') && name.starts_with(key));
+        let (unit, about) = known.map_or(("1", ""), |(_, unit, about)| (*unit, *about));
+        let text = format!("{} {}", significant(*value, 4), pretty_unit(unit));
+        json!({"name": name, "value": text.trim_end(), "about": about})
+    };
+    numbers.iter().map(row).collect()
+}
+
+/// Effects that are no choice of the case.
+const OTHERS: [(&str, &str); 8] = [
+    ("damping", "Damping of the material, and drag."),
+    ("valves", "Valves that move."),
+    ("turbines", "Turbines that harvest energy."),
+    ("loads", "Loads along the beam."),
+    ("gravity", "Weight."),
+    ("max_order", "Highest order of the time integration."),
+    ("method", "Method of the time integration."),
+    ("quasi_static", "Motion without inertia."),
+];
+
+/// Rows: name, choice, reason, what it is.
+pub fn effects(summary: &Summary) -> Vec<Value> {
+    let schema = schema_json();
+    let described = |name: &str| {
+        let text = schema.pointer(&format!("/$defs/EffectChoices/properties/{name}/description"));
+        let own = OTHERS.iter().find(|o| o.0 == name).map(|o| o.1);
+        text.and_then(Value::as_str).or(own).unwrap_or("").replace('`', "")
+    };
+    let row = |(name, chosen): (&String, &crate::run::summary::Chosen)| json!({"name": name, "value": chosen.value, "reason": chosen.reason, "about": described(name)});
+    summary.effects.iter().map(row).collect()
+}
+
+/// What the integrator did, in sentences, and where wall time went.
+pub fn work(summary: &Summary) -> Value {
+    let c = &summary.solver;
+    let wall = &summary.wall_s;
+    let known = wall.residual + wall.jacobian + wall.linear_solver + wall.output;
+    let shares = [
+        ("equations", wall.residual),
+        ("Jacobians", wall.jacobian),
+        ("linear solver", wall.linear_solver),
+        ("output", wall.output),
+        ("everything else", (wall.total - known).max(0.0)),
+    ];
+    let parts: Vec<Value> = shares
+        .iter()
+        .filter(|(_, s)| wall.total > 0.0 && s.is_finite())
+        .map(|(words, s)| json!({"words": words, "seconds": s, "text": duration(*s), "share": s / wall.total}))
+        .collect();
+    let n = |k: u64, one: &str, many: &str| format!("{} {}", count(k), if k == 1 { one } else { many });
+    let rejected = match c.error_test_failures + c.newton_failures {
+        0 => "none had to be repeated".to_string(),
+        k => format!(
+            "{} had to be repeated with a smaller step ({} because the error was too large, {} because the equations did not \
+             converge)",
+            count(k),
+            count(c.error_test_failures),
+            count(c.newton_failures)
+        ),
+    };
+    let mut sentences = vec![
+        format!("{}; {rejected}.", n(c.steps, "step", "steps")),
+        format!(
+            "{} of the {} equations, {}, {}, {}.",
+            n(c.residual_evaluations, "evaluation", "evaluations"),
+            count(summary.unknowns as u64),
+            n(c.jacobian_evaluations, "Jacobian", "Jacobians"),
+            n(c.factorizations, "factorisation", "factorisations"),
+            n(c.linear_solves, "linear solve", "linear solves"),
+        ),
+    ];
+    if c.pivot_refreshes > 0 {
+        sentences.push(format!(
+            "Pivots were chosen anew {}.",
+            n(c.pivot_refreshes, "time", "times")
+        ));
+    }
+    if c.restarts > 0 {
+        sentences.push(format!(
+            "The integration started anew {}, where something jumps.",
+            n(c.restarts, "time", "times")
+        ));
+    }
+    json!({"sentences": sentences, "parts": parts, "total": duration(wall.total), "orders": c.steps_by_order})
+}

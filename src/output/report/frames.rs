@@ -1,0 +1,167 @@
+//! Fields of a run at chosen instants and places: as many as a page can hold.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read};
+use std::path::Path;
+
+use npyz::NpyFile;
+use serde_json::{Value, json};
+use zip::ZipArchive;
+
+use super::pack;
+use crate::output::arrays::TIMES;
+use crate::output::plot;
+
+/// Numbers of all frames together; four bytes each, a third more as text.
+const MOST_NUMBERS: usize = 420_000;
+/// Frames at most: a minute of animation.
+const MOST_FRAMES: usize = 1500;
+/// Nodes of a frame at most.
+const MOST_NODES: usize = 401;
+/// Pressures of a frame at most; beyond, one a bladder.
+const MOST_PRESSURES: usize = 400;
+/// Curves of the last cycle.
+const CURVES: usize = 24;
+
+/// One-dimensional arrays, and the shapes of the others.
+struct Contents {
+    axes: Vec<(String, Vec<f64>)>,
+    lengths: Vec<(String, usize)>,
+}
+
+impl Contents {
+    fn read(npz: &mut ZipArchive<BufReader<File>>) -> io::Result<Self> {
+        let (mut axes, mut lengths) = (vec![], vec![]);
+        for k in 0..npz.len() {
+            let entry = npz.by_index(k)?;
+            let Some(name) = entry.name()?.strip_suffix(".npy").map(String::from) else {
+                continue;
+            };
+            let array = NpyFile::new(entry)?;
+            match array.shape().to_vec().as_slice() {
+                [_] => axes.push((name, array.into_vec()?)),
+                [_, len] => lengths.push((name, *len as usize)),
+                _ => {}
+            }
+        }
+        Ok(Self { axes, lengths })
+    }
+
+    fn axis(&self, name: &str) -> &[f64] {
+        let found = self.axes.iter().find(|a| a.0 == name);
+        found.map_or(&[], |a| a.1.as_slice())
+    }
+}
+
+/// What animation, profiles and maps show. `frequency` is that of the drive [Hz].
+///
+/// # Errors
+///
+/// The file cannot be read as arrays.
+pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
+    let mut npz = ZipArchive::new(BufReader::new(File::open(path)?))?;
+    let contents = Contents::read(&mut npz)?;
+    let times = contents.axis(TIMES);
+    let theta = contents.axis("theta_node_m");
+    if times.is_empty() || theta.is_empty() {
+        return Ok(Value::Null);
+    }
+    let nodes = thinned(theta.len(), MOST_NODES);
+    let groups = pressure_groups(&contents);
+    let a_frame = 3 * nodes.len() + groups.len();
+    let most = (MOST_NUMBERS / a_frame).clamp(2, MOST_FRAMES);
+    let chosen = thinned(times.len(), most);
+    let kept: Vec<f64> = chosen.iter().map(|&k| times[k]).collect();
+    let alone: Vec<Vec<usize>> = nodes.iter().map(|&k| vec![k]).collect();
+    let mut field = |name: &str, groups: &[Vec<usize>]| -> io::Result<Value> {
+        let Some(len) = contents.lengths.iter().find(|l| l.0 == name).map(|l| l.1) else {
+            return Ok(Value::Null);
+        };
+        let entry = npz.by_name(&format!("{name}.npy")).map_err(io::Error::from)?;
+        Ok(pack::numbers(rows(entry, len, &chosen, groups)?))
+    };
+    let (span, cycle) = plot::instants(&kept, frequency, CURVES);
+    let first = |name: &str| pack::numbers(groups.iter().map(|g| mean(g, contents.axis(name))));
+    Ok(json!({
+        "times": pack::numbers(kept.iter().copied()),
+        "recorded": times.len(),
+        "theta": pack::numbers(nodes.iter().map(|&k| theta[k])),
+        "nodes_recorded": theta.len(),
+        "cycle": cycle,
+        "whole": span == plot::Span::WholeRun,
+        "frequency_hz": frequency,
+        "u1": field("u1_m", &alone)?,
+        "u3": field("u3_m", &alone)?,
+        "curvature": field("curvature_1_m", &alone)?,
+        "pressure": field("pressure_pa", &groups)?,
+        "x_f": first("x_f"),
+        "bladder": first("bladder"),
+        "array": first("array"),
+    }))
+}
+
+/// Indices `0..len`, every so manyth, first and last among them.
+fn thinned(len: usize, most: usize) -> Vec<usize> {
+    let step = (len.saturating_sub(1)).div_ceil(most.max(2) - 1).max(1);
+    let mut all: Vec<usize> = (0..len).step_by(step).collect();
+    if all.last() != Some(&(len - 1)) {
+        all.push(len - 1);
+    }
+    all
+}
+
+/// Cells along `X_f`, singly, or together those of a bladder where they are many.
+fn pressure_groups(contents: &Contents) -> Vec<Vec<usize>> {
+    let bladder = contents.axis("bladder");
+    if bladder.len() <= MOST_PRESSURES {
+        return (0..bladder.len()).map(|k| vec![k]).collect();
+    }
+    let mut groups: Vec<Vec<usize>> = vec![];
+    for k in 0..bladder.len() {
+        match groups.last_mut() {
+            Some(group) if bladder[group[0]] == bladder[k] => group.push(k),
+            _ => groups.push(vec![k]),
+        }
+    }
+    groups
+}
+
+fn mean(group: &[usize], values: &[f64]) -> f64 {
+    let sum: f64 = group.iter().map(|&k| values.get(k).copied().unwrap_or(f64::NAN)).sum();
+    sum / group.len() as f64
+}
+
+/// Means over groups of places at chosen instants. Reads row by row: a file may be larger than memory.
+fn rows(entry: impl Read, len: usize, chosen: &[usize], groups: &[Vec<usize>]) -> io::Result<Vec<f64>> {
+    let mut values = NpyFile::new(entry)?.data::<f64>().map_err(io::Error::other)?;
+    let mut out = Vec::with_capacity(chosen.len() * groups.len());
+    let mut row = vec![0.0; len];
+    let mut at = 0;
+    for &instant in chosen {
+        for _ in 0..(instant - at) * len {
+            values.next().transpose()?;
+        }
+        for x in &mut row {
+            *x = values.next().transpose()?.unwrap_or(f64::NAN);
+        }
+        at = instant + 1;
+        out.extend(groups.iter().map(|g| mean(g, &row)));
+    }
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_both_ends_and_its_bound() {
+        assert_eq!(thinned(5, 10), [0, 1, 2, 3, 4]);
+        assert_eq!(thinned(1, 10), [0]);
+        for (len, most) in [(1001, 100), (100_000, 1500), (12, 11), (7, 2)] {
+            let kept = thinned(len, most);
+            assert_eq!((kept[0], kept[kept.len() - 1]), (0, len - 1));
+            assert!(kept.len() <= most + 1, "{len} to {}", kept.len());
+        }
+    }
+}

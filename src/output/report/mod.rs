@@ -1,0 +1,158 @@
+//! `report.html`: a result folder as one page that needs nothing else, neither network nor program.
+//!
+//! ```text
+//! kind        what kind of result a folder holds
+//! page        shell, style, scripts and data as one text
+//! pack        arrays as base64
+//! frames      fields of a run at chosen instants
+//! history     history.csv, thinned to what a screen can show
+//! scene       the drawing: beam, bladders, tubes, ports, loads, ends
+//! signals     functions of time in words
+//! run         the page of a run or a cycle
+//! books       the energy ledger, its entries and their sum
+//! facts       effects, solver, wall time, characteristic numbers in words
+//! parameters  the case as a table, described by its schema
+//! sheet       CSV files as tables
+//! equilibrium, modes, studies, cycles   the pages of the other commands
+//! vendor      uPlot, which draws histories
+//! ```
+//!
+//! The data of a page is JSON in a script element that is never run; the scripts put every text of a case into the page as
+//! text, so that nothing in it is taken for markup. The same folder gives the same bytes.
+
+mod books;
+mod cycles;
+mod equilibrium;
+mod facts;
+mod frames;
+mod history;
+mod kind;
+mod modes;
+mod pack;
+mod page;
+mod parameters;
+mod run;
+mod scene;
+mod sheet;
+mod signals;
+mod studies;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value, json};
+
+use super::effects::replace;
+use super::folder::{CASE, REPORT, put};
+use crate::case::{self, Case};
+use crate::error::Result;
+pub use kind::Kind;
+
+/// A page that was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The file.
+    pub path: PathBuf,
+    /// Its size [byte].
+    pub bytes: usize,
+}
+
+/// Writes the page of a result folder into `out`, or into the folder itself.
+///
+/// # Errors
+///
+/// The folder holds no result, a file of it cannot be read, or the page cannot be written.
+pub fn write(dir: &Path, out: Option<&Path>) -> Result<Written> {
+    of_kind(dir, Kind::find(dir)?, out)
+}
+
+/// Completes a folder that a command has filled: the case as resolved beside its files, and the page.
+pub fn complete(dir: &Path, kind: Kind, case: &Case) -> Result<Written> {
+    put(dir, vec![(CASE, case.resolved_json())])?;
+    of_kind(dir, kind, None)
+}
+
+fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
+    let place = Place::new(dir);
+    let data = match kind {
+        Kind::Run => run::data(&place)?,
+        Kind::Equilibrium => equilibrium::data(&place)?,
+        Kind::Modes => modes::data(&place)?,
+        Kind::Study => studies::study(&place)?,
+        Kind::Effects => studies::effects(&place)?,
+        Kind::Floquet => cycles::floquet(&place)?,
+        Kind::Map => cycles::map(&place)?,
+        Kind::Sweep => cycles::sweep(&place)?,
+    };
+    let text = page::assemble(&data);
+    let path = out.map_or_else(|| dir.join(REPORT), Path::to_path_buf);
+    replace(&path, &text)?;
+    Ok(Written {
+        path,
+        bytes: text.len(),
+    })
+}
+
+/// A folder under report, with its case as far as it can be read.
+struct Place<'a> {
+    dir: &'a Path,
+    case: Option<Case>,
+    case_text: Option<String>,
+}
+
+impl<'a> Place<'a> {
+    fn new(dir: &'a Path) -> Self {
+        let path = dir.join(CASE);
+        Self {
+            dir,
+            // A case of an older or newer program may no longer be one; the page then goes without what needs it.
+            case: case::load(&path, &[]).ok().map(|loaded| loaded.case),
+            case_text: fs::read_to_string(path).ok(),
+        }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.dir.join(name)
+    }
+
+    /// A JSON file of the folder.
+    fn json(&self, name: &str) -> Result<Value> {
+        let path = self.path(name);
+        let text = fs::read_to_string(&path).map_err(|e| super::folder::fault("read", &path, e))?;
+        serde_json::from_str(&text).map_err(|e| super::folder::fault("read", &path, e.into()))
+    }
+
+    /// A picture of the folder as data of an image.
+    fn picture(&self, name: &str) -> Option<String> {
+        let bytes = fs::read(self.path(name)).ok()?;
+        Some(pack::image("image/svg+xml", &bytes))
+    }
+
+    /// Files beside the page, in order of their names, hidden ones and folders left out.
+    fn files(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.dir).into_iter().flatten().flatten();
+        let plain = entries.filter(|e| e.path().is_file());
+        let names = plain.map(|e| e.file_name().to_string_lossy().into_owned());
+        let mut names: Vec<String> = names.filter(|n| !n.starts_with('.') && n != REPORT).collect();
+        names.sort();
+        names
+    }
+
+    /// What every page begins with. `name` is used where the case cannot be read.
+    fn head(&self, kind: Kind, name: &str) -> Map<String, Value> {
+        let mut all = Map::new();
+        let mut put = |key: &str, value: Value| all.insert(key.into(), value);
+        put("kind", kind.name().into());
+        put("version", env!("CARGO_PKG_VERSION").into());
+        put("name", name.into());
+        put("about", self.case.as_ref().map_or("", |c| c.about.as_str()).into());
+        put("files", self.files().into());
+        put("scene", self.case.as_ref().and_then(scene::of).unwrap_or(Value::Null));
+        let rows = self.case_text.as_deref().map(parameters::rows).unwrap_or_default();
+        put("parameters", rows.into());
+        put("case_text", json!(self.case_text));
+        let numbers = self.case.as_ref().map(facts::characteristic_of);
+        put("characteristic", numbers.unwrap_or_default().into());
+        all
+    }
+}

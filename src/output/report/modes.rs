@@ -1,0 +1,117 @@
+//! The page of `modes`: frequencies, damping and moving shapes.
+
+use std::fs::File;
+use std::io::{self, BufReader};
+use std::path::Path;
+
+use npyz::NpyFile;
+use serde_json::{Map, Value, json};
+use zip::ZipArchive;
+
+use super::{Kind, Place, pack, sheet};
+use crate::error::Result;
+use crate::output::folder::CASE;
+use crate::output::modes::{ARRAYS, CSV, JSON, PICTURE};
+use crate::output::numbers::count;
+
+/// Columns of the table that a reader needs; the file has the rest.
+const COLUMNS: [&str; 9] = [
+    "mode [1]",
+    "kind",
+    "frequency [Hz]",
+    "damping ratio [1]",
+    "growth rate [1/s]",
+    "time constant [s]",
+    "undrained frequency [Hz]",
+    "drained frequency [Hz]",
+    "transverse share [1]",
+];
+
+/// Everything the page shows.
+pub fn data(place: &Place) -> Result<Map<String, Value>> {
+    let found = place.json(JSON)?;
+    let text = |key: &str| found.get(key).and_then(Value::as_str).unwrap_or("").to_string();
+    let number = |key: &str| found.get(key).and_then(Value::as_f64).unwrap_or(0.0);
+    let mut all = place.head(Kind::Modes, &text("case"));
+    let mut put = |key: &str, value: Value| all.insert(key.into(), value);
+    let stable = found.get("stable").and_then(Value::as_bool).unwrap_or(false);
+    put("label", "Modes of small motions".into());
+    put(
+        "status",
+        json!({"word": if stable { "stable" } else { "unstable" }, "tone": if stable { "good" } else { "bad" }, "reason": null}),
+    );
+    put("warnings", found.get("warnings").cloned().unwrap_or_default());
+    put(
+        "answer",
+        format!(
+            "Small motions about {}, loads and valves held as at t = {} s: {}.",
+            text("about"),
+            number("at_s"),
+            text("verdict")
+        )
+        .into(),
+    );
+    put(
+        "facts",
+        json!([
+            format!("{} unknowns", count(number("unknowns") as u64)),
+            format!("{} finite eigenvalues", count(number("finite_eigenvalues") as u64)),
+        ]),
+    );
+    put("table", sheet::read(&place.path(CSV), |name| COLUMNS.contains(&name)));
+    put("modes", found.get("modes").cloned().unwrap_or_default());
+    put("shapes", shapes(&place.path(ARRAYS)).unwrap_or_default());
+    put("picture", json!(place.picture(PICTURE)));
+    put(
+        "passivity",
+        found
+            .get("passivity")
+            .and_then(|p| p.get("words").or(Some(p)))
+            .filter(|p| p.is_string())
+            .cloned()
+            .unwrap_or_default(),
+    );
+    let modes = found.get("modes").and_then(Value::as_array).map_or(12, Vec::len);
+    let near = match number("near_hz") {
+        0.0 => String::new(),
+        near => format!(" --near {near}"),
+    };
+    let at = match text("about").starts_with("the equilibrium") {
+        true => format!(" --at {}", number("at_s")),
+        false => String::new(),
+    };
+    put(
+        "command",
+        format!("slcbeam modes {CASE}{at} --count {modes}{near}").into(),
+    );
+    Ok(all)
+}
+
+/// Amplitudes and phases, mode after mode.
+fn shapes(path: &Path) -> io::Result<Value> {
+    let mut npz = ZipArchive::new(BufReader::new(File::open(path)?))?;
+    let mut read = |name: &str| -> io::Result<(Vec<u64>, Vec<f64>)> {
+        let entry = npz.by_name(&format!("{name}.npy")).map_err(io::Error::from)?;
+        let array = NpyFile::new(entry)?;
+        Ok((array.shape().to_vec(), array.into_vec()?))
+    };
+    let mut all = Map::new();
+    for name in [
+        "theta_m",
+        "u1_amplitude_m",
+        "u1_phase_rad",
+        "u3_amplitude_m",
+        "u3_phase_rad",
+    ] {
+        let (_, values) = read(name)?;
+        all.insert(name.into(), pack::numbers(values));
+    }
+    for name in ["pressure_amplitude_pa", "pressure_phase_rad"] {
+        // A dry beam has none.
+        if let Ok((shape, values)) = read(name) {
+            all.insert(name.into(), pack::numbers(values));
+            all.insert("bladders".into(), json!(shape.get(1)));
+        }
+    }
+    Ok(Value::Object(all))
+}

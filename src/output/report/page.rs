@@ -1,0 +1,87 @@
+//! Shell, style, scripts and data as one text.
+
+use serde_json::{Map, Value};
+
+const SHELL: &str = include_str!("page/shell.html");
+
+const STYLES: [&str; 4] = [
+    include_str!("vendor/uPlot.min.css"),
+    include_str!("page/base.css"),
+    include_str!("page/figures.css"),
+    include_str!("page/print.css"),
+];
+
+/// In the order in which they are read: each uses what stands before it.
+const SCRIPTS: [&str; 17] = [
+    include_str!("page/base.js"),
+    include_str!("page/colour.js"),
+    include_str!("page/clock.js"),
+    include_str!("page/plot.js"),
+    include_str!("page/wires.js"),
+    include_str!("page/scene.js"),
+    include_str!("page/beam.js"),
+    include_str!("page/animation.js"),
+    include_str!("page/profiles.js"),
+    include_str!("page/maps.js"),
+    include_str!("page/histories.js"),
+    include_str!("page/ledger.js"),
+    include_str!("page/tables.js"),
+    include_str!("page/facts.js"),
+    include_str!("page/kinds.js"),
+    include_str!("page/states.js"),
+    include_str!("page/main.js"),
+];
+
+const VENDOR: &str = include_str!("vendor/uPlot.iife.min.js");
+const LICENCE: &str = include_str!("vendor/LICENSE");
+
+/// The page that shows the data.
+pub fn assemble(data: &Map<String, Value>) -> String {
+    let title = data.get("name").and_then(Value::as_str).unwrap_or("result");
+    let json = serde_json::to_string(data).unwrap_or_default();
+    let scripts: Vec<&str> = SCRIPTS.iter().map(|s| s.trim()).collect();
+    // One pass from left to right: what is put in is never searched for marks.
+    let parts = [
+        ("{{title}}", escaped(title)),
+        ("{{licence}}", LICENCE.trim().replace("--", "- -")),
+        ("{{style}}", STYLES.map(str::trim).join("\n")),
+        // Within a script element only `<` could end it, or begin a comment.
+        ("{{data}}", json.replace('<', "\\u003c")),
+        ("{{vendor}}", VENDOR.trim().to_string()),
+        ("{{script}}", scripts.join("\n")),
+    ];
+    let mut out = String::new();
+    let mut rest = SHELL;
+    for (mark, text) in parts {
+        let (before, after) = rest.split_once(mark).unwrap_or((rest, ""));
+        out.push_str(before);
+        out.push_str(&text);
+        rest = after;
+    }
+    out.push_str(rest);
+    out
+}
+
+/// Text that is not taken for markup.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_case_says_stays_text() {
+        let mut data = Map::new();
+        data.insert("name".into(), "</script><img src=x onerror=alert(1)> {{script}}".into());
+        let page = assemble(&data);
+        assert!(!page.contains("<img src=x"));
+        assert!(page.contains("&lt;/script&gt;"));
+        assert!(page.contains("\\u003c/script>"));
+        assert_eq!(page.matches("</html>").count(), 1);
+    }
+}

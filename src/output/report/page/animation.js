@@ -1,0 +1,131 @@
+// The motion: the beam in its true shape, moving with the clock.
+
+/** Fields of a run unpacked: frames × nodes, frames × cells. */
+function unpackMotion(m) {
+  if (!m || !m.times) return null;
+  const out = { ...m };
+  for (const key of ["times", "theta", "u1", "u3", "curvature", "pressure", "x_f", "bladder", "array"]) out[key] = floats(m[key]);
+  out.frames = out.times.length;
+  out.nodes = out.theta.length;
+  out.cells = out.pressure ? out.pressure.length / out.frames : 0;
+  if (out.cells && data.scene?.bladders) {
+    const half = data.scene.bladders.per_row;
+    const of = Array.from(out.bladder, (signed) => (signed > 0 ? signed - 1 : half - signed - 1));
+    const number = new Float64Array(2 * half);
+    for (const b of of) number[b]++;
+    out.ofBladder = new Float32Array(out.frames * 2 * half);
+    for (let f = 0; f < out.frames; f++) for (let c = 0; c < out.cells; c++) out.ofBladder[f * 2 * half + of[c]] += out.pressure[f * out.cells + c] / number[of[c]];
+    out.bladders = 2 * half;
+    // Colours tell pressures of the last cycle apart; a start that is many times wilder goes beyond the scale.
+    const most = largest(out.pressure);
+    const late = largest(out.pressure.subarray(out.cycle[0] * out.cells, (out.cycle.at(-1) + 1) * out.cells));
+    out.pressureScale = out.whole ? robustLimit(out.pressure) : { limit: late > 0 && most > 1.6 * late ? late : most || 1, most };
+  }
+  return out;
+}
+
+/** A slider of powers: factors 1, 2, 5, 10, ... up to `most`. */
+function factorControl(label, start, act) {
+  const steps = [1];
+  while (steps.at(-1) < Math.max(100, start * 10)) steps.push(steps.at(-1) * (String(steps.at(-1))[0] === "2" ? 2.5 : 2));
+  const shown = el("output", { text: `× ${count(start)}` });
+  const slider = el("input", { type: "range", min: 0, max: steps.length - 1, step: 1, value: Math.max(0, steps.indexOf(start)), "data-keys": "" });
+  slider.addEventListener("input", () => {
+    const factor = steps[Number(slider.value)];
+    shown.textContent = `× ${count(factor)}`;
+    act(factor);
+  });
+  return el("label", {}, label, slider, shown);
+}
+
+function showAnimation(host, scene, motion, clock) {
+  const layout = layOut(scene);
+  const root = (f) => [motion.u1[f * motion.nodes], motion.u3[f * motion.nodes]];
+  const moves = largest(Array.from({ length: motion.frames }, (_, f) => root(f)[1])) > 1e-3 * scene.length || largest(Array.from({ length: motion.frames }, (_, f) => root(f)[0])) > 1e-3 * scene.length;
+  const tiny = largest(motion.u1);
+  const factor = { across: roundFactor(tiny, scene.length), along: 1 };
+  const still = tiny <= 1e-9 * scene.length;
+  const alongSize = largest(motion.u3);
+  if (still && !moves) factor.along = roundFactor(alongSize, scene.length);
+  let follow = false;
+  const canvas = el("canvas", { role: "img", "aria-label": "The moving beam, seen from the side" });
+  const note = el("p", { class: "caption" });
+  const ghost = document.createElement("canvas");
+  let view = null;
+  const shift = (f) => (follow ? root(f) : [0, 0]);
+  const shape = (f, w) => {
+    const n = motion.nodes;
+    const g = Math.min(f + 1, motion.frames - 1);
+    const [u1, u3] = [new Float64Array(n), new Float64Array(n)];
+    const [s, t] = [shift(f), shift(g)];
+    for (let k = 0; k < n; k++) {
+      u1[k] = (motion.u1[f * n + k] - s[0]) * (1 - w) + (motion.u1[g * n + k] - t[0]) * w;
+      u3[k] = (motion.u3[f * n + k] - s[1]) * (1 - w) + (motion.u3[g * n + k] - t[1]) * w;
+    }
+    return curveOf(motion.theta, u1, u3, factor);
+  };
+  const prepare = () => {
+    const bounds = { x0: 0, x1: scene.length, y0: 0, y1: 0 };
+    for (let f = 0; f < motion.frames; f++) {
+      const [s1, s3] = shift(f);
+      for (let k = 0; k < motion.nodes; k++) {
+        const x = motion.theta[k] + (motion.u3[f * motion.nodes + k] - s3) * factor.along;
+        const y = (motion.u1[f * motion.nodes + k] - s1) * factor.across;
+        if (x < bounds.x0) bounds.x0 = x;
+        if (x > bounds.x1) bounds.x1 = x;
+        if (y < bounds.y0) bounds.y0 = y;
+        if (y > bounds.y1) bounds.y1 = y;
+      }
+    }
+    bounds.y0 -= scene.height * 0.8;
+    bounds.y1 += scene.height * 0.8;
+    view = viewOf(Math.max(canvas.clientWidth, 280), bounds, 460);
+    painted(canvas, view.height, () => {});
+    ghost.width = canvas.width;
+    ghost.height = canvas.height;
+    const ctx = ghost.getContext("2d");
+    const ratio = canvas.width / Math.max(canvas.clientWidth, 40);
+    ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
+    ctx.fillStyle = css("--faint");
+    ctx.globalAlpha = 0.009;
+    const every = Math.max(1, Math.floor(motion.frames / 70));
+    for (let f = 0; f < motion.frames; f += every) {
+      paintShade(ctx, view, shape(f, 0), scene);
+    }
+    const parts = [];
+    if (factor.across !== 1) parts.push(`deflection across drawn ${count(factor.across)} times larger`);
+    if (factor.along !== 1) parts.push(`displacement along drawn ${count(factor.along)} times larger`);
+    const truth = parts.length ? `${parts.join(", ")}; everything else to scale.` : "To scale, nothing exaggerated.";
+    note.textContent = `${truth[0].toUpperCase()}${truth.slice(1)} The faint shade is everywhere the beam goes during the whole motion, the darker the more often.${layout.bladders.length ? " Cells: bladders, coloured by their pressure; lines: tubes, coloured by network." : ""}`;
+  };
+  const scale = motion.pressureScale;
+  const paint = () =>
+    painted(canvas, view.height, (ctx) => {
+      const f = clock.index;
+      const g = Math.min(f + 1, motion.frames - 1);
+      const w = g > f ? Math.min(Math.max((clock.time - motion.times[f]) / (motion.times[g] - motion.times[f]), 0), 1) : 0;
+      ctx.save();
+      ctx.setTransform(1, 0, 0, 1, 0, 0);
+      ctx.drawImage(ghost, 0, 0);
+      ctx.restore();
+      const pressure = scale ? (b) => motion.ofBladder[f * motion.bladders + b] / scale.limit : null;
+      paintBeam(ctx, view, shape(f, w), scene, layout, pressure);
+    });
+  const again = () => {
+    prepare();
+    paint();
+  };
+  const controls = el("div", { class: "controls" });
+  if (!still) controls.append(factorControl("Exaggerate across", factor.across, (x) => ((factor.across = x), again())));
+  if (factor.along !== 1 || (alongSize > 0 && alongSize < 0.02 * scene.length)) controls.append(factorControl("Exaggerate along", factor.along, (x) => ((factor.along = x), again())));
+  if (moves) {
+    const box = el("input", { type: "checkbox", on: { change: () => ((follow = box.checked), again()) } });
+    controls.append(el("label", {}, box, "Follow the root"));
+  }
+  host.append(canvas);
+  if (scale) host.append(colourBar(scale.limit, scale.most, "Pa"));
+  host.append(controls, note);
+  redrawn(again);
+  clock.onTick(paint);
+  again();
+}

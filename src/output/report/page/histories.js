@@ -1,0 +1,142 @@
+// Columns over time: chosen by buttons, zoomed together, read at the cursor.
+
+const SYMBOLS = {
+  tip_u1: "tip u₁", tip_u3: "tip u₃", tip_angle: "tip angle", max_pressure: "largest pressure", min_pressure: "smallest pressure", turbine_power: "turbine power", least_opening: "least opening of a bladder",
+  energy_residual: "what does not close", harvested: "harvested",
+};
+function spoken(name) {
+  return SYMBOLS[name] || name.replace(/^work_/, "work of ").replace(/^dissipated_/, "lost in ").replace(/_/g, " ");
+}
+
+/** Panels over one time axis that zoom and read together. */
+function makePanels(host, clock, readable) {
+  const group = { key: `g${(makePanels.count = (makePanels.count || 0) + 1)}`, plots: [], range: null, full: null };
+  const times = clock.times;
+  group.full = [times[0], times[times.length - 1]];
+  group.zoom = (low, high) => {
+    const [a, b] = group.full;
+    const width = Math.min(Math.max(high - low, (b - a) * 1e-4), b - a);
+    const start = Math.min(Math.max(low, a), b - width);
+    group.range = [start, start + width];
+    group.busy = true;
+    for (const { plot } of group.plots) plot.setScale("x", { min: start, max: start + width });
+    group.busy = false;
+    group.mark();
+  };
+  group.mark = () => {
+    for (const { plot, line } of group.plots) {
+      const x = plot.valToPos(clock.time(), "x");
+      line.style.display = x >= 0 && x <= plot.over.clientWidth ? "" : "none";
+      line.style.left = `${x}px`;
+      // Without a pointer the figures are those of the clock.
+      if (plot.cursor.left === undefined || plot.cursor.left < 0) plot.setLegend({ idx: frameAt(times, clock.time()) });
+    }
+  };
+  group.clear = () => {
+    for (const { plot } of group.plots) plot.destroy();
+    group.plots = [];
+    host.replaceChildren();
+  };
+  group.add = (series, height, title) => group.plots.push(onePanel(host, group, times, series, height, title));
+  return group;
+}
+
+function onePanel(host, group, times, series, height, title) {
+  const most = Math.max(...series.map((s) => largest(s.values)));
+  const [factor, unit] = scaledUnit(most, series[0].unit);
+  const clean = (values) => Array.from(values, (x) => (Number.isFinite(x) ? x / factor : null));
+  const [soft, line] = [css("--soft"), css("--line")];
+  const axis = { stroke: soft, grid: { stroke: line, width: 1 }, ticks: { stroke: line, width: 1 }, font: "12px ui-sans-serif, system-ui, sans-serif" };
+  const holder = el("div", { class: "panel" });
+  host.append(holder);
+  const shown = (u, v) => (v === null || v === undefined ? "–" : significant(v, 5));
+  const minus = (u, all) => tickTexts(all, 1);
+  const options = {
+    width: Math.max(holder.clientWidth, 240), height, cursor: { sync: { key: group.key }, drag: { x: true, y: false, uni: 20 }, points: { size: 6 } },
+    legend: { live: true }, scales: { x: { time: false, min: group.range?.[0], max: group.range?.[1] } },
+    axes: [{ ...axis, values: minus, label: "time [s]", labelSize: 18, labelFont: axis.font, size: 32 }, { ...axis, values: minus, size: 62, label: `${title}${unit ? ` [${unit}]` : ""}`, labelSize: 18, labelFont: axis.font }],
+    series: [{ label: "t [s]", value: shown }, ...series.map((s) => ({ label: `${s.label}${unit ? ` [${unit}]` : ""}`, stroke: s.colour, width: 1.6, value: shown, points: { show: false }, dash: s.dash }))],
+    hooks: { setScale: [(u, key) => key === "x" && !group.busy && group.plots.some((p) => p.plot === u) && group.zoom(u.scales.x.min, u.scales.x.max)] },
+  };
+  const plot = new uPlot(options, [Array.from(times), ...series.map((s) => clean(s.values))], holder);
+  const mark = el("div", { class: "nowline" });
+  plot.over.append(mark);
+  plot.over.addEventListener("dblclick", () => group.zoom(...group.full));
+  return { plot, line: mark, holder };
+}
+
+/** Buttons for those who do not drag. */
+function zoomTools(group) {
+  const by = (label, aria, change) => {
+    const act = () => {
+      const [a, b] = group.range || group.full;
+      group.zoom(...change(a, b, b - a));
+    };
+    return el("button", { type: "button", "aria-label": aria, title: aria, text: label, on: { click: act } });
+  };
+  return el("div", { class: "toolbar", role: "group", "aria-label": "Zoom" },
+    by("◀", "Earlier", (a, b, w) => [a - w / 2, b - w / 2]), by("+", "Zoom in", (a, b, w) => [a + w / 4, b - w / 4]),
+    by("−", "Zoom out", (a, b, w) => [a - w / 2, b + w / 2]), by("▶", "Later", (a, b, w) => [a + w / 2, b + w / 2]),
+    el("button", { type: "button", text: "Whole run", on: { click: () => group.zoom(...group.full) } }));
+}
+
+/** Columns that share a unit and a size share a panel. */
+function families(columns) {
+  const out = [];
+  const sized = columns.map((c) => ({ ...c, size: largest(c.values) }));
+  for (const column of sized) {
+    const fits = (f) => f[0].unit === column.unit && f[0].group === column.group && Math.max(f[0].size, column.size) <= 25 * Math.min(f[0].size || column.size, column.size || f[0].size);
+    const family = out.find(fits);
+    if (family) family.push(column);
+    else out.push([column]);
+  }
+  return out;
+}
+
+function unpackHistory(history) {
+  if (!history) return null;
+  const columns = history.columns.map((c) => ({ ...c, values: floats(c.values), label: spoken(c.name) }));
+  return { ...history, times: columns[0].values, columns: columns.slice(1) };
+}
+
+function showHistories(host, history, clock) {
+  const all = history.columns.filter((c) => c.values.length && largest(c.values) > 0);
+  const zero = history.columns.filter((c) => !all.includes(c)).map((c) => c.label);
+  const usual = new Set(["tip_u1", "tip_u3", "max_pressure", "min_pressure"]);
+  const chosen = new Set(all.filter((c) => usual.has(c.name)).map((c) => c.name));
+  if (!chosen.size && all.length) chosen.add(all[0].name);
+  const time = () => (clock ? clock.time : history.times[0]);
+  const slot = el("div");
+  const group = makePanels(slot, { times: history.times, time });
+  const paint = () => {
+    group.clear();
+    const shown = families(all.filter((c) => chosen.has(c.name)));
+    let colour = 0;
+    for (const family of shown) {
+      const series = family.map((c) => ({ label: c.label, unit: c.unit, values: c.values, colour: named(colour++) }));
+      group.add(series, 210, family.length > 1 ? family[0].group.toLowerCase() : family[0].label);
+    }
+    // Once more when the plots stand: their first picture comes a moment later.
+    setTimeout(group.mark, 0);
+  };
+  const groups = new Map();
+  for (const column of all) groups.set(column.group, [...(groups.get(column.group) || []), column]);
+  const chips = [...groups].map(([title, columns]) =>
+    el("div", { class: "chipgroup" }, el("span", { text: title }), el("div", { class: "chips" }, columns.map((column) => {
+      const button = el("button", { type: "button", text: column.label, title: column.about, "aria-pressed": chosen.has(column.name), "data-column": column.name });
+      button.addEventListener("click", () => {
+        if (!chosen.delete(column.name)) chosen.add(column.name);
+        button.setAttribute("aria-pressed", chosen.has(column.name));
+        paint();
+      });
+      return button;
+    }))));
+  const card = figure(null, "Drag across a picture to look closer; a double click or Escape shows the whole run again. Below each picture stand the figures at the pointer, or at the time of the player.", ...chips, zoomTools(group), slot, zero.length ? el("p", { class: "caption", text: `Zero throughout: ${zero.join(", ")}.` }) : null, history.note ? el("p", { class: "caption", text: history.note }) : null);
+  card.addEventListener("keydown", (event) => event.key === "Escape" && group.zoom(...group.full));
+  document.addEventListener("keydown", (event) => event.key === "Escape" && event.target === document.body && group.zoom(...group.full));
+  host.append(card);
+  redrawn(paint);
+  if (clock) clock.onTick(group.mark);
+  paint();
+  return group;
+}

@@ -1,0 +1,152 @@
+// What each kind of result shows between its title and its case.
+
+/** The drawing with its words; `tell` gives the words of a bladder. */
+function showScene(tell) {
+  const scene = data.scene;
+  if (!scene) return null;
+  const half = scene.bladders?.per_row;
+  const size = half ? `${half} bladder${half === 1 ? "" : "s"} in each of two rows` : "no bladders";
+  const body = section("scene", "What was simulated", `A beam ${scene.size}, seen from the side, with ${size}.`);
+  const host = el("div");
+  const readout = el("div", { class: "readout dim", "aria-live": "polite", text: half ? "Point at a bladder or a tube, or move among bladders with the arrow keys." : "" });
+  const legend = el("ul", { class: "legend" });
+  const note = el("p", { class: "caption" });
+  const card = figure(null, null, host, half ? readout : null, legend, note);
+  const parts = half ? " Squares are bladders, which lie across the beam; lines are tubes, which join their ends in front and behind." : "";
+  const scale = (thicker) => (note.textContent = `${thicker > 1.01 ? `To scale along the beam; its height is drawn ${shortest(thicker)} times larger.` : "To scale."} Root on the left, tip on the right.${parts}`);
+  body.append(card);
+  const drawn = drawScene(scene, host, readout, tell || ((b, layout) => bladderWords(b, layout, scene)), scale);
+  const paint = () => legend.replaceChildren(...sceneWords(scene, drawn.layout).map(([mark, strong, text]) => el("li", {}, mark, el("span", {}, el("b", { text: strong }), ` ${text}`))));
+  redrawn(paint);
+  paint();
+  return drawn;
+}
+
+function bladderWords(b, layout, scene) {
+  const k = layout.colourOf(b.network);
+  const where = k >= 0 ? `network ${k + 1}` : "joined to no other bladder";
+  return `Bladder ${String(b.label).replace("-", "−")} (${b.row > 0 ? "upper" : "lower"} row): ${where}; ${scene.bladders.volume} at rest.`;
+}
+
+/** Rows of the legend: mark, strong words, words. */
+function sceneWords(scene, layout) {
+  const swatch = (inside) => svg("svg", { viewBox: "0 0 26 14", "aria-hidden": "true" }, inside);
+  const line = (colour, dash) => swatch(svg("path", { d: "M1 7H25", style: `stroke:${colour};stroke-width:3;stroke-linecap:round`, "stroke-dasharray": dash || null }));
+  const out = [];
+  const list = (bladders) => {
+    const labels = bladders.map((b) => String(layout.bladders[b].label).replace("-", "−"));
+    return labels.length > 12 ? `${labels.slice(0, 5).join(" ")} … ${labels.slice(-3).join(" ")} (${labels.length})` : labels.join(" ");
+  };
+  const plain = { sealed: "sealed", connected: "joined to other parts" };
+  if (scene.bladders) {
+    (scene.wiring.chains || []).slice(0, 12).forEach((chain, c) => {
+      const ends = chain.ends.map((e) => plain[e.kind] || e.words);
+      const both = ends[0] === ends[1] ? `both ends ${ends[0]}` : `first end ${ends[0]}, last end ${ends[1]}`;
+      out.push([line(wireColour(layout.colourOf(layout.bladders[chain.bladders[0]].network))), `Chain ${c + 1}`, `bladders ${list(chain.bladders)}; ${both}${chain.valve ? `; ${chain.valve}` : ""}`]);
+    });
+    const single = layout.bladders.filter((b) => layout.colourOf(b.network) < 0).map((b) => b.index);
+    if (single.length) out.push([line(wireColour(-1)), "Single bladders", list(single)]);
+    for (const wire of layout.wires.filter((w) => w.free).slice(0, 10)) out.push([line(wireColour(wire.colour)), "Tube", wire.words.replace(/^Tube /, "")]);
+    for (const wire of layout.wires.filter((w) => w.turbine).slice(0, 10)) out.push([line(wireColour(-2), "2 5"), "Turbine", wire.words.replace(/^Turbine /, "")]);
+    for (const mark of layout.marks.filter((m) => m.letter).slice(0, 16)) {
+      const shape = mark.kind === "pressure" ? svg("circle", { cx: 13, cy: 7, r: 5.5, style: `fill:none;stroke:${wireColour(mark.colour)};stroke-width:2` }) : svg("path", { d: "M7 12H19L13 2Z", style: `fill:none;stroke:${wireColour(mark.colour)};stroke-width:2` });
+      out.push([swatch(shape), `Port ${mark.letter}`, `${mark.name ? `“${mark.name}” ` : ""}at ${mark.where}: ${mark.words}`]);
+    }
+  }
+  const wall = swatch(svg("path", { d: "M13 0V14", style: `stroke:${css("--faint")};stroke-width:4` }));
+  const push = swatch(arrow(3, 7, 23, 7, css("--accent"), false));
+  const shake = swatch(arrow(3, 7, 23, 7, css("--accent"), true));
+  scene.ends.forEach((end, k) => {
+    const which = k === 0 ? "Root" : "Tip";
+    const forms = { clamped: "clamped", pinned: "pinned, free to turn", free: "free", guided: "guided: its slope is held", conditions: "held as the case says" };
+    out.push([wall.cloneNode(true), which, forms[end.form] || end.form]);
+    for (const [key, words] of [["across", "moved across"], ["along", "moved along the beam"], ["slope", "turned"]]) if (end.moves[key]) out.push([shake.cloneNode(true), which, `${words}: ${end.moves[key]}`]);
+    for (const [key, words] of [["across", "force across"], ["along", "force along"]]) if (end.force[key]) out.push([push.cloneNode(true), which, `${words}: ${end.force[key].words}`]);
+    if (end.moment) out.push([push.cloneNode(true), which, `moment: ${end.moment}`]);
+    if (end.follower) out.push([push.cloneNode(true), which, `forces that turn with it, ${end.follower}`]);
+  });
+  for (const load of scene.loads) out.push([push.cloneNode(true), "Load", load.words]);
+  return out;
+}
+
+function showRun() {
+  const motion = unpackMotion(data.motion);
+  const history = unpackHistory(data.history);
+  const scene = data.scene;
+  let clock = null;
+  if (motion && scene) {
+    clock = makeClock(motion.times, motion.frequency_hz ? 1 / motion.frequency_hz : null);
+  }
+  const tell = (b, layout) => {
+    let text = bladderWords(b, layout, scene);
+    if (motion?.ofBladder) {
+      const own = Array.from({ length: motion.frames }, (_, f) => motion.ofBladder[f * motion.bladders + b.index]);
+      const [low, high] = extent(own);
+      const shown = (p) => quantity(settled(p, motion.pressureScale.most), "Pa");
+      text += ` Pressure now ${shown(own[clock.index])}; least ${shown(low)}, largest ${shown(high)}.`;
+    }
+    return text;
+  };
+  const drawn = showScene(tell);
+  if (clock) {
+    const body = section("motion", "How it moves", "Press play, drag the slider, or use the space bar and the arrow keys (with Shift: ten steps). Everything below follows the same time.");
+    const kept = motion.frames < motion.recorded ? `${count(motion.recorded)} instants were recorded; ${count(motion.frames)} of them are shown.` : null;
+    const host = el("div", { class: "figure" });
+    body.append(host);
+    showAnimation(host, scene, motion, clock);
+    if (kept) host.append(el("p", { class: "caption", text: kept }));
+    const tip = motion.nodes - 1;
+    body.append(player(clock, (c) => {
+      const all = [["time", quantity(c.time, "s", 4)], ["tip across", quantity(settled(motion.u1[c.index * motion.nodes + tip], scene.length), "m")], ["tip along", quantity(settled(motion.u3[c.index * motion.nodes + tip], scene.length), "m")]];
+      if (motion.pressure) {
+        const [low, high] = extent(motion.pressure.subarray(c.index * motion.cells, (c.index + 1) * motion.cells));
+        all.push(["pressure", `${quantity(settled(low, motion.pressureScale.most), "Pa")} to ${quantity(settled(high, motion.pressureScale.most), "Pa")}`]);
+      }
+      return all;
+    }));
+    clock.onTick(() => !clock.playing && drawn.again());
+    body.append(el("div", { class: "grid2", id: "profiles" }));
+    showProfiles(body.lastChild, motion, clock, scene);
+    if (motion.frames > 1) {
+      body.append(el("div", { class: "grid2", id: "maps" }));
+      showMaps(body.lastChild, motion, clock, scene);
+    }
+  }
+  const within = document.getElementById("motion") || document.getElementById("main");
+  if (history) {
+    const part = section("histories", "Over time", "Every quantity that was recorded, at every output time.", within);
+    showHistories(part, history, clock);
+  }
+  if (data.ledger) {
+    const part = section("energy", "Where the energy went", "Energy is neither made nor lost by the equations, so the books must close.", within);
+    showLedger(part, data.ledger, history, clock);
+  }
+  for (const part of data.sections || []) {
+    const body = section("cycle", part.title, null);
+    body.append(el("p", { class: "answer", text: part.text }), tableCard(part.table));
+  }
+  if (clock) clock.go(telling(motion, scene));
+}
+
+/** The instant to begin with: of the last cycle, or the whole, that in which most is to be seen. */
+function telling(motion, scene) {
+  const n = motion.nodes;
+  const values = largest(motion.u1) > 1e-9 * scene.length ? motion.u1 : motion.u3;
+  let best = [-1, 0];
+  for (let f = motion.cycle[0]; f <= motion.cycle.at(-1); f++) {
+    const size = largest(values.subarray(f * n, (f + 1) * n));
+    if (size > best[0]) best = [size, f];
+  }
+  return best[1];
+}
+
+function showMany() {
+  for (const part of data.figures || []) {
+    const card = pictureCard(part);
+    if (!card) continue;
+    if (!document.getElementById("answer")) section("answer", "The picture", null);
+    document.getElementById("answer").append(card);
+  }
+  if (data.table) section("table", data.table.title, null).append(tableCard({ ...data.table, title: null }));
+  if (data.scene) showScene();
+}

@@ -1,0 +1,74 @@
+// Space over time as colours: where and when something happens.
+
+function showMaps(host, motion, clock, scene) {
+  const n = motion.nodes;
+  const maps = [];
+  const along = (title, values, unit, about) => maps.push({ title, unit, about, rows: n, low: "root", high: "tip", at: (f, k) => values[f * n + k], values, place: (k) => `θ = ${quantity(motion.theta[k], "m")}` });
+  if (largest(motion.u1) > 1e-9 * scene.length) along("Deflection across, u₁", motion.u1, "m", "Red: the beam is up there, blue: down.");
+  if (largest(motion.u3) > 1e-9 * scene.length) along("Displacement along, u₃", motion.u3, "m", "Red: moved towards the tip, blue: towards the root.");
+  if (motion.curvature && largest(motion.curvature) * scene.length > 1e-9) along("Curvature κ", motion.curvature, "1/m", "Red: the upper side is stretched, blue: the lower.");
+  if (motion.ofBladder) {
+    const half = motion.bladders / 2;
+    [["Pressure, upper row", 0], ["Pressure, lower row", half]].forEach(([title, from]) => {
+      const values = motion.ofBladder;
+      maps.push({
+        title, unit: "Pa", about: "Red: pushed full, blue: sucked.", rows: half, low: "root", high: "tip", scale: motion.pressureScale,
+        at: (f, k) => values[f * motion.bladders + from + k], place: (k) => `bladder ${from ? "−" : ""}${k + 1}`,
+      });
+    });
+  }
+  for (const map of maps) showMap(host, map, motion, clock);
+}
+
+function showMap(host, map, motion, clock) {
+  const scale = map.scale || robustLimit(map.values);
+  const canvas = el("canvas", {});
+  const now = el("div", { class: "now" });
+  const holder = el("div", { class: "map", tabindex: "0", role: "img", "aria-label": `${map.title} over time and place. Arrow keys move the time.` }, canvas, now);
+  const readout = el("span", { text: "point at the map to read it" });
+  const [t0, t1] = [motion.times[0], motion.times.at(-1)];
+  const card = el("div", { class: "figure" },
+    el("div", { class: "maphead" }, el("h3", { text: map.title }), readout), holder,
+    el("div", { class: "mapaxis" }, el("span", { text: timeText(t0) }), el("span", { text: "time →   (bottom: root, top: tip)" }), el("span", { text: timeText(t1) })),
+    colourBar(scale.limit, scale.most, map.unit), el("p", { class: "caption", text: map.about }));
+  host.append(card);
+  const picture = document.createElement("canvas");
+  const place = (event) => {
+    const box = canvas.getBoundingClientRect();
+    const x = Math.min(Math.max((event.clientX - box.left) / box.width, 0), 1);
+    const y = Math.min(Math.max((event.clientY - box.top) / box.height, 0), 1);
+    return [t0 + x * (t1 - t0), Math.min(Math.floor((1 - y) * map.rows), map.rows - 1)];
+  };
+  holder.addEventListener("pointermove", (event) => {
+    const [t, k] = place(event);
+    const f = frameAt(motion.times, t);
+    readout.textContent = `${quantity(map.at(f, k), map.unit)} · ${map.place(k)} · t = ${quantity(motion.times[f], "s", 4)}`;
+  });
+  holder.addEventListener("click", (event) => (clock.play(false), clock.goTime(place(event)[0])));
+  const paint = () => {
+    // As many columns as can be seen; the frames between are passed over.
+    const columns = Math.min(motion.frames, 1000);
+    picture.width = columns;
+    picture.height = map.rows;
+    const ctx = picture.getContext("2d");
+    const image = ctx.createImageData(columns, map.rows);
+    for (let c = 0; c < columns; c++) {
+      const f = Math.round((c * (motion.frames - 1)) / Math.max(columns - 1, 1));
+      for (let k = 0; k < map.rows; k++) {
+        const at = ((map.rows - 1 - k) * columns + c) * 4;
+        diverging(map.at(f, k) / scale.limit, image.data, at);
+        image.data[at + 3] = 255;
+      }
+    }
+    ctx.putImageData(image, 0, 0);
+    painted(canvas, 168, (context, w, h) => {
+      context.imageSmoothingEnabled = map.rows > 40;
+      context.drawImage(picture, 0, 0, w, h);
+    });
+    mark();
+  };
+  const mark = () => (now.style.left = `${(100 * (clock.time - t0)) / (t1 - t0 || 1)}%`);
+  redrawn(paint);
+  clock.onTick(mark);
+  paint();
+}

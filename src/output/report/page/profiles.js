@@ -1,0 +1,48 @@
+// Deflection along the beam and pressure along the networks, as the paper draws them, moving with the clock.
+
+function showProfiles(host, motion, clock, scene) {
+  const lengths = { low: motion.theta[0], high: motion.theta.at(-1), unit: "m", name: "place along the beam θ" };
+  const cycle = motion.cycle;
+  const span = `${timeText(motion.times[cycle[0]])} to ${timeText(motion.times[cycle.at(-1)])}`;
+  const when = motion.whole ? `the whole run, ${span}` : `the last cycle of the drive, ${span}`;
+  const curves = [];
+  const across = largest(motion.u1) > 1e-9 * scene.length;
+  const [field, sign, words] = across ? [motion.u1, "u₁", "across"] : [motion.u3, "u₃", "along"];
+  curves.push({
+    title: `Deflection ${sign} along the beam`, values: field, width: motion.nodes, x: motion.theta, axis: lengths, name: `${sign} ${words}`, unit: "m", floor: 1e-12 * scene.length,
+    about: (most) => `Every line is one instant of ${when}, from blue (early) to red (late); the thick line is the instant of the player. Largest in this span: ${quantity(most, "m")}.`,
+  });
+  if (motion.pressure) {
+    const [low, high] = extent(motion.x_f);
+    curves.push({
+      title: "Pressure along the networks", values: motion.pressure, width: motion.cells, x: motion.x_f, axis: { low, high, unit: "1", name: "place along the network X_f" }, name: "p", unit: "Pa", floor: 1e-6,
+      gap: (k) => k > 0 && motion.array[k] !== motion.array[k - 1],
+      about: (most) => `From the first bladder of each network to its last, one network after the other; where one ends the line breaks. Largest in this span: ${quantity(most, "Pa")}.`,
+    });
+  }
+  for (const curve of curves) {
+    const slot = el("div");
+    const part = curve.values.subarray(cycle[0] * curve.width, (cycle.at(-1) + 1) * curve.width);
+    const [inside, all] = [extent(part), extent(curve.values)];
+    // What goes before may be many times larger; then the picture is about the last cycle alone.
+    const wide = all[1] - all[0] > 2 * (inside[1] - inside[0]);
+    curve.range = wide ? inside : all;
+    const beyond = wide ? " At other times it may leave the picture." : "";
+    host.append(figure(curve.title, curve.about(largest(part)) + beyond, slot));
+    let drawn = null;
+    const paint = () => {
+      const [low, high] = roomy(curve.range, curve.floor);
+      drawn = chart(Math.max(slot.clientWidth, 260), 264, curve.axis, { low, high, unit: curve.unit, name: curve.name }, curve.title);
+      const line = (f) => linePath(curve.width, (k) => [drawn.px(curve.x[k]), drawn.py(curve.values[f * curve.width + k])], curve.gap);
+      cycle.forEach((f, k) => drawn.area.append(svg("path", { d: line(f), style: `fill:none;stroke:${timeColour(k / Math.max(cycle.length - 1, 1))};stroke-width:1;opacity:0.55` })));
+      drawn.now = svg("path", { class: "present", style: `fill:none;stroke:${css("--ink")};stroke-width:2.4;stroke-linejoin:round` });
+      drawn.area.append(drawn.now);
+      drawn.line = line;
+      slot.replaceChildren(drawn.node);
+      drawn.now.setAttribute("d", line(clock.index));
+    };
+    redrawn(paint);
+    clock.onTick(() => drawn && drawn.now.setAttribute("d", drawn.line(clock.index)));
+    paint();
+  }
+}

@@ -1,0 +1,205 @@
+// Pages with a beam that is not in time: states along a load path, shapes of modes.
+
+/** The static states under growing loads. */
+function showPath() {
+  const shapes = data.shapes;
+  const path = data.path;
+  const scene = data.scene;
+  if (shapes && scene) {
+    const [theta, x, z] = [floats(shapes.theta), floats(shapes.x), floats(shapes.z)];
+    const n = theta.length;
+    const states = shapes.states;
+    const share = states.map((s) => path?.rows?.[s]?.[0] ?? 0);
+    const body = section("path", "The states along the path", "From rest to the end, all loads grow together. Move the slider to walk along.");
+    const canvas = el("canvas", { role: "img", "aria-label": "The beam in its state" });
+    const slider = el("input", { type: "range", min: 0, max: states.length - 1, step: 1, value: states.length - 1, "aria-label": "State along the path", id: "state" });
+    const words = el("div", { class: "readout", id: "state-words" });
+    const layout = layOut(scene);
+    const size = largest(x);
+    const factor = { across: roundFactor(size, scene.length), along: 1 };
+    const bounds = { x0: 0, x1: scene.length, y0: 0, y1: 0 };
+    for (let k = 0; k < x.length; k++) {
+      bounds.x0 = Math.min(bounds.x0, z[k]);
+      bounds.x1 = Math.max(bounds.x1, z[k]);
+      bounds.y0 = Math.min(bounds.y0, x[k] * factor.across);
+      bounds.y1 = Math.max(bounds.y1, x[k] * factor.across);
+    }
+    bounds.y0 -= 0.8 * scene.height;
+    bounds.y1 += 0.8 * scene.height;
+    const curve = (s) => {
+      const u3 = new Float64Array(n);
+      for (let k = 0; k < n; k++) u3[k] = z[s * n + k] - theta[k];
+      return curveOf(theta, x.subarray(s * n, (s + 1) * n), u3, factor);
+    };
+    const note = factor.across === 1 ? "To scale, nothing exaggerated." : `Deflection across drawn ${count(factor.across)} times larger.`;
+    body.append(figure(null, `${note} The faint shade is where the other states of the path lie.`, canvas, el("div", { class: "controls" }, el("label", { style: "flex:1 1 200px" }, "State", slider)), words));
+    slider.style.flex = "1 1 auto";
+    const columns = (path?.headings || []).map((h) => /^(.*) \[(.*)\]$/.exec(h)).map((m) => (m ? [m[1], m[2]] : null));
+    const paint = () => {
+      const view = viewOf(Math.max(canvas.clientWidth, 260), bounds, 460);
+      const now = Number(slider.value);
+      painted(canvas, view.height, (ctx) => {
+        ctx.fillStyle = css("--faint");
+        ctx.globalAlpha = 0.05;
+        const every = Math.max(1, Math.floor(states.length / 60));
+        for (let s = 0; s < states.length; s += every) {
+          const c = curve(s);
+          paintShade(ctx, view, c, scene);
+        }
+        ctx.globalAlpha = 1;
+        paintBeam(ctx, view, curve(now), scene, layout, null);
+      });
+      const row = path?.rows?.[states[now]] || [];
+      const wanted = ["tip_u1", "tip_u3", "max_pressure"];
+      const ways = row[columns.findIndex((c) => c && c[0] === "unstable_modes")];
+      const verdict = ways === 0 ? "stable" : ways > 0 ? `unstable in ${ways} way${ways === 1 ? "" : "s"}` : "stability unknown";
+      const parts = columns.map((c, k) => (c && wanted.includes(c[0]) && typeof row[k] === "number" ? `${spoken(c[0])} ${quantity(row[k], c[1])}` : null)).filter(Boolean);
+      words.textContent = `${shortest(100 * share[now])} % of the loads · ${parts.join(" · ")} · ${verdict}`;
+      for (const act of follow) act(states[now]);
+    };
+    const follow = [];
+    slider.addEventListener("input", paint);
+    redrawn(paint);
+    loadCurves(body, path, columns, follow);
+    paint();
+  }
+  showEvents();
+  if (path) section("table", "Every state", null).append(tableCard({ ...path, title: null, about: "The first column is the share of the loads; the last counts the ways in which the state gives way (0: stable)." }));
+  if (scene) showScene();
+}
+
+/** Displacements and pressure over the share of the loads, with a mark at the present state. */
+function loadCurves(body, path, columns, follow) {
+  const grid = el("div", { class: "grid2" });
+  body.append(grid);
+  for (const [name, title] of [["tip_u1", "Tip across, u₁"], ["tip_u3", "Tip along, u₃"], ["max_pressure", "Largest pressure"]]) {
+    const k = columns.findIndex((c) => c && c[0] === name);
+    if (k < 0) continue;
+    const values = path.rows.map((r) => (typeof r[k] === "number" ? r[k] : NaN));
+    if (!(largest(values) > 1e-12)) continue;
+    const share = path.rows.map((r) => r[0]);
+    const slot = el("div");
+    grid.append(figure(title, `At the end of the path ${quantity(values.at(-1), columns[k][1])}. The ring is the state shown above.${data.events?.length ? " Dashed: where something happens on the way." : ""}`, slot));
+    let mark = null;
+    let drawn = null;
+    let at = path.rows.length - 1;
+    const move = () => {
+      if (!drawn || !(at in share)) return;
+      mark.setAttribute("cx", drawn.px(share[at]));
+      mark.setAttribute("cy", drawn.py(values[at]));
+    };
+    const draw = () => {
+      const [low, high] = roomy(extent(values));
+      const [x0, x1] = roomy(extent(share));
+      drawn = chart(Math.max(slot.clientWidth, 260), 240, { low: x0, high: x1, unit: "1", name: "share of the loads" }, { low, high, unit: columns[k][1], name: spoken(name) }, title);
+      drawn.area.append(svg("path", { d: linePath(values.length, (i) => [drawn.px(share[i]), drawn.py(values[i])]), style: `fill:none;stroke:${css("--accent")};stroke-width:2.2` }));
+      for (const e of data.events || []) {
+        const x = drawn.px(e.load_factor);
+        drawn.area.append(svg("line", { x1: x, x2: x, y1: 0, y2: 240, "stroke-dasharray": "3 4", style: `stroke:${css("--faint")}` }));
+      }
+      mark = svg("circle", { r: 6, style: `fill:${css("--card")};stroke:${css("--accent")};stroke-width:2.6` });
+      drawn.area.append(mark);
+      slot.replaceChildren(drawn.node);
+      move();
+    };
+    follow.push((s) => ((at = s), move()));
+    redrawn(draw);
+    draw();
+  }
+}
+
+function showEvents() {
+  const events = data.events || [];
+  const slopes = Object.entries(data.derivatives || {});
+  if (events.length) {
+    const body = section("events", "What happens on the way", null);
+    body.append(figure(null, null, el("ul", {}, events.map((e) => el("li", { text: `At ${significant(100 * e.load_factor, 4)} % of the loads: ${e.what}` })))));
+  }
+  if (!slopes.length) return;
+  const rows = slopes.flatMap(([pointer, s]) => Object.entries(s.derivatives).map(([name, d]) => [pointer, name, d, 0.01 * d * s.value]));
+  section("derivatives", "What one per cent more would change", null).append(tableCard({ headings: ["number of the case", "quantity", "derivative", "change for 1 % more"], rows, about: "Derivatives of the last state." }));
+}
+
+/** Shapes of small motions, moving. */
+function showModes() {
+  const { shapes, modes } = data;
+  if (shapes && modes?.length) {
+    const get = (name) => floats(shapes[name]);
+    const theta = get("theta_m");
+    // Without the case only the line of the beam is known.
+    const scene = data.scene || { length: theta.at(-1), height: 0.06 * theta.at(-1), ends: [], loads: [], bladders: null };
+    const n = theta.length;
+    const layout = layOut(scene);
+    const [a1, f1, a3, f3, ap, fp] = ["u1_amplitude_m", "u1_phase_rad", "u3_amplitude_m", "u3_phase_rad", "pressure_amplitude_pa", "pressure_phase_rad"].map(get);
+    const name = (m, k) => `${k + 1} · ${m.kind}${m.frequency_hz ? ` ${quantity(m.frequency_hz, "Hz", 4)}` : m.time_s ? `, ${quantity(m.time_s, "s")}` : ""}`;
+    const first = Math.max(modes.findIndex((m) => m.kind === "oscillation" || m.kind === "flutter"), 0);
+    const body = section("shapes", "How the modes move", "Every small motion is a sum of these. Amplitudes are drawn as large as can be seen; what counts is the shape, and where the pressure is.");
+    const select = el("select", { "aria-label": "Mode", id: "mode" }, modes.map((m, k) => el("option", { value: k, text: name(m, k), selected: k === first })));
+    const canvas = el("canvas", { role: "img", "aria-label": "The moving shape of the mode" });
+    const words = el("p", { class: "caption" });
+    let phase = 0;
+    let playing = !calm.matches;
+    const button = el("button", { type: "button", class: "main", "aria-label": playing ? "Pause" : "Play" }, icon(playing ? "pause" : "play"));
+    const slider = el("input", { type: "range", min: 0, max: 100, value: 0, "aria-label": "Phase", style: "flex:1 1 160px", "data-keys": "" });
+    body.append(figure(null, null, el("div", { class: "controls" }, el("label", {}, "Mode", select), button, slider), canvas, words));
+    const bounds = { x0: -0.02 * scene.length, x1: 1.05 * scene.length, y0: -0.13 * scene.length - 0.6 * scene.height, y1: 0.13 * scene.length + 0.6 * scene.height };
+    const paint = () => {
+      const k = Number(select.value);
+      const part = (values, count) => values.subarray(k * count, (k + 1) * count);
+      const size = Math.max(largest(part(a1, n)), largest(part(a3, n)), 1e-300);
+      const factor = (0.11 * scene.length) / size;
+      const oscillates = Boolean(modes[k].frequency_hz);
+      // What decays without swinging is drawn swinging too: its shape is what is to be seen.
+      const at = (a, f, i) => a[i] * Math.cos(2 * Math.PI * phase + (oscillates ? f[i] : Math.cos(f[i]) < 0 ? Math.PI : 0));
+      const [u1, u3] = [new Float64Array(n), new Float64Array(n)];
+      for (let i = 0; i < n; i++) {
+        u1[i] = at(part(a1, n), part(f1, n), i);
+        u3[i] = at(part(a3, n), part(f3, n), i);
+      }
+      const view = viewOf(Math.max(canvas.clientWidth, 260), bounds, 420);
+      const per = shapes.bladders || 0;
+      const most = ap ? largest(part(ap, per)) : 0;
+      const pressure = most > 0 ? (b) => at(part(ap, per), part(fp, per), b) / most : null;
+      painted(canvas, view.height, (ctx) => paintBeam(ctx, view, curveOf(theta, u1, u3, { across: factor, along: factor }), scene, layout, pressure));
+      slider.value = Math.round(100 * phase);
+      const m = modes[k];
+      const facts = [m.frequency_hz ? `swings at ${quantity(m.frequency_hz, "Hz", 5)}` : "does not swing", m.damping_ratio ? `damping ratio ${significant(m.damping_ratio, 3)}` : null, m.growth_per_s < 0 ? `dies away within ${quantity(m.time_s, "s")}` : m.growth_per_s > 0 ? `grows at ${significant(m.growth_per_s, 3)} per second` : null].filter(Boolean);
+      words.textContent = `Mode ${k + 1} ${facts.join(", ")}.${pressure ? " Bladders are coloured by their pressure in this mode: red and blue are opposite." : ""}`;
+    };
+    let before = null;
+    const frame = (now) => {
+      if (playing) {
+        if (before !== null) phase = (phase + Math.min(now - before, 100) / 2400) % 1;
+        before = now;
+        paint();
+        requestAnimationFrame(frame);
+      }
+    };
+    const play = (on) => {
+      playing = on;
+      before = null;
+      button.replaceChildren(icon(on ? "pause" : "play"));
+      button.setAttribute("aria-label", on ? "Pause" : "Play");
+      if (on) requestAnimationFrame(frame);
+    };
+    button.addEventListener("click", () => play(!playing));
+    select.addEventListener("change", paint);
+    slider.addEventListener("input", () => (play(false), (phase = Number(slider.value) / 100), paint()));
+    document.addEventListener("keydown", (event) => {
+      if (event.key !== " " || event.target.closest("button, select, summary, a, input, [data-keys]")) return;
+      event.preventDefault();
+      play(!playing);
+    });
+    redrawn(paint);
+    paint();
+    if (playing) requestAnimationFrame(frame);
+  }
+  if (data.passivity) showPassivity(data.passivity);
+  if (data.table) section("table", "Every mode", null).append(tableCard({ ...data.table, title: null, about: "Undrained: the same shape with every bladder sealed. Drained: with one pressure in each network. The growth rate is negative where the motion dies away." }));
+  if (data.picture) section("picture", "All shapes at once", null).append(pictureCard({ picture: data.picture, title: null, about: "Displacement along the beam of every mode, with the pressures of the bladders." }));
+  if (data.scene) showScene();
+}
+
+function showPassivity(text) {
+  document.getElementById("main").append(figure("Passivity of the coupling", text));
+}

@@ -1,0 +1,54 @@
+// Tables that sort by a click or a key on a heading.
+
+/** `headings`: texts; `rows`: arrays of numbers, texts or nulls. Numbers are shown with their significant digits. */
+function sortable(headings, rows, options = {}) {
+  // A column of round numbers is shown as they are, another with four figures throughout.
+  const round = headings.map((_, k) => rows.every((r) => typeof r[k] !== "number" || Number(r[k].toPrecision(3)) === r[k]));
+  const text = (x, k) => (Number.isInteger(x) && Math.abs(x) < 1e6 ? count(x).replace("-", "−") : round[k] ? shortest(x) : significant(x, 4));
+  const shown = (x, k) => (typeof x === "number" ? text(x, k) : x === null || x === undefined || x === "" ? "–" : String(x));
+  const numeric = headings.map((_, k) => rows.some((r) => typeof r[k] === "number") && rows.every((r) => typeof r[k] === "number" || r[k] === null || r[k] === ""));
+  const wordy = headings.map((_, k) => rows.some((r) => String(r[k] ?? "").length > 40));
+  const body = el("tbody");
+  const kinds = new Set(["needed", "on", "off"]);
+  const fill = (list) => body.replaceChildren(...list.map((r) => el("tr", { class: options.dim?.(r) ? "off" : null }, r.map((x, k) =>
+    kinds.has(x) ? el("td", {}, el("span", { class: `pill ${x}`, text: x })) : el("td", { class: numeric[k] ? "n" : wordy[k] ? "why" : null, text: shown(x, k) })))));
+  const cells = headings.map((heading, k) => {
+    const cell = el("th", { scope: "col", class: numeric[k] ? "n" : null, "aria-sort": "none" });
+    cell.append(el("button", { type: "button", text: heading.startsWith("/") ? heading : heading.replace(/ \[1\]$/, "").replace(/_/g, " "), on: { click: () => sort(k) } }));
+    return cell;
+  });
+  const sort = (k) => {
+    const down = cells[k].getAttribute("aria-sort") === "ascending";
+    cells.forEach((c) => c.setAttribute("aria-sort", "none"));
+    cells[k].setAttribute("aria-sort", down ? "descending" : "ascending");
+    const rank = (a, b) => {
+      const [x, y] = [a[k], b[k]];
+      if (x === null || x === undefined || x === "") return 1;
+      if (y === null || y === undefined || y === "") return -1;
+      const order = typeof x === "number" && typeof y === "number" ? x - y : String(x).localeCompare(String(y), "en", { numeric: true });
+      return down ? -order : order;
+    };
+    fill([...rows].sort(rank));
+  };
+  fill(rows);
+  return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": options.label || "Table", "data-keys": "" }, el("table", {}, el("thead", {}, el("tr", {}, cells)), body));
+}
+
+/** Four figures, without zeros that say nothing. */
+function shortest(x) {
+  const text = significant(x, 4);
+  const [digits, power] = text.split("·");
+  return `${digits.includes(".") ? digits.replace(/\.?0+$/, "") : digits}${power ? `·${power}` : ""}`;
+}
+
+/** A table of the data with title, sentence and the file that has all of it. */
+function tableCard(table) {
+  const file = table.file ? el("p", { class: "caption" }, "All of it: ", el("a", { href: encodeURI(table.file), text: table.file })) : null;
+  return figure(table.title, null, table.about ? el("p", { class: "caption", text: table.about }) : null, sortable(table.headings, table.rows, { label: table.title }), table.left_out ? el("p", { class: "caption", text: `${count(table.left_out)} more rows are in the file.` }) : null, file);
+}
+
+/** A picture made by the program, on white. */
+function pictureCard(part) {
+  if (!part.picture) return null;
+  return figure(part.title, part.about, el("div", { class: "plate" }, el("img", { src: part.picture, alt: part.title })));
+}

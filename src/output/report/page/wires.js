@@ -1,0 +1,113 @@
+// The wiring in coordinates of the beam: `a` along it [m], `e` across it from its middle [m]. Drawing and animation share it.
+
+/** Where bladders are, and tubes, ports and turbines as lines between them. */
+function layOut(scene) {
+  const out = { bladders: [], wires: [], marks: [] };
+  if (!scene.bladders) return out;
+  const { per_row: perRow, network } = scene.bladders;
+  const segment = scene.length / perRow;
+  const [wide, high] = [Math.min(scene.bladders.width, 0.92 * segment), Math.min(scene.bladders.height, 0.46 * scene.height)];
+  out.segment = segment;
+  out.size = [wide, high];
+  for (let b = 0; b < 2 * perRow; b++) {
+    const row = b < perRow ? 1 : -1;
+    const j = b % perRow;
+    out.bladders.push({ index: b, row, label: row * (j + 1), a: (j + 0.5) * segment, e: row * scene.height * 0.25, network: network[b], flipped: false });
+  }
+  const sizes = new Map();
+  for (const n of network) sizes.set(n, (sizes.get(n) || 0) + 1);
+  const joined = [...sizes.keys()].filter((n) => sizes.get(n) > 1).sort((x, y) => x - y);
+  // Networks of several bladders have colours, single bladders none.
+  out.colourOf = (n) => joined.indexOf(n);
+  const { chains, tubes, ports, turbines, junctions } = scene.wiring;
+  for (const chain of chains) {
+    chain.bladders.forEach((b, k) => {
+      const next = chain.bladders[k + 1] ?? null;
+      const before = chain.bladders[k - 1] ?? null;
+      const way = next !== null ? out.bladders[next].a - out.bladders[b].a : before !== null ? out.bladders[b].a - out.bladders[before].a : 1;
+      out.bladders[b].flipped = way < 0;
+    });
+  }
+  const mouth = (b, outlet) => {
+    const bladder = out.bladders[b];
+    const side = outlet !== bladder.flipped ? 1 : -1;
+    return { a: bladder.a + side * 0.24 * wide, e: bladder.e };
+  };
+  const name = (b) => String(out.bladders[b].label).replace("-", "−");
+  chains.forEach((chain, c) => {
+    const colour = out.colourOf(network[chain.bladders[0]]);
+    chain.bladders.forEach((b, k) => {
+      out.wires.push({ points: [mouth(b, false), mouth(b, true)], colour, within: true });
+      const next = chain.bladders[k + 1];
+      if (next === undefined) return;
+      out.wires.push({ points: [mouth(b, true), mouth(next, false)], colour, words: `Tube of chain ${c + 1}, from bladder ${name(b)} to bladder ${name(next)}${chain.valve ? `; ${chain.valve}` : ""}`, valve: chain.valve });
+    });
+    [[chain.bladders[0], false], [chain.bladders.at(-1), true]].forEach(([b, outlet], k) => {
+      const end = chain.ends[k];
+      if (end.kind === "connected") return;
+      out.marks.push({ ...end, at: mouth(b, outlet), row: out.bladders[b].row, colour, where: `bladder ${name(b)}` });
+    });
+  });
+  const nodes = placeJunctions(out, junctions, tubes, turbines, mouth);
+  const point = (p) => (p.junction !== undefined ? nodes.get(p.junction) : mouth(p.bladder, p.outlet));
+  const colourAt = (p) => (p.junction !== undefined ? nodes.get(p.junction)?.colour ?? -1 : out.colourOf(network[p.bladder]));
+  const called = (p) => (p.junction !== undefined ? `junction ${p.junction}` : `bladder ${name(p.bladder)}`);
+  let lane = 0;
+  const connect = (from, to) => {
+    const [A, B] = [point(from), point(to)];
+    if (!A || !B) return null;
+    const apart = Math.abs(A.a - B.a);
+    if (apart < 1.2 * segment && A.e === B.e) return [A, B];
+    const far = apart > 2 * segment;
+    // Long ones run along the middle of the beam, side by side.
+    const e = far ? [0.06, -0.06, 0.1, -0.1, 0][lane++ % 5] * scene.height : 0;
+    return [A, { a: A.a, e }, { a: B.a, e }, B];
+  };
+  for (const tube of tubes) {
+    const points = connect(tube.from, tube.to);
+    if (points) out.wires.push({ points, colour: colourAt(tube.from), free: true, valve: tube.valve, words: `Tube from ${called(tube.from)} to ${called(tube.to)}${tube.valve ? `; ${tube.valve}` : ""}` });
+  }
+  for (const turbine of turbines) {
+    const points = connect(turbine.from, turbine.to);
+    const words = `Turbine${turbine.name ? ` “${turbine.name}”` : ""} between ${called(turbine.from)} and ${called(turbine.to)}${turbine.rectified ? ", behind four check valves" : ""}`;
+    if (points) out.wires.push({ points, colour: -2, turbine, words });
+  }
+  for (const port of ports) {
+    const at = point(port.at);
+    if (!at) continue;
+    const row = port.at.junction !== undefined ? 1 : out.bladders[port.at.bladder].row;
+    out.marks.push({ ...port, at, row, colour: colourAt(port.at), where: called(port.at) });
+  }
+  out.junctions = [...nodes.entries()].map(([key, at]) => ({ name: key, ...at }));
+  return out;
+}
+
+/** Junctions in the middle of the beam, between what they join. */
+function placeJunctions(out, names, tubes, turbines, mouth) {
+  const nodes = new Map();
+  for (const key of names) {
+    const met = [...tubes, ...turbines].flatMap((t) => [[t.from, t.to], [t.to, t.from]]).filter(([p]) => p.junction === key).map(([, q]) => q);
+    const bladders = met.filter((q) => q.bladder !== undefined);
+    const places = bladders.map((q) => mouth(q.bladder, q.outlet).a);
+    const a = places.length ? places.reduce((s, x) => s + x, 0) / places.length : 0.5 * out.segment * (out.bladders.length / 2);
+    const first = bladders[0];
+    nodes.set(key, { a, e: 0, colour: first ? out.colourOf(out.bladders[first.bladder].network) : -1 });
+  }
+  return nodes;
+}
+
+/** Colour of a wire or mark: of its network, or of what belongs to none. */
+function wireColour(k) {
+  return k >= 0 ? named(k) : k === -2 ? css("--ink") : css("--wire-grey");
+}
+
+/** The middle of the longest part of a line. */
+function middleOf(points) {
+  let best = [0, points[0], points[1]];
+  for (let k = 0; k + 1 < points.length; k++) {
+    const [p, q] = [points[k], points[k + 1]];
+    const length = Math.hypot(p.a - q.a, p.e - q.e);
+    if (length > best[0]) best = [length, p, q];
+  }
+  return { a: (best[1].a + best[2].a) / 2, e: (best[1].e + best[2].e) / 2, along: Math.abs(best[1].a - best[2].a) >= Math.abs(best[1].e - best[2].e) };
+}

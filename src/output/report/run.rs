@@ -1,0 +1,197 @@
+//! The page of a run, or of a cycle of `periodic`.
+
+use std::fs;
+use std::io;
+
+use serde_json::{Map, Value, json};
+
+use super::history::History;
+use super::{Kind, Place, books, cycles, facts, frames};
+use crate::error::Result;
+use crate::model::characteristic;
+use crate::output::folder::{CASE, FIELDS, SUMMARY};
+use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
+use crate::output::periodic::CYCLE;
+use crate::output::summary;
+use crate::run::summary::{Status, Summary};
+
+/// Displacements below this [m] are round-off.
+const ROUND_OFF: f64 = 1e-14;
+
+/// Everything the page shows.
+pub fn data(place: &Place) -> Result<Map<String, Value>> {
+    let summary = match place.path(SUMMARY).is_file() {
+        true => Some(summary::read(place.dir)?),
+        false => None,
+    };
+    let history = History::read(place.dir)?;
+    let name = summary
+        .as_ref()
+        .map(|s| s.case.clone())
+        .or_else(|| place.case.as_ref().map(|c| c.name.clone()));
+    let mut all = place.head(Kind::Run, &name.unwrap_or_else(|| "unnamed".into()));
+    let mut put = |key: &str, value: Value| all.insert(key.into(), value);
+    let frequency = place
+        .case
+        .as_ref()
+        .and_then(characteristic::forcing_period)
+        .map(f64::recip);
+    let fields = place.path(FIELDS);
+    let mut notes: Vec<String> = vec![];
+    let motion = match frames::read(&fields, frequency) {
+        Ok(motion) => motion,
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Value::Null,
+        // A folder whose arrays are damaged still has a history worth showing.
+        Err(e) => {
+            notes.push(format!(
+                "{FIELDS} cannot be read ({e}), so nothing over space is shown."
+            ));
+            Value::Null
+        }
+    };
+    put("motion", motion);
+    put("history", history.json(place.case.as_ref()));
+    let cycle = fs::read_to_string(place.path(CYCLE)).ok();
+    let cycle = cycle.and_then(|text| serde_json::from_str::<Value>(&text).ok());
+    match &summary {
+        Some(summary) => fill(&mut all, summary, &history, &notes),
+        None => {
+            let why =
+                "The run was interrupted before it could write its summary; shown is what was recorded until then.";
+            all.insert(
+                "status".into(),
+                json!({"word": "interrupted", "tone": "bad", "reason": why}),
+            );
+            all.insert("warnings".into(), notes.into());
+        }
+    }
+    match cycle {
+        Some(cycle) => {
+            all.insert("label".into(), "Steady cycle".into());
+            all.insert("sections".into(), Value::Array(cycles::of_cycle(&cycle)));
+            all.insert("command".into(), format!("slcbeam periodic {CASE}").into());
+        }
+        None => {
+            all.insert("label".into(), "Run".into());
+            all.insert("command".into(), format!("slcbeam run {CASE}").into());
+        }
+    }
+    Ok(all)
+}
+
+fn fill(all: &mut Map<String, Value>, summary: &Summary, history: &History, notes: &[String]) {
+    let mut put = |key: &str, value: Value| all.insert(key.into(), value);
+    let (word, tone) = match summary.status {
+        Status::Finished => ("finished", "good"),
+        Status::Stopped => ("stopped early", "fair"),
+        Status::Failed => ("failed", "bad"),
+    };
+    put("status", json!({"word": word, "tone": tone, "reason": summary.reason}));
+    put(
+        "warnings",
+        summary.warnings.iter().chain(notes).cloned().collect::<Vec<_>>().into(),
+    );
+    put("facts", facts_line(summary).into());
+    put("tiles", tiles(summary).into());
+    put("ledger", books::of(summary, history));
+    put("effects", facts::effects(summary).into());
+    put("work", facts::work(summary));
+    put("characteristic", facts::characteristic(&summary.characteristic).into());
+    put("remarks", remarks(summary).into());
+}
+
+/// One line under the title.
+fn facts_line(summary: &Summary) -> Vec<String> {
+    let simulated = trimmed(&quantity(summary.time_s, "s", 4));
+    vec![
+        format!("{simulated} simulated in {}", duration(summary.wall_s.total)),
+        format!("{} unknowns", count(summary.unknowns as u64)),
+        match summary.solver.steps {
+            1 => "1 step".into(),
+            n => format!("{} steps", count(n)),
+        },
+    ]
+}
+
+fn tiles(summary: &Summary) -> Vec<Value> {
+    let largest = |name: &str| summary.quantities.get(name).and_then(|q| q.max_abs);
+    let last = |name: &str| summary.quantities.get(name).and_then(|q| q.last);
+    let mut all = vec![];
+    let mut tile = |label: &str, value: Option<String>, note: &str| {
+        if let Some(value) = value {
+            all.push(json!({"label": label, "value": value, "note": note}));
+        }
+    };
+    let length = |name: &str| {
+        let settled = |x: f64| if x < ROUND_OFF { 0.0 } else { x };
+        largest(name).map(|x| quantity(settled(x), "m", 3))
+    };
+    tile("Tip, across", length("tip_u1_m"), "largest deflection u₁ at any time");
+    tile("Tip, along", length("tip_u3_m"), "largest displacement u₃ at any time");
+    let window = summary.quantities.get("max_pressure_pa").and_then(|q| q.window_max_abs);
+    let window = window.map_or("gauge, anywhere".into(), |p| {
+        format!("anywhere; {} in the last part", quantity(p, "Pa", 3))
+    });
+    tile(
+        "Largest pressure",
+        largest("max_pressure_pa").map(|p| quantity(p, "Pa", 3)),
+        &window,
+    );
+    tile(
+        "Energy put in",
+        last("input_energy_j").map(|e| quantity(e, "J", 3)),
+        "by loads, driven ends and ports",
+    );
+    tile(
+        "Harvested",
+        last("harvested_energy_j").map(|e| quantity(e, "J", 3)),
+        "by the turbines",
+    );
+    let efficiency = summary.quantities.get("efficiency");
+    let window = efficiency
+        .and_then(|q| q.window)
+        .map_or("harvested over put in".into(), |e| {
+            format!("harvested over put in; {} in the last part", percent(e))
+        });
+    tile("Efficiency", last("efficiency").map(percent), &window);
+    let open = summary.balances.energy_residual_relative;
+    tile(
+        "Energy unaccounted for",
+        open.is_finite().then(|| percent(open)),
+        "of the largest energy: the error of the integration",
+    );
+    all
+}
+
+/// What else a summary tells: growth, accuracy, derivatives.
+fn remarks(summary: &Summary) -> Vec<Value> {
+    let mut all = vec![];
+    if let Some(growth) = &summary.growth {
+        all.push(json!({"title": "The response grows", "text": format!(
+            "The largest deflection grows at about {} per second; at the end it is {} times what it was after a quarter of the run.",
+            significant(growth.rate_per_s, 3), significant(growth.factor, 3)
+        )}));
+    }
+    if let Some(found) = &summary.accuracy {
+        let errors = found
+            .quantities
+            .iter()
+            .filter_map(|(name, e)| Some(format!("{name} {}", percent(e.total?))));
+        all.push(json!({"title": if found.reached { "The accuracy asked for is reached" } else { "The accuracy asked for is not reached" },
+            "text": format!(
+                "Asked for were {}; the estimated errors are {}. Used were {} cells a segment and a tolerance of {}.",
+                percent(found.asked), errors.collect::<Vec<_>>().join(", "), found.cells_per_segment, significant(found.rtol, 2)
+            )}));
+    }
+    for (pointer, s) in &summary.sensitivities {
+        let parts = s.quantities.iter().filter_map(|(name, slope)| {
+            let ratio = slope.max_abs? * s.value / summary.quantities.get(name)?.max_abs?;
+            ratio
+                .is_finite()
+                .then(|| format!("{name} by {} %", significant(ratio, 3)))
+        });
+        all.push(json!({"title": format!("One per cent more of {pointer}"),
+            "text": format!("changes the largest values of {}.", parts.collect::<Vec<_>>().join(", "))}));
+    }
+    all
+}

@@ -1,0 +1,189 @@
+//! What is drawn of a case: beam, rows of bladders, tubes, ports, turbines, loads, ends; lengths in metres.
+
+use serde_json::{Value, json};
+
+use super::signals::{is_zero, peak, words};
+use crate::case::schema::{BladderEnd, Chain, ChainEnd, Endpoint, Load, Network as Wiring, Rectifier};
+use crate::case::{Case, Profile, ResolvedEnd, Rotation, Signal, Translation};
+use crate::model::network::{Network, bladder_index};
+use crate::output::numbers::{quantity, trimmed};
+
+/// Places along the beam at which a load is drawn.
+const PLACES: usize = 41;
+
+/// The drawing of a case; nothing for a case that has no length.
+pub fn of(case: &Case) -> Option<Value> {
+    let beam = &case.beam;
+    if !(beam.length_m > 0.0 && beam.height_m > 0.0) {
+        return None;
+    }
+    let end_s = case.time.end_s;
+    Some(json!({
+        "length": beam.length_m,
+        "height": beam.height_m,
+        "width": beam.width_m,
+        "size": format!(
+            "{} long, {} high, {} wide",
+            q(beam.length_m, "m"), q(beam.height_m, "m"), q(beam.width_m, "m")
+        ),
+        "bladders": case.bladders.as_ref().zip(case.fluid.as_ref()).map(|(b, fluid)| json!({
+            "per_row": b.per_row,
+            "length": b.length_m,
+            "height": b.height_m,
+            "width": b.width_m,
+            "volume": q_unit(b.length_m * b.height_m * b.width_m, "m^3"),
+            "network": Network::new(case, fluid, b).component_of_bladder,
+        })),
+        "wiring": case.bladders.as_ref().map(|b| wiring(case.network.as_ref(), b.per_row)),
+        "ends": [end(&case.ends.root.resolve(), case.ends.root.form().0), end(&case.ends.tip.resolve(), case.ends.tip.form().0)],
+        "loads": case.loads.iter().map(|l| load(l, end_s)).collect::<Vec<_>>(),
+    }))
+}
+
+fn q(x: f64, unit: &str) -> String {
+    trimmed(&quantity(x, unit, 3))
+}
+
+/// A volume as people say it: millilitres.
+fn q_unit(x: f64, unit: &str) -> String {
+    match unit {
+        "m^3" => format!("{} ml", crate::output::numbers::significant(x * 1e6, 3)),
+        _ => q(x, unit),
+    }
+}
+
+fn wiring(network: Option<&Wiring>, per_row: usize) -> Value {
+    let none = Wiring::default();
+    let network = network.unwrap_or(&none);
+    let point = |p: &Endpoint| match (p.bladder, &p.junction) {
+        (Some(signed), _) => {
+            let end = p.end.unwrap_or(BladderEnd::Inlet);
+            json!({"bladder": bladder_index(signed, per_row), "outlet": end == BladderEnd::Outlet})
+        }
+        (None, name) => json!({"junction": name}),
+    };
+    let valve = |opening: &Signal| match opening {
+        Signal::Constant(o) if *o >= 1.0 => None,
+        Signal::Constant(o) => Some(format!("valve open to {}", q(*o, "1"))),
+        moving => Some(format!("valve, opening {}", words(moving, "1"))),
+    };
+    let chain = |c: &Chain| {
+        let bladders: Vec<usize> = c.bladders.iter().map(|&b| bladder_index(b, per_row)).collect();
+        let ends = c.ends.iter().map(|e| match e {
+            ChainEnd::Sealed => json!({"kind": "sealed"}),
+            ChainEnd::Connected => json!({"kind": "connected"}),
+            ChainEnd::PressurePa(p) => json!({"kind": "pressure", "words": pressure(p)}),
+            ChainEnd::FlowM3S(f) => json!({"kind": "flow", "words": flow(f)}),
+        });
+        json!({"bladders": bladders, "ends": ends.collect::<Vec<_>>(), "valve": valve(&c.opening)})
+    };
+    let port = |p: &crate::case::schema::Port| {
+        let (kind, words) = match (&p.pressure_pa, &p.flow_m3_s) {
+            (Some(signal), _) => ("pressure", pressure(signal)),
+            (None, signal) => ("flow", signal.as_ref().map_or(String::new(), flow)),
+        };
+        json!({"name": p.name, "at": point(&p.at), "kind": kind, "words": words})
+    };
+    let turbine = |t: &crate::case::schema::Turbine| {
+        json!({
+            "name": t.name, "from": point(&t.from), "to": point(&t.to), "rectified": t.rectifier != Rectifier::Ideal,
+        })
+    };
+    json!({
+        "chains": network.chains.iter().map(chain).collect::<Vec<_>>(),
+        "junctions": network.junctions,
+        "tubes": network.tubes.iter().map(|t| json!({
+            "from": point(&t.from), "to": point(&t.to), "valve": valve(&t.opening),
+        })).collect::<Vec<_>>(),
+        "ports": network.ports.iter().map(port).collect::<Vec<_>>(),
+        "turbines": network.turbines.iter().map(turbine).collect::<Vec<_>>(),
+    })
+}
+
+fn pressure(signal: &Signal) -> String {
+    if is_zero(signal) {
+        return "open, p = 0".into();
+    }
+    format!("p = {}", words(signal, "Pa"))
+}
+
+/// Flow through a port, in microlitres.
+fn flow(signal: &Signal) -> String {
+    let scaled = Signal::Product(vec![Signal::Constant(1e9), signal.clone()]);
+    match signal {
+        Signal::Constant(x) => format!("{} µl/s", crate::output::numbers::significant(x * 1e9, 3)),
+        _ => format!(
+            "flow up to {} µl/s",
+            crate::output::numbers::significant(peak(&scaled, 1e3).abs(), 3)
+        ),
+    }
+}
+
+/// An end: its form, what is held, what drives it, what loads it.
+fn end(resolved: &ResolvedEnd, form: &str) -> Value {
+    let driven = |signal: &Signal, unit: &str| (!is_zero(signal)).then(|| words(signal, unit));
+    let motion = |t: &Translation| match t {
+        Translation::Displacement(s) => driven(s, "m"),
+        Translation::Force(_) => None,
+    };
+    let force = |t: &Translation| match t {
+        Translation::Force(s) => driven(s, "N").map(|w| json!({"words": w, "sign": peak(s, 1e3).signum()})),
+        Translation::Displacement(_) => None,
+    };
+    let held = |t: &Translation| matches!(t, Translation::Displacement(_));
+    let (slope, moment) = match &resolved.rotation {
+        Rotation::Slope(s) => (driven(s, "rad"), None),
+        Rotation::Moment(s) => (None, driven(s, "N m")),
+    };
+    let follower = resolved.follower.as_ref().map(|f| {
+        let normal = driven(&f.normal, "N").map(|w| format!("along the end: {w}"));
+        let shear = driven(&f.shear, "N").map(|w| format!("across the end: {w}"));
+        normal.into_iter().chain(shear).collect::<Vec<_>>().join("; ")
+    });
+    json!({
+        "form": form,
+        "held": {
+            "across": held(&resolved.transverse), "along": held(&resolved.axial),
+            "slope": matches!(resolved.rotation, Rotation::Slope(_)),
+        },
+        "moves": {"across": motion(&resolved.transverse), "along": motion(&resolved.axial), "slope": slope},
+        "force": {"across": force(&resolved.transverse), "along": force(&resolved.axial)},
+        "moment": moment,
+        "follower": follower.filter(|f| !f.is_empty()),
+    })
+}
+
+/// A load with its shape along the beam, scaled to 1.
+fn load(load: &Load, end_s: f64) -> Value {
+    let Some((name, distributed)) = load.distributed() else {
+        let Load::Gravity { x_m_s2, z_m_s2 } = load else {
+            return Value::Null;
+        };
+        let size = q(x_m_s2.hypot(*z_m_s2), "m/s^2").replace("^2", "²");
+        return json!({"kind": "gravity", "x": x_m_s2, "z": z_m_s2, "words": format!("gravity {size}")});
+    };
+    let (kind, what, unit) = match name {
+        "force_x_n_m" => ("across", "force across", "N/m"),
+        "force_z_n_m" => ("along", "force along", "N/m"),
+        "body_x_m_s2" => ("across", "body force across", "m/s²"),
+        "body_z_m_s2" => ("along", "body force along", "m/s²"),
+        _ => ("moment", "couple", "N"),
+    };
+    let sign = match peak(&distributed.signal, end_s) {
+        p if p < 0.0 => -1.0,
+        _ => 1.0,
+    };
+    let values: Vec<f64> = (0..PLACES)
+        .map(|k| sign * distributed.profile.value(k as f64 / (PLACES - 1) as f64))
+        .collect();
+    let largest = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let shape = match &distributed.profile {
+        Profile::Constant(x) if *x == 1.0 => "",
+        _ => ", its shape along the beam as drawn",
+    };
+    let scaled: Vec<f64> = values
+        .iter()
+        .map(|x| if largest > 0.0 { x / largest } else { 0.0 })
+        .collect();
+    json!({"kind": kind, "values": scaled, "words": format!("{what}: {}{shape}", words(&distributed.signal, unit))})
+}

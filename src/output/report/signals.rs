@@ -1,0 +1,68 @@
+//! Functions of time in words.
+
+use crate::case::Signal;
+use crate::case::signals::{Ramp, Sine};
+use crate::output::numbers::{quantity, trimmed};
+
+/// Instants at which a signal is looked at for its largest value.
+const LOOKED_AT: usize = 400;
+
+/// `12 mm · sine at 20 Hz`, for a signal of the given unit.
+pub fn words(signal: &Signal, unit: &str) -> String {
+    let q = |x: f64| trimmed(&quantity(x, unit, 3));
+    let all = |parts: &[Signal], unit: &str| parts.iter().map(|s| words(s, unit)).collect::<Vec<_>>();
+    match signal {
+        Signal::Constant(value) => q(*value),
+        Signal::Sine(Sine {
+            amplitude,
+            frequency_hz,
+            ramp_cycles,
+            ..
+        }) => {
+            let start = match *ramp_cycles {
+                0.0 => String::new(),
+                cycles => format!(
+                    ", growing over {} cycle{}",
+                    short(cycles, "1"),
+                    if cycles == 1.0 { "" } else { "s" }
+                ),
+            };
+            format!("±{} at {}{start}", q(amplitude.abs()), short(*frequency_hz, "Hz"))
+        }
+        Signal::Sigmoid(s) => format!("step to {} around {}", q(s.amplitude), short(s.midpoint_s, "s")),
+        Signal::Ramp(Ramp {
+            from,
+            to,
+            start_s,
+            duration_s,
+            ..
+        }) => format!(
+            "from {} to {} between {} and {}",
+            q(*from),
+            q(*to),
+            short(*start_s, "s"),
+            short(start_s + duration_s, "s")
+        ),
+        Signal::Polynomial(_) => "polynomial in time".into(),
+        Signal::Table(table) => format!("curve through {} points", table.times_s.len()),
+        Signal::Sum(parts) => all(parts, unit).join(" + "),
+        Signal::Product(parts) => all(parts, "1").join(" × "),
+    }
+}
+
+fn short(x: f64, unit: &str) -> String {
+    trimmed(&quantity(x, unit, 3))
+}
+
+/// The value of largest magnitude within `[0, end]`, with its sign; positive for what swings about zero.
+pub fn peak(signal: &Signal, end: f64) -> f64 {
+    let at = |k: usize| signal.value(end * k as f64 / LOOKED_AT as f64);
+    let values = (0..=LOOKED_AT).map(at).filter(|x| x.is_finite());
+    let (low, high) = values.fold((0.0_f64, 0.0_f64), |(l, h), x| (l.min(x), h.max(x)));
+    if -low > 1.001 * high { low } else { high }
+}
+
+/// Whether it is zero throughout.
+pub fn is_zero(signal: &Signal) -> bool {
+    matches!(signal, Signal::Constant(x) if *x == 0.0)
+}

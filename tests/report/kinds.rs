@@ -1,0 +1,145 @@
+//! The pages of all other commands.
+
+use crate::browser::Browser;
+use crate::common::{made, sound};
+
+/// The first column of the page's table, after a click on its first heading and after another.
+fn sorted_both_ways(browser: &mut Browser) {
+    let click = "document.querySelector('#table th button').click()";
+    let first = "[...document.querySelectorAll('#table tbody tr')].map(r => r.children[0].textContent)";
+    browser.eval(click);
+    let up = browser.eval(first);
+    browser.eval(click);
+    let down = browser.eval(first);
+    let (up, down) = (
+        up.as_array().expect("rows").clone(),
+        down.as_array().expect("rows").clone(),
+    );
+    assert_eq!(up.len(), down.len());
+    if up.iter().any(|x| *x != up[0]) {
+        assert_ne!(up, down, "a click on the heading does not sort");
+    }
+}
+
+#[test]
+fn equilibrium_walks_along_its_path() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = made(folder.path(), &["equilibrium", "cases/elastica.json", "--at", "0"]);
+    let mut browser = Browser::start();
+    sound(&mut browser, &page, &["path", "events", "table", "scene", "case"]);
+    let words = "document.getElementById('state-words').textContent";
+    let last = browser.text(words);
+    browser.eval("document.getElementById('state').focus()");
+    for _ in 0..4 {
+        browser.press("ArrowLeft");
+    }
+    assert_ne!(browser.text(words), last, "the slider does nothing");
+    sorted_both_ways(&mut browser);
+    assert_eq!(browser.problems(), Vec::<String>::new());
+}
+
+#[test]
+fn modes_move() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = made(folder.path(), &["modes", "cases/pluck.json", "--count", "6"]);
+    let mut browser = Browser::start();
+    sound(&mut browser, &page, &["shapes", "table", "picture", "scene", "case"]);
+    let phase = "document.querySelector('#shapes input').value";
+    let begin = browser.text(phase);
+    browser.until(&format!("{phase} !== {begin:?}"));
+    browser.eval(
+        "(() => { const s = document.getElementById('mode'); s.value = 1; s.dispatchEvent(new Event('change')); })()",
+    );
+    assert!(
+        browser
+            .text("document.querySelector('#shapes .caption').textContent")
+            .starts_with("Mode 2 ")
+    );
+    sorted_both_ways(&mut browser);
+}
+
+#[test]
+fn studies_say_what_they_found_first() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut browser = Browser::start();
+    let (study, effects) = (folder.path().join("study"), folder.path().join("effects"));
+    let short = ["--set", "/time/end_s=0.02"];
+    let page = made(
+        &study,
+        &[
+            &["study", "cases/dry-cantilever.json", "--budget", "4s", "--cells", "1,2"][..],
+            &short,
+        ]
+        .concat(),
+    );
+    sound(&mut browser, &page, &["answer", "table", "scene", "case"]);
+    assert!(
+        !browser
+            .text("document.querySelector('p.answer').textContent")
+            .is_empty()
+    );
+    assert!(
+        browser.number("document.querySelector('.plate img').naturalWidth") > 100.0,
+        "the picture is broken"
+    );
+    sorted_both_ways(&mut browser);
+    let page = made(
+        &effects,
+        &[&["effects", "cases/dry-cantilever.json", "--budget", "4s"][..], &short].concat(),
+    );
+    sound(&mut browser, &page, &["answer", "table", "scene", "case"]);
+    assert!(
+        browser
+            .text("document.getElementById('table').textContent")
+            .contains("finite_rotation")
+    );
+    sorted_both_ways(&mut browser);
+}
+
+#[test]
+fn cycles_say_whether_they_are_stable() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut browser = Browser::start();
+    let case = "cases/harvester-crossover-wave.json";
+    let page = made(&folder.path().join("floquet"), &["floquet", case]);
+    sound(&mut browser, &page, &["answer", "table", "scene", "case"]);
+    assert!(
+        browser
+            .text("document.querySelector('p.answer').textContent")
+            .contains("stable")
+    );
+    let page = made(&folder.path().join("periodic"), &["periodic", case]);
+    sound(
+        &mut browser,
+        &page,
+        &["scene", "motion", "maps", "histories", "energy", "cycle"],
+    );
+    assert!(
+        browser
+            .text("document.querySelector('#case code').textContent")
+            .starts_with("slcbeam periodic")
+    );
+    let sweep = ["periodic", case, "--sweep", "/network/permeability_factor=0.5:1:2"];
+    let page = made(&folder.path().join("sweep"), &sweep);
+    sound(&mut browser, &page, &["answer", "table", "scene", "case"]);
+    assert_eq!(
+        browser.number("document.querySelectorAll('#table tbody tr').length"),
+        2.0
+    );
+    let map = [
+        "floquet",
+        "cases/wiring-3.json",
+        "--map",
+        "frequency,amplitude",
+        "--points",
+        "2,2",
+        "--permeability",
+        "1",
+    ];
+    let page = made(&folder.path().join("map"), &map);
+    sound(&mut browser, &page, &["answer", "table", "scene", "case"]);
+    assert_eq!(
+        browser.number("document.querySelectorAll('#table tbody tr').length"),
+        4.0
+    );
+}

@@ -1,0 +1,7 @@
+//! `slcbeam report`: the pages, opened and used in a real browser.
+
+mod browser;
+mod common;
+mod folders;
+mod kinds;
+mod run;
