@@ -156,3 +156,10 @@ impl<'a> Place<'a> {
         all
     }
 }
+
+/// With a capital at its start.
+fn capital(text: &str) -> String {
+    let mut all = text.chars();
+    all.next()
+        .map_or(String::new(), |first| first.to_uppercase().chain(all).collect())
+}

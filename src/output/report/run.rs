@@ -68,6 +68,7 @@ pub fn data(place: &Place) -> Result<Map<String, Value>> {
     match cycle {
         Some(cycle) => {
             all.insert("label".into(), "Steady cycle".into());
+            all.insert("answer".into(), cycles::answer(&cycle).into());
             all.insert("sections".into(), Value::Array(cycles::of_cycle(&cycle)));
             all.insert("command".into(), format!("slcbeam periodic {CASE}").into());
         }
