@@ -2,9 +2,15 @@
 
 use std::path::PathBuf;
 
+mod code;
+
+pub use code::Code;
+
 /// One fault in a case: what, where, what is allowed, what was probably meant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Violation {
+    /// Its number.
+    pub code: Code,
     /// JSON pointer of the offending value (or of its parent when something is missing), `""` for the whole file.
     pub pointer: String,
     /// What is wrong, one sentence.
@@ -23,9 +29,10 @@ pub struct Violation {
 
 impl Violation {
     /// A fault at a JSON pointer.
-    pub fn new(pointer: impl Into<String>, what: impl Into<String>) -> Self {
+    pub fn new(code: Code, pointer: impl Into<String>, what: impl Into<String>) -> Self {
         let (pointer, what) = (pointer.into(), what.into());
         Self {
+            code,
             pointer,
             what,
             allowed: None,
@@ -67,6 +74,8 @@ pub struct CaseFault {
 /// A run that could not go on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverFault {
+    /// Its number.
+    pub code: Code,
     /// Simulated time [s] up to which results stand.
     pub time_s: f64,
     /// What happened, in words.
@@ -104,6 +113,16 @@ pub enum Error {
 }
 
 impl Error {
+    /// Number of the message; that of the first fault of a case.
+    pub fn code(&self) -> Code {
+        match self {
+            Self::Usage(_) => Code::Usage,
+            Self::Case(fault) => fault.violations.first().map_or(Code::Text, |v| v.code),
+            Self::Solver(fault) => fault.code,
+            Self::Output { .. } => Code::File,
+        }
+    }
+
     /// Exit code of the process.
     pub fn exit_code(&self) -> u8 {
         match self {

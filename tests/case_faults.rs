@@ -13,7 +13,7 @@ use slcbeam::error::Error;
 fn a_wrong_key_names_the_nearest() {
     let fault = fault_of(&replaced(WIRING, &[("\"viscosity_pa_s\"", "\"viscousity_pa_s\"")]));
     insta::assert_snapshot!(case::render(&fault, false, 100), @r#"
-    fault: unknown key "viscousity_pa_s"
+    fault[E004]: unknown key "viscousity_pa_s"
      --> bad.json:9:36 at /fluid/viscousity_pa_s
     9 |   "fluid": {"density_kg_m3": 1000, "viscousity_pa_s": 8.68e-4},
       |                                    ^^^^^^^^^^^^^^^^^
@@ -21,6 +21,7 @@ fn a_wrong_key_names_the_nearest() {
       = nearest: did you mean "viscosity_pa_s"?
 
     1 fault in bad.json
+    more about the first: slcbeam explain E004
     "#);
 }
 
@@ -96,13 +97,14 @@ fn a_truncated_file_says_where_it_breaks_off() {
     }
     let fault = fault_of(&WIRING[..WIRING.find("\"chains\"").unwrap()]);
     insta::assert_snapshot!(case::render(&fault, false, 100), @r#"
-    fault: the text ends inside the object that opens in line 18: expected a key
+    fault[E001]: the text ends inside the object that opens in line 18: expected a key
       --> bad.json:18:15 at /network
     18 |   "network": {
        |               ^
        = hint: the file is cut off, or a closing bracket or quote is missing
 
     1 fault in bad.json
+    more about the first: slcbeam explain E001
     "#);
 }
 
@@ -171,20 +173,21 @@ fn a_fault_of_an_argument_is_shown_in_the_argument() {
         panic!()
     };
     insta::assert_snapshot!(case::render(&fault, false, 100), @r#"
-    fault: unknown key "slover"
+    fault[E004]: unknown key "slover"
      --> --set at /slover
     1 | /slover/rtol=1e-3
       | ^^^^^^^^^^^^
-      = allowed: $schema, name, about, beam, fluid, bladders, tubes, network, loads, ends, start,
-                 formulation, effects, effects_tolerance, mesh, time, solver
+      = allowed: $schema, name, about, preset, beam, fluid, bladders, tubes, network, loads, ends,
+                 start, formulation, effects, effects_tolerance, mesh, time, solver
       = nearest: did you mean "solver"?
 
-    fault: -1 is out of range
+    fault[E006]: -1 is out of range
      --> --set at /fluid/viscosity_pa_s
     1 | /fluid/viscosity_pa_s=-1
       |                       ^^
       = allowed: numbers greater than 0
 
     2 faults in w.json
+    more about the first: slcbeam explain E004
     "#);
 }

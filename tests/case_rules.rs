@@ -12,7 +12,7 @@ fn a_wrong_unit_is_suspected() {
         &[("\"young_modulus_pa\": 2e6", "\"young_modulus_pa\": 2")],
     ));
     insta::assert_snapshot!(case::render(&fault, false, 80), @r#"
-    fault: 2 Pa is not a plausible size
+    fault[E010]: 2 Pa is not a plausible size
      --> bad.json:6:79 at /beam/young_modulus_pa
     6 | ...idth_m": 0.05, "young_modulus_pa": 2, "density_kg_m3": 950,
       |                                       ^
@@ -20,6 +20,7 @@ fn a_wrong_unit_is_suspected() {
       = hint: moduli are in Pa; is this in MPa or GPa?
 
     1 fault in bad.json
+    more about the first: slcbeam explain E010
     "#);
     assert_fault(
         one(&[("\"length_m\": 0.1,", "\"length_m\": 100,")]),

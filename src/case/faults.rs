@@ -122,6 +122,10 @@ impl Source {
         self.place(fault, Mark::Value)
     }
 
+    fn has_preset(&self) -> bool {
+        self.file.as_ref().is_some_and(|node| node.place("/preset").is_some())
+    }
+
     fn place(&self, fault: Violation, mark: Mark) -> Violation {
         if fault.span.is_some() {
             return fault;
@@ -158,7 +162,13 @@ impl Source {
         }
         let mut pointer = fault.pointer.as_str();
         loop {
-            if let Some(place) = self.file.as_ref().and_then(|node| node.place(pointer)) {
+            let from_preset = pointer.is_empty() && fault.pointer.len() > 1 && self.has_preset();
+            if let Some(place) = self
+                .file
+                .as_ref()
+                .and_then(|node| node.place(pointer))
+                .filter(|_| !from_preset)
+            {
                 let exact = pointer == fault.pointer;
                 let span = if exact {
                     span_of(place)
@@ -182,8 +192,10 @@ impl Source {
             match pointer.rfind('/') {
                 Some(end) => pointer = &pointer[..end],
                 None => {
+                    // What neither the file nor an argument has comes from the preset.
+                    let preset = self.file.as_ref().and_then(|node| node.place("/preset"));
                     return Violation {
-                        span: Some(0..0),
+                        span: Some(preset.map_or(0..0, |p| p.value)),
                         ..fault
                     };
                 }

@@ -6,8 +6,8 @@ use serde_json::Value;
 
 use super::faults::{Faults, Source, sort};
 use super::schema::Case;
-use super::{check, parse as json, schema_json, sets, tables, validate};
-use crate::error::{CaseFault, Error, Result, Violation};
+use super::{check, parse as json, presets, schema_json, sets, tables, validate};
+use crate::error::{CaseFault, Code, Error, Result, Violation};
 
 /// Largest case file that is read.
 const LARGEST: u64 = 64 << 20;
@@ -36,7 +36,7 @@ pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase> {
         return Err(fault(
             path,
             "",
-            vec![Violation::new("", what).allowed("case files of up to 64 MB")],
+            vec![Violation::new(Code::Text, "", what).allowed("case files of up to 64 MB")],
         ));
     }
     let bytes = std::fs::read(path).map_err(unreadable)?;
@@ -61,6 +61,7 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Lo
         sets: sets::apply(&mut value, sets)?,
         file: Some(file),
     };
+    presets::apply(&mut value, &source.sets);
     // Numbers that are none have their fault already; `null` stands for them.
     let told = violations.iter().map(|v| v.pointer.clone());
     let told: Vec<String> = told.filter(|p| value.pointer(p).is_some_and(Value::is_null)).collect();
@@ -99,7 +100,7 @@ fn build(mut value: Value, base: &Path, faults: &mut Faults, sound: bool) -> Opt
         }
         Err(e) => {
             if sound && faults.is_empty() {
-                faults.push(Violation::new("", format!("not a case: {e}")));
+                faults.push(Violation::new(Code::Text, "", format!("not a case: {e}")));
             }
             let (case, broken) = readable_part(&value)?;
             check::check(&case, &broken, faults);
@@ -170,7 +171,7 @@ fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> Error {
     let what = format!("byte {valid} of the file is not UTF-8 text");
     let violation = Violation {
         span: Some(valid..end),
-        ..Violation::new("", what).hint(hint)
+        ..Violation::new(Code::Text, "", what).hint(hint)
     };
     fault(path, &text, vec![violation])
 }

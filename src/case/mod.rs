@@ -1,6 +1,6 @@
 //! What the user wrote: read, checked as a whole, every fault with its place.
 //!
-//! text -> [`parse`](mod@parse) -> JSON with places -> `--set` -> [`validate`] against the schema -> CSV tables ->
+//! text -> [`parse`](mod@parse) -> JSON with places -> `--set` -> [`presets`] -> [`validate`] against the schema -> CSV tables ->
 //! [`schema::Case`] -> [`check`]
 
 mod check;
@@ -12,10 +12,12 @@ mod faults;
 mod jet;
 mod load;
 pub mod locate;
+mod meanings;
 mod number_or_object;
 mod numbers;
 pub mod parameter;
 mod parse;
+mod presets;
 pub mod profile;
 mod render;
 mod rewrite;
@@ -30,9 +32,12 @@ mod wording;
 pub use curve::{Curve, Interpolation};
 pub use ends::{Follower, ResolvedEnd, Rotation, Translation};
 pub use load::{LoadedCase, load, parse};
+pub use meanings::{Meaning, meanings};
+pub use presets::Preset;
 pub use profile::Profile;
-pub use render::render;
+pub use render::{line_and_column, render};
 pub use rewrite::{rewrite, spaced};
 pub use schema::Case;
 pub use schema_json::schema_json;
 pub use signals::{Clock, Jet, Signal};
+pub use wording::nearest;

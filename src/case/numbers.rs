@@ -2,13 +2,13 @@
 
 use serde_json::{Number, Value};
 
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 /// What is wrong with a number where `schema` describes it.
 pub fn fault(number: &Number, schema: &Value, pointer: &str) -> Option<Violation> {
     let whole = schema.get("type").and_then(Value::as_str) == Some("integer");
     if whole && !(number.is_i64() || number.is_u64()) {
-        let fault = Violation::new(pointer, format!("{number} is not a whole number"));
+        let fault = Violation::new(Code::Range, pointer, format!("{number} is not a whole number"));
         let value = number.as_f64().unwrap_or(f64::NAN);
         let hint = (value.fract() == 0.0 && value.abs() < 1e15).then(|| format!("write {value:.0}"));
         return Some(Violation {
@@ -22,7 +22,7 @@ pub fn fault(number: &Number, schema: &Value, pointer: &str) -> Option<Violation
         && bound("maximum").is_none_or(|b| value <= b)
         && bound("exclusiveMinimum").is_none_or(|b| value > b)
         && bound("exclusiveMaximum").is_none_or(|b| value < b);
-    (!inside).then(|| Violation::new(pointer, format!("{number} is out of range")).allowed(range(schema)))
+    (!inside).then(|| Violation::new(Code::Range, pointer, format!("{number} is out of range")).allowed(range(schema)))
 }
 
 /// The range of a number, in words.

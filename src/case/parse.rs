@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::locate::{Kind, Member, Node, child};
 use super::wording::short;
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 /// Deepest nesting that is read; a case needs about ten.
 const DEEPEST: usize = 100;
@@ -13,7 +13,7 @@ const DEEPEST: usize = 100;
 const MOST_FAULTS: usize = 100;
 
 /// Reads one JSON value. Faults that leave the structure readable (numbers that are not finite, keys given twice)
-/// come with a value, others without.
+/// come with a value, others without. Members whose key begins with `//` are remarks and left out.
 pub fn parse(text: &str) -> (Option<Node>, Vec<Violation>) {
     let mut parser = Parser {
         text,
@@ -24,6 +24,11 @@ pub fn parse(text: &str) -> (Option<Node>, Vec<Violation>) {
     };
     let node = parser.document();
     (node, parser.faults)
+}
+
+/// Members whose key begins so are remarks: nobody reads them.
+fn is_remark(key: &str) -> bool {
+    key.starts_with("//")
 }
 
 struct Parser<'a> {
@@ -109,7 +114,7 @@ impl Parser<'_> {
             let length = self.pointer.len();
             self.pointer = child(&self.pointer, &key);
             let first = *known.entry(key.clone()).or_insert(key_start);
-            if first != key_start && self.faults.len() < MOST_FAULTS {
+            if first != key_start && !is_remark(&key) && self.faults.len() < MOST_FAULTS {
                 let what = format!(
                     "key \"{}\" given twice, first in line {}",
                     short(&key),
@@ -130,7 +135,7 @@ impl Parser<'_> {
                 Some(_) => self.value()?,
             };
             self.pointer.truncate(length);
-            if first == key_start {
+            if first == key_start && !is_remark(&key) {
                 members.push(Member { key, key_span, value });
             }
             if self.closes(b'}', start, "`,` or `}`")? {
@@ -248,7 +253,9 @@ impl Parser<'_> {
     fn unexpected<T>(&mut self, wanted: &str) -> Option<T> {
         let fault = self.fault(self.here(), format!("expected {wanted}, found {}", self.found()));
         let fault = match self.peek() {
-            Some(b'/') | Some(b'#') => fault.hint("JSON has no comments; use \"about\""),
+            Some(b'/') | Some(b'#') => {
+                fault.hint("JSON has no comments; write a member whose key begins with //, such as \"// why\": \"...\"")
+            }
             Some(b'\'') => fault.hint("text needs double quotes"),
             _ => fault,
         };
@@ -277,7 +284,7 @@ impl Parser<'_> {
     fn fault(&self, span: Range<usize>, what: impl Into<String>) -> Violation {
         Violation {
             span: Some(span),
-            ..Violation::new(self.pointer.clone(), what)
+            ..Violation::new(Code::Text, self.pointer.clone(), what)
         }
     }
 

@@ -48,11 +48,15 @@ pub fn render(fault: &CaseFault, colour: bool, width: usize) -> String {
         if count == 1 { "fault" } else { "faults" },
         fault.path.display()
     );
+    if let Some(first) = fault.violations.first() {
+        let _ = writeln!(out, "more about the first: slcbeam explain {}", first.code.id());
+    }
     out
 }
 
 fn one(fault: &CaseFault, violation: &Violation, paint: &Paint, width: usize, out: &mut String) {
-    let _ = writeln!(out, "{} {}", paint.bold_red("fault:"), paint.bold(&violation.what));
+    let label = format!("fault[{}]:", violation.code.id());
+    let _ = writeln!(out, "{} {}", paint.bold_red(&label), paint.bold(&violation.what));
     let text = violation.set.as_deref().unwrap_or(&fault.text);
     let span = violation.span.clone().filter(|span| span.end <= text.len());
     let excerpt = span
@@ -121,6 +125,16 @@ fn clipped(pointer: &str, width: usize) -> String {
     format!("...{end}")
 }
 
+/// Line and column of a byte, from 1.
+pub fn line_and_column(text: &str, at: usize) -> (usize, usize) {
+    let before = &text[..floor(text, at)];
+    let line_start = before.rfind('\n').map_or(0, |i| i + 1);
+    (
+        1 + before.bytes().filter(|b| *b == b'\n').count(),
+        1 + before[line_start..].chars().count(),
+    )
+}
+
 /// Words in lines of at most `width` characters.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
@@ -152,10 +166,8 @@ impl Excerpt {
     /// The line around `span`, cut to the width with `...` where it goes on.
     fn cut(text: &str, span: Range<usize>, width: usize) -> Self {
         let start = floor(text, span.start);
-        let before = &text[..start];
-        let line = 1 + before.bytes().filter(|b| *b == b'\n').count();
-        let line_start = before.rfind('\n').map_or(0, |i| i + 1);
-        let column = 1 + text[line_start..start].chars().count();
+        let (line, column) = line_and_column(text, start);
+        let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
         let room = width.saturating_sub(line.to_string().len() + 3);
         // Never look further than the eye can see: a line may have megabytes.
         let reach = 4 * room;

@@ -4,16 +4,87 @@ use std::sync::LazyLock;
 
 use schemars::generate::SchemaSettings;
 use schemars::transform::{RecursiveTransform, Transform};
-use serde_json::Value;
+use serde_json::{Map, Value, json};
 
+use super::presets::SECTIONS;
 use super::schema::Case;
 
-/// JSON Schema (draft 2020-12) of a case, with descriptions and defaults.
+/// JSON Schema (draft 2020-12) of a case as it is written, with descriptions and defaults: with a preset, what that brings may
+/// be left out; and everywhere a member whose key begins with `//` may stand as a remark.
 pub fn schema_json() -> Value {
-    CASE.clone()
+    let mut schema = CASE.clone();
+    let definitions = schema["$defs"].as_object().cloned().unwrap_or_default();
+    let mut parts: Vec<(String, Value)> = vec![];
+    for section in SECTIONS {
+        let reference = schema["properties"][section]["$ref"].take();
+        let name = reference
+            .as_str()
+            .and_then(|r| r.rsplit('/').next())
+            .unwrap_or_default();
+        relaxed(name, &definitions, &mut parts);
+        let partly = json!({"anyOf": [{"$ref": format!("#/$defs/{name}{PARTLY}")}, {"type": "null"}]});
+        schema["then"]["properties"][section] = partly;
+        schema["else"]["properties"][section] = json!({"$ref": reference});
+        if let Some(own) = schema["properties"][section].as_object_mut() {
+            own.shift_remove("$ref");
+        }
+    }
+    let (from_preset, needed): (Vec<Value>, Vec<Value>) = schema["required"]
+        .as_array()
+        .cloned()
+        .unwrap_or_default()
+        .into_iter()
+        .partition(|key| SECTIONS.iter().any(|s| key == s));
+    schema["required"] = needed.into();
+    schema["if"] = json!({"required": ["preset"]});
+    schema["else"]["required"] = from_preset.into();
+    for (name, part) in parts {
+        schema["$defs"][name] = part;
+    }
+    remarks(&mut schema);
+    schema
 }
 
-/// The same, made once.
+/// Ending of the names of objects of which a preset brings the rest.
+const PARTLY: &str = "OverPreset";
+
+/// The definition without keys that must be there, and those of the objects in it.
+fn relaxed(name: &str, definitions: &Map<String, Value>, parts: &mut Vec<(String, Value)>) {
+    let Some(definition) = definitions.get(name) else {
+        return;
+    };
+    let mut part = definition.clone();
+    if let Some(part) = part.as_object_mut() {
+        part.shift_remove("required");
+    }
+    for (_, inner) in part["properties"].as_object_mut().into_iter().flatten() {
+        let Some(reference) = inner["$ref"].as_str().map(str::to_owned) else {
+            continue;
+        };
+        let name = reference.rsplit('/').next().unwrap_or_default();
+        if definitions.get(name).is_some_and(|d| d.get("properties").is_some()) {
+            inner["$ref"] = format!("{reference}{PARTLY}").into();
+            relaxed(name, definitions, parts);
+        }
+    }
+    parts.push((format!("{name}{PARTLY}"), part));
+}
+
+/// Lets remarks stand in every object.
+fn remarks(schema: &mut Value) {
+    match schema {
+        Value::Object(members) => {
+            if members.get("additionalProperties") == Some(&Value::Bool(false)) {
+                members.insert("patternProperties".into(), json!({"^//": true}));
+            }
+            members.values_mut().for_each(remarks);
+        }
+        Value::Array(items) => items.iter_mut().for_each(remarks),
+        _ => {}
+    }
+}
+
+/// The schema of a case whose preset is filled in and whose remarks are gone, made once.
 pub(super) static CASE: LazyLock<Value> = LazyLock::new(|| {
     let settings = SchemaSettings::draft2020_12();
     let mut schema = settings.into_generator().into_root_schema_for::<Case>();

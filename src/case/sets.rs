@@ -53,7 +53,8 @@ fn apply_one(value: &mut Value, argument: &str) -> Result<SetValue> {
     })
 }
 
-fn remove(value: &mut Value, pointer: &str) {
+/// Takes out the member or item at a pointer.
+pub fn remove(value: &mut Value, pointer: &str) {
     let Some((parent, _)) = pointer.rsplit_once('/') else {
         return;
     };

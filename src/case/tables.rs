@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use super::faults::Faults;
 use super::locate::child;
 use super::wording::nearest;
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 /// Replaces `csv` and its columns by `times_s` and `values` in every table below `value`.
 pub fn resolve(value: &mut Value, base: &Path, pointer: &str, faults: &mut Faults) {
@@ -44,15 +44,15 @@ fn has_csv_keys(table: &Map<String, Value>) -> bool {
 type Read<T> = Result<T, Box<Violation>>;
 
 fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> {
-    let at = |key: &str, what: String| Box::new(Violation::new(child(pointer, key), what));
+    let at = |key: &str, what: String| Box::new(Violation::new(Code::Table, child(pointer, key), what));
     let text = |key: &str| table.get(key).and_then(Value::as_str).map(str::to_owned);
     let Some(name) = text("csv") else {
         return Err(Box::new(
-            Violation::new(pointer, "a column is named but no file").hint("add \"csv\""),
+            Violation::new(Code::Table, pointer, "a column is named but no file").hint("add \"csv\""),
         ));
     };
     if table.contains_key("times_s") || table.contains_key("values") {
-        let fault = Violation::new(child(pointer, "csv"), "points given here and in a file");
+        let fault = Violation::new(Code::Table, child(pointer, "csv"), "points given here and in a file");
         return Err(Box::new(fault.hint("keep \"times_s\" and \"values\", or \"csv\"")));
     }
     let mut reader = csv::ReaderBuilder::new()
@@ -72,7 +72,11 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
             };
         };
         headings.iter().position(|heading| heading == wanted).ok_or_else(|| {
-            let fault = Violation::new(child(pointer, key), format!("{name} has no column \"{wanted}\""));
+            let fault = Violation::new(
+                Code::Table,
+                child(pointer, key),
+                format!("{name} has no column \"{wanted}\""),
+            );
             let fault = fault.allowed(headings.iter().collect::<Vec<_>>().join(", "));
             Box::new(Violation {
                 nearest: nearest(&wanted, headings.iter()),

@@ -10,7 +10,7 @@ use super::faults::Faults;
 use super::locate::child;
 use super::numbers;
 use super::wording::{found, found_text, nearest, quoted, short};
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 /// Compares a value with a schema.
 pub fn validate(value: &Value, schema: &Value, faults: &mut Faults) {
@@ -39,7 +39,7 @@ impl<'a> Walk<'a> {
             }
             Value::String(text) if branch.get("minLength").is_some() && text.is_empty() => {
                 self.faults
-                    .push(Violation::new(pointer, "empty text").allowed("at least one character"));
+                    .push(Violation::new(Code::Range, pointer, "empty text").allowed("at least one character"));
             }
             _ => {}
         }
@@ -74,7 +74,7 @@ impl<'a> Walk<'a> {
             _ => match fitting.first() {
                 Some(branch) => Some(*branch),
                 None => {
-                    let fault = Violation::new(pointer, format!("found {}", found(value)));
+                    let fault = Violation::new(Code::Kind, pointer, format!("found {}", found(value)));
                     let fault = fault.allowed(kinds(branches));
                     let hint = match value {
                         Value::Null => Some("leave the key out".to_owned()),
@@ -102,12 +102,13 @@ impl<'a> Walk<'a> {
         {
             return Some(branch);
         }
-        let mut fault = Violation::new(pointer, format!("found {}", found_text(text)));
+        let mut fault = Violation::new(Code::Kind, pointer, format!("found {}", found_text(text)));
         let tags: Vec<&str> = all.iter().filter_map(|b| tag(b)).collect();
         if tags.contains(&text) {
             fault.what = format!("\"{text}\" needs more than its name");
             fault.hint = Some(format!("write {{\"{text}\": ...}}"));
         } else if !words.is_empty() {
+            fault.code = Code::Name;
             fault.what = format!("unknown name \"{}\"", short(text));
             fault.nearest = nearest(text, words.iter().chain(&tags).copied());
         } else if text.parse::<f64>().is_ok() {
@@ -136,7 +137,8 @@ impl<'a> Walk<'a> {
                 0 => "an empty object".to_owned(),
                 count => format!("{count} keys where one names the form"),
             };
-            self.faults.push_at_key(Violation::new(pointer, what).allowed(allowed));
+            self.faults
+                .push_at_key(Violation::new(Code::Kind, pointer, what).allowed(allowed));
             // What stands under known names is looked at all the same.
             for (key, value) in members {
                 if let Some(inner) = known(key).and_then(|b| b.pointer("/properties")?.get(key)) {
@@ -146,7 +148,7 @@ impl<'a> Walk<'a> {
             return None;
         };
         let what = format!("unknown name \"{}\"", short(key));
-        let fault = Violation::new(child(pointer, key), what).allowed(allowed);
+        let fault = Violation::new(Code::Name, child(pointer, key), what).allowed(allowed);
         let word = all.iter().flat_map(|b| words(b)).any(|word| word == key);
         let hint = word.then(|| format!("write \"{key}\" without braces"));
         let nearest = nearest(key, fitting.iter().filter_map(|b| tag(b))).filter(|_| !word);
@@ -170,7 +172,7 @@ impl<'a> Walk<'a> {
         let required = schema.get("required").and_then(Value::as_array).into_iter().flatten();
         for key in required.filter_map(Value::as_str) {
             if !members.contains_key(key) && !misspelt.iter().any(|meant| meant == key) {
-                let fault = Violation::new(pointer, format!("the key \"{key}\" is missing"));
+                let fault = Violation::new(Code::Missing, pointer, format!("the key \"{key}\" is missing"));
                 let meaning = properties.get(key).and_then(|p| p.get("description")?.as_str());
                 let hint = meaning.map(|text| format!("{key}: {text}"));
                 self.faults.push_at_key(Violation { hint, ..fault });
@@ -191,7 +193,11 @@ impl<'a> Walk<'a> {
             .map(String::as_str)
             .filter(|name| !members.contains_key(*name));
         let nearest = nearest(key, absent);
-        let fault = Violation::new(child(pointer, key), format!("unknown key \"{}\"", short(key)));
+        let fault = Violation::new(
+            Code::Key,
+            child(pointer, key),
+            format!("unknown key \"{}\"", short(key)),
+        );
         let names: Vec<&str> = properties.keys().map(String::as_str).collect();
         let allowed = if names.is_empty() {
             "no keys at all".to_owned()
@@ -220,7 +226,8 @@ impl<'a> Walk<'a> {
             _ => return,
         };
         let what = format!("an array of {count} {}", if count == 1 { "entry" } else { "entries" });
-        self.faults.push(Violation::new(pointer, what).allowed(allowed));
+        self.faults
+            .push(Violation::new(Code::Count, pointer, what).allowed(allowed));
     }
 }
 

@@ -4,6 +4,13 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::completions::CompletionsArguments;
+use super::explain::ExplainArguments;
+use super::export::ExportArguments;
+use super::new::NewArguments;
+use super::report::ReportArguments;
+use super::schema::SchemaArguments;
+
 /// Elastic beams with fluid-filled bladders joined by slender tubes: dynamics with error control.
 #[derive(Debug, Parser)]
 #[command(name = "slcbeam", version, max_term_width = 100)]
@@ -34,6 +41,8 @@ pub enum Command {
     Periodic(PeriodicArguments),
     /// Compare two result folders: error norms of every field and quantity, cost ratio
     Compare(CompareArguments),
+    /// Write a result in other formats: tables of its fields (CSV), surfaces that ParaView opens (VTK)
+    Export(ExportArguments),
     /// Make one self-contained HTML page of a result folder, whichever command filled it
     Report(ReportArguments),
     /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
@@ -41,7 +50,38 @@ pub enum Command {
     /// Compute exact results of beam and network theory and compare, with observed orders
     Verify(VerifyArguments),
     /// Print the JSON Schema of a case
-    Schema,
+    Schema(SchemaArguments),
+    /// Explain a message by its number (E004, W006), or a key or effect of a case by its name
+    Explain(ExplainArguments),
+    /// Write a starting case with remarks, and the schema by which editors explain its keys
+    New(NewArguments),
+    /// Print a script by which a shell completes commands and options
+    Completions(CompletionsArguments),
+}
+
+impl Command {
+    /// Whether a script asks.
+    pub fn json(&self) -> bool {
+        match self {
+            Self::Run(a) => a.json,
+            Self::Check(a) => a.json,
+            Self::Equilibrium(a) => a.json,
+            Self::Study(a) => a.json,
+            Self::Effects(a) => a.json,
+            Self::Modes(a) => a.json,
+            Self::Floquet(a) => a.json,
+            Self::Periodic(a) => a.json,
+            Self::Compare(a) => a.json,
+            Self::Mapping(a) => a.json,
+            Self::Verify(a) => a.json,
+            Self::Schema(a) => a.json,
+            Self::Export(a) => a.json,
+            Self::Report(a) => a.json,
+            Self::Explain(a) => a.json,
+            Self::New(a) => a.json,
+            Self::Completions(_) => false,
+        }
+    }
 }
 
 /// A case file and changes to it.
@@ -321,20 +361,6 @@ pub struct CompareArguments {
     pub json: bool,
 }
 
-/// `report`.
-#[derive(Debug, Args)]
-pub struct ReportArguments {
-    /// Result folder
-    #[arg(value_name = "DIR")]
-    pub dir: PathBuf,
-    /// Write the page here [default: report.html in the folder]
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-    /// Print the page's path and size as JSON
-    #[arg(long)]
-    pub json: bool,
-}
-
 /// `mapping`.
 #[derive(Debug, Args)]
 pub struct MappingArguments {
@@ -344,6 +370,9 @@ pub struct MappingArguments {
     /// Which table [default: both, a blank line between them]
     #[arg(long)]
     pub table: Option<Table>,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `verify`.

@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use serde_json::{Value, json};
+
 use super::arguments::{MappingArguments, Table};
 use crate::case;
 use crate::error::{Error, Result};
@@ -16,6 +18,22 @@ pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
         return Err(Error::Usage("the case has no bladders: there is nothing to map".into()));
     };
     let map = network_coordinate(&loaded.case, wet);
+    if asked.json {
+        let rows = |rows: Vec<(f64, f64, i64)>, names: [&str; 2]| -> Value {
+            rows.iter()
+                .map(|(a, b, bladder)| json!({names[0]: a, names[1]: b, "bladder": bladder}))
+                .collect()
+        };
+        let mut all = serde_json::Map::new();
+        if asked.table != Some(Table::XfToTheta) {
+            all.insert("theta_to_xf".into(), rows(map.theta_to_xf(), ["theta_r", "x_f"]));
+        }
+        if asked.table != Some(Table::ThetaToXf) {
+            all.insert("xf_to_theta".into(), rows(map.xf_to_theta(), ["x_f", "theta"]));
+        }
+        super::print(&format!("{:#}\n", Value::Object(all)))?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let table = |heading: &str, rows: Vec<(f64, f64, i64)>| {
         let mut text = format!("{heading}\n");
         for (a, b, bladder) in rows {

@@ -3,13 +3,17 @@
 mod arguments;
 mod check;
 mod compare;
+mod completions;
 mod effects;
 mod equilibrium;
+mod explain;
+mod export;
 mod floquet;
 mod interrupt;
 mod line;
 mod mapping;
 mod modes;
+mod new;
 mod periodic;
 pub mod progress;
 mod report;
@@ -46,6 +50,9 @@ pub fn main() -> ExitCode {
         Ok(code) => code,
         Err(error) => {
             terminal::report(&error);
+            if arguments.command.json() {
+                let _ = print(&format!("{:#}\n", terminal::json(&error)));
+            }
             ExitCode::from(error.exit_code())
         }
     }
@@ -62,10 +69,14 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Periodic(asked) => periodic::periodic(asked),
         Command::Compare(asked) => compare::compare(asked),
         Command::Modes(asked) => modes::modes(asked),
+        Command::Export(asked) => export::export(asked),
         Command::Report(asked) => report::report(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),
-        Command::Schema => schema::schema(),
+        Command::Schema(_) => schema::schema(),
+        Command::Explain(asked) => explain::explain(asked),
+        Command::New(asked) => new::new(asked),
+        Command::Completions(asked) => completions::completions(asked),
     }
 }
 

@@ -1,12 +1,27 @@
 //! `slcbeam report`: a result folder as one page.
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
+use clap::Args;
 use serde_json::json;
 
-use super::arguments::ReportArguments;
 use crate::error::Result;
 use crate::output::report;
+
+/// `report`.
+#[derive(Debug, Args)]
+pub struct ReportArguments {
+    /// Result folder
+    #[arg(value_name = "DIR")]
+    pub dir: PathBuf,
+    /// Write the page here [default: report.html in the folder]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Print the page's path and size as JSON
+    #[arg(long)]
+    pub json: bool,
+}
 
 /// Writes the page and says where it is.
 pub fn report(asked: &ReportArguments) -> Result<ExitCode> {

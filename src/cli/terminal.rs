@@ -2,8 +2,10 @@
 
 use std::io::IsTerminal as _;
 
+use serde_json::{Value, json};
+
 use crate::case;
-use crate::error::{Error, SolverFault};
+use crate::error::{CaseFault, Error, SolverFault, Violation};
 
 /// Whether standard output wants colour: a terminal, and `NO_COLOR` not set.
 pub fn colour_out() -> bool {
@@ -28,15 +30,50 @@ pub fn report(error: &Error) {
     match error {
         Error::Case(fault) => eprint!("{}", case::render(fault, colour, width())),
         Error::Solver(fault) => eprintln!("{}", diagnosis(fault)),
-        other => eprintln!("slcbeam: {other}"),
+        other => eprintln!("slcbeam: {other} (slcbeam explain {})", other.code().id()),
     }
+}
+
+/// An error for scripts, the answer of a command with `--json`.
+pub fn json(error: &Error) -> Value {
+    let mut told = json!({"status": "failed", "exit_code": error.exit_code(), "code": error.code().id(), "what": error.to_string()});
+    match error {
+        Error::Case(fault) => {
+            told["status"] = "invalid".into();
+            told["file"] = fault.path.display().to_string().into();
+            told["faults"] = fault.violations.iter().map(|v| violation(fault, v)).collect();
+        }
+        Error::Solver(fault) => {
+            told["time_s"] = fault.time_s.into();
+            told["unknown"] = fault.unknown.clone().into();
+            told["cause"] = fault.cause.clone().into();
+            told["hint"] = fault.hint.clone().into();
+        }
+        Error::Usage(_) | Error::Output { .. } => {}
+    }
+    told
+}
+
+fn violation(fault: &CaseFault, violation: &Violation) -> Value {
+    let text = violation.set.as_deref().unwrap_or(&fault.text);
+    let place = violation
+        .span
+        .as_ref()
+        .map(|span| case::line_and_column(text, span.start));
+    json!({
+        "code": violation.code.id(), "what": violation.what, "pointer": violation.pointer, "set": violation.set,
+        "line": place.map(|p| p.0), "column": place.map(|p| p.1),
+        "allowed": violation.allowed, "nearest": violation.nearest, "hint": violation.hint
+    })
 }
 
 /// A failed run in words.
 pub fn diagnosis(fault: &SolverFault) -> String {
     let mut lines = vec![format!(
-        "slcbeam: the run failed at t = {:.6e} s: {}",
-        fault.time_s, fault.what
+        "slcbeam: the run failed at t = {:.6e} s: {} (slcbeam explain {})",
+        fault.time_s,
+        fault.what,
+        fault.code.id()
     )];
     for (what, text) in [
         ("worst unknown", &fault.unknown),

@@ -2,11 +2,13 @@
 
 use super::{Coupling, Model, Wet};
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 /// One audited number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
+    /// Number of its warning.
+    pub code: Code,
     /// Name, for the table of `check`.
     pub name: &'static str,
     /// Value.
@@ -51,6 +53,7 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
             0.0
         };
         found.push(Finding {
+            code: Code::CouplingLaw,
             name,
             value,
             wanted: "0 or more, below 1",
@@ -72,6 +75,7 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
     ] {
         if value.is_finite() {
             found.push(Finding {
+                code: Code::CouplingLaw,
                 name,
                 value,
                 wanted: "above 1",
@@ -91,6 +95,7 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
 
 fn reciprocity(name: &'static str, value: f64, what: &str) -> Finding {
     Finding {
+        code: Code::Reciprocity,
         name,
         value,
         wanted: "1 within 10 %",
@@ -122,6 +127,7 @@ fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, fou
         ),
     ] {
         found.push(Finding {
+            code: Code::CouplingLaw,
             name,
             value,
             wanted: "above 0",
@@ -170,6 +176,7 @@ fn convexity(model: &Model, bladders: &Bladders, wet: &Wet) -> Vec<Finding> {
     ]
     .into_iter()
     .map(|(name, value)| Finding {
+        code: Code::CouplingLaw,
         name,
         value,
         wanted: "above the pressures expected",
@@ -197,6 +204,7 @@ pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
         .filter(|f| !f.good)
         .map(|f| {
             Violation::new(
+                Code::Convexity,
                 "/bladders/coupling",
                 format!("the kinked potential is {}: {:.3e}", f.name, f.value),
             )
@@ -212,42 +220,53 @@ pub fn warnings(case: &Case, model: &Model, numbers: &std::collections::BTreeMap
         .into_iter()
         .filter(|f| !f.good)
         .map(|f| {
-            format!(
+            f.code.warning(format!(
                 "coupling: {} = {:.4}, wanted {}: {}",
                 f.name, f.value, f.wanted, f.consequence
-            )
+            ))
         })
         .collect();
-    let mut over = |name: &str, limit: f64, what: &str| {
+    let mut over = |code: Code, name: &str, limit: f64, what: &str| {
         if let Some(&value) = numbers.get(name)
             && value > limit
         {
-            all.push(format!(
+            all.push(code.warning(format!(
                 "range of the model: {name} = {value:.3} is above {limit}: {what}"
-            ));
+            )));
         }
     };
     over(
+        Code::FastFlow,
         "womersley",
         1.0,
         "oscillating flow in the tubes is not creeping; their inertia is left out",
     );
-    over("reynolds_estimate", 100.0, "flow in the tubes may not be creeping");
-    over("largest_strain_estimate", 0.5, "local strains may not be small");
+    over(
+        Code::FastFlow,
+        "reynolds_estimate",
+        100.0,
+        "flow in the tubes may not be creeping",
+    );
+    over(
+        Code::Strain,
+        "largest_strain_estimate",
+        0.5,
+        "local strains may not be small",
+    );
     if let Some(&rate) = numbers.get("mathieu_growth_rate_per_s")
         && rate > 0.0
     {
-        all.push(format!(
+        all.push(Code::Mathieu.warning(format!(
             "the root's axial motion lies inside a Mathieu tongue of the first bending mode: any deflection grows \
              with {rate:.3} 1/s (single mode, undamped, bladders drained)"
-        ));
+        )));
     }
     if let Some(&slender) = numbers.get("slenderness")
         && slender < 4.0
     {
-        all.push(format!(
+        all.push(Code::Stocky.warning(format!(
             "range of the model: length over height is {slender:.2}; a rod model wants 5 or more"
-        ));
+        )));
     }
     all
 }

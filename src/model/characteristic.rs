@@ -91,22 +91,24 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
             put("t_s_over_t_f", solid_time / fluid_time);
             if let Some(f) = forcing {
                 put("f_u", f * fluid_time);
-                put(
-                    "womersley",
-                    tubes.radius_m * (2.0 * PI * f * fluid.density_kg_m3 / fluid.viscosity_pa_s).sqrt(),
-                );
             }
-            let flow = model.scales.frequency * wet.area.per_pressure * wet.bladder_length * model.scales.pressure;
-            put(
-                "reynolds_estimate",
-                2.0 * fluid.density_kg_m3 * flow / (PI * fluid.viscosity_pa_s * tubes.radius_m),
-            );
             let tube = wet
                 .network
                 .links
                 .iter()
                 .find(|k| k.kind == super::network::LinkKind::Tube);
             if let Some(tube) = tube {
+                if let Some(f) = forcing {
+                    put(
+                        "womersley",
+                        tubes.radius_m * (2.0 * PI * f * fluid.density_kg_m3 / fluid.viscosity_pa_s).sqrt(),
+                    );
+                }
+                let flow = model.scales.frequency * wet.area.per_pressure * wet.bladder_length * model.scales.pressure;
+                put(
+                    "reynolds_estimate",
+                    2.0 * fluid.density_kg_m3 * flow / (PI * fluid.viscosity_pa_s * tubes.radius_m),
+                );
                 put("tube_resistance_pa_s_m3", tube.resistance);
                 put(
                     "bladder_tube_time_s",

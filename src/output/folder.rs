@@ -22,6 +22,10 @@ pub const RAW_FIELDS: &str = "fields.part";
 pub const CHECKPOINT: &str = "checkpoint.json";
 /// The page made by `slcbeam report`.
 pub const REPORT: &str = "report.html";
+/// Tables of the fields made by `slcbeam export`.
+pub const TABLES: &str = "csv";
+/// Surfaces made by `slcbeam export`.
+pub const VTK: &str = "vtk";
 /// Pictures.
 pub const PICTURES: [&str; 4] = ["deflection.svg", "pressure.svg", "history.svg", "energy.svg"];
 
@@ -100,6 +104,10 @@ impl ResultFolder {
         if raw.is_dir() {
             fs::remove_dir_all(&raw).map_err(|e| fault("remove", &raw, e))?;
         }
+        // What was exported from the older result would pass for the new one's.
+        for (name, endings) in [(TABLES, &["csv"][..]), (VTK, &["vtp", "pvd"])] {
+            remove_folder_of(&self.path(name), endings)?;
+        }
         self.holds_older = false;
         Ok(())
     }
@@ -155,6 +163,19 @@ fn remove(path: &Path) -> Result<()> {
         Err(e) if e.kind() != io::ErrorKind::NotFound => Err(fault("remove", path, e)),
         _ => Ok(()),
     }
+}
+
+/// Removes a folder that holds nothing but files with these endings.
+fn remove_folder_of(dir: &Path, endings: &[&str]) -> Result<()> {
+    let Ok(entries) = fs::read_dir(dir) else { return Ok(()) };
+    let ours = |e: fs::DirEntry| {
+        let path = e.path();
+        path.is_file() && path.extension().is_some_and(|x| endings.iter().any(|e| x == *e))
+    };
+    if !entries.flatten().all(ours) {
+        return Ok(());
+    }
+    fs::remove_dir_all(dir).map_err(|e| fault("remove", dir, e))
 }
 
 /// A result has a summary with the house's keys or, when interrupted, a history that begins with time.

@@ -9,6 +9,7 @@
 //! recorder  the Recorder that ties them together
 //! summary   summary.json, there and back
 //! reading   a result folder back into memory
+//! export    a result in other formats: tables of the fields, surfaces for ParaView
 //! comparison  the picture of two runs over each other
 //! effects   effects.csv, effects.json, effects.svg, table and sentence
 //! equilibrium  path.csv, shapes.csv, equilibrium.json, path.svg, table
@@ -28,6 +29,7 @@ pub mod comparison;
 pub mod effects;
 pub mod envelope;
 pub mod equilibrium;
+pub mod export;
 pub mod floquet;
 pub mod folder;
 pub mod history;

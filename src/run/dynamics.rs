@@ -17,7 +17,7 @@ use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::ledger::FLOWS;
 use crate::discrete::{System, start};
-use crate::error::{Error, Result, SolverFault};
+use crate::error::{Code, Error, Result, SolverFault};
 use crate::model::{audit, characteristic};
 use crate::sundials::{IdaFailure, StartFailure, StartOptions, consistent_start};
 
@@ -564,12 +564,13 @@ impl Run<'_> {
             b.energy_j.insert(name.into(), value);
         }
         s.growth = o.growth.judge(self.case.beam.length_m, &self.linear);
-        s.warnings.extend(s.growth.as_ref().map(|g| g.warning()));
+        s.warnings
+            .extend(s.growth.as_ref().map(|g| Code::Growth.warning(g.warning())));
         if !self.inertia {
             let buckled = o.growth.straight_beyond_buckling(self.case.beam.length_m, &self.linear);
-            s.warnings.extend(buckled);
+            s.warnings.extend(buckled.map(|w| Code::Buckling.warning(w)));
         }
-        s.warnings.extend(self.held);
+        s.warnings.extend(self.held.map(|w| Code::OrderHeld.warning(w)));
         s.warnings.extend(self.observer.warnings());
         s.wall_s.total = self.begin.elapsed().as_secs_f64();
         Outcome {
@@ -581,6 +582,7 @@ impl Run<'_> {
 
 fn fault(failure: &IdaFailure) -> SolverFault {
     SolverFault {
+        code: if failure.singular.is_some() { Code::Singular } else { Code::Integrator },
         time_s: failure.time,
         what: failure.to_string(),
         unknown: failure.worst.as_ref().map(|w| w.name.clone()).or_else(|| failure.singular.clone()),
@@ -599,6 +601,7 @@ fn fault(failure: &IdaFailure) -> SolverFault {
 
 fn too_many_steps(t: f64, step: f64) -> SolverFault {
     SolverFault {
+        code: Code::Steps,
         time_s: t,
         what: format!("the number of steps allowed is used up at t = {t:.6} s, with steps of {step:.2e} s"),
         unknown: None,
@@ -622,6 +625,7 @@ fn inconsistent(t: f64, failure: &StartFailure) -> SolverFault {
         )
     };
     SolverFault {
+        code: Code::NoStart,
         time_s: t,
         what: format!("{what}: {}", failure.what),
         unknown: failure.worst.as_ref().map(|(_, name)| name.clone()),
@@ -632,6 +636,7 @@ fn inconsistent(t: f64, failure: &StartFailure) -> SolverFault {
 
 fn stalled(t: f64, step: f64) -> SolverFault {
     SolverFault {
+        code: Code::Stalled,
         time_s: t,
         what: format!(
             "no progress: {STALL_STEPS} steps have hardly moved the time on from t = {t:.9} s (step {step:.2e} s)"

@@ -4,7 +4,7 @@ use crate::case::schema::Case;
 use crate::dae::BeamDae;
 use crate::discrete::ledger::{self, Flow, Invariants};
 use crate::discrete::{System, sample};
-use crate::error::Result;
+use crate::error::{Code, Result};
 use crate::model::audit;
 use crate::model::mapping::{NetworkCoordinate, TABLE_TUBE_RATIO};
 
@@ -322,34 +322,34 @@ impl Observer {
         let mut all = Vec::new();
         let open = self.seen.residuals.energy_relative();
         if open > ENERGY_OPEN {
-            all.push(format!(
+            all.push(Code::EnergyOpen.warning(format!(
                 "energy balance: it stays open by {open:.1e} of the largest energy; tighten solver/rtol \
                  until answers no longer change (a load or valve that jumps without inertia or damping leaves it open at any tolerance)"
-            ));
+            )));
         }
         if let Some((strain, t, node)) = self.seen.range.strain
             && strain > 0.5
         {
-            all.push(format!(
+            all.push(Code::Strain.warning(format!(
                 "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 reached {strain:.2} at \
                  t = {t:.4} s, node {node}; strains are meant to be small"
-            ));
+            )));
         }
         if let Some((reynolds, t, tube)) = self.seen.range.reynolds
             && reynolds > 100.0
         {
-            all.push(format!(
+            all.push(Code::FastFlow.warning(format!(
                 "range of the model: the Reynolds number reached {reynolds:.0} at t = {t:.4} s in tube {}; flow is meant to \
                  creep",
                 tube + 1
-            ));
+            )));
         }
         if let Some((sum, t)) = self.seen.range.convexity {
-            all.push(format!(
+            all.push(Code::LostConvexity.warning(format!(
                 "the kinked reciprocal potential lost convexity: p_u + p_d reached {sum:.3e} Pa at t = {t:.4} s, \
                  above {:.3e} Pa; results from then on are not to be trusted (use \"reciprocal\" or a larger kink_width)",
                 self.convex_up_to
-            ));
+            )));
         }
         all
     }

@@ -6,7 +6,7 @@
 
 use crate::case::schema::{Case, MaxOrder, Method};
 use crate::discrete::System;
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 /// Damping ratio from which on high orders are taken: measured, 5 % nearly removes the trap, 0.5 % does not.
 const ENOUGH: f64 = 0.05;
@@ -63,7 +63,7 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
     };
     (ratio < ENOUGH).then(|| {
         Violation::new(
-            "/solver/max_order",
+            Code::Order, "/solver/max_order",
             format!(
                 "BDF of order {order} is unstable for the waves of this beam, whose least damping ratio is {ratio:.1e}: \
                  steps become tiny or rates become garbage"

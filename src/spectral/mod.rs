@@ -38,6 +38,9 @@ pub use softest::softest;
 
 /// Differential unknowns up to which all eigenvalues are computed at once.
 pub const DENSE: usize = 120;
+/// Size up to which that is done where the Krylov space does not converge: strongly damped motions in badly scaled unknowns. The
+/// work grows with the third power, a second at about 500.
+pub const AT_LAST_DENSE: usize = 1000;
 
 /// What can be asked.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +59,7 @@ impl Default for Options {
             dense_up_to: DENSE,
             // refinement converges cubically: half of the digits are enough
             tolerance: 1e-9,
-            max_restarts: 300,
+            max_restarts: 100,
         }
     }
 }
@@ -162,7 +165,10 @@ pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Opt
     } else if dense {
         (dense::pairs(&mut shifted)?, 0)
     } else {
-        krylov::pairs(&mut shifted, count, options)?
+        match krylov::pairs(&mut shifted, count, options) {
+            Err(Failure::Slow { restarts, .. }) if size <= AT_LAST_DENSE => (dense::pairs(&mut shifted)?, restarts),
+            found => found?,
+        }
     };
     pairs.truncate(count);
     let mut refined: Vec<Pair> = Vec::with_capacity(pairs.len());

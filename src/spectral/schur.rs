@@ -1,6 +1,10 @@
 //! Schur form of a small complex matrix, `H = Q T Qᴴ`, T upper triangular.
+//!
+//! The single-shift QR iteration of LAPACK's `zlahqr` (Wilkinson's shifts, exceptional ones every ten sweeps), on the Hessenberg form
+//! that the library makes. The library's own Schur form has no exceptional shifts and goes round in circles where eigenvalues are
+//! repeated, as those of many closed networks are.
 
-use nalgebra::{Complex, DMatrix, Schur};
+use nalgebra::{Complex, DMatrix, Hessenberg};
 
 type C = Complex<f64>;
 
@@ -9,12 +13,96 @@ const SWEEPS: usize = 60;
 
 /// `Q` and `T`, the largest eigenvalues first; None when the iteration does not converge.
 pub fn ordered(h: DMatrix<C>) -> Option<(DMatrix<C>, DMatrix<C>)> {
-    let sweeps = SWEEPS * h.nrows().max(1);
-    let (mut q, mut t) = Schur::try_new(h, f64::EPSILON, sweeps)?.unpack();
+    let (mut q, mut t) = match h.nrows() {
+        0 | 1 => (DMatrix::identity(h.nrows(), h.nrows()), h),
+        _ => Hessenberg::new(h).unpack(),
+    };
+    triangular(&mut q, &mut t)?;
     sort(&mut q, &mut t);
     Some((q, t))
 }
 
+/// Makes a Hessenberg matrix triangular by sweeps of rotations, which q collects.
+fn triangular(q: &mut DMatrix<C>, t: &mut DMatrix<C>) -> Option<()> {
+    let size = t.norm();
+    let mut end = t.nrows().saturating_sub(1);
+    let mut sweep = 0;
+    while end > 0 {
+        // what is small beside its neighbours is zero; where sweeps go on, what is small beside the matrix
+        let small = |t: &DMatrix<C>, k: usize| {
+            let beside = t[(k - 1, k - 1)].norm() + t[(k, k)].norm();
+            let beside = if sweep > SWEEPS / 2 { size } else { beside };
+            t[(k, k - 1)].norm() <= f64::EPSILON * beside
+        };
+        let begin = (1..=end).rev().find(|&k| small(t, k)).unwrap_or(0);
+        if begin > 0 {
+            t[(begin, begin - 1)] = C::default();
+        }
+        if begin == end {
+            (end, sweep) = (end - 1, 0);
+            continue;
+        }
+        sweep += 1;
+        if sweep > SWEEPS {
+            return None;
+        }
+        let shift = if sweep % 10 == 0 {
+            t[(end, end)] + 0.75 * t[(end, end - 1)].norm()
+        } else {
+            wilkinson(t, end)
+        };
+        step(q, t, begin, end, shift);
+    }
+    Some(())
+}
+
+/// The eigenvalue of the last two rows and columns that is nearer the last entry.
+fn wilkinson(t: &DMatrix<C>, end: usize) -> C {
+    let (a, b, c, d) = (
+        t[(end - 1, end - 1)],
+        t[(end - 1, end)],
+        t[(end, end - 1)],
+        t[(end, end)],
+    );
+    let half = 0.5 * (a - d);
+    let root = (half * half + b * c).sqrt();
+    let far = if (half + root).norm() > (half - root).norm() {
+        half + root
+    } else {
+        half - root
+    };
+    if far.norm() == 0.0 { d } else { d - b * c / far }
+}
+
+/// One implicit sweep of rotations through the rows and columns from `begin` to `end`.
+fn step(q: &mut DMatrix<C>, t: &mut DMatrix<C>, begin: usize, end: usize, shift: C) {
+    let n = t.nrows();
+    let (mut x, mut y) = (t[(begin, begin)] - shift, t[(begin + 1, begin)]);
+    for k in begin..end {
+        let r = x.norm().hypot(y.norm());
+        if r > 0.0 {
+            let (c, s) = (x / r, y / r);
+            for j in k.saturating_sub(1).max(begin)..n {
+                let (u, v) = (t[(k, j)], t[(k + 1, j)]);
+                t[(k, j)] = c.conj() * u + s.conj() * v;
+                t[(k + 1, j)] = c * v - s * u;
+            }
+            for (m, rows) in [(&mut *t, (k + 3).min(end + 1)), (&mut *q, n)] {
+                for i in 0..rows {
+                    let (u, v) = (m[(i, k)], m[(i, k + 1)]);
+                    m[(i, k)] = u * c + v * s;
+                    m[(i, k + 1)] = v * c.conj() - u * s.conj();
+                }
+            }
+        }
+        if k > begin {
+            t[(k + 1, k - 1)] = C::default();
+        }
+        if k + 2 <= end {
+            (x, y) = (t[(k + 1, k)], t[(k + 2, k)]);
+        }
+    }
+}
 /// Exchanges neighbours on the diagonal by rotations until their magnitudes descend.
 fn sort(q: &mut DMatrix<C>, t: &mut DMatrix<C>) {
     let n = t.nrows();

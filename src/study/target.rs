@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use super::accuracy::plan;
 use crate::case::Case;
-use crate::error::Result;
+use crate::error::{Code, Result};
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::{Control, Progress, Unrecorded};
 use crate::run::summary::{Accuracy, Estimate, Pilot, Status, Summary};
@@ -59,7 +59,7 @@ pub fn reach(case: &Case, asked: f64, hook: Hook, record: Record) -> Result<Outc
     let mut outcome = record(&variant(case, at))?;
     if outcome.summary.status != Status::Finished {
         let why = "accuracy: nothing is known of the errors of a run that did not finish";
-        outcome.summary.warnings.push(why.into());
+        outcome.summary.warnings.push(Code::Accuracy.warning(why));
         return Ok(outcome);
     }
     search.runs.take(at, &outcome.summary, case.beam.length_m);
@@ -162,7 +162,7 @@ impl Search<'_> {
         if let Some(reason) = cut_short {
             summary
                 .warnings
-                .push(format!("accuracy: the search was cut short: {reason}"));
+                .push(Code::Accuracy.warning(format!("accuracy: the search was cut short: {reason}")));
         }
         if !reached {
             let short = |(name, e): (&String, &Estimate)| match e.total {
@@ -171,21 +171,21 @@ impl Search<'_> {
                 None => Some(format!("{name} unknown")),
             };
             let short: Vec<String> = estimates.iter().filter_map(short).collect();
-            summary.warnings.push(format!(
+            summary.warnings.push(Code::Accuracy.warning(format!(
                 "accuracy: {:e} is not reached with {cells} cells a segment and rtol 1e-{decades}: {}",
                 self.asked,
                 short.join(", ")
-            ));
+            )));
         }
         if let Some(lost) = &self.runs.lost {
             let grows = summary
                 .growth
                 .as_ref()
                 .map_or(String::new(), |g| format!(" (it grows at {:.2} 1/s)", g.rate_per_s));
-            summary.warnings.push(format!(
+            summary.warnings.push(Code::Accuracy.warning(format!(
                 "accuracy: {lost}: the motion{grows} is one of many that start alike, and cannot be followed to the end. Judged are root \
                  mean squares and increments over the window, not single values"
-            ));
+            )));
         }
         summary.accuracy = Some(Accuracy {
             asked: self.asked,

@@ -6,8 +6,9 @@ use std::path::Path;
 use slcbeam::case;
 use slcbeam::error::{CaseFault, Error};
 
-pub const WIRING: &str = include_str!("../../cases/wiring-2.json");
-pub const TOUR: &str = include_str!("../../cases/network-tour.json");
+/// Cases with every number written out, so that each can be made wrong.
+pub const WIRING: &str = include_str!("../data/wiring-2.json");
+pub const TOUR: &str = include_str!("../data/network-tour.json");
 
 pub fn fault_of(text: &str) -> CaseFault {
     match case::parse(text, Path::new("bad.json"), Path::new("cases"), &[]) {

@@ -107,6 +107,11 @@ fn balances_of_loaded_beams_close() {
         ("pluck", 0.1),
         ("curl", 0.1),
         ("elastica", 0.2),
+        ("tour-wiring", 0.1),
+        ("tour-actuator", 0.1),
+        ("tour-harvester", 0.1),
+        ("tour-sensor", 0.1),
+        ("tour-beam", 0.1),
     ] {
         closes(name, end);
     }

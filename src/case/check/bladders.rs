@@ -2,13 +2,13 @@
 
 use crate::case::faults::Faults;
 use crate::case::schema::{Bladders, Case};
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 pub(super) fn check(case: &Case, faults: &mut Faults) {
     match (&case.bladders, &case.fluid) {
         (Some(bladders), fluid) => {
             if fluid.is_none() {
-                let fault = Violation::new("/bladders", "bladders without a fluid to fill them");
+                let fault = Violation::new(Code::Together, "/bladders", "bladders without a fluid to fill them");
                 faults.push_at_key(fault.hint("add \"fluid\", or remove \"bladders\" for a dry beam"));
             }
             fits(case, bladders, faults);
@@ -31,7 +31,7 @@ fn dry(case: &Case, faults: &mut Faults) {
     ];
     for (pointer, _) in present.iter().filter(|(_, present)| *present) {
         let key = pointer.rsplit('/').next().unwrap_or_default();
-        let fault = Violation::new(*pointer, format!("\"{key}\" without bladders"));
+        let fault = Violation::new(Code::Together, *pointer, format!("\"{key}\" without bladders"));
         faults.push_at_key(fault.hint("add \"bladders\", or remove this for a dry beam"));
     }
 }
@@ -39,7 +39,7 @@ fn dry(case: &Case, faults: &mut Faults) {
 fn fits(case: &Case, bladders: &Bladders, faults: &mut Faults) {
     let beam = &case.beam;
     let mut refuse = |key: &str, what: String, allowed: String| {
-        faults.push(Violation::new(format!("/bladders/{key}"), what).allowed(allowed));
+        faults.push(Violation::new(Code::Geometry, format!("/bladders/{key}"), what).allowed(allowed));
     };
     let segment = beam.length_m / bladders.per_row.max(1) as f64;
     // A part in 1e9 forgives what decimal fractions lose.
@@ -79,6 +79,7 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Faults) {
     }
     if let Some(segments) = case.mesh.segments.filter(|segments| *segments != bladders.per_row) {
         let fault = Violation::new(
+            Code::Geometry,
             "/mesh/segments",
             format!("{segments} segments for {} bladders a row", bladders.per_row),
         );
@@ -111,7 +112,7 @@ fn slopes(bladders: &Bladders, faults: &mut Faults) {
     for (pointer, large_key, large, small_key, small) in pairs {
         if large < small {
             let what = format!("the slope {large_key} ({large}) is smaller than {small_key} ({small})");
-            let fault = Violation::new(format!("{pointer}/{large_key}"), what);
+            let fault = Violation::new(Code::Slopes, format!("{pointer}/{large_key}"), what);
             faults.push(
                 fault
                     .allowed(format!("at least {small}"))
@@ -124,6 +125,7 @@ fn slopes(bladders: &Bladders, faults: &mut Faults) {
 /// A permeability and a cross-section that would give another one.
 pub(super) fn two_permeabilities(pointer: &str, faults: &mut Faults) {
     let fault = Violation::new(
+        Code::Slopes,
         format!("{pointer}/cross_section"),
         "a permeability and a cross-section to compute it from",
     );

@@ -2,7 +2,7 @@
 
 use crate::case::faults::Faults;
 use crate::case::schema::{Case, End, EndConditions};
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 const PAIRS: [[&str; 2]; 3] = [
     ["u1_m", "force_x_n"],
@@ -22,7 +22,7 @@ pub(super) fn check(case: &Case, faults: &mut Faults) {
                 pair[0], pair[1]
             );
             faults.push_at_key(
-                Violation::new(format!("{pointer}/{}", pair[1]), what)
+                Violation::new(Code::BeamEnds, format!("{pointer}/{}", pair[1]), what)
                     .allowed(ALLOWED)
                     .hint("keep one"),
             );
@@ -51,12 +51,16 @@ fn complete(name: &str, pointer: &str, given: &EndConditions, keys: &[&str], fau
             "add {} for a free end or {} for a held one, 0 for zero",
             pair[1], pair[0]
         );
-        faults.push_at_key(Violation::new(pointer, what).allowed(ALLOWED).hint(hint));
+        faults.push_at_key(
+            Violation::new(Code::BeamEnds, pointer, what)
+                .allowed(ALLOWED)
+                .hint(hint),
+        );
     }
     for key in ["u1_m", "u3_m"].iter().filter(|key| keys.contains(key)) {
         if let Some(follower) = follower {
             let what = format!("{follower} acts on an end that {key} holds");
-            let fault = Violation::new(format!("{pointer}/{follower}"), what);
+            let fault = Violation::new(Code::BeamEnds, format!("{pointer}/{follower}"), what);
             faults.push_at_key(fault.hint(format!("remove {follower}, or give a force instead of {key}")));
         }
     }

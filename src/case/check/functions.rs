@@ -6,7 +6,7 @@ use crate::case::numbers::plain;
 use crate::case::profile::Profile;
 use crate::case::schema::{Case, ChainEnd};
 use crate::case::signals::{Clock, Signal};
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 /// Beyond this a beam does not move [Hz].
 const HIGHEST_FREQUENCY: f64 = 1e6;
@@ -35,6 +35,7 @@ pub(super) fn check(case: &Case, faults: &mut Faults) {
             .find(|x| !profile.value(*x).is_finite());
         if let Some(x) = place.filter(|_| faults.count() == known) {
             faults.push(Violation::new(
+                Code::Function,
                 pointer,
                 format!("not a finite number at {x} of the length"),
             ));
@@ -118,7 +119,7 @@ fn signal_parts(pointer: &str, signal: &Signal, faults: &mut Faults) {
     match signal {
         Signal::Sine(sine) if sine.frequency_hz > HIGHEST_FREQUENCY => {
             let what = format!("{} Hz is not a plausible frequency", plain(sine.frequency_hz));
-            let fault = Violation::new(format!("{pointer}/sine/frequency_hz"), what);
+            let fault = Violation::new(Code::Function, format!("{pointer}/sine/frequency_hz"), what);
             faults.push(fault.allowed(format!("up to {} Hz", plain(HIGHEST_FREQUENCY))));
         }
         Signal::Table(table) if !table.is_sound() => {
@@ -171,15 +172,16 @@ fn profile_tables(pointer: &str, profile: &Profile, faults: &mut Faults) {
 
 fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mut Faults) {
     let fault = if at.is_empty() {
-        Violation::new(pointer, "a table without points").hint(format!("give \"{key}\" and \"values\""))
+        Violation::new(Code::Table, pointer, "a table without points").hint(format!("give \"{key}\" and \"values\""))
     } else if at.len() != values.len() {
         let what = format!("{} {key} but {} values", at.len(), values.len());
-        Violation::new(child(pointer, "values"), what).allowed(format!("{} values, one for each of {key}", at.len()))
+        Violation::new(Code::Table, child(pointer, "values"), what)
+            .allowed(format!("{} values, one for each of {key}", at.len()))
     } else if let Some(i) = at.windows(2).position(|w| w[0] >= w[1]) {
         let what = format!("{} comes after {}", at[i + 1], at[i]);
-        Violation::new(format!("{pointer}/{key}/{}", i + 1), what).allowed("strictly ascending order")
+        Violation::new(Code::Table, format!("{pointer}/{key}/{}", i + 1), what).allowed("strictly ascending order")
     } else {
-        Violation::new(pointer, "a table with numbers that are not finite")
+        Violation::new(Code::Table, pointer, "a table with numbers that are not finite")
     };
     faults.push(fault);
 }
@@ -196,7 +198,9 @@ fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Fau
         if let Some(before) = last.filter(|_| role == Role::Motion) {
             if (first - before).abs() > 1e-9 * (first.abs() + before.abs()) {
                 let what = format!("the motion jumps from {before} to {first} at {start} s: infinite velocity");
-                faults.push(Violation::new(pointer, what).hint("use a ramp with a duration and a smooth shape"));
+                faults.push(
+                    Violation::new(Code::Function, pointer, what).hint("use a ramp with a duration and a smooth shape"),
+                );
                 return;
             }
         }
@@ -204,12 +208,16 @@ fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Fau
         for t in instants(signal, start, stop, most) {
             let jet = at(t);
             if !(jet.value.is_finite() && jet.rate.is_finite() && jet.acceleration.is_finite()) {
-                faults.push(Violation::new(pointer, format!("not a finite number at {t} s")));
+                faults.push(Violation::new(
+                    Code::Function,
+                    pointer,
+                    format!("not a finite number at {t} s"),
+                ));
                 return;
             }
             if role == Role::Opening && !(-1e-9..=1.0 + 1e-9).contains(&jet.value) {
                 let what = format!("an opening of {} at {t} s", jet.value);
-                faults.push(Violation::new(pointer, what).allowed("0 (closed) to 1 (open)"));
+                faults.push(Violation::new(Code::Function, pointer, what).allowed("0 (closed) to 1 (open)"));
                 return;
             }
         }

@@ -7,7 +7,7 @@ use super::network::Point;
 use crate::case::faults::Faults;
 use crate::case::schema::{BladderEnd, Case, Endpoint, Network};
 use crate::case::signals::Signal;
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 /// An opening below this is closed.
 const CLOSED: f64 = 1e-9;
@@ -32,6 +32,7 @@ pub(super) fn check(case: &Case, network: &Network, attached: &BTreeMap<Point, V
     let used = |name: &str| attached.contains_key(&Point::Junction(name.to_owned()));
     for (i, name) in network.junctions.iter().enumerate().filter(|(_, name)| !used(name)) {
         let fault = Violation::new(
+            Code::Junction,
             format!("/network/junctions/{i}"),
             format!("junction \"{name}\" is not used"),
         );
@@ -51,7 +52,7 @@ pub(super) fn check(case: &Case, network: &Network, attached: &BTreeMap<Point, V
     for (name, t) in dead {
         let i = network.junctions.iter().position(|n| n == name).unwrap_or_default();
         let what = format!("junction \"{name}\" reaches neither a bladder nor a pressure port at {t} s");
-        let fault = Violation::new(format!("/network/junctions/{i}"), what);
+        let fault = Violation::new(Code::Junction, format!("/network/junctions/{i}"), what);
         faults.push(
             fault.hint("open a branch or attach a bladder: a junction stores nothing, so its pressure is undefined"),
         );

@@ -11,7 +11,7 @@ mod time;
 
 use super::faults::Faults;
 use super::schema::Case;
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 /// A group of rules.
 type Rule = fn(&Case, &mut Faults);
@@ -46,7 +46,7 @@ pub fn check(case: &Case, broken: &[String], faults: &mut Faults) {
 fn name(case: &Case, faults: &mut Faults) {
     let good = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     if case.name.is_empty() || case.name.starts_with('.') || !case.name.chars().all(good) {
-        let fault = Violation::new("/name", "a name that cannot be that of a folder");
+        let fault = Violation::new(Code::CaseName, "/name", "a name that cannot be that of a folder");
         faults.push(fault.allowed("letters, digits, `-`, `_` and `.`, not starting with `.`"));
     }
 }

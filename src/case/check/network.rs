@@ -7,7 +7,7 @@ use super::junctions;
 use crate::case::faults::Faults;
 use crate::case::schema::{BladderEnd, Case, ChainEnd, Endpoint, Network};
 use crate::case::wording::nearest;
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 /// A point of the network.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -51,7 +51,7 @@ pub(super) fn check(case: &Case, faults: &mut Faults) {
 pub(super) fn exists(index: i64, per_row: usize, pointer: &str, faults: &mut Faults) -> bool {
     let exists = index != 0 && index.unsigned_abs() <= per_row as u64;
     if !exists {
-        let fault = Violation::new(pointer, format!("there is no bladder {index}"));
+        let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {index}"));
         let allowed = format!("1 to {per_row} (upper row) and -1 to -{per_row} (lower row)");
         faults.push(fault.allowed(allowed));
     }
@@ -75,7 +75,7 @@ impl Rules<'_> {
             if let Some(first) = known.insert(name, i) {
                 let what = format!("junction \"{name}\" is declared twice, first at /network/junctions/{first}");
                 self.faults
-                    .push(Violation::new(format!("/network/junctions/{i}"), what));
+                    .push(Violation::new(Code::Wiring, format!("/network/junctions/{i}"), what));
             }
         }
     }
@@ -110,14 +110,15 @@ impl Rules<'_> {
             (None, None, None) => "a point that is neither a bladder end nor a junction",
         };
         let form = "{\"bladder\": 3, \"end\": \"outlet\"} or {\"junction\": \"name\"}";
-        self.faults.push_at_key(Violation::new(pointer, what).allowed(form));
+        self.faults
+            .push_at_key(Violation::new(Code::Wiring, pointer, what).allowed(form));
         None
     }
 
     fn undeclared(&mut self, name: &str, pointer: &str) {
         let names: Vec<&str> = self.network.junctions.iter().map(String::as_str).collect();
         let what = format!("junction \"{name}\" is not declared");
-        let fault = Violation::new(format!("{pointer}/junction"), what);
+        let fault = Violation::new(Code::Wiring, format!("{pointer}/junction"), what);
         self.faults.push(Violation {
             nearest: nearest(name, names.iter().copied()),
             allowed: (!names.is_empty()).then(|| names.join(", ")),
@@ -131,6 +132,7 @@ impl Rules<'_> {
         let to = self.point(to, &format!("{pointer}/to"), pointer);
         if let (Some(from), true) = (&from, from == to) {
             self.faults.push(Violation::new(
+                Code::Wiring,
                 format!("{pointer}/to"),
                 format!("a {what} from {from} to itself"),
             ));
@@ -148,6 +150,7 @@ impl Rules<'_> {
             if case.tubes.is_none() && !(permeable && tube.length_m.is_some()) {
                 let missing = if permeable { "length" } else { "permeability" };
                 let fault = Violation::new(
+                    Code::TubeSize,
                     pointer,
                     format!("a tube without {missing}, and no /tubes to take it from"),
                 );
@@ -174,7 +177,7 @@ impl Rules<'_> {
                 _ => None,
             };
             if let Some(what) = what {
-                let fault = Violation::new(pointer.clone(), what);
+                let fault = Violation::new(Code::Wiring, pointer.clone(), what);
                 self.faults
                     .push(fault.allowed("exactly one of pressure_pa and flow_m3_s"));
             }
@@ -183,7 +186,8 @@ impl Rules<'_> {
             };
             if let Some(first) = known.get(&point) {
                 let what = format!("a second port at {point}, the first is {first}");
-                self.faults.push(Violation::new(format!("{pointer}/at"), what));
+                self.faults
+                    .push(Violation::new(Code::Wiring, format!("{pointer}/at"), what));
             }
             known.entry(point).or_insert(pointer);
         }
@@ -205,14 +209,16 @@ impl Rules<'_> {
                 }
                 if let Some(first) = used.get(&index) {
                     let what = format!("bladder {index} is used twice, first at {first}");
-                    self.faults
-                        .push(Violation::new(pointer, what).allowed("every bladder in one chain at most"));
+                    self.faults.push(
+                        Violation::new(Code::Wiring, pointer, what).allowed("every bladder in one chain at most"),
+                    );
                 } else {
                     used.insert(index, pointer);
                 }
             }
             if case.tubes.is_none() && chain.bladders.len() > 1 {
                 let fault = Violation::new(
+                    Code::TubeSize,
                     format!("/network/chains/{i}"),
                     "a chain without tubes to join its bladders",
                 );
@@ -227,13 +233,15 @@ impl Rules<'_> {
                 match (end, self.attached.get(&point)) {
                     (ChainEnd::Sealed, Some(owners)) => {
                         let what = format!("{point} is sealed, but {} is attached there", owners[0]);
-                        self.faults
-                            .push(Violation::new(pointer, what).hint("write \"connected\" instead of \"sealed\""));
+                        self.faults.push(
+                            Violation::new(Code::Wiring, pointer, what)
+                                .hint("write \"connected\" instead of \"sealed\""),
+                        );
                     }
                     (ChainEnd::Connected, None) if !self.lost => {
                         let what = format!("nothing is connected to {point}");
                         let hint = "add a tube, port or turbine there, or write \"sealed\"";
-                        self.faults.push(Violation::new(pointer, what).hint(hint));
+                        self.faults.push(Violation::new(Code::Wiring, pointer, what).hint(hint));
                     }
                     _ => {}
                 }

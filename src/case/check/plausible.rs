@@ -3,7 +3,7 @@
 use crate::case::faults::Faults;
 use crate::case::numbers::plain;
 use crate::case::schema::{Case, CrossSection};
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 const MILLIMETRES: &str = "lengths are in metres; is this in millimetres?";
 
@@ -104,6 +104,7 @@ pub(super) fn sizes(case: &Case, faults: &mut Faults) {
     let mut look = |pointer: &str, value: f64, range: &Range| {
         if !(range.low..=range.high).contains(&value) && !faults.has(pointer) {
             let fault = Violation::new(
+                Code::Implausible,
                 pointer,
                 format!("{} {} is not a plausible size", plain(value), unit(range)),
             );
@@ -169,7 +170,7 @@ pub(super) fn proportions(case: &Case, faults: &mut Faults) {
     let most = MOST_SLENDER[usize::from(case.bladders.is_some())];
     if slenderness > most && !faults.has("/beam/length_m") && !faults.has("/beam/height_m") {
         let what = format!("a beam {} times as long as it is high", slenderness.round());
-        let fault = Violation::new("/beam/length_m", what);
+        let fault = Violation::new(Code::Implausible, "/beam/length_m", what);
         faults.push(
             fault
                 .allowed(format!("up to {most} times the height"))
@@ -186,6 +187,7 @@ pub(super) fn proportions(case: &Case, faults: &mut Faults) {
         let longest = LONGEST_TUBE * beam.length_m;
         if length > longest && !faults.has(&pointer) {
             let fault = Violation::new(
+                Code::Implausible,
                 pointer,
                 format!("a tube of {} m on a beam of {} m", plain(length), plain(beam.length_m)),
             );

@@ -8,7 +8,7 @@ use crate::case::locate::child;
 use crate::case::profile::Profile;
 use crate::case::schema::{Case, End};
 use crate::case::signals::{Clock, Signal};
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 pub(super) fn check(case: &Case, faults: &mut Faults) {
     pressures(case, faults);
@@ -28,7 +28,7 @@ fn pressures(case: &Case, faults: &mut Faults) {
             if super::network::exists(index, bladders.per_row, &pointer, faults) {
                 if let Some(first) = known.insert(index, pointer.clone()) {
                     let what = format!("the pressure of bladder {index} is given twice, first at {first}");
-                    faults.push(Violation::new(pointer, what));
+                    faults.push(Violation::new(Code::Start, pointer, what));
                 }
             }
         }
@@ -40,6 +40,7 @@ fn equilibrium(case: &Case, faults: &mut Faults) {
     let Some(start) = &case.start.equilibrium else { return };
     if !start.loads_at_s.is_finite() {
         faults.push(Violation::new(
+            Code::Start,
             "/start/equilibrium/loads_at_s",
             "the instant is not a finite number",
         ));
@@ -47,7 +48,7 @@ fn equilibrium(case: &Case, faults: &mut Faults) {
     for (key, given) in [("u1_m", &case.start.u1_m), ("u3_m", &case.start.u3_m)] {
         if given.is_some() {
             let what = format!("{key} is given, but /start/equilibrium finds the displacements");
-            faults.push(Violation::new(format!("/start/{key}"), what).hint("remove one of the two"));
+            faults.push(Violation::new(Code::Start, format!("/start/{key}"), what).hint("remove one of the two"));
         }
     }
 }
@@ -80,7 +81,7 @@ fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Faults) {
             };
             let hint = format!("let the signal begin at {starts}, or change /start/{start_key}");
             faults.push(
-                Violation::new(pointer, what)
+                Violation::new(Code::Start, pointer, what)
                     .allowed(format!("agreement within {tolerance:.1e} {unit}"))
                     .hint(hint),
             );

@@ -2,12 +2,12 @@
 
 use crate::case::faults::Faults;
 use crate::case::schema::Case;
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 pub(super) fn check(case: &Case, faults: &mut Faults) {
     let time = &case.time;
     let mut refuse = |key: &str, what: String, allowed: String| {
-        faults.push(Violation::new(format!("/time/{key}"), what).allowed(allowed));
+        faults.push(Violation::new(Code::Times, format!("/time/{key}"), what).allowed(allowed));
     };
     let intervals = [
         ("output_interval_s", time.output_interval_s),

@@ -31,21 +31,21 @@ pub struct Bladders {
     /// Width `w_b`, along the beam [m].
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub width_m: f64,
-    /// Permeability `q1b` in `q = -(q1b/mu) dp/ds` [m^4]; absent: that of `cross_section`.
+    /// Permeability `q1b` in `q = -(q1b/mu) dp/ds`, (A.13) [m^4]; absent: that of `cross_section`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub permeability_m4: Option<f64>,
     /// Cross-section from which the permeability follows; absent: `height_m` by `width_m`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cross_section: Option<CrossSection>,
-    /// `a_p`: area per pressure [m^2/Pa].
+    /// `a_p` in `a1 = a_p p + R A_M(M) + A_N(N)`, (A.15): area per pressure [m^2/Pa].
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub area_per_pressure_m2_per_pa: f64,
-    /// `aM-` (opening) and `aM+` (closing): area per bending moment.
+    /// `aM-` (opening) and `aM+` (closing) in `A_M(M)`: area per bending moment [m^2/(N m)].
     pub area_per_moment_m2_per_n_m: AreaPerMoment,
-    /// `aN-` (tension) and `aN+` (compression): area per normal force.
+    /// `aN-` (tension) and `aN+` (compression) in `A_N(N)`: area per normal force [m^2/N].
     pub area_per_force_m2_per_n: AreaPerForce,
-    /// How pressure strains the beam.
+    /// How pressure strains the beam: `lambda_p` and `alpha_p` in `N = EA (lambda - 1 - lambda_p)`, `M = EI (alpha - alpha_p)`.
     #[serde(default)]
     pub coupling: Coupling,
     /// Width of the smoothed kink between opening and closing slopes, relative to `EI/l_s` (moment) and `EA` (force).
@@ -58,10 +58,10 @@ pub struct Bladders {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AreaPerMoment {
-    /// `aM-`: where bending opens the bladder.
+    /// `aM-`: where bending opens the bladder [m^2/(N m)].
     #[schemars(range(min = 0.0))]
     pub opening: f64,
-    /// `aM+ >= aM-`: where bending closes the bladder.
+    /// `aM+ >= aM-`: where bending closes the bladder [m^2/(N m)].
     #[schemars(range(min = 0.0))]
     pub closing: f64,
 }
@@ -70,10 +70,10 @@ pub struct AreaPerMoment {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AreaPerForce {
-    /// `aN-`: under tension.
+    /// `aN-`: under tension [m^2/N].
     #[schemars(range(min = 0.0))]
     pub tension: f64,
-    /// `aN+ >= aN-`: under compression.
+    /// `aN+ >= aN-`: under compression [m^2/N].
     #[schemars(range(min = 0.0))]
     pub compression: f64,
 }
@@ -95,10 +95,10 @@ pub enum Coupling {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PublishedCoupling {
-    /// `psi'`: slope per unit of `(p_d - p_u)/E` [rad].
+    /// `psi'`: slope per unit of `(p_d - p_u)/E` [rad]: `alpha_p = -phi_b psi' (p_d - p_u)/E`, (A.24).
     #[schemars(range(min = 0.0))]
     pub slope_per_pressure_rad: f64,
-    /// `zeta'`: length per unit of `(p_u + p_d)/E` [m].
+    /// `zeta'`: length per unit of `(p_u + p_d)/E` [m]: `lambda_p = phi_b zeta' (p_u + p_d)/E`.
     #[schemars(range(min = 0.0))]
     pub length_per_pressure_m: f64,
 }

@@ -6,6 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::case::presets::Preset;
 use crate::case::signals::{Clock, Signal};
 
 mod beam;
@@ -35,6 +36,10 @@ pub struct Case {
     /// What the case shows and where it comes from.
     #[serde(default)]
     pub about: String,
+    /// Material and sizes to start from: what the case does not give of `beam`, `fluid`, `bladders` and `tubes` is taken from
+    /// there, and `"fluid": null, "bladders": null, "tubes": null` leave them out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub preset: Option<Preset>,
     /// The solid.
     pub beam: Beam,
     /// The fluid that fills bladders and tubes. Absent together with `bladders`: a dry beam.
@@ -100,10 +105,12 @@ impl Case {
         self.effects_tolerance.unwrap_or(1e-3)
     }
 
-    /// The case with every default filled in; without the editor's schema, which is not where results are.
+    /// The case with every default filled in; without the editor's schema, which is not where results are, and without the
+    /// preset, whose values it has.
     pub fn resolved(&self) -> Self {
         let mut case = self.clone();
         case.schema = None;
+        case.preset = None;
         case.time.output_interval_s = Some(self.time.output_interval());
         case.time.fields_interval_s = Some(self.time.fields_interval());
         case.time.window_s = Some(self.time.window());

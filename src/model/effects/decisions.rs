@@ -3,7 +3,7 @@
 use super::obstacles::Obstacle;
 use super::{Decision, Scene};
 use crate::case::schema::{Case, Choice, Load};
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 use crate::model::Network;
 
 /// What the program chooses by itself, and why.
@@ -54,6 +54,7 @@ impl Decisions<'_> {
                 Some(obstacle) => {
                     self.refusals.push(
                         Violation::new(
+                            Code::Effect,
                             format!("/effects/{name}"),
                             format!("{name} cannot be left out: {}", obstacle.what),
                         )

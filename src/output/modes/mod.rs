@@ -15,7 +15,7 @@ use super::effects::replace;
 use super::folder::{fault, part_of};
 use super::numbers::significant;
 use super::plot::modes::{self as picture, ModeShapes, Shown};
-use crate::error::Result;
+use crate::error::{Code, Result};
 use crate::model::passivity::{self, Passivity};
 use crate::run::modes::{Kind, Limit, Mode, Modes, Plan, Sensitivity};
 
@@ -73,15 +73,16 @@ impl Report<'_> {
     pub fn warnings(&self) -> Vec<String> {
         let about = &self.found.about;
         let moving = about.moving().then(|| {
-            format!(
+            Code::NotAtRest.warning(format!(
                 "{} is no equilibrium under the loads at t = {} s: unknowns would change at up to {:.2e} of their size a second; \
                  the modes are those of the state held where it is",
                 self.about, about.at, about.rate
-            )
+            ))
         });
         let still = self.found.modes.is_empty().then(|| {
-            "nothing can move: the case leaves out inertia of the solid (/effects/solid_inertia) and no bladder exchanges fluid"
-                .to_string()
+            Code::NothingMoves.warning(
+                "nothing can move: the case leaves out inertia of the solid (/effects/solid_inertia) and no bladder exchanges fluid",
+            )
         });
         moving.into_iter().chain(still).collect()
     }

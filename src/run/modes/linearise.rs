@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::case::signals::Clock;
 use crate::dae::{BeamDae, Dae as _, Fault, Seeds};
 use crate::discrete::{System, start};
-use crate::error::{Error, Result, SolverFault};
+use crate::error::{Code, Error, Result, SolverFault};
 use crate::model::Model;
 use crate::run::equilibrium;
 use crate::spectral::Pencil;
@@ -94,6 +94,7 @@ fn about(mut dae: BeamDae, at: f64, mut y: Vec<f64>) -> Result<Linearised> {
     let mut yp = vec![0.0; l.len];
     let fault = |what: String, unknown| {
         Error::Solver(Box::new(SolverFault {
+            code: Code::NoStart,
             time_s: at,
             what,
             unknown,

@@ -15,7 +15,7 @@ pub mod shape;
 use nalgebra::Complex;
 
 use crate::case::Case;
-use crate::error::{Error, Result, SolverFault};
+use crate::error::{Code, Error, Result, SolverFault};
 use crate::spectral::{self, Failure, Options, Pair, Pencil};
 
 pub use kind::Kind;
@@ -297,6 +297,7 @@ fn failed(about: &Linearised, failure: &Failure) -> Error {
         _ => None,
     };
     Error::Solver(Box::new(SolverFault {
+        code: Code::NoModes,
         time_s: about.at,
         what: format!("no modes: {failure}"),
         unknown,

@@ -4,7 +4,7 @@ use crate::case::Translation;
 use crate::case::schema::{Case, Choice, Effects};
 use crate::dae::BeamDae;
 use crate::discrete::{System, start};
-use crate::error::{Error, Result, SolverFault};
+use crate::error::{Code, Error, Result, SolverFault};
 use crate::model::Model;
 use crate::onestep::march::Impasse;
 use crate::onestep::{March, Method, OneStep, OneStepOptions};
@@ -180,6 +180,7 @@ pub fn whole(case: &Case) -> Model {
 /// What happened, as the house says it.
 pub fn fault(impasse: Impasse) -> Error {
     Error::Solver(Box::new(SolverFault {
+        code: Code::NoCycle,
         time_s: impasse.time,
         what: impasse.what,
         unknown: None,

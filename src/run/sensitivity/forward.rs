@@ -10,7 +10,7 @@ use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, Neighbours};
 use crate::discrete::{ledger, sample, start};
-use crate::error::{Error, Result, SolverFault};
+use crate::error::{Code, Error, Result, SolverFault};
 use crate::run::equilibrium;
 use crate::run::record::Column;
 use crate::run::schedule::{self, Stop};
@@ -149,6 +149,7 @@ impl<'a> Forward<'a> {
     /// Completes the sensitivities at a consistent state.
     pub fn complete(&mut self, dae: &mut BeamDae, t: f64, state: [&[f64]; 2]) -> std::result::Result<(), SolverFault> {
         consistent_sensitivities(dae, t, state, &mut self.s, &mut self.sp).map_err(|what| SolverFault {
+            code: Code::Singular,
             time_s: t,
             what: format!("no consistent sensitivities at t = {t:.6} s: {what}"),
             unknown: None,

@@ -1,0 +1,78 @@
+//! What every key means, as the schema says it.
+
+use serde_json::Value;
+
+use super::schema_json;
+
+/// One key of a case, or one word that stands for a value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Meaning {
+    /// The key.
+    pub name: String,
+    /// Where it stands: the object it belongs to and the key, such as `Bladders/length_m`; keys of the case itself `/name`.
+    pub place: String,
+    /// What it means, with unit and symbol.
+    pub meaning: String,
+}
+
+/// All keys, in the order of the schema.
+pub fn meanings() -> Vec<Meaning> {
+    let schema = &*schema_json::CASE;
+    let mut all = vec![];
+    walk(schema, "", &mut all);
+    for (name, part) in schema["$defs"].as_object().into_iter().flatten() {
+        walk(part, name, &mut all);
+    }
+    all
+}
+
+fn walk(part: &Value, place: &str, all: &mut Vec<Meaning>) {
+    let text = |value: &Value| value["description"].as_str().unwrap_or_default().to_owned();
+    for (name, inner) in part["properties"].as_object().into_iter().flatten() {
+        let place = format!("{place}/{name}");
+        // A form such as {"sine": ...} is described beside its only key.
+        let meaning = match text(inner) {
+            own if own.is_empty() => text(part),
+            own => own,
+        };
+        all.push(Meaning {
+            name: name.clone(),
+            place: place.clone(),
+            meaning,
+        });
+        walk(inner, &place, all);
+    }
+    for branch in ["oneOf", "anyOf"].iter().filter_map(|k| part[k].as_array()).flatten() {
+        if let Some(word) = branch["const"].as_str() {
+            all.push(Meaning {
+                name: word.to_owned(),
+                place: format!("{place} \"{word}\""),
+                meaning: text(branch),
+            });
+        }
+        walk(branch, place, all);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: an editor explains every key and word; what is measured says in which unit.
+    #[test]
+    fn every_key_says_what_it_means() {
+        let silent: Vec<String> = meanings()
+            .into_iter()
+            .filter(|m| m.meaning.len() < 4)
+            .map(|m| m.place)
+            .collect();
+        assert!(silent.is_empty(), "no meaning: {silent:?}");
+        let suffixes = ["_m", "_s", "_pa", "_hz", "_rad", "_m4", "_kg_m3", "_m2_per_pa"];
+        let unitless: Vec<String> = meanings()
+            .into_iter()
+            .filter(|m| suffixes.iter().any(|s| m.name.ends_with(s)) && !m.meaning.contains('['))
+            .map(|m| format!("{}: {}", m.place, m.meaning))
+            .collect();
+        assert!(unitless.is_empty(), "no unit: {unitless:#?}");
+    }
+}

@@ -1,0 +1,126 @@
+//! The number of every fault, failure and warning, and what `docs/messages.md` says about it.
+
+/// The page that explains each of them, a section a number.
+const PAGE: &str = include_str!("../../docs/messages.md");
+
+macro_rules! codes {
+    ($($name:ident = $id:literal, $what:literal;)*) => {
+        /// What kind of message it is. Numbers stay: they are looked up in pages and threads.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Code {
+            $(#[doc = $what] $name,)*
+        }
+
+        impl Code {
+            /// All of them, in the order of the page.
+            pub const ALL: &[Self] = &[$(Self::$name,)*];
+
+            /// The number: `E` for what ends a command, `W` for what to know before trusting a result.
+            pub fn id(self) -> &'static str {
+                match self {
+                    $(Self::$name => $id,)*
+                }
+            }
+        }
+    };
+}
+
+codes! {
+    Text = "E001", "The file is not JSON text.";
+    Kind = "E002", "A value of another kind than wanted.";
+    Name = "E003", "A name that is none of those allowed.";
+    Key = "E004", "A key that is not known.";
+    Missing = "E005", "A key that is missing.";
+    Range = "E006", "A number out of its range.";
+    Count = "E007", "An array with too few or too many entries.";
+    Table = "E008", "A table that cannot be used.";
+    Function = "E009", "A function of time or place that cannot be used.";
+    Implausible = "E010", "A size that no such beam has.";
+    Together = "E011", "Parts that only make sense together.";
+    Geometry = "E012", "Bladders that do not fit into the beam.";
+    Slopes = "E013", "Data of a bladder that contradict each other.";
+    Wiring = "E014", "A network that cannot be wired so.";
+    TubeSize = "E015", "A tube without a size.";
+    Junction = "E016", "A junction without a pressure.";
+    BeamEnds = "E017", "An end of the beam that is held twice, or not told how.";
+    Start = "E018", "A start that contradicts the rest of the case.";
+    Times = "E019", "Times that contradict each other.";
+    CaseName = "E020", "A name of a case that cannot name a folder.";
+    Effect = "E021", "An effect that cannot be left out.";
+    Convexity = "E022", "A potential that is not convex at the pressures expected.";
+    Order = "E023", "An order of BDF that is unstable for this beam.";
+    Usage = "E030", "A command line that makes no sense.";
+    NoStart = "E040", "No consistent state to start or go on from.";
+    Integrator = "E041", "The integrator cannot go on.";
+    Singular = "E042", "The equations lose their unique solution.";
+    Steps = "E043", "The steps allowed are used up.";
+    Stalled = "E044", "Steps no longer move the time on.";
+    NoEquilibrium = "E045", "No equilibrium is found.";
+    NoCycle = "E046", "No motion over a period.";
+    NoModes = "E047", "No modes are found.";
+    File = "E050", "A file that cannot be read or written.";
+    Reciprocity = "W001", "A coupling that is not reciprocal.";
+    CouplingLaw = "W002", "A coupling that is not passive, solvable or convex.";
+    FastFlow = "W003", "Flow that is not creeping.";
+    Strain = "W004", "Strains that are not small.";
+    Stocky = "W005", "A beam that is not slender.";
+    Mathieu = "W006", "Shaking inside a Mathieu tongue.";
+    Growth = "W007", "A deflection that grows.";
+    EnergyOpen = "W008", "An energy balance that stays open.";
+    LostConvexity = "W009", "A potential that lost convexity during the run.";
+    Buckling = "W010", "A straight beam beyond its buckling load.";
+    OrderHeld = "W011", "An order held down for stability.";
+    Accuracy = "W012", "An accuracy that is not reached, or not known.";
+    NotAtRest = "W013", "Modes about a state that is no equilibrium.";
+    NothingMoves = "W014", "A case in which nothing can move.";
+}
+
+impl Code {
+    /// A warning with its number in front.
+    pub fn warning(self, text: impl std::fmt::Display) -> String {
+        format!("{} {text}", self.id())
+    }
+
+    /// The one with this number, written in any case.
+    pub fn find(id: &str) -> Option<Self> {
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|code| code.id().eq_ignore_ascii_case(id))
+    }
+
+    /// What it is called: the heading of its section.
+    pub fn title(self) -> &'static str {
+        let heading = self.section().lines().next().unwrap_or_default();
+        heading.split_once(' ').map_or(heading, |(_, title)| title)
+    }
+
+    /// What it means, why it is so and what to do: its section, without the heading.
+    pub fn text(self) -> &'static str {
+        self.section().split_once('\n').map_or("", |(_, text)| text.trim())
+    }
+
+    fn section(self) -> &'static str {
+        let sections = PAGE.split("\n### ").skip(1);
+        let mine = sections.map(|s| s.split("\n## ").next().unwrap_or(s));
+        mine.into_iter().find(|s| s.starts_with(self.id())).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: every number has one section with a heading and something to do, and no section is about nothing.
+    #[test]
+    fn the_page_explains_each_number_once() {
+        for code in Code::ALL {
+            assert!(code.title().len() > 5, "{code:?} has no heading");
+            assert!(code.text().contains("**Do.**"), "{code:?} does not say what to do");
+        }
+        let headings: Vec<&str> = PAGE.lines().filter_map(|l| l.strip_prefix("### ")).collect();
+        let ids: Vec<&str> = Code::ALL.iter().map(|c| c.id()).collect();
+        let told: Vec<&str> = headings.iter().filter_map(|h| h.split(' ').next()).collect();
+        assert_eq!(told, ids);
+    }
+}

@@ -1,0 +1,65 @@
+//! `csv/FIELD.csv`: a row an instant, a column a place, times first.
+
+use std::fs;
+use std::path::Path;
+
+use super::Written;
+use crate::error::Result;
+use crate::output::folder::{TABLES, fault};
+use crate::output::history::HistoryWriter;
+use crate::output::numbers::shortest;
+use crate::study::compare::{Array, Recording};
+
+/// Writes one table a field into `dir/csv`.
+///
+/// Columns are `t [s]`, then places: `theta=0.0025 m` along the beam, `bladder=-3 s=0.0115 m` in the fluid, `s` from the
+/// bladder's inlet. The unit of the values stands in the field's name, which is the file's.
+pub fn write(dir: &Path, from: &Recording, instants: &[usize]) -> Result<Written> {
+    let dir = dir.join(TABLES);
+    fs::create_dir_all(&dir).map_err(|e| fault("create", &dir, e))?;
+    let mut written = Written::new(dir.clone());
+    for field in &from.fields {
+        let path = dir.join(format!("{}.csv", field.name));
+        let mut names = vec!["t [s]".to_string()];
+        names.extend(places(from, field));
+        let mut table = HistoryWriter::with_names(&path, names)?;
+        for &k in instants {
+            let row: Vec<f64> = [from.field_times[k]]
+                .into_iter()
+                .chain(field.row(k).iter().copied())
+                .collect();
+            table.row(&row)?;
+        }
+        written.count(table.secure()?);
+    }
+    Ok(written)
+}
+
+/// Names of a field's places. Fields of equal length lie at the same places: nodes, cells of the beam, cells of the fluid
+/// ([`crate::run::record::Field::axis`] is not kept in the file of arrays; names tell).
+fn places(from: &Recording, field: &Array) -> Vec<String> {
+    let fluid = ["pressure_pa", "area_change_m2"].contains(&field.name.as_str());
+    if let Some(bladders) = from.axis("bladder").filter(|b| fluid && b.len() == field.len) {
+        return in_bladders(from, bladders);
+    }
+    let axis = if field.name == "normal_force_n" {
+        "theta_cell_m"
+    } else {
+        "theta_node_m"
+    };
+    match from.axis(axis).filter(|a| a.len() == field.len) {
+        Some(theta) => theta.iter().map(|&x| format!("theta={} m", shortest(x))).collect(),
+        None => (0..field.len).map(|k| format!("place={k}")).collect(),
+    }
+}
+
+fn in_bladders(from: &Recording, bladders: &[f64]) -> Vec<String> {
+    let length = from
+        .case
+        .pointer("/bladders/length_m")
+        .and_then(serde_json::Value::as_f64);
+    let first = bladders.iter().take_while(|b| **b == bladders[0]).count();
+    let ds = length.unwrap_or(1.0) / first as f64;
+    let name = |(k, b): (usize, &f64)| format!("bladder={b} s={} m", shortest(((k % first) as f64 + 0.5) * ds));
+    bladders.iter().enumerate().map(name).collect()
+}

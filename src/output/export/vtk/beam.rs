@@ -1,0 +1,136 @@
+//! The beam's surface: its rectangular section swept along the deformed curve, with windows through which one sees the
+//! bladders.
+
+use super::curve::{Curve, Section};
+use super::hollow::Hollow;
+use super::surface::{Data, Surface};
+
+/// Fields of the beam at an instant; vectors as axial and transverse parts.
+pub(super) struct Fields<'a> {
+    /// Displacement at the nodes [m].
+    pub u: [&'a [f64]; 2],
+    /// Velocity at the nodes [m/s].
+    pub v: [&'a [f64]; 2],
+    /// Curvature at the nodes [1/m].
+    pub curvature: &'a [f64],
+    /// Moment at the nodes [N m].
+    pub moment: &'a [f64],
+    /// Normal force in the cells [N].
+    pub force: &'a [f64],
+}
+
+/// The surface. Data of points are those of their section's centre, data of quadrilaterals those of the beam's cell.
+pub(super) fn surface(hollow: &Hollow, curve: &Curve, sections: &[Section], fields: &Fields) -> Surface {
+    let heights = hollow.heights();
+    let m = heights.len();
+    let mut out = Surface::default();
+    // Station of each point.
+    let mut stations = vec![];
+    for (k, section) in sections.iter().enumerate() {
+        for side in [-1.0, 1.0] {
+            let across = side * hollow.half_width;
+            out.points.extend(heights.iter().map(|&h| section.point(h, across)));
+        }
+        stations.resize(out.points.len(), k);
+    }
+    // Point at a station, on the left (0) or right (1) side, at a height.
+    let at = |k: usize, side: usize, i: usize| (2 * k + side) * m + i;
+    let mut cells = vec![];
+    for (k, pair) in sections.windows(2).enumerate() {
+        let open = hollow.beside_bladder(pair[0].theta, pair[1].theta);
+        // Sides are divided at the rows' edges; a row is every second strip.
+        for i in (0..m - 1).filter(|i| !(open && i % 2 == 1)) {
+            out.quads
+                .push([at(k, 1, i), at(k + 1, 1, i), at(k + 1, 1, i + 1), at(k, 1, i + 1)]);
+            out.quads
+                .push([at(k, 0, i), at(k, 0, i + 1), at(k + 1, 0, i + 1), at(k + 1, 0, i)]);
+        }
+        out.quads
+            .push([at(k, 0, 0), at(k + 1, 0, 0), at(k + 1, 1, 0), at(k, 1, 0)]);
+        out.quads.push([
+            at(k, 0, m - 1),
+            at(k, 1, m - 1),
+            at(k + 1, 1, m - 1),
+            at(k + 1, 0, m - 1),
+        ]);
+        cells.resize(out.quads.len(), curve.cell(pair[0].theta, pair[1].theta));
+    }
+    let last = sections.len() - 1;
+    out.quads
+        .extend((0..m - 1).map(|i| [at(0, 0, i), at(0, 1, i), at(0, 1, i + 1), at(0, 0, i + 1)]));
+    cells.resize(out.quads.len(), 0);
+    out.quads
+        .extend((0..m - 1).map(|i| [at(last, 0, i), at(last, 0, i + 1), at(last, 1, i + 1), at(last, 1, i)]));
+    cells.resize(out.quads.len(), fields.force.len() - 1);
+
+    reveals(&mut out, hollow, sections, &mut stations, |from, to| {
+        cells.push(curve.cell(from, to))
+    });
+
+    let each = |field: &[f64]| -> Vec<f64> {
+        let at_station: Vec<f64> = sections.iter().map(|s| curve.interpolate(s.theta, field)).collect();
+        stations.iter().map(|&k| at_station[k]).collect()
+    };
+    let vector = |parts: [&[f64]; 2]| -> Vec<f64> {
+        let (axial, transverse) = (each(parts[0]), each(parts[1]));
+        axial
+            .into_iter()
+            .zip(transverse)
+            .flat_map(|(a, t)| [a, t, 0.0])
+            .collect()
+    };
+    out.of_points = vec![
+        Data::vector("u_m", vector(fields.u)),
+        Data::vector("v_m_s", vector(fields.v)),
+        Data::scalar("curvature_1_m", each(fields.curvature)),
+        Data::scalar("moment_n_m", each(fields.moment)),
+        Data::scalar("theta_m", stations.iter().map(|&k| sections[k].theta).collect()),
+    ];
+    out.of_cells = vec![Data::scalar(
+        "normal_force_n",
+        cells.iter().map(|&c| fields.force[c]).collect(),
+    )];
+    out
+}
+
+/// Walls of the windows, from the beam's sides in to the bladders' ends; `owned` hears between which coordinates each lies.
+fn reveals(
+    out: &mut Surface,
+    hollow: &Hollow,
+    sections: &[Section],
+    stations: &mut Vec<usize>,
+    mut owned: impl FnMut(f64, f64),
+) {
+    let apart = 1e-9 * hollow.length;
+    let rows = [[-hollow.row[1], -hollow.row[0]], hollow.row];
+    let depths = [hollow.half_width, hollow.half_across];
+    if depths[0] - depths[1] <= apart {
+        return;
+    }
+    for window in &hollow.windows {
+        let within = |k: &usize| (window[0] - apart..=window[1] + apart).contains(&sections[*k].theta);
+        let along: Vec<usize> = (0..sections.len()).filter(within).collect();
+        let last = along.len() - 1;
+        let theta = |k: usize| sections[along[k]].theta;
+        for (side, row) in [-1.0, 1.0].into_iter().flat_map(|side| rows.map(|row| (side, row))) {
+            let first = out.points.len();
+            for &k in &along {
+                for across in depths {
+                    out.points.extend(row.map(|h| sections[k].point(h, side * across)));
+                }
+                stations.resize(out.points.len(), k);
+            }
+            // Point at a station of the window, outer (0) or inner (1), low (0) or high (1).
+            let at = |k: usize, depth: usize, top: usize| first + 4 * k + 2 * depth + top;
+            for (k, top) in (0..last).flat_map(|k| [(k, 0), (k, 1)]) {
+                out.quads
+                    .push([at(k, 0, top), at(k + 1, 0, top), at(k + 1, 1, top), at(k, 1, top)]);
+                owned(theta(k), theta(k + 1));
+            }
+            for (k, next) in [(0, 1), (last, last - 1)] {
+                out.quads.push([at(k, 0, 0), at(k, 0, 1), at(k, 1, 1), at(k, 1, 0)]);
+                owned(theta(k), theta(next));
+            }
+        }
+    }
+}

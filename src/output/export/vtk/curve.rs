@@ -1,0 +1,103 @@
+//! The reference curve of an instant: where a section is, and how it is turned.
+
+use std::f64::consts::{PI, TAU};
+
+/// A cross-section: position of its centre (x, z) [m] and slope angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Section {
+    /// Material coordinate [m].
+    pub theta: f64,
+    /// Transverse position [m].
+    pub x: f64,
+    /// Axial position [m].
+    pub z: f64,
+    /// Slope angle `phi` [rad].
+    pub angle: f64,
+}
+
+impl Section {
+    /// A point of the section in VTK's axes: `height` towards +x, `across` along the width [m].
+    pub fn point(&self, height: f64, across: f64) -> [f64; 3] {
+        let (sin, cos) = self.angle.sin_cos();
+        [self.z - height * sin, self.x + height * cos, across]
+    }
+}
+
+/// Sections at the nodes, root to tip.
+#[derive(Clone, Debug)]
+pub(super) struct Curve {
+    nodes: Vec<Section>,
+}
+
+impl Curve {
+    /// From displacements [m] and curvature [1/m] at the nodes: the angle of an inner node is the mean of its two
+    /// neighbouring cells', that of an end follows from the curvature there, `kappa = -phi'`.
+    pub fn new(theta: &[f64], u1: &[f64], u3: &[f64], curvature: &[f64]) -> Self {
+        let mut nodes: Vec<Section> = theta
+            .iter()
+            .zip(u1.iter().zip(u3))
+            .map(|(&theta, (&u1, &u3))| Section {
+                theta,
+                x: u1,
+                z: theta + u3,
+                angle: 0.0,
+            })
+            .collect();
+        let mut cells: Vec<f64> = vec![];
+        for pair in nodes.windows(2) {
+            let direction = (pair[1].x - pair[0].x).atan2(pair[1].z - pair[0].z);
+            // Counted over full turns: a strip may be rolled up.
+            let turned = |last: f64| last + (direction - last + PI).rem_euclid(TAU) - PI;
+            cells.push(cells.last().map_or(direction, |&last| turned(last)));
+        }
+        let Some(last) = cells.len().checked_sub(1) else {
+            return Self { nodes };
+        };
+        let half = |k: usize| 0.5 * (theta[k + 1] - theta[k]);
+        for (k, node) in nodes.iter_mut().enumerate() {
+            node.angle = match k {
+                0 => cells[0] + curvature[0] * half(0),
+                k if k > last => cells[last] - curvature[k] * half(last),
+                k => 0.5 * (cells[k - 1] + cells[k]),
+            };
+        }
+        Self { nodes }
+    }
+
+    /// Sections at material coordinates [m], straight between nodes.
+    pub fn sections(&self, theta: &[f64]) -> Vec<Section> {
+        theta.iter().map(|&t| self.at(t)).collect()
+    }
+
+    /// Section at a material coordinate [m].
+    pub fn at(&self, theta: f64) -> Section {
+        let mix = |f: fn(&Section) -> f64| {
+            let values: Vec<f64> = self.nodes.iter().map(f).collect();
+            self.interpolate(theta, &values)
+        };
+        Section {
+            theta,
+            x: mix(|s| s.x),
+            z: mix(|s| s.z),
+            angle: mix(|s| s.angle),
+        }
+    }
+
+    /// A field of the nodes at a material coordinate; at a node the very number.
+    pub fn interpolate(&self, theta: f64, field: &[f64]) -> f64 {
+        let next = self.nodes.partition_point(|s| s.theta < theta).min(field.len() - 1);
+        let (k, n) = (next.saturating_sub(1), next);
+        let (a, b) = (self.nodes[k].theta, self.nodes[n].theta);
+        if theta >= b || a == b {
+            return field[n];
+        }
+        field[k] + (field[n] - field[k]) * (theta - a) / (b - a)
+    }
+
+    /// Cell in which the middle between two coordinates lies.
+    pub fn cell(&self, from: f64, to: f64) -> usize {
+        let middle = 0.5 * (from + to);
+        let next = self.nodes.partition_point(|s| s.theta < middle);
+        next.clamp(1, self.nodes.len() - 1) - 1
+    }
+}

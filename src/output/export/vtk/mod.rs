@@ -1,0 +1,139 @@
+//! `vtk/NAME.pvd` and a `.vtp` a part and instant: what ParaView opens as a film.
+//!
+//! ```text
+//! surface   points, quadrilaterals, lines and their data, as VTK's XML
+//! curve     the reference curve of an instant: where a section is and how it is turned
+//! hollow    rows and windows: where the bladders lie in the beam
+//! beam      the beam's surface, open where one looks into the bladders
+//! bladders  the bladders as boxes that move with their segments
+//! tubes     tubes and turbines as lines
+//! ```
+//!
+//! VTK's axes: X along the straight beam (the model's z), Y the deflection (the model's x), Z across the width. Seen as
+//! ParaView first shows it, the beam lies on its side and bends up and down.
+
+mod beam;
+mod bladders;
+mod curve;
+mod hollow;
+mod surface;
+mod tubes;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::Written;
+use crate::case::Case;
+use crate::error::Result;
+use crate::model::Model;
+use crate::output::folder::{VTK, fault};
+use crate::output::numbers::shortest;
+use crate::study::compare::Recording;
+use curve::Curve;
+use hollow::Hollow;
+use surface::Surface;
+
+/// What is drawn, each a file an instant.
+const PARTS: [&str; 3] = ["beam", "bladders", "tubes"];
+
+/// Writes `dir/vtk`; older files of the same kind there go first. Returns the path of the `.pvd`.
+pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> Result<Written> {
+    let dir = dir.join(VTK);
+    fs::create_dir_all(&dir).map_err(|e| fault("create", &dir, e))?;
+    remove_older(&dir)?;
+    let scene = Scene::new(case, from);
+    let digits = from.field_times.len().to_string().len();
+    let collection = dir.join(format!("{}.pvd", case.name));
+    let mut written = Written::new(collection.clone());
+    let mut sets = String::new();
+    for &k in instants {
+        let t = from.field_times[k];
+        for (part, surface) in scene.at(k).into_iter().enumerate() {
+            let name = PARTS[part];
+            let file = format!("{name}-{k:0digits$}.vtp");
+            written.count(put(&dir.join(&file), &surface.file(t))?);
+            sets += &format!(
+                "    <DataSet timestep=\"{}\" part=\"{part}\" name=\"{name}\" file=\"{file}\"/>\n",
+                shortest(t)
+            );
+        }
+    }
+    let text = format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n{sets}  </Collection>\n</VTKFile>\n"
+    );
+    written.count(put(&collection, text.as_bytes())?);
+    Ok(written)
+}
+
+fn put(path: &Path, bytes: &[u8]) -> Result<u64> {
+    fs::write(path, bytes).map_err(|e| fault("write", path, e))?;
+    Ok(bytes.len() as u64)
+}
+
+/// Films of another choice of instants would mix with this one.
+fn remove_older(dir: &Path) -> Result<()> {
+    let ours = |path: &PathBuf| {
+        let name = path
+            .file_name()
+            .map(|n| n.to_string_lossy().into_owned())
+            .unwrap_or_default();
+        let frame = PARTS
+            .iter()
+            .any(|part| name.strip_prefix(part).is_some_and(|rest| rest.starts_with('-')));
+        frame && name.ends_with(".vtp")
+    };
+    let entries = fs::read_dir(dir).map_err(|e| fault("read", dir, e))?;
+    for path in entries.flatten().map(|e| e.path()).filter(ours) {
+        fs::remove_file(&path).map_err(|e| fault("remove", &path, e))?;
+    }
+    Ok(())
+}
+
+/// What does not move: sizes, windows, which bladder is where, which tube joins what.
+struct Scene<'a> {
+    from: &'a Recording,
+    hollow: Hollow,
+    stations: Vec<f64>,
+    wet: Option<(bladders::Layout, Vec<tubes::Tube>)>,
+}
+
+impl<'a> Scene<'a> {
+    fn new(case: &Case, from: &'a Recording) -> Self {
+        let hollow = Hollow::new(case);
+        let stations = hollow.stations(from.axis("theta_node_m").unwrap_or_default());
+        let model = Model::new(case);
+        let wet = model.wet.as_ref().zip(from.axis("bladder")).map(|(wet, labels)| {
+            let layout = bladders::Layout::new(wet, labels);
+            let tubes = tubes::all(case, wet, &hollow, &layout);
+            (layout, tubes)
+        });
+        Self {
+            from,
+            hollow,
+            stations,
+            wet,
+        }
+    }
+
+    /// The parts at an instant, in the order of [`PARTS`]; a dry beam has the first alone.
+    fn at(&self, instant: usize) -> Vec<Surface> {
+        let row = |name: &str| self.from.field(name).map_or(&[][..], |f| f.row(instant));
+        let theta = self.from.axis("theta_node_m").unwrap_or_default();
+        let curve = Curve::new(theta, row("u1_m"), row("u3_m"), row("curvature_1_m"));
+        let sections = curve.sections(&self.stations);
+        let fields = beam::Fields {
+            u: [row("u3_m"), row("u1_m")],
+            v: [row("v3_m_s"), row("v1_m_s")],
+            curvature: row("curvature_1_m"),
+            moment: row("moment_n_m"),
+            force: row("normal_force_n"),
+        };
+        let mut parts = vec![beam::surface(&self.hollow, &curve, &sections, &fields)];
+        if let Some((layout, tubes)) = &self.wet {
+            let (pressure, area) = (row("pressure_pa"), row("area_change_m2"));
+            parts.push(bladders::surface(&self.hollow, layout, &sections, pressure, area));
+            parts.push(tubes::lines(tubes, &curve, pressure));
+        }
+        parts
+    }
+}

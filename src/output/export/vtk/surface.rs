@@ -1,0 +1,148 @@
+//! Points, quadrilaterals, lines and their data, as an XML file of VTK with its arrays appended as raw bytes.
+//!
+//! The format is VTK's "PolyData" (`.vtp`, version 1.0): a header that names each array and its place, then `_` and the
+//! arrays, each after its size as a `UInt64`, all little-endian.
+
+use std::fmt::Write as _;
+
+use crate::output::numbers::shortest;
+
+/// Numbers of an array.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Values {
+    /// Doubles.
+    Double(Vec<f64>),
+    /// Integers.
+    Whole(Vec<i32>),
+}
+
+/// An array of data; `components` names each number of a point or cell, none where there is one.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Data {
+    /// Name with unit.
+    pub name: &'static str,
+    /// Names of the components of a vector.
+    pub components: &'static [&'static str],
+    /// The numbers.
+    pub values: Values,
+}
+
+impl Data {
+    /// One double a point or cell.
+    pub fn scalar(name: &'static str, values: Vec<f64>) -> Self {
+        Self {
+            name,
+            components: &[],
+            values: Values::Double(values),
+        }
+    }
+
+    /// One integer a point or cell.
+    pub fn number(name: &'static str, values: Vec<i32>) -> Self {
+        Self {
+            name,
+            components: &[],
+            values: Values::Whole(values),
+        }
+    }
+
+    /// A vector in VTK's axes.
+    pub fn vector(name: &'static str, values: Vec<f64>) -> Self {
+        Self {
+            name,
+            components: &["axial", "transverse", "across"],
+            values: Values::Double(values),
+        }
+    }
+}
+
+/// Quadrilaterals and lines on points; lines come first in the data of cells, as VTK wants.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Surface {
+    /// Positions [m].
+    pub points: Vec<[f64; 3]>,
+    /// Lines, by their points.
+    pub lines: Vec<Vec<usize>>,
+    /// Quadrilaterals, counter-clockwise seen from outside.
+    pub quads: Vec<[usize; 4]>,
+    /// Data of the points.
+    pub of_points: Vec<Data>,
+    /// Data of lines and quadrilaterals.
+    pub of_cells: Vec<Data>,
+}
+
+/// Appended arrays and what the header says of them.
+#[derive(Default)]
+struct Appended {
+    bytes: Vec<u8>,
+}
+
+impl Appended {
+    fn array(&mut self, name: &str, components: &[&str], values: &Values) -> String {
+        let (kind, bytes): (&str, Vec<u8>) = match values {
+            Values::Double(all) => ("Float64", all.iter().flat_map(|x| x.to_le_bytes()).collect()),
+            Values::Whole(all) => ("Int32", all.iter().flat_map(|x| x.to_le_bytes()).collect()),
+        };
+        let mut tag = format!("<DataArray type=\"{kind}\" Name=\"{name}\"");
+        if !components.is_empty() {
+            let _ = write!(tag, " NumberOfComponents=\"{}\"", components.len());
+        }
+        for (k, component) in components.iter().enumerate() {
+            let _ = write!(tag, " ComponentName{k}=\"{component}\"");
+        }
+        let _ = write!(tag, " format=\"appended\" offset=\"{}\"/>", self.bytes.len());
+        self.bytes.extend((bytes.len() as u64).to_le_bytes());
+        self.bytes.extend(bytes);
+        tag
+    }
+
+    fn group(&mut self, name: &str, arrays: &[Data]) -> String {
+        let tags: String = arrays
+            .iter()
+            .map(|d| format!("        {}\n", self.array(d.name, d.components, &d.values)))
+            .collect();
+        format!("      <{name}>\n{tags}      </{name}>\n")
+    }
+
+    fn cells<'a>(&mut self, name: &str, cells: impl Iterator<Item = &'a [usize]>) -> String {
+        let (mut joined, mut ends) = (vec![], vec![]);
+        for cell in cells {
+            joined.extend(cell.iter().map(|&p| p as i32));
+            ends.push(joined.len() as i32);
+        }
+        let arrays = [Data::number("connectivity", joined), Data::number("offsets", ends)];
+        self.group(name, &arrays)
+    }
+}
+
+impl Surface {
+    /// The file, for the time `t` [s].
+    pub fn file(&self, t: f64) -> Vec<u8> {
+        let mut appended = Appended::default();
+        let points = Values::Double(self.points.iter().flatten().copied().collect());
+        let pieces = [
+            appended.group("PointData", &self.of_points),
+            appended.group("CellData", &self.of_cells),
+            format!(
+                "      <Points>\n        {}\n      </Points>\n",
+                appended.array("position_m", &["axial", "transverse", "across"], &points)
+            ),
+            appended.cells("Lines", self.lines.iter().map(Vec::as_slice)),
+            appended.cells("Polys", self.quads.iter().map(|q| &q[..])),
+        ]
+        .concat();
+        let head = format!(
+            "<?xml version=\"1.0\"?>\n\
+             <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <PolyData>\n    \
+             <FieldData>\n      <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n    \
+             </FieldData>\n    \
+             <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n\
+             {pieces}    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_",
+            shortest(t),
+            self.points.len(),
+            self.lines.len(),
+            self.quads.len()
+        );
+        [head.as_bytes(), &appended.bytes, b"\n  </AppendedData>\n</VTKFile>\n"].concat()
+    }
+}

@@ -1,0 +1,121 @@
+//! Tubes and turbines as lines beside the beam: half ellipses as long as the tube where both ends are on one side.
+
+use std::f64::consts::PI;
+
+use super::bladders::Layout;
+use super::curve::Curve;
+use super::hollow::Hollow;
+use super::surface::{Data, Surface};
+use crate::case::Case;
+use crate::case::schema::BladderEnd;
+use crate::model::Wet;
+use crate::model::network::{LinkKind, Node, bladder_index};
+
+/// Points of a line.
+const POINTS: usize = 13;
+
+/// A place that moves with the beam: material coordinate, height and distance across from the reference curve [m].
+type Place = [f64; 3];
+
+/// A line between two places.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tube {
+    line: Vec<Place>,
+    /// Recorded fluid cells at its ends, none at a junction or port.
+    cells: Vec<usize>,
+    network: i32,
+    turbine: bool,
+}
+
+/// All tubes and turbines of a network, rectified ones included. What ends nowhere near a bladder is left out.
+pub(super) fn all(case: &Case, wet: &Wet, hollow: &Hollow, layout: &Layout) -> Vec<Tube> {
+    let network = &wet.network;
+    let drawn = |kind: &LinkKind| !matches!(kind, LinkKind::Opening);
+    let links = network.links.iter().map(|l| (l.from, l.to, l.kind));
+    let bridges = network
+        .bridges
+        .iter()
+        .map(|b| (b.from, b.to, LinkKind::Turbine(b.turbine)));
+    let joints: Vec<(Node, Node, LinkKind)> = links.chain(bridges).collect();
+    let length = case.tubes.as_ref().map_or(0.0, |t| t.length_m);
+    let mouth = |node: Node| mouth(node, wet, hollow, layout);
+    let place = |node: Node| {
+        mouth(node).map(|m| m.0).or_else(|| {
+            // A junction or port lies outside of the mouths that it is joined to.
+            let others = joints
+                .iter()
+                .filter_map(|(a, b, _)| (*a == node).then_some(*b).or((*b == node).then_some(*a)));
+            let mouths: Vec<Place> = others.filter_map(mouth).map(|m| m.0).collect();
+            let mean = |k: usize| mouths.iter().map(|m| m[k]).sum::<f64>() / mouths.len() as f64;
+            let outside = |across: f64| across + across.signum() * 0.5 * length;
+            (!mouths.is_empty()).then(|| [mean(0), mean(1), outside(mean(2))])
+        })
+    };
+    let tube = |(from, to, kind): &(Node, Node, LinkKind)| {
+        let ends = [*from, *to];
+        Some(Tube {
+            line: arc(place(*from)?, place(*to)?, length),
+            cells: ends.into_iter().filter_map(mouth).map(|m| m.1).collect(),
+            network: ends.into_iter().find_map(|n| network.component_of(n)).unwrap_or(0) as i32 + 1,
+            turbine: matches!(kind, LinkKind::Turbine(_)),
+        })
+    };
+    joints.iter().filter(|j| drawn(&j.2)).filter_map(tube).collect()
+}
+
+/// Where a bladder's end meets the beam's side, and its outermost fluid cell.
+fn mouth(node: Node, wet: &Wet, hollow: &Hollow, layout: &Layout) -> Option<(Place, usize)> {
+    let Node::Cell { bladder, end } = node else { return None };
+    let owner = layout
+        .bladders
+        .iter()
+        .find(|b| bladder_index(b.label, wet.per_row) == bladder)?;
+    let window = hollow.windows[owner.label.unsigned_abs() as usize - 1];
+    let height = 0.5 * (hollow.row[0] + hollow.row[1]) * owner.label.signum() as f64;
+    let (side, cell) = match end {
+        BladderEnd::Inlet => (owner.inlet, owner.first),
+        BladderEnd::Outlet => (-owner.inlet, owner.first + layout.cells - 1),
+    };
+    Some(([0.5 * (window[0] + window[1]), height, side * hollow.half_width], cell))
+}
+
+/// From one place to the other: bulging out of the beam's side as far as the tube is long, straight between two sides.
+fn arc(from: Place, to: Place, length: f64) -> Vec<Place> {
+    let distance = (0..3).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();
+    let half = 0.5 * distance;
+    // Perimeter of an ellipse with half axes a, b: nearly 2 pi sqrt((a^2 + b^2)/2).
+    let bulge = (2.0 * (length / PI).powi(2) - half * half)
+        .max(0.04 * half * half)
+        .sqrt();
+    let bulge = if from[2] * to[2] > 0.0 {
+        bulge * from[2].signum()
+    } else {
+        0.0
+    };
+    let point = |i: usize| {
+        let turn = PI * i as f64 / (POINTS - 1) as f64;
+        let share = 0.5 - 0.5 * turn.cos();
+        let mut p = [0, 1, 2].map(|k| from[k] + share * (to[k] - from[k]));
+        p[2] += bulge * turn.sin();
+        p
+    };
+    (0..POINTS).map(point).collect()
+}
+
+/// The lines; the pressure of each is the mean over the fluid cells that it joins [Pa].
+pub(super) fn lines(tubes: &[Tube], curve: &Curve, pressure: &[f64]) -> Surface {
+    let mut out = Surface::default();
+    for tube in tubes {
+        let first = out.points.len();
+        out.points
+            .extend(tube.line.iter().map(|p| curve.at(p[0]).point(p[1], p[2])));
+        out.lines.push((first..out.points.len()).collect());
+    }
+    let mean = |t: &Tube| t.cells.iter().map(|&c| pressure[c]).sum::<f64>() / t.cells.len() as f64;
+    out.of_cells = vec![
+        Data::scalar("pressure_pa", tubes.iter().map(mean).collect()),
+        Data::number("network", tubes.iter().map(|t| t.network).collect()),
+        Data::number("turbine", tubes.iter().map(|t| i32::from(t.turbine)).collect()),
+    ];
+    out
+}

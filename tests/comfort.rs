@@ -1,0 +1,206 @@
+//! What makes a case easy to write: presets, remarks, starting cases, explanations, faults for scripts.
+//!
+//! Goal: a case written with little has the numbers of one written out; every shipped case and every starting case is valid against
+//! the schema that editors use; every message can be looked up.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use serde_json::{Value, json};
+use slcbeam::case::{self, Case, schema_json};
+use slcbeam::error::{CaseFault, Error};
+
+fn parsed(text: &str, sets: &[&str]) -> Result<Case, Error> {
+    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+    case::parse(text, Path::new("mine.json"), Path::new(""), &sets).map(|loaded| loaded.case)
+}
+
+fn faults(text: &str) -> CaseFault {
+    match parsed(text, &[]) {
+        Err(Error::Case(fault)) => *fault,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn resolved(text: &str, sets: &[&str]) -> Value {
+    serde_json::to_value(parsed(text, sets).unwrap().resolved()).unwrap()
+}
+
+const LITTLE: &str = r#"{
+  "// why": "a remark", "name": "little", "preset": "matia-gat-beam",
+  "ends": {"// here": ["too"], "root": "clamped", "tip": "free"}, "time": {"end_s": 1}
+}"#;
+
+#[test]
+fn a_preset_stands_for_the_numbers_of_the_paper() {
+    let written_out: Value = serde_json::from_str(include_str!("data/wiring-2.json")).unwrap();
+    let little = resolved(LITTLE, &[]);
+    for (section, key) in [
+        ("beam", "height_m"),
+        ("fluid", "viscosity_pa_s"),
+        ("bladders", "permeability_m4"),
+        ("tubes", "radius_m"),
+    ] {
+        assert_eq!(little[section][key], written_out[section][key]);
+    }
+    assert_eq!(little["bladders"]["coupling"], "reciprocal");
+    assert!(little.get("preset").is_none(), "a resolved case has the numbers");
+}
+
+#[test]
+fn what_stands_in_the_case_or_an_argument_goes_before_the_preset() {
+    let longer = resolved(LITTLE, &["/beam/length_m=0.3", "/bladders/per_row=30"]);
+    assert_eq!(
+        (&longer["beam"]["length_m"], &longer["beam"]["height_m"]),
+        (&json!(0.3), &json!(0.0216))
+    );
+    let dry = resolved(LITTLE, &["/fluid=null", "/bladders=null", "/tubes=null"]);
+    assert!(dry.get("bladders").is_none() && dry.get("fluid").is_none());
+    let wide = resolved(LITTLE, &["/tubes/radius_m=0.002"]);
+    assert!(wide["tubes"].get("permeability_m4").is_none(), "that of the radius");
+}
+
+#[test]
+fn a_misspelt_preset_is_one_fault() {
+    let fault = faults(&LITTLE.replace("matia-gat-beam", "matia-gat-beem"));
+    let told: Vec<_> = fault
+        .violations
+        .iter()
+        .map(|v| (v.code.id(), v.nearest.as_deref()))
+        .collect();
+    assert_eq!(told, [("E003", Some("matia-gat-beam"))]);
+}
+
+/// A fault in a number that only the preset has is shown at the preset.
+#[test]
+fn what_comes_from_the_preset_is_shown_there() {
+    let fault = faults(&LITTLE.replace("\"ends\"", "\"beam\": {\"height_m\": 0.001}, \"ends\""));
+    let shown: Vec<_> = fault
+        .violations
+        .iter()
+        .map(|v| &fault.text[v.span.clone().unwrap()])
+        .collect();
+    assert!(
+        !shown.is_empty()
+            && shown
+                .iter()
+                .all(|s| s.contains("matia-gat-beam") || s.contains("0.001")),
+        "{shown:?}"
+    );
+}
+
+#[test]
+fn a_comment_is_told_how_to_stand() {
+    let fault = faults(&LITTLE.replace("\"name\"", "// my case\n \"name\""));
+    assert!(fault.violations[0].hint.as_ref().unwrap().contains("begins with //"));
+}
+
+fn slcbeam(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let output = Command::cargo_bin("slcbeam")
+        .unwrap()
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn a_starting_case_is_valid_for_editors_and_named_as_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    for kind in ["wiring", "actuator", "harvester", "sensor", "beam"] {
+        let file = format!("my-{kind}.json");
+        assert_eq!(slcbeam(folder.path(), &["new", kind, &file]).0, 0);
+        let text = fs::read_to_string(folder.path().join(&file)).unwrap();
+        assert_eq!(parsed(&text, &[]).unwrap().name, format!("my-{kind}"));
+        assert!(text.contains("\"// "), "no remarks");
+        let written: Value = serde_json::from_str(&text).unwrap();
+        let beside = folder.path().join(written["$schema"].as_str().unwrap());
+        let schema: Value = serde_json::from_str(&fs::read_to_string(beside).unwrap()).unwrap();
+        assert!(jsonschema::is_valid(&schema, &written), "{kind}");
+        let (code, _, err) = slcbeam(folder.path(), &["new", kind, &file]);
+        assert!(code == 2 && err.contains("not written over"), "{err}");
+    }
+}
+
+/// Editors are told the same as `slcbeam check`: with a preset its sections may be partial, without one they may not.
+#[test]
+fn the_schema_knows_presets_and_remarks() {
+    let schema = schema_json();
+    let valid = |text: &str| jsonschema::is_valid(&schema, &serde_json::from_str(text).unwrap());
+    assert!(valid(LITTLE));
+    assert!(valid(&LITTLE.replace(
+        "\"ends\"",
+        "\"beam\": {\"length_m\": 0.3}, \"bladders\": null, \"ends\""
+    )));
+    assert!(!valid(&LITTLE.replace("\"preset\": \"matia-gat-beam\",", "")));
+    assert!(!valid(&LITTLE.replace(
+        "\"preset\": \"matia-gat-beam\",",
+        "\"beam\": {\"length_m\": 0.3},"
+    )));
+    assert!(!valid(
+        &LITTLE.replace("\"ends\"", "\"beam\": {\"lenght_m\": 0.3}, \"ends\"")
+    ));
+}
+
+#[test]
+fn messages_and_keys_are_explained() {
+    let here = Path::new(".");
+    let (code, all, _) = slcbeam(here, &["explain"]);
+    assert!(code == 0 && all.lines().count() > 30, "{all}");
+    let (_, one, _) = slcbeam(here, &["explain", "w006"]);
+    assert!(one.contains("Mathieu"), "{one}");
+    let (_, key, _) = slcbeam(here, &["explain", "/bladders/permeability_m4"]);
+    assert!(key.contains("[m^4]") && key.contains("TubeDefaults"), "{key}");
+    let (_, effect, _) = slcbeam(here, &["explain", "finite_rotation", "--json"]);
+    assert!(serde_json::from_str::<Value>(&effect).unwrap()[0]["meaning"].is_string());
+    let (code, _, err) = slcbeam(here, &["explain", "finite_rotaton"]);
+    assert!(code == 2 && err.contains("did you mean finite_rotation"), "{err}");
+}
+
+/// With `--json` every failure is an object on standard output, whatever the command.
+#[test]
+fn scripts_are_told_faults_as_json() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("bad.json"), LITTLE.replace("end_s", "ends_s")).unwrap();
+    for command in [
+        "run",
+        "check",
+        "equilibrium",
+        "modes",
+        "study",
+        "effects",
+        "floquet",
+        "periodic",
+        "mapping",
+    ] {
+        let (code, out, err) = slcbeam(folder.path(), &[command, "bad.json", "--json"]);
+        assert_eq!(code, 3, "{command}");
+        let told: Value = serde_json::from_str(&out).unwrap_or_else(|e| panic!("{command}: {e}: {out}"));
+        assert_eq!(told["faults"][0]["code"], "E004");
+        assert_eq!(
+            (&told["faults"][0]["line"], &told["faults"][0]["nearest"]),
+            (&json!(3), &json!("end_s"))
+        );
+        assert!(err.contains("fault[E004]"), "{err}");
+    }
+    let (code, out, _) = slcbeam(folder.path(), &["compare", "a", "b", "--json"]);
+    assert_eq!(code, 5);
+    assert_eq!(serde_json::from_str::<Value>(&out).unwrap()["code"], "E050");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is written");
+}
+
+#[test]
+fn shells_and_typing_errors() {
+    let here = Path::new(".");
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let (code, script, _) = slcbeam(here, &["completions", shell]);
+        assert!(code == 0 && script.contains("equilibrium"), "{shell}");
+    }
+    let (code, _, err) = slcbeam(here, &["equilibrum", "x"]);
+    assert!(code == 2 && err.contains("'equilibrium'"), "{err}");
+    let (code, _, err) = slcbeam(here, &["new", "harvestr"]);
+    assert!(code == 2 && err.contains("'harvester'"), "{err}");
+}
