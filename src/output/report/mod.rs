@@ -13,6 +13,7 @@
 //! facts       effects, solver, wall time, characteristic numbers in words
 //! parameters  the case as a table, described by its schema
 //! sheet       CSV files as tables
+//! warnings    what to know first, in words
 //! equilibrium, modes, studies, cycles   the pages of the other commands
 //! vendor      uPlot, which draws histories
 //! ```
@@ -36,6 +37,7 @@ mod scene;
 mod sheet;
 mod signals;
 mod studies;
+mod warnings;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -74,7 +76,7 @@ pub fn complete(dir: &Path, kind: Kind, case: &Case) -> Result<Written> {
 
 fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
     let place = Place::new(dir);
-    let data = match kind {
+    let mut data = match kind {
         Kind::Run => run::data(&place)?,
         Kind::Equilibrium => equilibrium::data(&place)?,
         Kind::Modes => modes::data(&place)?,
@@ -84,6 +86,13 @@ fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
         Kind::Map => cycles::map(&place)?,
         Kind::Sweep => cycles::sweep(&place)?,
     };
+    // Whoever sees the page first needs them in words; their numbers alone say little.
+    let texts = data
+        .get("warnings")
+        .and_then(Value::as_array)
+        .cloned()
+        .unwrap_or_default();
+    data.insert("warnings".into(), warnings::groups(&texts));
     let text = page::assemble(&data);
     let path = out.map_or_else(|| dir.join(REPORT), Path::to_path_buf);
     replace(&path, &text)?;

@@ -52,18 +52,25 @@ function showHead(main) {
   }
 }
 
+/** Paragraphs and lists of a short text; marks of emphasis fall away. */
+function paragraphs(text) {
+  const plain = text.replace(/\n\*\*Do\.\*\*/g, "\n\nWhat to do:").replace(/\*\*/g, "").replace(/\[([^\]]+)\]\([^)]+\)/g, "$1");
+  return plain.split(/\n\s*\n/).filter((t) => t.trim() && !t.startsWith("```")).map((t) => el("p", {}, prose(t.replace(/\s*\n\s*/g, " "))));
+}
+
 function showWarnings(main) {
-  const all = data.warnings || [];
-  if (!all.length) return;
-  const item = (text) => {
-    const cut = /^([^:]{3,48}):\s+(.+)$/s.exec(text);
-    return cut ? el("li", {}, el("b", { text: cut[1] }), ` – ${cut[2]}`) : el("li", { text });
+  const groups = data.warnings || [];
+  if (!groups.length) return;
+  const item = (group) => {
+    const texts = group.texts.map((text) => (group.title ? text.replace(/^[^:]{3,48}:\s+/, "") : text));
+    const more = group.explanation ? el("details", {}, el("summary", { text: `What this means (${group.code})` }), paragraphs(group.explanation)) : null;
+    return el("li", {}, group.title ? el("b", { text: group.title }) : null, texts.map((text) => el("div", {}, prose(text))), more);
   };
-  const shown = all.length > 4 ? 3 : all.length;
-  const rest = all.slice(shown);
+  const shown = groups.length > 4 ? 3 : groups.length;
+  const rest = groups.slice(shown);
   main.append(el("div", { class: "notice", role: "note", id: "warnings" },
-    el("h2", { text: all.length === 1 ? "One thing to know before trusting this" : `${all.length} things to know before trusting this` }),
-    el("ul", {}, all.slice(0, shown).map(item)),
+    el("h2", { text: groups.length === 1 ? "One thing to know before trusting this" : `${groups.length} things to know before trusting this` }),
+    el("ul", {}, groups.slice(0, shown).map(item)),
     rest.length ? el("details", {}, el("summary", { text: `${rest.length} more` }), el("ul", {}, rest.map(item))) : null));
 }
 
