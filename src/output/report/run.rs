@@ -157,7 +157,7 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     tile("Efficiency", last("efficiency").map(percent), &window);
     let open = summary.balances.energy_residual_relative;
     tile(
-        "Energy unaccounted for",
+        "Unaccounted energy",
         open.is_finite().then(|| percent(open)),
         "of the largest energy: the error of the integration",
     );
