@@ -93,8 +93,11 @@ fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
         .cloned()
         .unwrap_or_default();
     data.insert("warnings".into(), warnings::groups(&texts));
-    let text = page::assemble(&data);
     let path = out.map_or_else(|| dir.join(REPORT), Path::to_path_buf);
+    if folder_of(&path) != fs::canonicalize(dir).ok() {
+        data.insert("elsewhere".into(), true.into());
+    }
+    let text = page::assemble(&data);
     replace(&path, &text)?;
     Ok(Written {
         path,
@@ -164,6 +167,12 @@ impl<'a> Place<'a> {
         put("characteristic", numbers.unwrap_or_default().into());
         all
     }
+}
+
+/// The folder in which a file lies or will lie.
+fn folder_of(path: &Path) -> Option<PathBuf> {
+    let parent = path.parent().filter(|p| !p.as_os_str().is_empty());
+    fs::canonicalize(parent.unwrap_or(Path::new("."))).ok()
 }
 
 /// With a capital at its start.

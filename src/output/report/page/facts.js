@@ -120,7 +120,7 @@ function showCase() {
   if (!data.parameters?.length && !data.case_text) return;
   const body = section("case", "The case, and how to repeat it", "Everything that was given, with every default filled in.");
   if (data.command) {
-    body.append(figure("Repeat it", "In a terminal, within the folder of this page.", el("div", { class: "command" }, el("code", { text: data.command }), copyButton("Copy", data.command))));
+    body.append(figure("Repeat it", data.elsewhere ? "In a terminal, within the folder of the result." : "In a terminal, within the folder of this page.", el("div", { class: "command" }, el("code", { text: data.command }), copyButton("Copy", data.command))));
   }
   const groups = new Map();
   for (const row of data.parameters || []) groups.set(row.group, [...(groups.get(row.group) || []), row]);
@@ -144,8 +144,11 @@ function showCase() {
 function showFoot() {
   const files = data.files || [];
   if (files.length) {
-    const body = section("files", "Files beside this page", "Open them with any tool; the links work as long as the page stays in its folder.");
-    body.append(el("ul", { class: "files" }, files.map((f) => el("li", {}, el("a", { href: encodeURIComponent(f), text: f })))));
+    const [title, lead] = data.elsewhere
+      ? ["Files of the result", "They lie in the folder of the result; this page was put elsewhere."]
+      : ["Files beside this page", "Open them with any tool; the links work as long as the page stays in its folder."];
+    const body = section("files", title, lead);
+    body.append(el("ul", { class: "files" }, files.map((f) => el("li", {}, fileLink(f)))));
   }
   document.getElementById("foot").append(el("p", { text: `Made by slcbeam ${data.version}. This page needs nothing but itself.` }));
 }

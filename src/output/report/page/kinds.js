@@ -90,11 +90,15 @@ function showRun() {
   const drawn = showScene(tell);
   if (clock) {
     const body = section("motion", "How it moves", "Press play, drag the slider, or use the space bar and the arrow keys (with Shift: ten steps). Everything below follows the same time.");
-    const kept = motion.frames < motion.recorded ? `${count(motion.recorded)} instants were recorded; ${count(motion.frames)} of them are shown.` : null;
+    const notes = [];
+    if (motion.frames < motion.recorded) notes.push(`${count(motion.recorded)} instants were recorded; ${count(motion.frames)} of them are shown.`);
+    if (motion.nodes < motion.nodes_recorded) notes.push(`Of ${count(motion.nodes_recorded)} nodes ${count(motion.nodes)} are shown.`);
+    const inCycle = motion.frequency_hz ? (motion.frames - 1) / (motion.times.at(-1) - motion.times[0]) / motion.frequency_hz : Infinity;
+    if (inCycle < 12) notes.push(`A cycle of the drive holds about ${shortest(Math.round(inCycle * 10) / 10)} of the instants shown; what happens between them is not seen.`);
     const host = el("div", { class: "figure" });
     body.append(host);
     showAnimation(host, scene, motion, clock);
-    if (kept) host.append(el("p", { class: "caption", text: kept }));
+    if (notes.length) host.append(el("p", { class: "caption", text: notes.join(" ") }));
     const tip = motion.nodes - 1;
     body.append(player(clock, (c) => {
       const all = [["time", quantity(c.time, "s", 4)], ["tip across", quantity(settled(motion.u1[c.index * motion.nodes + tip], scene.length), "m")], ["tip along", quantity(settled(motion.u3[c.index * motion.nodes + tip], scene.length), "m")]];
