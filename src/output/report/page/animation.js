@@ -87,7 +87,8 @@ function showAnimation(host, scene, motion, clock) {
     const ratio = canvas.width / Math.max(canvas.clientWidth, 40);
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     ctx.fillStyle = css("--faint");
-    ctx.globalAlpha = 0.016;
+    // A thin beam leaves a thin trace, which needs more ink.
+    ctx.globalAlpha = 0.016 * Math.min(Math.max(16 / (scene.height * view.scale), 1), 8);
     const every = Math.max(1, Math.floor(motion.frames / 40));
     for (let f = 0; f < motion.frames; f += every) {
       paintShade(ctx, view, shape(f, 0), scene);
