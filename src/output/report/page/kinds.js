@@ -134,8 +134,9 @@ function showRun() {
 
 /** The instant to begin with: of the last cycle, or the whole, that in which most is to be seen. */
 function telling(motion, scene) {
-  const n = motion.ofBladder ? motion.bladders : motion.nodes;
-  const values = motion.ofBladder || (largest(motion.u1) > 1e-9 * scene.length ? motion.u1 : motion.u3);
+  const wet = motion.ofBladder && !motion.whole;
+  const n = wet ? motion.bladders : motion.nodes;
+  const values = wet ? motion.ofBladder : (largest(motion.u1) > 1e-9 * scene.length ? motion.u1 : motion.u3);
   let best = [-1, 0];
   for (let f = motion.cycle[0]; f <= motion.cycle.at(-1); f++) {
     const size = largest(values.subarray(f * n, (f + 1) * n));
