@@ -20,7 +20,7 @@
 //! | [`spectral`] | eigenvalues of sparse pencils nearest a shift, with bounds of their errors |
 //! | [`run`] | a run in time, equilibria, modes, cycles: samples, balances, range checks. Emits what happens, prints nothing |
 //! | [`study`] | many runs to answer one question: exact results, accuracy against cost, effects, comparison |
-//! | [`output`] | result folders: history, arrays, summary, pictures |
+//! | [`output`] | result folders: history, arrays, summary, pictures, the page |
 //! | [`cli`] | one file a subcommand; the only place that prints |
 //!
 //! Data flow one way: text → schema → checked [`case::Case`] → [`model::Model`] → [`discrete::System`] →

@@ -167,6 +167,23 @@ fn the_same_folder_gives_the_same_bytes() {
     let said: Value = serde_json::from_slice(&asked.stdout).expect("JSON");
     assert_eq!(said["bytes"], first.len());
     assert_eq!(said["report"], other.display().to_string());
+    // Elsewhere links would lead nowhere: names stand instead.
+    let elsewhere = tempfile::tempdir().expect("a folder");
+    let page = elsewhere.path().join("page.html");
+    slcbeam(&[
+        "report",
+        &folder.path().display().to_string(),
+        "--out",
+        &page.display().to_string(),
+    ]);
+    let mut browser = Browser::start();
+    sound(&mut browser, &page, &["scene", "case", "files"]);
+    assert_eq!(browser.number("document.querySelectorAll('#files a').length"), 0.0);
+    assert!(
+        browser
+            .text("document.getElementById('files').textContent")
+            .contains("history.csv")
+    );
 }
 
 #[test]

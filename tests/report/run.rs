@@ -40,6 +40,12 @@ fn the_page_of_a_shaken_beam_is_alive() {
     // Warnings stand before every figure.
     assert!(browser.eval("document.getElementById('warnings').getBoundingClientRect().top < document.getElementById('scene').getBoundingClientRect().top") == true);
 
+    let first = browser.text("document.querySelector('#warnings li').textContent");
+    assert!(
+        first.contains("share one potential") && first.contains("What this means (W001)"),
+        "{first}"
+    );
+
     // The slider moves beam, profiles, maps and histories.
     let profile = "document.querySelector('#profiles .present').getAttribute('d')";
     let mark = "document.querySelector('.map .now').style.left";

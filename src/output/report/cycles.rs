@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Kind, Place};
+use super::{Kind, Place, capital};
 use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::numbers::{count, significant};
@@ -49,7 +49,7 @@ fn verdict(found: &Value) -> (String, bool) {
         .and_then(Value::as_str)
         .unwrap_or("");
     let unstable = found.pointer("/floquet/verdict/stability").and_then(Value::as_str) == Some("unstable");
-    (words.to_string(), !unstable)
+    (capital(words), !unstable)
 }
 
 fn search(found: &Value) -> String {
@@ -63,12 +63,14 @@ fn search(found: &Value) -> String {
     )
 }
 
+/// Whether a cycle is stable, and how it was found.
+pub fn answer(found: &Value) -> String {
+    format!("{}. {}", verdict(found).0, search(found))
+}
+
 /// What `cycle.json` adds to the page of a cycle's run.
 pub fn of_cycle(found: &Value) -> Vec<Value> {
-    let (words, stable) = verdict(found);
-    vec![
-        json!({"title": "Stability of the cycle", "good": stable, "text": format!("{words}. {}", search(found)), "table": multipliers(found)}),
-    ]
+    vec![json!({"title": "Stability of the cycle", "text": answer(found), "table": multipliers(found)})]
 }
 
 /// `floquet`.
@@ -76,12 +78,12 @@ pub fn floquet(place: &Place) -> Result<Map<String, Value>> {
     let found = place.json("floquet.json")?;
     let mut all = head(place, Kind::Floquet, &found, "Stability of the steady cycle");
     let mut put = |key: &str, value: Value| all.insert(key.into(), value);
-    let (words, stable) = verdict(&found);
+    let (_, stable) = verdict(&found);
     put(
         "status",
         json!({"word": if stable { "stable" } else { "unstable" }, "tone": if stable { "good" } else { "bad" }, "reason": null}),
     );
-    put("answer", format!("{words}. {}", search(&found)).into());
+    put("answer", answer(&found).into());
     put(
         "figures",
         json!([{

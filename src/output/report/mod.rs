@@ -13,6 +13,7 @@
 //! facts       effects, solver, wall time, characteristic numbers in words
 //! parameters  the case as a table, described by its schema
 //! sheet       CSV files as tables
+//! warnings    what to know first, in words
 //! equilibrium, modes, studies, cycles   the pages of the other commands
 //! vendor      uPlot, which draws histories
 //! ```
@@ -36,6 +37,7 @@ mod scene;
 mod sheet;
 mod signals;
 mod studies;
+mod warnings;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -74,7 +76,7 @@ pub fn complete(dir: &Path, kind: Kind, case: &Case) -> Result<Written> {
 
 fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
     let place = Place::new(dir);
-    let data = match kind {
+    let mut data = match kind {
         Kind::Run => run::data(&place)?,
         Kind::Equilibrium => equilibrium::data(&place)?,
         Kind::Modes => modes::data(&place)?,
@@ -84,8 +86,18 @@ fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
         Kind::Map => cycles::map(&place)?,
         Kind::Sweep => cycles::sweep(&place)?,
     };
-    let text = page::assemble(&data);
+    // Whoever sees the page first needs them in words; their numbers alone say little.
+    let texts = data
+        .get("warnings")
+        .and_then(Value::as_array)
+        .cloned()
+        .unwrap_or_default();
+    data.insert("warnings".into(), warnings::groups(&texts));
     let path = out.map_or_else(|| dir.join(REPORT), Path::to_path_buf);
+    if folder_of(&path) != fs::canonicalize(dir).ok() {
+        data.insert("elsewhere".into(), true.into());
+    }
+    let text = page::assemble(&data);
     replace(&path, &text)?;
     Ok(Written {
         path,
@@ -155,4 +167,17 @@ impl<'a> Place<'a> {
         put("characteristic", numbers.unwrap_or_default().into());
         all
     }
+}
+
+/// The folder in which a file lies or will lie.
+fn folder_of(path: &Path) -> Option<PathBuf> {
+    let parent = path.parent().filter(|p| !p.as_os_str().is_empty());
+    fs::canonicalize(parent.unwrap_or(Path::new("."))).ok()
+}
+
+/// With a capital at its start.
+fn capital(text: &str) -> String {
+    let mut all = text.chars();
+    all.next()
+        .map_or(String::new(), |first| first.to_uppercase().chain(all).collect())
 }

@@ -68,6 +68,7 @@ pub fn data(place: &Place) -> Result<Map<String, Value>> {
     match cycle {
         Some(cycle) => {
             all.insert("label".into(), "Steady cycle".into());
+            all.insert("answer".into(), cycles::answer(&cycle).into());
             all.insert("sections".into(), Value::Array(cycles::of_cycle(&cycle)));
             all.insert("command".into(), format!("slcbeam periodic {CASE}").into());
         }
@@ -156,7 +157,7 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     tile("Efficiency", last("efficiency").map(percent), &window);
     let open = summary.balances.energy_residual_relative;
     tile(
-        "Energy unaccounted for",
+        "Unaccounted energy",
         open.is_finite().then(|| percent(open)),
         "of the largest energy: the error of the integration",
     );

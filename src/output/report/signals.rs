@@ -7,6 +7,9 @@ use crate::output::numbers::{quantity, trimmed};
 /// Instants at which a signal is looked at for its largest value.
 const LOOKED_AT: usize = 400;
 
+/// Longest words of a sum or product.
+const LONGEST: usize = 90;
+
 /// `12 mm · sine at 20 Hz`, for a signal of the given unit.
 pub fn words(signal: &Signal, unit: &str) -> String {
     let q = |x: f64| trimmed(&quantity(x, unit, 3));
@@ -45,8 +48,17 @@ pub fn words(signal: &Signal, unit: &str) -> String {
         ),
         Signal::Polynomial(_) => "polynomial in time".into(),
         Signal::Table(table) => format!("curve through {} points", table.times_s.len()),
-        Signal::Sum(parts) => all(parts, unit).join(" + "),
-        Signal::Product(parts) => all(parts, "1").join(" × "),
+        Signal::Sum(parts) => brief(all(parts, unit).join(" + ")),
+        Signal::Product(parts) => brief(all(parts, "1").join(" × ")),
+    }
+}
+
+/// Long sums are for those who read the case.
+fn brief(text: String) -> String {
+    if text.chars().count() > LONGEST {
+        "varies as the case says".into()
+    } else {
+        text
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Kind, Place};
+use super::{Kind, Place, capital};
 use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::numbers::{count, duration, percent, significant};
@@ -102,13 +102,6 @@ pub fn study(place: &Place) -> Result<Map<String, Value>> {
     );
     put("command", format!("slcbeam study {CASE}{}", plan(&found)).into());
     Ok(all)
-}
-
-/// With a capital at its start.
-fn capital(text: &str) -> String {
-    let mut all = text.chars();
-    all.next()
-        .map_or(String::new(), |first| first.to_uppercase().chain(all).collect())
 }
 
 /// Options of the command that made a study.

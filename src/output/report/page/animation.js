@@ -87,8 +87,9 @@ function showAnimation(host, scene, motion, clock) {
     const ratio = canvas.width / Math.max(canvas.clientWidth, 40);
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     ctx.fillStyle = css("--faint");
-    ctx.globalAlpha = 0.009;
-    const every = Math.max(1, Math.floor(motion.frames / 70));
+    // A thin beam leaves a thin trace, which needs more ink.
+    ctx.globalAlpha = 0.016 * Math.min(Math.max(16 / (scene.height * view.scale), 1), 8);
+    const every = Math.max(1, Math.floor(motion.frames / 40));
     for (let f = 0; f < motion.frames; f += every) {
       paintShade(ctx, view, shape(f, 0), scene);
     }
@@ -96,7 +97,7 @@ function showAnimation(host, scene, motion, clock) {
     if (factor.across !== 1) parts.push(`deflection across drawn ${count(factor.across)} times larger`);
     if (factor.along !== 1) parts.push(`displacement along drawn ${count(factor.along)} times larger`);
     const truth = parts.length ? `${parts.join(", ")}; everything else to scale.` : "To scale, nothing exaggerated.";
-    note.textContent = `${truth[0].toUpperCase()}${truth.slice(1)} The faint shade is everywhere the beam goes during the whole motion, the darker the more often.${layout.bladders.length ? " Cells: bladders, coloured by their pressure; lines: tubes, coloured by network." : ""}`;
+    note.textContent = `${truth[0].toUpperCase()}${truth.slice(1)} The faint shade is everywhere the beam goes during the whole motion, the stronger the more often.${layout.bladders.length ? " Cells: bladders, coloured by their pressure; lines: tubes, coloured by network." : ""}`;
   };
   const scale = motion.pressureScale;
   const paint = () =>

@@ -139,6 +139,11 @@ function prose(text) {
   return String(text).split("`").map((part, k) => (k % 2 ? el("code", { text: part }) : part));
 }
 
+/** A file of the folder: a link where the page lies in it, else its name. */
+function fileLink(name) {
+  return data.elsewhere ? el("code", { text: name }) : el("a", { href: encodeURIComponent(name), text: name });
+}
+
 const contents = [];
 
 /** A section with title and one sentence; it is listed among the contents. */

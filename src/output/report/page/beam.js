@@ -72,14 +72,22 @@ function paintBeam(ctx, view, curve, scene, layout, pressure) {
     }
     ctx.lineCap = "round";
     ctx.lineJoin = "round";
-    const thin = layout.segment * view.scale > 9 ? 1.6 : 0.7;
-    for (const wire of layout.wires) {
-      outline(refined(wire.points, layout.segment));
-      ctx.strokeStyle = wireColour(wire.colour);
-      ctx.lineWidth = thin;
-      ctx.setLineDash(wire.turbine ? [2, 4] : []);
+    const thin = layout.segment * view.scale > 9 ? 1.8 : 0.7;
+    const lines = layout.wires.map((wire) => refined(wire.points, layout.segment));
+    // A rim in the colour of the paper keeps lines apart from bladders of any colour.
+    ctx.strokeStyle = css("--card");
+    ctx.lineWidth = 2.2 * thin;
+    for (const points of lines) {
+      outline(points);
       ctx.stroke();
     }
+    ctx.lineWidth = thin;
+    layout.wires.forEach((wire, k) => {
+      outline(lines[k]);
+      ctx.strokeStyle = wireColour(wire.colour);
+      ctx.setLineDash(wire.turbine ? [2, 4] : []);
+      ctx.stroke();
+    });
     ctx.setLineDash([]);
   }
   scene.ends.forEach((end, k) => {

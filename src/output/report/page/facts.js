@@ -52,18 +52,25 @@ function showHead(main) {
   }
 }
 
+/** Paragraphs and lists of a short text; marks of emphasis fall away. */
+function paragraphs(text) {
+  const plain = text.replace(/\n\*\*Do\.\*\*/g, "\n\nWhat to do:").replace(/\*\*/g, "").replace(/\[([^\]]+)\]\([^)]+\)/g, "$1");
+  return plain.split(/\n\s*\n/).filter((t) => t.trim() && !t.startsWith("```")).map((t) => el("p", {}, prose(t.replace(/\s*\n\s*/g, " "))));
+}
+
 function showWarnings(main) {
-  const all = data.warnings || [];
-  if (!all.length) return;
-  const item = (text) => {
-    const cut = /^([^:]{3,48}):\s+(.+)$/s.exec(text);
-    return cut ? el("li", {}, el("b", { text: cut[1] }), ` – ${cut[2]}`) : el("li", { text });
+  const groups = data.warnings || [];
+  if (!groups.length) return;
+  const item = (group) => {
+    const texts = group.texts.map((text) => (group.title ? text.replace(/^[^:]{3,48}:\s+/, "") : text));
+    const more = group.explanation ? el("details", {}, el("summary", { text: `What this means (${group.code})` }), paragraphs(group.explanation)) : null;
+    return el("li", {}, group.title ? el("b", { text: group.title }) : null, texts.map((text) => el("div", {}, prose(text))), more);
   };
-  const shown = all.length > 4 ? 3 : all.length;
-  const rest = all.slice(shown);
+  const shown = groups.length > 4 ? 3 : groups.length;
+  const rest = groups.slice(shown);
   main.append(el("div", { class: "notice", role: "note", id: "warnings" },
-    el("h2", { text: all.length === 1 ? "One thing to know before trusting this" : `${all.length} things to know before trusting this` }),
-    el("ul", {}, all.slice(0, shown).map(item)),
+    el("h2", { text: groups.length === 1 ? "One thing to know before trusting this" : `${groups.length} things to know before trusting this` }),
+    el("ul", {}, groups.slice(0, shown).map(item)),
     rest.length ? el("details", {}, el("summary", { text: `${rest.length} more` }), el("ul", {}, rest.map(item))) : null));
 }
 
@@ -113,7 +120,7 @@ function showCase() {
   if (!data.parameters?.length && !data.case_text) return;
   const body = section("case", "The case, and how to repeat it", "Everything that was given, with every default filled in.");
   if (data.command) {
-    body.append(figure("Repeat it", "In a terminal, within the folder of this page.", el("div", { class: "command" }, el("code", { text: data.command }), copyButton("Copy", data.command))));
+    body.append(figure("Repeat it", data.elsewhere ? "In a terminal, within the folder of the result." : "In a terminal, within the folder of this page.", el("div", { class: "command" }, el("code", { text: data.command }), copyButton("Copy", data.command))));
   }
   const groups = new Map();
   for (const row of data.parameters || []) groups.set(row.group, [...(groups.get(row.group) || []), row]);
@@ -137,8 +144,11 @@ function showCase() {
 function showFoot() {
   const files = data.files || [];
   if (files.length) {
-    const body = section("files", "Files beside this page", "Open them with any tool; the links work as long as the page stays in its folder.");
-    body.append(el("ul", { class: "files" }, files.map((f) => el("li", {}, el("a", { href: encodeURIComponent(f), text: f })))));
+    const [title, lead] = data.elsewhere
+      ? ["Files of the result", "They lie in the folder of the result; this page was put elsewhere."]
+      : ["Files beside this page", "Open them with any tool; the links work as long as the page stays in its folder."];
+    const body = section("files", title, lead);
+    body.append(el("ul", { class: "files" }, files.map((f) => el("li", {}, fileLink(f)))));
   }
   document.getElementById("foot").append(el("p", { text: `Made by slcbeam ${data.version}. This page needs nothing but itself.` }));
 }

@@ -90,11 +90,15 @@ function showRun() {
   const drawn = showScene(tell);
   if (clock) {
     const body = section("motion", "How it moves", "Press play, drag the slider, or use the space bar and the arrow keys (with Shift: ten steps). Everything below follows the same time.");
-    const kept = motion.frames < motion.recorded ? `${count(motion.recorded)} instants were recorded; ${count(motion.frames)} of them are shown.` : null;
+    const notes = [];
+    if (motion.frames < motion.recorded) notes.push(`${count(motion.recorded)} instants were recorded; ${count(motion.frames)} of them are shown.`);
+    if (motion.nodes < motion.nodes_recorded) notes.push(`Of ${count(motion.nodes_recorded)} nodes ${count(motion.nodes)} are shown.`);
+    const inCycle = motion.frequency_hz ? (motion.frames - 1) / (motion.times.at(-1) - motion.times[0]) / motion.frequency_hz : Infinity;
+    if (inCycle < 12) notes.push(`A cycle of the drive holds about ${shortest(Math.round(inCycle * 10) / 10)} of the instants shown; what happens between them is not seen.`);
     const host = el("div", { class: "figure" });
     body.append(host);
     showAnimation(host, scene, motion, clock);
-    if (kept) host.append(el("p", { class: "caption", text: kept }));
+    if (notes.length) host.append(el("p", { class: "caption", text: notes.join(" ") }));
     const tip = motion.nodes - 1;
     body.append(player(clock, (c) => {
       const all = [["time", quantity(c.time, "s", 4)], ["tip across", quantity(settled(motion.u1[c.index * motion.nodes + tip], scene.length), "m")], ["tip along", quantity(settled(motion.u3[c.index * motion.nodes + tip], scene.length), "m")]];
@@ -130,8 +134,9 @@ function showRun() {
 
 /** The instant to begin with: of the last cycle, or the whole, that in which most is to be seen. */
 function telling(motion, scene) {
-  const n = motion.nodes;
-  const values = largest(motion.u1) > 1e-9 * scene.length ? motion.u1 : motion.u3;
+  const wet = motion.ofBladder && !motion.whole;
+  const n = wet ? motion.bladders : motion.nodes;
+  const values = wet ? motion.ofBladder : (largest(motion.u1) > 1e-9 * scene.length ? motion.u1 : motion.u3);
   let best = [-1, 0];
   for (let f = motion.cycle[0]; f <= motion.cycle.at(-1); f++) {
     const size = largest(values.subarray(f * n, (f + 1) * n));

@@ -43,7 +43,7 @@ function shortest(x) {
 
 /** A table of the data with title, sentence and the file that has all of it. */
 function tableCard(table) {
-  const file = table.file ? el("p", { class: "caption" }, "All of it: ", el("a", { href: encodeURI(table.file), text: table.file })) : null;
+  const file = table.file ? el("p", { class: "caption" }, "All of it: ", fileLink(table.file)) : null;
   return figure(table.title, null, table.about ? el("p", { class: "caption", text: table.about }) : null, sortable(table.headings, table.rows, { label: table.title }), table.left_out ? el("p", { class: "caption", text: `${count(table.left_out)} more rows are in the file.` }) : null, file);
 }
 

@@ -1,0 +1,48 @@
+//! Warnings with their titles and explanations, those of one kind together.
+
+use serde_json::{Value, json};
+
+use crate::error::Code;
+
+/// Groups `{code, title, texts, explanation}` in the order in which their first texts stand; a text without a number is one by
+/// itself.
+pub fn groups(texts: &[Value]) -> Value {
+    let mut all: Vec<(Option<Code>, Vec<&str>)> = vec![];
+    for text in texts.iter().filter_map(Value::as_str) {
+        let numbered = text
+            .split_once(' ')
+            .and_then(|(id, rest)| Some((Code::find(id)?, rest)));
+        let (code, words) = numbered.map_or((None, text), |(code, rest)| (Some(code), rest));
+        match all.iter_mut().find(|group| code.is_some() && group.0 == code) {
+            Some(group) => group.1.push(words),
+            None => all.push((code, vec![words])),
+        }
+    }
+    let group = |(code, texts): &(Option<Code>, Vec<&str>)| {
+        json!({
+            "code": code.map(|c| c.id()), "title": code.map(|c| c.title()), "explanation": code.map(|c| c.text()), "texts": texts,
+        })
+    };
+    all.iter().map(group).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn warnings_of_one_kind_stand_together() {
+        let found = groups(&[
+            json!("W003 fast"),
+            json!("as it was written before"),
+            json!("W003 faster"),
+        ]);
+        assert_eq!(found.as_array().map(Vec::len), Some(2));
+        assert_eq!(found[0]["texts"], json!(["fast", "faster"]));
+        assert_eq!(found[0]["title"], Code::FastFlow.title());
+        assert_eq!(
+            (&found[1]["code"], &found[1]["texts"][0]),
+            (&Value::Null, &json!("as it was written before"))
+        );
+    }
+}
