@@ -147,21 +147,20 @@ impl FluidMesh {
         }
     }
 
-    /// Keeps the volumes of the start, in bladders and pools that keep theirs.
+    /// Keeps the volumes of the start, in bladders and pools that keep theirs. The start may have been made with other cells along
+    /// each bladder than these: what is kept are means.
     pub fn keep(&mut self, areas: &[f64], wet: &Wet) {
+        let given = areas.len() / self.bladders;
+        let mean = |bladder: usize| areas[bladder * given..(bladder + 1) * given].iter().sum::<f64>() / given as f64;
+        let length = self.ds * self.cells_per_bladder as f64;
         for bladder in 0..self.bladders {
             let cells = self.cells_of(bladder);
             if wet.storage[bladder] == Storage::Kept {
-                let mean = areas[cells.clone()].iter().sum::<f64>() / cells.len() as f64;
-                self.area_at_start[cells].fill(mean);
+                self.area_at_start[cells].fill(mean(bladder));
             }
         }
         for (volume, pool) in self.volume_at_start.iter_mut().zip(&wet.pools) {
-            let cells = pool
-                .bladders
-                .iter()
-                .flat_map(|&bladder| bladder * self.cells_per_bladder..(bladder + 1) * self.cells_per_bladder);
-            *volume = cells.map(|cell| areas[cell]).sum::<f64>() * self.ds;
+            *volume = pool.bladders.iter().map(|&bladder| mean(bladder)).sum::<f64>() * length;
         }
     }
 

@@ -85,7 +85,8 @@ fn a_failure_says_why_and_warnings_come_first() {
     │             few words                                    │
     │ warning     warning number 3 that goes on for quite a    │
     │             few words                                    │
-    │             and 2 more in summary.json                   │
+    │             and 2 more in summary.json; slcbeam explain  │
+    │             says more of each number                     │
     │ deflection  tip, largest: u₁ 123 µm · u₃ 1.25 mm         │
     │ pressure    largest: 9.01 kPa                            │
     │ balances    open by (relative): energy 3.0·10⁻⁸ ·        │
