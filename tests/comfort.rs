@@ -195,6 +195,8 @@ fn scripts_are_told_faults_as_json() {
 #[test]
 fn shells_and_typing_errors() {
     let here = Path::new(".");
+    let (code, _, err) = slcbeam(here, &["check", "cases/wirng-3.json"]);
+    assert!(code == 2 && err.contains("did you mean cases/wiring-3.json?"), "{err}");
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let (code, script, _) = slcbeam(here, &["completions", shell]);
         assert!(code == 0 && script.contains("equilibrium"), "{shell}");

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::faults::{Faults, Source, sort};
 use super::schema::Case;
+use super::wording::nearest;
 use super::{check, parse as json, presets, schema_json, sets, tables, validate};
 use crate::error::{CaseFault, Code, Error, Result, Violation};
 
@@ -29,7 +30,10 @@ pub struct LoadedCase {
 /// # Errors
 /// [`Error::Usage`] when the file cannot be read or an argument makes no sense, [`Error::Case`] with all faults.
 pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase> {
-    let unreadable = |e| Error::Usage(format!("cannot read the case {}: {e}", path.display()));
+    let unreadable = |e| {
+        let meant = nearest_file(path).map_or_else(String::new, |name| format!("; did you mean {}?", name.display()));
+        Error::Usage(format!("cannot read the case {}: {e}{meant}", path.display()))
+    };
     let size = std::fs::metadata(path).map_err(unreadable)?.len();
     if size > LARGEST {
         let what = format!("the file has {} MB", size >> 20);
@@ -45,6 +49,18 @@ pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase> {
         Err(e) => return Err(not_utf8(path, e.as_bytes(), e.utf8_error().valid_up_to())),
     };
     parse(&text, path, path.parent().unwrap_or(Path::new("")), sets)
+}
+
+/// The case in the same folder that is named most alike.
+fn nearest_file(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let names: Vec<String> = std::fs::read_dir(folder)
+        .ok()?
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter(|name| name.ends_with(".json"))
+        .collect();
+    let meant = nearest(path.file_name()?.to_str()?, names.iter().map(String::as_str))?;
+    Some(path.with_file_name(meant))
 }
 
 /// Reads and checks a case from text; files that it names are looked for in `base`.

@@ -58,7 +58,7 @@ pub fn render(summary: &Summary, dir: &Path, colour: bool, width: usize) -> Stri
     for row in rows(summary, tone) {
         push_row(&mut out, &row, width, colour);
     }
-    let files = format!("files in {}", dir.display());
+    let files = format!("report.html and data in {}", dir.display());
     let length = files.chars().count();
     if length + 6 <= width {
         out.push_str(&format!("╰─ {files} {}╯\n", "─".repeat(width - length - 5)));
@@ -81,7 +81,7 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
         add("warning", Some(warning.clone()), Tone::Warning);
     }
     let more = summary.warnings.len().saturating_sub(WARNINGS);
-    let more = (more > 0).then(|| format!("and {more} more in summary.json"));
+    let more = (more > 0).then(|| format!("and {more} more in summary.json; slcbeam explain says more of each number"));
     add("", more, Tone::Warning);
     add("deflection", deflection(summary), Tone::Plain);
     add("pressure", pressure(summary), Tone::Plain);

@@ -61,7 +61,7 @@ fn a_finished_run_in_a_glance() {
     │ time        500 ms simulated in 12.3 s · 24.6 s for a simulated second   │
     │ spent on    residual 33 % · Jacobian 24 % · linear solver 33 % ·         │
     │             output 4 %                                                   │
-    ╰─ files in out/wiring-2 ──────────────────────────────────────────────────╯
+    ╰─ report.html and data in out/wiring-2 ───────────────────────────────────╯
     ");
     assert!(is_a_box(&text, 76));
 }
@@ -94,7 +94,7 @@ fn a_failure_says_why_and_warnings_come_first() {
     │             0 rejected · 371 unknowns                    │
     │ time        500 ms simulated in 12.3 s · 24.6 s for a    │
     │             simulated second                             │
-    ╰─ files in out/wiring-2 ──────────────────────────────────╯
+    ╰─ report.html and data in out/wiring-2 ───────────────────╯
     ");
     assert!(is_a_box(&text, 60));
     let painted = render(&failed, Path::new("out/wiring-2"), true, 60);
