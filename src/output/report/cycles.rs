@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Kind, Place, capital};
+use super::{Kind, MOST_ROWS, Place, capital};
 use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::numbers::{count, significant};
@@ -141,7 +141,9 @@ pub fn map(place: &Place) -> Result<Map<String, Value>> {
                 let words = point.get("words").and_then(Value::as_str).unwrap_or("");
                 points += 1;
                 growing += usize::from(growth.is_some_and(|g| g > 0.0) && !words.starts_with("neutral"));
-                rows.push(json!([factor, f, a, growth, words]));
+                if rows.len() < MOST_ROWS {
+                    rows.push(json!([factor, f, a, growth, words]));
+                }
             }
         }
         let name = factor.as_f64().map_or("The dry beam".into(), |f| {
@@ -171,7 +173,7 @@ pub fn map(place: &Place) -> Result<Map<String, Value>> {
         json!({
             "title": "Every point", "about": "",
             "headings": ["permeability factor", "frequency [Hz]", "amplitude [m]", "growth [1/s]", "verdict"],
-            "rows": rows, "file": "map.csv",
+            "left_out": (frequencies.len() * amplitudes.len() * sheets.len()).saturating_sub(rows.len()), "rows": rows, "file": "map.csv",
         }),
     );
     let range = |v: &[f64]| format!("{}:{}", v.first().unwrap_or(&0.0), v.last().unwrap_or(&0.0));
@@ -248,7 +250,8 @@ pub fn sweep(place: &Place) -> Result<Map<String, Value>> {
         json!({
             "title": "Every cycle", "about": "Largest values within the cycle, and how fast the slowest disturbance grows (below 0: dies away).",
             "headings": [pointer, "tip u₁ [m]", "tip u₃ [m]", "pressure [Pa]", "growth [1/s]", "verdict"],
-            "rows": members.iter().map(row).collect::<Vec<_>>(), "file": "sweep.csv",
+            "left_out": members.len().saturating_sub(MOST_ROWS),
+            "rows": members.iter().take(MOST_ROWS).map(row).collect::<Vec<_>>(), "file": "sweep.csv",
         }),
     );
     let logarithmic = if found.get("logarithmic").and_then(Value::as_bool) == Some(true) {

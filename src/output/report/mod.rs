@@ -50,6 +50,12 @@ use crate::case::{self, Case};
 use crate::error::Result;
 pub use kind::Kind;
 
+/// Bytes beyond which a picture or the text of a case is left to its file.
+const LARGEST_TEXT: usize = 800_000;
+
+/// Rows of a table at most; the file has the rest.
+const MOST_ROWS: usize = 1000;
+
 /// A page that was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
@@ -136,7 +142,9 @@ impl<'a> Place<'a> {
 
     /// A picture of the folder as data of an image.
     fn picture(&self, name: &str) -> Option<String> {
-        let bytes = fs::read(self.path(name)).ok()?;
+        let bytes = fs::read(self.path(name))
+            .ok()
+            .filter(|bytes| bytes.len() < LARGEST_TEXT)?;
         Some(pack::image("image/svg+xml", &bytes))
     }
 
@@ -162,7 +170,10 @@ impl<'a> Place<'a> {
         put("scene", self.case.as_ref().and_then(scene::of).unwrap_or(Value::Null));
         let rows = self.case_text.as_deref().map(parameters::rows).unwrap_or_default();
         put("parameters", rows.into());
-        put("case_text", json!(self.case_text));
+        put(
+            "case_text",
+            json!(self.case_text.as_ref().filter(|text| text.len() < LARGEST_TEXT)),
+        );
         let numbers = self.case.as_ref().map(facts::characteristic_of);
         put("characteristic", numbers.unwrap_or_default().into());
         all

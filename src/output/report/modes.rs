@@ -27,6 +27,9 @@ const COLUMNS: [&str; 9] = [
     "transverse share [1]",
 ];
 
+/// Numbers of all shapes together.
+const MOST_NUMBERS: usize = 420_000;
+
 /// Everything the page shows.
 pub fn data(place: &Place) -> Result<Map<String, Value>> {
     let found = place.json(JSON)?;
@@ -87,31 +90,32 @@ pub fn data(place: &Place) -> Result<Map<String, Value>> {
     Ok(all)
 }
 
-/// Amplitudes and phases, mode after mode.
+/// Amplitudes and phases, mode after mode; of many modes on a fine mesh the first ones.
 fn shapes(path: &Path) -> io::Result<Value> {
     let mut npz = ZipArchive::new(BufReader::new(File::open(path)?))?;
-    let mut read = |name: &str| -> io::Result<(Vec<u64>, Vec<f64>)> {
+    let mut read = |name: &str| -> io::Result<(Vec<usize>, Vec<f64>)> {
         let entry = npz.by_name(&format!("{name}.npy")).map_err(io::Error::from)?;
         let array = NpyFile::new(entry)?;
-        Ok((array.shape().to_vec(), array.into_vec()?))
+        let shape = array.shape().iter().map(|&n| n as usize).collect();
+        Ok((shape, array.into_vec()?))
     };
     let mut all = Map::new();
-    for name in [
-        "theta_m",
-        "u1_amplitude_m",
-        "u1_phase_rad",
-        "u3_amplitude_m",
-        "u3_phase_rad",
-    ] {
-        let (_, values) = read(name)?;
-        all.insert(name.into(), pack::numbers(values));
+    let (nodes, theta) = read("theta_m")?;
+    all.insert("theta_m".into(), pack::numbers(theta));
+    // A dry beam has no bladders.
+    let bladders = read("pressure_amplitude_pa")
+        .ok()
+        .and_then(|(shape, _)| shape.get(1).copied());
+    let most = MOST_NUMBERS / (4 * nodes.first().copied().unwrap_or(1) + 2 * bladders.unwrap_or(0)).max(1);
+    let beam = ["u1_amplitude_m", "u1_phase_rad", "u3_amplitude_m", "u3_phase_rad"];
+    let fluid = ["pressure_amplitude_pa", "pressure_phase_rad"];
+    let wanted = beam.iter().chain(fluid.iter().filter(|_| bladders.is_some()));
+    for name in wanted {
+        let (shape, values) = read(name)?;
+        let kept = most.max(1) * shape.get(1).copied().unwrap_or(1);
+        all.insert((*name).into(), pack::numbers(values.into_iter().take(kept)));
     }
-    for name in ["pressure_amplitude_pa", "pressure_phase_rad"] {
-        // A dry beam has none.
-        if let Ok((shape, values)) = read(name) {
-            all.insert(name.into(), pack::numbers(values));
-            all.insert("bladders".into(), json!(shape.get(1)));
-        }
-    }
+    all.insert("bladders".into(), json!(bladders));
+    all.insert("most".into(), json!(most.max(1)));
     Ok(Value::Object(all))
 }

@@ -96,7 +96,12 @@ fn resolved<'a>(schema: &'a Value, root: &'a Value) -> &'a Value {
 /// Schema of a key, in the object itself or in one of its alternatives.
 fn property<'a>(schema: &'a Value, root: &'a Value, key: &str) -> Option<&'a Value> {
     let schema = resolved(schema, root);
-    if let Some(own) = schema.get("properties").and_then(|p| p.get(key)) {
+    // A resolved case names no preset: what holds without one comes first.
+    let whole = schema
+        .get("else")
+        .and_then(|s| s.get("properties"))
+        .and_then(|p| p.get(key));
+    if let Some(own) = whole.or_else(|| schema.get("properties").and_then(|p| p.get(key))) {
         return Some(own);
     }
     let branches = ["anyOf", "oneOf", "allOf"]

@@ -4,8 +4,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-/// Rows of a table at most; the file has the rest.
-const MOST: usize = 500;
+use super::MOST_ROWS;
 
 /// Headings and rows of chosen columns, numbers as numbers; null when there is no such file.
 pub fn read(path: &Path, wanted: impl Fn(&str) -> bool) -> Value {
@@ -23,7 +22,7 @@ pub fn read(path: &Path, wanted: impl Fn(&str) -> bool) -> Value {
     let mut rows = vec![];
     let mut left_out = 0;
     for record in reader.records().flatten() {
-        if rows.len() < MOST {
+        if rows.len() < MOST_ROWS {
             let row = chosen.iter().map(|&k| record.get(k).map_or(Value::Null, cell));
             rows.push(Value::Array(row.collect()));
         } else {

@@ -122,7 +122,8 @@ function showEvents() {
 
 /** Shapes of small motions, moving. */
 function showModes() {
-  const { shapes, modes } = data;
+  const { shapes } = data;
+  const modes = shapes ? data.modes.slice(0, shapes.most) : data.modes;
   if (shapes && modes?.length) {
     const get = (name) => floats(shapes[name]);
     const theta = get("theta_m");
