@@ -90,6 +90,22 @@ fn what_comes_from_the_preset_is_shown_there() {
     );
 }
 
+/// What has another name elsewhere is told by the one it has here.
+#[test]
+fn other_names_are_known() {
+    let fault = faults(&LITTLE.replace("\"clamped\"", "\"fixed\""));
+    assert_eq!(fault.violations[0].hint.as_deref(), Some("it is called \"clamped\""));
+    let open = "\"network\": {\"chains\": [{\"bladders\": [1, 2], \"ends\": [\"sealed\", \"open\"]}]}, \"ends\"";
+    let fault = faults(&LITTLE.replacen("\"ends\"", open, 1));
+    assert!(
+        fault.violations[0]
+            .hint
+            .as_ref()
+            .unwrap()
+            .contains("{\"pressure_pa\": 0}")
+    );
+}
+
 #[test]
 fn a_comment_is_told_how_to_stand() {
     let fault = faults(&LITTLE.replace("\"name\"", "// my case\n \"name\""));
@@ -154,10 +170,45 @@ fn messages_and_keys_are_explained() {
     assert!(one.contains("Mathieu"), "{one}");
     let (_, key, _) = slcbeam(here, &["explain", "/bladders/permeability_m4"]);
     assert!(key.contains("[m^4]") && key.contains("TubeDefaults"), "{key}");
+    let (_, network, _) = slcbeam(here, &["explain", "network"]);
+    assert!(
+        network.contains("Network/chains") && network.contains("Network/turbines"),
+        "{network}"
+    );
+    assert_eq!(
+        slcbeam(here, &["explain", "W6"]).1,
+        slcbeam(here, &["explain", "w006"]).1
+    );
     let (_, effect, _) = slcbeam(here, &["explain", "finite_rotation", "--json"]);
     assert!(serde_json::from_str::<Value>(&effect).unwrap()[0]["meaning"].is_string());
     let (code, _, err) = slcbeam(here, &["explain", "finite_rotaton"]);
     assert!(code == 2 && err.contains("did you mean finite_rotation"), "{err}");
+}
+
+/// A case named by its file is one that can be run.
+#[test]
+fn a_file_with_a_space_names_a_case_without() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(slcbeam(folder.path(), &["new", "beam", "my beam.json"]).0, 0);
+    assert_eq!(slcbeam(folder.path(), &["check", "my beam.json"]).0, 0);
+}
+
+#[test]
+fn outputs_that_miss_the_motion_are_told() {
+    let (_, out, _) = slcbeam(
+        Path::new("."),
+        &[
+            "check",
+            "cases/wiring-3.json",
+            "--set",
+            "/time/output_interval_s=0.025",
+            "--set",
+            "/time/fields_interval_s=0.025",
+        ],
+    );
+    assert!(out.contains("W015"), "{out}");
+    let (_, out, _) = slcbeam(Path::new("."), &["check", "cases/wiring-3.json"]);
+    assert!(!out.contains("W015"), "{out}");
 }
 
 /// With `--json` every failure is an object on standard output, whatever the command.

@@ -11,7 +11,7 @@ use super::jet::Jet;
 pub enum Interpolation {
     /// Straight lines.
     Linear,
-    /// Natural cubic spline: twice continuously differentiable.
+    /// Natural cubic spline: twice continuously differentiable; it swings beyond the values of points that jump.
     #[default]
     Cubic,
 }

@@ -11,8 +11,10 @@ pub struct Meaning {
     pub name: String,
     /// Where it stands: the object it belongs to and the key, such as `Bladders/length_m`; keys of the case itself `/name`.
     pub place: String,
-    /// What it means, with unit and symbol.
+    /// What it means, with unit, symbol and default.
     pub meaning: String,
+    /// Objects that stand there, by the names that begin the places of their keys.
+    pub objects: Vec<String>,
 }
 
 /// All keys, in the order of the schema.
@@ -31,14 +33,18 @@ fn walk(part: &Value, place: &str, all: &mut Vec<Meaning>) {
     for (name, inner) in part["properties"].as_object().into_iter().flatten() {
         let place = format!("{place}/{name}");
         // A form such as {"sine": ...} is described beside its only key.
-        let meaning = match text(inner) {
+        let mut meaning = match text(inner) {
             own if own.is_empty() => text(part),
             own => own,
         };
+        if let Some(default) = inner.get("default").filter(|d| d.is_number() || d.is_string()) {
+            meaning += &format!(" Default: {default}.");
+        }
         all.push(Meaning {
             name: name.clone(),
             place: place.clone(),
             meaning,
+            objects: objects(inner),
         });
         walk(inner, &place, all);
     }
@@ -48,10 +54,21 @@ fn walk(part: &Value, place: &str, all: &mut Vec<Meaning>) {
                 name: word.to_owned(),
                 place: format!("{place} \"{word}\""),
                 meaning: text(branch),
+                objects: vec![],
             });
         }
         walk(branch, place, all);
     }
+}
+
+/// Definitions that a value, or its entries, may be.
+fn objects(inner: &Value) -> Vec<String> {
+    let alternatives = inner["anyOf"].as_array().into_iter().flatten();
+    [inner, &inner["items"]]
+        .into_iter()
+        .chain(alternatives)
+        .filter_map(|one| one["$ref"].as_str()?.rsplit('/').next().map(str::to_owned))
+        .collect()
 }
 
 #[cfg(test)]

@@ -74,7 +74,7 @@ pub struct PlaceTable {
     pub positions: Vec<f64>,
     /// Values there.
     pub values: Vec<f64>,
-    /// What happens in between.
+    /// What happens in between; a cubic curve is smooth and swings beyond the values of points that jump.
     pub interpolation: Interpolation,
     curve: Curve,
 }
@@ -90,7 +90,7 @@ struct PlaceTableText {
     /// Values there.
     #[schemars(length(min = 1))]
     values: Vec<f64>,
-    /// What happens in between.
+    /// What happens in between; a cubic curve is smooth and swings beyond the values of points that jump.
     #[serde(default)]
     interpolation: Interpolation,
 }

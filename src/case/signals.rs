@@ -127,7 +127,7 @@ pub struct Table {
     pub times_s: Vec<f64>,
     /// Values at these times.
     pub values: Vec<f64>,
-    /// What happens in between.
+    /// What happens in between; a cubic curve is smooth and swings beyond the values of points that jump.
     pub interpolation: Interpolation,
     pub(super) curve: Curve,
 }
@@ -152,7 +152,7 @@ pub(super) struct TableText {
     /// Heading of the column with the values; absent: the second column.
     #[serde(default, skip_serializing)]
     value_column: Option<String>,
-    /// What happens in between.
+    /// What happens in between; a cubic curve is smooth and swings beyond the values of points that jump.
     #[serde(default)]
     interpolation: Interpolation,
 }

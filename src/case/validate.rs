@@ -111,6 +111,7 @@ impl<'a> Walk<'a> {
             fault.code = Code::Name;
             fault.what = format!("unknown name \"{}\"", short(text));
             fault.nearest = nearest(text, words.iter().chain(&tags).copied());
+            fault.hint = called_otherwise(text, &words, &tags);
         } else if text.parse::<f64>().is_ok() {
             fault.hint = Some("numbers have no quotes".to_owned());
         }
@@ -228,6 +229,19 @@ impl<'a> Walk<'a> {
         let what = format!("an array of {count} {}", if count == 1 { "entry" } else { "entries" });
         self.faults
             .push(Violation::new(Code::Count, pointer, what).allowed(allowed));
+    }
+}
+
+/// What other programs call otherwise.
+fn called_otherwise(text: &str, words: &[&str], tags: &[&str]) -> Option<String> {
+    match text {
+        "open" | "vent" | "vented" if tags.contains(&"pressure_pa") => {
+            Some("an open end is {\"pressure_pa\": 0}".into())
+        }
+        "closed" | "plugged" if words.contains(&"sealed") => Some("it is called \"sealed\"".into()),
+        "fixed" | "built-in" | "encastre" if words.contains(&"clamped") => Some("it is called \"clamped\"".into()),
+        "hinged" | "simply supported" if words.contains(&"pinned") => Some("it is called \"pinned\"".into()),
+        _ => None,
     }
 }
 

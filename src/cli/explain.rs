@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Args;
 use serde_json::{Value, json};
 
-use crate::case::{meanings, nearest};
+use crate::case::{Meaning, meanings, nearest};
 use crate::error::{Code, Error, Result};
 
 /// `explain`.
@@ -40,7 +40,12 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
     }
     let name = what.rsplit('/').next().unwrap_or(what);
     let all = meanings();
-    let found: Vec<_> = all.iter().filter(|m| m.name == name).collect();
+    let named = |name: &str| all.iter().filter(|m| m.name == name).collect::<Vec<_>>();
+    let mut found = named(name);
+    if found.is_empty() {
+        // a turbine stands under turbines
+        found = named(&format!("{name}s"));
+    }
     if found.is_empty() {
         let known = all
             .iter()
@@ -54,9 +59,28 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
     let mut text = String::new();
     for m in &found {
         let _ = writeln!(text, "{}: {}", m.place, m.meaning);
+        for inner in inside(&all, m) {
+            let _ = writeln!(text, "  {}: {}", inner.place, inner.meaning);
+        }
     }
-    let rows = found.iter().map(|m| json!({"key": m.place, "meaning": m.meaning}));
+    let row = |m: &Meaning| json!({"key": m.place, "meaning": m.meaning});
+    let rows = found.iter().map(|m| {
+        let mut told = row(m);
+        told["keys"] = inside(&all, m).map(row).collect();
+        told
+    });
     answer(asked, rows.collect(), text)
+}
+
+/// Keys and words of what stands at a key, one level down.
+fn inside<'m>(all: &'m [Meaning], of: &'m Meaning) -> impl Iterator<Item = &'m Meaning> {
+    all.iter().filter(|m| {
+        of.objects.iter().any(|object| {
+            m.place.strip_prefix(object.as_str()).is_some_and(|rest| {
+                rest.starts_with(" \"") || rest.strip_prefix('/').is_some_and(|key| !key.contains('/'))
+            })
+        })
+    })
 }
 
 fn answer(asked: &ExplainArguments, json: Value, text: String) -> Result<ExitCode> {

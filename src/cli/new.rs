@@ -62,7 +62,18 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
         .file
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("{named}.json")));
-    let name = path.file_stem().and_then(|s| s.to_str()).unwrap_or(&named).to_owned();
+    let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or(&named);
+    // the name of a case is that of a folder
+    let name: String = stem
+        .chars()
+        .map(|c| {
+            if c.is_ascii_alphanumeric() || "-_".contains(c) {
+                c
+            } else {
+                '-'
+            }
+        })
+        .collect();
     let text = [("name", name.as_str()), ("$schema", SCHEMA)]
         .into_iter()
         .try_fold(asked.kind.text().to_owned(), |text, (key, value)| {
@@ -81,8 +92,15 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
     super::print(&if asked.json {
         format!("{:#}\n", json!({"case": path, "schema": schema}))
     } else {
-        let path = path.display();
-        format!("{path} is a case to change; editors explain its keys\nslcbeam check {path}\nslcbeam run {path}\n")
+        let quoted = if path.to_string_lossy().contains(' ') {
+            format!("'{}'", path.display())
+        } else {
+            path.display().to_string()
+        };
+        format!(
+            "wrote {quoted}, a starting case with remarks, and {}, by which editors explain its keys\nnext: slcbeam check {quoted}; slcbeam run {quoted}\n",
+            schema.display()
+        )
     })?;
     Ok(ExitCode::SUCCESS)
 }

@@ -73,6 +73,7 @@ codes! {
     Accuracy = "W012", "An accuracy that is not reached, or not known.";
     NotAtRest = "W013", "Modes about a state that is no equilibrium.";
     NothingMoves = "W014", "A case in which nothing can move.";
+    FewOutputs = "W015", "Output times that miss the motion.";
 }
 
 impl Code {
@@ -81,12 +82,14 @@ impl Code {
         format!("{} {text}", self.id())
     }
 
-    /// The one with this number, written in any case.
+    /// The one with this number, in capitals or not, with or without its zeros.
     pub fn find(id: &str) -> Option<Self> {
+        let number = |id: &str| Some((id.get(..1)?.to_ascii_uppercase(), id.get(1..)?.parse::<u32>().ok()?));
+        let wanted = number(id)?;
         Self::ALL
             .iter()
             .copied()
-            .find(|code| code.id().eq_ignore_ascii_case(id))
+            .find(|code| number(code.id()).as_ref() == Some(&wanted))
     }
 
     /// What it is called: the heading of its section.

@@ -1,5 +1,7 @@
 //! Audit of the coupling and of the range in which the model holds, when a case is read (model section 4.2).
 
+use std::collections::BTreeMap;
+
 use super::{Coupling, Model, Wet};
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
 use crate::error::{Code, Violation};
@@ -214,8 +216,39 @@ pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
         .collect()
 }
 
-/// Warnings of a case before it is run: bad findings, and characteristic numbers out of the model's range.
-pub fn warnings(case: &Case, model: &Model, numbers: &std::collections::BTreeMap<String, f64>) -> Vec<String> {
+/// Warnings of a case before it is run: those that stay, and characteristic numbers that are estimated out of the model's range;
+/// a run measures those.
+pub fn warnings(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> Vec<String> {
+    let mut all = lasting(case, model, numbers);
+    all.extend(over(
+        numbers,
+        Code::FastFlow,
+        "reynolds_estimate",
+        100.0,
+        "flow in the tubes may not be creeping",
+    ));
+    all.extend(over(
+        numbers,
+        Code::Strain,
+        "largest_strain_estimate",
+        0.5,
+        "local strains may not be small",
+    ));
+    all
+}
+
+fn over(numbers: &BTreeMap<String, f64>, code: Code, name: &str, limit: f64, what: &str) -> Option<String> {
+    let value = numbers.get(name).filter(|value| **value > limit)?;
+    Some(code.warning(format!(
+        "range of the model: {name} = {value:.3} is above {limit}: {what}"
+    )))
+}
+
+/// Output times in a period of the drive below which its peaks are missed.
+const OUTPUTS_A_PERIOD: f64 = 10.0;
+
+/// Warnings of a case whatever a run finds: bad findings, and characteristic numbers out of the model's range.
+pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> Vec<String> {
     let mut all: Vec<String> = coupling(case, model)
         .into_iter()
         .filter(|f| !f.good)
@@ -226,33 +259,21 @@ pub fn warnings(case: &Case, model: &Model, numbers: &std::collections::BTreeMap
             ))
         })
         .collect();
-    let mut over = |code: Code, name: &str, limit: f64, what: &str| {
-        if let Some(&value) = numbers.get(name)
-            && value > limit
-        {
-            all.push(code.warning(format!(
-                "range of the model: {name} = {value:.3} is above {limit}: {what}"
-            )));
-        }
-    };
-    over(
+    all.extend(over(
+        numbers,
         Code::FastFlow,
         "womersley",
         1.0,
         "oscillating flow in the tubes is not creeping; their inertia is left out",
-    );
-    over(
-        Code::FastFlow,
-        "reynolds_estimate",
-        100.0,
-        "flow in the tubes may not be creeping",
-    );
-    over(
-        Code::Strain,
-        "largest_strain_estimate",
-        0.5,
-        "local strains may not be small",
-    );
+    ));
+    if let Some(&f) = numbers.get("forcing_frequency_hz") {
+        let outputs = 1.0 / (f * case.time.output_interval());
+        if outputs < OUTPUTS_A_PERIOD {
+            all.push(Code::FewOutputs.warning(format!(
+                "output: {outputs:.1} output times in a period of the drive at {f} Hz: largest values and window figures miss its peaks"
+            )));
+        }
+    }
     if let Some(&rate) = numbers.get("mathieu_growth_rate_per_s")
         && rate > 0.0
     {

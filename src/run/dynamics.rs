@@ -123,7 +123,7 @@ impl<'a> Run<'a> {
         let begin = Instant::now();
         let interval = case.time.output_interval();
         let characteristic = characteristic::numbers(case, &system.model);
-        let warnings = audit::warnings(case, &system.model, &characteristic);
+        let warnings = audit::lasting(case, &system.model, &characteristic);
         let decisions = &system.model.effects.decisions;
         let chosen = if parameters.is_empty() {
             method::choose(case, &system)

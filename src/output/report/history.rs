@@ -113,7 +113,7 @@ fn group(name: &str, unit: &str) -> &'static str {
         (n, _) if n.starts_with("tip_") => "Tip",
         (_, "Pa") => "Pressure",
         (n, "J") if n.ends_with("_energy") => "Energy stored",
-        ("energy_residual", _) => "What does not close",
+        ("energy_residual", _) => "Unexplained",
         (_, "J") => "Work done and lost",
         _ => "More",
     }

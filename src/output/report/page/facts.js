@@ -86,7 +86,7 @@ function showRemarks(main) {
 
 function showEffects() {
   if (!data.effects?.length) return;
-  const body = section("effects", "What the model holds", "Each effect can be simulated or left out; the program decides by a number, unless the case does. On: simulated. Off: left out.");
+  const body = section("effects", "What was included, what was left out", "Each effect can be simulated or left out; the program decides by a number, unless the case does. On: simulated. Off: left out.");
   const on = data.effects.filter((e) => e.value !== "off").length;
   const rows = data.effects.map((e) => [e.name.replace(/_/g, " "), e.value, e.about, e.reason]);
   body.append(figure(null, `${on} of ${data.effects.length} are on.`, sortable(["effect", "choice", "what it is", "why"], rows, { label: "Effects", dim: (r) => r[1] === "off" })));

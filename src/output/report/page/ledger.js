@@ -53,7 +53,7 @@ function showEnergies(host, ledger, history, clock) {
     if (residual) group.add([{ label: spoken(residual.name), values: residual.values, unit: "J", colour: css("--bad") }], 150, "residual");
     setTimeout(group.mark, 0);
   };
-  host.append(figure("Over time", "What was put in equals what is stored, lost and harvested; the small picture below shows by how much it does not.", zoomTools(group), slot));
+  host.append(figure("Over time", "What was put in equals what is stored, lost and harvested; the small picture shows by how much it does not.", zoomTools(group), slot));
   redrawn(paint);
   if (clock) clock.onTick(group.mark);
   paint();

@@ -12,7 +12,7 @@ function showMaps(host, motion, clock, scene) {
     [["Pressure, upper row", 0], ["Pressure, lower row", half]].forEach(([title, from]) => {
       const values = motion.ofBladder;
       maps.push({
-        title, unit: "Pa", about: "Red: pushed full, blue: sucked.", rows: half, low: "root", high: "tip", scale: motion.pressureScale,
+        title, unit: "Pa", about: "Red: above the pressure outside, blue: below.", rows: half, low: "root", high: "tip", scale: motion.pressureScale,
         at: (f, k) => values[f * motion.bladders + from + k], place: (k) => `bladder ${from ? "−" : ""}${k + 1}`,
       });
     });

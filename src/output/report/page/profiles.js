@@ -20,6 +20,8 @@ function showProfiles(host, motion, clock, scene) {
       about: (most) => `From the first bladder of each network to its last, one network after the other; where one ends the line breaks. Largest in this span: ${quantity(most, "Pa")}.`,
     });
   }
+  // The width of each is known only when all stand.
+  const paints = [];
   for (const curve of curves) {
     const slot = el("div");
     const part = curve.values.subarray(cycle[0] * curve.width, (cycle.at(-1) + 1) * curve.width);
@@ -43,6 +45,7 @@ function showProfiles(host, motion, clock, scene) {
     };
     redrawn(paint);
     clock.onTick(() => drawn && drawn.now.setAttribute("d", drawn.line(clock.index)));
-    paint();
+    paints.push(paint);
   }
+  paints.forEach((paint) => paint());
 }
