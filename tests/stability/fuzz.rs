@@ -83,7 +83,7 @@ fn run(text: &str, told: &mut String) -> Verdict {
             if b.energy_residual_relative <= CLOSED {
                 return Verdict::Good("finished, balances closed");
             }
-            if !s.warnings.iter().any(|w| w.starts_with("energy balance")) {
+            if !s.warnings.iter().any(|w| w.contains("energy balance")) {
                 return Verdict::Bad(format!(
                     "energy residual {:.1e} without a warning",
                     b.energy_residual_relative

@@ -153,8 +153,8 @@ pub fn effects(place: &Place) -> Result<Map<String, Value>> {
         json!([{
             "title": "Changes and cost",
             "picture": place.picture(effects_files::PICTURE),
-            "about": format!("For every effect, the full model is run once more without it. Long bars are effects that matter; \
-                      those that change nothing by more than {} may be left out.", percent(tolerance)),
+            "about": format!("For every effect, the full model is run once more without it. Bar: the quantity of the picture; \
+                      ring: the one that changes most. Where the ring stays below {}, the effect may be left out.", percent(tolerance)),
         }]),
     );
     let row = |r: &Value| {
