@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::arguments::CompareArguments;
 use crate::error::{Error, Result};
+use crate::output::folder::fault;
 use crate::output::numbers::{quantity, significant};
 use crate::output::{comparison, reading};
 use crate::study::compare::changes::Change;
@@ -25,11 +26,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     if let Some(path) = &asked.out {
         let text = comparison::picture(&a, &b, &found)
             .ok_or_else(|| Error::Usage("nothing to draw: the two have no quantity in common".into()))?;
-        fs::write(path, text).map_err(|source| Error::Output {
-            action: "write",
-            path: path.clone(),
-            source,
-        })?;
+        fs::write(path, text).map_err(|e| fault("write", path, e))?;
     }
     if asked.json {
         super::print(&format!("{:#}\n", serde_json::to_value(&found).unwrap_or_default()))?;

@@ -12,6 +12,7 @@ use crate::case::{self, LoadedCase};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::effects as files;
+use crate::output::folder::replace;
 use crate::output::numbers::duration;
 use crate::output::report;
 use crate::study::effects::{Ablation, Event, Plan, ablate};
@@ -78,7 +79,7 @@ fn write(loaded: &LoadedCase, found: &Ablation) -> Result<String> {
         .ok_or_else(|| Error::Usage(format!("{} is no JSON object", path.display())))?;
     let again = case::parse(&text, path, path.parent().unwrap_or(path), &[])?;
     super::refuse(&again, &System::new(&again.case))?;
-    files::replace(path, &text)?;
+    replace(path, &text)?;
     Ok(format!("written into {}", path.display()))
 }
 

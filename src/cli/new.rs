@@ -1,7 +1,6 @@
 //! `slcbeam new`: a starting case with remarks, to be changed.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
@@ -9,6 +8,7 @@ use serde_json::json;
 
 use crate::case::{rewrite, schema_json};
 use crate::error::{Error, Result};
+use crate::output::folder::replace;
 
 /// Name of the schema that is put beside a case.
 const SCHEMA: &str = "slcbeam.schema.json";
@@ -87,8 +87,8 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
         )));
     }
     let schema = path.with_file_name(SCHEMA);
-    write(&path, &text)?;
-    write(&schema, &format!("{:#}\n", schema_json()))?;
+    replace(&path, &text)?;
+    replace(&schema, &format!("{:#}\n", schema_json()))?;
     super::print(&if asked.json {
         format!("{:#}\n", json!({"case": path, "schema": schema}))
     } else {
@@ -103,12 +103,4 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
         )
     })?;
     Ok(ExitCode::SUCCESS)
-}
-
-fn write(path: &Path, text: &str) -> Result<()> {
-    fs::write(path, text).map_err(|source| Error::Output {
-        action: "write",
-        path: path.to_owned(),
-        source,
-    })
 }

@@ -137,10 +137,29 @@ pub(crate) fn put(dir: &Path, files: Vec<(&str, String)>) -> Result<Vec<PathBuf>
         .into_iter()
         .map(|(name, text)| {
             let path = dir.join(name);
-            super::effects::replace(&path, &text)?;
+            replace(&path, &text)?;
             Ok(path)
         })
         .collect()
+}
+
+/// Writes a file whole or not at all; one that is there keeps its permissions, and what a link points to is replaced.
+pub fn replace(path: &Path, text: &str) -> Result<()> {
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let part = part_of(&target);
+    let written = || {
+        let old = match fs::OpenOptions::new().write(true).open(&target) {
+            Ok(file) => Some(file.metadata()?.permissions()),
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => None,
+            Err(e) => return Err(e),
+        };
+        fs::write(&part, text)?;
+        if let Some(permissions) = old {
+            fs::set_permissions(&part, permissions)?;
+        }
+        fs::rename(&part, &target)
+    };
+    written().map_err(|e| fault("write", path, e))
 }
 
 /// The name under which a file grows before it takes its own.

@@ -2,10 +2,9 @@
 
 mod table;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::folder::{fault, part_of};
+use super::folder::put;
 use super::plot::ablation::{self, AblationBars, Bar};
 use crate::error::Result;
 use crate::study::effects::ablation::{Compared, LARGEST};
@@ -76,36 +75,9 @@ pub fn json(found: &Ablation) -> String {
 
 /// Writes the files into a folder, which is made; other files in it stay.
 pub fn write(dir: &Path, found: &Ablation, shown: &Shown) -> Result<Vec<PathBuf>> {
-    fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
     let mut files = vec![(CSV, csv(found)), (JSON, json(found))];
     files.extend(ablation::draw(&bars(found, shown)).map(|text| (PICTURE, text)));
-    files
-        .into_iter()
-        .map(|(name, text)| {
-            let path = dir.join(name);
-            replace(&path, &text)?;
-            Ok(path)
-        })
-        .collect()
-}
-
-/// Writes a file whole or not at all; one that is there keeps its permissions, and what a link points to is replaced.
-pub fn replace(path: &Path, text: &str) -> Result<()> {
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-    let part = part_of(&target);
-    let written = || {
-        let old = match fs::OpenOptions::new().write(true).open(&target) {
-            Ok(file) => Some(file.metadata()?.permissions()),
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => None,
-            Err(e) => return Err(e),
-        };
-        fs::write(&part, text)?;
-        if let Some(permissions) = old {
-            fs::set_permissions(&part, permissions)?;
-        }
-        fs::rename(&part, &target)
-    };
-    written().map_err(|e| fault("write", path, e))
+    put(dir, files)
 }
 
 /// The picture's data.

@@ -7,7 +7,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use serde_json::{Map, Value, json};
 
-use super::folder::{fault, part_of};
+use super::folder::{fault, part_of, replace};
 use super::history::HistoryWriter;
 use super::numbers::shortest;
 use super::plot::Curve;
@@ -121,7 +121,7 @@ pub fn write(dir: &FilePath, found: &Found) -> Result<Vec<PathBuf>> {
     texts.push((super::folder::CASE, found.case.resolved_json()));
     for (name, text) in texts {
         let path = dir.join(name);
-        super::effects::replace(&path, &text)?;
+        replace(&path, &text)?;
         files.push(path);
     }
     Ok(files)

@@ -11,8 +11,7 @@ use serde_json::{Value, json};
 use zip::ZipWriter;
 
 use super::arrays::write_array;
-use super::effects::replace;
-use super::folder::{fault, part_of};
+use super::folder::{fault, part_of, replace};
 use super::numbers::significant;
 use super::plot::modes::{self as picture, ModeShapes, Shown};
 use crate::error::{Code, Result};

@@ -44,8 +44,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
-use super::effects::replace;
-use super::folder::{CASE, REPORT, put};
+use super::folder::{CASE, REPORT, put, replace};
 use crate::case::{self, Case};
 use crate::error::Result;
 pub use kind::Kind;

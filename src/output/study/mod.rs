@@ -8,10 +8,9 @@
 mod table;
 mod words;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::folder::{fault, part_of};
+use super::folder::put;
 use super::plot::workprecision::{self, Balance, Line, Marker, WorkPrecision};
 use crate::error::Result;
 use crate::study::accuracy::Study;
@@ -35,21 +34,10 @@ pub fn json(study: &Study) -> String {
 
 /// Writes the files into a folder, which is made; other files in it stay.
 pub fn write(dir: &Path, study: &Study) -> Result<Vec<PathBuf>> {
-    fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
     let picture = picture(study).and_then(|data| workprecision::draw(&data));
     let mut files = vec![(CSV, csv(study)), (JSON, json(study))];
     files.extend(picture.map(|text| (PICTURE, text)));
-    files
-        .into_iter()
-        .map(|(name, text)| {
-            let path = dir.join(name);
-            let part = part_of(&path);
-            fs::write(&part, text)
-                .and_then(|()| fs::rename(&part, &path))
-                .map_err(|e| fault("write", &path, e))?;
-            Ok(path)
-        })
-        .collect()
+    put(dir, files)
 }
 
 /// The picture's data; `None` when nothing could be compared.
