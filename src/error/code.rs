@@ -58,6 +58,7 @@ codes! {
     NoEquilibrium = "E045", "No equilibrium is found.";
     NoCycle = "E046", "No motion over a period.";
     NoModes = "E047", "No modes are found.";
+    OutOfRange = "E048", "The result leaves what the model describes.";
     File = "E050", "A file that cannot be read or written.";
     Reciprocity = "W001", "A coupling that is not reciprocal.";
     CouplingLaw = "W002", "A coupling that is not passive, solvable or convex.";
@@ -74,6 +75,12 @@ codes! {
     NotAtRest = "W013", "Modes about a state that is no equilibrium.";
     NothingMoves = "W014", "A case in which nothing can move.";
     FewOutputs = "W015", "Output times that miss the motion.";
+    Unresolved = "W016", "A shape along the beam that the mesh does not resolve.";
+    Inherited = "W017", "Coefficients of another beam.";
+    MomentumOpen = "W018", "A balance of momentum that stays open.";
+    PortFlow = "W019", "Flow through ports that does not follow its law.";
+    EnergyFigure = "W020", "A figure of energy that its balance does not carry.";
+    ErrorEstimate = "W021", "An error that may be larger than it seems.";
 }
 
 impl Code {
