@@ -79,7 +79,7 @@ impl Curve {
 
     /// The cubic of piece `i`: with `a = (x1 - x)/h`, `b = (x - x0)/h`,
     /// `y = a y0 + b y1 + ((a^3 - a) y0'' + (b^3 - b) y1'') h^2/6`.
-    fn piece(&self, i: usize, x: f64) -> Jet {
+    pub(super) fn piece(&self, i: usize, x: f64) -> Jet {
         let (x0, x1) = (self.at[i], self.at[i + 1]);
         let (y0, y1) = (self.values[i], self.values[i + 1]);
         let (m0, m1) = (self.second[i], self.second[i + 1]);
@@ -91,6 +91,30 @@ impl Curve {
             acceleration: a * m0 + b * m1,
             jerk: (m1 - m0) / h,
         }
+    }
+
+    /// Where the points are.
+    pub(super) fn knots(&self) -> &[f64] {
+        &self.at
+    }
+
+    /// The pieces that `[from, to]` has more than an end of.
+    pub(super) fn pieces(&self, from: f64, to: f64) -> std::ops::Range<usize> {
+        let last = self.at.len().saturating_sub(1);
+        let first = self.at.partition_point(|&knot| knot <= from).saturating_sub(1);
+        let stop = self.at.partition_point(|&knot| knot < to).min(last);
+        first..stop.max(first)
+    }
+
+    /// Where value or rate of the cubic of piece `i` may be extreme; some places lie outside, some are no numbers.
+    pub(super) fn extremes(&self, i: usize) -> [f64; 3] {
+        let (start, h) = (self.at[i], self.at[i + 1] - self.at[i]);
+        let (m0, m1) = (self.second[i], self.second[i + 1]);
+        let rate = self.piece(i, start).rate;
+        // rate + m0 x + (m1 - m0) x^2/(2 h) = 0, without cancellation
+        let (a, b) = ((m1 - m0) / (2.0 * h), m0);
+        let q = -0.5 * (b + (b * b - 4.0 * a * rate).sqrt().copysign(b));
+        [start + q / a, start + rate / q, start - m0 * h / (m1 - m0)]
     }
 
     /// Smallest distance between two points.

@@ -55,12 +55,13 @@ impl Signal {
         times.windows(2).map(|w| (w[0], w[1])).collect()
     }
 
-    /// Shortest time scale [s]: period of a sine, duration of a ramp, `4/steepness` of a sigmoid, smallest spacing
+    /// Shortest time scale [s]: period or start of a sine, duration of a ramp, `4/steepness` of a sigmoid, smallest spacing
     /// of a table. The frequencies of the factors of a product add.
     pub fn fastest_period_s(&self) -> Option<f64> {
         let scale = match self {
             _ if self.is_constant() => None,
             Self::Constant(_) | Self::Polynomial(_) => None,
+            Self::Sine(sine) if sine.ramp_cycles > 0.0 => Some(sine.ramp_cycles.min(1.0) / sine.frequency_hz),
             Self::Sine(sine) => Some(1.0 / sine.frequency_hz),
             Self::Sigmoid(sigmoid) => Some(4.0 / sigmoid.steepness_per_s.abs()),
             Self::Ramp(ramp) => Some(ramp.duration_s),
@@ -135,7 +136,7 @@ impl Sine {
 impl Sigmoid {
     /// `y = A g`, `y' = A k g h`, `y'' = A k^2 g h (h - g)`, `y''' = A k^3 g h (h^2 - 4 g h + g^2)` with `g = 1/(1 + e^-z)`, `h = 1 - g`, `z = k (t - t0)`;
     /// only `e^-|z|` is formed, which cannot overflow.
-    fn jet(&self, t: f64) -> Jet {
+    pub(super) fn jet(&self, t: f64) -> Jet {
         let (a, k) = (self.amplitude, self.steepness_per_s);
         let z = k * (t - self.midpoint_s);
         let small = (-z.abs()).exp();
@@ -151,7 +152,7 @@ impl Sigmoid {
 }
 
 impl Ramp {
-    fn jet(&self, clock: Clock) -> Jet {
+    pub(super) fn jet(&self, clock: Clock) -> Jet {
         if clock.within <= self.start_s && (self.duration_s > 0.0 || clock.within < self.start_s) {
             return Jet::constant(self.from);
         }

@@ -3,6 +3,7 @@
 //! text -> [`parse`](mod@parse) -> JSON with places -> `--set` -> [`presets`] -> [`validate`] against the schema -> CSV tables ->
 //! [`schema::Case`] -> [`check`]
 
+pub mod bounds;
 mod check;
 mod choices;
 mod curve;

@@ -76,7 +76,7 @@ pub struct PlaceTable {
     pub values: Vec<f64>,
     /// What happens in between; a cubic curve is smooth and swings beyond the values of points that jump.
     pub interpolation: Interpolation,
-    curve: Curve,
+    pub(super) curve: Curve,
 }
 
 /// A curve through points, constant beyond its ends.

@@ -270,7 +270,7 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         let outputs = 1.0 / (f * case.time.output_interval());
         if outputs < OUTPUTS_A_PERIOD {
             all.push(Code::FewOutputs.warning(format!(
-                "output: {outputs:.1} output times in a period of the drive at {f} Hz: largest values and window figures miss its peaks"
+                "output: {outputs:.1} output times in a period of the drive at {f} Hz: histories and fields as written miss its peaks"
             )));
         }
     }

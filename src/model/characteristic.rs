@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, Matrix2};
 
 use super::network::{Network, Node};
-use super::{Model, Wet};
-use crate::case::schema::Case;
+use super::{Load, Model, Wet, each_signal};
+use crate::case::schema::{Case, ChainEnd};
 use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};
 
 /// `κ_1` of the clamped-free beam under axial base acceleration.
@@ -177,34 +177,29 @@ fn axial_wave_number(model: &Model) -> f64 {
     if held(0) == held(1) { PI } else { 0.5 * PI }
 }
 
-/// Highest frequency among the sines of the case.
+/// Highest frequency among the sines of the case, wherever they act and also as a term or factor [Hz].
 fn forcing_frequency(case: &Case) -> Option<f64> {
     let mut highest: Option<f64> = None;
     let mut hear = |s: &Signal| {
-        if let Signal::Sine(sine) = s {
-            highest = Some(highest.map_or(sine.frequency_hz, |h| h.max(sine.frequency_hz)));
+        if let Some(f) = s.highest_tone_hz() {
+            highest = Some(highest.map_or(f, |h| h.max(f)));
         }
     };
-    for end in [case.ends.root.resolve(), case.ends.tip.resolve()] {
-        for motion in [&end.transverse, &end.axial] {
-            match motion {
-                Translation::Displacement(s) | Translation::Force(s) => hear(s),
+    let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
+    let loads: Vec<Load> = case.loads.iter().flat_map(|load| Load::resolve(load, 1.0)).collect();
+    each_signal(&ends, &loads, None, &mut hear);
+    if let Some(network) = &case.network {
+        for chain in &network.chains {
+            hear(&chain.opening);
+            for end in &chain.ends {
+                if let ChainEnd::PressurePa(signal) | ChainEnd::FlowM3S(signal) = end {
+                    hear(signal);
+                }
             }
         }
-        match &end.rotation {
-            Rotation::Slope(s) | Rotation::Moment(s) => hear(s),
-        }
-    }
-    for load in &case.loads {
-        use crate::case::schema::Load;
-        match load {
-            Load::ForceXNM(d)
-            | Load::ForceZNM(d)
-            | Load::MomentXN(d)
-            | Load::MomentZN(d)
-            | Load::BodyXMS2(d)
-            | Load::BodyZMS2(d) => hear(&d.signal),
-            Load::Gravity { .. } => {}
+        network.tubes.iter().for_each(|tube| hear(&tube.opening));
+        for port in &network.ports {
+            port.pressure_pa.iter().chain(&port.flow_m3_s).for_each(&mut hear);
         }
     }
     highest

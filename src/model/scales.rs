@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use super::{Section, Wet};
-use crate::case::schema::{Case, Load};
+use crate::case::profile::Profile;
+use crate::case::schema::{Case, Distributed, Load};
 use crate::case::signals::{Clock, Signal};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 
@@ -30,29 +31,6 @@ pub struct Scales {
     pub pressure: f64,
     /// Angular frequency [1/s].
     pub frequency: f64,
-}
-
-/// Largest absolute value, rate and acceleration of a signal over the run, sampled at multiples of the golden ratio:
-/// evenly spaced samples would all fall on the zeros of a sine whose period divides their spacing.
-pub fn largest(signal: &Signal, end: f64) -> (f64, f64, f64) {
-    const SAMPLES: u32 = 2000;
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let between = (1..SAMPLES).map(|k| (f64::from(k) * GOLDEN).fract());
-    between
-        .chain([0.0, 1.0])
-        .fold((0.0, 0.0, 0.0), |(v, r, a): (f64, f64, f64), share| {
-            let t = end * share;
-            let jet = signal.jet(Clock { t, within: t });
-            (
-                v.max(jet.value.abs()),
-                r.max(jet.rate.abs()),
-                a.max(jet.acceleration.abs()),
-            )
-        })
-}
-
-fn profile_size(profile: &crate::case::profile::Profile) -> f64 {
-    (0..=64).fold(0.0_f64, |m, k| m.max(profile.value(f64::from(k) / 64.0).abs()))
 }
 
 /// What acts on the beam, as magnitudes.
@@ -92,66 +70,73 @@ impl Drive {
         let end = case.time.end_s;
         let length = case.beam.length_m;
         let mut d = Self::default();
-        let size = |s: &Signal| largest(s, end).0.max(case.held_at_start(s).abs());
+        let first_mode = 3.516 / (length * length) * (section.bending_stiffness / section.mass_per_length).sqrt();
+        let size = |s: &Signal| s.largest(end).value.max(case.held_at_start(s).abs());
+        // A pulse much shorter than the beam's own period bends it by its impulse.
+        let bends = |s: &Signal| match case.held_at_start(s) {
+            0.0 => size(s).min(first_mode * s.impulse(end)),
+            _ => size(s),
+        };
         for load in &case.loads {
             let m = section.mass_per_length;
-            let dist = |l: &crate::case::schema::Distributed| size(&l.signal) * profile_size(&l.profile);
+            let dist = |l: &Distributed| bends(&l.signal) * l.profile.size();
+            let along = |l: &Distributed| size(&l.signal) * l.profile.size();
             match load {
                 Load::ForceXNM(l) => d.transverse_load += dist(l),
-                Load::ForceZNM(l) => d.axial_load += dist(l),
+                Load::ForceZNM(l) => d.axial_load += along(l),
                 Load::MomentXN(l) | Load::MomentZN(l) => d.moment += dist(l) * length,
                 Load::BodyXMS2(l) => d.transverse_load += m * dist(l),
-                Load::BodyZMS2(l) => d.axial_load += m * dist(l),
+                Load::BodyZMS2(l) => d.axial_load += m * along(l),
                 Load::Gravity { x_m_s2, z_m_s2 } => {
                     d.transverse_load += m * x_m_s2.abs();
                     d.axial_load += m * z_m_s2.abs();
                 }
             }
             if let Load::ForceXNM(l) | Load::ForceZNM(l) | Load::MomentZN(l) = load {
-                d.hear(&l.signal);
+                d.hear(&l.signal, end);
             }
         }
         let both = ends.iter().all(|e| matches!(e.axial, Translation::Displacement(_)));
         for e in ends {
             match &e.transverse {
                 Translation::Displacement(s) => {
-                    let (value, _, acceleration) = largest(s, end);
-                    d.transverse_motion = d.transverse_motion.max(value);
-                    d.transverse_acceleration = d.transverse_acceleration.max(acceleration);
-                    d.hear(s);
+                    let most = s.largest(end);
+                    d.transverse_motion = d.transverse_motion.max(most.value);
+                    d.transverse_acceleration = d.transverse_acceleration.max(most.acceleration);
+                    d.hear(s, end);
                 }
-                Translation::Force(s) => d.transverse_force += size(s),
+                Translation::Force(s) => d.transverse_force += bends(s),
             }
             match &e.axial {
                 Translation::Displacement(s) => {
-                    let (value, _, acceleration) = largest(s, end);
+                    let most = s.largest(end);
                     let start = s.jet(Clock { t: 0.0, within: 0.0 });
                     d.axial_jump = d.axial_jump.max(start.rate.abs());
                     if both {
-                        d.axial_pull += value;
+                        d.axial_pull += most.value;
                     }
-                    d.axial_acceleration = d.axial_acceleration.max(acceleration);
-                    d.hear(s);
+                    d.axial_acceleration = d.axial_acceleration.max(most.acceleration);
+                    d.hear(s, end);
                 }
                 Translation::Force(s) => d.axial_force += size(s),
             }
             match &e.rotation {
                 Rotation::Slope(s) => d.slope = d.slope.max(size(s)),
-                Rotation::Moment(s) => d.moment += size(s),
+                Rotation::Moment(s) => d.moment += bends(s),
             }
             if let Some(f) = &e.follower {
                 d.axial_force += size(&f.normal);
-                d.transverse_force += size(&f.shear);
+                d.transverse_force += bends(&f.shear);
             }
         }
         for start in &case.start.pressures {
-            d.pressure = d.pressure.max(profile_size(&start.pressure_pa));
+            d.pressure = d.pressure.max(start.pressure_pa.size());
         }
         d
     }
 
-    fn hear(&mut self, signal: &Signal) {
-        if let Some(period) = signal.fastest_unmarked_period_s() {
+    fn hear(&mut self, signal: &Signal, end: f64) {
+        if let Some(period) = signal.shortest_unmarked_time_s(end) {
             self.frequency = self.frequency.max(2.0 * PI / period);
         }
     }
@@ -169,7 +154,7 @@ impl Scales {
             section.bending_stiffness,
             section.mass_per_length,
         );
-        let size = |p: &Option<crate::case::profile::Profile>| p.as_ref().map_or(0.0, profile_size);
+        let size = |p: &Option<Profile>| p.as_ref().map_or(0.0, Profile::size);
         let first_mode = 3.516 / (l * l) * (ei / m).sqrt();
 
         let started = size(&case.start.u1_m).max(size(&case.start.u1_rate_m_s) / first_mode);
@@ -185,7 +170,7 @@ impl Scales {
         if let Some(wet) = wet {
             for port in &wet.network.ports {
                 let held = case.held_at_start(&port.pressure).abs();
-                d.pressure = d.pressure.max(largest(&port.pressure, case.time.end_s).0).max(held);
+                d.pressure = d.pressure.max(port.pressure.largest(case.time.end_s).value).max(held);
             }
             let moment = moment_of_loads + ei * started / (l * l);
             let sealed = (wet.area.force_mean * force_of_loads + wet.area.moment_mean * moment) / wet.area.per_pressure;
@@ -228,26 +213,6 @@ impl Scales {
             force,
             pressure: d.pressure.max(f64::MIN_POSITIVE),
             frequency,
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn size_of_a_sine_does_not_depend_on_the_length_of_the_run() {
-        let signal: Signal = serde_json::from_str(r#"{"sine": {"amplitude": 0.012, "frequency_hz": 20}}"#).unwrap();
-        for end in [0.5, 50.0, 100.0, 200.0, 5000.0] {
-            let (value, rate, acceleration) = largest(&signal, end);
-            let omega = 40.0 * PI;
-            assert!((value / 0.012 - 1.0).abs() < 1e-4, "{end}: {value}");
-            assert!((rate / (0.012 * omega) - 1.0).abs() < 1e-4, "{end}: {rate}");
-            assert!(
-                (acceleration / (0.012 * omega * omega) - 1.0).abs() < 1e-4,
-                "{end}: {acceleration}"
-            );
         }
     }
 }

@@ -81,7 +81,7 @@ pub fn max_step(case: &Case, system: &System) -> f64 {
         let part = if strides { 0.1 } else { 0.01 };
         let parts = 16.0 * (1e-3 / case.solver.rtol.max(1e-3)).powf(0.25);
         let largest = part * case.time.end_s;
-        schedule::fastest_period(&system.model).map_or(largest, |p| largest.min(p / parts))
+        schedule::fastest_period(&system.model, case.time.end_s).map_or(largest, |p| largest.min(p / parts))
     })
 }
 

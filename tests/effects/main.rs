@@ -23,6 +23,7 @@ mod rotation;
 mod runs;
 mod sizes;
 mod stretch;
+mod sudden;
 mod undrained;
 mod uniform;
 mod waves;

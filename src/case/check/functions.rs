@@ -30,10 +30,8 @@ pub(super) fn check(case: &Case, faults: &mut Faults) {
     for (pointer, profile) in profiles(case) {
         let known = faults.count();
         profile_tables(&pointer, profile, faults);
-        let place = (0..=100)
-            .map(|i| f64::from(i) / 100.0)
-            .find(|x| !profile.value(*x).is_finite());
-        if let Some(x) = place.filter(|_| faults.count() == known) {
+        let place = (faults.count() == known).then(|| profile.overflows()).flatten();
+        if let Some(x) = place {
             faults.push(Violation::new(
                 Code::Function,
                 pointer,
@@ -186,55 +184,37 @@ fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mu
     faults.push(fault);
 }
 
-/// Looks at a signal over the run: both ends of every smooth interval and many instants inside.
+/// A signal over the run: no jumps where something moves, finite everywhere, openings within their range. By bounds, so that no
+/// pulse passes between two looks.
 fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Faults) {
     let mut last: Option<f64> = None;
-    let intervals = signal.smooth_intervals(end);
-    let most = MOST_INSTANTS / intervals.len() as f64;
-    for (start, stop) in intervals {
-        let within = 0.5 * (start + stop);
-        let at = |t: f64| signal.jet(Clock { t, within });
-        let first = at(start).value;
-        if let Some(before) = last.filter(|_| role == Role::Motion) {
-            if (first - before).abs() > 1e-9 * (first.abs() + before.abs()) {
-                let what = format!("the motion jumps from {before} to {first} at {start} s: infinite velocity");
-                faults.push(
-                    Violation::new(Code::Function, pointer, what).hint("use a ramp with a duration and a smooth shape"),
-                );
-                return;
-            }
+    for (start, stop) in signal.smooth_intervals(end).into_iter().filter(|_| role == Role::Motion) {
+        let at = |t: f64| {
+            let within = 0.5 * (start + stop);
+            signal.jet(Clock { t, within }).value
+        };
+        let first = at(start);
+        if let Some(before) = last
+            && (first - before).abs() > 1e-9 * (first.abs() + before.abs())
+        {
+            let what = format!("the motion jumps from {before} to {first} at {start} s: infinite velocity");
+            faults.push(
+                Violation::new(Code::Function, pointer, what).hint("use a ramp with a duration and a smooth shape"),
+            );
+            return;
         }
-        last = Some(at(stop).value);
-        for t in instants(signal, start, stop, most) {
-            let jet = at(t);
-            if !(jet.value.is_finite() && jet.rate.is_finite() && jet.acceleration.is_finite()) {
-                faults.push(Violation::new(
-                    Code::Function,
-                    pointer,
-                    format!("not a finite number at {t} s"),
-                ));
-                return;
-            }
-            if role == Role::Opening && !(-1e-9..=1.0 + 1e-9).contains(&jet.value) {
-                let what = format!("an opening of {} at {t} s", jet.value);
-                faults.push(Violation::new(Code::Function, pointer, what).allowed("0 (closed) to 1 (open)"));
-                return;
-            }
-        }
+        last = Some(at(stop));
     }
-}
-
-/// Instants at which one signal is looked at, at most.
-const MOST_INSTANTS: f64 = 2e5;
-
-/// Instants close enough to see every extremum of the signal nearly.
-fn instants(signal: &Signal, start: f64, stop: f64, most: f64) -> impl Iterator<Item = f64> {
-    let periods = signal.fastest_period_s().map_or(0.0, |period| (stop - start) / period);
-    let wanted = if signal.is_constant() {
-        1.0
-    } else {
-        (40.0 * periods).max(64.0)
-    };
-    let count = wanted.min(most).max(2.0) as usize;
-    (0..=count).map(move |i| start + (stop - start) * i as f64 / count as f64)
+    if let Some(t) = signal.overflows(end) {
+        faults.push(Violation::new(
+            Code::Function,
+            pointer,
+            format!("not a finite number at {t} s"),
+        ));
+    } else if role == Role::Opening
+        && let Some(excess) = signal.leaves(-1e-9, 1.0 + 1e-9, end)
+    {
+        let what = format!("an opening of {} at {} s", excess.value, excess.t);
+        faults.push(Violation::new(Code::Function, pointer, what).allowed("0 (closed) to 1 (open)"));
+    }
 }

@@ -145,10 +145,10 @@ impl EffectSet {
             across,
             || obstacles::axial_force_on_bending(finite_rotation),
             |scene| {
-                let (force, drawn_in) = (scene.normal_force(), 1.0 / scene.stretch());
+                let (force, drawn_in) = (scene.normal_force(), scene.drawn_in());
                 bending(
                     scene,
-                    if drawn_in > force {
+                    if drawn_in.is_nan() || drawn_in > force {
                         weigh(drawn_in, tolerance, "how much bending draws in over the stretch")
                     } else {
                         weigh(force, tolerance, "normal force over the buckling load")

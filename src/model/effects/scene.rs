@@ -1,6 +1,7 @@
 //! What the scene does to the beam, in the numbers by which effects are left out: each estimates the relative error that
 //! leaving one out makes.
 
+mod least;
 mod pace;
 mod stability;
 
@@ -11,10 +12,12 @@ use crate::case::schema::{BladderEnd, Case};
 use crate::case::{ResolvedEnd, Rotation, Signal, Translation};
 use crate::model::characteristic::first_wave_number;
 use crate::model::network::{Link, Node};
-use crate::model::scales::{Drive, largest};
+use crate::model::scales::Drive;
 use crate::model::{Load, Network, Scales, Section, Wet, each_signal};
 
+use least::Least;
 use pace::Pace;
+use stability::SAFE_COMPRESSION;
 
 /// A scene, before anything is left out.
 pub struct Scene<'a> {
@@ -36,6 +39,7 @@ pub struct Scene<'a> {
     /// Of all other signals.
     others: Vec<Pace>,
     instability: OnceCell<Option<String>>,
+    least: OnceCell<Least>,
 }
 
 impl<'a> Scene<'a> {
@@ -71,6 +75,7 @@ impl<'a> Scene<'a> {
             driven_along,
             others,
             instability: OnceCell::new(),
+            least: OnceCell::new(),
             scales: Scales::estimate(case, section, wet),
             bending: beta * beta * (section.bending_stiffness / mass).sqrt(),
             axial: quarter / length * (section.axial_stiffness / mass).sqrt(),
@@ -105,7 +110,7 @@ impl<'a> Scene<'a> {
         self.ends.iter().any(driven)
     }
 
-    /// [`Pace::haste`] of all that acts; 1 where the beam begins displaced.
+    /// The sum of [`Pace::haste`] of all that acts; 1 where the beam begins displaced.
     fn haste(&self, omega: f64) -> f64 {
         self.haste_of(self.others.iter().chain(&self.driven_along), omega)
     }
@@ -114,12 +119,14 @@ impl<'a> Scene<'a> {
         if self.begins_displaced() {
             return 1.0;
         }
-        paces.map(|pace| pace.haste(omega)).fold(0.0, f64::max)
+        paces.map(|pace| pace.haste(omega)).sum()
     }
 
     /// Free bending vibrations and the inertia of forced ones, relative to the static deflection.
     pub fn bending_inertia(&self) -> f64 {
-        self.haste(self.bending)
+        // compression makes the beam slower; beyond this it is unstable anyway
+        let slower = (1.0 - self.pressed().min(SAFE_COMPRESSION)).sqrt();
+        self.haste(self.bending * slower)
     }
 
     /// Axial waves, relative to the stretch without them; a driven end acts by its acceleration, which must begin smoothly.
@@ -133,11 +140,24 @@ impl<'a> Scene<'a> {
         (self.scales.transverse / self.case.beam.length_m).powi(2)
     }
 
-    /// `φ²`, of the largest angle that a cantilever of this deflection has.
+    /// `φ²`, of the largest angle that a cantilever of this deflection or under these moments has at rest, up to three times as
+    /// large where something comes suddenly; infinite where nothing keeps the beam from turning.
     pub fn rotation(&self) -> f64 {
-        (2.0 * self.scales.transverse / self.case.beam.length_m)
-            .max(self.drive.slope)
-            .powi(2)
+        let across = |e: &ResolvedEnd| matches!(e.transverse, Translation::Displacement(_));
+        let turned = |e: &ResolvedEnd| matches!(e.rotation, Rotation::Slope(_));
+        if !self.ends.iter().any(turned) && !self.ends.iter().all(across) {
+            return f64::INFINITY;
+        }
+        let (l, d) = (self.case.beam.length_m, &self.drive);
+        let moment = d.moment + d.transverse_force * l + 0.5 * d.transverse_load * l * l;
+        let begins = self.case.start.u1_m.as_ref().map_or(0.0, |profile| profile.steepness() / l);
+        let angle = (2.0 * self.scales.transverse / l).max(moment * l / self.section.bending_stiffness);
+        (angle * (1.0 + self.haste(self.bending).min(2.0)) + begins + d.slope).powi(2)
+    }
+
+    /// What the loads do at the least.
+    fn least(&self) -> &Least {
+        self.least.get_or_init(|| Least::of(self))
     }
 
     /// Second bending frequency [1/s], and its wavenumber [1/m].
@@ -169,13 +189,25 @@ impl<'a> Scene<'a> {
 
     /// Largest normal force, of either sign, over the buckling load.
     pub fn normal_force(&self) -> f64 {
-        self.scales.force / self.buckling
+        self.largest_force() / self.buckling
     }
 
-    /// Stretch over how much bending draws the beam in.
+    /// Of either sign; twice what acts at rest where it comes suddenly [N].
+    fn largest_force(&self) -> f64 {
+        self.scales.force * (1.0 + self.haste_of(self.others.iter(), self.axial).min(1.0))
+    }
+
+    /// Stretch at the most over how much bending draws the beam in at the least.
     pub fn stretch(&self) -> f64 {
-        let (l, w) = (self.case.beam.length_m, self.scales.transverse);
-        self.scales.force * l / self.section.axial_stiffness / (0.5 * w * w / l)
+        self.largest_force() * self.case.beam.length_m / self.section.axial_stiffness / self.least().drawn_in
+    }
+
+    /// How much bending draws the beam in at the most over the stretch at the least; 0 where nothing bends it.
+    pub fn drawn_in(&self) -> f64 {
+        let l = self.case.beam.length_m;
+        // that of a slope which is the largest angle everywhere
+        let most = 0.5 * self.rotation() * l;
+        if most > 0.0 { most / self.least().stretch } else { 0.0 }
     }
 
     /// Whether the ends hold the beam without its inertia.
@@ -230,7 +262,7 @@ impl<'a> Scene<'a> {
     pub fn fed(&self) -> bool {
         self.network().is_some_and(|n| {
             let pressed = |signal: &Signal| {
-                largest(signal, self.case.time.end_s).0 > 0.0 || self.case.held_at_start(signal) != 0.0
+                signal.largest(self.case.time.end_s).value > 0.0 || self.case.held_at_start(signal) != 0.0
             };
             n.ports.iter().any(|p| pressed(&p.pressure)) || !n.sources.is_empty() || !n.turbines.is_empty()
         })
@@ -260,7 +292,7 @@ impl<'a> Scene<'a> {
         let Some(wet) = self.wet else { return 0.0 };
         let mut omega = 0.0_f64;
         self.signals(|signal| {
-            if let Some(period) = signal.fastest_period_s() {
+            if let Some(period) = signal.shortest_time_s(self.case.time.end_s) {
                 omega = omega.max(2.0 * PI / period);
             }
         });
@@ -272,19 +304,19 @@ impl<'a> Scene<'a> {
         omega * wet.area.per_pressure * wet.bladder_length.powi(2) / (PI * PI * wet.network.bladder_mobility)
     }
 
-    /// Moment and force that pressure causes, over those of the loads; over the whole run where vibrations are damped by it.
+    /// Moment and force that pressure causes, over those of the loads at the least; over the whole run where vibrations are damped by it.
     pub fn strains_of_pressure(&self) -> [f64; 2] {
         let Some(wet) = self.wet else { return [0.0; 2] };
+        if !wet.network.sources.is_empty() {
+            return [f64::INFINITY; 2];
+        }
         let p = self.scales.pressure;
         let moment = self.section.bending_stiffness * wet.coupling.curvature(&wet.area, 0.0, p, 0.0).abs();
         let force = self.section.axial_stiffness * wet.coupling.stretch(&wet.area, 0.0, p, p).abs();
         let swings = 1.0 + self.bending * self.case.time.end_s;
-        let l = self.case.beam.length_m;
-        let d = &self.drive;
-        let moment_of_loads = d.moment + d.transverse_force * l + 0.5 * d.transverse_load * l * l;
-        let force_of_loads = d.axial_force + d.axial_load * l + self.section.mass_per_length * l * d.axial_acceleration;
+        let Least { moment: by_loads, force: along, .. } = *self.least();
         let over = |part: f64, loads: f64| if part > 0.0 { swings * part / loads } else { 0.0 };
-        [over(moment, moment_of_loads), over(force, force_of_loads)]
+        [over(moment, by_loads), over(force, along)]
     }
 
     /// `dm/am`, `dn/an`.

@@ -1,11 +1,9 @@
 //! Functions of time in words.
 
 use crate::case::Signal;
+use crate::case::bounds::Interval;
 use crate::case::signals::{Ramp, Sine};
 use crate::output::numbers::{quantity, trimmed};
-
-/// Instants at which a signal is looked at for its largest value.
-const LOOKED_AT: usize = 400;
 
 /// Longest words of a sum or product.
 const LONGEST: usize = 90;
@@ -68,9 +66,8 @@ fn short(x: f64, unit: &str) -> String {
 
 /// The value of largest magnitude within `[0, end]`, with its sign; positive for what swings about zero.
 pub fn peak(signal: &Signal, end: f64) -> f64 {
-    let at = |k: usize| signal.value(end * k as f64 / LOOKED_AT as f64);
-    let values = (0..=LOOKED_AT).map(at).filter(|x| x.is_finite());
-    let (low, high) = values.fold((0.0_f64, 0.0_f64), |(l, h), x| (l.min(x), h.max(x)));
+    let Interval { low, high } = signal.range(0.0, end);
+    let (low, high) = (low.min(0.0), high.max(0.0));
     if -low > 1.001 * high { low } else { high }
 }
 

@@ -1,65 +1,48 @@
 //! How fast a signal asks for what it asks.
 
-use std::f64::consts::PI;
+use crate::case::Signal;
+use crate::case::bounds::Excitation;
 
-use crate::case::{Clock, Signal};
-use crate::model::scales::largest;
-
-/// Sizes of a signal over the run, sampled once.
+/// How a signal excites vibrations over the run, relative to its size.
 pub struct Pace {
+    /// Lower bounds of the largest value and of the largest acceleration: they stand in denominators.
     size: f64,
     acceleration: f64,
-    /// Largest jumps of value, rate and acceleration, from rest at the start and between smooth branches.
-    jumps: [f64; 3],
-    /// Shortest time scale [s].
-    period: f64,
+    excitation: Excitation,
 }
 
 impl Pace {
     /// Of a signal until `end` [s], with the value that the beam is at rest with before; none where it is zero all along.
     pub fn of(signal: &Signal, end: f64, held: f64) -> Option<Self> {
-        let (size, _, acceleration) = largest(signal, end);
-        let size = size.max(held.abs());
+        let reached = signal.reaches(end);
+        let size = reached.value.max(held.abs());
         if size == 0.0 {
             return None;
         }
-        let mut jumps = [0.0_f64; 3];
-        let mut before = [held, 0.0, 0.0];
-        for (from, to) in signal.smooth_intervals(end) {
-            let within = 0.5 * (from + to);
-            let [a, b] = [from, to].map(|t| {
-                let jet = signal.jet(Clock { t, within });
-                [jet.value, jet.rate, jet.acceleration]
-            });
-            for k in 0..3 {
-                jumps[k] = jumps[k].max((a[k] - before[k]).abs());
-            }
-            before = b;
-        }
         Some(Self {
             size,
-            acceleration,
-            jumps,
-            period: signal.fastest_period_s().unwrap_or(f64::INFINITY),
+            acceleration: reached.acceleration,
+            excitation: signal.excitation(end, held),
         })
     }
 
-    /// How much of its motion something of the angular frequency `ω` [1/s] owes to inertia when this acts on it: `s''/(ω² s)` of a
-    /// smooth signal, `Δs'/(ω s)` and `Δs/s` where it jumps, as it does at the start.
+    /// How far something of an angular frequency `ω` [1/s] or more departs, at most, from what this does to it at rest, relative to
+    /// the most that this does.
     pub fn haste(&self, omega: f64) -> f64 {
-        let smooth = self.acceleration / (omega * omega * self.size);
-        smooth
-            .max(self.jumps[0] / self.size)
-            .max(self.jumps[1] / (omega * self.size))
+        self.excitation.above(omega) / self.size
     }
 
-    /// Waves of the angular frequency `ω` [1/s] that a motion of this pace excites by its acceleration, relative to what the
-    /// acceleration does without them.
+    /// Waves of the angular frequency `ω` [1/s] or more that a motion of this pace excites by its acceleration, at most, relative to
+    /// what the acceleration does without them.
     pub fn waves(&self, omega: f64) -> f64 {
-        if self.acceleration == 0.0 {
-            return 0.0;
+        match self.excitation.waves_above(omega) {
+            0.0 => 0.0,
+            waves => waves / self.acceleration,
         }
-        let sudden = (self.jumps[1] * omega).max(self.jumps[2]) / self.acceleration;
-        sudden.max((2.0 * PI / (self.period * omega)).powi(2))
+    }
+
+    /// Whether a sine in it may be in resonance with an angular frequency of `ω` [1/s] or more.
+    pub fn resonates(&self, omega: f64) -> bool {
+        self.excitation.resonates(omega)
     }
 }

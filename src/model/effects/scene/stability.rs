@@ -3,35 +3,25 @@
 use std::f64::consts::PI;
 
 use super::Scene;
-use crate::case::{Clock, Signal, Translation};
+use super::pace::Pace;
+use crate::case::{Signal, Translation};
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
 use crate::model::loads::LoadKind;
 
 /// Force beyond which, as a part of the buckling load, nothing that bends is left out.
-const SAFE_COMPRESSION: f64 = 0.3;
-
-/// Least and largest value of a signal over the run.
-fn extremes(signal: &Signal, end: f64) -> (f64, f64) {
-    let mut found = (f64::INFINITY, f64::NEG_INFINITY);
-    for (from, to) in signal.smooth_intervals(end) {
-        for k in 0..=200 {
-            let t = from + (to - from) * f64::from(k) / 200.0;
-            let value = signal
-                .jet(Clock {
-                    t,
-                    within: 0.5 * (from + to),
-                })
-                .value;
-            found = (found.0.min(value), found.1.max(value));
-        }
-    }
-    found
-}
+pub const SAFE_COMPRESSION: f64 = 0.3;
 
 impl Scene<'_> {
     /// Largest compression over the buckling load: from loads and end forces by their signs, from shaking, from waves of a start at
     /// once, from what both ends hold, and from how a bent beam draws its end in and swings.
     pub fn compression(&self) -> f64 {
+        let (m, transverse) = (self.section.mass_per_length, self.scales.transverse);
+        let swing = transverse * self.bending * self.bending_inertia().min(1.0);
+        self.pressed() + 0.5 * m * swing * swing / self.buckling
+    }
+
+    /// The same without how a bent beam swings. What comes suddenly presses up to twice as much.
+    pub fn pressed(&self) -> f64 {
         let (l, section, d) = (self.case.beam.length_m, self.section, &self.drive);
         let [root, tip] = [0, 1].map(|k| matches!(self.ends[k].axial, Translation::Displacement(_)));
         let pressed = |along: f64, against: f64| match (root, tip) {
@@ -42,25 +32,24 @@ impl Scene<'_> {
         let end = self.case.time.end_s;
         let mut force = 0.0;
         for load in self.loads.iter().filter(|load| load.kind == LoadKind::ForceZ) {
-            let (least, most) = extremes(&load.signal, end);
-            let part = |sign: f64| {
-                let sum: f64 = (0..64)
-                    .map(|k| (sign * load.factor * load.profile.value((f64::from(k) + 0.5) / 64.0)).max(0.0))
-                    .sum();
-                sum * l / 64.0
-            };
-            let (positive, negative) = (most.max(0.0), (-least).max(0.0));
+            let values = load.signal.range(0.0, end);
+            let [up, down] = load.profile.amounts().map(|part| part * load.factor.abs() * l);
+            let part = |sign: f64| if sign * load.factor > 0.0 { up } else { down };
+            let (positive, negative) = (values.high.max(0.0), (-values.low).max(0.0));
             let along = positive * part(1.0) + negative * part(-1.0);
             let against = positive * part(-1.0) + negative * part(1.0);
             force += pressed(along, against);
         }
         for end_of_beam in &self.ends {
             if let Translation::Force(signal) = &end_of_beam.axial {
-                let (least, most) = extremes(signal, end);
-                force += pressed(most.max(0.0), (-least).max(0.0));
+                let values = signal.range(0.0, end);
+                force += pressed(values.high.max(0.0), (-values.low).max(0.0));
             }
         }
         let (ea, m) = (section.axial_stiffness, section.mass_per_length);
+        if force > 0.0 {
+            force *= 1.0 + self.haste_of(self.others.iter(), self.axial).min(1.0);
+        }
         force += m * l * d.axial_acceleration + d.axial_jump * (ea * m).sqrt() + d.axial_pull * ea / l;
         if root && tip {
             force += self.scales.force;
@@ -68,8 +57,7 @@ impl Scene<'_> {
         if self.begins_displaced() {
             force += self.scales.force;
         }
-        let swing = self.scales.transverse * self.bending * self.bending_inertia().min(1.0);
-        (force + 0.5 * m * swing * swing) / self.buckling
+        force / self.buckling
     }
 
     /// What speaks against leaving out how the beam bends, if anything does: buckling, follower loads, parametric excitation,
@@ -96,6 +84,9 @@ impl Scene<'_> {
             && let Some(why) = self.tongue(signal)
         {
             return Some(why);
+        }
+        if let Some(growth) = self.pulsates() {
+            return Some(format!("forces along pulsate and may grow bending by e^{growth:.1e}"));
         }
         let excess = self.wet.map_or(0.0, |wet| {
             let sum = wet.coupling.curvature(&wet.area, 0.0, 1.0, 0.0) * self.section.bending_stiffness;
@@ -127,6 +118,41 @@ impl Scene<'_> {
         None
     }
 
+    /// How much forces along that pulsate near twice the bending frequency or parts of it may grow bending in the whole run, as an
+    /// exponent: `P/(4 P_cr) ω1 T` of Mathieu's equation at its worst; none where it is below one.
+    fn pulsates(&self) -> Option<f64> {
+        let end = self.case.time.end_s;
+        let mut swing = 0.0;
+        let mut hear = |signal: &Signal, part: f64| {
+            if let Some(pace) = Pace::of(signal, end, self.case.held_at_start(signal))
+                && pace.resonates(self.bending)
+            {
+                let values = signal.range(0.0, end);
+                swing += 0.5 * (values.high - values.low) * part;
+            }
+        };
+        for load in self.loads.iter().filter(|load| load.kind == LoadKind::ForceZ) {
+            hear(&load.signal, load.factor.abs() * load.profile.amount() * self.case.beam.length_m);
+        }
+        for end_of_beam in &self.ends {
+            if let Translation::Force(signal) = &end_of_beam.axial {
+                hear(signal, 1.0);
+            }
+        }
+        let growth = 0.25 * swing / self.buckling * self.bending * end;
+        (growth > 1.0).then_some(growth)
+    }
+
+    /// How much sealed bladders stiffen bending and stretch.
+    pub fn stiffenings(&self) -> [f64; 2] {
+        let along = self.wet.map_or(0.0, |wet| {
+            let area = &wet.area;
+            let density = wet.per_row as f64 / self.case.beam.length_m * wet.bladder_length;
+            2.0 * self.section.axial_stiffness * density * area.force_mean.powi(2) / area.per_pressure
+        });
+        [self.stiffening(), along]
+    }
+
     /// `2 EI φ_b l_b am²/a_p`, how much sealed bladders stiffen the beam.
     fn stiffening(&self) -> f64 {
         self.wet.map_or(0.0, |wet| {
@@ -140,7 +166,7 @@ impl Scene<'_> {
     pub fn resonant(&self) -> bool {
         let mut near = false;
         self.signals(|signal| {
-            if let Some(period) = signal.fastest_period_s() {
+            if let Some(period) = signal.shortest_time_s(self.case.time.end_s) {
                 near |= 2.0 * PI / period > 0.4 * self.bending;
             }
         });

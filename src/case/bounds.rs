@@ -1,0 +1,149 @@
+//! Bounds of functions of time that hold between the instants, too: a signal is a composition of known functions, so interval
+//! arithmetic on the same composition encloses it and its derivatives.
+//!
+//! Every bound is an upper bound, never missed. Forms of one function (sine, ramp, step, table) have exact ones; of sums, products
+//! and polynomials it is at most 0.1 % above a value that the signal takes, 10 % where hundreds of pieces had to be looked at, and
+//! more only where the limit of the search is reached first: sums of many cycles of sines without a common period, where the
+//! sum of the amplitudes is nearly reached anyway, and signals whose terms cancel to round-off. Variations are at most 10 %
+//! wide under the same conditions.
+
+mod enclose;
+mod excites;
+mod interval;
+mod period;
+mod profile;
+mod search;
+mod tones;
+mod variation;
+
+use std::f64::consts::TAU;
+
+use super::signals::Signal;
+pub use excites::{Excitation, NEAR};
+use interval::Bounded;
+pub use interval::{Interval, Span};
+use search::{Search, overflows, ranges, reached, sizes};
+pub use variation::Variation;
+
+/// Largest magnitudes of a signal over the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sizes {
+    /// Of its value.
+    pub value: f64,
+    /// Of its rate [1/s].
+    pub rate: f64,
+    /// Of its acceleration [1/s^2].
+    pub acceleration: f64,
+    /// Of its third derivative [1/s^3].
+    pub jerk: f64,
+}
+
+/// Where a signal leaves given limits, or may.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Excess {
+    /// When [s].
+    pub t: f64,
+    /// What it is there.
+    pub value: f64,
+}
+
+impl Signal {
+    /// All values between two instants [s].
+    pub fn range(&self, from: f64, to: f64) -> Interval {
+        let to = self.repeats_within(from, to);
+        let [range] = ranges(&Search::new(self, from, to), [0]);
+        range
+    }
+
+    /// Largest magnitudes until `end` [s].
+    pub fn largest(&self, end: f64) -> Sizes {
+        let to = self.repeats_within(0.0, end);
+        let [value, rate, acceleration, jerk] = sizes(&Search::new(self, 0.0, to));
+        Sizes {
+            value,
+            rate,
+            acceleration,
+            jerk,
+        }
+    }
+
+    /// Magnitudes that it does reach until `end` [s]: lower bounds of those of [`Self::largest`].
+    pub fn reaches(&self, end: f64) -> Sizes {
+        let to = self.repeats_within(0.0, end);
+        let [value, rate, acceleration, jerk] = reached(&Search::new(self, 0.0, to));
+        Sizes {
+            value,
+            rate,
+            acceleration,
+            jerk,
+        }
+    }
+
+    /// Largest jumps of value, rate, acceleration and jerk until `end` [s]: from rest at the value `held` at the start, and
+    /// between smooth branches.
+    pub fn jumps(&self, end: f64, held: f64) -> [f64; 4] {
+        let mut jumps = [0.0_f64; 4];
+        let mut before = [held, 0.0, 0.0, 0.0];
+        for (from, to) in self.smooth_intervals(end) {
+            let within = 0.5 * (from + to);
+            let [a, b] = [from, to].map(|t| {
+                let jet = self.exactly(t, within);
+                [jet.value, jet.rate, jet.acceleration, jet.jerk]
+            });
+            for k in 0..4 {
+                jumps[k] = jumps[k].max((a[k] - before[k]).abs());
+            }
+            before = b;
+        }
+        jumps
+    }
+
+    /// How it makes oscillators swing until `end` [s], from rest at the value `held`.
+    pub fn excitation(&self, end: f64, held: f64) -> Excitation {
+        Excitation::of(self, end, held)
+    }
+
+    /// The highest frequency of its sines [Hz]; those of factors add.
+    pub fn highest_tone_hz(&self) -> Option<f64> {
+        let tones = tones::Tone::all(self).into_iter();
+        let heard = tones.filter(|tone| tone.gain != 0.0 && tone.omega > 0.0);
+        heard.map(|tone| tone.omega / TAU).reduce(f64::max)
+    }
+
+    /// `∫ |s| dt` until `end` [s].
+    pub fn impulse(&self, end: f64) -> f64 {
+        match self {
+            Self::Constant(value) => value.abs() * end,
+            _ => Variation::of(self, end).integral[0].min(self.largest(end).value * end),
+        }
+    }
+
+    /// Where its value is first found beyond the limits until `end` [s]; none where it is certain, or after long search likely, that
+    /// it stays within.
+    pub fn leaves(&self, low: f64, high: f64, end: f64) -> Option<Excess> {
+        let to = self.repeats_within(0.0, end);
+        let search = Search::new(self, 0.0, to);
+        let beyond = |x: f64| (x - high).max(low - x);
+        let found = search.largest(
+            |span| beyond(span.0[0].high).max(beyond(span.0[0].low)),
+            |jet| beyond(jet.value),
+            |reached, bound, _| reached > 0.0 || bound <= 0.0,
+        );
+        (found.reached > 0.0).then(|| Excess {
+            t: found.place,
+            value: self.value(found.place),
+        })
+    }
+
+    /// An instant at which value, rate or acceleration is no finite number, or may be, until `end` [s].
+    pub fn overflows(&self, end: f64) -> Option<f64> {
+        let to = self.repeats_within(0.0, end);
+        overflows(&Search::new(self, 0.0, to))
+    }
+
+    /// An instant until `end` [s] at which it is nearly as large as it gets.
+    pub fn peak(&self, end: f64) -> f64 {
+        let to = self.repeats_within(0.0, end);
+        Search::new(self, 0.0, to).size(0).place
+    }
+}

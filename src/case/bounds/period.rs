@@ -1,0 +1,91 @@
+//! Time scales of signals: when they repeat, how fast they change.
+
+use std::f64::consts::TAU;
+
+use crate::case::signals::{Polynomial, Signal};
+
+/// Cycles of the slowest sine in a common period, at most.
+const MOST_CYCLES: f64 = 64.0;
+/// Part of a cycle that sines may drift against each other in the span.
+const DRIFT: f64 = 1e-7;
+/// Slopes of a logistic step beyond which it is at rest to the last digit.
+const AT_REST: f64 = 45.0;
+
+impl Signal {
+    /// An end of the span up to which the signal takes all values that it takes until `to`.
+    pub(super) fn repeats_within(&self, from: f64, to: f64) -> f64 {
+        let mut frequencies = vec![];
+        let mut rest = from;
+        self.settles(to, &mut rest, &mut frequencies);
+        let Some(&slowest) = frequencies.iter().min_by(|a, b| a.total_cmp(b)) else {
+            return to;
+        };
+        let span = to - rest;
+        let common = (1..=MOST_CYCLES as u32).find(|n| {
+            let cycles = f64::from(*n);
+            frequencies.iter().all(|f| {
+                let ratio = f * cycles / slowest;
+                (ratio - ratio.round()).abs() * slowest * span <= DRIFT * cycles
+            })
+        });
+        common.map_or(to, |n| (rest + f64::from(n) / slowest * (1.0 + 1e-9)).min(to))
+    }
+
+    /// From when on nothing but sines changes, and their frequencies [Hz].
+    fn settles(&self, end: f64, rest: &mut f64, frequencies: &mut Vec<f64>) {
+        match self {
+            _ if self.is_constant() => {}
+            Self::Constant(_) => {}
+            Self::Sine(sine) => {
+                *rest = rest.max(sine.ramp_cycles.max(0.0) / sine.frequency_hz);
+                frequencies.push(sine.frequency_hz);
+            }
+            Self::Sigmoid(step) => *rest = rest.max(step.midpoint_s + AT_REST / step.steepness_per_s.abs()),
+            Self::Ramp(ramp) => *rest = rest.max(ramp.start_s + ramp.duration_s),
+            Self::Table(table) => *rest = rest.max(table.times_s.last().copied().unwrap_or(0.0)),
+            Self::Polynomial(_) => *rest = end,
+            Self::Sum(parts) | Self::Product(parts) => {
+                parts.iter().for_each(|part| part.settles(end, rest, frequencies));
+            }
+        }
+    }
+
+    /// Shortest time scale until `end` [s]: as [`Self::fastest_period_s`], and of polynomials.
+    pub fn shortest_time_s(&self, end: f64) -> Option<f64> {
+        self.scale(end, false)
+    }
+
+    /// As [`Self::shortest_time_s`], but only of what no switching time marks, as [`Self::fastest_unmarked_period_s`].
+    pub fn shortest_unmarked_time_s(&self, end: f64) -> Option<f64> {
+        self.scale(end, true)
+    }
+
+    fn scale(&self, end: f64, unmarked: bool) -> Option<f64> {
+        let scale = match self {
+            _ if self.is_constant() => None,
+            Self::Polynomial(polynomial) => polynomial.scale(end),
+            Self::Sum(terms) => terms.iter().filter_map(|term| term.scale(end, unmarked)).reduce(f64::min),
+            Self::Product(factors) => {
+                let scales = factors.iter().filter_map(|factor| factor.scale(end, unmarked));
+                Some(scales.map(f64::recip).sum::<f64>().recip())
+            }
+            other if unmarked => other.fastest_unmarked_period_s(),
+            other => other.fastest_period_s(),
+        };
+        scale.filter(|s| s.is_finite() && *s > 0.0)
+    }
+}
+
+impl Polynomial {
+    /// `2 π` times the least quotient of the largest rate, acceleration and jerk by their largest rates: each is the period of a
+    /// sine.
+    fn scale(&self, end: f64) -> Option<f64> {
+        if self.coefficients.len() < 3 {
+            return None;
+        }
+        let sizes = Signal::Polynomial(self.clone()).largest(end);
+        let pairs = [(sizes.rate, sizes.acceleration), (sizes.acceleration, sizes.jerk)];
+        let quotients = pairs.into_iter().filter(|(_, next)| *next > 0.0).map(|(of, next)| of / next);
+        quotients.reduce(f64::min).map(|least| TAU * least)
+    }
+}

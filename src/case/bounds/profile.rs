@@ -1,0 +1,108 @@
+//! Bounds of functions of place: the same arithmetic.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use super::enclose::{crests, wave};
+use super::interval::{Bounded, Interval, Span};
+use super::search::{Search, overflows, ranges, sizes};
+use super::variation::Variation;
+use crate::case::jet::Jet;
+use crate::case::profile::Profile;
+
+impl Profile {
+    /// All values between two places in [0, 1].
+    pub fn range(&self, from: f64, to: f64) -> Interval {
+        let [range] = ranges(&Search::new(self, from, to), [0]);
+        range
+    }
+
+    /// Largest magnitude along the whole length.
+    pub fn size(&self) -> f64 {
+        self.range(0.0, 1.0).size()
+    }
+
+    /// Largest magnitude of the slope by `x`.
+    pub fn steepness(&self) -> f64 {
+        sizes(&Search::new(self, 0.0, 1.0))[1]
+    }
+
+    /// A place at which value, slope or curvature is no finite number, or may be.
+    pub fn overflows(&self) -> Option<f64> {
+        overflows(&Search::new(self, 0.0, 1.0))
+    }
+
+    /// `∫ max(profile, 0) dx` and `∫ max(-profile, 0) dx`, upper bounds.
+    pub fn amounts(&self) -> [f64; 2] {
+        let range = self.range(0.0, 1.0);
+        let amount = self.amount();
+        [range.high, -range.low].map(|most| most.clamp(0.0, amount))
+    }
+
+    /// `∫ |profile| dx`, an upper bound.
+    pub fn amount(&self) -> f64 {
+        match self {
+            Self::Constant(value) => value.abs(),
+            _ => Variation::of(self, 1.0).integral[0],
+        }
+    }
+}
+
+impl Bounded for Profile {
+    fn exactly(&self, x: f64, within: f64) -> Jet {
+        match self {
+            Self::Table(table) => table.curve.jet(x, within, table.interpolation),
+            Self::Sum(terms) => terms
+                .iter()
+                .fold(Jet::default(), |sum, term| sum + term.exactly(x, within)),
+            Self::Product(factors) => factors
+                .iter()
+                .fold(Jet::constant(1.0), |product, f| product * f.exactly(x, within)),
+            other => other.jet(x),
+        }
+    }
+
+    fn span(&self, from: f64, to: f64) -> Span {
+        match self {
+            Self::Constant(value) => Span::at(Jet::constant(*value)),
+            Self::Cosine(w) => wave(w.amplitude, TAU * w.waves, w.phase_rad + FRAC_PI_2, from, to),
+            Self::Sine(w) => wave(w.amplitude, TAU * w.waves, w.phase_rad, from, to),
+            Self::Polynomial(polynomial) => polynomial.span(from, to),
+            Self::Table(table) => table.curve.span(from, to),
+            Self::Sum(terms) => terms
+                .iter()
+                .map(|term| term.span(from, to))
+                .reduce(|a, b| a + b)
+                .unwrap_or(Span::at(Jet::default())),
+            Self::Product(factors) => factors
+                .iter()
+                .map(|factor| factor.span(from, to))
+                .reduce(|a, b| a * b)
+                .unwrap_or(Span::at(Jet::constant(1.0))),
+        }
+    }
+
+    fn is_elementary(&self) -> bool {
+        match self {
+            Self::Constant(_) | Self::Cosine(_) | Self::Sine(_) | Self::Table(_) => true,
+            Self::Polynomial(polynomial) => polynomial.coefficients.len() < 3,
+            Self::Sum(parts) | Self::Product(parts) => matches!(parts.as_slice(), [one] if one.is_elementary()),
+        }
+    }
+
+    fn parted(&self, out: &mut Vec<f64>) {
+        match self {
+            Self::Table(table) => out.extend(&table.positions),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.parted(out)),
+            _ => {}
+        }
+    }
+
+    fn crests(&self, from: f64, to: f64, visit: &mut dyn FnMut(f64)) {
+        match self {
+            Self::Cosine(w) if w.waves > 0.0 => crests(TAU * w.waves, w.phase_rad + FRAC_PI_2, from, to, visit),
+            Self::Sine(w) if w.waves > 0.0 => crests(TAU * w.waves, w.phase_rad, from, to, visit),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.crests(from, to, visit)),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! The largest of a quantity over a span, by halving first the piece that promises most.
+//!
+//! Of every piece an upper bound is known ([`Bounded::span`], narrowed by what its ends and middle tell), of some places the
+//! quantity itself. The piece of the highest bound is halved, at a break where it holds one, until that bound is close to the
+//! largest value found; what is returned is the bound, so nothing between two places is missed. Work is limited: when the limit
+//! comes first, the bound that is reached then is returned.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use super::interval::{Bounded, Interval, Span};
+use crate::case::jet::Jet;
+
+/// Pieces that are looked at, at most.
+const MOST_PIECES: usize = 1500;
+
+/// What a search found.
+#[derive(Clone, Copy, Debug)]
+pub struct Found {
+    /// Nowhere is the quantity above this.
+    pub bound: f64,
+    /// The largest value found.
+    pub reached: f64,
+    /// Where.
+    pub place: f64,
+    /// Whether the search ended by its limit.
+    pub limited: bool,
+}
+
+/// A function over `[from, to]` with its breaks inside.
+pub struct Search<'f, F: Bounded + ?Sized> {
+    function: &'f F,
+    from: f64,
+    to: f64,
+    breaks: Vec<f64>,
+}
+
+/// How much of the bound may be more than what is found, by the pieces looked at so far.
+pub fn slack(pieces: usize) -> f64 {
+    match pieces {
+        0..100 => 1e-3,
+        100..300 => 1e-2,
+        _ => 0.1,
+    }
+}
+
+struct Piece {
+    bound: f64,
+    from: f64,
+    to: f64,
+    /// Breaks inside, as places in the list.
+    inside: (usize, usize),
+}
+
+impl PartialEq for Piece {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Piece {}
+impl PartialOrd for Piece {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Piece {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.bound.total_cmp(&other.bound)
+    }
+}
+
+impl<'f, F: Bounded + ?Sized> Search<'f, F> {
+    /// Over `[from, to]`, which is not empty.
+    pub fn new(function: &'f F, from: f64, to: f64) -> Self {
+        let mut breaks = vec![];
+        function.parted(&mut breaks);
+        Self::at(function, from, to, breaks)
+    }
+
+    /// Over `[from, to]`, with pieces that end at joins, too.
+    pub fn joined(function: &'f F, from: f64, to: f64) -> Self {
+        let mut breaks = vec![];
+        function.joined(&mut breaks);
+        Self::at(function, from, to, breaks)
+    }
+
+    fn at(function: &'f F, from: f64, to: f64, mut breaks: Vec<f64>) -> Self {
+        breaks.retain(|t| from < *t && *t < to);
+        if breaks.windows(2).any(|w| w[0] >= w[1]) {
+            breaks.sort_by(f64::total_cmp);
+            breaks.dedup();
+        }
+        Self {
+            function,
+            from,
+            to,
+            breaks,
+        }
+    }
+
+    /// The pieces between breaks.
+    pub fn smooth(&self) -> impl Iterator<Item = (f64, f64)> {
+        let stops = self.breaks.iter().copied().chain([self.to]);
+        let starts = [self.from].into_iter().chain(self.breaks.iter().copied());
+        starts.zip(stops)
+    }
+
+    /// The largest of a quantity: `most` of a span, `value` of an instant. It ends when `enough(found so far, bound, pieces)`.
+    pub fn largest(
+        &self,
+        most: impl Fn(&Span) -> f64,
+        value: impl Fn(&Jet) -> f64,
+        enough: impl Fn(f64, f64, usize) -> bool,
+    ) -> Found {
+        let mut found = Found {
+            bound: f64::INFINITY,
+            reached: f64::NEG_INFINITY,
+            place: self.from,
+            limited: false,
+        };
+        let mut heap = BinaryHeap::new();
+        let mut pieces = 0;
+        let all = (0, self.breaks.len());
+        heap.push(self.piece(self.from, self.to, all, &most, &value, &mut found));
+        while let Some(top) = heap.peek() {
+            found.bound = top.bound.max(found.reached);
+            pieces += 1;
+            if enough(found.reached, found.bound, pieces) {
+                break;
+            }
+            let (from, to, (first, last)) = (top.from, top.to, top.inside);
+            let at = if first < last {
+                first + (last - first) / 2
+            } else {
+                first
+            };
+            let (middle, next) = if first < last {
+                (self.breaks[at], at + 1)
+            } else {
+                (0.5 * (from + to), at)
+            };
+            if pieces >= MOST_PIECES || middle <= from || middle >= to {
+                found.limited = true;
+                break;
+            }
+            heap.pop();
+            heap.push(self.piece(from, middle, (first, at), &most, &value, &mut found));
+            heap.push(self.piece(middle, to, (next, last), &most, &value, &mut found));
+        }
+        found
+    }
+
+    /// The largest magnitude of value (0), rate (1), acceleration (2) or jerk (3).
+    pub fn size(&self, k: usize) -> Found {
+        self.largest(
+            |span| span.0[k].size(),
+            |jet| [jet.value, jet.rate, jet.acceleration, jet.jerk][k].abs(),
+            |reached, bound, n| bound - reached <= slack(n) * reached,
+        )
+    }
+
+    fn piece(
+        &self,
+        from: f64,
+        to: f64,
+        inside: (usize, usize),
+        most: &impl Fn(&Span) -> f64,
+        value: &impl Fn(&Jet) -> f64,
+        found: &mut Found,
+    ) -> Piece {
+        let f = self.function;
+        let mut seen = |t: f64, jet: &Jet| {
+            let size = value(jet);
+            if size > found.reached || size.is_nan() {
+                (found.reached, found.place) = (if size.is_nan() { f64::INFINITY } else { size }, t);
+            }
+        };
+        let smooth = inside.0 >= inside.1;
+        let span = if smooth {
+            let (span, jets) = told(f, from, to);
+            for (t, jet) in [from, 0.5 * (from + to), to].iter().zip(&jets) {
+                seen(*t, jet);
+            }
+            span
+        } else {
+            let middle = 0.5 * (from + to);
+            seen(middle, &f.exactly(middle, middle));
+            f.span(from, to)
+        };
+        f.crests(from, to, &mut |t| {
+            let within = if smooth { 0.5 * (from + to) } else { t };
+            seen(t, &f.exactly(t, within));
+        });
+        Piece {
+            bound: most(&span),
+            from,
+            to,
+            inside,
+        }
+    }
+}
+
+/// The span of a piece without breaks, with its ends and middle.
+pub fn told<F: Bounded + ?Sized>(f: &F, from: f64, to: f64) -> (Span, [Jet; 3]) {
+    let middle = 0.5 * (from + to);
+    let jets = [from, middle, to].map(|t| f.exactly(t, middle));
+    let span = f.span(from, to);
+    if f.is_elementary() {
+        return (span, jets);
+    }
+    (span.told(jets, 0.5 * (to - from)), jets)
+}
+
+/// Ranges of value, rate, acceleration and jerk, each end at most [`slack`] of the size beyond what is taken.
+pub fn ranges<F: Bounded + ?Sized, const N: usize>(search: &Search<F>, wanted: [usize; N]) -> [Interval; N] {
+    if search.function.is_elementary() {
+        let span = search.function.span(search.from, search.to);
+        return wanted.map(|k| span.0[k].widened(ROUND_OFF));
+    }
+    wanted.map(|k| {
+        let of = |jet: &Jet| [jet.value, jet.rate, jet.acceleration, jet.jerk][k];
+        let rough = search.function.span(search.from, search.to).0[k];
+        if rough.low == rough.high {
+            return rough;
+        }
+        let size = search.size(k).reached;
+        let high = search.largest(
+            |span| span.0[k].high,
+            of,
+            |reached, bound, n| bound - reached <= slack(n) * size,
+        );
+        let low = search.largest(
+            |span| -span.0[k].low,
+            |jet| -of(jet),
+            |reached, bound, n| bound - reached <= slack(n) * size,
+        );
+        Interval {
+            low: -low.bound,
+            high: high.bound,
+        }
+        .widened(ROUND_OFF)
+    })
+}
+
+/// Largest magnitudes of value, rate, acceleration and jerk: upper bounds.
+pub fn sizes<F: Bounded + ?Sized>(search: &Search<F>) -> [f64; 4] {
+    if search.function.is_elementary() {
+        let all = search.function.span(search.from, search.to).0;
+        return all.map(|i| i.size() * (1.0 + ROUND_OFF));
+    }
+    std::array::from_fn(|k| search.size(k).bound * (1.0 + ROUND_OFF))
+}
+
+/// Magnitudes of value, rate, acceleration and jerk that are reached: lower bounds of the largest.
+pub fn reached<F: Bounded + ?Sized>(search: &Search<F>) -> [f64; 4] {
+    if search.function.is_elementary() {
+        return search.function.span(search.from, search.to).0.map(Interval::size);
+    }
+    std::array::from_fn(|k| search.size(k).reached)
+}
+
+/// A place at which value, first or second derivative is no finite number, or may be.
+pub fn overflows<F: Bounded + ?Sized>(search: &Search<F>) -> Option<f64> {
+    let found = search.largest(
+        |span| span.0[..3].iter().map(|i| i.size()).fold(0.0, f64::max),
+        |jet| {
+            let parts = [jet.value, jet.rate, jet.acceleration];
+            if parts.iter().all(|x| x.is_finite()) { 0.0 } else { f64::INFINITY }
+        },
+        |reached, bound, _| reached > 0.0 || bound.is_finite(),
+    );
+    (!found.bound.is_finite()).then_some(found.place)
+}
+
+/// Relative, of what sums of many terms may lose.
+pub const ROUND_OFF: f64 = 1e-12;

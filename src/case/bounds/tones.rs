@@ -1,0 +1,195 @@
+//! A signal as a sum of sines, each of an amplitude that changes in time:
+//! `s = Σ g E(t) sin(W t + φ)`, `E` a product of what is no sine, `W = 0` and `φ = π/2` where there is none.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use super::interval::{Bounded, Span};
+use crate::case::jet::{Clock, Jet};
+use crate::case::signals::{Ramp, RampShape, Signal};
+
+/// Sums that multiply out to more tones than this stay products.
+const MOST_TONES: usize = 64;
+
+/// A factor of an envelope.
+#[derive(Clone, Debug)]
+pub enum Factor<'a> {
+    /// Of the signal itself.
+    Given(&'a Signal),
+    /// The smooth start of a sine.
+    Start(Ramp),
+}
+
+/// `g E(t) sin(W t + φ)`.
+#[derive(Clone, Debug)]
+pub struct Tone<'a> {
+    /// Constant factor `g`.
+    pub gain: f64,
+    /// Angular frequency `W` [1/s], not negative.
+    pub omega: f64,
+    /// Phase `φ` [rad].
+    pub phase: f64,
+    /// `E`; 1 where it is empty.
+    pub envelope: Envelope<'a>,
+}
+
+/// A product.
+#[derive(Clone, Debug, Default)]
+pub struct Envelope<'a>(pub Vec<Factor<'a>>);
+
+impl<'a> Tone<'a> {
+    fn steady(gain: f64) -> Self {
+        Self {
+            gain,
+            omega: 0.0,
+            phase: FRAC_PI_2,
+            envelope: Envelope::default(),
+        }
+    }
+
+    /// All tones of a signal.
+    pub fn all(signal: &'a Signal) -> Vec<Self> {
+        match signal {
+            Signal::Constant(value) => vec![Self::steady(*value)],
+            Signal::Sine(sine) if sine.frequency_hz <= 0.0 && sine.ramp_cycles > 0.0 => vec![],
+            Signal::Sine(sine) if sine.frequency_hz <= 0.0 => vec![Self::steady(sine.amplitude * sine.phase_rad.sin())],
+            Signal::Sine(sine) => {
+                let start = Ramp {
+                    from: 0.0,
+                    to: 1.0,
+                    start_s: 0.0,
+                    duration_s: sine.ramp_cycles / sine.frequency_hz,
+                    shape: RampShape::Smooth,
+                };
+                let start = (sine.ramp_cycles > 0.0).then_some(Factor::Start(start));
+                vec![Self {
+                    gain: sine.amplitude,
+                    omega: TAU * sine.frequency_hz,
+                    phase: sine.phase_rad,
+                    envelope: Envelope(start.into_iter().collect()),
+                }]
+            }
+            Signal::Sum(terms) => terms.iter().flat_map(Self::all).collect(),
+            Signal::Product(factors) if factors.iter().any(has_sines) => {
+                let mut all = vec![Self::steady(1.0)];
+                for factor in factors {
+                    let parts = match factor {
+                        Signal::Sum(_) if !has_sines(factor) => vec![Self::slow(factor)],
+                        _ => Self::all(factor),
+                    };
+                    if all.len() * parts.len() > MOST_TONES {
+                        return vec![Self::slow(signal)];
+                    }
+                    all = all
+                        .iter()
+                        .flat_map(|a| parts.iter().flat_map(|b| a.times(b)))
+                        .collect();
+                }
+                all
+            }
+            other => vec![Self::slow(other)],
+        }
+    }
+
+    /// Something that is no sine.
+    fn slow(signal: &'a Signal) -> Self {
+        Self {
+            envelope: Envelope(vec![Factor::Given(signal)]),
+            ..Self::steady(1.0)
+        }
+    }
+
+    /// `sin a sin b = (cos(a - b) - cos(a + b))/2`.
+    fn times(&self, other: &Self) -> Vec<Self> {
+        let factors = self.envelope.0.iter().chain(&other.envelope.0).cloned();
+        let envelope = Envelope(factors.collect());
+        let gain = self.gain * other.gain;
+        let tone = |gain: f64, omega: f64, phase: f64| match omega {
+            // sin(-x) = sin(x + π), and a sine that does not move is a number
+            0.0 => Self {
+                gain: gain * phase.sin(),
+                envelope: envelope.clone(),
+                ..Self::steady(1.0)
+            },
+            _ => Self {
+                gain,
+                omega: omega.abs(),
+                phase: if omega > 0.0 {
+                    phase
+                } else {
+                    2.0 * FRAC_PI_2 - phase
+                },
+                envelope: envelope.clone(),
+            },
+        };
+        match (self.omega, other.omega) {
+            (0.0, 0.0) => vec![tone(gain * self.phase.sin() * other.phase.sin(), 0.0, FRAC_PI_2)],
+            (0.0, omega) => vec![tone(gain * self.phase.sin(), omega, other.phase)],
+            (omega, 0.0) => vec![tone(gain * other.phase.sin(), omega, self.phase)],
+            (a, b) => vec![
+                tone(0.5 * gain, a - b, self.phase - other.phase + FRAC_PI_2),
+                tone(-0.5 * gain, a + b, self.phase + other.phase + FRAC_PI_2),
+            ],
+        }
+    }
+}
+
+/// Whether there is a sine in it.
+fn has_sines(signal: &Signal) -> bool {
+    match signal {
+        Signal::Sine(sine) => sine.frequency_hz > 0.0,
+        Signal::Sum(parts) | Signal::Product(parts) => parts.iter().any(has_sines),
+        _ => false,
+    }
+}
+
+impl Bounded for Envelope<'_> {
+    fn exactly(&self, t: f64, within: f64) -> Jet {
+        let jets = self.0.iter().map(|factor| match factor {
+            Factor::Given(signal) => signal.exactly(t, within),
+            Factor::Start(ramp) => ramp.jet(Clock { t, within }),
+        });
+        jets.reduce(|a, b| a * b).unwrap_or(Jet::constant(1.0))
+    }
+
+    fn span(&self, from: f64, to: f64) -> Span {
+        let spans = self.0.iter().map(|factor| match factor {
+            Factor::Given(signal) => signal.span(from, to),
+            Factor::Start(ramp) => ramp.span(from, to),
+        });
+        spans.reduce(|a, b| a * b).unwrap_or(Span::at(Jet::constant(1.0)))
+    }
+
+    fn is_elementary(&self) -> bool {
+        match self.0.as_slice() {
+            [] | [Factor::Start(_)] => true,
+            [Factor::Given(one)] => one.is_elementary(),
+            _ => false,
+        }
+    }
+
+    fn parted(&self, out: &mut Vec<f64>) {
+        for factor in &self.0 {
+            match factor {
+                Factor::Given(signal) => signal.breaks(out),
+                Factor::Start(ramp) => out.push(ramp.duration_s),
+            }
+        }
+    }
+
+    fn joined(&self, out: &mut Vec<f64>) {
+        for factor in &self.0 {
+            match factor {
+                Factor::Given(signal) => signal.joined(out),
+                Factor::Start(ramp) => out.push(ramp.duration_s),
+            }
+        }
+    }
+
+    fn crests(&self, from: f64, to: f64, visit: &mut dyn FnMut(f64)) {
+        for factor in &self.0 {
+            if let Factor::Given(signal) = factor {
+                signal.crests(from, to, visit);
+            }
+        }
+    }
+}

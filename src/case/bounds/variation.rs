@@ -1,0 +1,148 @@
+//! How much a function goes up and down in all: integrals of the magnitudes of its derivatives.
+
+use std::collections::BinaryHeap;
+
+use super::interval::{Bounded, Interval};
+use super::search::{ROUND_OFF, Search, sizes, told};
+use crate::case::jet::Jet;
+
+/// Pieces that are looked at, at most, beyond those between breaks.
+const MOST_PIECES: usize = 400;
+
+/// Part of an integral that may be more than it is.
+const SLACK: f64 = 0.1;
+
+/// Upper bounds over `[0, end]`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Variation {
+    /// Largest magnitudes of value and derivatives.
+    pub size: [f64; 4],
+    /// Magnitudes at the start.
+    pub start: [f64; 4],
+    /// Sums of the jumps of value and derivatives inside.
+    pub jumps: [f64; 4],
+    /// `∫ |s^(k)| dt`, k = 0 to 3, without jumps.
+    pub integral: [f64; 4],
+}
+
+impl Variation {
+    /// Of a function.
+    pub fn of<F: Bounded + ?Sized>(function: &F, end: f64) -> Self {
+        let search = Search::joined(function, 0.0, end);
+        let mut v = Self {
+            size: sizes(&Search::new(function, 0.0, end)),
+            ..Self::default()
+        };
+        let parts = |jet: &Jet| [jet.value, jet.rate, jet.acceleration, jet.jerk];
+        let mut heap = BinaryHeap::new();
+        let mut gaps = [0.0; 4];
+        let mut before: Option<[f64; 4]> = None;
+        for (from, to) in search.smooth() {
+            let piece = Part::of(function, from, to);
+            let [first, last] = piece.ends.map(|jet| parts(&jet));
+            match before {
+                None => v.start = first.map(f64::abs),
+                Some(before) => (0..4).for_each(|k| v.jumps[k] += (first[k] - before[k]).abs()),
+            }
+            before = Some(last);
+            for k in 0..4 {
+                v.integral[k] += piece.integral[k];
+                gaps[k] += piece.gap[k];
+            }
+            if piece.gap.iter().any(|gap| *gap > 0.0) {
+                heap.push(piece.weighed(&v.integral));
+            }
+        }
+        for _ in 0..MOST_PIECES {
+            if (0..4).all(|k| gaps[k] <= SLACK * v.integral[k]) {
+                break;
+            }
+            let Some(Weighed { part, .. }) = heap.pop() else { break };
+            let middle = 0.5 * (part.from + part.to);
+            if middle <= part.from || middle >= part.to {
+                continue;
+            }
+            let halves = [(part.from, middle), (middle, part.to)].map(|(a, b)| Part::of(function, a, b));
+            for k in 0..4 {
+                v.integral[k] += halves[0].integral[k] + halves[1].integral[k] - part.integral[k];
+                gaps[k] += halves[0].gap[k] + halves[1].gap[k] - part.gap[k];
+            }
+            for half in halves {
+                heap.push(half.weighed(&v.integral));
+            }
+        }
+        v.integral = v.integral.map(|x| x * (1.0 + ROUND_OFF));
+        v
+    }
+}
+
+/// A piece without breaks.
+struct Part {
+    from: f64,
+    to: f64,
+    ends: [Jet; 2],
+    integral: [f64; 4],
+    /// What of the integrals may be too much.
+    gap: [f64; 4],
+}
+
+impl Part {
+    /// A derivative that keeps its sign integrates to a difference.
+    fn of<F: Bounded + ?Sized>(function: &F, from: f64, to: f64) -> Self {
+        let (span, [first, _, last]) = told(function, from, to);
+        let length = to - from;
+        let (mut integral, mut gap) = ([0.0; 4], [0.0; 4]);
+        let differences = [
+            None,
+            Some(last.value - first.value),
+            Some(last.rate - first.rate),
+            Some(last.acceleration - first.acceleration),
+        ];
+        for k in 0..4 {
+            let i: Interval = span.0[k];
+            match differences[k] {
+                Some(difference) if i.low >= 0.0 || i.high <= 0.0 => integral[k] = difference.abs(),
+                _ => {
+                    integral[k] = length * i.size();
+                    gap[k] = length * (i.size() - i.least());
+                }
+            }
+        }
+        Self {
+            from,
+            to,
+            ends: [first, last],
+            integral,
+            gap,
+        }
+    }
+
+    fn weighed(self, integral: &[f64; 4]) -> Weighed {
+        let weight = (0..4)
+            .map(|k| if self.gap[k] > 0.0 { self.gap[k] / integral[k] } else { 0.0 })
+            .fold(0.0, f64::max);
+        Weighed { weight, part: self }
+    }
+}
+
+struct Weighed {
+    weight: f64,
+    part: Part,
+}
+
+impl PartialEq for Weighed {
+    fn eq(&self, other: &Self) -> bool {
+        self.weight.total_cmp(&other.weight).is_eq()
+    }
+}
+impl Eq for Weighed {}
+impl PartialOrd for Weighed {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Weighed {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.weight.total_cmp(&other.weight)
+    }
+}
