@@ -211,6 +211,25 @@ fn outputs_that_miss_the_motion_are_told() {
     assert!(!out.contains("W015"), "{out}");
 }
 
+/// A sine is heard wherever it acts, alone or as a term or factor.
+#[test]
+fn sines_in_the_network_are_heard() {
+    let sine = r#"{"sine":{"amplitude":1,"frequency_hz":300}}"#;
+    let port = |signal: &str| format!(r#"/network/chains/1/ends=[{{"pressure_pa":{signal}}},{{"pressure_pa":0}}]"#);
+    let opening = r#"/network/chains/0/opening={"sum":[0.5,{"product":[0.25,{"sine":{"amplitude":1,"frequency_hz":300}}]}]}"#;
+    let sets = [
+        port(sine),
+        port(&format!(r#"{{"sum":[3,{sine}]}}"#)),
+        port(&format!(r#"{{"product":[{{"ramp":{{"to":9,"duration_s":1}}}},{sine}]}}"#)),
+        opening.to_string(),
+        format!(r#"/loads=[{{"force_x_n_m":{{"signal":{{"product":[2,{sine}]}}}}}}]"#),
+    ];
+    for set in sets {
+        let (_, out, _) = slcbeam(Path::new("."), &["check", "cases/wiring-3.json", "--set", &set]);
+        assert!(out.contains("W015"), "{set}: {out}");
+    }
+}
+
 /// With `--json` every failure is an object on standard output, whatever the command.
 #[test]
 fn scripts_are_told_faults_as_json() {

@@ -110,12 +110,15 @@ impl Signal {
         heard.map(|tone| tone.omega / TAU).reduce(f64::max)
     }
 
-    /// `∫ |s| dt` until `end` [s].
+    /// `∫ |s| dt` until `end` [s]; sines count as if they were always at their crest.
     pub fn impulse(&self, end: f64) -> f64 {
-        match self {
-            Self::Constant(value) => value.abs() * end,
-            _ => Variation::of(self, end).integral[0].min(self.largest(end).value * end),
-        }
+        let tones = tones::Tone::all(self).into_iter();
+        tones
+            .map(|tone| match tone.envelope.0.as_slice() {
+                [] => tone.gain.abs() * end,
+                _ => tone.gain.abs() * Variation::amount(&tone.envelope, end),
+            })
+            .sum()
     }
 
     /// Where its value is first found beyond the limits until `end` [s]; none where it is certain, or after long search likely, that

@@ -35,14 +35,14 @@ impl Profile {
     pub fn amounts(&self) -> [f64; 2] {
         let range = self.range(0.0, 1.0);
         let amount = self.amount();
-        [range.high, -range.low].map(|most| most.clamp(0.0, amount))
+        [range.high, -range.low].map(|most| most.max(0.0).min(amount))
     }
 
     /// `∫ |profile| dx`, an upper bound.
     pub fn amount(&self) -> f64 {
         match self {
             Self::Constant(value) => value.abs(),
-            _ => Variation::of(self, 1.0).integral[0],
+            _ => Variation::amount(self, 1.0),
         }
     }
 }

@@ -215,7 +215,7 @@ pub fn told<F: Bounded + ?Sized>(f: &F, from: f64, to: f64) -> (Span, [Jet; 3]) 
 pub fn ranges<F: Bounded + ?Sized, const N: usize>(search: &Search<F>, wanted: [usize; N]) -> [Interval; N] {
     if search.function.is_elementary() {
         let span = search.function.span(search.from, search.to);
-        return wanted.map(|k| span.0[k].widened(ROUND_OFF));
+        return wanted.map(|k| span.0[k]);
     }
     wanted.map(|k| {
         let of = |jet: &Jet| [jet.value, jet.rate, jet.acceleration, jet.jerk][k];
@@ -245,8 +245,7 @@ pub fn ranges<F: Bounded + ?Sized, const N: usize>(search: &Search<F>, wanted: [
 /// Largest magnitudes of value, rate, acceleration and jerk: upper bounds.
 pub fn sizes<F: Bounded + ?Sized>(search: &Search<F>) -> [f64; 4] {
     if search.function.is_elementary() {
-        let all = search.function.span(search.from, search.to).0;
-        return all.map(|i| i.size() * (1.0 + ROUND_OFF));
+        return search.function.span(search.from, search.to).0.map(Interval::size);
     }
     std::array::from_fn(|k| search.size(k).bound * (1.0 + ROUND_OFF))
 }

@@ -28,11 +28,21 @@ pub struct Variation {
 impl Variation {
     /// Of a function.
     pub fn of<F: Bounded + ?Sized>(function: &F, end: f64) -> Self {
-        let search = Search::joined(function, 0.0, end);
-        let mut v = Self {
+        Self {
             size: sizes(&Search::new(function, 0.0, end)),
-            ..Self::default()
-        };
+            ..Self::summed(function, end, 4)
+        }
+    }
+
+    /// Only `∫ |s| dt`.
+    pub fn amount<F: Bounded + ?Sized>(function: &F, end: f64) -> f64 {
+        Self::summed(function, end, 1).integral[0]
+    }
+
+    /// Integrals, the first few of them to their accuracy.
+    fn summed<F: Bounded + ?Sized>(function: &F, end: f64, orders: usize) -> Self {
+        let search = Search::joined(function, 0.0, end);
+        let mut v = Self::default();
         let parts = |jet: &Jet| [jet.value, jet.rate, jet.acceleration, jet.jerk];
         let mut heap = BinaryHeap::new();
         let mut gaps = [0.0; 4];
@@ -50,11 +60,11 @@ impl Variation {
                 gaps[k] += piece.gap[k];
             }
             if piece.gap.iter().any(|gap| *gap > 0.0) {
-                heap.push(piece.weighed(&v.integral));
+                heap.push(piece.weighed(&v.integral, orders));
             }
         }
         for _ in 0..MOST_PIECES {
-            if (0..4).all(|k| gaps[k] <= SLACK * v.integral[k]) {
+            if (0..orders).all(|k| gaps[k] <= SLACK * v.integral[k]) {
                 break;
             }
             let Some(Weighed { part, .. }) = heap.pop() else { break };
@@ -68,7 +78,7 @@ impl Variation {
                 gaps[k] += halves[0].gap[k] + halves[1].gap[k] - part.gap[k];
             }
             for half in halves {
-                heap.push(half.weighed(&v.integral));
+                heap.push(half.weighed(&v.integral, orders));
             }
         }
         v.integral = v.integral.map(|x| x * (1.0 + ROUND_OFF));
@@ -117,8 +127,8 @@ impl Part {
         }
     }
 
-    fn weighed(self, integral: &[f64; 4]) -> Weighed {
-        let weight = (0..4)
+    fn weighed(self, integral: &[f64; 4], orders: usize) -> Weighed {
+        let weight = (0..orders)
             .map(|k| if self.gap[k] > 0.0 { self.gap[k] / integral[k] } else { 0.0 })
             .fold(0.0, f64::max);
         Weighed { weight, part: self }
