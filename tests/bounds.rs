@@ -14,34 +14,43 @@ fn simple() -> BoxedStrategy<Signal> {
     let short = (-5.0..0.0).prop_map(|e: f64| END * 10f64.powf(e));
     let json = prop_oneof![
         (-3.0..3.0).prop_map(|v: f64| format!("{v}")),
-        (-2.0..2.0, -1.0..3.0, -3.0..3.0, prop::option::of(0.1..4.0)).prop_map(|(a, f, p, r): (f64, f64, f64, _)| format!(
-            r#"{{"sine":{{"amplitude":{a},"frequency_hz":{},"phase_rad":{p},"ramp_cycles":{}}}}}"#,
-            10f64.powf(f),
-            r.unwrap_or(0.0)
-        )),
+        (-2.0..2.0, -1.0..3.0, -3.0..3.0, prop::option::of(0.1..4.0)).prop_map(
+            |(a, f, p, r): (f64, f64, f64, _)| format!(
+                r#"{{"sine":{{"amplitude":{a},"frequency_hz":{},"phase_rad":{p},"ramp_cycles":{}}}}}"#,
+                10f64.powf(f),
+                r.unwrap_or(0.0)
+            )
+        ),
         (-2.0..2.0, any::<bool>(), short.clone(), 0.0..END).prop_map(|(a, up, d, t)| format!(
             r#"{{"sigmoid":{{"amplitude":{a},"steepness_per_s":{},"midpoint_s":{t}}}}}"#,
             if up { 4.0 / d } else { -4.0 / d }
         )),
-        (-2.0..2.0, prop_oneof![Just(0.0), -2.0..2.0], 0.0..END, short.clone(), any::<bool>()).prop_map(
-            |(a, b, s, d, smooth)| format!(
+        (
+            -2.0..2.0,
+            prop_oneof![Just(0.0), -2.0..2.0],
+            0.0..END,
+            short.clone(),
+            any::<bool>()
+        )
+            .prop_map(|(a, b, s, d, smooth)| format!(
                 r#"{{"ramp":{{"from":{a},"to":{b},"start_s":{s},"duration_s":{d},"shape":"{}"}}}}"#,
                 if smooth { "smooth" } else { "linear" }
-            )
-        ),
+            )),
         prop::collection::vec(-2.0..2.0, 1..7).prop_map(|c| format!(r#"{{"polynomial":{{"coefficients":{c:?}}}}}"#)),
-        (0.0..END, prop::collection::vec((short, -1.0..1.0), 1..9), any::<bool>()).prop_map(|(start, points, cubic)| {
-            let times: Vec<f64> = points
-                .iter()
-                .scan(start, |t, p: &(f64, f64)| {
-                    *t += p.0;
-                    Some(*t)
-                })
-                .collect();
-            let values: Vec<f64> = points.iter().map(|p| p.1).collect();
-            let kind = if cubic { "cubic" } else { "linear" };
-            format!(r#"{{"table":{{"times_s":{times:?},"values":{values:?},"interpolation":"{kind}"}}}}"#)
-        }),
+        (0.0..END, prop::collection::vec((short, -1.0..1.0), 1..9), any::<bool>()).prop_map(
+            |(start, points, cubic)| {
+                let times: Vec<f64> = points
+                    .iter()
+                    .scan(start, |t, p: &(f64, f64)| {
+                        *t += p.0;
+                        Some(*t)
+                    })
+                    .collect();
+                let values: Vec<f64> = points.iter().map(|p| p.1).collect();
+                let kind = if cubic { "cubic" } else { "linear" };
+                format!(r#"{{"table":{{"times_s":{times:?},"values":{values:?},"interpolation":"{kind}"}}}}"#)
+            }
+        ),
     ];
     json.prop_map(|json| signal(&json)).boxed()
 }
@@ -136,11 +145,11 @@ proptest! {
         let most = [bounds.value, bounds.rate, bounds.acceleration];
         for k in 0..3 {
             prop_assert!(found[k] <= most[k] * (1.0 + 1e-9), "{k}: {} above {}", found[k], most[k]);
-            prop_assert!(most[k] <= 1.2 * found[k] + 1e-9, "{k}: {} found, bound {}", found[k], most[k]);
+            prop_assert!(bounds.limited || most[k] <= 1.2 * found[k] + 1e-9, "{k}: {} found, bound {}", found[k], most[k]);
         }
         let size = bounds.value;
         prop_assert!(range.low <= low + 1e-9 * size && range.high >= high - 1e-9 * size, "{range:?}: {low} {high}");
-        prop_assert!(range.low >= low - 0.2 * size && range.high <= high + 0.2 * size, "{range:?}: {low} {high}");
+        prop_assert!(bounds.limited || (range.low >= low - 0.2 * size && range.high <= high + 0.2 * size), "{range:?}: {low} {high}");
     }
 
     /// An oscillator at rest that a signal acts on, solved exactly between many instants: it never departs further from the signal
@@ -171,7 +180,12 @@ fn departure(signal: &Signal, w: f64, held: f64) -> f64 {
         let value = |t: f64| signal.jet(Clock { t, within }).value;
         let (s0, sm, s1) = (value(a), value(within), value(pair[1]));
         // s = s0 + b x + c x², q = s - 2 c/w² + A cos w x + B sin w x
-        let c = 2.0 * (s0 - 2.0 * sm + s1) / (h * h);
+        // a very short piece is straight: the difference of its values would be round-off
+        let c = if w * h < 1e-4 {
+            0.0
+        } else {
+            2.0 * (s0 - 2.0 * sm + s1) / (h * h)
+        };
         let b = (s1 - s0) / h - c * h;
         let (big_a, big_b) = (q - s0 + 2.0 * c / (w * w), (p - b) / w);
         let (sin, cos) = (w * h).sin_cos();
@@ -192,7 +206,9 @@ fn exact_bounds_of_single_forms() {
     let ramp = signal(r#"{"ramp":{"to":1,"start_s":1.2345678,"duration_s":1e-7}}"#);
     assert!((ramp.largest(1e4).rate / 1.875e7 - 1.0).abs() < 1e-9);
     assert!((ramp.jumps(1e4, 0.5)[0] - 0.5).abs() < 1e-12);
-    let square = signal(r#"{"product":[{"sine":{"amplitude":1,"frequency_hz":50}},{"sine":{"amplitude":1,"frequency_hz":50}}]}"#);
+    let square = signal(
+        r#"{"product":[{"sine":{"amplitude":1,"frequency_hz":50}},{"sine":{"amplitude":1,"frequency_hz":50}}]}"#,
+    );
     let range = square.range(0.0, 1e4);
     assert!(range.low > -0.01 && range.low <= 0.0 && range.high < 1.01, "{range:?}");
 }
@@ -200,7 +216,8 @@ fn exact_bounds_of_single_forms() {
 /// Both signs of a pulse within a hundred-thousandth of the run, which samples do not see.
 #[test]
 fn a_polynomial_pulse_is_seen_and_shortens_steps() {
-    let bump = signal(r#"{"polynomial":{"coefficients":[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1]}}"#);
+    let bump =
+        signal(r#"{"polynomial":{"coefficients":[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1]}}"#);
     let scale = bump.shortest_time_s(1.0).unwrap();
     assert!(scale < 0.3, "{scale}");
 }
@@ -223,10 +240,22 @@ fn bounds_cost_little() {
     };
     time("3", 1.0, 1e-3);
     time(r#"{"sine":{"amplitude":1,"frequency_hz":20}}"#, 1.0, 1e-3);
-    time(r#"{"sine":{"amplitude":1,"frequency_hz":20,"ramp_cycles":1}}"#, 1.0, 2e-2);
-    time(r#"{"sine":{"amplitude":1,"frequency_hz":1e5,"ramp_cycles":1}}"#, 100.0, 2e-2);
+    time(
+        r#"{"sine":{"amplitude":1,"frequency_hz":20,"ramp_cycles":1}}"#,
+        1.0,
+        2e-2,
+    );
+    time(
+        r#"{"sine":{"amplitude":1,"frequency_hz":1e5,"ramp_cycles":1}}"#,
+        100.0,
+        2e-2,
+    );
     time(r#"{"ramp":{"to":1,"start_s":0.3,"duration_s":0.1}}"#, 1.0, 2e-2);
-    time(r#"{"sum":[1,{"ramp":{"to":1,"duration_s":0.1}},{"sine":{"amplitude":1,"frequency_hz":20}}]}"#, 1.0, 2e-2);
+    time(
+        r#"{"sum":[1,{"ramp":{"to":1,"duration_s":0.1}},{"sine":{"amplitude":1,"frequency_hz":20}}]}"#,
+        1.0,
+        2e-2,
+    );
     for kind in ["linear", "cubic"] {
         let times: Vec<f64> = (0..100_000).map(|k| f64::from(k) * 1e-5).collect();
         let values: Vec<f64> = times.iter().map(|t| (40.0 * t).sin()).collect();

@@ -216,11 +216,14 @@ fn outputs_that_miss_the_motion_are_told() {
 fn sines_in_the_network_are_heard() {
     let sine = r#"{"sine":{"amplitude":1,"frequency_hz":300}}"#;
     let port = |signal: &str| format!(r#"/network/chains/1/ends=[{{"pressure_pa":{signal}}},{{"pressure_pa":0}}]"#);
-    let opening = r#"/network/chains/0/opening={"sum":[0.5,{"product":[0.25,{"sine":{"amplitude":1,"frequency_hz":300}}]}]}"#;
+    let opening =
+        r#"/network/chains/0/opening={"sum":[0.5,{"product":[0.25,{"sine":{"amplitude":1,"frequency_hz":300}}]}]}"#;
     let sets = [
         port(sine),
         port(&format!(r#"{{"sum":[3,{sine}]}}"#)),
-        port(&format!(r#"{{"product":[{{"ramp":{{"to":9,"duration_s":1}}}},{sine}]}}"#)),
+        port(&format!(
+            r#"{{"product":[{{"ramp":{{"to":9,"duration_s":1}}}},{sine}]}}"#
+        )),
         opening.to_string(),
         format!(r#"/loads=[{{"force_x_n_m":{{"signal":{{"product":[2,{sine}]}}}}}}]"#),
     ];

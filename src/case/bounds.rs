@@ -22,7 +22,7 @@ use super::signals::Signal;
 pub use excites::{Excitation, NEAR};
 use interval::Bounded;
 pub use interval::{Interval, Span};
-use search::{Search, overflows, ranges, reached, sizes};
+use search::{Search, overflows, reached, sizes};
 pub use variation::Variation;
 
 /// Largest magnitudes of a signal over the run.
@@ -36,6 +36,8 @@ pub struct Sizes {
     pub acceleration: f64,
     /// Of its third derivative [1/s^3].
     pub jerk: f64,
+    /// Whether the search ended by its limit: these are bounds then, too, but may be wide.
+    pub limited: bool,
 }
 
 /// Where a signal leaves given limits, or may.
@@ -51,19 +53,38 @@ impl Signal {
     /// All values between two instants [s].
     pub fn range(&self, from: f64, to: f64) -> Interval {
         let to = self.repeats_within(from, to);
-        let [range] = ranges(&Search::new(self, from, to), [0]);
-        range
+        let (range, limited) = search::range(&Search::new(self, from, to));
+        if !limited {
+            return range;
+        }
+        let (offset, [swing, ..]) = tones::together(self, from, to);
+        let around = Interval {
+            low: offset - swing,
+            high: offset + swing,
+        };
+        range.narrowed(around.widened(search::ROUND_OFF))
     }
 
     /// Largest magnitudes until `end` [s].
     pub fn largest(&self, end: f64) -> Sizes {
         let to = self.repeats_within(0.0, end);
-        let [value, rate, acceleration, jerk] = sizes(&Search::new(self, 0.0, to));
+        let (mut all, limited) = sizes(&Search::new(self, 0.0, to));
+        if limited {
+            let mut most = [0.0_f64; 4];
+            for (from, to) in Search::joined(self, 0.0, to).smooth() {
+                let (offset, mut here) = tones::together(self, from, to);
+                here[0] += offset.abs();
+                most = std::array::from_fn(|k| most[k].max(here[k]));
+            }
+            all = std::array::from_fn(|k| all[k].min(most[k]));
+        }
+        let [value, rate, acceleration, jerk] = all;
         Sizes {
             value,
             rate,
             acceleration,
             jerk,
+            limited,
         }
     }
 
@@ -76,6 +97,7 @@ impl Signal {
             rate,
             acceleration,
             jerk,
+            limited: false,
         }
     }
 

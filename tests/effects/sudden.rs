@@ -38,7 +38,11 @@ const WET: &str = r#"{
 
 fn keeps(case: &Case, effect: &str) -> (bool, String) {
     let effects = System::new(case).model.effects;
-    let decision = effects.decisions.iter().find(|d| d.name == effect).expect("a known effect");
+    let decision = effects
+        .decisions
+        .iter()
+        .find(|d| d.name == effect)
+        .expect("a known effect");
     (decision.on, decision.reason.clone())
 }
 
@@ -52,9 +56,8 @@ fn sudden_ramps_keep_inertia_at_any_time() {
         for k in 0..24 {
             let start = 0.05 + 0.0713 * f64::from(k);
             for shape in ["linear", "smooth"] {
-                let ramp = format!(
-                    r#"{{"ramp":{{"to":1,"start_s":{start},"duration_s":{duration},"shape":"{shape}"}}}}"#
-                );
+                let ramp =
+                    format!(r#"{{"ramp":{{"to":1,"start_s":{start},"duration_s":{duration},"shape":"{shape}"}}}}"#);
                 let (on, why) = keeps(&written(BEAM, &[tip(&ramp)]), "solid_inertia");
                 assert!(on, "{duration} s at {start} s: {why}");
             }
@@ -79,7 +82,13 @@ fn runs_of_any_length_keep_inertia_of_a_sudden_ramp() {
 #[test]
 fn a_sudden_ramp_is_right_by_default() {
     let ramp = tip(r#"{"ramp":{"to":1,"start_s":0.3,"duration_s":1e-4}}"#);
-    let sets = |effects: &str| [ramp.clone(), "/time/end_s=0.5".into(), format!("/effects=\"{effects}\"")];
+    let sets = |effects: &str| {
+        [
+            ramp.clone(),
+            "/time/end_s=0.5".into(),
+            format!("/effects=\"{effects}\""),
+        ]
+    };
     let [auto, full] = ["auto", "full"].map(|effects| run(&written(BEAM, &sets(effects))).max_abs("tip_u1_m"));
     println!("auto {auto}, full {full}");
     assert!((auto / full - 1.0).abs() < 5e-3, "{auto} {full}");
@@ -122,9 +131,7 @@ fn short_pulses_at_a_port_keep_inertia() {
 /// A tap of 0.2 ms acts by its impulse.
 #[test]
 fn a_hammer_tap_runs_by_default_and_agrees_with_the_full_model() {
-    let tap = tip(
-        r#"{"table":{"times_s":[0.05,0.0501,0.0502],"values":[0,20,0],"interpolation":"linear"}}"#,
-    );
+    let tap = tip(r#"{"table":{"times_s":[0.05,0.0501,0.0502],"values":[0,20,0],"interpolation":"linear"}}"#);
     let sets = |effects: &str| {
         [
             tap.clone(),
@@ -135,7 +142,10 @@ fn a_hammer_tap_runs_by_default_and_agrees_with_the_full_model() {
     };
     let [auto, full] = ["auto", "full"].map(|effects| run(&written(BEAM, &sets(effects))));
     let [a, f] = [&auto, &full].map(|r| r.max_abs("tip_u1_m"));
-    println!("auto {a} in {} steps, full {f} in {} steps", auto.summary.solver.steps, full.summary.solver.steps);
+    println!(
+        "auto {a} in {} steps, full {f} in {} steps",
+        auto.summary.solver.steps, full.summary.solver.steps
+    );
     assert!((a / f - 1.0).abs() < 1e-2, "{a} {f}");
 }
 

@@ -59,7 +59,9 @@ impl Bounded for Signal {
 
     fn crests(&self, from: f64, to: f64, visit: &mut dyn FnMut(f64)) {
         match self {
-            Self::Sine(sine) if sine.frequency_hz > 0.0 => crests(TAU * sine.frequency_hz, sine.phase_rad, from, to, visit),
+            Self::Sine(sine) if sine.frequency_hz > 0.0 => {
+                crests(TAU * sine.frequency_hz, sine.phase_rad, from, to, visit)
+            }
             Self::Sigmoid(sigmoid) => {
                 for z in [0.0, SIGMOID_ACCELERATION, -SIGMOID_ACCELERATION] {
                     let t = sigmoid.midpoint_s + z / sigmoid.steepness_per_s;
@@ -158,7 +160,12 @@ impl Sigmoid {
             -SIGMOID_JERK,
         ];
         let at = |t: f64| self.jet(t);
-        hull(at, from, to, extreme.map(|z| self.midpoint_s + z / self.steepness_per_s))
+        hull(
+            at,
+            from,
+            to,
+            extreme.map(|z| self.midpoint_s + z / self.steepness_per_s),
+        )
     }
 }
 

@@ -82,7 +82,9 @@ impl Excitation {
 
     /// Whether a tone may be in resonance with a frequency from `omega` [1/s] on.
     pub fn resonates(&self, omega: f64) -> bool {
-        self.tones.iter().any(|part| part.gain > 0.0 && part.omega >= NEAR * omega)
+        self.tones
+            .iter()
+            .any(|part| part.gain > 0.0 && part.omega >= NEAR * omega)
     }
 }
 
@@ -94,7 +96,12 @@ impl Part {
         }
         let [i1, i2, i3] = [v.integral[1], v.integral[2], v.integral[3]];
         let changing = Changing {
-            size: [(v.size[0] + v.start[0]).min(i1 + v.jumps[0]), v.size[1], v.size[2], v.size[3]],
+            size: [
+                (v.size[0] + v.start[0]).min(i1 + v.jumps[0]),
+                v.size[1],
+                v.size[2],
+                v.size[3],
+            ],
             start: [v.start[1], v.start[2], v.start[3]],
             jumps: v.jumps,
             integral: [i1, i2, i3, self.fourth],

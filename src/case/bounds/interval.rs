@@ -126,10 +126,7 @@ impl Span {
     /// there: a derivative that keeps its sign leaves the ends, else Taylor's formula about the middle.
     pub fn told(self, [first, middle, last]: [Jet; 3], half: f64) -> Self {
         let [value, rate, acceleration, jerk] = self.0;
-        let around = Interval {
-            low: -half,
-            high: half,
-        };
+        let around = Interval { low: -half, high: half };
         let bend = Interval {
             low: 0.0,
             high: 0.5 * half * half,

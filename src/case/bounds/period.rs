@@ -64,7 +64,10 @@ impl Signal {
         let scale = match self {
             _ if self.is_constant() => None,
             Self::Polynomial(polynomial) => polynomial.scale(end),
-            Self::Sum(terms) => terms.iter().filter_map(|term| term.scale(end, unmarked)).reduce(f64::min),
+            Self::Sum(terms) => terms
+                .iter()
+                .filter_map(|term| term.scale(end, unmarked))
+                .reduce(f64::min),
             Self::Product(factors) => {
                 let scales = factors.iter().filter_map(|factor| factor.scale(end, unmarked));
                 Some(scales.map(f64::recip).sum::<f64>().recip())
@@ -85,7 +88,10 @@ impl Polynomial {
         }
         let sizes = Signal::Polynomial(self.clone()).largest(end);
         let pairs = [(sizes.rate, sizes.acceleration), (sizes.acceleration, sizes.jerk)];
-        let quotients = pairs.into_iter().filter(|(_, next)| *next > 0.0).map(|(of, next)| of / next);
+        let quotients = pairs
+            .into_iter()
+            .filter(|(_, next)| *next > 0.0)
+            .map(|(of, next)| of / next);
         quotients.reduce(f64::min).map(|least| TAU * least)
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::enclose::{crests, wave};
 use super::interval::{Bounded, Interval, Span};
-use super::search::{Search, overflows, ranges, sizes};
+use super::search::{self, Search, overflows, sizes};
 use super::variation::Variation;
 use crate::case::jet::Jet;
 use crate::case::profile::Profile;
@@ -12,8 +12,7 @@ use crate::case::profile::Profile;
 impl Profile {
     /// All values between two places in [0, 1].
     pub fn range(&self, from: f64, to: f64) -> Interval {
-        let [range] = ranges(&Search::new(self, from, to), [0]);
-        range
+        search::range(&Search::new(self, from, to)).0
     }
 
     /// Largest magnitude along the whole length.
@@ -23,7 +22,7 @@ impl Profile {
 
     /// Largest magnitude of the slope by `x`.
     pub fn steepness(&self) -> f64 {
-        sizes(&Search::new(self, 0.0, 1.0))[1]
+        sizes(&Search::new(self, 0.0, 1.0)).0[1]
     }
 
     /// A place at which value, slope or curvature is no finite number, or may be.

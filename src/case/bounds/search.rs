@@ -211,43 +211,32 @@ pub fn told<F: Bounded + ?Sized>(f: &F, from: f64, to: f64) -> (Span, [Jet; 3]) 
     (span.told(jets, 0.5 * (to - from)), jets)
 }
 
-/// Ranges of value, rate, acceleration and jerk, each end at most [`slack`] of the size beyond what is taken.
-pub fn ranges<F: Bounded + ?Sized, const N: usize>(search: &Search<F>, wanted: [usize; N]) -> [Interval; N] {
-    if search.function.is_elementary() {
-        let span = search.function.span(search.from, search.to);
-        return wanted.map(|k| span.0[k]);
+/// The range of the value, each end at most [`slack`] of the size beyond what is taken, and whether the search was limited.
+pub fn range<F: Bounded + ?Sized>(search: &Search<F>) -> (Interval, bool) {
+    let rough = search.function.span(search.from, search.to).0[0];
+    if search.function.is_elementary() || rough.low == rough.high {
+        return (rough, false);
     }
-    wanted.map(|k| {
-        let of = |jet: &Jet| [jet.value, jet.rate, jet.acceleration, jet.jerk][k];
-        let rough = search.function.span(search.from, search.to).0[k];
-        if rough.low == rough.high {
-            return rough;
-        }
-        let size = search.size(k).reached;
-        let high = search.largest(
-            |span| span.0[k].high,
-            of,
-            |reached, bound, n| bound - reached <= slack(n) * size,
-        );
-        let low = search.largest(
-            |span| -span.0[k].low,
-            |jet| -of(jet),
-            |reached, bound, n| bound - reached <= slack(n) * size,
-        );
-        Interval {
-            low: -low.bound,
-            high: high.bound,
-        }
-        .widened(ROUND_OFF)
-    })
+    let size = search.size(0).reached;
+    let enough = |reached: f64, bound: f64, n: usize| bound - reached <= slack(n) * size;
+    let high = search.largest(|span| span.0[0].high, |jet| jet.value, enough);
+    let low = search.largest(|span| -span.0[0].low, |jet| -jet.value, enough);
+    let range = Interval {
+        low: -low.bound,
+        high: high.bound,
+    };
+    (range.widened(ROUND_OFF), low.limited || high.limited)
 }
 
-/// Largest magnitudes of value, rate, acceleration and jerk: upper bounds.
-pub fn sizes<F: Bounded + ?Sized>(search: &Search<F>) -> [f64; 4] {
+/// Largest magnitudes of value, rate, acceleration and jerk: upper bounds; and whether the search for one was limited.
+pub fn sizes<F: Bounded + ?Sized>(search: &Search<F>) -> ([f64; 4], bool) {
     if search.function.is_elementary() {
-        return search.function.span(search.from, search.to).0.map(Interval::size);
+        let span = search.function.span(search.from, search.to);
+        return (span.0.map(Interval::size), false);
     }
-    std::array::from_fn(|k| search.size(k).bound * (1.0 + ROUND_OFF))
+    let found: [Found; 4] = std::array::from_fn(|k| search.size(k));
+    let limited = found.iter().any(|found| found.limited);
+    (found.map(|found| found.bound * (1.0 + ROUND_OFF)), limited)
 }
 
 /// Magnitudes of value, rate, acceleration and jerk that are reached: lower bounds of the largest.
@@ -264,7 +253,11 @@ pub fn overflows<F: Bounded + ?Sized>(search: &Search<F>) -> Option<f64> {
         |span| span.0[..3].iter().map(|i| i.size()).fold(0.0, f64::max),
         |jet| {
             let parts = [jet.value, jet.rate, jet.acceleration];
-            if parts.iter().all(|x| x.is_finite()) { 0.0 } else { f64::INFINITY }
+            if parts.iter().all(|x| x.is_finite()) {
+                0.0
+            } else {
+                f64::INFINITY
+            }
         },
         |reached, bound, _| reached > 0.0 || bound.is_finite(),
     );

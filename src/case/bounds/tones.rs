@@ -4,6 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::interval::{Bounded, Span};
+use super::search::{Search, sizes};
 use crate::case::jet::{Clock, Jet};
 use crate::case::signals::{Ramp, RampShape, Signal};
 
@@ -79,10 +80,7 @@ impl<'a> Tone<'a> {
                     if all.len() * parts.len() > MOST_TONES {
                         return vec![Self::slow(signal)];
                     }
-                    all = all
-                        .iter()
-                        .flat_map(|a| parts.iter().flat_map(|b| a.times(b)))
-                        .collect();
+                    all = all.iter().flat_map(|a| parts.iter().flat_map(|b| a.times(b))).collect();
                 }
                 all
             }
@@ -113,11 +111,7 @@ impl<'a> Tone<'a> {
             _ => Self {
                 gain,
                 omega: omega.abs(),
-                phase: if omega > 0.0 {
-                    phase
-                } else {
-                    2.0 * FRAC_PI_2 - phase
-                },
+                phase: if omega > 0.0 { phase } else { 2.0 * FRAC_PI_2 - phase },
                 envelope: envelope.clone(),
             },
         };
@@ -131,6 +125,37 @@ impl<'a> Tone<'a> {
             ],
         }
     }
+}
+
+/// A constant, and bounds of value and derivatives of what is added to it, from the sum of the sizes of all tones: many
+/// cycles of sines without a common period come close to that.
+pub fn together(signal: &Signal, from: f64, to: f64) -> (f64, [f64; 4]) {
+    const BINOMIAL: [[f64; 4]; 4] = [
+        [1.0, 0.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0, 0.0],
+        [1.0, 2.0, 1.0, 0.0],
+        [1.0, 3.0, 3.0, 1.0],
+    ];
+    let (mut offset, mut most) = (0.0, [0.0; 4]);
+    for tone in Tone::all(signal) {
+        if tone.omega == 0.0 && tone.envelope.0.is_empty() {
+            offset += tone.gain * tone.phase.sin();
+            continue;
+        }
+        let envelope = if tone.envelope.0.is_empty() {
+            [1.0, 0.0, 0.0, 0.0]
+        } else {
+            sizes(&Search::new(&tone.envelope, from, to)).0
+        };
+        for (k, most) in most.iter_mut().enumerate() {
+            let terms = (0..=k).filter(|j| envelope[*j] > 0.0);
+            let sum: f64 = terms
+                .map(|j| BINOMIAL[k][j] * envelope[j] * tone.omega.powi((k - j) as i32))
+                .sum();
+            *most += tone.gain.abs() * sum;
+        }
+    }
+    (offset, most)
 }
 
 /// Whether there is a sine in it.

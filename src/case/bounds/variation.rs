@@ -29,7 +29,7 @@ impl Variation {
     /// Of a function.
     pub fn of<F: Bounded + ?Sized>(function: &F, end: f64) -> Self {
         Self {
-            size: sizes(&Search::new(function, 0.0, end)),
+            size: sizes(&Search::new(function, 0.0, end)).0,
             ..Self::summed(function, end, 4)
         }
     }
@@ -45,7 +45,7 @@ impl Variation {
         let mut v = Self::default();
         let parts = |jet: &Jet| [jet.value, jet.rate, jet.acceleration, jet.jerk];
         let mut heap = BinaryHeap::new();
-        let mut gaps = [0.0; 4];
+        let (mut gaps, mut settled) = ([0.0; 4], [0.0; 4]);
         let mut before: Option<[f64; 4]> = None;
         for (from, to) in search.smooth() {
             let piece = Part::of(function, from, to);
@@ -55,12 +55,12 @@ impl Variation {
                 Some(before) => (0..4).for_each(|k| v.jumps[k] += (first[k] - before[k]).abs()),
             }
             before = Some(last);
-            for k in 0..4 {
-                v.integral[k] += piece.integral[k];
-                gaps[k] += piece.gap[k];
-            }
+            add(&mut v.integral, 1.0, &piece.integral);
+            add(&mut gaps, 1.0, &piece.gap);
             if piece.gap.iter().any(|gap| *gap > 0.0) {
                 heap.push(piece.weighed(&v.integral, orders));
+            } else {
+                add(&mut settled, 1.0, &piece.integral);
             }
         }
         for _ in 0..MOST_PIECES {
@@ -70,19 +70,28 @@ impl Variation {
             let Some(Weighed { part, .. }) = heap.pop() else { break };
             let middle = 0.5 * (part.from + part.to);
             if middle <= part.from || middle >= part.to {
+                add(&mut settled, 1.0, &part.integral);
                 continue;
             }
             let halves = [(part.from, middle), (middle, part.to)].map(|(a, b)| Part::of(function, a, b));
-            for k in 0..4 {
-                v.integral[k] += halves[0].integral[k] + halves[1].integral[k] - part.integral[k];
-                gaps[k] += halves[0].gap[k] + halves[1].gap[k] - part.gap[k];
-            }
+            add(&mut v.integral, -1.0, &part.integral);
+            add(&mut gaps, -1.0, &part.gap);
             for half in halves {
+                add(&mut v.integral, 1.0, &half.integral);
+                add(&mut gaps, 1.0, &half.gap);
                 heap.push(half.weighed(&v.integral, orders));
             }
         }
-        v.integral = v.integral.map(|x| x * (1.0 + ROUND_OFF));
+        // afresh: what was taken off may have been much larger than what is left
+        heap.iter().for_each(|open| add(&mut settled, 1.0, &open.part.integral));
+        v.integral = settled.map(|x| x * (1.0 + ROUND_OFF));
         v
+    }
+}
+
+fn add(sum: &mut [f64; 4], factor: f64, parts: &[f64; 4]) {
+    for (sum, part) in sum.iter_mut().zip(parts) {
+        *sum += factor * part;
     }
 }
 
@@ -129,7 +138,13 @@ impl Part {
 
     fn weighed(self, integral: &[f64; 4], orders: usize) -> Weighed {
         let weight = (0..orders)
-            .map(|k| if self.gap[k] > 0.0 { self.gap[k] / integral[k] } else { 0.0 })
+            .map(|k| {
+                if self.gap[k] > 0.0 {
+                    self.gap[k] / integral[k]
+                } else {
+                    0.0
+                }
+            })
             .fold(0.0, f64::max);
         Weighed { weight, part: self }
     }

@@ -188,7 +188,11 @@ fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mu
 /// pulse passes between two looks.
 fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Faults) {
     let mut last: Option<f64> = None;
-    for (start, stop) in signal.smooth_intervals(end).into_iter().filter(|_| role == Role::Motion) {
+    for (start, stop) in signal
+        .smooth_intervals(end)
+        .into_iter()
+        .filter(|_| role == Role::Motion)
+    {
         let at = |t: f64| {
             let within = 0.5 * (start + stop);
             signal.jet(Clock { t, within }).value

@@ -150,7 +150,12 @@ impl<'a> Scene<'a> {
         }
         let (l, d) = (self.case.beam.length_m, &self.drive);
         let moment = d.moment + d.transverse_force * l + 0.5 * d.transverse_load * l * l;
-        let begins = self.case.start.u1_m.as_ref().map_or(0.0, |profile| profile.steepness() / l);
+        let begins = self
+            .case
+            .start
+            .u1_m
+            .as_ref()
+            .map_or(0.0, |profile| profile.steepness() / l);
         let angle = (2.0 * self.scales.transverse / l).max(moment * l / self.section.bending_stiffness);
         (angle * (1.0 + self.haste(self.bending).min(2.0)) + begins + d.slope).powi(2)
     }
@@ -314,7 +319,11 @@ impl<'a> Scene<'a> {
         let moment = self.section.bending_stiffness * wet.coupling.curvature(&wet.area, 0.0, p, 0.0).abs();
         let force = self.section.axial_stiffness * wet.coupling.stretch(&wet.area, 0.0, p, p).abs();
         let swings = 1.0 + self.bending * self.case.time.end_s;
-        let Least { moment: by_loads, force: along, .. } = *self.least();
+        let Least {
+            moment: by_loads,
+            force: along,
+            ..
+        } = *self.least();
         let over = |part: f64, loads: f64| if part > 0.0 { swings * part / loads } else { 0.0 };
         [over(moment, by_loads), over(force, along)]
     }

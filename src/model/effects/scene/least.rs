@@ -81,9 +81,16 @@ impl Least {
                 .collect();
             let slope = |i: usize| sum[2 * i + 1];
             match k {
-                0 => (0..ELEMENTS).map(|i| 0.25 * h * (slope(i).powi(2).min(slope(i + 1).powi(2)))).sum::<f64>() * 2.0,
+                0 => {
+                    (0..ELEMENTS)
+                        .map(|i| 0.25 * h * (slope(i).powi(2).min(slope(i + 1).powi(2))))
+                        .sum::<f64>()
+                        * 2.0
+                }
                 _ => {
-                    let bend = (0..ELEMENTS).map(|i| ((slope(i + 1) - slope(i)) / h).abs()).fold(0.0, f64::max);
+                    let bend = (0..ELEMENTS)
+                        .map(|i| ((slope(i + 1) - slope(i)) / h).abs())
+                        .fold(0.0, f64::max);
                     bend * scene.section.bending_stiffness
                 }
             }
@@ -149,7 +156,12 @@ fn forces(profile: &crate::case::Profile, length: f64) -> Option<Vec<[f64; 4]>> 
                 amount += value.abs() * weight * h;
                 let part = value * weight * h * length;
                 let (a, b) = (1.0 - s, s);
-                let shapes = [a * a * (1.0 + 2.0 * b), a * a * b * h * length, b * b * (1.0 + 2.0 * a), -a * b * b * h * length];
+                let shapes = [
+                    a * a * (1.0 + 2.0 * b),
+                    a * a * b * h * length,
+                    b * b * (1.0 + 2.0 * a),
+                    -a * b * b * h * length,
+                ];
                 for (sum, shape) in nodal.iter_mut().zip(shapes) {
                     *sum += part * shape;
                 }
@@ -205,7 +217,11 @@ fn bent<'a>(scene: &'a Scene) -> Option<Vec<Unit<'a>>> {
         });
         Some(())
     };
-    for load in scene.loads.iter().filter(|load| load.kind == LoadKind::ForceX && !zero(&load.signal)) {
+    for load in scene
+        .loads
+        .iter()
+        .filter(|load| load.kind == LoadKind::ForceX && !zero(&load.signal))
+    {
         let mut right = DVector::zeros(n);
         for (i, nodal) in forces(&load.profile, scene.case.beam.length_m)?.iter().enumerate() {
             for (a, part) in nodal.iter().enumerate() {
@@ -251,9 +267,16 @@ fn stretched<'a>(scene: &'a Scene, root: bool) -> Option<Vec<Unit<'a>>> {
             along,
         });
     };
-    for load in scene.loads.iter().filter(|load| load.kind == LoadKind::ForceZ && !zero(&load.signal)) {
+    for load in scene
+        .loads
+        .iter()
+        .filter(|load| load.kind == LoadKind::ForceZ && !zero(&load.signal))
+    {
         let forces = forces(&load.profile, scene.case.beam.length_m)?;
-        add(&load.signal, std::array::from_fn(|i| load.factor * (forces[i][0] + forces[i][2])));
+        add(
+            &load.signal,
+            std::array::from_fn(|i| load.factor * (forces[i][0] + forces[i][2])),
+        );
     }
     let free = usize::from(root);
     if let Translation::Force(signal) = &scene.ends[free].axial

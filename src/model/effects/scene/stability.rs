@@ -132,7 +132,10 @@ impl Scene<'_> {
             }
         };
         for load in self.loads.iter().filter(|load| load.kind == LoadKind::ForceZ) {
-            hear(&load.signal, load.factor.abs() * load.profile.amount() * self.case.beam.length_m);
+            hear(
+                &load.signal,
+                load.factor.abs() * load.profile.amount() * self.case.beam.length_m,
+            );
         }
         for end_of_beam in &self.ends {
             if let Translation::Force(signal) = &end_of_beam.axial {
