@@ -16,7 +16,7 @@ fn pressed(profile: &str, cells: usize) -> Case {
     let sets = [
         load.as_str(),
         r#"/effects={"solid_inertia":"off"}"#,
-        r#"/beam/damping={"bending_time_s":0.001}"#,
+        r#"/beam/damping={"bending_time_s":0.001,"axial_time_s":0.001}"#,
         r#"/start={}"#,
         "/time/end_s=1.1",
         "/time/output_interval_s=0.05",
