@@ -44,7 +44,13 @@ pub fn findings(case: &Case, system: &System) -> Vec<Finding> {
     let mut all = vec![];
     for shape in shapes_along(case, &system.model) {
         let on = |cells: usize| shape.left_out(segments * cells);
-        all.push(finding(shape.pointer(), shape.what(), cells, "/mesh/cells_per_segment", on));
+        all.push(finding(
+            shape.pointer(),
+            shape.what(),
+            cells,
+            "/mesh/cells_per_segment",
+            on,
+        ));
     }
     if let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid)
         && system.model.effects.flow_along_bladders
@@ -204,16 +210,6 @@ impl Along<'_> {
     }
 }
 
-/// Places inside a cell at which a shape is looked at: every knot on either side, and so many others that no wave is missed.
-/// Multiples of the golden ratio fall together with no wave.
-fn places(integrals: &Integrals, a: f64, b: f64) -> Vec<f64> {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let half_waves = integrals.half_waves(b - a);
-    let many = (8.0 * (half_waves + 1.0)).min(256.0) as usize;
-    let between = (0..many).map(|k| a + (b - a) * (0.5 + k as f64 * GOLDEN).fract());
-    between.chain(integrals.knots_in(a, b).iter().copied()).collect()
-}
-
 /// Largest distance of a function from the lines through its values at the nodes, over its largest distance from the line
 /// through its ends: moving and turning the beam as a whole costs no mesh anything.
 fn of_lines(profile: &Profile, cells: usize) -> f64 {
@@ -224,7 +220,7 @@ fn of_lines(profile: &Profile, cells: usize) -> f64 {
     };
     let (mut lost, mut whole, mut largest) = (0.0_f64, 0.0_f64, 0.0_f64);
     for (a, b) in (0..cells).map(|c| shapes::within(c, cells)) {
-        for x in places(&integrals, a, b).into_iter().chain([a, b]) {
+        for x in shapes::places(&integrals, a, b).into_iter().chain([a, b]) {
             let value = profile.value(x);
             lost = lost.max((value - line(a, b, x)).abs());
             whole = whole.max((value - line(0.0, 1.0, x)).abs());

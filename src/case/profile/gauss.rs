@@ -35,7 +35,9 @@ impl Gauss {
     /// Points and weights on [a, b].
     pub fn on(&self, a: f64, b: f64) -> impl Iterator<Item = (f64, f64)> {
         let length = b - a;
-        self.points.iter().map(move |(t, weight)| (a + length * t, length * weight))
+        self.points
+            .iter()
+            .map(move |(t, weight)| (a + length * t, length * weight))
     }
 }
 

@@ -131,11 +131,9 @@ impl Profile {
             Self::Cosine(wave) | Self::Sine(wave) => {
                 (wave.amplitude == 0.0 || wave.waves == 0.0).then(|| self.value(0.0))
             }
-            Self::Polynomial(Polynomial { coefficients }) => coefficients
-                .iter()
-                .skip(1)
-                .all(|c| *c == 0.0)
-                .then(|| self.value(0.0)),
+            Self::Polynomial(Polynomial { coefficients }) => {
+                coefficients.iter().skip(1).all(|c| *c == 0.0).then(|| self.value(0.0))
+            }
             Self::Table(table) => table.curve.is_constant().then(|| self.value(0.0)),
             Self::Sum(terms) => terms.iter().map(Self::uniform).sum(),
             Self::Product(factors) => factors.iter().map(Self::uniform).product(),

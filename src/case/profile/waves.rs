@@ -148,10 +148,7 @@ fn integral(theta: f64, c: &[(f64, f64)]) -> f64 {
     let mut sum = 0.0;
     for k in 0..parts as usize {
         for (t, weight) in rule.on(k as f64 / parts, (k as f64 + 1.0) / parts) {
-            let value = c
-                .iter()
-                .rev()
-                .fold((0.0, 0.0), |v, c| (v.0 * t + c.0, v.1 * t + c.1));
+            let value = c.iter().rev().fold((0.0, 0.0), |v, c| (v.0 * t + c.0, v.1 * t + c.1));
             let (sin, cos) = (theta * t).sin_cos();
             sum += weight * (value.0 * cos - value.1 * sin);
         }

@@ -94,7 +94,11 @@ pub(super) fn hold(held: &[[bool; 3]; 2], bends: bool, shear: f64, parts: &mut [
             functions.push(Function::Moving);
         }
         if !root[1] && !tip[1] && !(root[0] && tip[0]) {
-            functions.push(if tip[0] { Function::TurningAboutTip } else { Function::TurningAboutRoot });
+            functions.push(if tip[0] {
+                Function::TurningAboutTip
+            } else {
+                Function::TurningAboutRoot
+            });
         }
         let conditions = [
             (!root[1], 0.0, false, at_root),
