@@ -184,7 +184,6 @@ proptest! {
 /// [E46]: a shape's force and moment are those of its integrals, on one cell as on many.
 #[test]
 fn a_load_has_its_force_and_moment_on_every_mesh() {
-    // x^3 cos(2 π 7.5 x): by parts.
     let text = r#"{"product":[{"polynomial":{"coefficients":[0,0,1]}},{"polynomial":{"coefficients":[0,1]}}]}"#;
     for cells in [1, 2, 5, 40] {
         let (force, moment) = resultants(&pressed(text, 1, &[&format!("/mesh/segments={cells}")]));
@@ -261,20 +260,22 @@ fn a_start_has_its_momentum_on_every_mesh() {
     }
 }
 
-/// Start pressure along a bladder: its volume, and that of the pool it shares.
+/// Start pressure along a bladder: its volume is that of its mean.
 #[test]
 fn a_start_has_its_volume_on_any_number_of_cells() {
-    let pressure = r#"/start/pressures=[{"bladders":[1,-3],"pressure_pa":{"cosine":{"amplitude":500,"waves":0.3}}}]"#;
-    let mean = 500.0 * (TAU * 0.3).sin() / (TAU * 0.3);
-    for cells in [1, 2, 3, 7] {
+    let areas = |pressure: &str, cells: usize| {
+        let pressure = format!(r#"/start/pressures=[{{"bladders":[1,-3],"pressure_pa":{pressure}}}]"#);
         let cells = format!("/mesh/cells_per_bladder={cells}");
-        let case = shipped("wiring-2", &[pressure, r#"/effects="full""#, "/start/u1_m=0", &cells]);
-        let areas = start::areas(&System::new(&case), &case);
-        let each = areas.len() / 20;
-        let wet = System::new(&case).model.wet.unwrap();
+        let case = shipped("wiring-2", &[pressure.as_str(), r#"/effects="full""#, &cells]);
+        start::areas(&System::new(&case), &case)
+    };
+    let mean = 500.0 * (TAU * 0.3).sin() / (TAU * 0.3);
+    let uniform = areas(&format!("{mean}"), 1);
+    for cells in [1, 2, 3, 7] {
+        let found = areas(r#"{"cosine":{"amplitude":500,"waves":0.3}}"#, cells);
         for bladder in [0, 12] {
-            let found = areas[bladder * each..(bladder + 1) * each].iter().sum::<f64>() / each as f64;
-            within("mean area", found, wet.area.per_pressure * mean, 1e-9);
+            let sum: f64 = found[bladder * cells..(bladder + 1) * cells].iter().sum();
+            within("mean area", sum / cells as f64, uniform[bladder], 1e-12);
         }
     }
 }
@@ -308,9 +309,13 @@ fn what_the_mesh_leaves_out_is_told() {
     assert!(resolution::unresolved(&wave, &System::new(&wave)).is_empty());
     // A narrow pad is a force, but for one close to what holds the beam.
     for cells in [1, 2, 4] {
-        for middle in [0.3, 0.5, 0.5125, 0.999] {
+        for middle in [0.3, 0.5, 0.5125, 0.99] {
             let case = pressed(&beside(middle), cells, &[]);
-            assert!(left_out(&case)[0] < 0.02, "{middle} {cells}: {:?}", left_out(&case));
+            assert!(
+                left_out(&case)[0] < resolution::LIMIT,
+                "{middle} {cells}: {:?}",
+                left_out(&case)
+            );
         }
     }
     let near = pressed(&pad(0.03, 50.0), 1, &[]);
