@@ -93,7 +93,8 @@ pub(super) fn hold(held: &[[bool; 3]; 2], bends: bool, shear: f64, parts: &mut [
         if !root[0] && !tip[0] {
             functions.push(Function::Moving);
         }
-        if !root[1] && !tip[1] && !(root[0] && tip[0]) {
+        let hinged = !(root[1] || tip[1]);
+        if hinged && !(root[0] && tip[0]) {
             functions.push(if tip[0] {
                 Function::TurningAboutTip
             } else {

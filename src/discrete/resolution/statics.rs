@@ -73,7 +73,7 @@ impl Shape {
     /// on the mesh   ∫_c M = h (M_c + M_{c+1})/2, ∫_c M² = h (M_c² + M_{c+1}²)/2        N_c = mean of N
     /// ```
     pub fn left_out(&self, cells: usize) -> f64 {
-        let (mut parts, shear, scale) = self.from_the_tip(cells);
+        let (mut parts, shear, scale) = self.cantilever(cells);
         held::hold(&self.held, self.bends(), shear, &mut parts);
         let (mut turned, mut largest, mut off, mut most_off) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
         let (mut on_mesh, mut exact) = (0.0, 0.0);
@@ -103,7 +103,7 @@ impl Shape {
     /// ```text
     /// V' = -p, M'' = p, M' = -c        N' = -p
     /// ```
-    fn from_the_tip(&self, cells: usize) -> (Vec<Part>, f64, f64) {
+    fn cantilever(&self, cells: usize) -> (Vec<Part>, f64, f64) {
         let integrals: Vec<_> = self
             .loads
             .iter()
