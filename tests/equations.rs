@@ -16,7 +16,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 45] = [
+const INDEX: [(&str, &str, &str); 46] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -134,6 +134,11 @@ const INDEX: [(&str, &str, &str); 45] = [
         "difference_formula_is_of_fourth_order",
     ),
     ("[E41]", "tests/sensitivity/exact.rs", "tangent_is_the_jacobian_applied"),
+    (
+        "[E46]",
+        "tests/physics/loads.rs",
+        "a_load_has_its_force_and_moment_on_every_mesh",
+    ),
 ];
 
 #[test]

@@ -1,5 +1,9 @@
 //! Functions of place, `x = theta/l_s` along the beam or `s/l_b` along a bladder.
 
+mod gauss;
+mod integrals;
+mod waves;
+
 use std::f64::consts::TAU;
 
 use schemars::JsonSchema;
@@ -9,6 +13,8 @@ use super::curve::{Curve, Interpolation};
 use super::jet::Jet;
 use super::number_or_object::number_or_object;
 use super::signals::Polynomial;
+
+pub use integrals::Integrals;
 
 /// A function of place `x` in [0, 1]: a number for a uniform one, else one named form.
 #[derive(Clone, Debug, PartialEq)]

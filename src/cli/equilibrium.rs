@@ -8,6 +8,7 @@ use super::arguments::EquilibriumArguments;
 use super::{interrupt, line, terminal};
 use crate::case;
 use crate::case::parameter::Parameter;
+use crate::discrete::resolution;
 use crate::error::{Error, Result};
 use crate::model::{audit, characteristic};
 use crate::output::equilibrium as files;
@@ -42,7 +43,8 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     let numbers = characteristic::numbers(case, &system.model);
-    let warnings = audit::warnings(case, &system.model, &numbers);
+    let mut warnings = audit::warnings(case, &system.model, &numbers);
+    warnings.extend(resolution::warnings(case, &system));
     let columns = equilibrium::columns(&system);
     let sensitivities = match path.states.last() {
         Some(last) if path.fault.is_none() => equilibrium::differentiate(case, &options, last, &parameters)?,

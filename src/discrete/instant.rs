@@ -1,12 +1,22 @@
 //! Everything that depends on time alone, evaluated once an instant.
 
-use super::{Statics, System};
+use super::{Statics, System, shapes};
 use crate::case::signals::{Clock, Jet, Signal};
 use crate::case::{Rotation, Translation};
 use crate::model::Load;
 use crate::model::loads::LoadKind;
 
-/// A load's shape sampled where it acts: forces at nodes, moments in cells.
+/// A load's shape where it acts: forces at nodes, moments in cells.
+///
+/// `[E46]` Forces weigh with the hat functions of the nodes, moments with their cells,
+///
+/// ```text
+/// h_i b_i = ∫ b hat_i dθ        h (m b1)_c = ∫_c m b1 dθ
+/// ```
+///
+/// exactly ([`crate::case::profile::Integrals`]): force, moment about any point and couple are those of the load on every mesh, and so are the moments M
+/// that it causes at nodes and the mean of N in each cell, where the beam is statically determinate. What no mesh sees is how M
+/// goes between two nodes ([`super::resolution`]).
 #[derive(Clone, Debug)]
 pub struct SampledLoad {
     /// What it acts on.
@@ -18,14 +28,13 @@ pub struct SampledLoad {
 }
 
 impl SampledLoad {
-    /// Samples a load on a mesh.
+    /// Puts a load on a mesh.
     pub fn new(load: &Load, mesh: &super::Mesh) -> Self {
-        let length = mesh.cells as f64 * mesh.h;
-        let at = |theta: f64| load.factor * load.profile.value(theta / length);
-        let shape = match load.kind {
-            LoadKind::ForceX | LoadKind::ForceZ => (0..mesh.nodes).map(|i| at(mesh.node_coordinate(i))).collect(),
-            LoadKind::MomentX | LoadKind::MomentZ => (0..mesh.cells).map(|c| at(mesh.cell_coordinate(c))).collect(),
+        let mut shape = match load.kind {
+            LoadKind::ForceX | LoadKind::ForceZ => shapes::at_nodes(&load.profile, mesh.cells),
+            LoadKind::MomentX | LoadKind::MomentZ => shapes::in_cells(&load.profile, mesh.cells),
         };
+        shape.iter_mut().for_each(|value| *value *= load.factor);
         Self {
             kind: load.kind,
             signal: load.signal.clone(),

@@ -1,12 +1,13 @@
 //! The state at t = 0 (A.55-A.58, A.70).
 
-use super::{Instant, System, Workspace, recipe};
+use super::{Instant, System, Workspace, recipe, shapes};
 use crate::case::profile::Profile;
 use crate::case::schema::Case;
 use crate::case::signals::Clock;
 use crate::model::network::bladder_index;
 
-/// Scaled unknowns at the start: displacements and rates as given, areas from the given pressures.
+/// Scaled unknowns at the start: displacements of nodes as given, velocities nearest to those given, areas from the means of the given
+/// pressures over each cell, so that momentum and volume are those of the start on every mesh.
 /// Rates and whatever is algebraic are only guessed; a consistent start follows from these.
 pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
     let l = &system.layout;
@@ -39,11 +40,12 @@ pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
         ),
     ];
     for (frame, free, u, v, waves, displacement, velocity) in lines {
+        let moving = velocity.as_ref().map(|v| shapes::nearest(v, system.mesh.cells));
         for (k, node) in free.clone().enumerate() {
             let frame = frame.map_or(Default::default(), |f| f.at(node as f64 / last));
             y[u + k] = at(displacement, node) - frame.value;
             if waves {
-                y[v + k] = at(velocity, node) - frame.rate;
+                y[v + k] = moving.as_ref().map_or(0.0, |v| v[node]) - frame.rate;
             }
         }
     }
@@ -72,11 +74,9 @@ fn fill_bladders(system: &System, case: &Case, now: &Instant, y: &mut [f64]) {
     let k = fluid.cells_per_bladder;
     let mut pressure = vec![0.0; fluid.cells];
     for start in &case.start.pressures {
+        let means = shapes::in_cells(&start.pressure_pa, k);
         for &signed in &start.bladders {
-            let bladder = bladder_index(signed, wet.per_row);
-            for cell in 0..k {
-                pressure[bladder * k + cell] = start.pressure_pa.value((cell as f64 + 0.5) / k as f64);
-            }
+            pressure[fluid.cells_of(bladder_index(signed, wet.per_row))].copy_from_slice(&means);
         }
     }
     for (k, pool) in wet.pools.iter().enumerate() {

@@ -16,7 +16,7 @@ use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::ledger::FLOWS;
-use crate::discrete::{System, start};
+use crate::discrete::{System, resolution, start};
 use crate::error::{Code, Error, Result, SolverFault};
 use crate::model::{audit, characteristic};
 use crate::sundials::{IdaFailure, StartFailure, StartOptions, consistent_start};
@@ -123,7 +123,8 @@ impl<'a> Run<'a> {
         let begin = Instant::now();
         let interval = case.time.output_interval();
         let characteristic = characteristic::numbers(case, &system.model);
-        let warnings = audit::lasting(case, &system.model, &characteristic);
+        let mut warnings = audit::lasting(case, &system.model, &characteristic);
+        warnings.extend(resolution::warnings(case, &system));
         let decisions = &system.model.effects.decisions;
         let chosen = if parameters.is_empty() {
             method::choose(case, &system)

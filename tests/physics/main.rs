@@ -8,6 +8,7 @@ mod convergence;
 mod flight;
 mod harvester;
 mod ledger;
+mod loads;
 mod mapping;
 mod meshes;
 mod networks;

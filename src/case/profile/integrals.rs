@@ -1,0 +1,170 @@
+//! Exact integrals of a profile over an interval, times 1, t and t^2.
+
+use std::f64::consts::{PI, TAU};
+
+use super::gauss::Gauss;
+use super::waves::Waves;
+use super::{Polynomial, Profile, Wave};
+use crate::case::curve::Interpolation;
+
+/// Turns of half a wave that one piece is divided into before waves are integrated in closed form.
+const HALF_WAVES: f64 = 64.0;
+
+/// Half waves into which a piece is divided at most where no closed form is at hand.
+const MOST_HALF_WAVES: f64 = 65_536.0;
+
+/// Points of the largest rule; exact to degree 127.
+const MOST_POINTS: usize = 64;
+
+/// A profile with what its integration needs: the knots between which it is smooth, and how it goes there.
+///
+/// Between two knots a profile is a sum of polynomials times waves. Gauss' rule integrates polynomials exactly and, with ten points
+/// more than these need, half a wave to round-off: its error is of the order `(pi/2)^20/20!^2`. Very many waves are integrated
+/// by parts.
+#[derive(Clone, Debug)]
+pub struct Integrals<'a> {
+    profile: &'a Profile,
+    knots: Vec<f64>,
+    /// Largest rate of the waves' phase [rad] by x.
+    turning: f64,
+    rule: Gauss,
+    /// Pieces that the degree alone asks for.
+    parts: f64,
+}
+
+impl<'a> Integrals<'a> {
+    /// Of a profile.
+    pub fn of(profile: &'a Profile) -> Self {
+        let mut knots = vec![];
+        profile.add_knots(&mut knots);
+        knots.sort_by(f64::total_cmp);
+        knots.dedup();
+        let (degree, turning) = profile.character();
+        let waves = if turning > 0.0 { 10 } else { 0 };
+        let points = (degree / 2 + 2 + waves).min(MOST_POINTS);
+        Self {
+            profile,
+            knots,
+            turning,
+            rule: Gauss::new(points),
+            parts: (degree as f64 / (2 * MOST_POINTS - 24) as f64).ceil().max(1.0),
+        }
+    }
+
+    /// `∫ f dx`, `∫ f t dx` and `∫ f t^2 dx` over [a, b], `t = (x - a)/(b - a)`.
+    pub fn moments(&self, a: f64, b: f64) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        self.each_piece(a, b, |p, q| {
+            let (from, share) = ((p - a) / (b - a), (q - p) / (b - a));
+            let [m0, m1, m2] = self.piece(p, q);
+            sum[0] += m0;
+            sum[1] += from * m0 + share * m1;
+            sum[2] += from * from * m0 + 2.0 * from * share * m1 + share * share * m2;
+        });
+        sum
+    }
+
+    /// Integrals over [a, b] against the two hat functions: that which is 1 at `a`, and that which is 1 at `b`.
+    pub fn hats(&self, a: f64, b: f64) -> (f64, f64) {
+        let [whole, right, _] = self.moments(a, b);
+        (whole - right, right)
+    }
+
+    /// Mean over [a, b].
+    pub fn mean(&self, a: f64, b: f64) -> f64 {
+        self.profile
+            .uniform()
+            .unwrap_or_else(|| self.moments(a, b)[0] / (b - a))
+    }
+
+    /// Half waves in an interval of the given length, at most.
+    pub fn half_waves(&self, length: f64) -> f64 {
+        self.turning * length / PI
+    }
+
+    /// Knots inside (a, b).
+    pub fn knots_in(&self, a: f64, b: f64) -> &[f64] {
+        let first = self.knots.partition_point(|knot| *knot <= a);
+        let end = self.knots.partition_point(|knot| *knot < b);
+        &self.knots[first..end.max(first)]
+    }
+
+    /// Calls `smooth` with every interval between two knots of [a, b].
+    fn each_piece(&self, a: f64, b: f64, mut smooth: impl FnMut(f64, f64)) {
+        let mut from = a;
+        for &knot in self.knots_in(a, b) {
+            smooth(from, knot);
+            from = knot;
+        }
+        smooth(from, b);
+    }
+
+    /// The moments over an interval without knots.
+    fn piece(&self, p: f64, q: f64) -> [f64; 3] {
+        let half_waves = self.half_waves(q - p);
+        if half_waves > HALF_WAVES
+            && let Some(waves) = Waves::of(self.profile, p, q)
+        {
+            return waves.moments().map(|m| (q - p) * m);
+        }
+        let parts = half_waves.min(MOST_HALF_WAVES).ceil().max(self.parts);
+        let mut sum = [0.0; 3];
+        let step = (q - p) / parts;
+        for k in 0..parts as usize {
+            let from = p + step * k as f64;
+            for (x, weight) in self.rule.on(from, from + step) {
+                let (value, t) = (weight * self.profile.value(x), (x - p) / (q - p));
+                sum[0] += value;
+                sum[1] += value * t;
+                sum[2] += value * t * t;
+            }
+        }
+        sum
+    }
+}
+
+impl Profile {
+    /// The value of a profile that is the same everywhere.
+    pub fn uniform(&self) -> Option<f64> {
+        match self {
+            Self::Constant(value) => Some(*value),
+            Self::Cosine(wave) | Self::Sine(wave) => {
+                (wave.amplitude == 0.0 || wave.waves == 0.0).then(|| self.value(0.0))
+            }
+            Self::Polynomial(Polynomial { coefficients }) => {
+                coefficients.iter().skip(1).all(|c| *c == 0.0).then(|| self.value(0.0))
+            }
+            Self::Table(table) => table.curve.is_constant().then(|| self.value(0.0)),
+            Self::Sum(terms) => terms.iter().map(Self::uniform).sum(),
+            Self::Product(factors) => factors.iter().map(Self::uniform).product(),
+        }
+    }
+
+    /// Adds the places at which it is not smooth.
+    fn add_knots(&self, knots: &mut Vec<f64>) {
+        match self {
+            Self::Constant(_) | Self::Cosine(_) | Self::Sine(_) | Self::Polynomial(_) => {}
+            Self::Table(table) => knots.extend(&table.positions),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.add_knots(knots)),
+        }
+    }
+
+    /// Degree of its polynomials and rate of its waves' phase [rad] by x, at most, between knots.
+    fn character(&self) -> (usize, f64) {
+        let larger = |(d, r): (usize, f64), (e, s): (usize, f64)| (d.max(e), r.max(s));
+        match self {
+            Self::Constant(_) => (0, 0.0),
+            Self::Cosine(Wave { waves, .. }) | Self::Sine(Wave { waves, .. }) => (0, TAU * waves.abs()),
+            Self::Polynomial(Polynomial { coefficients }) => (coefficients.len().saturating_sub(1), 0.0),
+            Self::Table(table) => match table.interpolation {
+                Interpolation::Linear => (1, 0.0),
+                Interpolation::Cubic => (3, 0.0),
+            },
+            Self::Sum(terms) => terms.iter().map(Self::character).fold((0, 0.0), larger),
+            Self::Product(factors) => factors
+                .iter()
+                .map(Self::character)
+                .fold((0, 0.0), |(d, r), (e, s)| (d + e, r + s)),
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! What a load does to a beam at rest, and what of it a mesh leaves out.
+
+use crate::case::profile::Integrals;
+use crate::case::{Rotation, Translation};
+use crate::model::loads::LoadKind;
+use crate::model::{Load, Model};
+
+use super::held::{self, Part};
+use super::ratio;
+use crate::discrete::shapes;
+
+/// Parts of a cell in which its moments are looked at.
+const PARTS: f64 = 8.0;
+
+/// Such parts at most, however many waves there are.
+const MOST: f64 = 64.0;
+
+/// Loads of one time function that bend the beam, stretch it, or turn it where it is bent.
+pub(super) struct Shape {
+    /// Of the first load.
+    pub pointer: String,
+    /// With the factor of each, a length of the beam being 1: forces per length times `l_s`, moments per length as they are.
+    loads: Vec<(Load, f64)>,
+    /// Whether u1, slope and u3 are held at root and tip.
+    held: [[bool; 3]; 2],
+}
+
+impl Shape {
+    pub fn new(pointer: String, load: Load, constant: f64, model: &Model) -> Self {
+        let length = match load.kind {
+            LoadKind::ForceX | LoadKind::ForceZ => model.length,
+            LoadKind::MomentX | LoadKind::MomentZ => 1.0,
+        };
+        let factor = load.factor * constant * length;
+        let held = [0, 1].map(|end| {
+            let end = &model.ends[end];
+            [
+                matches!(end.transverse, Translation::Displacement(_)),
+                matches!(end.rotation, Rotation::Slope(_)),
+                matches!(end.axial, Translation::Displacement(_)),
+            ]
+        });
+        Self {
+            pointer,
+            loads: vec![(load, factor)],
+            held,
+        }
+    }
+
+    /// Whether it acts across.
+    pub fn bends(&self) -> bool {
+        self.loads[0].0.kind != LoadKind::ForceZ
+    }
+
+    /// Whether both do the same kind of thing to a straight beam. A first moment across turns only what is bent.
+    pub fn acts_with(&self, other: &Self) -> bool {
+        let kind = |shape: &Self| match shape.loads[0].0.kind {
+            LoadKind::ForceX | LoadKind::MomentZ => 0,
+            LoadKind::ForceZ => 1,
+            LoadKind::MomentX => 2,
+        };
+        kind(self) == kind(other)
+    }
+
+    pub fn join(&mut self, other: Self) {
+        self.loads.extend(other.loads);
+    }
+
+    /// Share of the moments or normal forces of a beam at rest that a mesh of so many cells leaves out: the largest change of an angle,
+    /// that is of `∫ M` from the root on, over the largest angle; and the change of the root of the mean square, that is of the energy.
+    ///
+    /// ```text
+    /// on the mesh   ∫_c M = h (M_c + M_{c+1})/2, ∫_c M² = h (M_c² + M_{c+1}²)/2        N_c = mean of N
+    /// ```
+    pub fn left_out(&self, cells: usize) -> f64 {
+        let (mut parts, shear, scale) = self.cantilever(cells);
+        held::hold(&self.held, self.bends(), shear, &mut parts);
+        let (mut turned, mut largest, mut off, mut most_off) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+        let (mut on_mesh, mut exact) = (0.0, 0.0);
+        for cell in parts.chunk_by(|p, q| p.cell == q.cell) {
+            let (first, last) = (cell[0], cell[cell.len() - 1]);
+            let h = last.b - first.a;
+            let integral: f64 = cell.iter().map(Part::integral).sum();
+            for part in cell {
+                turned += part.integral();
+                largest = largest.max(turned.abs());
+            }
+            exact += cell.iter().map(Part::square).sum::<f64>();
+            if self.bends() {
+                off += integral - 0.5 * h * (first.from + last.to);
+                most_off = most_off.max(off.abs());
+                on_mesh += 0.5 * h * (first.from * first.from + last.to * last.to);
+            } else {
+                on_mesh += integral * integral / h;
+            }
+        }
+        let (on_mesh, exact) = (on_mesh.max(0.0).sqrt(), exact.max(0.0).sqrt());
+        ratio(most_off, largest, scale).max(ratio((on_mesh - exact).abs(), exact, scale))
+    }
+
+    /// M or N of a beam that the root alone holds, the shear force at the root, and the largest load.
+    ///
+    /// ```text
+    /// V' = -p, M'' = p, M' = -c        N' = -p
+    /// ```
+    fn cantilever(&self, cells: usize) -> (Vec<Part>, f64, f64) {
+        let integrals: Vec<_> = self
+            .loads
+            .iter()
+            .map(|(load, _)| Integrals::of(&load.profile))
+            .collect();
+        let mut parts = divided(&integrals, cells);
+        let (mut shear, mut value, mut scale) = (0.0, 0.0, 0.0_f64);
+        for part in parts.iter_mut().rev() {
+            let length = part.b - part.a;
+            let mut gained = 0.0;
+            let (mut mean, mut across) = (0.0, 0.0);
+            for ((load, factor), integrals) in self.loads.iter().zip(&integrals) {
+                let [m0, m1, m2] = integrals.moments(part.a, part.b).map(|m| factor * m);
+                for x in [part.a, 0.5 * (part.a + part.b)] {
+                    scale = scale.max((factor * load.profile.value(x)).abs());
+                }
+                match load.kind {
+                    LoadKind::ForceX => {
+                        gained += length * m1;
+                        mean += 0.5 * length * m2;
+                        across += m0;
+                    }
+                    LoadKind::ForceZ => {
+                        gained += m0;
+                        mean += m1;
+                    }
+                    LoadKind::MomentX | LoadKind::MomentZ => {
+                        gained -= m0;
+                        mean -= m1;
+                    }
+                }
+            }
+            part.to = value;
+            part.mean = value + 0.5 * length * shear + mean;
+            value += length * shear + gained;
+            part.from = value;
+            shear += across;
+        }
+        (parts, shear, scale)
+    }
+}
+
+/// Cells, divided at knots and evenly.
+fn divided(integrals: &[Integrals], cells: usize) -> Vec<Part> {
+    let mut parts = vec![];
+    for cell in 0..cells {
+        let (a, b) = shapes::within(cell, cells);
+        let half_waves = integrals.iter().map(|i| i.half_waves(b - a)).fold(0.0, f64::max);
+        let even = (PARTS * (half_waves + 1.0)).min(MOST).ceil();
+        let mut places: Vec<f64> = integrals.iter().flat_map(|i| i.knots_in(a, b)).copied().collect();
+        places.extend((1..even as usize).map(|k| a + (b - a) * k as f64 / even));
+        places.push(b);
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        let mut from = a;
+        for to in places {
+            parts.push(Part {
+                a: from,
+                b: to,
+                cell,
+                ..Part::default()
+            });
+            from = to;
+        }
+    }
+    parts
+}
