@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Coupling, Model, Wet};
+use crate::case::inherited;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
 use crate::error::{Code, Violation};
 
@@ -259,6 +260,7 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
             ))
         })
         .collect();
+    all.extend(inherited::warnings(case));
     all.extend(over(
         numbers,
         Code::FastFlow,
