@@ -30,101 +30,118 @@ struct InBeam {
     width: f64,
 }
 
-/// Coefficients, what they belong to as numbers and in words, and what to do.
+/// Coefficients and what they belong to.
 struct Group {
     coefficients: &'static [&'static str],
     sizes: fn(&Sizes) -> Option<Vec<f64>>,
+}
+
+/// Groups that are told together: how what they belong to is called, and what to do.
+struct Part {
+    groups: &'static [Group],
     words: fn(&Sizes) -> String,
     advice: &'static str,
 }
 
-const OWN: &str = "give those of your own beam";
 const OWN_OR_NULL: &str = "give your own, or null to have it computed from the cross-section";
 
 /// Which coefficients belong to which sizes. Stiffness factors are ratios: they stay when everything is scaled alike, and
 /// whatever the modulus is. Areas go with `1/E`.
-const GROUPS: [Group; 5] = [
-    Group {
-        coefficients: &["/beam/axial_stiffness_factor", "/beam/bending_stiffness_factor"],
-        sizes: |s| {
-            let [h, w] = s.section;
-            Some(s.bladders.map_or(vec![h, w], |b| {
-                vec![b.height / h, b.width / b.pitch, b.length / w, b.pitch / h]
-            }))
-        },
-        words: |s| section(s, ""),
-        advice: OWN,
-    },
-    Group {
-        coefficients: &["/bladders/area_per_pressure_m2_per_pa"],
-        sizes: |s| {
-            let b = s.bladders?;
-            Some(vec![s.modulus, s.section[0], b.pitch, b.height, b.width])
-        },
-        words: |s| section(s, &format!(" of {} MPa", short(s.modulus * 1e-6))),
-        advice: OWN,
-    },
-    Group {
-        coefficients: &[
-            "/bladders/area_per_moment_m2_per_n_m/opening",
-            "/bladders/area_per_moment_m2_per_n_m/closing",
-            "/bladders/area_per_force_m2_per_n/tension",
-            "/bladders/area_per_force_m2_per_n/compression",
+const PARTS: [Part; 3] = [
+    Part {
+        groups: &[
+            Group {
+                coefficients: &["/beam/axial_stiffness_factor", "/beam/bending_stiffness_factor"],
+                sizes: |s| {
+                    let [h, w] = s.section;
+                    // a beam without bladders has only its section to be told by
+                    Some(s.bladders.map_or(vec![h, w], |b| {
+                        vec![b.height / h, b.width / b.pitch, b.length / w, b.pitch / h]
+                    }))
+                },
+            },
+            Group {
+                coefficients: &["/bladders/area_per_pressure_m2_per_pa"],
+                sizes: |s| {
+                    let b = s.bladders?;
+                    Some(vec![s.modulus, s.section[0], b.pitch, b.height, b.width])
+                },
+            },
+            Group {
+                coefficients: &[
+                    "/bladders/area_per_moment_m2_per_n_m/opening",
+                    "/bladders/area_per_moment_m2_per_n_m/closing",
+                    "/bladders/area_per_force_m2_per_n/tension",
+                    "/bladders/area_per_force_m2_per_n/compression",
+                ],
+                sizes: |s| {
+                    let b = s.bladders?;
+                    let [h, w] = s.section;
+                    Some(vec![s.modulus, h, w, b.pitch, b.height, b.width, b.length])
+                },
+            },
         ],
-        sizes: |s| {
-            let b = s.bladders?;
-            let [h, w] = s.section;
-            Some(vec![s.modulus, h, w, b.pitch, b.height, b.width, b.length])
-        },
-        words: |s| section(s, &format!(" of {} MPa", short(s.modulus * 1e-6))),
-        advice: OWN,
+        words: section,
+        advice: "give those of your own beam",
     },
-    Group {
-        coefficients: &["/bladders/permeability_m4"],
-        sizes: |s| s.bladders.map(|b| vec![b.height, b.width]),
+    Part {
+        groups: &[Group {
+            coefficients: &["/bladders/permeability_m4"],
+            sizes: |s| s.bladders.map(|b| vec![b.height, b.width]),
+        }],
         words: |s| {
             let sides = s.bladders.map_or([0.0; 2], |b| [b.height, b.width]);
             format!("a bladder of {} mm", millimetres(&sides))
         },
         advice: OWN_OR_NULL,
     },
-    Group {
-        coefficients: &["/tubes/permeability_m4"],
-        sizes: |s| s.radius.map(|r| vec![r]),
+    Part {
+        groups: &[Group {
+            coefficients: &["/tubes/permeability_m4"],
+            sizes: |s| s.radius.map(|r| vec![r]),
+        }],
         words: |s| format!("a tube of radius {} mm", millimetres(&[s.radius.unwrap_or_default()])),
         advice: OWN_OR_NULL,
     },
 ];
 
-/// A warning for each group of coefficients that the case takes from its preset while it changes what they belong to.
+/// Warnings about coefficients that the case takes from its preset while it changes what they belong to.
 pub fn warnings(case: &Case) -> Vec<String> {
     let mine = of_case(case);
-    GROUPS.iter().filter_map(|group| warning(case, &mine, group)).collect()
+    PARTS.iter().filter_map(|part| warning(case, &mine, part)).collect()
 }
 
-fn warning(case: &Case, mine: &Sizes, group: &Group) -> Option<String> {
-    let inherited = |pointer: &&str| match case.origins.get(pointer) {
-        Some(Origin::Preset(preset)) => Some((preset, (*pointer).to_owned())),
-        _ => None,
-    };
-    let (presets, names): (Vec<Preset>, Vec<String>) = group.coefficients.iter().filter_map(inherited).unzip();
-    let preset = presets.first()?;
-    let theirs = of_preset(*preset)?;
-    let (have, had) = ((group.sizes)(mine)?, (group.sizes)(&theirs)?);
-    let same = have.len() == had.len() && have.iter().zip(&had).all(|(a, b)| (a - b).abs() <= SAME * b.abs());
-    // a beam without bladders has only its section to be told by
-    let same = same || (mine.bladders.is_none() && have == theirs.section);
+fn warning(case: &Case, mine: &Sizes, part: &Part) -> Option<String> {
+    let (mut names, mut of) = (vec![], None);
+    for group in part.groups {
+        for pointer in group.coefficients {
+            let Some(Origin::Preset(preset)) = case.origins.get(pointer) else {
+                continue;
+            };
+            let theirs = of_preset(preset, mine.bladders.is_some())?;
+            if !same((group.sizes)(mine), (group.sizes)(&theirs)) {
+                names.push(*pointer);
+                of = Some((preset, theirs));
+            }
+        }
+    }
+    let (preset, theirs) = of?;
     let verb = if names.len() == 1 { "belongs" } else { "belong" };
-    (!same).then(|| {
-        Code::Inherited.warning(format!(
-            "coefficients of preset {}: {} {verb} to {}, here it is {}: {}",
-            preset.name(),
-            names.join(", "),
-            (group.words)(&theirs),
-            (group.words)(mine),
-            group.advice
-        ))
-    })
+    Some(Code::Inherited.warning(format!(
+        "coefficients of preset {}: {} {verb} to {}, here it is {}: {}",
+        preset.name(),
+        names.join(", "),
+        (part.words)(&theirs),
+        (part.words)(mine),
+        part.advice
+    )))
+}
+
+fn same(mine: Option<Vec<f64>>, theirs: Option<Vec<f64>>) -> bool {
+    let (Some(mine), Some(theirs)) = (mine, theirs) else {
+        return true;
+    };
+    mine.iter().zip(&theirs).all(|(a, b)| (a - b).abs() <= SAME * b.abs())
 }
 
 fn of_case(case: &Case) -> Sizes {
@@ -142,29 +159,37 @@ fn of_case(case: &Case) -> Sizes {
     }
 }
 
-fn of_preset(preset: Preset) -> Option<Sizes> {
+/// Sizes of the preset, with its bladders or without.
+fn of_preset(preset: Preset, wet: bool) -> Option<Sizes> {
     let values = preset.values();
     let number = |pointer: &str| values.pointer(pointer).and_then(Value::as_f64);
     Some(Sizes {
         modulus: number("/beam/young_modulus_pa")?,
         section: [number("/beam/height_m")?, number("/beam/width_m")?],
-        bladders: Some(InBeam {
-            pitch: number("/beam/length_m")? / number("/bladders/per_row")?,
-            length: number("/bladders/length_m")?,
-            height: number("/bladders/height_m")?,
-            width: number("/bladders/width_m")?,
-        }),
+        bladders: match wet {
+            true => Some(InBeam {
+                pitch: number("/beam/length_m")? / number("/bladders/per_row")?,
+                length: number("/bladders/length_m")?,
+                height: number("/bladders/height_m")?,
+                width: number("/bladders/width_m")?,
+            }),
+            false => None,
+        },
         radius: number("/tubes/radius_m"),
     })
 }
 
-/// The beam with its bladders in words; `material` comes after "beam".
-fn section(sizes: &Sizes, material: &str) -> String {
-    let beam = format!("a beam{material} with a section of {} mm", millimetres(&sizes.section));
-    sizes.bladders.map_or(beam.clone(), |b| {
-        let (size, pitch) = (millimetres(&[b.height, b.width, b.length]), millimetres(&[b.pitch]));
-        format!("{beam} and bladders of {size} mm every {pitch} mm")
-    })
+/// The beam with its bladders in words.
+fn section(sizes: &Sizes) -> String {
+    let (modulus, section) = (short(sizes.modulus * 1e-6), millimetres(&sizes.section));
+    let beam = format!("a beam of {modulus} MPa, {section} mm");
+    match sizes.bladders {
+        None => beam,
+        Some(b) => {
+            let (size, pitch) = (millimetres(&[b.height, b.width, b.length]), millimetres(&[b.pitch]));
+            format!("{beam}, with bladders of {size} mm every {pitch} mm")
+        }
+    }
 }
 
 fn millimetres(lengths: &[f64]) -> String {

@@ -65,7 +65,10 @@ pub fn apply(case: &mut Value, sets: &[SetValue]) {
 
 /// Takes out permeabilities that are `null`: they are to be computed from the cross-section.
 fn without_nulls(case: &mut Value) {
-    let single = case.pointer("/network/tubes").and_then(Value::as_array).map_or(0, Vec::len);
+    let single = case
+        .pointer("/network/tubes")
+        .and_then(Value::as_array)
+        .map_or(0, Vec::len);
     let single = (0..single).map(|i| format!("/network/tubes/{i}/permeability_m4"));
     let shared = ["/bladders/permeability_m4", "/tubes/permeability_m4"].map(str::to_owned);
     for pointer in shared.into_iter().chain(single) {
