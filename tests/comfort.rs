@@ -57,8 +57,13 @@ fn what_stands_in_the_case_or_an_argument_goes_before_the_preset() {
     );
     let dry = resolved(LITTLE, &["/fluid=null", "/bladders=null", "/tubes=null"]);
     assert!(dry.get("bladders").is_none() && dry.get("fluid").is_none());
-    let wide = resolved(LITTLE, &["/tubes/radius_m=0.002"]);
+    let wide = resolved(LITTLE, &["/tubes/radius_m=0.002", "/tubes/permeability_m4=null"]);
     assert!(wide["tubes"].get("permeability_m4").is_none(), "that of the radius");
+    let wide = resolved(LITTLE, &["/tubes/radius_m=0.002"]);
+    assert_eq!(
+        wide["tubes"]["permeability_m4"], 6.72e-13,
+        "sizes take no coefficient away"
+    );
 }
 
 #[test]
@@ -151,6 +156,9 @@ fn the_schema_knows_presets_and_remarks() {
         "\"ends\"",
         "\"beam\": {\"length_m\": 0.3}, \"bladders\": null, \"ends\""
     )));
+    assert!(valid(
+        &LITTLE.replace("\"ends\"", "\"tubes\": {\"permeability_m4\": null}, \"ends\"")
+    ));
     assert!(!valid(&LITTLE.replace("\"preset\": \"matia-gat-beam\",", "")));
     assert!(!valid(&LITTLE.replace(
         "\"preset\": \"matia-gat-beam\",",

@@ -158,6 +158,7 @@ fn summary_of(status: Status) -> Summary {
         wall_s: Default::default(),
         effects: Default::default(),
         characteristic: [("f_u".to_string(), f64::INFINITY), ("t_s_s".to_string(), 0.0457)].into(),
+        origins: Default::default(),
         growth: None,
         accuracy: None,
         sensitivities: Default::default(),

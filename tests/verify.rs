@@ -110,6 +110,7 @@ mod driven_motion {
         mathieu_stable: "mathieu-outside",
         tongue_edges: "floquet-tongue-edges",
         damped_growth: "floquet-damped-growth",
+        drained_tongue: "floquet-drained",
     }
 }
 

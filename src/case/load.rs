@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::faults::{Faults, Source, sort};
+use super::origins::Origins;
 use super::schema::Case;
 use super::wording::nearest;
 use super::{check, parse as json, presets, schema_json, sets, tables, validate};
@@ -80,6 +81,7 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Lo
         sets: sets::apply(&mut value, sets)?,
         file: Some(file),
     };
+    let own = value.clone();
     presets::apply(&mut value, &source.sets);
     // Numbers that are none have their fault already; `null` stands for them.
     let told = violations.iter().map(|v| v.pointer.clone());
@@ -89,9 +91,13 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Lo
     validate::validate(&value, &schema_json::CASE, &mut faults);
     faults.drop_below(&told);
     let case = match value.is_object() {
-        true => build(value, base, &mut faults, violations.is_empty()),
+        true => build(value.clone(), base, &mut faults, violations.is_empty()),
         false => None,
     };
+    let case = case.map(|case| Case {
+        origins: Origins::of(&own, &value, &source.sets, case.preset),
+        ..case
+    });
     violations.extend(faults.placed(&source));
     match case {
         Some(case) if violations.is_empty() => Ok(LoadedCase {

@@ -21,28 +21,59 @@ pub enum Preset {
     MatiaGatBeam,
 }
 
+impl Preset {
+    /// The name that a case gives it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::MatiaGatBeam => "matia-gat-beam",
+        }
+    }
+
+    /// What it brings, as a case has it.
+    pub fn values(self) -> Value {
+        let text = match self {
+            Self::MatiaGatBeam => MATIA_GAT_BEAM,
+        };
+        serde_json::from_str(text).unwrap_or_default()
+    }
+}
+
 /// Fills in what the case leaves to its preset: objects are merged, everything else that the case has stands, and what it
-/// gives as `null` is left out. A permeability is not taken from the preset where the case has a size to compute it from.
+/// gives as `null` is left out. What the preset brings stays what it is whatever else the case has, so that a number set to
+/// its own value changes nothing; only a cross-section from which a permeability is to follow takes that of the preset away.
 pub fn apply(case: &mut Value, sets: &[SetValue]) {
     if case.get("preset").is_none() {
+        without_nulls(case);
         return;
     }
     // A misspelt name is told when the case is checked; the rest is looked at as if it were right.
-    let mut preset: Value = serde_json::from_str(MATIA_GAT_BEAM).unwrap_or_default();
-    for (section, sizes) in [
-        ("bladders", &["height_m", "width_m", "cross_section"][..]),
-        ("tubes", &["radius_m"]),
-    ] {
-        let own = |key: &&str| case.get(section).and_then(|s| s.get(*key)).is_some();
-        if let (true, Some(values)) = (sizes.iter().any(own), preset[section].as_object_mut()) {
-            values.shift_remove("permeability_m4");
-        }
+    let mut preset = Preset::MatiaGatBeam.values();
+    if case.pointer("/bladders/cross_section").is_some_and(Value::is_object)
+        && let Some(values) = preset["bladders"].as_object_mut()
+    {
+        values.shift_remove("permeability_m4");
     }
     fill(case, preset);
     for (i, set) in sets.iter().enumerate().filter(|(_, set)| set.node.is_none()) {
         let given_again = sets[i + 1..].iter().any(|later| is_below(&later.pointer, &set.pointer));
         if !given_again {
             sets::remove(case, &set.pointer);
+        }
+    }
+    without_nulls(case);
+}
+
+/// Takes out permeabilities that are `null`: they are to be computed from the cross-section.
+fn without_nulls(case: &mut Value) {
+    let single = case
+        .pointer("/network/tubes")
+        .and_then(Value::as_array)
+        .map_or(0, Vec::len);
+    let single = (0..single).map(|i| format!("/network/tubes/{i}/permeability_m4"));
+    let shared = ["/bladders/permeability_m4", "/tubes/permeability_m4"].map(str::to_owned);
+    for pointer in shared.into_iter().chain(single) {
+        if case.pointer(&pointer).is_some_and(Value::is_null) {
+            sets::remove(case, &pointer);
         }
     }
 }
@@ -79,7 +110,19 @@ mod tests {
         assert_eq!(case["beam"]["height_m"], 0.0216);
         assert_eq!(case.get("fluid"), None);
         assert_eq!(case["bladders"]["permeability_m4"], 1.55e-12);
-        assert_eq!(case["tubes"], json!({"length_m": 0.02, "radius_m": 2e-3}));
+        let tubes = json!({"length_m": 0.02, "radius_m": 2e-3, "permeability_m4": 6.72e-13});
+        assert_eq!(case["tubes"], tubes, "sizes take no coefficient away");
+    }
+
+    #[test]
+    fn a_permeability_is_computed_where_it_is_null_or_a_section_is_given() {
+        let mut case = json!({"preset": "matia-gat-beam", "bladders": {"cross_section": {"circle": {"radius_m": 4e-3}}},
+            "tubes": {"permeability_m4": null}, "network": {"tubes": [{"permeability_m4": null}]}});
+        apply(&mut case, &[]);
+        for section in ["bladders", "tubes"] {
+            assert_eq!(case[section].get("permeability_m4"), None, "{section}");
+        }
+        assert_eq!(case["network"]["tubes"], json!([{}]));
     }
 
     #[test]

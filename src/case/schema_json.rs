@@ -41,6 +41,12 @@ pub fn schema_json() -> Value {
     for (name, part) in parts {
         schema["$defs"][name] = part;
     }
+    for (_, definition) in schema["$defs"].as_object_mut().into_iter().flatten() {
+        // null: to be computed from the cross-section
+        if let Some(kind) = definition.pointer_mut("/properties/permeability_m4/type") {
+            *kind = json!(["number", "null"]);
+        }
+    }
     remarks(&mut schema);
     schema
 }

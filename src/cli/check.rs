@@ -45,7 +45,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         let all = json!({
             "case": case.name, "unknowns": system.layout.len, "characteristic": numbers, "audit": audit,
             "effects": effects, "method": {"value": chosen.name(), "reason": chosen.reason},
-            "max_order": {"value": order, "reason": why}, "warnings": warnings,
+            "max_order": {"value": order, "reason": why}, "origins": case.origins.words(), "warnings": warnings,
         });
         super::print(&format!("{all:#}\n"))?;
         return Ok(ExitCode::SUCCESS);
@@ -70,6 +70,10 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
                 f.wanted
             );
         }
+    }
+    text += "\ncoefficients\n";
+    for (pointer, origin) in case.origins.words() {
+        let _ = writeln!(text, "  {pointer:<52} {origin}");
     }
     text += "\neffects\n";
     for d in &system.model.effects.decisions {

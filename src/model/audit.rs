@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Coupling, Model, Wet};
+use crate::case::inherited;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
 use crate::error::{Code, Violation};
 
@@ -259,6 +260,7 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
             ))
         })
         .collect();
+    all.extend(inherited::warnings(case));
     all.extend(over(
         numbers,
         Code::FastFlow,
@@ -274,12 +276,14 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
             )));
         }
     }
-    if let Some(&rate) = numbers.get("mathieu_growth_rate_per_s")
-        && rate > 0.0
+    if let Some(&bound) = numbers.get("mathieu_growth_bound_per_s")
+        && let Some(&rate) = numbers.get("mathieu_growth_rate_per_s")
+        && bound.max(rate) > 0.0
     {
         all.push(Code::Mathieu.warning(format!(
-            "the root's axial motion lies inside a Mathieu tongue of the first bending mode: any deflection grows \
-             with {rate:.3} 1/s (single mode, undamped, bladders drained)"
+            "the root's axial motion lies inside a Mathieu tongue of the first bending mode, or at its edge: any deflection may \
+             grow with up to {:.3} 1/s (first mode, undamped, bladders drained; {rate:.3} 1/s without stretch of the axis)",
+            bound.max(rate)
         )));
     }
     if let Some(&slender) = numbers.get("slenderness")

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, Matrix2};
 
 use super::network::{Network, Node};
-use super::{Load, Model, Wet, each_signal};
+use super::{Load, Model, Wet, each_signal, tongue};
 use crate::case::schema::{Case, ChainEnd};
 use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};
 
@@ -25,6 +25,8 @@ pub struct Mathieu {
     pub modulation: f64,
     /// Growth rate of the undamped single mode with the bladders drained [1/s]; 0 when stable.
     pub growth_rate: f64,
+    /// Bound of it, with what stretch of the axis and rotary inertia add [1/s].
+    pub growth_bound: f64,
 }
 
 /// Numbers of a case by name, SI units in the name.
@@ -66,6 +68,7 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
             a.frequency * 2.0 * PI * solid_time / (2.0 * first.unwrap_or(1.875).powi(2)),
         );
         put("mathieu_growth_rate_per_s", a.growth_rate);
+        put("mathieu_growth_bound_per_s", a.growth_bound);
     }
     let forcing = forcing_frequency(case);
     if let Some(f) = forcing {
@@ -231,6 +234,7 @@ pub fn mathieu(model: &Model) -> Option<Mathieu> {
         frequency: sine.frequency_hz,
         modulation: MATHIEU_COUPLING * acceleration / (model.length * first * first),
         growth_rate: mathieu_growth(first * first, MATHIEU_COUPLING * acceleration / model.length, omega),
+        growth_bound: tongue::growth_bound(s, model.length, sine.amplitude, omega),
     })
 }
 

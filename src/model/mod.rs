@@ -17,6 +17,7 @@ pub mod passivity;
 pub mod scalar;
 pub mod scales;
 pub mod storage;
+pub mod tongue;
 
 use crate::case::schema::{Bladders, Case, Effects, Formulation};
 use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};

@@ -186,6 +186,7 @@ impl<'a> Run<'a> {
                 accuracy: None,
                 sensitivities: Default::default(),
                 characteristic,
+                origins: case.origins.words(),
                 warnings,
             },
             options,

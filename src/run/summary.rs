@@ -185,6 +185,9 @@ pub struct Summary {
     pub effects: BTreeMap<String, Chosen>,
     /// Characteristic numbers.
     pub characteristic: BTreeMap<String, f64>,
+    /// Where each coefficient comes from, by its JSON pointer: `case`, `preset ...`, `--set`, `default` or `computed from ...`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub origins: BTreeMap<String, String>,
     /// Growth of the response and what drives it, when it grows.
     #[serde(default)]
     pub growth: Option<Growing>,

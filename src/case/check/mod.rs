@@ -1,12 +1,15 @@
 //! The rules that the schema cannot say, all faults at once.
 
 mod bladders;
+mod coefficients;
 mod ends;
 mod functions;
 mod junctions;
 mod network;
 mod plausible;
+mod size;
 mod start;
+mod strength;
 mod time;
 
 use super::faults::Faults;
@@ -17,7 +20,7 @@ use crate::error::{Code, Violation};
 type Rule = fn(&Case, &mut Faults);
 
 /// All rules, each with the sections of the case that it compares.
-const RULES: [(Rule, &[&str]); 9] = [
+const RULES: [(Rule, &[&str]); 11] = [
     (name, &[]),
     (plausible::sizes, &[]),
     (plausible::proportions, &["beam", "tubes", "network"]),
@@ -30,6 +33,11 @@ const RULES: [(Rule, &[&str]); 9] = [
     (functions::check, &["time"]),
     (start::check, &["beam", "bladders", "ends", "start", "time"]),
     (time::check, &[]),
+    (
+        strength::check,
+        &["beam", "bladders", "network", "loads", "ends", "start", "time"],
+    ),
+    (coefficients::check, &["beam", "bladders", "tubes"]),
 ];
 
 /// Every rule on one case, but those that compare a broken section with others.

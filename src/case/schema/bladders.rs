@@ -31,7 +31,7 @@ pub struct Bladders {
     /// Width `w_b`, along the beam [m].
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub width_m: f64,
-    /// Permeability `q1b` in `q = -(q1b/mu) dp/ds`, (A.13) [m^4]; absent: that of `cross_section`.
+    /// Permeability `q1b` in `q = -(q1b/mu) dp/ds`, (A.13) [m^4]; absent or `null`: that of `cross_section`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub permeability_m4: Option<f64>,

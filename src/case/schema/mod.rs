@@ -6,6 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::case::origins::Origins;
 use crate::case::presets::Preset;
 use crate::case::signals::{Clock, Signal};
 
@@ -81,6 +82,10 @@ pub struct Case {
     /// Time integration.
     #[serde(default)]
     pub solver: Solver,
+    /// Where its coefficients come from; not part of the text, and not compared.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub origins: Origins,
 }
 
 impl Case {

@@ -16,7 +16,7 @@ pub struct TubeDefaults {
     /// Radius `r_c` [m].
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub radius_m: f64,
-    /// Permeability `q1c` [m^4]; absent: Hagen-Poiseuille, `pi r_c^4/8`.
+    /// Permeability `q1c` [m^4]; absent or `null`: Hagen-Poiseuille, `pi r_c^4/8`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub permeability_m4: Option<f64>,

@@ -38,6 +38,7 @@ fn summary(status: Status) -> Summary {
         },
         effects: Default::default(),
         characteristic: Default::default(),
+        origins: Default::default(),
         growth: None,
         accuracy: None,
         sensitivities: Default::default(),

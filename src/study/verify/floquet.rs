@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::figure::Figure;
 use super::row::Row;
@@ -80,7 +80,12 @@ fn first(cells: usize, ratio: f64, (epsilon, zeta): (f64, f64)) -> Result<Vec<Mu
         "time": {"end_s": 1.0},
         "solver": {"rtol": 1e-6}
     });
-    let loaded = case::parse(&text.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    bending(&text)
+}
+
+/// Multipliers of the first bending mode of a case, largest first.
+pub fn bending(case: &Value) -> Result<Vec<Multiplier>> {
+    let loaded = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
     let scene = Scene::new(&loaded.case, None)?;
     let mut cycle = shoot(&scene, None).map_err(fault)?;
     let mut found = floquet::multipliers(&scene, &mut cycle, COUNT).multipliers;

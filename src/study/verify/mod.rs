@@ -13,6 +13,7 @@
 //! spin_up      Simo and Vu-Quoc's rotating arm
 //! mathieu      axial base acceleration
 //! floquet      the same from multipliers of the period map
+//! hill         the drained published beam shaken along, as six modes
 //! wet          the nearly unloaded beam with bladders that the network problems use
 //! decay        relaxation of chains and rings, dissipation
 //! kirchhoff    a steady network as resistors
@@ -27,6 +28,7 @@ mod figure;
 mod fit;
 mod floquet;
 mod frequencies;
+mod hill;
 mod kirchhoff;
 mod mathieu;
 mod row;
@@ -48,6 +50,7 @@ pub fn rows() -> Vec<Row> {
     all.extend(spin_up::rows());
     all.extend(mathieu::rows());
     all.extend(floquet::rows());
+    all.extend(hill::rows());
     all.extend(decay::rows());
     all.extend(kirchhoff::rows());
     all.extend(ducts::rows());

@@ -1,0 +1,87 @@
+//! Coefficients far beyond what the sizes of their section allow: almost always a unit.
+
+use std::f64::consts::PI;
+
+use crate::case::faults::Faults;
+use crate::case::numbers::plain;
+use crate::case::schema::{Case, Coupling};
+use crate::error::{Code, Violation};
+
+/// How far beyond what the sizes suggest a coefficient may lie: thin walls make bladders some hundred times softer than a block
+/// of their size; a millimetre in place of a metre is a thousand, its square a million.
+const BEYOND: f64 = 1e5;
+
+/// Each coefficient against the one that its section's sizes and modulus suggest.
+///
+/// ```text
+/// a_p ~ h_b w_b/E    aN ~ h_b w_b/(E w_s h_s)    aM ~ h_b w_b/(E w_s h_s²)    ζ' ~ l_b E aN    ψ' ~ l_b E aM
+/// q1 ~ A²/(8π), that of a circle of the same area, which no other shape exceeds
+/// ```
+pub(super) fn check(case: &Case, faults: &mut Faults) {
+    let mut look = |pointer: &str, value: f64, suggested: f64, unit: &str, hint: &str| {
+        let largest = BEYOND * suggested;
+        if value > largest && largest.is_finite() && !faults.has(pointer) {
+            let what = format!(
+                "{} {unit} is {:.0e} times what the sizes suggest",
+                plain(value),
+                value / suggested
+            );
+            let rounded: f64 = format!("{largest:.2e}").parse().unwrap_or(largest);
+            let fault = Violation::new(Code::Implausible, pointer, what);
+            faults.push(fault.allowed(format!("up to {} {unit}", plain(rounded))).hint(hint));
+        }
+    };
+    let duct = "permeabilities are in m^4; a circle has pi r^4/8, r in metres";
+    if let Some(tubes) = &case.tubes
+        && let Some(permeability) = tubes.permeability_m4
+    {
+        let own = PI * tubes.radius_m.powi(4) / 8.0;
+        look("/tubes/permeability_m4", permeability, own, "m^4", duct);
+    }
+    let Some(b) = &case.bladders else {
+        return;
+    };
+    let beam = &case.beam;
+    let area = b.height_m * b.width_m;
+    let soft = area / beam.young_modulus_pa;
+    let (per_force, per_moment) = (
+        soft / (beam.width_m * beam.height_m),
+        soft / (beam.width_m * beam.height_m.powi(2)),
+    );
+    let squares = "areas are in m^2; is this in mm^2?";
+    look(
+        "/bladders/area_per_pressure_m2_per_pa",
+        b.area_per_pressure_m2_per_pa,
+        soft,
+        "m^2/Pa",
+        "area in m^2 per pressure in Pa; is this per MPa or in mm^2?",
+    );
+    let (m, n) = (&b.area_per_moment_m2_per_n_m, &b.area_per_force_m2_per_n);
+    for (key, value) in [("opening", m.opening), ("closing", m.closing)] {
+        let pointer = format!("/bladders/area_per_moment_m2_per_n_m/{key}");
+        look(&pointer, value, per_moment, "m^2/(N m)", squares);
+    }
+    for (key, value) in [("tension", n.tension), ("compression", n.compression)] {
+        let pointer = format!("/bladders/area_per_force_m2_per_n/{key}");
+        look(&pointer, value, per_force, "m^2/N", squares);
+    }
+    if let Coupling::Published(c) = &b.coupling {
+        let at = "/bladders/coupling/published";
+        let strain = b.length_m * beam.young_modulus_pa;
+        let (slope, length) = (strain * per_moment, strain * per_force);
+        let hint = "per unit of pressure/E, not per Pa";
+        let pointer = format!("{at}/slope_per_pressure_rad");
+        look(&pointer, c.slope_per_pressure_rad, slope, "rad", hint);
+        look(
+            &format!("{at}/length_per_pressure_m"),
+            c.length_per_pressure_m,
+            length,
+            "m",
+            hint,
+        );
+    }
+    if let Some(permeability) = b.permeability_m4 {
+        let circle = area * area / (8.0 * PI);
+        look("/bladders/permeability_m4", permeability, circle, "m^4", duct);
+    }
+}

@@ -1,0 +1,211 @@
+//! Loads, pressures and flows that no such beam bears: almost always a unit.
+
+use super::size::{size_along, size_of, size_of_integral};
+use crate::case::faults::Faults;
+use crate::case::numbers::plain;
+use crate::case::schema::{Bladders, Case, ChainEnd, Load, Rectifier};
+use crate::case::signals::Signal;
+use crate::error::{Code, Violation};
+
+/// Largest strain and largest pressure over the modulus: the model ends at a tenth of that, whatever the material.
+const MOST: f64 = 10.0;
+/// Bladders filled in the time in which sound in the solid crosses the beam's height.
+const FASTEST_FILL: f64 = 10.0;
+
+/// What a load may be [its unit], and what that means.
+struct Bound {
+    largest: f64,
+    unit: &'static str,
+    meaning: &'static str,
+    hint: &'static str,
+}
+
+/// Bounds from the beam's own sizes.
+struct Bounds {
+    pressure: Bound,
+    force: Bound,
+    moment: Bound,
+    force_along: Bound,
+    moment_along: Bound,
+    body: Bound,
+}
+
+impl Bounds {
+    /// `p = 10 E`, `F = 10 EA`, `M = 10 EI/(h/2)`; along the beam by its length, on its mass by that too.
+    fn new(case: &Case) -> Self {
+        let beam = &case.beam;
+        let area = beam.height_m * beam.width_m;
+        let ea = beam.young_modulus_pa * area * beam.axial_stiffness_factor;
+        let ei = beam.young_modulus_pa * area * beam.height_m.powi(2) / 12.0 * beam.bending_stiffness_factor;
+        let mass = beam.density_kg_m3 * area * beam.length_m * beam.mass_factor.unwrap_or(1.0);
+        let (force, moment) = (MOST * ea, 2.0 * MOST * ei / beam.height_m);
+        let strain = "that strains the beam by 1000 %";
+        let bound = |largest, unit, meaning, hint| Bound {
+            largest,
+            unit,
+            meaning,
+            hint,
+        };
+        let newtons = "forces are in N; is this in mN?";
+        Self {
+            pressure: bound(
+                MOST * beam.young_modulus_pa,
+                "Pa",
+                "ten times Young's modulus",
+                "pressures are in Pa; a kPa is 1e3, a bar 1e5",
+            ),
+            force: bound(force, "N", strain, newtons),
+            moment: bound(moment, "N m", strain, "moments are in N m; is this in N mm?"),
+            force_along: bound(force / beam.length_m, "N/m", strain, newtons),
+            moment_along: bound(moment / beam.length_m, "N", strain, "first moments per length are in N"),
+            body: bound(force / mass, "m/s^2", strain, "accelerations are in m/s^2"),
+        }
+    }
+}
+
+/// Everything that presses, pulls, bends or fills.
+pub(super) fn check(case: &Case, faults: &mut Faults) {
+    let bounds = Bounds::new(case);
+    let end = case.time.end_s;
+    let mut look = |pointer: String, size: f64, bound: &Bound| {
+        if size > bound.largest && bound.largest.is_finite() && size.is_finite() && !faults.has(&pointer) {
+            let what = format!("{} {} is more than {}", plain(rounded(size)), bound.unit, bound.meaning);
+            let allowed = format!("up to {} {}", plain(rounded(bound.largest)), bound.unit);
+            faults.push(
+                Violation::new(Code::Implausible, pointer, what)
+                    .allowed(allowed)
+                    .hint(bound.hint),
+            );
+        }
+    };
+    for (side, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
+        let (form, given) = side.form();
+        for (key, signal) in given.given() {
+            let bound = match key {
+                "force_x_n" | "force_z_n" | "follower_normal_n" | "follower_shear_n" => &bounds.force,
+                "moment_n_m" => &bounds.moment,
+                _ => continue,
+            };
+            look(format!("/ends/{name}/{form}/{key}"), size_of(signal, end), bound);
+        }
+    }
+    for (i, load) in case.loads.iter().enumerate() {
+        if let Load::Gravity { x_m_s2, z_m_s2 } = load {
+            look(format!("/loads/{i}/gravity/x_m_s2"), x_m_s2.abs(), &bounds.body);
+            look(format!("/loads/{i}/gravity/z_m_s2"), z_m_s2.abs(), &bounds.body);
+        }
+        if let Some((key, load)) = load.distributed() {
+            let bound = match key {
+                "force_x_n_m" | "force_z_n_m" => &bounds.force_along,
+                "moment_x_n" | "moment_z_n" => &bounds.moment_along,
+                _ => &bounds.body,
+            };
+            let size = size_of(&load.signal, end) * size_along(&load.profile);
+            look(format!("/loads/{i}/{key}"), size, bound);
+        }
+    }
+    for (i, some) in case.start.pressures.iter().enumerate() {
+        let pointer = format!("/start/pressures/{i}/pressure_pa");
+        look(pointer, size_along(&some.pressure_pa), &bounds.pressure);
+    }
+    for (pointer, signal) in inlets(case).pressures {
+        look(pointer, size_of(signal, end), &bounds.pressure);
+    }
+    for (i, turbine) in case.network.iter().flat_map(|n| &n.turbines).enumerate() {
+        if let Rectifier::CheckValves {
+            cracking_pressure_pa, ..
+        } = turbine.rectifier
+        {
+            let pointer = format!("/network/turbines/{i}/rectifier/check_valves/cracking_pressure_pa");
+            look(pointer, cracking_pressure_pa, &bounds.pressure);
+        }
+    }
+    if let Some(bladders) = &case.bladders {
+        flows(case, bladders, faults);
+    }
+}
+
+/// Flows that fill the bladders within what sound takes across the beam, and those that leave more in them over the run than
+/// ten times Young's modulus presses in, where no port with a pressure lets it out.
+fn flows(case: &Case, bladders: &Bladders, faults: &mut Faults) {
+    let (beam, end) = (&case.beam, case.time.end_s);
+    let found = inlets(case);
+    let volume = bladders.height_m * bladders.width_m * bladders.length_m * 2.0 * bladders.per_row as f64;
+    let sound = (beam.young_modulus_pa / beam.density_kg_m3).sqrt();
+    let largest = FASTEST_FILL * volume * sound / beam.height_m;
+    let hint = "flows are in m^3/s; a ml/s is 1e-6";
+    for (pointer, signal) in &found.flows {
+        let size = size_of(signal, end);
+        if size > largest && size.is_finite() && !faults.has(pointer) {
+            let what = format!(
+                "{} m^3/s fills all bladders, {} m^3, before sound has crossed the beam",
+                plain(rounded(size)),
+                plain(rounded(volume))
+            );
+            let allowed = format!("up to {} m^3/s", plain(rounded(largest)));
+            faults.push(
+                Violation::new(Code::Implausible, pointer, what)
+                    .allowed(allowed)
+                    .hint(hint),
+            );
+        }
+    }
+    let room = MOST * beam.young_modulus_pa * bladders.area_per_pressure_m2_per_pa * bladders.length_m;
+    let room = room * 2.0 * bladders.per_row as f64;
+    let all: Vec<&Signal> = found.flows.iter().map(|(_, signal)| *signal).collect();
+    let size = |(_, signal): &(String, &Signal)| size_of(signal, end);
+    let main = found.flows.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+    if let (true, Some((pointer, _)), Some(left)) = (found.pressures.is_empty(), main, size_of_integral(&all, end))
+        && left > room
+        && !faults.has(pointer)
+    {
+        let what = format!(
+            "flows leave {} m^3 in bladders of {} m^3, more than ten times Young's modulus presses in",
+            plain(rounded(left)),
+            plain(rounded(volume))
+        );
+        let allowed = format!("up to {} m^3 by the end of the run", plain(rounded(room)));
+        faults.push(
+            Violation::new(Code::Implausible, pointer, what)
+                .allowed(allowed)
+                .hint(hint),
+        );
+    }
+}
+
+/// Ports and ends of chains with what they prescribe.
+#[derive(Default)]
+struct Inlets<'a> {
+    pressures: Vec<(String, &'a Signal)>,
+    flows: Vec<(String, &'a Signal)>,
+}
+
+fn inlets(case: &Case) -> Inlets<'_> {
+    let mut all = Inlets::default();
+    let Some(network) = &case.network else {
+        return all;
+    };
+    for (i, chain) in network.chains.iter().enumerate() {
+        for (k, end) in chain.ends.iter().enumerate() {
+            let at = format!("/network/chains/{i}/ends/{k}");
+            match end {
+                ChainEnd::PressurePa(signal) => all.pressures.push((format!("{at}/pressure_pa"), signal)),
+                ChainEnd::FlowM3S(signal) => all.flows.push((format!("{at}/flow_m3_s"), signal)),
+                ChainEnd::Sealed | ChainEnd::Connected => {}
+            }
+        }
+    }
+    for (i, port) in network.ports.iter().enumerate() {
+        let at = format!("/network/ports/{i}");
+        all.pressures
+            .extend(port.pressure_pa.iter().map(|s| (format!("{at}/pressure_pa"), s)));
+        all.flows
+            .extend(port.flow_m3_s.iter().map(|s| (format!("{at}/flow_m3_s"), s)));
+    }
+    all
+}
+
+/// Three digits are enough to be told by.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.2e}").parse().unwrap_or(x)
+}

@@ -1,0 +1,115 @@
+//! Where each coefficient of a case comes from.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde_json::Value;
+
+use super::faults::{SetValue, is_below};
+use super::presets::Preset;
+
+/// Where a coefficient comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// It stands in the file.
+    Case,
+    /// It stands in the preset alone.
+    Preset(Preset),
+    /// A `--set` argument gives it.
+    Set,
+    /// Nobody gives it, and a default stands.
+    Default,
+    /// It follows from what is named here.
+    Computed(&'static str),
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Case => f.write_str("case"),
+            Self::Preset(preset) => write!(f, "preset {}", preset.name()),
+            Self::Set => f.write_str("--set"),
+            Self::Default => f.write_str("default"),
+            Self::Computed(from) => write!(f, "computed from {from}"),
+        }
+    }
+}
+
+/// Origins of coefficients by their JSON pointers. They are no part of what a case is: two cases with the same numbers are
+/// equal wherever the numbers come from.
+#[derive(Clone, Debug, Default)]
+pub struct Origins(BTreeMap<String, Origin>);
+
+impl PartialEq for Origins {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// Coefficients of the section: those that follow from its sizes and material and that the program takes as given.
+const COEFFICIENTS: [&str; 12] = [
+    "/beam/axial_stiffness_factor",
+    "/beam/bending_stiffness_factor",
+    "/beam/mass_factor",
+    "/bladders/permeability_m4",
+    "/bladders/area_per_pressure_m2_per_pa",
+    "/bladders/area_per_moment_m2_per_n_m/opening",
+    "/bladders/area_per_moment_m2_per_n_m/closing",
+    "/bladders/area_per_force_m2_per_n/tension",
+    "/bladders/area_per_force_m2_per_n/compression",
+    "/bladders/coupling/published/slope_per_pressure_rad",
+    "/bladders/coupling/published/length_per_pressure_m",
+    "/tubes/permeability_m4",
+];
+
+impl Origins {
+    /// Origins in a case that read `own` with the arguments `sets` in it, and `whole` with its preset filled in.
+    pub(super) fn of(own: &Value, whole: &Value, sets: &[SetValue], preset: Option<Preset>) -> Self {
+        let single = whole.pointer("/network/tubes").and_then(Value::as_array);
+        let single = (0..single.map_or(0, Vec::len)).map(|i| format!("/network/tubes/{i}/permeability_m4"));
+        let pointers = COEFFICIENTS.into_iter().map(str::to_owned).chain(single);
+        let known = pointers.filter_map(|pointer| {
+            let section = pointer.split('/').nth(1)?;
+            whole.get(section)?;
+            let set = || sets.iter().any(|s| s.node.is_some() && is_below(&pointer, &s.pointer));
+            let origin = match (whole.pointer(&pointer), own.pointer(&pointer), preset) {
+                (None, ..) => absent(whole, &pointer)?,
+                (_, Some(_), _) if set() => Origin::Set,
+                (_, Some(_), _) => Origin::Case,
+                (_, None, Some(preset)) => Origin::Preset(preset),
+                (_, None, None) => return None,
+            };
+            Some((pointer, origin))
+        });
+        Self(known.collect())
+    }
+
+    /// The origin of the coefficient at a pointer; none where there is no such coefficient.
+    pub fn get(&self, pointer: &str) -> Option<Origin> {
+        self.0.get(pointer).copied()
+    }
+
+    /// All of them in words.
+    pub fn words(&self) -> BTreeMap<String, String> {
+        let words = |(pointer, origin): (&String, &Origin)| (pointer.clone(), origin.to_string());
+        self.0.iter().map(words).collect()
+    }
+}
+
+/// Where a coefficient that is not given comes from.
+fn absent(whole: &Value, pointer: &str) -> Option<Origin> {
+    let beside = |key: &str| {
+        let object = pointer.rsplit_once('/').and_then(|(object, _)| whole.pointer(object));
+        object.is_some_and(|o| o.get(key).is_some())
+    };
+    match pointer {
+        "/beam/axial_stiffness_factor" | "/beam/bending_stiffness_factor" => Some(Origin::Default),
+        "/beam/mass_factor" if whole.get("bladders").is_some() => Some(Origin::Computed("bladders and fluid")),
+        "/beam/mass_factor" => Some(Origin::Default),
+        "/tubes/permeability_m4" => Some(Origin::Computed("radius_m")),
+        _ if !pointer.ends_with("/permeability_m4") => None,
+        _ if beside("cross_section") => Some(Origin::Computed("cross_section")),
+        "/bladders/permeability_m4" => Some(Origin::Computed("cross_section height_m x width_m")),
+        _ => Some(Origin::Computed("tubes")),
+    }
+}
