@@ -19,6 +19,8 @@ pub struct BeamDae {
     plain: Buffers<f64>,
     dual: Buffers<Dual<LANES>>,
     neighbours: Vec<Neighbours>,
+    /// Time at which the workspace holds everything about a state, its integrands included.
+    held: Option<f64>,
 }
 
 #[derive(Clone, Debug)]
@@ -77,6 +79,7 @@ impl BeamDae {
             plain,
             dual,
             neighbours: vec![],
+            held: None,
         }
     }
 
@@ -86,6 +89,7 @@ impl BeamDae {
             plain: Buffers::new(&system),
             now: Instant::new(&system),
             neighbours: vec![],
+            held: None,
             system,
             ..self.clone()
         }
@@ -122,6 +126,7 @@ impl BeamDae {
 
     /// The system, and the values of time alone at an instant.
     pub fn instant(&mut self, t: f64) -> (&System, &Instant) {
+        self.held = None;
         self.now.update(&self.system, Clock { t, within: self.within });
         (&self.system, &self.now)
     }
@@ -133,6 +138,15 @@ impl BeamDae {
         recipe::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
         ledger::complete(&self.system, &self.now, &b.yp, &mut b.workspace);
         (&self.system, &self.now, &mut b.workspace)
+    }
+
+    /// As [`BeamDae::evaluate`], of a state that the integrator has just accepted at `t` [s]: its integrands were the last thing
+    /// that was evaluated, if it was not another time, and the workspace holds them still.
+    pub fn accepted(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &Instant, &mut Workspace<f64>) {
+        if self.held != Some(t) {
+            return self.evaluate(t, y, yp);
+        }
+        (&self.system, &self.now, &mut self.plain.workspace)
     }
 
     /// Evaluates the model at a scaled state and lets `read` look at time's values, rates in SI units and the workspace.
@@ -150,6 +164,7 @@ impl BeamDae {
     }
 
     fn unscale(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+        self.held = None;
         self.now.update(&self.system, Clock { t, within: self.within });
         let scales = &self.system.layout.scales;
         for (k, scale) in scales.iter().enumerate() {
@@ -270,6 +285,7 @@ impl Dae for BeamDae {
         let b = &mut self.plain;
         recipe::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
         ledger::flows(&self.system, &self.now, &b.yp, &mut b.workspace, out);
+        self.held = Some(t);
         Ok(())
     }
 

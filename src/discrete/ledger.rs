@@ -3,6 +3,8 @@
 mod fluid;
 mod solid;
 
+pub use fluid::pressure_rate;
+
 use serde::{Deserialize, Serialize};
 
 use super::{Instant, System, Workspace, recipe};

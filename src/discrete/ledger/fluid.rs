@@ -53,6 +53,15 @@ fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
         + wet.area.force_slope(w.mean_force[j]) * w.mean_force_rate[j]
 }
 
+/// Rate of a cell's pressure [Pa/s]; needs [`complete`].
+pub fn pressure_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usize) -> f64 {
+    let bladder = cell / fluid.cells_per_bladder;
+    match wet.storage[bladder] {
+        Storage::Shared(pool) => w.pool_rate[pool],
+        Storage::Flowing | Storage::Kept => (w.area_rate[cell] - imposed_rate(wet, w, bladder)) / wet.area.per_pressure,
+    }
+}
+
 /// Stretch by pressure of a beam that does not stretch otherwise, and with it the motion along, `[E28]`.
 pub fn draw_in(system: &System, w: &mut Workspace<f64>) {
     if let Some(wet) = &system.model.wet
