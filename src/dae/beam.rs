@@ -124,6 +124,48 @@ impl BeamDae {
         start::change_frame(system, &before, after, y);
     }
 
+    /// The instant by which the smooth interval is chosen in which signals are looked at [s].
+    pub fn within(&self) -> f64 {
+        self.within
+    }
+
+    /// Adds to integrals what is done in no time at `t` [s]: from a scaled state of which signals were looked at around another
+    /// instant [s], to one in the present smooth interval. See [`ledger::side`] and [`ledger::strokes`].
+    pub fn jump(&mut self, t: f64, (before, within): (&[f64], f64), after: &[f64], integrals: &mut [f64]) {
+        let ahead = self.within;
+        self.look_within(within);
+        let from = self.instant(t).1.clone();
+        self.look_within(ahead);
+        let to = self.instant(t).1.clone();
+        let (system, b) = (&self.system, &mut self.plain);
+        let l = &system.layout;
+        let mut part = vec![0.0; integrals.len()];
+        for (state, side) in [(before, &from), (after, &to)] {
+            let mut now = side.clone();
+            ledger::travel(&mut now, [&from, &to]);
+            for (k, scale) in l.scales.iter().enumerate() {
+                b.y[k] = state[k] * scale;
+                b.yp[k] = (after[k] - before[k]) * scale;
+            }
+            // Velocities become what displacements jump by, and nothing is accelerated.
+            for (u, v, nodes, waves) in [
+                (l.u1, l.v1, &l.free_u1, l.waves[0]),
+                (l.u3, l.v3, &l.free_u3, l.waves[1]),
+            ] {
+                for k in 0..if waves { nodes.len() } else { 0 } {
+                    b.y[v + k] = b.yp[u + k];
+                    b.yp[v + k] = 0.0;
+                }
+            }
+            recipe::evaluate(system, &now, &b.y, &b.yp, &mut b.workspace);
+            ledger::side(system, &now, &b.yp, &mut b.workspace, &mut part);
+            for (total, part) in integrals.iter_mut().zip(&part) {
+                *total += 0.5 * part;
+            }
+        }
+        ledger::strokes(system, [&from, &to], &b.workspace, integrals);
+    }
+
     /// The system, and the values of time alone at an instant.
     pub fn instant(&mut self, t: f64) -> (&System, &Instant) {
         self.held = None;

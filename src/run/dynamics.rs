@@ -237,16 +237,15 @@ impl Run<'_> {
             Some(stop) if stop.switches => {
                 let last = first_stop.checked_sub(2).map_or(0.0, |k| self.stops[k].t);
                 dae.look_within(0.5 * (last + t));
-                dae.switch(t, ahead, &mut self.state);
             }
             _ => dae.look_within(ahead),
         }
-        let consistent = if from.is_none_or(|c| self.stops[c.stop].switches) {
-            consistent_start(&mut dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
+        let consistent = match from.map(|c| self.stops[c.stop].switches) {
+            Some(true) => self.switch(&mut dae, t, ahead),
+            Some(false) => None,
+            None => consistent_start(&mut dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
                 .map_err(|failure| inconsistent(t, &failure))
-                .err()
-        } else {
-            None
+                .err(),
         };
         let consistent = consistent.or_else(|| self.begin_forward(&mut dae).err());
         let header = from.is_none().then(|| self.header(dae.system()));
@@ -370,6 +369,17 @@ impl Run<'_> {
         Ok(End::Finished)
     }
 
+    /// Passes a switch: the next smooth branch of every signal, a consistent state, and what is done in no time in between.
+    fn switch(&mut self, dae: &mut BeamDae, t: f64, ahead: f64) -> Option<SolverFault> {
+        let (before, within) = (self.state.clone(), dae.within());
+        dae.switch(t, ahead, &mut self.state);
+        if let Err(failure) = consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default()) {
+            return Some(inconsistent(t, &failure));
+        }
+        dae.jump(t, (&before, within), &self.state, &mut self.carried);
+        None
+    }
+
     /// Passes a stop: the next smooth branch of every signal, a consistent state, a checkpoint if one is due, a fresh
     /// start of the integrator.
     fn pass(
@@ -419,15 +429,10 @@ impl Run<'_> {
         };
         let dae = solver.dae_mut();
         let ahead = 0.5 * (t + next);
-        if switches {
-            dae.switch(t, ahead, &mut self.state);
-        } else {
+        if !switches {
             dae.look_within(ahead);
-        }
-        if switches
-            && let Err(failure) = consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
-        {
-            return Ok(Some(inconsistent(t, &failure)));
+        } else if let Some(fault) = self.switch(dae, t, ahead) {
+            return Ok(Some(fault));
         }
         if let (Some(forward), Some(before)) = (&mut self.forward, &before) {
             if !switches {
@@ -689,6 +694,8 @@ impl Run<'_> {
         b.energy_residual_relative = o.residuals.energy_relative();
         b.volume_residual_relative = o.residuals.volume_relative();
         b.closed_volume_residual_relative = o.residuals.closed_volume_relative();
+        b.port_flow_residual_relative = o.residuals.port_flow_relative();
+        b.reaction_difference_relative = o.residuals.reaction_relative();
         b.momentum_residual_relative = o.residuals.momentum_relative();
         b.angular_momentum_residual_relative = o.residuals.angular_relative();
         for flow in FLOWS.iter().filter(|f| f.energy_sign() != 0.0) {

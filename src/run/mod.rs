@@ -6,6 +6,7 @@ pub mod drive;
 pub mod dynamics;
 pub mod equilibrium;
 pub mod figures;
+pub mod fit;
 pub mod floquet;
 pub mod growth;
 pub mod krylov;

@@ -177,6 +177,7 @@ impl Observer {
         if let Some(before) = self.before.filter(|before| before.t < t) {
             self.seen.range.take(&self.limits, Some(&before), &glance);
             self.seen.figures.span(&before, &glance);
+            self.seen.residuals.follow(system, now, w, t - before.t);
             self.look_between(&before, &glance);
         }
         self.before = Some(glance);
@@ -218,10 +219,9 @@ impl Observer {
         residuals.take(system, w, &balance, [first, &invariants], integrals);
         let least_force = w.force.iter().copied().fold(f64::INFINITY, f64::min);
         self.seen.growth.take(
+            now,
             glance.t,
-            glance.deflection,
-            stored.bending,
-            least_force,
+            [glance.deflection, stored.bending, least_force],
             integrals,
             balance.residual,
         );

@@ -4,11 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::discrete::ledger::{self, Flow, Invariants};
 use crate::discrete::sample::EnergyBalance;
-use crate::discrete::{System, Workspace};
+use crate::discrete::{Instant, System, Workspace};
 use crate::error::Code;
 
 /// Above this the run warns that a balance does not close.
 const OPEN: f64 = 0.01;
+
+/// Share of conductance times pressure that is the last digits of pressures, as far as an iteration leaves them.
+const DIGITS: f64 = 0.0;
 
 /// Largest residuals and references seen.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -22,6 +25,10 @@ pub struct Residuals {
     momentum_seen: f64,
     angular: f64,
     angular_seen: f64,
+    /// Of each component: largest difference of the flow through its ports by law and by storage, and the volume passed.
+    port_flow: Vec<[f64; 2]>,
+    /// Squares of reactions and of their differences, integrated over time.
+    reactions: [f64; 2],
 }
 
 impl Residuals {
@@ -32,6 +39,7 @@ impl Residuals {
         Self {
             volume: vec![0.0; closed.len()],
             volume_seen: vec![0.0; closed.len()],
+            port_flow: vec![[0.0; 2]; closed.len()],
             closed,
             ..Self::default()
         }
@@ -56,6 +64,12 @@ impl Residuals {
             let (left, through) = open.map_or((0.0, 0.0), |k| ledger::passed(integrals, k));
             self.volume[c] = self.volume[c].max((invariants.volumes[c] - first.volumes[c] + left).abs());
             self.volume_seen[c] = self.volume_seen[c].max(through);
+            if let (Some(k), Some(wet)) = (open, wet) {
+                let (by_law, finest) = ledger::by_law(integrals, k, wet.network.open.len());
+                let [missed, passed] = &mut self.port_flow[c];
+                *missed = missed.max((by_law - left).abs() - DIGITS * finest);
+                *passed = passed.max(through);
+            }
         }
         displaced(system, &w.area, &w.pressure, &mut self.volume_seen);
         if !system.layout.inertia {
@@ -83,6 +97,25 @@ impl Residuals {
             .angular_seen
             .max(invariants.angular_momentum.abs())
             .max(gained.abs());
+    }
+
+    /// Takes the reactions over a step of `dt` [s] that ends in the workspace's state.
+    pub fn follow(&mut self, system: &System, now: &Instant, w: &Workspace<f64>, dt: f64) {
+        for (sum, square) in self.reactions.iter_mut().zip(ledger::compared(system, now, w)) {
+            *sum += dt * square;
+        }
+    }
+
+    /// Root mean square of what reactions told in two ways differ by, over that of the reactions.
+    pub fn reaction_relative(&self) -> f64 {
+        let [size, difference] = self.reactions;
+        if size > 0.0 { (difference / size).sqrt() } else { 0.0 }
+    }
+
+    /// Worst difference of a network's flow through ports, by law and by storage, over the volume passed.
+    pub fn port_flow_relative(&self) -> f64 {
+        let each = self.port_flow.iter().filter(|[_, passed]| *passed > 0.0);
+        each.map(|[missed, passed]| missed / passed).fold(0.0, f64::max)
     }
 
     fn relative(residual: f64, seen: f64) -> f64 {
@@ -131,7 +164,14 @@ impl Residuals {
         if open > OPEN {
             all.push(Code::EnergyOpen.warning(format!(
                 "energy balance: it stays open by {open:.1e} of the largest energy; tighten solver/rtol \
-                 until answers no longer change (a load or valve that jumps without inertia or damping leaves it open at any tolerance)"
+                 until answers no longer change (a jump to which a beam without inertia answers far from linearly leaves it open at any tolerance)"
+            )));
+        }
+        let missed = self.port_flow_relative();
+        if missed > OPEN {
+            all.push(Code::PortFlow.warning(format!(
+                "flow through ports: what the ports' law lets through and what the network stores differ by {missed:.1e} of the \
+                 volume passed; tighten solver/rtol until answers no longer change"
             )));
         }
         let (momentum, angular) = (self.momentum_relative(), self.angular_relative());

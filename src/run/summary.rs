@@ -73,6 +73,13 @@ pub struct Balances {
     /// The same for networks without ports alone: these close to round-off at any tolerance.
     #[serde(default)]
     pub closed_volume_residual_relative: f64,
+    /// Largest difference between what left a network by the law of its ports and by what it stores, over the volume passed.
+    #[serde(default)]
+    pub port_flow_residual_relative: f64,
+    /// Root mean square of the difference between reactions of driven ends told by the momentum of half a cell and by the section's
+    /// force at the end, over that of the reactions: the mesh's error.
+    #[serde(default)]
+    pub reaction_difference_relative: f64,
     /// Largest residual of the momentum balance over the largest momentum or impulse seen.
     pub momentum_residual_relative: f64,
     /// Largest residual of the angular momentum balance, likewise.

@@ -211,7 +211,7 @@ fn spin(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
 
 /// Arms (x, z) with which a node's momentum and force turn about the origin, and their rates: its position. A small
 /// rotation ε moves a node by (ε θ, -ε g u1), whatever u3 is: that is what the potential of `[E26]` does not feel.
-fn arms(system: &System, w: &Workspace<f64>, i: usize) -> ([f64; 2], [f64; 2]) {
+pub fn arms(system: &System, w: &Workspace<f64>, i: usize) -> ([f64; 2], [f64; 2]) {
     let theta = system.mesh.node_coordinate(i);
     match system.model.kinematics {
         Kinematics::Bar | Kinematics::FiniteRotation => ([w.u1[i], theta + w.u3[i]], [w.v1[i], w.v3[i]]),
