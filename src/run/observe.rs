@@ -86,7 +86,7 @@ impl Observer {
             before: None,
             turning: vec![],
             seen: Observed {
-                residuals: Residuals::new(system),
+                residuals: Residuals::new(system, case.solver.rtol),
                 figures: Figures::new(case, &columns),
                 growth: Growth::new(case.time.end_s),
                 integrals: vec![0.0; ledger::flow_count(system)],

@@ -120,7 +120,7 @@ impl Limits {
         }
         (g.moved > MOTION_ENDS * self.length).then(|| {
             format!(
-                "a node has moved by {MOTION_ENDS} lengths of the beam against the root at t = {t:.6} s ({:.3e} m)",
+                "a node has reached {MOTION_ENDS} lengths of the beam against the root at t = {t:.6} s ({:.3e} m)",
                 g.moved
             )
         })

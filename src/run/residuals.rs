@@ -10,8 +10,9 @@ use crate::error::Code;
 /// Above this the run warns that a balance does not close.
 const OPEN: f64 = 0.01;
 
-/// Share of conductance times pressure that is the last digits of pressures, as far as an iteration leaves them.
-const DIGITS: f64 = 0.0;
+/// Last digits of pressures over the tolerance: what an iteration may leave of them. Times the conductance of a port it is a flow
+/// that the law does not tell, however large, while the pressure is right.
+const DIGITS: f64 = 0.01;
 
 /// Largest residuals and references seen.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -27,13 +28,15 @@ pub struct Residuals {
     angular_seen: f64,
     /// Of each component: largest difference of the flow through its ports by law and by storage, and the volume passed.
     port_flow: Vec<[f64; 2]>,
+    /// Share of conductance times pressure that is noise.
+    digits: f64,
     /// Squares of reactions and of their differences, integrated over time.
     reactions: [f64; 2],
 }
 
 impl Residuals {
-    /// Of a system of which nothing has been seen.
-    pub fn new(system: &System) -> Self {
+    /// Of a system of which nothing has been seen, integrated to a relative tolerance.
+    pub fn new(system: &System, rtol: f64) -> Self {
         let network = system.model.wet.as_ref().map(|wet| &wet.network);
         let closed: Vec<bool> = network.map_or(vec![], |n| (0..n.components).map(|c| n.is_closed(c)).collect());
         Self {
@@ -41,11 +44,12 @@ impl Residuals {
             volume_seen: vec![0.0; closed.len()],
             port_flow: vec![[0.0; 2]; closed.len()],
             closed,
+            digits: DIGITS * rtol,
             ..Self::default()
         }
     }
 
-    /// Takes what is known at an instant; `first` are the invariants at the start, `mass` [kg] and `length` [m] the beam's.
+    /// Takes what is known at an instant; `first` are the invariants at the start.
     pub fn take(
         &mut self,
         system: &System,
@@ -67,7 +71,7 @@ impl Residuals {
             if let (Some(k), Some(wet)) = (open, wet) {
                 let (by_law, finest) = ledger::by_law(integrals, k, wet.network.open.len());
                 let [missed, passed] = &mut self.port_flow[c];
-                *missed = missed.max((by_law - left).abs() - DIGITS * finest);
+                *missed = missed.max((by_law - left).abs() - self.digits * finest);
                 *passed = passed.max(through);
             }
         }
