@@ -49,6 +49,7 @@ pub fn render(summary: &Summary, dir: &Path, colour: bool, width: usize) -> Stri
     let (status, tone) = match summary.status {
         Status::Finished => ("finished", Tone::Good),
         Status::Stopped => ("stopped", Tone::Warning),
+        Status::OutOfRange => ("OUT OF RANGE", Tone::Bad),
         Status::Failed => ("FAILED", Tone::Bad),
     };
     let room = width - status.chars().count() - 9;
@@ -91,7 +92,7 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     add("balances", Some(balances(summary)), Tone::Plain);
     add("integrator", Some(integrator(summary)), Tone::Plain);
     add("time", Some(times(summary)), Tone::Plain);
-    let ended_well = summary.status != Status::Failed;
+    let ended_well = !matches!(summary.status, Status::Failed | Status::OutOfRange);
     add("spent on", spent(summary).filter(|_| ended_well), Tone::Plain);
     rows
 }

@@ -19,6 +19,8 @@ pub struct BeamDae {
     plain: Buffers<f64>,
     dual: Buffers<Dual<LANES>>,
     neighbours: Vec<Neighbours>,
+    /// Time at which the workspace holds everything about a state, its integrands included.
+    held: Option<f64>,
 }
 
 #[derive(Clone, Debug)]
@@ -77,6 +79,7 @@ impl BeamDae {
             plain,
             dual,
             neighbours: vec![],
+            held: None,
         }
     }
 
@@ -86,6 +89,7 @@ impl BeamDae {
             plain: Buffers::new(&system),
             now: Instant::new(&system),
             neighbours: vec![],
+            held: None,
             system,
             ..self.clone()
         }
@@ -120,8 +124,51 @@ impl BeamDae {
         start::change_frame(system, &before, after, y);
     }
 
+    /// The instant by which the smooth interval is chosen in which signals are looked at [s].
+    pub fn within(&self) -> f64 {
+        self.within
+    }
+
+    /// Adds to integrals what is done in no time at `t` [s]: from a scaled state of which signals were looked at around another
+    /// instant [s], to one in the present smooth interval. See [`ledger::side`] and [`ledger::strokes`].
+    pub fn jump(&mut self, t: f64, (before, within): (&[f64], f64), after: &[f64], integrals: &mut [f64]) {
+        let ahead = self.within;
+        self.look_within(within);
+        let from = self.instant(t).1.clone();
+        self.look_within(ahead);
+        let to = self.instant(t).1.clone();
+        let (system, b) = (&self.system, &mut self.plain);
+        let l = &system.layout;
+        let mut part = vec![0.0; integrals.len()];
+        for (state, side) in [(before, &from), (after, &to)] {
+            let mut now = side.clone();
+            ledger::travel(&mut now, [&from, &to]);
+            for (k, scale) in l.scales.iter().enumerate() {
+                b.y[k] = state[k] * scale;
+                b.yp[k] = (after[k] - before[k]) * scale;
+            }
+            // Velocities become what displacements jump by, and nothing is accelerated.
+            for (u, v, nodes, waves) in [
+                (l.u1, l.v1, &l.free_u1, l.waves[0]),
+                (l.u3, l.v3, &l.free_u3, l.waves[1]),
+            ] {
+                for k in 0..if waves { nodes.len() } else { 0 } {
+                    b.y[v + k] = b.yp[u + k];
+                    b.yp[v + k] = 0.0;
+                }
+            }
+            recipe::evaluate(system, &now, &b.y, &b.yp, &mut b.workspace);
+            ledger::side(system, &now, &b.yp, &mut b.workspace, &mut part);
+            for (total, part) in integrals.iter_mut().zip(&part) {
+                *total += 0.5 * part;
+            }
+        }
+        ledger::strokes(system, [&from, &to], &b.workspace, integrals);
+    }
+
     /// The system, and the values of time alone at an instant.
     pub fn instant(&mut self, t: f64) -> (&System, &Instant) {
+        self.held = None;
         self.now.update(&self.system, Clock { t, within: self.within });
         (&self.system, &self.now)
     }
@@ -133,6 +180,15 @@ impl BeamDae {
         recipe::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
         ledger::complete(&self.system, &self.now, &b.yp, &mut b.workspace);
         (&self.system, &self.now, &mut b.workspace)
+    }
+
+    /// As [`BeamDae::evaluate`], of a state that the integrator has just accepted at `t` [s]: its integrands were the last thing
+    /// that was evaluated, if it was not another time, and the workspace holds them still.
+    pub fn accepted(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &Instant, &mut Workspace<f64>) {
+        if self.held != Some(t) {
+            return self.evaluate(t, y, yp);
+        }
+        (&self.system, &self.now, &mut self.plain.workspace)
     }
 
     /// Evaluates the model at a scaled state and lets `read` look at time's values, rates in SI units and the workspace.
@@ -150,6 +206,7 @@ impl BeamDae {
     }
 
     fn unscale(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+        self.held = None;
         self.now.update(&self.system, Clock { t, within: self.within });
         let scales = &self.system.layout.scales;
         for (k, scale) in scales.iter().enumerate() {
@@ -270,6 +327,7 @@ impl Dae for BeamDae {
         let b = &mut self.plain;
         recipe::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
         ledger::flows(&self.system, &self.now, &b.yp, &mut b.workspace, out);
+        self.held = Some(t);
         Ok(())
     }
 

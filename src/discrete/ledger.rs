@@ -1,7 +1,13 @@
 //! Energies, powers and impulses, exact in the semi-discrete system: their balance is the integrator's error alone.
 
 mod fluid;
+mod jump;
+mod reactions;
 mod solid;
+
+pub use fluid::pressure_rate;
+pub use jump::{side, strokes, travel};
+pub use reactions::compared;
 
 use serde::{Deserialize, Serialize};
 
@@ -38,7 +44,8 @@ pub enum Flow {
     AngularImpulse,
 }
 
-/// All flows, in the order in which they are stored; outflow and throughput of every open network follow.
+/// All flows, in the order in which they are stored; outflow and throughput of every open network follow, then of each what its
+/// ports' law gives and how finely that can be known.
 pub const FLOWS: [Flow; 13] = [
     Flow::Loads,
     Flow::Ends,
@@ -120,12 +127,19 @@ pub struct Invariants {
 
 /// Number of integrated rates of a system.
 pub fn flow_count(system: &System) -> usize {
-    FLOWS.len() + 2 * system.model.wet.as_ref().map_or(0, |w| w.network.open.len())
+    FLOWS.len() + 4 * system.model.wet.as_ref().map_or(0, |w| w.network.open.len())
 }
 
 /// Volume that has left the `open`-th open network through its ports, and volume that has passed them either way [m^3].
 pub fn passed(integrals: &[f64], open: usize) -> (f64, f64) {
     (integrals[FLOWS.len() + 2 * open], integrals[FLOWS.len() + 2 * open + 1])
+}
+
+/// Volume that has left the `open`-th of `count` open networks by the law of its ports, and the volume that conductances times
+/// pressures would have passed [m^3]: a share of it, the last digits of pressures, is noise.
+pub fn by_law(integrals: &[f64], open: usize, count: usize) -> (f64, f64) {
+    let first = FLOWS.len() + 2 * count + 2 * open;
+    (integrals[first], integrals[first + 1])
 }
 
 /// `[E19]` Rates of all integrals (SI) at a state given in SI units:

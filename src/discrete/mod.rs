@@ -1,6 +1,7 @@
 //! Space: the mesh, the unknowns, the semi-discrete equations in the paper's order, and their exact balances.
 
 pub mod fluid_mesh;
+pub mod glance;
 pub mod instant;
 pub mod layout;
 pub mod ledger;

@@ -1,5 +1,6 @@
 //! What is read off a state: the columns of the history and the fields.
 
+use super::fluid_mesh::Place;
 use super::{Instant, System, Workspace};
 use crate::discrete::ledger::{self, Energies, FLOWS};
 use crate::discrete::recipe::fluid::pressure_at;
@@ -172,7 +173,7 @@ pub fn instantaneous(system: &System, now: &Instant, w: &Workspace<f64>, at: &Ex
 }
 
 /// `φ` of the tip, followed along the beam so that full turns count.
-fn tip_angle(system: &System, w: &Workspace<f64>) -> f64 {
+pub(super) fn tip_angle(system: &System, w: &Workspace<f64>) -> f64 {
     let last = system.mesh.nodes - 1;
     let interior: f64 = w.kappa[1..last].iter().sum();
     let first = match system.model.kinematics {
@@ -200,22 +201,30 @@ fn turbine_power(system: &System, now: &Instant, w: &Workspace<f64>) -> f64 {
     power
 }
 
-/// Largest flow through a tube [m^3/s] and the tube's number among the tubes.
-pub fn largest_flow(system: &System, now: &Instant, w: &Workspace<f64>) -> Option<(f64, usize)> {
+/// Largest flow through a tube [m^3/s], its rate as far as bladders and ports make it, and the tube's number among the tubes.
+pub fn largest_flow(system: &System, now: &Instant, w: &Workspace<f64>) -> Option<(f64, f64, usize)> {
     let (wet, fluid) = (system.model.wet.as_ref()?, system.fluid.as_ref()?);
     let tubes = fluid
         .links
         .iter()
         .zip(&now.conductance)
         .filter(|(link, _)| link.kind == LinkKind::Tube);
-    let (q, link) = tubes
+    let (q, link, g) = tubes
         .map(|(link, g)| {
             let drop = pressure_at(link.from, now, w) - pressure_at(link.to, now, w);
-            ((g * drop).abs(), link.number)
+            (g * drop, link, g)
         })
-        .reduce(|a, b| if b.0 > a.0 { b } else { a })?;
-    let before = wet.network.links[..link].iter().filter(|l| l.kind == LinkKind::Tube);
-    Some((q, before.count()))
+        .reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a })?;
+    let rate = |place: Place| match place {
+        Place::Cell(cell) => ledger::pressure_rate(wet, fluid, w, cell),
+        Place::Port(port) => now.port_pressure_rate[port],
+        Place::Junction(_) => 0.0,
+    };
+    let before = wet.network.links[..link.number]
+        .iter()
+        .filter(|l| l.kind == LinkKind::Tube);
+    let rate = q.signum() * g * (rate(link.from) - rate(link.to));
+    Some((q.abs(), rate, before.count()))
 }
 
 /// Smallest `(h_b w_b + a1)/(h_b w_b)`.

@@ -111,6 +111,8 @@ struct Run<'a> {
 enum End {
     Finished,
     Stopped(String),
+    /// What lies beyond the model.
+    Left(SolverFault),
     Failed(SolverFault),
 }
 
@@ -237,16 +239,15 @@ impl Run<'_> {
             Some(stop) if stop.switches => {
                 let last = first_stop.checked_sub(2).map_or(0.0, |k| self.stops[k].t);
                 dae.look_within(0.5 * (last + t));
-                dae.switch(t, ahead, &mut self.state);
             }
             _ => dae.look_within(ahead),
         }
-        let consistent = if from.is_none_or(|c| self.stops[c.stop].switches) {
-            consistent_start(&mut dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
+        let consistent = match from.map(|c| self.stops[c.stop].switches) {
+            Some(true) => self.switch(&mut dae, t, ahead),
+            Some(false) => None,
+            None => consistent_start(&mut dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
                 .map_err(|failure| inconsistent(t, &failure))
-                .err()
-        } else {
-            None
+                .err(),
         };
         let consistent = consistent.or_else(|| self.begin_forward(&mut dae).err());
         let header = from.is_none().then(|| self.header(dae.system()));
@@ -321,20 +322,21 @@ impl Run<'_> {
         first: usize,
         recorder: &mut dyn Recorder,
     ) -> Result<End> {
-        if let Some(reason) = self.sample(solver, recorder, true)? {
-            return Ok(End::Stopped(reason));
+        if let Some(end) = self.enter(solver, recorder)? {
+            return Ok(end);
         }
         let mut pace = Pace::new(solver.time());
         for k in first..self.stops.len() {
             let stop = self.stops[k];
             loop {
+                let from = solver.time();
                 let step = match solver.step(stop.t) {
                     Ok(step) => step,
                     Err(failure) => return Ok(End::Failed(fault(&failure))),
                 };
                 self.summary.time_s = step.time;
-                if let Some(reason) = self.sample(solver, recorder, false)? {
-                    return Ok(End::Stopped(reason));
+                if let Some(end) = self.follow(solver, from, recorder)? {
+                    return Ok(end);
                 }
                 let steps = solver.steps();
                 let progress = Progress {
@@ -357,13 +359,27 @@ impl Run<'_> {
                     break;
                 }
             }
-            if let Some(next) = self.stops.get(k + 1).copied()
-                && let Some(fault) = self.pass(solver, k, next.t, recorder)?
-            {
-                return Ok(End::Failed(fault));
+            if let Some(next) = self.stops.get(k + 1).copied() {
+                if let Some(fault) = self.pass(solver, k, next.t, recorder)? {
+                    return Ok(End::Failed(fault));
+                }
+                if let Some(end) = self.enter(solver, recorder)? {
+                    return Ok(end);
+                }
             }
         }
         Ok(End::Finished)
+    }
+
+    /// Passes a switch: the next smooth branch of every signal, a consistent state, and what is done in no time in between.
+    fn switch(&mut self, dae: &mut BeamDae, t: f64, ahead: f64) -> Option<SolverFault> {
+        let (before, within) = (self.state.clone(), dae.within());
+        dae.switch(t, ahead, &mut self.state);
+        if let Err(failure) = consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default()) {
+            return Some(inconsistent(t, &failure));
+        }
+        dae.jump(t, (&before, within), &self.state, &mut self.carried);
+        None
     }
 
     /// Passes a stop: the next smooth branch of every signal, a consistent state, a checkpoint if one is due, a fresh
@@ -415,15 +431,10 @@ impl Run<'_> {
         };
         let dae = solver.dae_mut();
         let ahead = 0.5 * (t + next);
-        if switches {
-            dae.switch(t, ahead, &mut self.state);
-        } else {
+        if !switches {
             dae.look_within(ahead);
-        }
-        if switches
-            && let Err(failure) = consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
-        {
-            return Ok(Some(inconsistent(t, &failure)));
+        } else if let Some(fault) = self.switch(dae, t, ahead) {
+            return Ok(Some(fault));
         }
         if let (Some(forward), Some(before)) = (&mut self.forward, &before) {
             if !switches {
@@ -442,61 +453,190 @@ impl Run<'_> {
         Ok(restarted.err().map(|failure| fault(&failure)))
     }
 
-    /// Takes every sample that is due, from the integrator's own polynomial.
+    /// Looks at the start of a run or of what follows a stop, and takes the sample that is due there.
+    fn enter(&mut self, solver: &mut Integrator<BeamDae>, recorder: &mut dyn Recorder) -> Result<Option<End>> {
+        let t = solver.time();
+        if let Err(end) = self.read(solver, t) {
+            return Ok(Some(end));
+        }
+        let left = self.observer.enter(
+            solver.dae_mut(),
+            t,
+            &self.state,
+            &self.rates,
+            &self.integrals,
+        );
+        match left {
+            Some(what) => self.leave(solver, t, what, recorder).map(Some),
+            None => self.sample(solver, t, t, recorder),
+        }
+    }
+
+    /// Follows an accepted step from time `from` [s]: looks at its end, and inside wherever something may have turned, takes every
+    /// sample that is due, and finds out where in the step the model was left, if it was.
+    fn follow(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        from: f64,
+        recorder: &mut dyn Recorder,
+    ) -> Result<Option<End>> {
+        let now = solver.time();
+        if let Err(end) = self.read(solver, now) {
+            return Ok(Some(end));
+        }
+        let dae = solver.dae_mut();
+        let left = self.observer.arrive(dae, now, &self.state, &self.rates, &self.integrals);
+        let mut left = left.map(|what| (now, what));
+        let mut within = from;
+        for k in 0..self.observer.turning().len() {
+            let t = self.observer.turning()[k];
+            if let Err(end) = self.read(solver, t) {
+                return Ok(Some(end));
+            }
+            let dae = solver.dae_mut();
+            match self.observer.look(dae, t, &self.state, &self.rates, &self.integrals) {
+                Some(what) => {
+                    left = Some((t, what));
+                    break;
+                }
+                None => within = t,
+            }
+        }
+        match left {
+            None => self.sample(solver, from, now, recorder),
+            Some((t, what)) => {
+                let (t, what) = match self.narrow(solver, [within, t], what) {
+                    Ok(found) => found,
+                    Err(end) => return Ok(Some(end)),
+                };
+                match self.sample(solver, from, t, recorder)? {
+                    Some(end) => Ok(Some(end)),
+                    None => self.leave(solver, t, what, recorder).map(Some),
+                }
+            }
+        }
+    }
+
+    /// Reads state, rates and integrals at a time within the last step from the integrator's own polynomial, or as they are at
+    /// the present time.
+    fn read(&mut self, solver: &mut Integrator<BeamDae>, t: f64) -> std::result::Result<(), End> {
+        let read = if t == solver.time() {
+            self.state.copy_from_slice(solver.y());
+            self.rates.copy_from_slice(solver.yp());
+            solver.integrals(None, &mut self.integrals)
+        } else {
+            solver
+                .interpolate(t, 0, &mut self.state)
+                .and_then(|()| solver.interpolate(t, 1, &mut self.rates))
+                .and_then(|()| solver.integrals(Some(t), &mut self.integrals))
+        };
+        for (total, carried) in self.integrals.iter_mut().zip(&self.carried) {
+            *total += carried;
+        }
+        read.map_err(|failure| End::Stopped(format!("the state at t = {t:.6} s could not be read: {failure}")))
+    }
+
+    /// The time, and in words, at which the model was left, between a time at which it held and one at which it did not [s].
+    fn narrow(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        [mut within, mut beyond]: [f64; 2],
+        mut what: String,
+    ) -> std::result::Result<(f64, String), End> {
+        for _ in 0..HALVINGS {
+            let t = 0.5 * (within + beyond);
+            if t <= within || t >= beyond {
+                break;
+            }
+            self.read(solver, t)?;
+            match self
+                .observer
+                .beyond(solver.dae_mut(), t, &self.state, &self.rates)
+            {
+                Some(found) => (beyond, what) = (t, found),
+                None => within = t,
+            }
+        }
+        Ok((beyond, what))
+    }
+
+    /// Ends the run where the model was left; the state there is recorded last.
+    fn leave(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        t: f64,
+        what: String,
+        recorder: &mut dyn Recorder,
+    ) -> Result<End> {
+        if let Err(end) = self.read(solver, t) {
+            return Ok(end);
+        }
+        if let Some(end) = self.record(solver, 0, t, recorder)? {
+            return Ok(end);
+        }
+        Ok(End::Left(beyond(t, what)))
+    }
+
+    /// Takes every sample that is due up to a time `until` [s] within the last step, which began at `from` [s].
     fn sample(
         &mut self,
         solver: &mut Integrator<BeamDae>,
+        from: f64,
+        until: f64,
         recorder: &mut dyn Recorder,
-        at_start: bool,
-    ) -> Result<Option<String>> {
-        let now = solver.time();
+    ) -> Result<Option<End>> {
         let mut begin = None;
-        while let Some((number, t)) = self.outputs.due(now) {
+        let mut within = from;
+        while let Some((number, t)) = self.outputs.due(until) {
             begin.get_or_insert_with(Instant::now);
-            let exact = at_start || t == now;
-            if exact {
-                self.state.copy_from_slice(solver.y());
-                self.rates.copy_from_slice(solver.yp());
+            if let Err(end) = self.read(solver, t.max(from)) {
+                return Ok(Some(end));
             }
-            let read = if exact {
-                solver.integrals(None, &mut self.integrals)
-            } else {
-                solver
-                    .interpolate(t, 0, &mut self.state)
-                    .and_then(|()| solver.interpolate(t, 1, &mut self.rates))
-                    .and_then(|()| solver.integrals(Some(t), &mut self.integrals))
-            };
-            if let Err(failure) = read {
-                return Ok(Some(format!("the state at t = {t:.6} s could not be read: {failure}")));
+            let left = self.observer.beyond(solver.dae_mut(), t, &self.state, &self.rates);
+            if let Some(what) = left {
+                let (t, what) = match self.narrow(solver, [within, t], what) {
+                    Ok(found) => found,
+                    Err(end) => return Ok(Some(end)),
+                };
+                return self.leave(solver, t, what, recorder).map(Some);
             }
-            for (total, carried) in self.integrals.iter_mut().zip(&self.carried) {
-                *total += carried;
+            if let Some(end) = self.record(solver, number, t, recorder)? {
+                return Ok(Some(end));
             }
-            let ended = self.observer.sample(
-                solver.dae_mut(),
-                number,
-                t,
-                &self.state,
-                &self.rates,
-                &self.integrals,
-                recorder,
-            )?;
-            if let (Some(forward), Some(ida)) = (&mut self.forward, solver.ida_mut()) {
-                match forward.sample(ida, t, [&self.state, &self.rates], self.observer.row()) {
-                    Ok(row) => recorder.sensitivities(row)?,
-                    Err(failure) => {
-                        return Ok(Some(format!(
-                            "sensitivities at t = {t:.6} s could not be read: {failure}"
-                        )));
-                    }
-                }
-            }
-            if ended.is_some() {
-                return Ok(ended);
-            }
+            within = t;
         }
         if let Some(begin) = begin {
             self.output_wall += begin.elapsed().as_secs_f64();
+        }
+        Ok(None)
+    }
+
+    /// Records the state that has been read, as sample number `number`.
+    fn record(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        number: u64,
+        t: f64,
+        recorder: &mut dyn Recorder,
+    ) -> Result<Option<End>> {
+        self.observer.sample(
+            solver.dae_mut(),
+            number,
+            t,
+            &self.state,
+            &self.rates,
+            &self.integrals,
+            recorder,
+        )?;
+        if let (Some(forward), Some(ida)) = (&mut self.forward, solver.ida_mut()) {
+            match forward.sample(ida, t, [&self.state, &self.rates], self.observer.row()) {
+                Ok(row) => recorder.sensitivities(row)?,
+                Err(failure) => {
+                    return Ok(Some(End::Stopped(format!(
+                        "sensitivities at t = {t:.6} s could not be read: {failure}"
+                    ))));
+                }
+            }
         }
         Ok(None)
     }
@@ -537,6 +677,12 @@ impl Run<'_> {
                 s.reason = Some(reason);
                 None
             }
+            End::Left(fault) => {
+                s.status = Status::OutOfRange;
+                s.reason = Some(fault.what.clone());
+                s.time_s = fault.time_s;
+                Some(fault)
+            }
             End::Failed(fault) => {
                 s.reason = Some(fault.what.clone());
                 s.time_s = fault.time_s;
@@ -550,6 +696,8 @@ impl Run<'_> {
         b.energy_residual_relative = o.residuals.energy_relative();
         b.volume_residual_relative = o.residuals.volume_relative();
         b.closed_volume_residual_relative = o.residuals.closed_volume_relative();
+        b.port_flow_residual_relative = o.residuals.port_flow_relative();
+        b.reaction_difference_relative = o.residuals.reaction_relative();
         b.momentum_residual_relative = o.residuals.momentum_relative();
         b.angular_momentum_residual_relative = o.residuals.angular_relative();
         for flow in FLOWS.iter().filter(|f| f.energy_sign() != 0.0) {
@@ -598,6 +746,17 @@ fn fault(failure: &IdaFailure) -> SolverFault {
             .into(),
         ),
         hint: Some("look at the balances and fields up to this time; try another rtol, a wider kink_width, or damping".into()),
+    }
+}
+
+fn beyond(t: f64, what: String) -> SolverFault {
+    SolverFault {
+        code: Code::OutOfRange,
+        time_s: t,
+        what,
+        unknown: None,
+        cause: Some("loads, pressures or flows beyond what the model describes, or a motion that grows without bounds".into()),
+        hint: Some("results stand up to this time; look at the fields before it, at the units of loads and flows".into()),
     }
 }
 
@@ -650,6 +809,9 @@ fn stalled(t: f64, step: f64) -> SolverFault {
         hint: Some("look at the fields just before this time; damping or a smoother signal may help".into()),
     }
 }
+
+/// Halvings of a step in search of the time at which the model was left.
+const HALVINGS: u32 = 30;
 
 /// Steps over which progress is judged.
 const STALL_STEPS: u64 = 20_000;

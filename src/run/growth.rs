@@ -2,11 +2,22 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::fit;
+use crate::discrete::Instant;
 use crate::discrete::ledger::Flow;
 use crate::model::characteristic::Mathieu;
 
 /// Windows into which a run is divided.
 const WINDOWS: usize = 16;
+
+/// By how much a response must outgrow what drives it.
+const OUTGROWN: f64 = 2.0;
+/// Factor over the later part of a run from which on growth is worth a word.
+const GROWN: f64 = 3.0;
+
+/// Kinds of what drives a beam: loads along x and z and their moments, forces, followers and moments of ends, their motions
+/// and slopes, pressures and flows of ports.
+const KINDS: usize = 10;
 
 /// The largest values in one window of the run, and cumulated works at its end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -16,7 +27,13 @@ struct Window {
     reciprocity: f64,
     formulation: f64,
     residual: f64,
+    /// Work of loads, ends and ports, sizes added.
+    work: f64,
+    /// Largest size of each kind of drive, in its own unit.
+    drive: [f64; KINDS],
     samples: u32,
+    /// Time of the works [s].
+    t: f64,
 }
 
 /// Follows the deflection window by window.
@@ -31,7 +48,7 @@ pub struct Growth {
 /// What drives a growing response.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Driver {
-    /// `parametric`, `buckling`, `coupling`, `formulation`, `integrator` or `loads`.
+    /// `parametric`, `buckling`, `coupling`, `formulation`, `integrator`, `loads` or `unknown`.
     pub name: String,
     /// The numbers that say so.
     pub evidence: String,
@@ -67,17 +84,25 @@ impl Growth {
         }
     }
 
-    /// Takes a sample: deflection relative to the root [m], bending energy [J], most negative normal force [N].
-    pub fn take(&mut self, t: f64, deflection: f64, bending: f64, least_force: f64, integrals: &[f64], residual: f64) {
+    /// Takes a state, in whatever order of time: deflection relative to the root [m], bending energy [J], most negative normal
+    /// force [N].
+    pub fn take(&mut self, now: &Instant, t: f64, [deflection, bending, least_force]: [f64; 3], integrals: &[f64], residual: f64) {
         let k = ((t / self.end * WINDOWS as f64) as usize).min(WINDOWS - 1);
         self.compression = self.compression.max(-least_force);
         let Some(w) = self.windows.get_mut(k) else { return };
         w.deflection = w.deflection.max(deflection);
         w.bending_energy = w.bending_energy.max(bending);
-        w.reciprocity = integrals[Flow::Reciprocity as usize];
-        w.formulation = integrals[Flow::Formulation as usize];
-        w.residual = residual;
+        for (seen, size) in w.drive.iter_mut().zip(drives(now)) {
+            *seen = seen.max(size);
+        }
         w.samples += 1;
+        if t >= w.t {
+            w.t = t;
+            w.reciprocity = integrals[Flow::Reciprocity as usize];
+            w.formulation = integrals[Flow::Formulation as usize];
+            w.residual = residual;
+            w.work = [Flow::Loads, Flow::Ends, Flow::Ports].map(|f| integrals[f as usize].abs()).iter().sum();
+        }
     }
 
     /// Whether the deflection grows, exponentially and to the end, and why. `length` [m] is the beam's.
@@ -92,14 +117,25 @@ impl Growth {
             return None;
         }
         let width = self.end / WINDOWS as f64;
-        let (rate, straight) = fit(late, width)?;
+        let first = seen.len() - late.len();
+        let points: Vec<(f64, f64)> = late
+            .iter()
+            .enumerate()
+            .filter(|(_, w)| w.deflection > 0.0)
+            .map(|(k, w)| ((first + k) as f64 * width + 0.5 * width, w.deflection))
+            .collect();
+        let (rate, straight) = fit::exponential(&points)?;
         let factor = last.deflection / late[0].deflection.max(f64::MIN_POSITIVE);
         let quarter = late.len() / 3;
         let largest = |part: &[&Window]| part.iter().map(|w| w.deflection).fold(0.0, f64::max);
         let still =
             largest(&late[late.len() - quarter..]) / largest(&late[late.len() - 2 * quarter..late.len() - quarter]);
-        // A factor of 3 over the span, along a straight line in the logarithm, and still going on.
-        if factor < 3.0 || straight < 0.6 || still < 1.2 || rate <= 0.0 {
+        // A factor over the span, along a straight line in the logarithm, and still going on.
+        if factor < GROWN || straight < 0.6 || still < 1.2 || rate <= 0.0 {
+            return None;
+        }
+        // What a straight line or a power of time explains as well is no instability, nor is what follows its drive.
+        if !fit::is_exponential(&points) || follows(late) {
             return None;
         }
         Some(Growing {
@@ -178,34 +214,55 @@ impl Growth {
                 ));
             }
         }
-        if all.is_empty() {
+        if all.is_empty() && last.work > 0.3 * gained {
             all.push(driver(
                 "loads",
-                "no instability is known: loads and driven ends do the work".into(),
+                format!(
+                    "no instability is known: loads, driven ends and ports have done {:.3e} J of work",
+                    last.work
+                ),
+            ));
+        }
+        if all.is_empty() {
+            all.push(driver(
+                "unknown",
+                "no instability is known and nothing does work: what was there at the start is passed on".into(),
             ));
         }
         all
     }
 }
 
-/// Slope of the logarithm of the deflection against time, and the squared correlation.
-fn fit(windows: &[&Window], width: f64) -> Option<(f64, f64)> {
-    let points: Vec<(f64, f64)> = windows
-        .iter()
-        .enumerate()
-        .filter(|(_, w)| w.deflection > 0.0)
-        .map(|(k, w)| (k as f64 * width, w.deflection.ln()))
-        .collect();
-    let n = points.len() as f64;
-    if points.len() < 4 {
-        return None;
-    }
-    let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / n;
-    let (mt, ml) = (mean(&|p| p.0), mean(&|p| p.1));
-    let stt = mean(&|p| (p.0 - mt).powi(2));
-    let sll = mean(&|p| (p.1 - ml).powi(2));
-    let stl = mean(&|p| (p.0 - mt) * (p.1 - ml));
-    (stt > 0.0 && sll > 0.0).then(|| (stl / stt, stl * stl / (stt * sll)))
+/// Sizes of what drives the beam at an instant, by kind.
+fn drives(now: &Instant) -> [f64; KINDS] {
+    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let end = |f: &dyn Fn(usize) -> f64| f(0).abs().max(f(1).abs());
+    let ends = &now.ends;
+    [
+        largest(&now.force_x),
+        largest(&now.force_z),
+        largest(&now.moment_x).max(largest(&now.moment_z)),
+        end(&|k| ends[k].force_x),
+        end(&|k| ends[k].force_z),
+        end(&|k| ends[k].follower.map_or(0.0, |(normal, shear)| normal.abs().max(shear.abs()))),
+        end(&|k| ends[k].moment.value).max(end(&|k| ends[k].slope.map_or(0.0, |s| s.value))),
+        end(&|k| ends[k].u1.map_or(0.0, |u| u.value)),
+        end(&|k| ends[k].u3.map_or(0.0, |u| u.value)),
+        largest(&now.port_pressure).max(largest(&now.source_flow)),
+    ]
+}
+
+/// Whether some drive explains the growth: from the first window in which it acts, the response does not outgrow it.
+fn follows(late: &[&Window]) -> bool {
+    let last = late[late.len() - 1];
+    (0..KINDS).any(|kind| {
+        let Some(first) = late.iter().find(|w| w.drive[kind] > 0.0) else {
+            return false;
+        };
+        let drive = last.drive[kind] / first.drive[kind];
+        let response = last.deflection / first.deflection.max(f64::MIN_POSITIVE);
+        response < GROWN.max(OUTGROWN * drive)
+    })
 }
 
 impl Growing {

@@ -1,10 +1,12 @@
 //! Runs: what drives the solver over a model. Emits what happens, prints nothing.
 
 pub mod checkpoint;
+pub mod cubic;
 pub mod drive;
 pub mod dynamics;
 pub mod equilibrium;
 pub mod figures;
+pub mod fit;
 pub mod floquet;
 pub mod growth;
 pub mod krylov;
@@ -13,7 +15,9 @@ pub mod modes;
 pub mod observe;
 pub mod order;
 pub mod periodic;
+pub mod range;
 pub mod record;
+pub mod residuals;
 pub mod schedule;
 pub mod sensitivity;
 pub mod summary;

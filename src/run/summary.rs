@@ -14,8 +14,10 @@ pub use crate::sundials::Counters;
 pub enum Status {
     /// Reached the end time.
     Finished,
-    /// Stopped for a reason that is not a failure (asked to, or left the model's range).
+    /// Stopped because it was asked to.
     Stopped,
+    /// Ended where the result left what the model describes.
+    OutOfRange,
     /// The solver could not go on.
     Failed,
 }
@@ -26,13 +28,13 @@ pub struct Quantity {
     /// At the last output time.
     #[serde(rename = "final", skip_serializing_if = "Option::is_none")]
     pub last: Option<f64>,
-    /// Largest absolute value.
+    /// Largest absolute value of the motion, between the output times too.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_abs: Option<f64>,
     /// Largest absolute value in the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window_max_abs: Option<f64>,
-    /// Root mean square over the output times in the window.
+    /// Root mean square over the time in the window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_rms: Option<f64>,
     /// Increment (energies) or ratio of increments (efficiency) over the window.
@@ -71,6 +73,13 @@ pub struct Balances {
     /// The same for networks without ports alone: these close to round-off at any tolerance.
     #[serde(default)]
     pub closed_volume_residual_relative: f64,
+    /// Largest difference between what left a network by the law of its ports and by what it stores, over the volume passed.
+    #[serde(default)]
+    pub port_flow_residual_relative: f64,
+    /// Root mean square of the difference between reactions of driven ends told by the momentum of half a cell and by the section's
+    /// force at the end, over that of the reactions: the mesh's error.
+    #[serde(default)]
+    pub reaction_difference_relative: f64,
     /// Largest residual of the momentum balance over the largest momentum or impulse seen.
     pub momentum_residual_relative: f64,
     /// Largest residual of the angular momentum balance, likewise.

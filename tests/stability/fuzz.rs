@@ -92,10 +92,11 @@ fn run(text: &str, told: &mut String) -> Verdict {
             confirm(loaded.case, &recorder.memory)
         }
         Status::Stopped if reason == BUDGET => Verdict::Good("budget used up"),
-        Status::Stopped if reason.contains("t = ") && reason.contains("closed") => {
-            Verdict::Good("stopped: bladder closed")
+        Status::OutOfRange if reason.contains("t = ") && reason.contains("closed") => {
+            Verdict::Good("out of range: bladder closed")
         }
-        Status::Stopped => Verdict::Bad(format!("stopped without time and cause: {reason}")),
+        Status::OutOfRange if reason.contains("t = ") && reason.contains("reached") => Verdict::Good("out of range"),
+        Status::OutOfRange | Status::Stopped => Verdict::Bad(format!("stopped without time and cause: {reason}")),
         Status::Failed => match &outcome.fault {
             Some(f) if f.time_s.is_finite() && !f.what.is_empty() && f.cause.is_some() && f.hint.is_some() => {
                 if f.what.contains("no consistent start") {

@@ -50,7 +50,8 @@ fn a_crushed_beam_is_diagnosed() {
             Status::Finished => {
                 ran.sound();
             }
-            Status::Stopped => assert!(reason.contains("closed") && reason.contains("t = "), "{name}: {reason}"),
+            Status::Stopped => panic!("{name}: nobody asked it to stop: {reason}"),
+            Status::OutOfRange => assert!(reason.contains("reached") && reason.contains("t = "), "{name}: {reason}"),
             Status::Failed => {
                 let fault = ran.fault.expect("a failure has a fault");
                 assert!(

@@ -53,6 +53,15 @@ fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
         + wet.area.force_slope(w.mean_force[j]) * w.mean_force_rate[j]
 }
 
+/// Rate of a cell's pressure [Pa/s]; needs [`complete`].
+pub fn pressure_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usize) -> f64 {
+    let bladder = cell / fluid.cells_per_bladder;
+    match wet.storage[bladder] {
+        Storage::Shared(pool) => w.pool_rate[pool],
+        Storage::Flowing | Storage::Kept => (w.area_rate[cell] - imposed_rate(wet, w, bladder)) / wet.area.per_pressure,
+    }
+}
+
 /// Stretch by pressure of a beam that does not stretch otherwise, and with it the motion along, `[E28]`.
 pub fn draw_in(system: &System, w: &mut Workspace<f64>) {
     if let Some(wet) = &system.model.wet
@@ -192,22 +201,27 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
     };
     surplus(system, now, w);
     let w = &*w;
-    let leave = |component: usize, outward: f64, out: &mut [f64]| {
+    let count = network.open.len();
+    // `noise` is the flow that the law misses by at most, `g |p|` of a pressure port.
+    let leave = |component: usize, [outward, by_law, noise]: [f64; 3], out: &mut [f64]| {
         if let Some(open) = network.open.iter().position(|&c| c == component) {
             out[FLOWS.len() + 2 * open] += outward;
             out[FLOWS.len() + 2 * open + 1] += outward.abs();
+            out[FLOWS.len() + 2 * (count + open)] += by_law;
+            out[FLOWS.len() + 2 * (count + open) + 1] += noise;
         }
     };
     for (k, pool) in wet.pools.iter().enumerate() {
         let (power, outward) = pool_ports(fluid, now, w, k, pool);
         add(out, Flow::Ports, power);
-        leave(pool.component, outward, out);
+        leave(pool.component, [outward, outward, 0.0], out);
     }
-    let cross = |from: Place, to: Place, q: f64, out: &mut [f64]| {
-        for (place, outward) in [(from, q), (to, -q)] {
+    let cross = |from: Place, to: Place, [q, by_law, noise]: [f64; 3], out: &mut [f64]| {
+        for (place, sign) in [(from, 1.0), (to, -1.0)] {
+            let outward = sign * q;
             match (place, component(place)) {
                 (Place::Port(p), _) => add(out, Flow::Ports, now.port_pressure[p] * outward),
-                (_, Some(c)) if component(from) != component(to) => leave(c, outward, out),
+                (_, Some(c)) if component(from) != component(to) => leave(c, [outward, sign * by_law, noise], out),
                 _ => {}
             }
         }
@@ -233,7 +247,8 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
             (Some(c), None) => -share(c),
             _ => 0.0,
         };
-        cross(link.from, link.to, q - surplus, out);
+        let size = pressure_at(link.from, now, w).abs().max(pressure_at(link.to, now, w).abs());
+        cross(link.from, link.to, [q - surplus, q, conductance * size], out);
     }
     for &MeshSource { number, into: place } in &fluid.sources {
         let q = now.source_flow[number];
@@ -245,7 +260,7 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
         add(out, Flow::Ports, (pressure_at(place, now, w) + half * q) * q);
         add(out, Flow::Bladders, half * q * q);
         if let Some(c) = component(place) {
-            leave(c, -q, out);
+            leave(c, [-q, -q, 0.0], out);
         }
     }
     for (b, &MeshBridge { number, from, to }) in fluid.bridges.iter().enumerate() {
@@ -255,7 +270,7 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
         let conductance = network.turbines[bridge.turbine].conductance;
         add(out, Flow::Turbines, conductance * w.bridge[b] * w.bridge[b]);
         add(out, Flow::Rectifiers, 2.0 * (qf * forward + qb * backward));
-        cross(from, to, qf - qb, out);
+        cross(from, to, [qf - qb, qf - qb, 0.0], out);
     }
 }
 
@@ -270,6 +285,26 @@ fn pool_ports(fluid: &FluidMesh, now: &Instant, w: &Workspace<f64>, k: usize, po
         }
     };
     (w.pool[k] * gain, -gain)
+}
+
+/// Power and outflow of pools with given pressure, whose areas jump where their pressure or the beam does.
+pub fn pools_jump(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut [f64]) {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
+    let count = wet.network.open.len();
+    for (k, pool) in wet.pools.iter().enumerate() {
+        if !matches!(pool.kind, PoolKind::Port(_)) {
+            continue;
+        }
+        let (power, outward) = pool_ports(fluid, now, w, k, pool);
+        add(out, Flow::Ports, power);
+        if let Some(open) = wet.network.open.iter().position(|&c| c == pool.component) {
+            out[FLOWS.len() + 2 * open] += outward;
+            out[FLOWS.len() + 2 * open + 1] += outward.abs();
+            out[FLOWS.len() + 2 * (count + open)] += outward;
+        }
+    }
 }
 
 /// Sums over the components of the network what flows in and is not stored, and the conductances to pressure ports.

@@ -1,6 +1,7 @@
 //! The beam's part of the balances.
 
 use super::{Energies, Flow, add};
+use crate::discrete::instant::Frame;
 use crate::discrete::recipe::rows::{end_force, published_force};
 use crate::discrete::recipe::solid::{couple, node_stretch};
 use crate::discrete::{Instant, System, Workspace};
@@ -17,6 +18,7 @@ pub fn flows(
     let (mesh, section, l) = (&system.mesh, &system.model.section, &system.layout);
     let last = mesh.nodes - 1;
     let published = system.model.published();
+    let frame = now.frame_3();
     for i in 0..=last {
         let length = mesh.node_length(i);
         let (mut fx, mut fz) = (length * now.force_x[i], length * now.force_z[i]);
@@ -36,7 +38,7 @@ pub fn flows(
             let along = if system.model.effects.axial_stretch {
                 w.v3[i]
             } else {
-                carried(system, now, w, i)
+                carried(system, frame, w, i)
             };
             let (dx, dz) = (length * section.drag * w.v1[i], length * section.drag * along);
             add(out, Flow::Damping, dx * w.v1[i] + dz * w.v3[i]);
@@ -56,7 +58,7 @@ pub fn flows(
             add(
                 out,
                 Flow::Ends,
-                -inertia * w.a3[i] * (w.v3[i] - carried(system, now, w, i)),
+                -inertia * w.a3[i] * (w.v3[i] - carried(system, frame, w, i)),
             );
         }
         if !l.free_u3.contains(&i) {
@@ -68,7 +70,7 @@ pub fn flows(
         add(out, Flow::ImpulseX, fx);
         add(out, Flow::ImpulseZ, fz);
         let turning = if l.inertia {
-            inertia * (z_t * w.v1[i] - x_t * carried(system, now, w, i))
+            inertia * (z_t * w.v1[i] - x_t * carried(system, frame, w, i))
         } else {
             0.0
         };
@@ -152,12 +154,12 @@ fn cells(system: &System, now: &Instant, w: &Workspace<f64>, published: bool, ou
 }
 
 /// Velocity along with which a node carries its mass: its own, without axial inertia that of the frame, `[E27]`.
-fn carried(system: &System, now: &Instant, w: &Workspace<f64>, node: usize) -> f64 {
+fn carried(system: &System, frame: Option<Frame>, w: &Workspace<f64>, node: usize) -> f64 {
     if system.layout.waves[1] {
         return w.v3[node];
     }
     let share = node as f64 / (system.mesh.nodes - 1) as f64;
-    now.frame_3().map_or(0.0, |frame| frame.at(share).rate)
+    frame.map_or(0.0, |frame| frame.at(share).rate)
 }
 
 /// Whether sections turn finitely but have the rotary inertia of `[E27]`.
@@ -179,10 +181,11 @@ fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
 pub fn energies(system: &System, now: &Instant, w: &Workspace<f64>) -> Energies {
     let (mesh, section) = (&system.mesh, &system.model.section);
     let mut e = Energies::default();
+    let frame = now.frame_3();
     for i in 0..mesh.nodes {
         let length = mesh.node_length(i);
         if system.layout.inertia {
-            let along = carried(system, now, w, i);
+            let along = carried(system, frame, w, i);
             e.kinetic += 0.5 * section.mass_per_length * length * (w.v1[i] * w.v1[i] + along * along);
         }
         e.bending += 0.5 * length * w.moment[i] * w.moment[i] / section.bending_stiffness;
@@ -211,7 +214,7 @@ fn spin(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
 
 /// Arms (x, z) with which a node's momentum and force turn about the origin, and their rates: its position. A small
 /// rotation ε moves a node by (ε θ, -ε g u1), whatever u3 is: that is what the potential of `[E26]` does not feel.
-fn arms(system: &System, w: &Workspace<f64>, i: usize) -> ([f64; 2], [f64; 2]) {
+pub fn arms(system: &System, w: &Workspace<f64>, i: usize) -> ([f64; 2], [f64; 2]) {
     let theta = system.mesh.node_coordinate(i);
     match system.model.kinematics {
         Kinematics::Bar | Kinematics::FiniteRotation => ([w.u1[i], theta + w.u3[i]], [w.v1[i], w.v3[i]]),
@@ -227,10 +230,11 @@ pub fn momenta(system: &System, now: &Instant, w: &Workspace<f64>) -> ([f64; 2],
     if !system.layout.inertia {
         return (momentum, angular);
     }
+    let frame = now.frame_3();
     for i in 0..mesh.nodes {
         let mass = section.mass_per_length * mesh.node_length(i);
         momentum[0] += mass * w.v1[i];
-        let along = carried(system, now, w, i);
+        let along = carried(system, frame, w, i);
         momentum[1] += mass * along;
         let ([x, z], _) = arms(system, w, i);
         angular += mass * (z * w.v1[i] - x * along);

@@ -85,6 +85,7 @@ fn fill(all: &mut Map<String, Value>, summary: &Summary, history: &History, note
     let (word, tone) = match summary.status {
         Status::Finished => ("finished", "good"),
         Status::Stopped => ("stopped early", "fair"),
+        Status::OutOfRange => ("left the model's range", "bad"),
         Status::Failed => ("failed", "bad"),
     };
     put("status", json!({"word": word, "tone": tone, "reason": summary.reason}));

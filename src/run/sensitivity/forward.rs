@@ -40,7 +40,9 @@ pub struct Forward<'a> {
 
 /// What must be known of the moment before a switch.
 pub struct Before {
+    state: Vec<f64>,
     rates: Vec<f64>,
+    s: Vec<Vec<f64>>,
     integrands: Vec<f64>,
 }
 
@@ -195,7 +197,9 @@ impl<'a> Forward<'a> {
         self.read(ida, t, &mut totals)?;
         self.carried = totals;
         Ok(Before {
+            state: y.to_vec(),
             rates: yp.to_vec(),
+            s: self.s.clone(),
             integrands: integrands(ida.dae_mut(), t, [y, yp]),
         })
     }
@@ -242,7 +246,35 @@ impl<'a> Forward<'a> {
                 *total += (before - after) * moved;
             }
         }
-        self.complete(dae, t, state)
+        self.complete(dae, t, state)?;
+        self.jump(dae, stop, t, before, state);
+        Ok(())
+    }
+
+    /// Derivatives of what is done in no time at a switch, between states that each of the changed systems has at its own time.
+    fn jump(&mut self, dae: &mut BeamDae, stop: usize, t: f64, before: &Before, state: [&[f64]; 2]) {
+        let mut jumped = vec![0.0; dae.integrals()];
+        for (k, neighbours) in dae.neighbours_mut().iter_mut().enumerate() {
+            let stops = &self.stops[k];
+            let (left, right) = (&before.s[k], &self.s[k]);
+            let never = neighbours.slope(&mut jumped, |j, beam, out| {
+                let (change, own) = (STEPS[j].0 * CHANGE, stops[j][stop].t);
+                let moved = |y: &[f64], yp: &[f64], s: &[f64]| -> Vec<f64> {
+                    let rates = y.iter().zip(yp).zip(s);
+                    rates.map(|((y, yp), s)| y + change * s + (own - t) * yp).collect()
+                };
+                let from = moved(&before.state, &before.rates, left);
+                let to = moved(state[0], state[1], right);
+                out.fill(0.0);
+                beam.look_within(middle(&stops[j], stop + 1));
+                beam.jump(own, (&from, middle(&stops[j], stop)), &to, out);
+                Ok::<(), std::convert::Infallible>(())
+            });
+            let Ok(()) = never;
+            for (total, jumped) in self.carried[k].iter_mut().zip(&jumped) {
+                *total += jumped;
+            }
+        }
     }
 
     /// Passes a stop at which nothing switches.

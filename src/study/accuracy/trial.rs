@@ -122,7 +122,7 @@ pub fn run(case: &Case, setting: Setting, role: Role, budget: Budget, allowed: A
         let ending = match summary.status {
             Status::Finished => Ending::Finished,
             Status::Stopped => Ending::Stopped,
-            Status::Failed => Ending::Failed,
+            Status::OutOfRange | Status::Failed => Ending::Failed,
         };
         let signals = (ending == Ending::Finished).then(|| keep.signals(&summary));
         // Numbers that are none make every comparison worthless; a run that gives them has failed.

@@ -166,7 +166,7 @@ impl<'a> Runs<'a> {
         trial.ending = match summary.status {
             Status::Finished => Ending::Finished,
             Status::Stopped => Ending::Stopped,
-            Status::Failed => Ending::Failed,
+            Status::OutOfRange | Status::Failed => Ending::Failed,
         };
         trial.reason.clone_from(&summary.reason);
         trial.unknowns = summary.unknowns;

@@ -1,0 +1,189 @@
+//! What a run watches on its way: values that may become extreme between two samples, each with its rate.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Instant, System, Workspace, ledger, sample};
+use crate::discrete::recipe::solid::node_stretch;
+use crate::model::Kinematics;
+
+/// A value and its rate in time.
+pub type Moving = [f64; 2];
+
+/// Values with their rates at an instant, signs kept; the workspace held [`ledger::complete`] of the state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Glance {
+    /// Time [s].
+    pub t: f64,
+    /// Values, in the order of [`Watched`].
+    pub moving: [Moving; Watched::COUNT],
+    /// Node of the largest strain.
+    pub strained: usize,
+    /// Tube of the largest flow.
+    pub tube: usize,
+    /// Largest `|u1 - u1(root)|` [m].
+    pub deflection: f64,
+    /// Largest distance by which a node has moved against the root [m].
+    pub moved: f64,
+}
+
+/// Names of the values in a [`Glance`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Watched {
+    /// `u1` of the tip [m].
+    Tip1,
+    /// `u3` of the tip [m].
+    Tip3,
+    /// Slope angle of the tip [rad].
+    Angle,
+    /// `u1` in the middle [m].
+    Middle1,
+    /// `u1` where it is largest [m].
+    Largest1,
+    /// `u3` where it is largest [m].
+    Largest3,
+    /// Highest pressure of a cell [Pa].
+    High,
+    /// Lowest pressure of a cell [Pa].
+    Low,
+    /// Smallest cross-section of a bladder over that at rest.
+    Opening,
+    /// Largest area change of a bladder [m^2].
+    Swelling,
+    /// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`.
+    Strain,
+    /// Largest flow through a tube [m^3/s].
+    Flow,
+    /// Largest `p_u + p_d` of a segment [Pa].
+    Pressed,
+}
+
+impl Watched {
+    /// How many there are.
+    pub const COUNT: usize = 13;
+}
+
+impl Glance {
+    /// A value and its rate.
+    pub fn of(&self, which: Watched) -> Moving {
+        self.moving[which as usize]
+    }
+
+    /// Looks at the state in the workspace.
+    pub fn new(system: &System, now: &Instant, t: f64, half_height: f64, w: &Workspace<f64>) -> Self {
+        let mut g = Self { t, ..Self::default() };
+        let last = system.mesh.nodes - 1;
+        let mut set = |which: Watched, moving: Moving| g.moving[which as usize] = moving;
+        set(Watched::Tip1, [w.u1[last], w.v1[last]]);
+        set(Watched::Tip3, [w.u3[last], w.v3[last]]);
+        set(
+            Watched::Angle,
+            [sample::tip_angle(system, w), tip_angle_rate(system, now, w)],
+        );
+        let (a, b) = (last / 2, last.div_ceil(2));
+        set(
+            Watched::Middle1,
+            [0.5 * (w.u1[a] + w.u1[b]), 0.5 * (w.v1[a] + w.v1[b])],
+        );
+        set(Watched::Largest1, largest(&w.u1, &w.v1));
+        set(Watched::Largest3, largest(&w.u3, &w.v3));
+        (g.deflection, g.moved) = moved(w);
+        let (strain, node) = sample::largest_strain(system, half_height, w);
+        g.strained = node;
+        g.moving[Watched::Strain as usize] = [strain, strain_rate(node, last, half_height, w)];
+        g.fluid(system, now, w);
+        g
+    }
+
+    fn fluid(&mut self, system: &System, now: &Instant, w: &Workspace<f64>) {
+        let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+            self.moving[Watched::Opening as usize] = [1.0, 0.0];
+            return;
+        };
+        let mut set = |which: Watched, moving: Moving| self.moving[which as usize] = moving;
+        let rate = |cell: usize| ledger::pressure_rate(wet, fluid, w, cell);
+        let (low, high) = extremes(&w.pressure);
+        set(Watched::High, [w.pressure[high], rate(high)]);
+        set(Watched::Low, [w.pressure[low], rate(low)]);
+        let (least, most) = extremes(&w.area);
+        set(
+            Watched::Opening,
+            [
+                1.0 + w.area[least] / wet.area_at_rest,
+                w.area_rate[least] / wet.area_at_rest,
+            ],
+        );
+        set(Watched::Swelling, [w.area[most], w.area_rate[most]]);
+        let pressed = (0..wet.per_row)
+            .map(|j| (w.mean_pressure[j] + w.mean_pressure[wet.per_row + j], j))
+            .reduce(|a, b| if b.0 > a.0 { b } else { a });
+        if let Some((sum, j)) = pressed {
+            let mean = |bladder: usize| {
+                let cells = fluid.cells_of(bladder);
+                let count = cells.len() as f64;
+                cells.map(rate).sum::<f64>() / count
+            };
+            set(Watched::Pressed, [sum, mean(j) + mean(wet.per_row + j)]);
+        }
+        if let Some((flow, flow_rate, tube)) = sample::largest_flow(system, now, w) {
+            set(Watched::Flow, [flow, flow_rate]);
+            self.tube = tube;
+        }
+    }
+}
+
+/// Places of the smallest and the largest value.
+fn extremes(values: &[f64]) -> (usize, usize) {
+    let (mut low, mut high) = (0, 0);
+    for (i, &value) in values.iter().enumerate() {
+        if value < values[low] {
+            low = i;
+        }
+        if value > values[high] {
+            high = i;
+        }
+    }
+    (low, high)
+}
+
+/// The value that is largest in size, with its rate.
+fn largest(values: &[f64], rates: &[f64]) -> Moving {
+    let mut most = 0;
+    for (i, value) in values.iter().enumerate() {
+        if value.abs() > values[most].abs() {
+            most = i;
+        }
+    }
+    [values[most], rates[most]]
+}
+
+/// Largest deflection across and largest motion of a node against the root [m].
+fn moved(w: &Workspace<f64>) -> (f64, f64) {
+    let (mut across, mut squared) = (0.0_f64, 0.0_f64);
+    for (u1, u3) in w.u1.iter().zip(&w.u3) {
+        let (x, z) = (u1 - w.u1[0], u3 - w.u3[0]);
+        across = across.max(x.abs());
+        squared = squared.max(x * x + z * z);
+    }
+    (across, squared.sqrt())
+}
+
+/// Rate of the tip's angle [rad/s]: that of its last cell and half a cell of the end's curvature.
+fn tip_angle_rate(system: &System, now: &Instant, w: &Workspace<f64>) -> f64 {
+    let last = system.mesh.nodes - 1;
+    if system.model.kinematics == Kinematics::Bar {
+        return 0.0;
+    }
+    let curvature_rate = match now.ends[1].slope {
+        Some(_) => w.kappa_rate[last],
+        None => now.ends[1].moment.rate / system.model.section.bending_stiffness,
+    };
+    w.angle_rate[last - 1] - 0.5 * system.mesh.h * curvature_rate
+}
+
+/// Rate of the largest fibre strain at its node [1/s].
+fn strain_rate(node: usize, last: usize, half_height: f64, w: &Workspace<f64>) -> f64 {
+    let (a, b) = (node.saturating_sub(1), node.min(last - 1));
+    let stretch_rate = 0.5 * (w.stretch_rate[a] + w.stretch_rate[b]);
+    (node_stretch(w, node, last) - 1.0).signum() * stretch_rate
+        + w.kappa[node].signum() * w.kappa_rate[node] * half_height
+}

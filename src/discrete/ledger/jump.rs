@@ -1,0 +1,89 @@
+//! What is done in no time: work at a switch, where a solid without inertia jumps with its load and ends turn with their moment.
+
+use super::{Flow, add, complete, fluid, solid};
+use crate::case::signals::Jet;
+use crate::discrete::{Instant, System, Workspace};
+use crate::model::Kinematics;
+
+/// Gives the values of time the differences over a jump as rates: the jump takes one unit of a time that nobody counts.
+pub fn travel(now: &mut Instant, [before, after]: [&Instant; 2]) {
+    let step = |jet: &mut Jet, from: &Jet, to: &Jet| jet.rate = to.value - from.value;
+    let option = |jet: &mut Option<Jet>, from: &Option<Jet>, to: &Option<Jet>| {
+        if let (Some(jet), Some(from), Some(to)) = (jet, from, to) {
+            step(jet, from, to);
+        }
+    };
+    for ((end, from), to) in now.ends.iter_mut().zip(&before.ends).zip(&after.ends) {
+        option(&mut end.u1, &from.u1, &to.u1);
+        option(&mut end.u3, &from.u3, &to.u3);
+        option(&mut end.slope, &from.slope, &to.slope);
+        step(&mut end.moment, &from.moment, &to.moment);
+    }
+    let differences = |out: &mut [f64], from: &[f64], to: &[f64]| {
+        for ((out, from), to) in out.iter_mut().zip(from).zip(to) {
+            *out = to - from;
+        }
+    };
+    differences(&mut now.port_pressure_rate, &before.port_pressure, &after.port_pressure);
+    differences(&mut now.statics.rate, &before.statics.force, &after.statics.force);
+    differences(&mut now.statics.mean_rate, &before.statics.mean, &after.statics.mean);
+}
+
+/// Power of everything that does work on a jump, on one of its sides: loads, ends, and ports that give pools their pressure, with
+/// what the published forms add. Nothing flows and nothing is dissipated in no time.
+///
+/// `now` and `yp` hold differences as rates, velocities in the workspace are displacements; the mean of both sides is the
+/// trapezoid rule along the straight way, exact where the response is linear.
+pub fn side(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
+    out.fill(0.0);
+    complete(system, now, yp, w);
+    let rates = fluid::rates(system, w, out);
+    solid::flows(system, now, rates, w, out);
+    fluid::pools_jump(system, now, w, out);
+    for flow in [Flow::Damping, Flow::ImpulseX, Flow::ImpulseZ, Flow::AngularImpulse] {
+        out[flow as usize] = 0.0;
+    }
+}
+
+/// Impulses and work of driven ends whose velocity jumps: they carry half a cell along, without axial waves the whole beam.
+/// The workspace holds the state; sides give velocities.
+pub fn strokes(system: &System, [before, after]: [&Instant; 2], w: &Workspace<f64>, out: &mut [f64]) {
+    let (mesh, l) = (&system.mesh, &system.layout);
+    if !l.inertia {
+        return;
+    }
+    let last = mesh.nodes - 1;
+    for node in 0..=last {
+        let mass = system.model.section.mass_per_length * mesh.node_length(node);
+        let share = node as f64 / last as f64;
+        let end = |now: &Instant| match node {
+            0 => Some(now.ends[0]),
+            _ if node == last => Some(now.ends[1]),
+            _ => None,
+        };
+        let rate = |jet: Option<Jet>| jet.map(|jet| jet.rate);
+        let across = |now: &Instant| end(now).and_then(|end| rate(end.u1));
+        let along = |now: &Instant| {
+            if l.waves[1] {
+                end(now).and_then(|end| rate(end.u3))
+            } else {
+                now.frame_3().map(|frame| frame.at(share).rate)
+            }
+        };
+        let stroke = |velocity: &dyn Fn(&Instant) -> Option<f64>| match (velocity(before), velocity(after)) {
+            (Some(from), Some(to)) => (mass * (to - from), 0.5 * mass * (to * to - from * from)),
+            _ => (0.0, 0.0),
+        };
+        let (px, work_x) = if system.model.kinematics == Kinematics::Bar {
+            (0.0, 0.0)
+        } else {
+            stroke(&across)
+        };
+        let (pz, work_z) = stroke(&along);
+        add(out, Flow::Ends, work_x + work_z);
+        add(out, Flow::ImpulseX, px);
+        add(out, Flow::ImpulseZ, pz);
+        let ([x, z], _) = solid::arms(system, w, node);
+        add(out, Flow::AngularImpulse, z * px - x * pz);
+    }
+}

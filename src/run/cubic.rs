@@ -1,0 +1,93 @@
+//! Between the ends of a step: the cubic through values and rates at both.
+
+use crate::discrete::glance::Moving;
+
+/// Hermite's cubic over a step of length `h` [s], its place counted from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cubic {
+    /// Coefficients of the powers of the place.
+    c: [f64; 4],
+}
+
+/// Places and weights of Gauss' rule with four points on 0 to 1: exact for the square of a cubic.
+const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+impl Cubic {
+    /// Through both ends.
+    pub fn new([a, ra]: Moving, [b, rb]: Moving, h: f64) -> Self {
+        let (rise, ra, rb) = (b - a, h * ra, h * rb);
+        Self {
+            c: [a, ra, 3.0 * rise - 2.0 * ra - rb, ra + rb - 2.0 * rise],
+        }
+    }
+
+    /// Value at a place.
+    pub fn at(&self, x: f64) -> f64 {
+        let [a, b, c, d] = self.c;
+        a + x * (b + x * (c + x * d))
+    }
+
+    /// Places between 0 and 1 at which it turns.
+    pub fn turns(&self) -> impl Iterator<Item = f64> + use<> {
+        let [_, b, c, d] = self.c;
+        let (p, q) = (2.0 * c, 3.0 * d);
+        // q x² + p x + b = 0, without cancellation
+        let root = (p * p - 4.0 * q * b).sqrt();
+        let s = -0.5 * (p + root.copysign(p));
+        [s / q, b / s].into_iter().filter(|x| *x > 0.0 && *x < 1.0)
+    }
+
+    /// First place at which it is above `limit`, given that it is not so at 0 and is at the end of `upto`.
+    pub fn crosses(&self, limit: f64, upto: f64) -> f64 {
+        let (mut below, mut above) = (0.0, upto);
+        for _ in 0..40 {
+            let middle = 0.5 * (below + above);
+            if self.at(middle) > limit {
+                above = middle;
+            } else {
+                below = middle;
+            }
+        }
+        above
+    }
+}
+
+/// `∫ f dx` from a place to 1, exact where f is a polynomial of degree seven.
+pub fn integral(from: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let width = 1.0 - from;
+    GAUSS.iter().map(|(x, w)| width * w * f(from + width * x)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_of_a_sine_between_its_ends() {
+        let (a, b) = (0.3_f64, 2.4_f64);
+        let cubic = Cubic::new([a.sin(), a.cos()], [b.sin(), b.cos()], b - a);
+        let turns: Vec<f64> = cubic.turns().collect();
+        assert_eq!(turns.len(), 1);
+        assert!((cubic.at(turns[0]) - 1.0).abs() < 0.06, "{}", cubic.at(turns[0]));
+        let crossing = a + (b - a) * cubic.crosses(0.6, turns[0]);
+        assert!((crossing.sin() - 0.6).abs() < 0.06, "{crossing}");
+    }
+
+    #[test]
+    fn squares_of_cubics_are_integrated_exactly() {
+        let f = |x: f64| (1.0 - 2.0 * x + 3.0 * x * x - x * x * x).powi(2);
+        // by hand: coefficients of the square over powers
+        let square = [1.0, -4.0, 10.0, -14.0, 13.0, -6.0, 1.0];
+        let primitive = |x: f64| -> f64 {
+            square.iter().enumerate().map(|(k, c)| c * x.powi(k as i32 + 1) / (k as f64 + 1.0)).sum()
+        };
+        for from in [0.0, 0.25, 0.9] {
+            assert!((integral(from, f) - (primitive(1.0) - primitive(from))).abs() < 1e-14);
+        }
+    }
+}

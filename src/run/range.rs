@@ -1,0 +1,189 @@
+//! How far the model holds: limits beyond which results are to be looked at twice, and those beyond which a run ends.
+
+use serde::{Deserialize, Serialize};
+
+use super::cubic::Cubic;
+use crate::case::schema::Case;
+use crate::discrete::System;
+use crate::discrete::glance::{Glance, Watched};
+use crate::error::Code;
+use crate::model::audit;
+
+/// Fibre strain above which a run warns.
+const STRAIN: f64 = 0.5;
+/// Reynolds number above which a run warns.
+const REYNOLDS: f64 = 100.0;
+/// Fibre strain above which a linear law means nothing: a fibre pressed by as much has no length left.
+const STRAIN_ENDS: f64 = 1.0;
+/// Pressure over Young's modulus above which the body around a bladder is no longer what it was.
+const PRESSURE_ENDS: f64 = 10.0;
+/// Motion of a node against the root over the length of the beam that no strain allows.
+const MOTION_ENDS: f64 = 1e3;
+
+/// Limits of a case.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    length: f64,
+    modulus: f64,
+    /// Area change at which a bladder fills the half section of its segment [m^2].
+    swelling: f64,
+    /// `p_u + p_d` up to which the potential is convex [Pa].
+    convex_up_to: f64,
+    /// `2 ρ/(π μ r_c)`: Reynolds number of a tube over its flow [s/m^3].
+    reynolds_per_flow: f64,
+}
+
+/// A limit that was passed: the largest value with its time and place, and when it began.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Passed {
+    largest: f64,
+    t: f64,
+    place: usize,
+    began: Option<f64>,
+}
+
+/// Limits of the model's range met on the way.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Range {
+    strain: Passed,
+    reynolds: Passed,
+    pressed: Passed,
+}
+
+impl Passed {
+    /// Takes a value over a step from `before`; `factor` turns what is watched into what has the limit.
+    fn take(&mut self, which: Watched, factor: f64, limit: f64, before: Option<&Glance>, now: &Glance, place: usize) {
+        let value = factor * now.of(which)[0];
+        if value > self.largest {
+            (self.largest, self.t, self.place) = (value, now.t, place);
+        }
+        if value > limit && self.began.is_none() {
+            let within = before.filter(|b| b.t < now.t && factor * b.of(which)[0] <= limit);
+            self.began = Some(within.map_or(now.t, |before| {
+                let h = now.t - before.t;
+                let cubic = Cubic::new(before.of(which), now.of(which), h);
+                before.t + h * cubic.crosses(limit / factor, 1.0)
+            }));
+        }
+    }
+}
+
+impl Limits {
+    /// Of a case.
+    pub fn new(case: &Case, system: &System) -> Self {
+        let wet = system.model.wet.as_ref();
+        let convex_up_to = wet.map_or(f64::INFINITY, |wet| {
+            let (bending, stretch) = audit::convex_up_to(&system.model, wet);
+            bending.min(stretch)
+        });
+        let half_section = 0.5 * system.mesh.segment_length * case.beam.height_m;
+        Self {
+            length: system.model.length,
+            modulus: case.beam.young_modulus_pa,
+            swelling: wet.map_or(f64::INFINITY, |wet| half_section - wet.area_at_rest),
+            convex_up_to,
+            reynolds_per_flow: match (&case.fluid, &case.tubes) {
+                (Some(f), Some(t)) => 2.0 * f.density_kg_m3 / (std::f64::consts::PI * f.viscosity_pa_s * t.radius_m),
+                _ => 0.0,
+            },
+        }
+    }
+
+    /// What lies beyond the model in a state, if anything does.
+    pub fn beyond(&self, g: &Glance) -> Option<String> {
+        let (value, t) = (|which| g.of(which)[0], g.t);
+        if value(Watched::Opening) <= 0.0 {
+            return Some(format!(
+                "a bladder is closed at t = {t:.6} s: its cross-section h_b w_b + a1 has reached zero, where the model ends"
+            ));
+        }
+        let swelling = value(Watched::Swelling);
+        if swelling > self.swelling {
+            return Some(format!(
+                "a bladder has outgrown its segment at t = {t:.6} s: its cross-section h_b w_b + a1 has reached the half \
+                 section l_seg h_s/2 that holds it (a1 = {swelling:.3e} m^2)"
+            ));
+        }
+        let strain = value(Watched::Strain);
+        if strain > STRAIN_ENDS {
+            return Some(format!(
+                "the fibre strain |lambda - 1| + |kappa| h_s/2 has reached {STRAIN_ENDS} at t = {t:.6} s, node {}: a law that \
+                 is linear in the strain ends before",
+                g.strained
+            ));
+        }
+        let pressure = value(Watched::High).abs().max(value(Watched::Low).abs());
+        if pressure > PRESSURE_ENDS * self.modulus {
+            return Some(format!(
+                "a pressure has reached {PRESSURE_ENDS} times Young's modulus at t = {t:.6} s ({pressure:.3e} Pa)"
+            ));
+        }
+        (g.moved > MOTION_ENDS * self.length).then(|| {
+            format!(
+                "a node has reached {MOTION_ENDS} lengths of the beam against the root at t = {t:.6} s ({:.3e} m)",
+                g.moved
+            )
+        })
+    }
+
+    /// Whether a value between two steps matters, given the largest seen: near or above a limit.
+    pub fn matters(&self, which: Watched, value: f64, seen: &Range) -> bool {
+        let larger = |largest: f64, value: f64, from: f64| value > 0.9 * from && value > 1.001 * largest;
+        match which {
+            Watched::Opening => value < 0.05,
+            Watched::Swelling => value > 0.95 * self.swelling,
+            Watched::Strain => larger(seen.strain.largest, value, STRAIN),
+            Watched::Flow => larger(seen.reynolds.largest, value * self.reynolds_per_flow, REYNOLDS),
+            Watched::Pressed => larger(seen.pressed.largest, value, self.convex_up_to),
+            _ => false,
+        }
+    }
+}
+
+impl Range {
+    /// Takes a state at the end of a step that began at `before`.
+    pub fn take(&mut self, limits: &Limits, before: Option<&Glance>, now: &Glance) {
+        self.strain.take(Watched::Strain, 1.0, STRAIN, before, now, now.strained);
+        let factor = limits.reynolds_per_flow;
+        self.reynolds.take(Watched::Flow, factor, REYNOLDS, before, now, now.tube);
+        self.pressed.take(Watched::Pressed, 1.0, limits.convex_up_to, before, now, 0);
+    }
+
+    /// Limits that were passed.
+    pub fn warnings(&self, limits: &Limits) -> Vec<String> {
+        let mut all = Vec::new();
+        if let Passed {
+            largest,
+            t,
+            place,
+            began: Some(began),
+        } = self.strain
+        {
+            all.push(Code::Strain.warning(format!(
+                "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 reached {largest:.2} at \
+                 t = {t:.4} s, node {place} (above {STRAIN} from t = {began:.4} s on); strains are meant to be small"
+            )));
+        }
+        if let Passed {
+            largest,
+            t,
+            place,
+            began: Some(began),
+        } = self.reynolds
+        {
+            all.push(Code::FastFlow.warning(format!(
+                "range of the model: the Reynolds number reached {largest:.0} at t = {t:.4} s in tube {} (above {REYNOLDS} from \
+                 t = {began:.4} s on); flow is meant to creep",
+                place + 1
+            )));
+        }
+        if let Some(began) = self.pressed.began {
+            all.push(Code::LostConvexity.warning(format!(
+                "the kinked reciprocal potential lost convexity at t = {began:.4} s: p_u + p_d reached {:.3e} Pa, above {:.3e} \
+                 Pa; results from then on are not to be trusted (use \"reciprocal\" or a larger kink_width)",
+                self.pressed.largest, limits.convex_up_to
+            )));
+        }
+        all
+    }
+}

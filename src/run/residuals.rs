@@ -1,0 +1,210 @@
+//! How far the balances of a run stay open.
+
+use serde::{Deserialize, Serialize};
+
+use crate::discrete::ledger::{self, Flow, Invariants};
+use crate::discrete::sample::EnergyBalance;
+use crate::discrete::{Instant, System, Workspace};
+use crate::error::Code;
+
+/// Above this the run warns that a balance does not close.
+const OPEN: f64 = 0.01;
+
+/// Last digits of pressures over the tolerance: what an iteration may leave of them. Times the conductance of a port it is a flow
+/// that the law does not tell, however large, while the pressure is right.
+const DIGITS: f64 = 0.01;
+
+/// Largest residuals and references seen.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Residuals {
+    energy: f64,
+    energy_seen: f64,
+    volume: Vec<f64>,
+    volume_seen: Vec<f64>,
+    closed: Vec<bool>,
+    momentum: f64,
+    momentum_seen: f64,
+    angular: f64,
+    angular_seen: f64,
+    /// Of each component: largest difference of the flow through its ports by law and by storage, and the volume passed.
+    port_flow: Vec<[f64; 2]>,
+    /// Share of conductance times pressure that is noise.
+    digits: f64,
+    /// Squares of reactions and of their differences, integrated over time.
+    reactions: [f64; 2],
+}
+
+impl Residuals {
+    /// Of a system of which nothing has been seen, integrated to a relative tolerance.
+    pub fn new(system: &System, rtol: f64) -> Self {
+        let network = system.model.wet.as_ref().map(|wet| &wet.network);
+        let closed: Vec<bool> = network.map_or(vec![], |n| (0..n.components).map(|c| n.is_closed(c)).collect());
+        Self {
+            volume: vec![0.0; closed.len()],
+            volume_seen: vec![0.0; closed.len()],
+            port_flow: vec![[0.0; 2]; closed.len()],
+            closed,
+            digits: DIGITS * rtol,
+            ..Self::default()
+        }
+    }
+
+    /// Takes what is known at an instant; `first` are the invariants at the start.
+    pub fn take(
+        &mut self,
+        system: &System,
+        w: &Workspace<f64>,
+        balance: &EnergyBalance,
+        [first, invariants]: [&Invariants; 2],
+        integrals: &[f64],
+    ) {
+        self.energy = self.energy.max(balance.residual.abs());
+        let put_in = [Flow::Loads, Flow::Ends, Flow::Ports].map(|f| integrals[f as usize].abs());
+        let stored = balance.stored.total().abs();
+        self.energy_seen = put_in.into_iter().fold(self.energy_seen.max(stored), f64::max);
+        for c in 0..invariants.volumes.len() {
+            let wet = system.model.wet.as_ref();
+            let open = wet.and_then(|w| w.network.open.iter().position(|&o| o == c));
+            let (left, through) = open.map_or((0.0, 0.0), |k| ledger::passed(integrals, k));
+            self.volume[c] = self.volume[c].max((invariants.volumes[c] - first.volumes[c] + left).abs());
+            self.volume_seen[c] = self.volume_seen[c].max(through);
+            if let (Some(k), Some(wet)) = (open, wet) {
+                let (by_law, finest) = ledger::by_law(integrals, k, wet.network.open.len());
+                let [missed, passed] = &mut self.port_flow[c];
+                *missed = missed.max((by_law - left).abs() - self.digits * finest);
+                *passed = passed.max(through);
+            }
+        }
+        displaced(system, &w.area, &w.pressure, &mut self.volume_seen);
+        if !system.layout.inertia {
+            return;
+        }
+        // The momentum that the largest energy could carry: loads and reactions may cancel all along.
+        let model = &system.model;
+        let mass = model.section.mass_per_length * model.length;
+        let carried = (2.0 * mass * self.energy_seen).sqrt();
+        self.momentum_seen = self.momentum_seen.max(carried);
+        self.angular_seen = self.angular_seen.max(carried * model.length);
+        for (k, flow) in [Flow::ImpulseX, Flow::ImpulseZ].into_iter().enumerate() {
+            let gained = integrals[flow as usize];
+            let lost = invariants.momentum[k] - first.momentum[k] - gained;
+            self.momentum = self.momentum.max(lost.abs());
+            self.momentum_seen = self
+                .momentum_seen
+                .max(invariants.momentum[k].abs())
+                .max(gained.abs());
+        }
+        let gained = integrals[Flow::AngularImpulse as usize];
+        let lost = invariants.angular_momentum - first.angular_momentum - gained;
+        self.angular = self.angular.max(lost.abs());
+        self.angular_seen = self
+            .angular_seen
+            .max(invariants.angular_momentum.abs())
+            .max(gained.abs());
+    }
+
+    /// Takes the reactions over a step of `dt` [s] that ends in the workspace's state.
+    pub fn follow(&mut self, system: &System, now: &Instant, w: &Workspace<f64>, dt: f64) {
+        for (sum, square) in self.reactions.iter_mut().zip(ledger::compared(system, now, w)) {
+            *sum += dt * square;
+        }
+    }
+
+    /// Root mean square of what reactions told in two ways differ by, over that of the reactions.
+    pub fn reaction_relative(&self) -> f64 {
+        let [size, difference] = self.reactions;
+        if size > 0.0 { (difference / size).sqrt() } else { 0.0 }
+    }
+
+    /// Worst difference of a network's flow through ports, by law and by storage, over the volume passed.
+    pub fn port_flow_relative(&self) -> f64 {
+        let each = self.port_flow.iter().filter(|[_, passed]| *passed > 0.0);
+        each.map(|[missed, passed]| missed / passed).fold(0.0, f64::max)
+    }
+
+    fn relative(residual: f64, seen: f64) -> f64 {
+        if seen > 0.0 { residual / seen } else { residual }
+    }
+
+    /// Energy residual over the largest energy stored or put in.
+    pub fn energy_relative(&self) -> f64 {
+        Self::relative(self.energy, self.energy_seen)
+    }
+
+    /// Worst volume residual over the largest volume displaced in the same network, or passed through its ports.
+    pub fn volume_relative(&self) -> f64 {
+        self.volume
+            .iter()
+            .zip(&self.volume_seen)
+            .map(|(r, s)| Self::relative(*r, *s))
+            .fold(0.0, f64::max)
+    }
+
+    /// The same for networks without ports alone: these close to round-off.
+    pub fn closed_volume_relative(&self) -> f64 {
+        let closed = self
+            .volume
+            .iter()
+            .zip(&self.volume_seen)
+            .zip(&self.closed)
+            .filter(|(_, closed)| **closed);
+        closed.map(|((r, s), _)| Self::relative(*r, *s)).fold(0.0, f64::max)
+    }
+
+    /// Momentum residual over the largest momentum or impulse.
+    pub fn momentum_relative(&self) -> f64 {
+        Self::relative(self.momentum, self.momentum_seen)
+    }
+
+    /// Angular momentum residual over the largest angular momentum or angular impulse.
+    pub fn angular_relative(&self) -> f64 {
+        Self::relative(self.angular, self.angular_seen)
+    }
+
+    /// Balances that stay open.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        let open = self.energy_relative();
+        if open > OPEN {
+            all.push(Code::EnergyOpen.warning(format!(
+                "energy balance: it stays open by {open:.1e} of the largest energy; tighten solver/rtol \
+                 until answers no longer change (a jump to which a beam without inertia answers far from linearly leaves it open at any tolerance)"
+            )));
+        }
+        let missed = self.port_flow_relative();
+        if missed > OPEN {
+            all.push(Code::PortFlow.warning(format!(
+                "flow through ports: what the ports' law lets through and what the network stores differ by {missed:.1e} of the \
+                 volume passed; tighten solver/rtol until answers no longer change"
+            )));
+        }
+        let (momentum, angular) = (self.momentum_relative(), self.angular_relative());
+        if momentum > OPEN || angular > OPEN {
+            let which = match (momentum > OPEN, angular > OPEN) {
+                (true, true) => format!("momentum by {momentum:.1e} and angular momentum by {angular:.1e}"),
+                (true, false) => format!("momentum by {momentum:.1e}"),
+                _ => format!("angular momentum by {angular:.1e}"),
+            };
+            all.push(Code::MomentumOpen.warning(format!(
+                "balance of momentum: it stays open, {which} of the largest that the beam has or was given; tighten \
+                 solver/rtol until answers no longer change"
+            )));
+        }
+        all
+    }
+}
+
+/// Raises the largest volume displaced in each component, `Σ |a1| ds`, or pressed out of it and back in, `Σ a_p |p| ds`:
+/// where pressure is one and the volume is kept, areas are nothing but round-off.
+fn displaced(system: &System, area: &[f64], pressure: &[f64], seen: &mut [f64]) {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
+    let components = &wet.network.component_of_bladder;
+    for (c, seen) in seen.iter_mut().enumerate() {
+        let bladders = components.iter().enumerate().filter(|(_, of)| **of == c);
+        let cells = bladders.flat_map(|(bladder, _)| fluid.cells_of(bladder));
+        let size = |cell: usize| area[cell].abs().max(wet.area.per_pressure * pressure[cell].abs());
+        *seen = seen.max(cells.map(size).sum::<f64>() * fluid.ds);
+    }
+}
