@@ -160,6 +160,7 @@ fn summary_of(status: Status) -> Summary {
         characteristic: [("f_u".to_string(), f64::INFINITY), ("t_s_s".to_string(), 0.0457)].into(),
         growth: None,
         accuracy: None,
+        estimate: None,
         sensitivities: Default::default(),
         warnings: Vec::new(),
     }

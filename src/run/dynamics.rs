@@ -182,6 +182,7 @@ impl<'a> Run<'a> {
                     ])
                     .collect(),
                 growth: None,
+                estimate: None,
                 accuracy: None,
                 sensitivities: Default::default(),
                 characteristic,
@@ -331,6 +332,8 @@ impl Run<'_> {
                     Err(failure) => return Ok(End::Failed(fault(&failure))),
                 };
                 self.summary.time_s = step.time;
+                let method = self.options.one_step();
+                self.observer.seen.estimate.step(method, &step, [solver.y(), solver.yp()]);
                 if let Some(reason) = self.sample(solver, recorder, false)? {
                     return Ok(End::Stopped(reason));
                 }
@@ -543,6 +546,10 @@ impl Run<'_> {
         };
         let o = &self.observer.seen;
         s.quantities = o.figures.quantities();
+        o.energies.complete(&mut s.quantities);
+        s.warnings.extend(o.energies.warning(&s.quantities));
+        s.estimate = o.estimate.judge(&s.quantities);
+        s.warnings.extend(s.estimate.as_ref().and_then(|e| e.warning()));
         s.sensitivities = self.forward.as_ref().map(Forward::summary).unwrap_or_default();
         let b = &mut s.balances;
         b.energy_residual_relative = o.residuals.energy_relative();

@@ -89,7 +89,7 @@ impl Figures {
             max_abs: Some(t.max_abs),
             window_max_abs: Some(t.window_max_abs),
             window_rms: (t.window_samples > 0).then(|| (t.window_squares / f64::from(t.window_samples)).sqrt()),
-            window: None,
+            ..Quantity::default()
         };
         let [u1, u3, angle] = &self.values;
         all.insert("tip_u1_m".into(), size(&u1.1));

@@ -3,7 +3,9 @@
 pub mod checkpoint;
 pub mod drive;
 pub mod dynamics;
+pub mod energies;
 pub mod equilibrium;
+pub mod estimate;
 pub mod figures;
 pub mod floquet;
 pub mod growth;

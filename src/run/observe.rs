@@ -10,6 +10,8 @@ use crate::model::mapping::{NetworkCoordinate, TABLE_TUBE_RATIO};
 
 use serde::{Deserialize, Serialize};
 
+use super::energies::Energies;
+use super::estimate::Estimator;
 use super::figures::Figures;
 use super::growth::Growth;
 use super::record::{Axis, Column, Field, Header, Recorder};
@@ -90,6 +92,11 @@ pub struct Observed {
     pub residuals: Residuals,
     /// Quantities of interest.
     pub figures: Figures,
+    /// Errors of those that are energies.
+    pub energies: Energies,
+    /// What mesh and steps do to vibrations.
+    #[serde(default)]
+    pub estimate: Estimator,
     /// Growth of the response.
     pub growth: Growth,
     /// Integrals at the last sample.
@@ -148,6 +155,8 @@ impl Observer {
             seen: Observed {
                 residuals,
                 figures: Figures::new(case, &columns),
+                energies: Energies::new(case, &columns),
+                estimate: Estimator::new(case, system),
                 growth: Growth::new(case.time.end_s),
                 integrals: vec![0.0; ledger::flow_count(system)],
                 ..Observed::default()
@@ -284,6 +293,7 @@ impl Observer {
         sample::row(system, now, t, w, &balance, integrals, &mut self.row);
         recorder.history(&self.row)?;
         self.seen.figures.take(&self.row);
+        self.seen.energies.take(&self.row);
         self.seen.integrals.copy_from_slice(integrals);
         self.seen.stored = stored;
 

@@ -40,6 +40,7 @@ fn summary(status: Status) -> Summary {
         characteristic: Default::default(),
         growth: None,
         accuracy: None,
+        estimate: None,
         sensitivities: Default::default(),
         warnings: Vec::new(),
     }
