@@ -161,6 +161,7 @@ fn summary_of(status: Status) -> Summary {
         origins: Default::default(),
         growth: None,
         accuracy: None,
+        estimate: None,
         sensitivities: Default::default(),
         warnings: Vec::new(),
     }

@@ -156,6 +156,9 @@ pub struct EquilibriumArguments {
     /// repeatable
     #[arg(long, value_name = "POINTER")]
     pub sensitivity: Vec<String>,
+    /// Choose mesh so that the estimated relative error of every number is below this, such as 0.01
+    #[arg(long, value_name = "REL")]
+    pub accuracy: Option<f64>,
     /// Folder for path.csv, shapes.csv, equilibrium.json, path.svg [default: out/<case name>-equilibrium]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -265,6 +268,9 @@ pub struct ModesArguments {
     /// A map instead: that of `floquet`.
     #[command(flatten)]
     pub map: MapArguments,
+    /// Choose mesh so that the estimated relative error of every number is below this, such as 0.01
+    #[arg(long, value_name = "REL", conflicts_with = "map")]
+    pub accuracy: Option<f64>,
     /// Folder for modes.csv, modes.json, modes.npz, modes.svg [default: out/<case name>-modes]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -314,6 +320,9 @@ pub struct FloquetArguments {
     /// A map instead.
     #[command(flatten)]
     pub map: MapArguments,
+    /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
+    #[arg(long, value_name = "REL", conflicts_with = "map")]
+    pub accuracy: Option<f64>,
     /// Folder for the files [default: out/<case name>-floquet or -map]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -335,6 +344,9 @@ pub struct PeriodicArguments {
     /// by their logarithms, such as /network/permeability_factor=0.01:1:25:log
     #[arg(long, value_name = "POINTER=FROM:TO:COUNT[:log]")]
     pub sweep: Option<String>,
+    /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
+    #[arg(long, value_name = "REL", conflicts_with = "sweep")]
+    pub accuracy: Option<f64>,
     /// Result folder [default: out/<case name>-periodic or -cycles]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

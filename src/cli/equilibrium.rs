@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use super::arguments::EquilibriumArguments;
 use super::{interrupt, line, terminal};
-use crate::case;
 use crate::case::parameter::Parameter;
+use crate::case::{self, Case};
 use crate::discrete::resolution;
 use crate::error::{Error, Result};
 use crate::model::{audit, characteristic};
@@ -15,6 +15,7 @@ use crate::output::equilibrium as files;
 use crate::output::report;
 use crate::run::equilibrium::{self, Options};
 use crate::run::record::Control;
+use crate::study::refine;
 
 /// Follows the path, writes the folder, prints the table.
 pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
@@ -30,6 +31,13 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         .map(|pointer| Parameter::find(case, pointer))
         .collect::<Result<_>>()?;
     let begin = Instant::now();
+    let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+    let mut of = |case: &Case| refine::numbers::of_equilibrium(case, &options);
+    let found = accuracy
+        .map(|accuracy| refine::refine(case, accuracy, false, &mut of))
+        .transpose()?;
+    let case = found.as_ref().map_or(case, |(chosen, _)| chosen);
+    let accuracy = found.as_ref().map(|(_, accuracy)| accuracy);
     let stop = interrupt::flag();
     let bar = line::line(asked.quiet);
     let path = equilibrium::follow(case, &options, &mut |state| {
@@ -45,6 +53,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let numbers = characteristic::numbers(case, &system.model);
     let mut warnings = audit::warnings(case, &system.model, &numbers);
     warnings.extend(resolution::warnings(case, &system));
+    warnings.extend(accuracy.and_then(refine::warning));
     let columns = equilibrium::columns(&system);
     let sensitivities = match path.states.last() {
         Some(last) if path.fault.is_none() => equilibrium::differentiate(case, &options, last, &parameters)?,
@@ -58,6 +67,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         wall_s: begin.elapsed().as_secs_f64(),
         warnings: &warnings,
         sensitivities: &sensitivities,
+        accuracy,
     };
     let out = asked
         .out

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use super::arguments::FloquetArguments;
 use super::line;
-use crate::case::{self, LoadedCase};
+use crate::case::{self, Case, LoadedCase};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::floquet as files;
@@ -13,6 +13,7 @@ use crate::output::report;
 use crate::run::floquet;
 use crate::run::periodic::scene::{fault, whole};
 use crate::run::periodic::{Scene, shoot};
+use crate::study::refine;
 use crate::study::stability::tongue::{self, Plan};
 
 /// Points of a map at most.
@@ -37,7 +38,12 @@ fn one(asked: &FloquetArguments, loaded: &LoadedCase) -> Result<ExitCode> {
     if asked.count == 0 {
         return Err(Error::Usage("--count 0: at least one multiplier".into()));
     }
-    let case = &loaded.case;
+    let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+    let mut of = |case: &Case| refine::numbers::of_multipliers(case, asked.period, asked.count);
+    let refined = accuracy
+        .map(|accuracy| refine::refine(&loaded.case, accuracy, true, &mut of))
+        .transpose()?;
+    let case = refined.as_ref().map_or(&loaded.case, |(chosen, _)| chosen);
     let scene = Scene::new(case, asked.period)?;
     scene.held(&case.name)?;
     let bar = line::line(asked.quiet);
@@ -50,6 +56,8 @@ fn one(asked: &FloquetArguments, loaded: &LoadedCase) -> Result<ExitCode> {
         case: &case.name,
         search: &cycle.search,
         floquet: &found,
+        accuracy: refined.as_ref().map(|(_, accuracy)| accuracy),
+        refined: None,
     };
     let out = folder(asked, &case.name, "floquet");
     files::write(&out, &found)?;

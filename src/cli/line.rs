@@ -1,6 +1,9 @@
-//! A line on a terminal that says how far something is.
+//! A line on a terminal that says how far something is; numbers of the command line.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::error::{Error, Result};
+use crate::study::refine;
 
 /// The line; nothing is shown where it was asked to be quiet, or where there is no terminal.
 pub fn line(quiet: bool) -> ProgressBar {
@@ -35,4 +38,14 @@ pub fn spread(from: f64, to: f64, count: usize, logarithmic: bool) -> Vec<f64> {
             }
         })
         .collect()
+}
+
+/// An accuracy that makes sense.
+pub fn accuracy(asked: f64) -> Result<f64> {
+    if refine::sensible(asked) {
+        return Ok(asked);
+    }
+    Err(Error::Usage(format!(
+        "--accuracy {asked}: a relative error from 1e-6 to 0.5, such as 0.01 for one per cent"
+    )))
 }

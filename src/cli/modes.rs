@@ -4,13 +4,15 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use super::arguments::{FloquetArguments, ModesArguments};
-use crate::case;
+use super::line;
 use crate::case::parameter::Parameter;
+use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::modes::{self as files, Report};
 use crate::output::report;
 use crate::run::modes::{self, Plan};
+use crate::study::refine;
 
 /// Finds the modes, writes the folder, prints the table and what follows from it.
 pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
@@ -19,6 +21,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
             case: asked.case.clone(),
             count: asked.count,
             period: None,
+            accuracy: None,
             map: asked.map.clone(),
             out: asked.out.clone(),
             quiet: asked.quiet,
@@ -31,21 +34,27 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     if !asked.quiet {
         eprintln!("modes of {}", loaded.case.name);
     }
+    let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+    let mut of = |case: &Case| refine::numbers::of_modes(case, asked.at, &plan);
+    let refined = accuracy
+        .map(|accuracy| refine::refine(&loaded.case, accuracy, false, &mut of))
+        .transpose()?;
+    let case = refined.as_ref().map_or(&loaded.case, |(chosen, _)| chosen);
     let (about, words) = match asked.at {
         Some(at) => (
-            modes::at_equilibrium(&loaded.case, at)?,
+            modes::at_equilibrium(case, at)?,
             format!("the equilibrium under the loads at t = {at} s"),
         ),
-        None => (modes::linearise(&loaded.case, 0.0, None)?, "the start".into()),
+        None => (modes::linearise(case, 0.0, None)?, "the start".into()),
     };
     let parameters: Vec<Parameter> = asked
         .sensitivity
         .iter()
-        .map(|pointer| Parameter::find(&loaded.case, pointer))
+        .map(|pointer| Parameter::find(case, pointer))
         .collect::<Result<_>>()?;
     let mut found = modes::of(about, &plan)?;
-    modes::halve_the_mesh(&loaded.case, asked.at, &plan, &mut found)?;
-    let sensitivities = modes::differentiate(&loaded.case, asked.at, &found.about, &found.modes, &parameters)?;
+    modes::halve_the_mesh(case, asked.at, &plan, &mut found)?;
+    let sensitivities = modes::differentiate(case, asked.at, &found.about, &found.modes, &parameters)?;
     let out = asked
         .out
         .clone()
@@ -56,9 +65,10 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         found: &found,
         about: &words,
         sensitivities: &sensitivities,
+        accuracy: refined.as_ref().map(|(_, accuracy)| accuracy),
     };
     files::write(&out, &report)?;
-    report::complete(&out, report::Kind::Modes, &loaded.case)?;
+    report::complete(&out, report::Kind::Modes, case)?;
     if asked.json {
         super::print(&files::json(&report))?;
     } else {

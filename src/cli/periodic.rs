@@ -14,9 +14,10 @@ use crate::output::periodic as files;
 use crate::output::recorder::{FolderRecorder, Labels};
 use crate::output::report;
 use crate::run::floquet;
-use crate::run::periodic::scene::{fault, whole};
-use crate::run::periodic::{Scene, record, shoot};
+use crate::run::periodic::scene::whole;
+use crate::run::periodic::{Settled, record, settle};
 use crate::run::record::Control;
+use crate::study::refine;
 use crate::study::stability::along;
 
 /// Multipliers told.
@@ -46,14 +47,22 @@ fn folder(asked: &PeriodicArguments, name: &str, what: &str) -> PathBuf {
 
 fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let loaded = load(asked, None)?;
-    let case = &loaded.case;
-    let scene = Scene::new(case, None)?;
-    scene.held(&case.name)?;
-    let out = folder(asked, &case.name, "periodic");
+    let out = folder(asked, &loaded.case.name, "periodic");
     let result = ResultFolder::create(&out)?;
     let bar = line::line(asked.quiet);
     bar.set_message("looking for the cycle");
-    let mut cycle = shoot(&scene, None).map_err(fault)?;
+    let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+    let asked_for = accuracy
+        .map(|accuracy| refine::refine(&loaded.case, accuracy, true, &mut refine::numbers::of_cycle))
+        .transpose()?;
+    let case = asked_for.as_ref().map_or(&loaded.case, |(chosen, _)| chosen);
+    let (scene, cycle) = refine::numbers::cycle(case, None)?;
+    let Settled {
+        case,
+        scene,
+        mut cycle,
+        refined,
+    } = settle(case, scene, cycle)?;
     let found = floquet::multipliers(&scene, &mut cycle, COUNT);
     bar.finish_and_clear();
     let labels = Labels {
@@ -62,19 +71,24 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         frequency_hz: Some(1.0 / scene.drive.period),
     };
     let mut recorder = FolderRecorder::new(result, labels, Box::new(|_| Control::Continue));
-    let outcome = record::record(case, &scene, &cycle, &mut recorder)?;
+    let mut outcome = record::record(&case, &scene, &cycle, &mut recorder)?;
+    outcome.summary.accuracy = asked_for.map(|(_, accuracy)| accuracy);
+    let short = outcome.summary.accuracy.as_ref().and_then(refine::warning);
+    outcome.summary.warnings.extend(short);
     recorder.finish(&outcome.summary)?;
     let told = stability::Found {
         case: &case.name,
         search: &cycle.search,
         floquet: &found,
+        accuracy: outcome.summary.accuracy.as_ref(),
+        refined: refined.as_ref(),
     };
     ResultFolder::create(&out)?.write(files::CYCLE, stability::json(&told).as_bytes())?;
     report::write(&out, None)?;
     if asked.json {
         super::print(&stability::json(&told))?;
     } else {
-        let figures = files::figures(&outcome.summary.quantities);
+        let figures = files::figures(&outcome.summary);
         let (search, words) = (files::search(&cycle.search), stability::words(&told));
         super::print(&format!("{words}\n{figures}{search}\nfiles in {}\n", out.display()))?;
     }

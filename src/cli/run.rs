@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::arguments::RunArguments;
 use super::progress::Watcher;
-use super::{interrupt, summary_box, terminal};
+use super::{interrupt, line, summary_box, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{self, Case};
 use crate::discrete::System;
@@ -29,7 +29,7 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
     let loaded = case::load(&asked.case.case, &asked.case.sets)?;
     let case = &loaded.case;
     super::refuse(&loaded, &System::new(case))?;
-    let accuracy = asked.accuracy.map(accuracy).transpose()?;
+    let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let out = asked
         .out
         .clone()
@@ -75,15 +75,6 @@ fn hook(asked: &RunArguments) -> SharedHook {
             Control::Continue
         }
     })))
-}
-
-fn accuracy(asked: f64) -> Result<f64> {
-    if (1e-6..=0.5).contains(&asked) {
-        return Ok(asked);
-    }
-    Err(Error::Usage(format!(
-        "--accuracy {asked}: a relative error from 1e-6 to 0.5, such as 0.01 for one per cent"
-    )))
 }
 
 fn labels(case: &Case) -> Labels {

@@ -21,8 +21,10 @@
 //! pictures  from recorded files to the data of each picture
 //! plot      one picture a file, from plain data to SVG text
 //! numbers   numbers as people read them
+//! accuracy  an accuracy that was asked for, in words
 //! ```
 
+pub mod accuracy;
 pub mod arrays;
 pub mod checkpoint;
 pub mod comparison;

@@ -27,6 +27,8 @@ pub fn to_json(summary: &Summary) -> String {
             window_max_abs: finite(q.window_max_abs),
             window_rms: finite(q.window_rms),
             window: finite(q.window),
+            final_error: finite(q.final_error),
+            window_error: finite(q.window_error),
         };
     }
     let mut text = serde_json::to_string_pretty(&summary).unwrap_or_default();

@@ -185,6 +185,7 @@ impl<'a> Run<'a> {
                     ])
                     .collect(),
                 growth: None,
+                estimate: None,
                 accuracy: None,
                 sensitivities: Default::default(),
                 characteristic,
@@ -335,6 +336,11 @@ impl Run<'_> {
                     Err(failure) => return Ok(End::Failed(fault(&failure))),
                 };
                 self.summary.time_s = step.time;
+                let method = self.options.one_step();
+                self.observer
+                    .seen
+                    .estimate
+                    .step(method, &step, [solver.y(), solver.yp()]);
                 if let Some(end) = self.follow(solver, from, recorder)? {
                     return Ok(end);
                 }
@@ -459,13 +465,9 @@ impl Run<'_> {
         if let Err(end) = self.read(solver, t) {
             return Ok(Some(end));
         }
-        let left = self.observer.enter(
-            solver.dae_mut(),
-            t,
-            &self.state,
-            &self.rates,
-            &self.integrals,
-        );
+        let left = self
+            .observer
+            .enter(solver.dae_mut(), t, &self.state, &self.rates, &self.integrals);
         match left {
             Some(what) => self.leave(solver, t, what, recorder).map(Some),
             None => self.sample(solver, t, t, recorder),
@@ -485,7 +487,9 @@ impl Run<'_> {
             return Ok(Some(end));
         }
         let dae = solver.dae_mut();
-        let left = self.observer.arrive(dae, now, &self.state, &self.rates, &self.integrals);
+        let left = self
+            .observer
+            .arrive(dae, now, &self.state, &self.rates, &self.integrals);
         let mut left = left.map(|what| (now, what));
         let mut within = from;
         for k in 0..self.observer.turning().len() {
@@ -549,10 +553,7 @@ impl Run<'_> {
                 break;
             }
             self.read(solver, t)?;
-            match self
-                .observer
-                .beyond(solver.dae_mut(), t, &self.state, &self.rates)
-            {
+            match self.observer.beyond(solver.dae_mut(), t, &self.state, &self.rates) {
                 Some(found) => (beyond, what) = (t, found),
                 None => within = t,
             }
@@ -691,6 +692,10 @@ impl Run<'_> {
         };
         let o = &self.observer.seen;
         s.quantities = o.figures.quantities();
+        o.energies.complete(&mut s.quantities);
+        s.warnings.extend(o.energies.warning(&s.quantities));
+        s.estimate = o.estimate.judge(&s.quantities);
+        s.warnings.extend(s.estimate.as_ref().and_then(|e| e.warning()));
         s.sensitivities = self.forward.as_ref().map(Forward::summary).unwrap_or_default();
         let b = &mut s.balances;
         b.energy_residual_relative = o.residuals.energy_relative();
@@ -755,8 +760,12 @@ fn beyond(t: f64, what: String) -> SolverFault {
         time_s: t,
         what,
         unknown: None,
-        cause: Some("loads, pressures or flows beyond what the model describes, or a motion that grows without bounds".into()),
-        hint: Some("results stand up to this time; look at the fields before it, at the units of loads and flows".into()),
+        cause: Some(
+            "loads, pressures or flows beyond what the model describes, or a motion that grows without bounds".into(),
+        ),
+        hint: Some(
+            "results stand up to this time; look at the fields before it, at the units of loads and flows".into(),
+        ),
     }
 }
 

@@ -154,7 +154,10 @@ impl Figures {
                 size > FLOOR * modulus && self.pressure.is_some_and(|track| track.worth(size, in_window))
             }
             _ => {
-                let track = SWINGING.iter().position(|(_, of)| *of == which).map(|k| self.swinging[k]);
+                let track = SWINGING
+                    .iter()
+                    .position(|(_, of)| *of == which)
+                    .map(|k| self.swinging[k]);
                 let floor = if which == Watched::Angle { FLOOR } else { FLOOR * length };
                 size > floor && track.is_some_and(|track| track.worth(size, in_window))
             }
@@ -169,7 +172,7 @@ impl Figures {
             max_abs: Some(t.max_abs),
             window_max_abs: Some(t.window_max_abs),
             window_rms: (self.window_time > 0.0).then(|| (t.window_squares / self.window_time).sqrt()),
-            window: None,
+            ..Quantity::default()
         };
         for (track, (name, _)) in self.swinging.iter().zip(SWINGING) {
             all.insert(name.into(), size(track));

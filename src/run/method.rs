@@ -140,6 +140,16 @@ impl Options {
     }
 }
 
+impl Options {
+    /// The one-step method, when it is one.
+    pub fn one_step(&self) -> Option<Method> {
+        match self {
+            Self::Ida(_) => None,
+            Self::OneStep(options) => Some(options.method),
+        }
+    }
+}
+
 /// An integrator: IDA, or a one-step method. See [`Ida`] for what its functions promise.
 #[allow(clippy::large_enum_variant)] // there is one of it in a run
 pub enum Integrator<D: Dae> {

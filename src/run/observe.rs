@@ -11,6 +11,8 @@ use crate::model::mapping::{NetworkCoordinate, TABLE_TUBE_RATIO};
 use serde::{Deserialize, Serialize};
 
 use super::cubic::Cubic;
+use super::energies::Energies;
+use super::estimate::Estimator;
 use super::figures::{self, Figures};
 use super::growth::Growth;
 use super::range::{Limits, Range};
@@ -46,6 +48,11 @@ pub struct Observed {
     pub residuals: Residuals,
     /// Quantities of interest.
     pub figures: Figures,
+    /// Errors of those that are energies.
+    pub energies: Energies,
+    /// What mesh and steps do to vibrations.
+    #[serde(default)]
+    pub estimate: Estimator,
     /// Growth of the response.
     pub growth: Growth,
     /// Integrals at the last sample.
@@ -88,6 +95,8 @@ impl Observer {
             seen: Observed {
                 residuals: Residuals::new(system, case.solver.rtol),
                 figures: Figures::new(case, &columns),
+                energies: Energies::new(case, &columns),
+                estimate: Estimator::new(case, system),
                 growth: Growth::new(case.time.end_s),
                 integrals: vec![0.0; ledger::flow_count(system)],
                 ..Observed::default()
@@ -207,7 +216,14 @@ impl Observer {
     }
 
     /// Balances, growth and largest values of a state, in whatever order of time.
-    fn watch(&mut self, system: &System, now: &Instant, w: &Workspace<f64>, glance: &Glance, integrals: &[f64]) -> sample::EnergyBalance {
+    fn watch(
+        &mut self,
+        system: &System,
+        now: &Instant,
+        w: &Workspace<f64>,
+        glance: &Glance,
+        integrals: &[f64],
+    ) -> sample::EnergyBalance {
         let stored = ledger::energies(system, now, w);
         let invariants = ledger::invariants(system, now, w);
         let (at_start, first) = self
@@ -266,6 +282,7 @@ impl Observer {
         sample::row(system, now, t, w, &balance, integrals, &mut self.row);
         recorder.history(&self.row)?;
         self.seen.figures.take(&self.row, &glance);
+        self.seen.energies.take(&self.row);
         self.seen.integrals.copy_from_slice(integrals);
         self.seen.stored = balance.stored;
         if number.is_multiple_of(self.fields_every) {

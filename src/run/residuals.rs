@@ -89,10 +89,7 @@ impl Residuals {
             let gained = integrals[flow as usize];
             let lost = invariants.momentum[k] - first.momentum[k] - gained;
             self.momentum = self.momentum.max(lost.abs());
-            self.momentum_seen = self
-                .momentum_seen
-                .max(invariants.momentum[k].abs())
-                .max(gained.abs());
+            self.momentum_seen = self.momentum_seen.max(invariants.momentum[k].abs()).max(gained.abs());
         }
         let gained = integrals[Flow::AngularImpulse as usize];
         let lost = invariants.angular_momentum - first.angular_momentum - gained;

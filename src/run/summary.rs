@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::estimate::Estimated;
 use super::growth::Growing;
 use super::sensitivity::figures::Sensitivity;
 pub use crate::sundials::Counters;
@@ -37,9 +38,15 @@ pub struct Quantity {
     /// Root mean square over the time in the window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_rms: Option<f64>,
-    /// Increment (energies) or ratio of increments (efficiency) over the window.
+    /// Increment (energies) over the window; of an efficiency, what was harvested in it over all that was spent in it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<f64>,
+    /// Of energies: how far the balance was open over the run, relative to `final`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub final_error: Option<f64>,
+    /// Of energies: how far the balance was open over the window, relative to `window`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window_error: Option<f64>,
 }
 
 impl Quantity {
@@ -200,6 +207,9 @@ pub struct Summary {
     /// Growth of the response and what drives it, when it grows.
     #[serde(default)]
     pub growth: Option<Growing>,
+    /// A rough estimate of the errors of final values, made from the run itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<Estimated>,
     /// Estimated errors, when an accuracy was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<Accuracy>,

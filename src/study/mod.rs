@@ -4,6 +4,7 @@ pub mod accuracy;
 pub mod compare;
 mod counted;
 pub mod effects;
+pub mod refine;
 pub mod stability;
 pub mod target;
 pub mod verify;

@@ -46,7 +46,10 @@ fn a_load_that_jumps_without_inertia_closes_the_balance() {
 fn open_momentum_is_warned_of() {
     let with = |rtol: &str| finished(&shipped("spin-up", &[rtol]));
     let loose = with("/solver/rtol=3e-2");
-    let open = loose.balances.momentum_residual_relative.max(loose.balances.angular_momentum_residual_relative);
+    let open = loose
+        .balances
+        .momentum_residual_relative
+        .max(loose.balances.angular_momentum_residual_relative);
     assert_eq!(open > 0.01, warning(&loose, "W018").is_some(), "{open:.1e}");
     assert!(open > 0.01, "{open:.1e}");
     assert_eq!(warning(&with("/solver/rtol=1e-5"), "W018"), None);
@@ -78,5 +81,8 @@ fn reactions_tell_the_mesh() {
             .reaction_difference_relative
     };
     let (coarse, fine) = (with(2), with(4));
-    assert!(fine > 0.0 && (3.0..5.0).contains(&(coarse / fine)), "{coarse:.2e} {fine:.2e}");
+    assert!(
+        fine > 0.0 && (3.0..5.0).contains(&(coarse / fine)),
+        "{coarse:.2e} {fine:.2e}"
+    );
 }

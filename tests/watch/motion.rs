@@ -2,7 +2,8 @@
 
 use crate::common::{BEAM, finished, shipped, written};
 
-const DRIVE: &str = r#"/ends/root={"clamped": {"u1_m": {"sine": {"amplitude": 1e-3, "frequency_hz": 10, "ramp_cycles": 2}}}}"#;
+const DRIVE: &str =
+    r#"/ends/root={"clamped": {"u1_m": {"sine": {"amplitude": 1e-3, "frequency_hz": 10, "ramp_cycles": 2}}}}"#;
 
 /// Goal: a thousand cycles with the output times of a run that names none, each of them at a zero of the drive, report the largest
 /// deflection that output times twenty a cycle see. Tolerance: 1e-3, that within which turning points are sought.

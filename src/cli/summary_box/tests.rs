@@ -41,6 +41,7 @@ fn summary(status: Status) -> Summary {
         origins: Default::default(),
         growth: None,
         accuracy: None,
+        estimate: None,
         sensitivities: Default::default(),
         warnings: Vec::new(),
     }

@@ -7,6 +7,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use serde_json::{Map, Value, json};
 
+use super::accuracy::with_accuracy;
 use super::folder::{fault, part_of, replace};
 use super::history::HistoryWriter;
 use super::numbers::shortest;
@@ -16,6 +17,7 @@ use crate::case::schema::Case;
 use crate::error::Result;
 use crate::run::equilibrium::{Kind, Options, Path, Sensitivity, State};
 use crate::run::record::Column;
+use crate::run::summary::Accuracy;
 
 pub use words::words;
 
@@ -47,6 +49,8 @@ pub struct Found<'a> {
     pub warnings: &'a [String],
     /// Derivatives of the last state's columns by parameters of the case.
     pub sensitivities: &'a [Sensitivity],
+    /// Estimated errors, when an accuracy was asked for.
+    pub accuracy: Option<&'a Accuracy>,
 }
 
 /// The text of `equilibrium.json`.
@@ -81,6 +85,7 @@ pub fn json(found: &Found) -> String {
         "wall_s": {"total": found.wall_s},
         "warnings": found.warnings,
     });
+    let value = with_accuracy(value, found.accuracy);
     format!("{value:#}\n")
 }
 

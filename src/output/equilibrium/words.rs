@@ -57,6 +57,10 @@ pub fn words(found: &Found) -> String {
             ));
         }
     }
+    if let Some(accuracy) = found.accuracy {
+        text.push('\n');
+        text.push_str(&crate::output::accuracy::words(accuracy));
+    }
     text
 }
 

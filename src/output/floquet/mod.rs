@@ -6,12 +6,16 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
+use super::accuracy::with_accuracy;
 use super::numbers::{shortest, significant};
 use super::plot::multipliers::{self, Dot, Multipliers};
 use super::plot::tongue::{self, Tongue, TonguePanel};
 use crate::error::Result;
 use crate::run::floquet::Floquet;
 use crate::run::periodic::Search;
+use crate::run::periodic::settle::Refined;
+use crate::run::summary::Accuracy;
+use crate::study::refine;
 use crate::study::stability::Map;
 
 /// The stability of one case's cycle.
@@ -23,11 +27,19 @@ pub struct Found<'a> {
     pub search: &'a Search,
     /// Its multipliers.
     pub floquet: &'a Floquet,
+    /// Estimated errors, when an accuracy was asked for.
+    pub accuracy: Option<&'a Accuracy>,
+    /// Why the tolerance of the cycle is not the case's own.
+    pub refined: Option<&'a Refined>,
 }
 
 /// The text of `floquet.json`.
 pub fn json(found: &Found) -> String {
-    let value = json!({"case": found.case, "cycle": found.search, "floquet": found.floquet});
+    let mut value = json!({"case": found.case, "cycle": found.search, "floquet": found.floquet});
+    if let (Some(object), Some(refined)) = (value.as_object_mut(), found.refined) {
+        object.insert("refined".into(), serde_json::to_value(refined).unwrap_or_default());
+    }
+    let value = with_accuracy(value, found.accuracy);
     format!("{value:#}\n")
 }
 
@@ -85,6 +97,15 @@ pub fn words(found: &Found) -> String {
         let _ = writeln!(text, "\nleft out: the multiplier 1 of {conserved} conserved volumes");
     }
     let _ = writeln!(text, "\n{}", verdict.words);
+    if let Some(refined) = found.refined {
+        let _ = writeln!(text, "\n{}", refined.words());
+    }
+    if let Some(accuracy) = found.accuracy {
+        let _ = write!(text, "\n{}", super::accuracy::words(accuracy));
+        if let Some(warning) = refine::warning(accuracy) {
+            let _ = writeln!(text, "warning: {warning}");
+        }
+    }
     text
 }
 

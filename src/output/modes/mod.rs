@@ -10,6 +10,7 @@ use nalgebra::Complex;
 use serde_json::{Value, json};
 use zip::ZipWriter;
 
+use super::accuracy::{self, with_accuracy};
 use super::arrays::write_array;
 use super::folder::{fault, part_of, replace};
 use super::numbers::significant;
@@ -17,6 +18,8 @@ use super::plot::modes::{self as picture, ModeShapes, Shown};
 use crate::error::{Code, Result};
 use crate::model::passivity::{self, Passivity};
 use crate::run::modes::{Kind, Limit, Mode, Modes, Plan, Sensitivity};
+use crate::run::summary::Accuracy;
+use crate::study::refine;
 
 pub use table::{csv, table};
 
@@ -41,6 +44,8 @@ pub struct Report<'a> {
     pub about: &'a str,
     /// Derivatives by numbers of the case.
     pub sensitivities: &'a [Sensitivity],
+    /// Estimated errors, when an accuracy was asked for.
+    pub accuracy: Option<&'a Accuracy>,
 }
 
 impl Report<'_> {
@@ -83,7 +88,8 @@ impl Report<'_> {
                 "nothing can move: the case leaves out inertia of the solid (/effects/solid_inertia) and no bladder exchanges fluid",
             )
         });
-        moving.into_iter().chain(still).collect()
+        let short = self.accuracy.and_then(refine::warning);
+        moving.into_iter().chain(still).chain(short).collect()
     }
 
     /// What a number of the case does to each mode: `mode 2: +0.0608 Hz, −1.2e-5 1/s`, for one percent of it.
@@ -121,6 +127,7 @@ impl Report<'_> {
             .chain(coupling)
             .chain(warnings)
             .chain(derivatives)
+            .chain(self.accuracy.map(|found| accuracy::words(found).trim_end().to_string()))
             .collect();
         all.join("\n")
     }
@@ -151,6 +158,7 @@ pub fn json(report: &Report) -> String {
         "solver": {"factorizations": found.factorizations, "solves": found.solves, "all_at_once": found.dense},
         "warnings": report.warnings()
     });
+    let value = with_accuracy(value, report.accuracy);
     format!("{value:#}\n")
 }
 

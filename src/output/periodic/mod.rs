@@ -3,11 +3,12 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::numbers::{count, shortest, significant};
+use super::numbers::{count, percent, quantity, shortest, significant};
 use super::plot::cycles::{self, Cycles, Quantity};
-use crate::error::Result;
+use crate::error::{Code, Result};
 use crate::run::floquet::Stability;
 use crate::run::periodic::Search;
+use crate::run::summary::Summary;
 use crate::study::stability::{Along, Member};
 
 /// Stability and search of a cycle, in its result folder.
@@ -115,14 +116,40 @@ pub fn write(dir: &Path, found: &Along) -> Result<Vec<PathBuf>> {
     super::folder::put(dir, files)
 }
 
-/// Largest values over the period, in words.
-pub fn figures(quantities: &std::collections::BTreeMap<String, crate::run::summary::Quantity>) -> String {
+/// Largest values and energies over the period, in words; energies with how far their balance is open beside them.
+pub fn figures(summary: &Summary) -> String {
+    let quantities = &summary.quantities;
     let mut text = String::new();
     for (name, unit) in SHOWN {
         if let Some(value) = quantities.get(name).and_then(|q| q.window_max_abs) {
             let short = name.trim_end_matches(&format!("_{}", unit.to_lowercase()));
-            let _ = writeln!(text, "largest {short:<14} {}", super::numbers::quantity(value, unit, 4));
+            let _ = writeln!(text, "largest {short:<14} {}", quantity(value, unit, 4));
         }
+    }
+    for (name, words) in [
+        ("input_energy_j", "put in over the cycle"),
+        ("harvested_energy_j", "harvested"),
+        ("efficiency", "efficiency"),
+    ] {
+        let Some((value, q)) = quantities.get(name).and_then(|q| Some((q.window?, q))) else {
+            continue;
+        };
+        let shown = if name == "efficiency" {
+            percent(value)
+        } else {
+            quantity(value, "J", 4)
+        };
+        let open = q
+            .window_error
+            .map_or(String::new(), |e| format!(" (balance open by {} of it)", percent(e)));
+        let _ = writeln!(text, "{words:<22} {shown}{open}");
+    }
+    for warning in summary
+        .warnings
+        .iter()
+        .filter(|w| w.starts_with(Code::EnergyFigure.id()))
+    {
+        let _ = writeln!(text, "warning: {warning}");
     }
     text
 }

@@ -4,11 +4,14 @@
 //! scene   a case in the long run: what repeats itself, what is conserved, the period map
 //! shoot   Newton's iteration on the period map
 //! record  one period of the cycle as a run
+//! settle  the cycle at a tolerance at which its energies add up
 //! ```
 
 pub mod record;
 pub mod scene;
+pub mod settle;
 pub mod shoot;
 
 pub use scene::Scene;
+pub use settle::{Settled, settle};
 pub use shoot::{Cycle, Search, shoot};

@@ -60,7 +60,7 @@ impl Track {
             max_abs: reached(self.largest),
             window_max_abs: reached(self.window_largest),
             window_rms: self.rms(),
-            window: None,
+            ..Quantity::default()
         }
     }
 
@@ -84,6 +84,18 @@ const PLAIN: [(&str, &str); 3] = [
     ("tip_u3", "tip_u3_m"),
     ("tip_angle", "tip_angle_rad"),
 ];
+
+/// What goes besides the harvest, with its sign in `H + D - P` ([`crate::run::energies`]).
+const SPENT: [(&str, f64); 6] = [
+    ("dissipated_bladders", 1.0),
+    ("dissipated_tubes", 1.0),
+    ("dissipated_rectifiers", 1.0),
+    ("dissipated_damping", 1.0),
+    ("work_formulation", -1.0),
+    ("work_reciprocity", -1.0),
+];
+/// Their sum with the harvest: followed for the efficiency, no quantity itself.
+const SPENT_NAME: &str = "spent";
 
 /// Follows a history and its derivatives; the quantities are those of [`crate::run::figures::Figures`].
 #[derive(Clone, Debug)]
@@ -121,22 +133,28 @@ impl Figures {
         track("input_energy_j", input);
         if let Some(now) = at("harvested").filter(|_| self.turbines) {
             track("harvested_energy_j", now);
+            let parts = SPENT.iter().filter_map(|(column, sign)| Some((at(column)?, sign)));
+            let spent = parts.fold(now, |sum, (part, sign)| {
+                [sum[0] + sign * part[0], sum[1] + sign * part[1]]
+            });
+            track(SPENT_NAME, spent);
         }
     }
 
     /// The derivatives by quantity, per unit of the number.
     pub fn quantities(&self) -> BTreeMap<String, Quantity> {
         let mut all = BTreeMap::new();
-        for (&name, track) in &self.tracks {
+        for (&name, track) in self.tracks.iter().filter(|(name, _)| **name != SPENT_NAME) {
             let energy = name.ends_with("_j");
             all.insert(name.to_owned(), if energy { track.energy() } else { track.sizes() });
         }
-        if let (Some(harvested), Some(input)) =
-            (self.tracks.get("harvested_energy_j"), self.tracks.get("input_energy_j"))
+        let track = |name| self.tracks.get(name);
+        if let (Some(harvested), Some(input), Some(spent)) =
+            (track("harvested_energy_j"), track("input_energy_j"), track(SPENT_NAME))
         {
             let efficiency = Quantity {
                 last: ratio(harvested.last, input.last),
-                window: ratio(harvested.increment(), input.increment()),
+                window: ratio(harvested.increment(), spent.increment()),
                 ..Quantity::default()
             };
             all.insert("efficiency".into(), efficiency);

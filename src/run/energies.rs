@@ -1,0 +1,311 @@
+//! Energies of a run and their errors: every figure of energy beside the balance over the same time.
+//!
+//! With H harvested, D dissipated otherwise, P what a coupling without reciprocity and the published formulation add, and r
+//! the residual of the balance, over any time
+//!
+//! ```text
+//! W - ΔE = H + D - P - Δr                    W put in, E stored
+//! error of a figure X = max |r(t) - r(t0)|/|X|
+//! efficiency = H/W over the run (3.2),  H/(H + D - P) over the window
+//! ```
+//!
+//! What is stored when the window begins is not put in within it: over the window the quotient has `W - ΔE` below, and takes it
+//! from where it went, since Δr is an error of the works, which are differences of what goes in and comes back, more than of
+//! losses, which only grow.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::summary::Quantity;
+use crate::case::schema::Case;
+use crate::error::Code;
+
+/// Open by more than this part of a figure: it is warned of.
+const OPEN: f64 = 0.1;
+/// Figures of energy below this part of the largest energy stored are what remains of larger ones that cancel.
+const REMAINDER: f64 = 1e-3;
+/// An efficiency is above one, or below zero, when it is so by more than its round-off.
+const ROUND_OFF: f64 = 1e-6;
+
+/// Columns of the history that add up to each part.
+const INPUT: &[&str] = &["work_loads", "work_ends", "work_ports"];
+const HARVESTED: &[&str] = &["harvested"];
+const DISSIPATED: &[&str] = &[
+    "dissipated_bladders",
+    "dissipated_tubes",
+    "dissipated_rectifiers",
+    "dissipated_damping",
+];
+const ADDED: &[&str] = &["work_formulation", "work_reciprocity"];
+const STORED: &[&str] = &[
+    "kinetic_energy",
+    "rotary_energy",
+    "axial_energy",
+    "bending_energy",
+    "bladder_energy",
+];
+const RESIDUAL: &[&str] = &["energy_residual"];
+
+/// Energies at an instant, or gains over a time [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Parts {
+    input: f64,
+    harvested: f64,
+    dissipated: f64,
+    added: f64,
+    stored: f64,
+}
+
+impl Parts {
+    fn since(&self, start: &Self) -> Self {
+        Self {
+            input: self.input - start.input,
+            harvested: self.harvested - start.harvested,
+            dissipated: self.dissipated - start.dissipated,
+            added: self.added - start.added,
+            stored: self.stored - start.stored,
+        }
+    }
+
+    /// `H + D - P`.
+    fn spent(&self) -> f64 {
+        self.harvested + self.dissipated - self.added
+    }
+}
+
+/// Since an instant: what was there, and how far the balance has opened from then on [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Since {
+    start: Option<(Parts, f64)>,
+    open: f64,
+}
+
+impl Since {
+    fn take(&mut self, now: Parts, residual: f64) {
+        let (_, first) = *self.start.get_or_insert((now, residual));
+        self.open = self.open.max((residual - first).abs());
+    }
+
+    fn gained(&self, now: &Parts) -> Parts {
+        self.start.map_or(Parts::default(), |(start, _)| now.since(&start))
+    }
+}
+
+/// Follows the energies of a history.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energies {
+    window_start: f64,
+    turbines: bool,
+    columns: BTreeMap<String, usize>,
+    last: Parts,
+    largest_stored: f64,
+    run: Since,
+    window: Since,
+}
+
+impl Energies {
+    /// For a case whose history has the given columns.
+    pub fn new(case: &Case, columns: &[&'static str]) -> Self {
+        Self {
+            window_start: case.time.end_s - case.time.window() * (1.0 + 1e-9),
+            turbines: case.network.as_ref().is_some_and(|n| !n.turbines.is_empty()),
+            columns: columns.iter().enumerate().map(|(k, c)| (c.to_string(), k)).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// Takes one row of the history.
+    pub fn take(&mut self, row: &[f64]) {
+        let sum = |names: &[&str]| -> f64 { names.iter().filter_map(|n| self.columns.get(*n)).map(|k| row[*k]).sum() };
+        let now = Parts {
+            input: sum(INPUT),
+            harvested: sum(HARVESTED),
+            dissipated: sum(DISSIPATED),
+            added: sum(ADDED),
+            stored: sum(STORED),
+        };
+        let residual = sum(RESIDUAL);
+        self.last = now;
+        self.largest_stored = self.largest_stored.max(now.stored.abs());
+        self.run.take(now, residual);
+        if row[0] >= self.window_start {
+            self.window.take(now, residual);
+        }
+    }
+
+    /// Gives every figure of energy its error, and the window its efficiency.
+    pub fn complete(&self, quantities: &mut BTreeMap<String, Quantity>) {
+        let (run, window) = (self.run.gained(&self.last), self.window.gained(&self.last));
+        let (opened, open) = (self.run.open, self.window.open);
+        let relative = |open: f64, size: f64| finite(open / size.abs());
+        for (name, run, window) in [
+            ("input_energy_j", run.input, window.input),
+            ("harvested_energy_j", run.harvested, window.harvested),
+        ] {
+            if let Some(q) = quantities.get_mut(name) {
+                q.final_error = relative(opened, run);
+                q.window_error = relative(open, window);
+            }
+        }
+        if let Some(q) = quantities.get_mut("efficiency") {
+            q.window = finite(window.harvested / window.spent());
+            q.final_error = q.last.and_then(|_| relative(opened, run.input));
+            q.window_error = q.window.and_then(|_| relative(open, window.spent()));
+        }
+    }
+
+    /// Which figures the balance does not carry, and what is strange about an efficiency; none when all is well.
+    pub fn warning(&self, quantities: &BTreeMap<String, Quantity>) -> Option<String> {
+        let mut all = vec![];
+        let times = [("over the run", self.run), ("in the window", self.window)];
+        for (name, words) in [
+            ("input_energy_j", "energy put in"),
+            ("harvested_energy_j", "energy harvested"),
+        ] {
+            let Some(q) = quantities.get(name) else { continue };
+            let figures = [(q.last, q.final_error), (q.window, q.window_error)];
+            for ((value, error), (when, _)) in figures.into_iter().zip(times) {
+                if let (Some(value), Some(error)) = (value, error)
+                    && error > OPEN
+                    && value.abs() > REMAINDER * self.largest_stored
+                {
+                    all.push(format!(
+                        "the {words} {when}, {value:.3e} J, is open by {:.0} % of it",
+                        100.0 * error
+                    ));
+                }
+            }
+        }
+        if let Some(q) = quantities.get("efficiency").filter(|_| self.turbines) {
+            let figures = [(q.last, q.final_error), (q.window, q.window_error)];
+            for ((value, error), (when, since)) in figures.into_iter().zip(times) {
+                let (Some(value), Some(error)) = (value, error) else {
+                    continue;
+                };
+                let what = format!("the efficiency {when}, {:.1} %", 100.0 * value);
+                if error > OPEN {
+                    all.push(format!("{what}, has parts that are open by {:.0} %", 100.0 * error));
+                }
+                if value > 1.0 + ROUND_OFF || value < -ROUND_OFF {
+                    let side = if value > 1.0 { "above one" } else { "below zero" };
+                    all.push(format!("{what}, is {side}: {}", why(&since.gained(&self.last))));
+                }
+            }
+        }
+        (!all.is_empty()).then(|| Code::EnergyFigure.warning(format!("energy: {}", all.join("; "))))
+    }
+}
+
+/// Largest error over the window of an efficiency, or of the energy put in where nothing is harvested, unless that is what
+/// remains of much larger energies [J].
+pub fn open_over_window(quantities: &BTreeMap<String, Quantity>, largest: f64) -> Option<f64> {
+    let of = |name: &str| quantities.get(name).and_then(|q| q.window_error);
+    let put_in = quantities.get("input_energy_j").and_then(|q| q.window);
+    of("efficiency").or_else(|| {
+        put_in
+            .filter(|x| x.abs() > REMAINDER * largest)
+            .and_then(|_| of("input_energy_j"))
+    })
+}
+
+/// Whether a figure that is open by so much of it is to be warned of.
+pub fn too_open(error: f64) -> bool {
+    error > OPEN
+}
+
+/// Where an efficiency beyond its bounds comes from.
+fn why(gained: &Parts) -> String {
+    if gained.added.abs() > ROUND_OFF * gained.harvested.abs() {
+        return format!(
+            "the published coupling or formulation added {:.2e} J, with {:.2e} J put in; it means something with the reciprocal \
+             coupling and the conservative formulation",
+            gained.added, gained.input
+        );
+    }
+    if gained.stored < 0.0 {
+        return format!("{:.2e} J that were stored before were taken out", -gained.stored);
+    }
+    "no coupling adds energy here, so that this is the integration's error".into()
+}
+
+fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COLUMNS: [&str; 8] = [
+        "t",
+        "kinetic_energy",
+        "work_loads",
+        "harvested",
+        "dissipated_tubes",
+        "work_reciprocity",
+        "work_formulation",
+        "energy_residual",
+    ];
+
+    fn followed(rows: &[[f64; 8]]) -> (Energies, BTreeMap<String, Quantity>) {
+        let mut energies = Energies {
+            window_start: 1.0,
+            turbines: true,
+            columns: COLUMNS.iter().enumerate().map(|(k, c)| (c.to_string(), k)).collect(),
+            ..Energies::default()
+        };
+        rows.iter().for_each(|row| energies.take(row));
+        let (first, last) = (&rows[1], &rows[rows.len() - 1]);
+        let energy = |k: usize| Quantity {
+            last: Some(last[k]),
+            window: Some(last[k] - first[k]),
+            ..Quantity::default()
+        };
+        let mut quantities = BTreeMap::from([
+            ("input_energy_j".to_string(), energy(2)),
+            ("harvested_energy_j".to_string(), energy(3)),
+            (
+                "efficiency".to_string(),
+                Quantity {
+                    last: Some(last[3] / last[2]),
+                    window: Some((last[3] - first[3]) / (last[2] - first[2])),
+                    ..Quantity::default()
+                },
+            ),
+        ]);
+        energies.complete(&mut quantities);
+        (energies, quantities)
+    }
+
+    /// Goal: what is stored does not count as put in or lost, and an open balance is seen relative to the figures, not to what
+    /// is stored: 1 J of 100 J stored, but a quarter of the 4 J put in.
+    #[test]
+    fn the_window_counts_what_was_spent() {
+        let (energies, all) = followed(&[
+            [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            [1.0, 100.0, 101.0, 0.5, 0.5, 0.0, 0.0, 0.0],
+            [2.0, 100.0, 105.0, 1.5, 4.5, 0.0, 0.0, 1.0],
+        ]);
+        let q = &all["efficiency"];
+        assert_eq!(q.window, Some(0.2));
+        assert_eq!(q.window_error, Some(0.2));
+        assert_eq!(all["input_energy_j"].window_error, Some(0.25));
+        assert_eq!(all["input_energy_j"].final_error, Some(1.0 / 105.0));
+        let words = energies.warning(&all).expect("a warning");
+        assert!(words.starts_with("W020") && words.contains("in the window"), "{words}");
+        assert!(!words.contains("the energy put in over the run"), "{words}");
+    }
+
+    /// A quotient above one says whose energy it is.
+    #[test]
+    fn an_efficiency_above_one_is_explained() {
+        let start = [0.0, 10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let (energies, all) = followed(&[start, start, [2.0, 2.0, 1.0, 5.0, 4.0, 0.0, 0.0, 0.0]]);
+        assert!(energies.warning(&all).expect("5 of 1 J").contains("stored before"));
+        let (energies, all) = followed(&[start, start, [2.0, 10.0, 4.0, 5.0, 4.0, 5.0, 0.0, 0.0]]);
+        assert!(energies.warning(&all).expect("5 of 4 J").contains("published"));
+        let (energies, all) = followed(&[start, start, [2.0, 10.0, 9.0, 5.0, 4.0, 0.0, 0.0, 0.0]]);
+        assert_eq!(energies.warning(&all), None);
+    }
+}

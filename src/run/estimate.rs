@@ -1,0 +1,272 @@
+//! A rough estimate of the errors of final values in time and in space, made from the run itself.
+//!
+//! ```text
+//! small      vibrations of the straight beam, and what a mesh does to their frequencies
+//! vibration  one of them followed along the run
+//! ```
+//!
+//! What a mesh and what steps change of a beam that vibrates freely is first of all its phase, and that grows with every period. So
+//! the first modes are read off the state after every step; of each it is known how much it turns too slowly on this mesh, and
+//! what a step of this method does to it. Where a motion follows what drives it there is no phase to lose: there the mesh changes
+//! the deflection by twice what it changes the first frequency, and steps by about their tolerance.
+//!
+//! It is an order of magnitude, by linear theory: growth, waves in the fluid and large rotations do more than it sees. Two runs on
+//! two meshes measure; `slcbeam run --accuracy` does that.
+
+pub mod small;
+pub mod vibration;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::summary::{Estimate, Quantity};
+use crate::case::schema::Case;
+use crate::discrete::System;
+use crate::error::Code;
+use crate::onestep::Method;
+use crate::sundials::Step;
+
+use small::SmallMode;
+use vibration::{Known, Vibration};
+
+/// Above this a final value is warned of.
+const LARGE: f64 = 0.05;
+/// What a run's steps make of their tolerance in a motion that follows its drive.
+const GATHERED: f64 = 10.0;
+/// Figures below this part of others are nothing to be accurate about.
+const NOTHING: f64 = 1e-6;
+
+/// What the estimate says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Estimated {
+    /// By steps, of the figure that is off most, relative to the largest value of its quantity.
+    pub time: f64,
+    /// By the mesh, likewise.
+    pub space: f64,
+    /// The quantity whose final value that is.
+    pub of: String,
+    /// Part of it that is phase: it is in final values, and not in largest values or root mean squares.
+    pub phase: f64,
+    /// Vibrations gone, of the mode that is off most.
+    pub vibrations: f64,
+    /// By what angle mesh and steps have shifted it [rad].
+    pub shift_rad: f64,
+    /// All quantities.
+    pub quantities: BTreeMap<String, Estimate>,
+}
+
+impl Estimated {
+    /// What to know where it is large.
+    pub fn warning(&self) -> Option<String> {
+        let total = self.time + self.space;
+        if total <= LARGE {
+            return None;
+        }
+        let size = |x: f64| {
+            if x >= 1.0 {
+                "all".to_string()
+            } else {
+                format!("{:.0} %", 100.0 * x)
+            }
+        };
+        let because = if self.phase > 0.5 * total {
+            format!(
+                "after {:.0} vibrations mesh and steps have shifted the phase by {:.2} rad; largest values and root mean squares are \
+                 hardly affected",
+                self.vibrations, self.shift_rad
+            )
+        } else {
+            "the mesh is coarse, or the tolerance loose, for what the beam does, and largest values are off as well"
+                .into()
+        };
+        Some(Code::ErrorEstimate.warning(format!(
+            "estimate: the final {} may be off by about {} of its largest value ({} by steps, {} by the mesh): {because}; --accuracy \
+             measures",
+            self.of,
+            size(total),
+            size(self.time),
+            size(self.space)
+        )))
+    }
+}
+
+/// Follows the first modes of bending and of stretch.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Estimator {
+    bending: Vec<Vibration>,
+    axial: Vec<Vibration>,
+    /// What the mesh makes of a deflection at rest, of a stretch at rest.
+    at_rest: [f64; 2],
+    rtol: f64,
+    /// Sizes of displacements to which the tolerance refers [m].
+    scales: [f64; 2],
+    /// Length of the beam [m].
+    length: f64,
+}
+
+impl Estimator {
+    /// Of a system of the case.
+    pub fn new(case: &Case, system: &System) -> Self {
+        let (model, layout) = (&system.model, &system.layout);
+        let s = &model.section;
+        let length = model.length;
+        let fine = (system.mesh.h / length).powi(2);
+        let stiffer = sealed(system);
+        let across = if layout.free_u1.is_empty() {
+            vec![]
+        } else {
+            small::bending(&model.ends)
+        };
+        let along = if layout.free_u3.is_empty() {
+            vec![]
+        } else {
+            small::axial(&model.ends)
+        };
+        let at_rest = [&across, &along].map(|modes| modes.first().map_or(0.0, |m| 2.0 * m.mesh.abs() * fine));
+        let one = |mode: SmallMode, across: bool| {
+            let (free, first, unit, more) = if across {
+                let unit = (s.bending_stiffness / s.mass_per_length).sqrt() / (length * length);
+                (&layout.free_u1, [layout.u1, layout.v1], unit, stiffer[0])
+            } else {
+                let unit = (s.axial_stiffness / s.mass_per_length).sqrt() / length;
+                (&layout.free_u3, [layout.u3, layout.v3], unit, stiffer[1])
+            };
+            let [size, rate] = first.map(|k| layout.scales[k]);
+            let frequency = mode.frequency * unit;
+            let material = if across {
+                s.bending_damping_time
+            } else {
+                s.axial_damping_time
+            };
+            let weight = |node: usize| {
+                let place = system.mesh.node_coordinate(node) / length;
+                mode.at(place) * system.mesh.node_length(node) / length * size
+            };
+            Vibration::new(Known {
+                first,
+                weights: free.clone().map(weight).collect(),
+                rate: rate / size,
+                frequencies: [frequency, frequency * more],
+                mesh: mode.mesh * fine,
+                damping: 0.5 * s.drag / s.mass_per_length + 0.5 * material * frequency * frequency,
+                tip: [mode.at(1.0), mode.tip_slope() / length],
+            })
+        };
+        let follow = |modes: Vec<SmallMode>, waves: bool, across: bool| -> Vec<Vibration> {
+            modes
+                .into_iter()
+                .filter(|_| waves)
+                .map(|mode| one(mode, across))
+                .collect()
+        };
+        Self {
+            bending: follow(across, layout.waves[0], true),
+            axial: follow(along, layout.waves[1], false),
+            at_rest,
+            rtol: case.solver.rtol,
+            scales: [model.scales.transverse, model.scales.axial],
+            length,
+        }
+    }
+
+    /// Takes an accepted step, with the unknowns and their rates at its end; `None`: of BDF.
+    pub fn step(&mut self, method: Option<Method>, step: &Step, values: [&[f64]; 2]) {
+        let tableau = vibration::tableau(method);
+        for mode in self.bending.iter_mut().chain(&mut self.axial) {
+            mode.step(tableau.as_ref(), step, values);
+        }
+    }
+
+    /// Errors of the final values, as far as they can be told; none where nothing moves.
+    pub fn judge(&self, quantities: &BTreeMap<String, Quantity>) -> Option<Estimated> {
+        let largest = |name: &str| quantities.get(name).and_then(|q| q.max_abs).unwrap_or(0.0);
+        let [u1, u3, angle] = ["tip_u1_m", "tip_u3_m", "tip_angle_rad"].map(largest);
+        let [bending, axial] =
+            [&self.bending, &self.axial].map(|all| all.iter().map(Vibration::ended).collect::<Vec<_>>());
+        let sum = |modes: &[Vibration], what: usize| {
+            modes.iter().fold([0.0; 2], |sum, mode| {
+                let off = mode.off();
+                let share = mode.tip[what].abs();
+                [sum[0] + share * off[0], sum[1] + share * off[1]]
+            })
+        };
+        let (across, turn, along) = (sum(&bending, 0), sum(&bending, 1), sum(&axial, 0));
+        // a tip that has turned moves along as well
+        let drawn = across.map(|x| x * angle.min(1.0));
+        let everything = u1.max(u3).max(angle * self.length);
+        let mut found: Option<Estimated> = None;
+        let mut all = BTreeMap::new();
+        for (name, size, vibrations, at_rest, scale) in [
+            ("tip_u1_m", u1, across, self.at_rest[0], self.scales[0]),
+            (
+                "tip_u3_m",
+                u3,
+                [along[0] + drawn[0], along[1] + drawn[1]],
+                self.at_rest[0].max(self.at_rest[1]),
+                self.scales[1],
+            ),
+            (
+                "tip_angle_rad",
+                angle,
+                turn,
+                self.at_rest[0],
+                self.scales[0] / self.length,
+            ),
+        ] {
+            let weight = if name.ends_with("rad") { self.length } else { 1.0 };
+            if size * weight <= NOTHING * everything || size == 0.0 || !size.is_finite() {
+                continue;
+            }
+            let phase = vibrations.map(|x| x / size);
+            let time = phase[0] + GATHERED * self.rtol * (1.0 + scale / size).min(1.0 / self.rtol);
+            let space = phase[1] + at_rest;
+            all.insert(
+                name.to_string(),
+                Estimate {
+                    time: Some(time),
+                    space: Some(space),
+                    total: Some(time + space),
+                },
+            );
+            if found.as_ref().is_none_or(|f| time + space > f.time + f.space) {
+                let modes = bending.iter().chain(&axial);
+                let worst = modes.max_by(|a, b| {
+                    let off = |m: &Vibration| m.tip[0].abs() * m.off().iter().sum::<f64>();
+                    off(a).total_cmp(&off(b))
+                });
+                found = Some(Estimated {
+                    time,
+                    space,
+                    of: name.into(),
+                    phase: phase[0] + phase[1],
+                    vibrations: worst.map_or(0.0, |m| m.turned[2] / std::f64::consts::TAU),
+                    shift_rad: worst.map_or(0.0, |m| m.turned[0].abs() + m.turned[1].abs()),
+                    quantities: BTreeMap::new(),
+                });
+            }
+        }
+        found.map(|found| Estimated {
+            quantities: all,
+            ..found
+        })
+    }
+}
+
+/// How much higher the frequencies of bending and of stretch are where fluid cannot leave its bladders, at least 1.
+///
+/// ```text
+/// p_R = -(R am M + an N)/a_p     ω_sealed/ω = (1 + EI α_p(p)/M)^(-1/2),  (1 + EA λ_p(p)/N)^(-1/2)
+/// ```
+fn sealed(system: &System) -> [f64; 2] {
+    let (model, s) = (&system.model, &system.model.section);
+    let Some(wet) = &model.wet else { return [1.0; 2] };
+    let (area, coupling) = (&wet.area, &wet.coupling);
+    let bent = area.moment_mean / area.per_pressure;
+    let stretched = area.force_mean / area.per_pressure;
+    let soft = [
+        s.bending_stiffness * coupling.curvature(area, 0.0, -bent, bent),
+        s.axial_stiffness * coupling.stretch(area, 0.0, -stretched, -stretched),
+    ];
+    soft.map(|soft| (1.0 / (1.0 + soft).clamp(0.05, 1.0)).sqrt())
+}

@@ -1,0 +1,172 @@
+//! Small vibrations of a straight dry beam between its ends, in units of its length, mass per length and stiffness: shapes,
+//! frequencies, and what a mesh does to them.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use nalgebra::DMatrix;
+
+use crate::case::{ResolvedEnd, Rotation, Translation};
+
+/// Cells of the finer of two small meshes from which shapes and errors are taken.
+const CELLS: usize = 32;
+/// Modes told.
+pub const MODES: usize = 4;
+/// Below this a frequency is a rigid motion's.
+const RIGID: f64 = 1e-3;
+
+/// One mode.
+#[derive(Clone, Debug)]
+pub struct SmallMode {
+    /// Angular frequency over `√(EI/m)/l²`, or `√(EA/m)/l`.
+    pub frequency: f64,
+    /// `c` of the relative error `c (h/l)²` of the frequency on a mesh of cells of length h.
+    pub mesh: f64,
+    /// At evenly spaced places from root to tip, of mean square one.
+    pub shape: Vec<f64>,
+}
+
+impl SmallMode {
+    /// The shape at a share of the length.
+    pub fn at(&self, share: f64) -> f64 {
+        let cells = self.shape.len() - 1;
+        let place = share.clamp(0.0, 1.0) * cells as f64;
+        let cell = (place as usize).min(cells - 1);
+        let part = place - cell as f64;
+        self.shape[cell] * (1.0 - part) + self.shape[cell + 1] * part
+    }
+
+    /// Its slope at the tip, per length.
+    pub fn tip_slope(&self) -> f64 {
+        let cells = self.shape.len() - 1;
+        (self.shape[cells] - self.shape[cells - 1]) * cells as f64
+    }
+}
+
+/// The first bending modes that are no rigid motion, on the mesh of the model's section 7: `u` at nodes, half a cell at the ends.
+///
+/// ```text
+/// φ = Δu/h    κ_i = -Δφ/h,  κ_0 = -φ_{1/2}/(h/2) where the slope is given, 0 where the moment is    Σ h_i κ_i² u = ω² Σ h_i u_i²
+/// ```
+///
+/// The error of the mesh is second order: two meshes tell its factor.
+pub fn bending(ends: &[ResolvedEnd; 2]) -> Vec<SmallMode> {
+    let (coarse, fine) = (bending_on(ends, CELLS / 2), bending_on(ends, CELLS));
+    let pairs = coarse.into_iter().zip(fine);
+    pairs
+        .take(MODES)
+        .map(|((half, _), (found, shape))| {
+            let limit = found + (found - half) / 3.0;
+            SmallMode {
+                frequency: limit,
+                mesh: (found / limit - 1.0) * (CELLS * CELLS) as f64,
+                shape,
+            }
+        })
+        .collect()
+}
+
+fn bending_on(ends: &[ResolvedEnd; 2], cells: usize) -> Vec<(f64, Vec<f64>)> {
+    let h = 1.0 / cells as f64;
+    let share = |node: usize| if node == 0 || node == cells { 0.5 * h } else { h };
+    // rows: curvature of each node times the root of its length; columns: displacement of each node
+    let mut curvature = DMatrix::<f64>::zeros(cells + 1, cells + 1);
+    for node in 0..=cells {
+        let weight = share(node).sqrt();
+        let mut slope = |cell: usize, factor: f64| {
+            curvature[(node, cell + 1)] += weight * factor / h;
+            curvature[(node, cell)] -= weight * factor / h;
+        };
+        let held = |end: usize| matches!(ends[end].rotation, Rotation::Slope(_));
+        match node {
+            0 if held(0) => slope(0, 2.0 / h),
+            n if n == cells && held(1) => slope(cells - 1, -2.0 / h),
+            n if n == 0 || n == cells => {}
+            n => {
+                slope(n, 1.0 / h);
+                slope(n - 1, -1.0 / h);
+            }
+        }
+    }
+    let driven = |end: usize| matches!(ends[end].transverse, Translation::Displacement(_));
+    let free: Vec<usize> = (usize::from(driven(0))..=cells - usize::from(driven(1))).collect();
+    let stiffness = DMatrix::from_fn(free.len(), free.len(), |i, j| {
+        let (a, b) = (curvature.column(free[i]), curvature.column(free[j]));
+        a.dot(&b) / (share(free[i]) * share(free[j])).sqrt()
+    });
+    let eigen = stiffness.symmetric_eigen();
+    let mut all: Vec<(f64, Vec<f64>)> = (0..free.len())
+        .map(|k| {
+            let mut shape = vec![0.0; cells + 1];
+            for (i, &node) in free.iter().enumerate() {
+                shape[node] = eigen.eigenvectors[(i, k)] / share(node).sqrt();
+            }
+            (eigen.eigenvalues[k].max(0.0).sqrt(), shape)
+        })
+        .filter(|(frequency, _)| *frequency > RIGID * (cells * cells) as f64)
+        .collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all
+}
+
+/// The first axial modes: waves `√2 sin βx` or `√2 cos βx`, which cells of length h slow down by `(βh)²/24`.
+pub fn axial(ends: &[ResolvedEnd; 2]) -> Vec<SmallMode> {
+    let held = |end: usize| matches!(ends[end].axial, Translation::Displacement(_));
+    let one = |k: usize| {
+        let whole = (k + 1) as f64 * PI;
+        let beta = if held(0) == held(1) { whole } else { whole - FRAC_PI_2 };
+        let wave = |place: usize| {
+            let x = beta * place as f64 / CELLS as f64;
+            std::f64::consts::SQRT_2 * if held(0) { x.sin() } else { x.cos() }
+        };
+        SmallMode {
+            frequency: beta,
+            mesh: -beta * beta / 24.0,
+            shape: (0..=CELLS).map(wave).collect(),
+        }
+    };
+    (0..MODES).map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::schema::Case;
+
+    fn ends(root: &str, tip: &str) -> [ResolvedEnd; 2] {
+        let text = format!(
+            r#"{{"name": "x", "beam": {{"length_m": 1, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1e9,
+                "density_kg_m3": 1e3}}, "ends": {{"root": "{root}", "tip": "{tip}"}}, "time": {{"end_s": 1}}}}"#
+        );
+        let case: Case = serde_json::from_str(&text).unwrap();
+        [case.ends.root.resolve(), case.ends.tip.resolve()]
+    }
+
+    /// Source: roots of `cos β cosh β = ∓1` and `tan β = tanh β`. Goal: frequencies to 2e-4 for the first modes, and of the
+    /// cantilever the error of the mesh, `-(βh)²/12` in the inner and what the half cells add.
+    #[test]
+    fn frequencies_of_the_small_meshes() {
+        for (root, tip, roots) in [
+            ("clamped", "free", [1.875_104_069, 4.694_091_133]),
+            ("clamped", "clamped", [4.730_040_745, 7.853_204_624]),
+            ("free", "free", [4.730_040_745, 7.853_204_624]),
+            ("pinned", "pinned", [PI, 2.0 * PI]),
+        ] {
+            let modes = bending(&ends(root, tip));
+            for (mode, beta) in modes.iter().zip(roots) {
+                let off = mode.frequency / (beta * beta) - 1.0;
+                assert!(off.abs() < 1e-3, "{root}-{tip} {beta}: {off:e}");
+                let square: f64 = mode.shape.iter().map(|x| x * x).sum::<f64>() / CELLS as f64;
+                assert!((square - 1.0).abs() < 0.1, "{square}");
+                println!(
+                    "{root}-{tip} {beta}: mesh {:.4}, tip {:.3}, slope {:.3}",
+                    mode.mesh,
+                    mode.at(1.0),
+                    mode.tip_slope()
+                );
+            }
+        }
+        // pinned ends have no half cells that count: u'''' of a sine on the staggered mesh
+        let pinned = &bending(&ends("pinned", "pinned"))[0];
+        assert!((pinned.mesh + PI * PI / 12.0).abs() < 0.02, "{}", pinned.mesh);
+    }
+}

@@ -1,0 +1,117 @@
+//! A cycle whose energies add up: found again at tighter tolerances until its figures do.
+//!
+//! Tolerances refer to the sizes of displacements and pressures. What a cycle puts in and takes out may be a hundredth of what it
+//! stores, and then steps that are good enough for the motion are not for that difference.
+
+use serde::Serialize;
+
+use super::record;
+use super::scene::Scene;
+use super::shoot::{Cycle, shoot};
+use crate::case::schema::Case;
+use crate::error::Result;
+use crate::run::energies::{open_over_window, too_open};
+use crate::run::record::{Control, Unrecorded};
+use crate::run::summary::{Status, Summary};
+
+/// Decades of tolerance gone at most.
+const DECADES: u32 = 4;
+/// No tolerance is below this.
+const TIGHTEST: f64 = 1e-10;
+
+/// A cycle with the case and the scene, their tolerance included, in which it was found.
+pub struct Settled {
+    /// The case.
+    pub case: Case,
+    /// What repeats itself.
+    pub scene: Scene,
+    /// The cycle.
+    pub cycle: Cycle,
+    /// Why its tolerance is not the case's own, if it is not.
+    pub refined: Option<Refined>,
+}
+
+/// That a cycle was found again.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Refined {
+    /// Tolerance of the case.
+    pub from_rtol: f64,
+    /// Tolerance at which the cycle was found in the end.
+    pub rtol: f64,
+    /// How far the balance over the cycle was open, relative to the figure: at first, and in the end.
+    pub open: [f64; 2],
+}
+
+impl Refined {
+    /// For people.
+    pub fn words(&self) -> String {
+        format!(
+            "at rtol {:e} energies over the cycle were open by {:.0} % of the efficiency's parts or of what is put in: found again at rtol \
+             {:e}, where it is {:.2} %",
+            self.from_rtol,
+            100.0 * self.open[0],
+            self.rtol,
+            100.0 * self.open[1]
+        )
+    }
+}
+
+/// Tightens the tolerance of a cycle as long as its energies are open by a good part of what they are.
+///
+/// # Errors
+/// As a run's, when it cannot be recorded; a tolerance at which no cycle is found, or not followed, leaves the one before.
+pub fn settle(case: &Case, scene: Scene, cycle: Cycle) -> Result<Settled> {
+    let mut now = Settled {
+        case: case.clone(),
+        scene,
+        cycle,
+        refined: None,
+    };
+    let Some(mut open) = open(&now)? else { return Ok(now) };
+    let first = open;
+    for _ in 0..DECADES {
+        let rtol = 0.1 * now.case.solver.rtol;
+        if !too_open(open) || rtol < TIGHTEST * (1.0 - 1e-9) {
+            break;
+        }
+        let mut next = now.case.clone();
+        next.solver.rtol = rtol;
+        let mut scene = now.scene.clone();
+        scene.rtol = rtol;
+        let Ok(cycle) = shoot(&scene, Some(&now.cycle.y)) else {
+            break;
+        };
+        let tried = Settled {
+            case: next,
+            scene,
+            cycle,
+            refined: None,
+        };
+        let Some(left) = self::open(&tried)? else { break };
+        open = left;
+        now = Settled {
+            refined: Some(Refined {
+                from_rtol: case.solver.rtol,
+                rtol,
+                open: [first, left],
+            }),
+            ..tried
+        };
+    }
+    Ok(now)
+}
+
+/// How far the balance is open over the cycle beside its figures, where there are any.
+fn open(of: &Settled) -> Result<Option<f64>> {
+    let outcome = record::record(&of.case, &of.scene, &of.cycle, &mut Unrecorded(|_| Control::Continue))?;
+    let Summary {
+        status,
+        quantities,
+        balances,
+        ..
+    } = &outcome.summary;
+    let largest = balances.energy_j.values().fold(0.0_f64, |s, x| s.max(x.abs()));
+    Ok((*status == Status::Finished)
+        .then(|| open_over_window(quantities, largest))
+        .flatten())
+}

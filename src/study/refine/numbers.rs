@@ -1,0 +1,148 @@
+//! What each command computes, as numbers that can be compared from mesh to mesh.
+
+use std::collections::BTreeMap;
+
+use super::{Number, Numbers};
+use crate::case::Case;
+use crate::error::{Error, Result};
+use crate::run::equilibrium::{self, Options};
+use crate::run::floquet;
+use crate::run::modes::{self, Kind, Mode, Plan};
+use crate::run::periodic::scene::fault;
+use crate::run::periodic::{Cycle, Scene, record, shoot};
+use crate::run::record::{Control, Unrecorded};
+use crate::run::summary::Status;
+use crate::study::counted::counted;
+
+/// Numbers of a unit below this part of others are round-off.
+const NOTHING: f64 = 1e-6;
+/// A rate of growth counts beside this part of the mode's own frequency.
+const DAMPING: f64 = 0.01;
+
+/// The last state of a load path.
+///
+/// # Errors
+/// Where the path ends before.
+pub fn of_equilibrium(case: &Case, options: &Options) -> Result<Numbers> {
+    let path = equilibrium::follow(case, options, &mut |_| Control::Continue);
+    if let Some(fault) = path.fault {
+        return Err(Error::Solver(Box::new(fault)));
+    }
+    let columns = equilibrium::columns(&equilibrium::system(case, options.at_s));
+    let row = path.states.last().map_or(&[][..], |state| &state.row);
+    let length = case.beam.length_m;
+    // an angle counts beside displacements
+    let alike = |unit: &'static str| if unit == "rad" { ("m", length) } else { (unit, 1.0) };
+    let all = || columns.iter().zip(row).skip(1);
+    let largest = |unit: &str| {
+        let same = all().map(|(c, x)| (alike(c.unit), x)).filter(|((u, _), _)| *u == unit);
+        same.map(|((_, factor), x)| factor * x.abs()).fold(0.0, f64::max)
+    };
+    let number = |unit: &'static str, value: f64| {
+        let (unit, factor) = alike(unit);
+        Number {
+            value,
+            size: NOTHING * largest(unit) / factor,
+        }
+    };
+    Ok(all().map(|(c, x)| (c.name.clone(), number(c.unit, *x))).collect())
+}
+
+/// Frequencies and rates of the modes: those across by their order, those along, those of the fluid.
+///
+/// # Errors
+/// As [`modes::modes`].
+pub fn of_modes(case: &Case, at_rest_under: Option<f64>, plan: &Plan) -> Result<Numbers> {
+    let about = match at_rest_under {
+        Some(at) => modes::at_equilibrium(case, at)?,
+        None => modes::linearise(case, 0.0, None)?,
+    };
+    let plan = Plan { limits: false, ..*plan };
+    let found = modes::of(about, &plan)?;
+    let mut counts = BTreeMap::new();
+    let mut all = Numbers::new();
+    for mode in found.modes.iter().filter(|mode| !mode.kind.stays()) {
+        let what = sort(mode);
+        let count = counts.entry(what).or_insert(0);
+        *count += 1;
+        let name = format!("{what}_{count}");
+        if let Some(value) = mode.frequency_hz() {
+            all.insert(format!("{name}_frequency_hz"), Number { value, size: 0.0 });
+        }
+        let growth = Number {
+            value: mode.s.re,
+            size: DAMPING * mode.s.norm(),
+        };
+        all.insert(format!("{name}_growth_per_s"), growth);
+    }
+    Ok(all)
+}
+
+/// What of a mode does not depend on the mesh.
+fn sort(mode: &Mode) -> &'static str {
+    match mode.shape.transverse() {
+        _ if !mode.kind.swings() && mode.kind != Kind::Volume => "decaying",
+        _ if mode.kind == Kind::Volume || mode.shape.displacement() == 0.0 => "fluid",
+        share if share > 0.5 => "across",
+        _ => "along",
+    }
+}
+
+/// The cycle of a case.
+///
+/// # Errors
+/// Where there is none, or nothing holds the beam.
+pub fn cycle(case: &Case, period: Option<f64>) -> Result<(Scene, Cycle)> {
+    let scene = Scene::new(case, period)?;
+    scene.held(&case.name)?;
+    let cycle = shoot(&scene, None).map_err(fault)?;
+    Ok((scene, cycle))
+}
+
+/// Figures over the cycle.
+///
+/// # Errors
+/// As [`cycle`], and where the cycle cannot be followed for a period.
+pub fn of_cycle(case: &Case) -> Result<Numbers> {
+    let (scene, cycle) = cycle(case, None)?;
+    let outcome = record::record(case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?;
+    if outcome.summary.status != Status::Finished {
+        return Err(outcome.fault.map_or_else(
+            || Error::Usage(outcome.summary.reason.unwrap_or_default()),
+            |fault| Error::Solver(Box::new(fault)),
+        ));
+    }
+    let mut all = Numbers::new();
+    for (name, quantity) in counted(&outcome.summary, case.beam.length_m) {
+        let largest = quantity.figures().fold(0.0_f64, |s, (_, x)| s.max(x.abs()));
+        for (figure, value) in quantity.figures().filter(|(figure, _)| figure.starts_with("window")) {
+            all.insert(format!("{name}.{figure}"), Number { value, size: largest });
+        }
+    }
+    Ok(all)
+}
+
+/// The multipliers of the cycle: each beside one, at which stability ends.
+///
+/// # Errors
+/// As [`cycle`].
+pub fn of_multipliers(case: &Case, period: Option<f64>, count: usize) -> Result<Numbers> {
+    let (scene, mut cycle) = cycle(case, period)?;
+    let found = floquet::multipliers(&scene, &mut cycle, count);
+    let mut counts = BTreeMap::new();
+    let mut all = Numbers::new();
+    for m in &found.multipliers {
+        let part = m.part.to_string().replace(' ', "_");
+        let count = counts.entry(part.clone()).or_insert(0);
+        *count += 1;
+        let name = if *count == 1 { part } else { format!("{part}_{count}") };
+        all.insert(
+            format!("{name}.modulus"),
+            Number {
+                value: m.modulus,
+                size: 1.0,
+            },
+        );
+    }
+    Ok(all)
+}
