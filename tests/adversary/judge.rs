@@ -1,0 +1,196 @@
+//! What becomes of a scene.
+
+use std::path::Path;
+
+use serde_json::Value;
+use slcbeam::case::{self, Case};
+use slcbeam::error::{Code, Error};
+use slcbeam::run::summary::Summary;
+
+use crate::reference::{self, Found, Reference};
+use crate::run::{Figures, Work, figures, finished};
+use crate::trust::{self, Cause};
+
+/// How a scene ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Word {
+    /// Within what was promised.
+    Right,
+    /// Off, and said so.
+    Warned,
+    /// The run ended early and said why.
+    Ended,
+    /// Off, and not a word beside it.
+    Silent,
+    /// The reference is not known well enough.
+    Unknown,
+    /// Refused by the check of the case.
+    Refused,
+}
+
+/// A verdict on a scene's run with the settings of the program.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    /// In one word.
+    pub word: Word,
+    /// Why, with the worst figure.
+    pub why: String,
+    /// Causes of an error.
+    pub causes: Vec<Cause>,
+    /// A warning of trust, while every figure is right to 1 %.
+    pub needless: Option<Vec<Code>>,
+}
+
+impl Verdict {
+    fn new(word: Word, why: impl Into<String>) -> Self {
+        Self { word, why: why.into(), causes: vec![], needless: None }
+    }
+}
+
+/// Off by more than this at default settings, relative to the figure.
+pub const DEFAULT: f64 = 0.05;
+/// A reference is known when its error is below this part of what is judged by it.
+const KNOWN: f64 = 0.2;
+/// Right to this, a warning was needless.
+const NEEDLESS: f64 = 0.01;
+/// Steps times unknowns times stages for one scene: with the default settings, and for the reference.
+const WORK: [f64; 2] = [2e6, 2e7];
+
+/// Reads a scene.
+pub fn read(scene: &Value) -> Result<Case, String> {
+    match case::parse(&scene.to_string(), Path::new("scene.json"), Path::new("."), &[]) {
+        Ok(loaded) => Ok(loaded.case),
+        Err(Error::Case(fault)) => Err(fault.violations.first().map_or(String::new(), |v| format!("{}: {}", v.pointer, v.what))),
+        Err(other) => Err(other.to_string()),
+    }
+}
+
+/// Judges the default settings.
+pub fn judge(scene: &Value) -> Verdict {
+    let case = match read(scene) {
+        Ok(case) => case,
+        Err(why) => return Verdict::new(Word::Refused, why),
+    };
+    let mut work = Work { left: WORK[0] };
+    let Some(run) = work.run(&case, guess(&case)) else {
+        return Verdict::new(Word::Unknown, "too long at default settings");
+    };
+    let mut work = Work { left: WORK[1] };
+    let cells = case.mesh.cells_per_segment;
+    let unknowns = run.unknowns as f64 * 4.0 / cells as f64;
+    let found = reference::find(&case, scene, 2 * cells, unknowns, NEEDLESS * KNOWN, &mut work);
+    match found {
+        _ if !finished(&run) => Verdict::new(Word::Ended, run.reason.unwrap_or_default()),
+        Found::Unknown(why) => Verdict::new(Word::Unknown, why),
+        Found::Ends(why) => {
+            let warned = trust::warned(&run.warnings);
+            let word = if warned.is_empty() { Word::Silent } else { Word::Warned };
+            Verdict::new(word, format!("finished {warned:?}, where it should end: {why}"))
+        }
+        Found::Known(reference) => compare(&case, &run, &reference),
+    }
+}
+
+/// A guess of the number of unknowns before the first run.
+fn guess(case: &Case) -> f64 {
+    let segments = case.segments() * case.mesh.cells_per_segment;
+    (12 * segments) as f64
+}
+
+fn compare(case: &Case, run: &Summary, reference: &Reference) -> Verdict {
+    let warned = trust::warned(&run.warnings);
+    let off = errors(&figures(run), reference, |_| true);
+    let Some(worst) = off.first() else {
+        return Verdict::new(Word::Unknown, "no figures");
+    };
+    let told = worst.told();
+    if worst.beyond(DEFAULT) {
+        let causes = causes(case, reference, worst);
+        let named = warned.iter().any(|code| trust::names(*code, &causes, &worst.quantity));
+        let word = if named { Word::Warned } else { Word::Silent };
+        let why = format!("{told}; {causes:?}; warned {warned:?}");
+        return Verdict { causes, ..Verdict::new(word, why) };
+    }
+    let doubt = reference.worst(|quantity| quantity != "efficiency");
+    if doubt > KNOWN * DEFAULT {
+        return Verdict::new(Word::Unknown, format!("reference known to {doubt:.1e} only"));
+    }
+    let right = off.iter().all(|one| one.error + one.doubt <= NEEDLESS);
+    Verdict {
+        needless: (right && !warned.is_empty()).then_some(warned),
+        ..Verdict::new(Word::Right, told)
+    }
+}
+
+/// An error of a figure.
+pub struct Off {
+    pub quantity: String,
+    pub figure: &'static str,
+    pub value: f64,
+    pub reference: f64,
+    /// Relative to the quantity.
+    pub error: f64,
+    /// The reference's own.
+    pub doubt: f64,
+}
+
+impl Off {
+    /// Surely off by more than this.
+    pub fn beyond(&self, allowed: f64) -> bool {
+        self.doubt <= KNOWN * allowed.max(0.5 * self.error) && self.error > allowed + self.doubt
+    }
+
+    fn told(&self) -> String {
+        format!(
+            "{}/{} {:.4e} for {:.4e}, off by {:.2e} (reference known to {:.0e})",
+            self.quantity, self.figure, self.value, self.reference, self.error, self.doubt
+        )
+    }
+}
+
+/// Errors of all figures that count, worst first: those that are surely large before those that may be.
+pub fn errors(figures: &Figures, reference: &Reference, counts: impl Fn(&str) -> bool) -> Vec<Off> {
+    let mut all = vec![];
+    for (quantity, known) in &reference.figures {
+        for (&figure, &(value, error)) in known.iter().filter(|(figure, _)| counts(figure)) {
+            let size = reference.sizes[quantity];
+            let got = figures.get(quantity).and_then(|q| q.get(figure)).copied();
+            let Some(got) = got else { continue };
+            all.push(Off {
+                quantity: quantity.clone(),
+                figure,
+                value: got,
+                reference: value,
+                error: (got - value).abs() / size,
+                doubt: error / size,
+            });
+        }
+    }
+    all.sort_by(|a, b| (b.error - 3.0 * b.doubt).total_cmp(&(a.error - 3.0 * a.doubt)));
+    all
+}
+
+/// Which single change makes most of an error go.
+fn causes(case: &Case, reference: &Reference, worst: &Off) -> Vec<Cause> {
+    let mut found = vec![];
+    for cause in [Cause::Effects, Cause::Time, Cause::Space, Cause::Outputs] {
+        let mut better = case.clone();
+        match cause {
+            Cause::Effects => better.effects = slcbeam::case::schema::Effects::Full,
+            Cause::Time => better.solver.rtol = 1e-8,
+            Cause::Space => better = slcbeam::study::accuracy::plan::refined(case, reference.cells, case.solver.rtol),
+            Cause::Outputs | Cause::Joint => crate::run::sampled(&mut better),
+        }
+        let mut work = Work { left: WORK[1] };
+        let Some(run) = work.run(&better, guess(&better)) else { continue };
+        let now = errors(&figures(&run), reference, |figure| figure == worst.figure);
+        let now = now.iter().find(|off| off.quantity == worst.quantity);
+        if finished(&run) && now.is_some_and(|off| off.error < 0.4 * worst.error) {
+            found.push(cause);
+        }
+    }
+    if found.is_empty() {
+        found.push(Cause::Joint);
+    }
+    found
+}
