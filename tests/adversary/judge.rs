@@ -7,6 +7,7 @@ use slcbeam::case::{self, Case};
 use slcbeam::error::{Code, Error};
 use slcbeam::run::summary::Summary;
 
+use crate::promise;
 use crate::reference::{self, Found, Reference};
 use crate::run::{Figures, Work, figures, finished};
 use crate::trust::{self, Cause};
@@ -42,7 +43,7 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    fn new(word: Word, why: impl Into<String>) -> Self {
+    pub fn new(word: Word, why: impl Into<String>) -> Self {
         Self { word, why: why.into(), causes: vec![], needless: None }
     }
 }
@@ -50,11 +51,11 @@ impl Verdict {
 /// Off by more than this at default settings, relative to the figure.
 pub const DEFAULT: f64 = 0.05;
 /// A reference is known when its error is below this part of what is judged by it.
-const KNOWN: f64 = 0.2;
+pub const KNOWN: f64 = 0.2;
 /// Right to this, a warning was needless.
 const NEEDLESS: f64 = 0.01;
 /// Steps times unknowns times stages for one scene: with the default settings, and for the reference.
-const WORK: [f64; 2] = [2e6, 2e7];
+const WORK: [f64; 2] = [4e6, 2.5e7];
 
 /// Reads a scene.
 pub fn read(scene: &Value) -> Result<Case, String> {
@@ -65,36 +66,61 @@ pub fn read(scene: &Value) -> Result<Case, String> {
     }
 }
 
-/// Judges the default settings.
-pub fn judge(scene: &Value) -> Verdict {
+/// The two verdicts on a scene.
+pub struct Both {
+    /// On the default settings.
+    pub default: Verdict,
+    /// On an accuracy asked for.
+    pub promise: Verdict,
+    /// What was asked for.
+    pub asked: f64,
+    /// Error over estimate of every quantity whose error is known.
+    pub ratios: Vec<f64>,
+}
+
+/// Judges a scene with the default settings, and with an accuracy.
+pub fn judge(scene: &Value, asked: f64, parts: [bool; 2]) -> Both {
+    let alike = |verdict: Verdict| Both { default: verdict.clone(), promise: verdict, asked, ratios: vec![] };
     let case = match read(scene) {
         Ok(case) => case,
-        Err(why) => return Verdict::new(Word::Refused, why),
+        Err(why) => return alike(Verdict::new(Word::Refused, why)),
     };
+    let cells = case.mesh.cells_per_segment;
+    let unknowns = guess(&case) * 4.0 / cells as f64;
+    let mut work = Work { left: WORK[1] };
+    let found = reference::find(&case, scene, 2 * cells, unknowns, NEEDLESS * KNOWN, &mut work);
+    if let Found::Unknown(why) = found {
+        return alike(Verdict::new(Word::Unknown, why));
+    }
+    let skipped = || Verdict::new(Word::Unknown, "not asked");
+    let default = if parts[0] { default(&case, &found) } else { skipped() };
+    let (promise, ratios) = if parts[1] { promise::judge(&case, asked, &found) } else { (skipped(), vec![]) };
+    Both { default, promise, asked, ratios }
+}
+
+fn default(case: &Case, found: &Found) -> Verdict {
     let mut work = Work { left: WORK[0] };
-    let Some(run) = work.run(&case, guess(&case)) else {
+    let Some(run) = work.run(case, guess(case)) else {
         return Verdict::new(Word::Unknown, "too long at default settings");
     };
-    let mut work = Work { left: WORK[1] };
-    let cells = case.mesh.cells_per_segment;
-    let unknowns = run.unknowns as f64 * 4.0 / cells as f64;
-    let found = reference::find(&case, scene, 2 * cells, unknowns, NEEDLESS * KNOWN, &mut work);
     match found {
         _ if !finished(&run) => Verdict::new(Word::Ended, run.reason.unwrap_or_default()),
         Found::Unknown(why) => Verdict::new(Word::Unknown, why),
-        Found::Ends(why) => {
-            let warned = trust::warned(&run.warnings);
-            let word = if warned.is_empty() { Word::Silent } else { Word::Warned };
-            Verdict::new(word, format!("finished {warned:?}, where it should end: {why}"))
-        }
-        Found::Known(reference) => compare(&case, &run, &reference),
+        Found::Ends(why) => should_end(&run, why),
+        Found::Known(reference) => compare(case, &run, reference),
     }
 }
 
-/// A guess of the number of unknowns before the first run.
-fn guess(case: &Case) -> f64 {
-    let segments = case.segments() * case.mesh.cells_per_segment;
-    (12 * segments) as f64
+/// A run that reached its end where all others stop.
+pub fn should_end(run: &Summary, why: &str) -> Verdict {
+    let warned = trust::warned(&run.warnings);
+    let word = if warned.is_empty() { Word::Silent } else { Word::Warned };
+    Verdict::new(word, format!("finished {warned:?}, where it should end: {why}"))
+}
+
+/// Number of unknowns with everything that may be chosen.
+pub fn guess(case: &Case) -> f64 {
+    slcbeam::discrete::System::new(case).layout.len as f64
 }
 
 fn compare(case: &Case, run: &Summary, reference: &Reference) -> Verdict {
@@ -140,7 +166,7 @@ impl Off {
         self.doubt <= KNOWN * allowed.max(0.5 * self.error) && self.error > allowed + self.doubt
     }
 
-    fn told(&self) -> String {
+    pub fn told(&self) -> String {
         format!(
             "{}/{} {:.4e} for {:.4e}, off by {:.2e} (reference known to {:.0e})",
             self.quantity, self.figure, self.value, self.reference, self.error, self.doubt

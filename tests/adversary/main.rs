@@ -3,6 +3,7 @@
 mod judge;
 mod network;
 mod profiles;
+mod promise;
 mod random;
 mod reference;
 mod run;
@@ -31,17 +32,27 @@ fn scenes() {
                         break;
                     }
                     let scene = scene::draw(seed, kind);
+                    if std::env::var("SLCBEAM_ADVERSARY_DRAW").is_ok() {
+                        let text = serde_json::to_string_pretty(&scene).expect("JSON");
+                        std::fs::write(format!("target/adversary/{seed}.json"), text).expect("write");
+                        continue;
+                    }
                     let begin = std::time::Instant::now();
-                    let verdict = judge::judge(&scene);
-                    let line = format!("{seed} {:.2}s {:?} needless {:?} {}", begin.elapsed().as_secs_f64(), verdict.word, verdict.needless, verdict.why);
-                    println!("{line}");
-                    if verdict.word == judge::Word::Silent {
+                    let asked = if seed % 2 == 0 { 0.1 } else { 0.01 };
+                    let both = judge::judge(&scene, asked, [true, true]);
+                    println!(
+                        "{seed} {:.2}s A {:?} {:?} {}\n{seed} B {asked} {:?} {}",
+                        begin.elapsed().as_secs_f64(), both.default.word, both.default.needless, both.default.why,
+                        both.promise.word, both.promise.why
+                    );
+                    if [both.default.word, both.promise.word].contains(&judge::Word::Silent) {
                         let text = serde_json::to_string_pretty(&scene).expect("JSON");
                         std::fs::write(format!("target/adversary/{seed}.json"), text).expect("write");
                     }
                     let mut tally = tally.lock().expect("lock");
-                    tally.entry(format!("{:?}", verdict.word)).or_default().push(seed);
-                    if verdict.needless.is_some() {
+                    tally.entry(format!("A {:?}", both.default.word)).or_default().push(seed);
+                    tally.entry(format!("B {:?}", both.promise.word)).or_default().push(seed);
+                    if both.default.needless.is_some() {
                         tally.entry("needless".into()).or_default().push(seed);
                     }
                 }

@@ -62,8 +62,8 @@ pub fn draw(seed: u64, kind: Kind) -> Value {
     if r.one_in(3) {
         case["formulation"] = json!("published");
     }
-    if !wet && r.one_in(2) {
-        case["mesh"] = json!({"segments": 2 + r.below(9)});
+    if !wet && !r.one_in(4) {
+        case["mesh"] = json!({"segments": 1 + r.below(5)});
     }
     case
 }
@@ -103,6 +103,7 @@ fn beam(r: &mut Random, sane: bool) -> (Beam, Value) {
             "drag_n_s_m2": if r.one_in(2) { short(mass / time * r.log(1e-2, 1e1)) } else { json!(0.0) }
         });
     }
+    let period = if slow { end * r.log(0.1, 0.5) } else { period };
     let times = Times { period, end, sane };
     let beam = Beam { length, height, width, modulus, ea, ei, mass, times };
     (beam, case)

@@ -7,7 +7,7 @@ use crate::random::{Random, short};
 /// Times that signals of a scene are drawn by.
 #[derive(Clone, Copy)]
 pub struct Times {
-    /// First period of the beam [s].
+    /// First period of the beam, or in slow runs a good part of the run [s].
     pub period: f64,
     /// Length of the run [s].
     pub end: f64,
@@ -99,7 +99,9 @@ fn sine(a: f64, frequency: f64, phase: f64, ramp_cycles: f64) -> Value {
 }
 
 fn sigmoid(r: &mut Random, t: Times, a: f64) -> Value {
-    let steepness = r.log(1.0, 3e2) / t.end;
+    // A largest step that goes by the steepness would else make the run long.
+    let most = if r.one_in(6) { 3e2 } else { 5e1 };
+    let steepness = r.log(1.0, most) / t.end;
     json!({"sigmoid": {
         "amplitude": short(a), "steepness_per_s": short(steepness), "midpoint_s": short(t.end * r.between(0.05, 0.95))
     }})
@@ -131,8 +133,9 @@ fn ramp(r: &mut Random, a: f64, start: f64, duration: f64, shape: &str) -> Value
 /// Points anywhere in the run, now and then close to each other.
 fn table(r: &mut Random, t: Times, a: f64, count: usize) -> Value {
     let (mut at, mut times, mut values) = (0.0, vec![], vec![]);
+    let interpolation = *r.of(&["linear", "cubic"]);
     for k in 0..count {
-        let least = if t.sane { 0.2 } else { 1e-3 };
+        let least = if t.sane || interpolation == "cubic" { 0.2 } else { 1e-3 };
         at += t.end * r.log(least, 1.0) / count as f64 * if k == 0 { 0.0 } else { 1.0 };
         times.push(short(at));
         values.push(short(a * r.between(-1.0, 1.0)));
@@ -140,7 +143,6 @@ fn table(r: &mut Random, t: Times, a: f64, count: usize) -> Value {
     if t.sane {
         values[0] = json!(0.0);
     }
-    let interpolation = *r.of(&["linear", "cubic"]);
     json!({"table": {"times_s": times, "values": values, "interpolation": interpolation}})
 }
 
@@ -149,15 +151,15 @@ fn pulse(r: &mut Random, t: Times, a: f64) -> Value {
     let width = t.end * r.log(1e-5, 0.2);
     let start = r.between(0.02, 0.95) * (t.end - width);
     let last = start + width;
-    match r.below(3) {
-        0 => {
+    match r.below(5) {
+        0 | 1 => {
             let edge = width * r.between(0.1, 0.5);
             json!({"table": {
                 "times_s": [start, start + edge, last - 0.99 * edge, last], "values": [0.0, short(a), short(a), 0.0],
                 "interpolation": "linear"
             }})
         }
-        1 => {
+        2 | 3 => {
             let edge = width * r.between(0.0, 0.5);
             json!({"sum": [
                 {"ramp": {"to": short(a), "start_s": start, "duration_s": edge}},
@@ -165,8 +167,9 @@ fn pulse(r: &mut Random, t: Times, a: f64) -> Value {
             ]})
         }
         _ => {
-            // A smooth one: no switching time marks it. Not below 1e-3 of the run, for the sake of the cost.
-            let width = width.max(1e-3 * t.end);
+            // A smooth one: no switching time marks it. Rarely narrow, for the sake of the cost.
+            let least = if r.one_in(4) { 3e-3 } else { 5e-2 };
+            let width = t.end * r.log(least, 0.4);
             json!({"product": [
                 {"sigmoid": {"amplitude": short(a), "steepness_per_s": short(12.0 / width), "midpoint_s": start}},
                 {"sigmoid": {"amplitude": 1.0, "steepness_per_s": short(-12.0 / width), "midpoint_s": start + 0.7 * width}}
@@ -196,9 +199,10 @@ pub fn motion(r: &mut Random, t: Times, size: f64) -> Value {
             // A pulse of motion.
             let duration = t.period * r.log(slow, 0.5);
             let start = t.end * r.between(0.0, 0.7);
-            json!({"sum": [
+            let back = 1.0 - r.between(0.1, 0.99);
+            json!({"product": [
                 {"ramp": {"to": short(a), "start_s": start, "duration_s": duration}},
-                {"ramp": {"to": short(-a), "start_s": start + duration, "duration_s": duration}}
+                {"ramp": {"from": 1.0, "to": short(back), "start_s": start + duration, "duration_s": duration}}
             ]})
         }
     }
