@@ -1,4 +1,14 @@
 //! The adversary: random scenes, each run as a user would and judged against a reference that shares little with it.
+//!
+//! Score: silently wrong is what is off by more than was asked, or at default settings by more than 5 % of the figure, without
+//! a warning that names it.
+//!
+//! ```text
+//! cargo test --release --test adversary -- --nocapture
+//! cargo test --release --test adversary -- --ignored --nocapture five_thousand
+//! SLCBEAM_ADVERSARY=100 SLCBEAM_ADVERSARY_FIRST=7001 cargo test --release --test adversary -- --ignored --nocapture five_thousand
+//! SLCBEAM_ADVERSARY_SEED=17 cargo test --release --test adversary -- --ignored --nocapture shrink_one
+//! ```
 
 mod judge;
 mod network;
@@ -8,58 +18,74 @@ mod random;
 mod reference;
 mod run;
 mod scene;
+mod shrink;
 mod signals;
+mod tally;
 mod trust;
 
-use std::collections::BTreeMap;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use judge::{Verdict, Word};
+use scene::Kind;
 
+fn number(name: &str) -> Option<u64> {
+    std::env::var(name).ok().and_then(|text| text.parse().ok())
+}
+
+/// Goal: of 200 scenes none is silently wrong.
 #[test]
-fn scenes() {
-    let number = |name: &str, or: u64| std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(or);
-    let (count, first) = (number("SLCBEAM_ADVERSARY", 200), number("SLCBEAM_ADVERSARY_FIRST", 1));
-    let kind = if std::env::var("SLCBEAM_ADVERSARY_SANE").is_ok() { scene::Kind::Sane } else { scene::Kind::Extreme };
-    let next = AtomicUsize::new(0);
-    let tally = Mutex::new(BTreeMap::<String, Vec<u64>>::new());
-    std::fs::create_dir_all("target/adversary").expect("folder");
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                loop {
-                    let seed = first + next.fetch_add(1, Ordering::Relaxed) as u64;
-                    if seed >= first + count {
-                        break;
-                    }
-                    let scene = scene::draw(seed, kind);
-                    if std::env::var("SLCBEAM_ADVERSARY_DRAW").is_ok() {
-                        let text = serde_json::to_string_pretty(&scene).expect("JSON");
-                        std::fs::write(format!("target/adversary/{seed}.json"), text).expect("write");
-                        continue;
-                    }
-                    let begin = std::time::Instant::now();
-                    let asked = if seed % 2 == 0 { 0.1 } else { 0.01 };
-                    let both = judge::judge(&scene, asked, [true, true]);
-                    println!(
-                        "{seed} {:.2}s A {:?} {:?} {}\n{seed} B {asked} {:?} {}",
-                        begin.elapsed().as_secs_f64(), both.default.word, both.default.needless, both.default.why,
-                        both.promise.word, both.promise.why
-                    );
-                    if [both.default.word, both.promise.word].contains(&judge::Word::Silent) {
-                        let text = serde_json::to_string_pretty(&scene).expect("JSON");
-                        std::fs::write(format!("target/adversary/{seed}.json"), text).expect("write");
-                    }
-                    let mut tally = tally.lock().expect("lock");
-                    tally.entry(format!("A {:?}", both.default.word)).or_default().push(seed);
-                    tally.entry(format!("B {:?}", both.promise.word)).or_default().push(seed);
-                    if both.default.needless.is_some() {
-                        tally.entry("needless".into()).or_default().push(seed);
-                    }
-                }
-            });
+fn no_scene_is_silently_wrong() {
+    let lines = tally::run(Kind::Extreme, 1, 200, false);
+    println!("{}", tally::table(&lines));
+    let silent = tally::silent(&lines);
+    assert!(silent.is_empty(), "{} silently wrong:\n{}", silent.len(), silent.join("\n"));
+}
+
+/// The same of 5000 scenes, or of `SLCBEAM_ADVERSARY` from `SLCBEAM_ADVERSARY_FIRST`; goes on where it ended.
+#[test]
+#[ignore = "takes hours"]
+fn no_scene_of_five_thousand_is_silently_wrong() {
+    let (count, first) = (number("SLCBEAM_ADVERSARY"), number("SLCBEAM_ADVERSARY_FIRST"));
+    let lines = tally::run(Kind::Extreme, first.unwrap_or(1), count.unwrap_or(5000), true);
+    println!("{}", tally::table(&lines));
+    let silent = tally::silent(&lines);
+    assert!(silent.is_empty(), "{} silently wrong:\n{}", silent.len(), silent.join("\n"));
+}
+
+/// Goal: of 200 sane scenes at most 5 % carry a warning that the reference shows to be needless, and none is silently wrong.
+#[test]
+#[ignore = "takes a quarter of an hour"]
+fn sane_scenes_are_rarely_warned_needlessly() {
+    let (count, first) = (number("SLCBEAM_ADVERSARY").unwrap_or(200), number("SLCBEAM_ADVERSARY_FIRST"));
+    let lines = tally::run(Kind::Sane, first.unwrap_or(1), count, true);
+    println!("{}", tally::table(&lines));
+    let needless = lines.iter().filter(|line| !line["needless"].is_null()).count() as u64;
+    assert!(20 * needless <= count, "{needless} of {count} warned needlessly");
+    let silent = tally::silent(&lines);
+    assert!(silent.is_empty(), "{} silently wrong:\n{}", silent.len(), silent.join("\n"));
+}
+
+/// Makes the scene of `SLCBEAM_ADVERSARY_SEED` smaller, as long as it is silently wrong for the same cause.
+#[test]
+#[ignore = "for a seed that fails"]
+fn shrink_one() {
+    let Some(seed) = number("SLCBEAM_ADVERSARY_SEED") else { return };
+    let kind = if std::env::var("SLCBEAM_ADVERSARY_SANE").is_ok() { Kind::Sane } else { Kind::Extreme };
+    let tries = number("SLCBEAM_ADVERSARY_TRIES").unwrap_or(150) as usize;
+    let scene = scene::draw(seed, kind);
+    let both = judge::judge(&scene, tally::asked(seed), [true, true]);
+    println!("{:?} {}\n{:?} {}", both.default.word, both.default.why, both.promise.word, both.promise.why);
+    let alike = |old: &Verdict, new: &Verdict| {
+        new.word == Word::Silent && (old.causes.is_empty() || old.causes.iter().any(|c| new.causes.contains(c)))
+    };
+    for (part, name) in [([true, false], "default"), ([false, true], "promise")] {
+        let of = |both: &judge::Both| if part[0] { both.default.clone() } else { both.promise.clone() };
+        let old = of(&both);
+        if old.word != Word::Silent {
+            continue;
         }
-    });
-    for (word, seeds) in tally.into_inner().expect("lock") {
-        println!("{word}: {} {seeds:?}", seeds.len());
+        let fails = |scene: &serde_json::Value| alike(&old, &of(&judge::judge(scene, both.asked, part)));
+        let small = shrink::shrink(&scene, tries, fails);
+        let path = format!("{}/{}-{name}-small.json", tally::FOLDER, tally::name(kind, seed));
+        tally::write(&path, &small);
+        println!("{path}: {}\n{small:#}", of(&judge::judge(&small, both.asked, part)).why);
     }
 }
