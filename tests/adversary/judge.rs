@@ -196,27 +196,33 @@ pub fn errors(figures: &Figures, reference: &Reference, counts: impl Fn(&str) ->
     all
 }
 
-/// Which single change makes most of an error go.
+/// What an error needs: changes without which the best of runs has most of it again; where none has, single changes that mend
+/// the run.
 fn causes(case: &Case, reference: &Reference, worst: &Off) -> Vec<Cause> {
-    let mut found = vec![];
-    for cause in [Cause::Effects, Cause::Time, Cause::Space, Cause::Outputs] {
+    let all = [Cause::Effects, Cause::Time, Cause::Space, Cause::Outputs];
+    let error = |changes: &[Cause]| {
         let mut better = case.clone();
-        match cause {
-            Cause::Effects => better.effects = slcbeam::case::schema::Effects::Full,
-            Cause::Time => better.solver.rtol = 1e-8,
-            Cause::Space => better = slcbeam::study::accuracy::plan::refined(case, reference.cells, case.solver.rtol),
-            Cause::Outputs | Cause::Joint => crate::run::sampled(&mut better),
+        for change in changes {
+            mend(&mut better, *change, reference.cells / 2);
         }
         let mut work = Work { left: WORK[1] };
-        let Some(run) = work.run(&better, guess(&better)) else { continue };
+        let run = work.run(&better, guess(&better)).filter(finished)?;
         let now = errors(&figures(&run), reference, |figure| figure == worst.figure);
-        let now = now.iter().find(|off| off.quantity == worst.quantity);
-        if finished(&run) && now.is_some_and(|off| off.error < 0.4 * worst.error) {
-            found.push(cause);
-        }
+        now.iter().find(|off| off.quantity == worst.quantity).map(|off| off.error)
+    };
+    let others = |cause: Cause| all.iter().copied().filter(|c| *c != cause).collect::<Vec<_>>();
+    let needs = |cause: &Cause| error(&others(*cause)).is_some_and(|e| e > 0.3 * worst.error);
+    let needed: Vec<Cause> = all.iter().copied().filter(needs).collect();
+    let mends = |cause: &Cause| error(&[*cause]).is_some_and(|e| e < 0.4 * worst.error);
+    let found = if needed.is_empty() { all.iter().copied().filter(mends).collect() } else { needed };
+    if found.is_empty() { vec![Cause::Joint] } else { found }
+}
+
+fn mend(case: &mut Case, cause: Cause, cells: usize) {
+    match cause {
+        Cause::Effects => case.effects = slcbeam::case::schema::Effects::Full,
+        Cause::Time => case.solver.rtol = 1e-7,
+        Cause::Space => *case = slcbeam::study::accuracy::plan::refined(case, cells, case.solver.rtol),
+        Cause::Outputs | Cause::Joint => crate::run::sampled(case),
     }
-    if found.is_empty() {
-        found.push(Cause::Joint);
-    }
-    found
 }
