@@ -44,7 +44,12 @@ pub struct Verdict {
 
 impl Verdict {
     pub fn new(word: Word, why: impl Into<String>) -> Self {
-        Self { word, why: why.into(), causes: vec![], needless: None }
+        Self {
+            word,
+            why: why.into(),
+            causes: vec![],
+            needless: None,
+        }
     }
 }
 
@@ -61,7 +66,10 @@ const WORK: [f64; 2] = [4e6, 2.5e7];
 pub fn read(scene: &Value) -> Result<Case, String> {
     match case::parse(&scene.to_string(), Path::new("scene.json"), Path::new("."), &[]) {
         Ok(loaded) => Ok(loaded.case),
-        Err(Error::Case(fault)) => Err(fault.violations.first().map_or(String::new(), |v| format!("{}: {}", v.pointer, v.what))),
+        Err(Error::Case(fault)) => Err(fault
+            .violations
+            .first()
+            .map_or(String::new(), |v| format!("{}: {}", v.pointer, v.what))),
         Err(other) => Err(other.to_string()),
     }
 }
@@ -78,24 +86,59 @@ pub struct Both {
     pub ratios: Vec<f64>,
 }
 
+impl Both {
+    fn alike(verdict: Verdict, asked: f64) -> Self {
+        Self {
+            default: verdict.clone(),
+            promise: verdict,
+            asked,
+            ratios: vec![],
+        }
+    }
+}
+
 /// Judges a scene with the default settings, and with an accuracy.
 pub fn judge(scene: &Value, asked: f64, parts: [bool; 2]) -> Both {
-    let alike = |verdict: Verdict| Both { default: verdict.clone(), promise: verdict, asked, ratios: vec![] };
-    let case = match read(scene) {
-        Ok(case) => case,
-        Err(why) => return alike(Verdict::new(Word::Refused, why)),
-    };
+    match (read(scene), reference(scene, WORK[1])) {
+        (Ok(case), Some(found)) => against(&case, &found, asked, parts),
+        (read, _) => Both::alike(Verdict::new(Word::Refused, read.err().unwrap_or_default()), asked),
+    }
+}
+
+/// The reference of a scene, unless that is refused, within so much work.
+pub fn reference(scene: &Value, work: f64) -> Option<Found> {
+    let case = read(scene).ok()?;
     let cells = case.mesh.cells_per_segment;
     let unknowns = guess(&case) * 4.0 / cells as f64;
-    let mut work = Work { left: WORK[1] };
-    let found = reference::find(&case, scene, 2 * cells, unknowns, NEEDLESS * KNOWN, &mut work);
+    let mut work = Work { left: work };
+    Some(reference::find(
+        &case,
+        scene,
+        2 * cells,
+        unknowns,
+        NEEDLESS * KNOWN,
+        &mut work,
+    ))
+}
+
+/// Judges a case against a reference.
+pub fn against(case: &Case, found: &Found, asked: f64, parts: [bool; 2]) -> Both {
     if let Found::Unknown(why) = found {
-        return alike(Verdict::new(Word::Unknown, why));
+        return Both::alike(Verdict::new(Word::Unknown, why.as_str()), asked);
     }
     let skipped = || Verdict::new(Word::Unknown, "not asked");
-    let default = if parts[0] { default(&case, &found) } else { skipped() };
-    let (promise, ratios) = if parts[1] { promise::judge(&case, asked, &found) } else { (skipped(), vec![]) };
-    Both { default, promise, asked, ratios }
+    let default = if parts[0] { default(case, found) } else { skipped() };
+    let (promise, ratios) = if parts[1] {
+        promise::judge(case, asked, found)
+    } else {
+        (skipped(), vec![])
+    };
+    Both {
+        default,
+        promise,
+        asked,
+        ratios,
+    }
 }
 
 fn default(case: &Case, found: &Found) -> Verdict {
@@ -105,7 +148,7 @@ fn default(case: &Case, found: &Found) -> Verdict {
     };
     match found {
         _ if !finished(&run) => Verdict::new(Word::Ended, run.reason.unwrap_or_default()),
-        Found::Unknown(why) => Verdict::new(Word::Unknown, why),
+        Found::Unknown(why) => Verdict::new(Word::Unknown, why.as_str()),
         Found::Ends(why) => should_end(&run, why),
         Found::Known(reference) => compare(case, &run, reference),
     }
@@ -135,7 +178,10 @@ fn compare(case: &Case, run: &Summary, reference: &Reference) -> Verdict {
         let named = warned.iter().any(|code| trust::names(*code, &causes, &worst.quantity));
         let word = if named { Word::Warned } else { Word::Silent };
         let why = format!("{told}; {causes:?}; warned {warned:?}");
-        return Verdict { causes, ..Verdict::new(word, why) };
+        return Verdict {
+            causes,
+            ..Verdict::new(word, why)
+        };
     }
     let doubt = reference.worst(|quantity| quantity != "efficiency");
     if doubt > KNOWN * DEFAULT {
@@ -151,7 +197,7 @@ fn compare(case: &Case, run: &Summary, reference: &Reference) -> Verdict {
 /// An error of a figure.
 pub struct Off {
     pub quantity: String,
-    pub figure: &'static str,
+    pub figure: String,
     pub value: f64,
     pub reference: f64,
     /// Relative to the quantity.
@@ -178,13 +224,13 @@ impl Off {
 pub fn errors(figures: &Figures, reference: &Reference, counts: impl Fn(&str) -> bool) -> Vec<Off> {
     let mut all = vec![];
     for (quantity, known) in &reference.figures {
-        for (&figure, &(value, error)) in known.iter().filter(|(figure, _)| counts(figure)) {
+        for (figure, &(value, error)) in known.iter().filter(|(figure, _)| counts(figure)) {
             let size = reference.sizes[quantity];
-            let got = figures.get(quantity).and_then(|q| q.get(figure)).copied();
+            let got = figures.get(quantity).and_then(|q| q.get(figure.as_str())).copied();
             let Some(got) = got else { continue };
             all.push(Off {
                 quantity: quantity.clone(),
-                figure,
+                figure: figure.clone(),
                 value: got,
                 reference: value,
                 error: (got - value).abs() / size,
@@ -208,13 +254,19 @@ fn causes(case: &Case, reference: &Reference, worst: &Off) -> Vec<Cause> {
         let mut work = Work { left: WORK[1] };
         let run = work.run(&better, guess(&better)).filter(finished)?;
         let now = errors(&figures(&run), reference, |figure| figure == worst.figure);
-        now.iter().find(|off| off.quantity == worst.quantity).map(|off| off.error)
+        now.iter()
+            .find(|off| off.quantity == worst.quantity)
+            .map(|off| off.error)
     };
     let others = |cause: Cause| all.iter().copied().filter(|c| *c != cause).collect::<Vec<_>>();
     let needs = |cause: &Cause| error(&others(*cause)).is_some_and(|e| e > 0.3 * worst.error);
     let needed: Vec<Cause> = all.iter().copied().filter(needs).collect();
     let mends = |cause: &Cause| error(&[*cause]).is_some_and(|e| e < 0.4 * worst.error);
-    let found = if needed.is_empty() { all.iter().copied().filter(mends).collect() } else { needed };
+    let found = if needed.is_empty() {
+        all.iter().copied().filter(mends).collect()
+    } else {
+        needed
+    };
     if found.is_empty() { vec![Cause::Joint] } else { found }
 }
 

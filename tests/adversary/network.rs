@@ -140,7 +140,12 @@ fn wires(r: &mut Random, b: &Beam, per_row: usize, conductance: f64, case: &mut 
         ports.push(json!({"at": point, "flow_m3_s": signals::load(r, t, flow)}));
     }
     case["network"] = json!({"chains": chains});
-    for (key, all) in [("junctions", junctions), ("tubes", tubes), ("ports", ports), ("turbines", turbines)] {
+    for (key, all) in [
+        ("junctions", junctions),
+        ("tubes", tubes),
+        ("ports", ports),
+        ("turbines", turbines),
+    ] {
         if !all.is_empty() {
             case["network"][key] = json!(all);
         }

@@ -72,6 +72,10 @@ pub fn at_rest_at_its_ends(r: &mut Random, size: f64, sane: bool) -> Value {
     if sane || r.one_in(2) {
         return hump;
     }
-    let waves = if r.one_in(2) { 1.0 + r.below(8) as f64 } else { r.between(0.5, 6.0) };
+    let waves = if r.one_in(2) {
+        1.0 + r.below(8) as f64
+    } else {
+        r.between(0.5, 6.0)
+    };
     json!({"product": [hump, {"sine": {"waves": short(waves)}}]})
 }

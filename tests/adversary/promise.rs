@@ -35,9 +35,11 @@ pub fn judge(case: &Case, asked: f64, found: &Found) -> (Verdict, Vec<f64>) {
     let run = outcome.summary;
     let none = |verdict| (verdict, vec![]);
     match found {
-        _ if !finished(&run) && run.reason.as_deref() == Some(BUDGET) => none(Verdict::new(Word::Unknown, "search too long")),
+        _ if !finished(&run) && run.reason.as_deref() == Some(BUDGET) => {
+            none(Verdict::new(Word::Unknown, "search too long"))
+        }
         _ if !finished(&run) => none(Verdict::new(Word::Ended, run.reason.unwrap_or_default())),
-        Found::Unknown(why) => none(Verdict::new(Word::Unknown, why)),
+        Found::Unknown(why) => none(Verdict::new(Word::Unknown, why.as_str())),
         Found::Ends(why) => none(should_end(&run, why)),
         Found::Known(reference) => kept(&run, asked, reference),
     }
@@ -72,7 +74,10 @@ fn kept(run: &Summary, asked: f64, reference: &Reference) -> (Verdict, Vec<f64>)
             }
         }
     }
-    let doubt = off.iter().filter(|one| one.quantity != "efficiency").fold(0.0, |m: f64, one| m.max(one.doubt));
+    let doubt = off
+        .iter()
+        .filter(|one| one.quantity != "efficiency")
+        .fold(0.0, |m: f64, one| m.max(one.doubt));
     let word = match (worst.beyond(asked), accuracy.reached) {
         (true, true) => Word::Silent,
         (true, false) => Word::Warned,

@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use slcbeam::case::Case;
 use slcbeam::case::schema::Method;
@@ -14,9 +15,10 @@ use slcbeam::run::summary::Summary;
 use crate::run::{Figures, Work, exact, figures, finished};
 
 /// A figure and its error, and for each quantity the size that errors refer to.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Reference {
     /// Value and error of every figure.
-    pub figures: BTreeMap<String, BTreeMap<&'static str, (f64, f64)>>,
+    pub figures: BTreeMap<String, BTreeMap<String, (f64, f64)>>,
     /// Largest figure of a quantity, or what is nothing beside others.
     pub sizes: BTreeMap<String, f64>,
     /// Cells a segment of the finer mesh.
@@ -24,6 +26,8 @@ pub struct Reference {
 }
 
 /// What came of it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Found {
     /// Figures.
     Known(Box<Reference>),
@@ -60,18 +64,37 @@ pub fn find(case: &Case, scene: &Value, coarse: usize, unknowns: f64, close: f64
     last
 }
 
-fn on_meshes(case: &Case, cells: usize, rtol: [f64; 2], unknowns: f64, fastest: f64, close: f64, work: &mut Work) -> Found {
+fn on_meshes(
+    case: &Case,
+    cells: usize,
+    rtol: [f64; 2],
+    unknowns: f64,
+    fastest: f64,
+    close: f64,
+    work: &mut Work,
+) -> Found {
     let mut run = |cells: usize, method: Method, rtol: f64| {
-        work.run(&exact(case, cells, method, rtol, fastest), unknowns * cells as f64 / 4.0)
+        work.run(
+            &exact(case, cells, method, rtol, fastest),
+            unknowns * cells as f64 / 4.0,
+        )
     };
     let too_long = || Found::Unknown("too long".into());
-    let Some(check) = run(cells, Method::Esdirk46, rtol[1]) else { return too_long() };
+    let Some(check) = run(cells, Method::Esdirk46, rtol[1]) else {
+        return too_long();
+    };
     if !finished(&check) {
-        let Some(again) = run(cells, Method::Esdirk57, rtol[0]) else { return too_long() };
+        let Some(again) = run(cells, Method::Esdirk57, rtol[0]) else {
+            return too_long();
+        };
         return ended(&check, &again);
     }
-    let Some(coarse) = run(cells, Method::Esdirk57, rtol[0]) else { return too_long() };
-    let Some(fine) = run(2 * cells, Method::Esdirk57, rtol[0]) else { return too_long() };
+    let Some(coarse) = run(cells, Method::Esdirk57, rtol[0]) else {
+        return too_long();
+    };
+    let Some(fine) = run(2 * cells, Method::Esdirk57, rtol[0]) else {
+        return too_long();
+    };
     for one in [&coarse, &fine] {
         if !finished(one) {
             return ended(&check, one);
@@ -81,7 +104,9 @@ fn on_meshes(case: &Case, cells: usize, rtol: [f64; 2], unknowns: f64, fastest: 
     let mut meshes = [coarse, fine];
     let mut cells = 2 * cells;
     while cells < FINEST && found.worst(|_| true) > close {
-        let Some(finer) = run(2 * cells, Method::Esdirk57, rtol[0]) else { break };
+        let Some(finer) = run(2 * cells, Method::Esdirk57, rtol[0]) else {
+            break;
+        };
         if !finished(&finer) {
             break;
         }
@@ -120,23 +145,34 @@ fn limit_with_time(case: &Case, time: [&Summary; 2], meshes: [&Summary; 2], cell
     let mut all = BTreeMap::new();
     for (quantity, of) in &fine {
         let mut known = BTreeMap::new();
-        for (&figure, &value) in of {
+        for (figure, &value) in of {
             let difference = |a: &Figures, b: &Figures| match (at(a, quantity, figure), at(b, quantity, figure)) {
                 (Some(a), Some(b)) => a - b,
                 _ => f64::INFINITY,
             };
             let change = difference(&fine, &coarse) / 3.0;
             let error = 2.0 * change.abs() + 2.0 * difference(&check, &same).abs();
-            known.insert(figure, if change.is_finite() { (value + change, error) } else { (value, f64::INFINITY) });
+            known.insert(
+                figure.clone(),
+                if change.is_finite() {
+                    (value + change, error)
+                } else {
+                    (value, f64::INFINITY)
+                },
+            );
         }
         all.insert(quantity.clone(), known);
     }
-    Reference { figures: all, sizes, cells }
+    Reference {
+        figures: all,
+        sizes,
+        cells,
+    }
 }
 
 /// Largest figures, from below by what is nothing: 1e-9 of the length, 1e-6 of others of the same unit.
 fn sizes(case: &Case, summary: &Summary, figures: &Figures) -> BTreeMap<String, f64> {
-    let largest = |of: &BTreeMap<&'static str, f64>| of.values().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let largest = |of: &BTreeMap<String, f64>| of.values().fold(0.0_f64, |m, v| m.max(v.abs()));
     let unit = |name: &str| name.rsplit('_').next().unwrap_or_default().to_owned();
     let length = case.beam.length_m;
     let most = |wanted: &str| {
@@ -148,21 +184,27 @@ fn sizes(case: &Case, summary: &Summary, figures: &Figures) -> BTreeMap<String, 
     let floor = |name: &str| match unit(name).as_str() {
         "m" => (1e-9 * length).max(1e-6 * moved),
         "rad" => 1e-9_f64.max(1e-6 * moved / length),
-        "j" => 1e-6 * energy + 1e-15 * case.beam.young_modulus_pa * length * case.beam.height_m * case.beam.width_m * 1e-6,
+        "j" => {
+            1e-6 * energy + 1e-15 * case.beam.young_modulus_pa * length * case.beam.height_m * case.beam.width_m * 1e-6
+        }
         "pa" => 1e-12 * case.beam.young_modulus_pa,
         _ => 1e-3,
     };
-    let of = |(name, of): (&String, &BTreeMap<&'static str, f64>)| (name.clone(), largest(of).max(floor(name)));
+    let of = |(name, of): (&String, &BTreeMap<String, f64>)| (name.clone(), largest(of).max(floor(name)));
     figures.iter().map(of).collect()
 }
 
 impl Reference {
     /// Largest relative error of the reference itself, over some quantities.
     pub fn worst(&self, quantities: impl Fn(&str) -> bool) -> f64 {
-        let of = |(name, all): (&String, &BTreeMap<&'static str, (f64, f64)>)| {
+        let of = |(name, all): (&String, &BTreeMap<String, (f64, f64)>)| {
             all.values().map(|(_, e)| e / self.sizes[name]).fold(0.0, f64::max)
         };
-        self.figures.iter().filter(|(name, _)| quantities(name)).map(of).fold(0.0, f64::max)
+        self.figures
+            .iter()
+            .filter(|(name, _)| quantities(name))
+            .map(of)
+            .fold(0.0, f64::max)
     }
 }
 

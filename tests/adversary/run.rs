@@ -88,11 +88,16 @@ pub fn sampled(case: &mut Case) {
 }
 
 /// Figures of every quantity, by the names in `summary.json`.
-pub type Figures = BTreeMap<String, BTreeMap<&'static str, f64>>;
+pub type Figures = BTreeMap<String, BTreeMap<String, f64>>;
 
 /// The figures of a summary.
 pub fn figures(summary: &Summary) -> Figures {
-    let of = |(name, q): (&String, &slcbeam::run::summary::Quantity)| (name.clone(), q.figures().collect());
+    let of = |(name, q): (&String, &slcbeam::run::summary::Quantity)| {
+        (
+            name.clone(),
+            q.figures().map(|(figure, value)| (figure.to_owned(), value)).collect(),
+        )
+    };
     summary.quantities.iter().map(of).collect()
 }
 

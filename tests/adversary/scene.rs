@@ -105,7 +105,16 @@ fn beam(r: &mut Random, sane: bool) -> (Beam, Value) {
     }
     let period = if slow { end * r.log(0.1, 0.5) } else { period };
     let times = Times { period, end, sane };
-    let beam = Beam { length, height, width, modulus, ea, ei, mass, times };
+    let beam = Beam {
+        length,
+        height,
+        width,
+        modulus,
+        ea,
+        ei,
+        mass,
+        times,
+    };
     (beam, case)
 }
 

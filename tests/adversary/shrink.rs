@@ -62,7 +62,11 @@ fn candidates(scene: &Value) -> Vec<Value> {
         all.push(rounded);
     }
     for at in &places {
-        if let Some(number) = scene.pointer(at).and_then(Value::as_f64).filter(|n| *n != 0.0 && *n != 1.0) {
+        if let Some(number) = scene
+            .pointer(at)
+            .and_then(Value::as_f64)
+            .filter(|n| *n != 0.0 && *n != 1.0)
+        {
             all.push(replaced(scene, at, digits(number, 0)));
         }
     }
@@ -71,9 +75,18 @@ fn candidates(scene: &Value) -> Vec<Value> {
 
 /// Lists that may have fewer entries.
 fn items_go(at: &str) -> bool {
-    ["loads", "chains", "tubes", "ports", "turbines", "sum", "product", "coefficients"]
-        .iter()
-        .any(|list| at.ends_with(list))
+    [
+        "loads",
+        "chains",
+        "tubes",
+        "ports",
+        "turbines",
+        "sum",
+        "product",
+        "coefficients",
+    ]
+    .iter()
+    .any(|list| at.ends_with(list))
 }
 
 /// What might stand in the place of a value.
@@ -82,7 +95,9 @@ fn plainer(at: &str, value: &Value) -> Vec<Value> {
     let mut all = vec![];
     match value {
         Value::Object(members) if members.len() == 1 => {
-            let Some((form, inner)) = members.iter().next() else { return all };
+            let Some((form, inner)) = members.iter().next() else {
+                return all;
+            };
             match (form.as_str(), inner) {
                 ("sum" | "product", Value::Array(parts)) => all.extend(parts.iter().cloned()),
                 ("sine" | "sigmoid" | "ramp" | "polynomial" | "table" | "cosine", _) => {

@@ -55,6 +55,9 @@ pub fn warned(warnings: &[String]) -> Vec<Code> {
 /// Whether a warning names an error of these causes in this quantity. Where no cause was found by itself any will do.
 pub fn names(code: Code, causes: &[Cause], quantity: &str) -> bool {
     let energy = quantity.ends_with("_j") || quantity == "efficiency";
-    let of = TRUST.iter().find(|(c, _)| *c == code).map_or(&[][..], |(_, causes)| causes);
+    let of = TRUST
+        .iter()
+        .find(|(c, _)| *c == code)
+        .map_or(&[][..], |(_, causes)| causes);
     (code != Code::EnergyFigure || energy) && (causes == [Cause::Joint] || causes.iter().any(|c| of.contains(c)))
 }
