@@ -1,0 +1,280 @@
+//! What becomes of a scene.
+
+use std::path::Path;
+
+use serde_json::Value;
+use slcbeam::case::{self, Case};
+use slcbeam::error::{Code, Error};
+use slcbeam::run::summary::Summary;
+
+use crate::promise;
+use crate::reference::{self, Found, Reference};
+use crate::run::{Figures, Work, figures, finished};
+use crate::trust::{self, Cause};
+
+/// How a scene ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Word {
+    /// Within what was promised.
+    Right,
+    /// Off, and said so.
+    Warned,
+    /// The run ended early and said why.
+    Ended,
+    /// Off, and not a word beside it.
+    Silent,
+    /// The reference is not known well enough.
+    Unknown,
+    /// Refused by the check of the case.
+    Refused,
+}
+
+/// A verdict on a scene's run with the settings of the program.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    /// In one word.
+    pub word: Word,
+    /// Why, with the worst figure.
+    pub why: String,
+    /// Causes of an error.
+    pub causes: Vec<Cause>,
+    /// A warning of trust, while every figure is right to 1 %.
+    pub needless: Option<Vec<Code>>,
+}
+
+impl Verdict {
+    pub fn new(word: Word, why: impl Into<String>) -> Self {
+        Self {
+            word,
+            why: why.into(),
+            causes: vec![],
+            needless: None,
+        }
+    }
+}
+
+/// Off by more than this at default settings, relative to the figure.
+pub const DEFAULT: f64 = 0.05;
+/// A reference is known when its error is below this part of what is judged by it.
+pub const KNOWN: f64 = 0.2;
+/// Right to this, a warning was needless.
+const NEEDLESS: f64 = 0.01;
+/// Steps times unknowns times stages for one scene: with the default settings, and for the reference.
+const WORK: [f64; 2] = [4e6, 2.5e7];
+
+/// Reads a scene.
+pub fn read(scene: &Value) -> Result<Case, String> {
+    match case::parse(&scene.to_string(), Path::new("scene.json"), Path::new("."), &[]) {
+        Ok(loaded) => Ok(loaded.case),
+        Err(Error::Case(fault)) => Err(fault
+            .violations
+            .first()
+            .map_or(String::new(), |v| format!("{}: {}", v.pointer, v.what))),
+        Err(other) => Err(other.to_string()),
+    }
+}
+
+/// The two verdicts on a scene.
+pub struct Both {
+    /// On the default settings.
+    pub default: Verdict,
+    /// On an accuracy asked for.
+    pub promise: Verdict,
+    /// What was asked for.
+    pub asked: f64,
+    /// Error over estimate of every quantity whose error is known.
+    pub ratios: Vec<f64>,
+}
+
+impl Both {
+    fn alike(verdict: Verdict, asked: f64) -> Self {
+        Self {
+            default: verdict.clone(),
+            promise: verdict,
+            asked,
+            ratios: vec![],
+        }
+    }
+}
+
+/// Judges a scene with the default settings, and with an accuracy.
+pub fn judge(scene: &Value, asked: f64, parts: [bool; 2]) -> Both {
+    match (read(scene), reference(scene, WORK[1])) {
+        (Ok(case), Some(found)) => against(&case, &found, asked, parts),
+        (read, _) => Both::alike(Verdict::new(Word::Refused, read.err().unwrap_or_default()), asked),
+    }
+}
+
+/// The reference of a scene, unless that is refused, within so much work.
+pub fn reference(scene: &Value, work: f64) -> Option<Found> {
+    let case = read(scene).ok()?;
+    let cells = case.mesh.cells_per_segment;
+    let unknowns = guess(&case) * 4.0 / cells as f64;
+    let mut work = Work { left: work };
+    Some(reference::find(
+        &case,
+        scene,
+        2 * cells,
+        unknowns,
+        NEEDLESS * KNOWN,
+        &mut work,
+    ))
+}
+
+/// Judges a case against a reference.
+pub fn against(case: &Case, found: &Found, asked: f64, parts: [bool; 2]) -> Both {
+    if let Found::Unknown(why) = found {
+        return Both::alike(Verdict::new(Word::Unknown, why.as_str()), asked);
+    }
+    let skipped = || Verdict::new(Word::Unknown, "not asked");
+    let default = if parts[0] { default(case, found) } else { skipped() };
+    let (promise, ratios) = if parts[1] {
+        promise::judge(case, asked, found)
+    } else {
+        (skipped(), vec![])
+    };
+    Both {
+        default,
+        promise,
+        asked,
+        ratios,
+    }
+}
+
+fn default(case: &Case, found: &Found) -> Verdict {
+    let mut work = Work { left: WORK[0] };
+    let Some(run) = work.run(case, guess(case)) else {
+        return Verdict::new(Word::Unknown, "too long at default settings");
+    };
+    match found {
+        _ if !finished(&run) => Verdict::new(Word::Ended, run.reason.unwrap_or_default()),
+        Found::Unknown(why) => Verdict::new(Word::Unknown, why.as_str()),
+        Found::Ends(why) => should_end(&run, why),
+        Found::Known(reference) => compare(case, &run, reference),
+    }
+}
+
+/// A run that reached its end where all others stop.
+pub fn should_end(run: &Summary, why: &str) -> Verdict {
+    let warned = trust::warned(&run.warnings);
+    let word = if warned.is_empty() { Word::Silent } else { Word::Warned };
+    Verdict::new(word, format!("finished {warned:?}, where it should end: {why}"))
+}
+
+/// Number of unknowns with everything that may be chosen.
+pub fn guess(case: &Case) -> f64 {
+    slcbeam::discrete::System::new(case).layout.len as f64
+}
+
+fn compare(case: &Case, run: &Summary, reference: &Reference) -> Verdict {
+    let warned = trust::warned(&run.warnings);
+    let off = errors(&figures(run), reference, |_| true);
+    let Some(worst) = off.first() else {
+        return Verdict::new(Word::Unknown, "no figures");
+    };
+    let told = worst.told();
+    if worst.beyond(DEFAULT) {
+        let causes = causes(case, reference, worst);
+        let named = warned.iter().any(|code| trust::names(*code, &causes, &worst.quantity));
+        let word = if named { Word::Warned } else { Word::Silent };
+        let why = format!("{told}; {causes:?}; warned {warned:?}");
+        return Verdict {
+            causes,
+            ..Verdict::new(word, why)
+        };
+    }
+    let doubt = reference.worst(|quantity| quantity != "efficiency");
+    if doubt > KNOWN * DEFAULT {
+        return Verdict::new(Word::Unknown, format!("reference known to {doubt:.1e} only"));
+    }
+    let right = off.iter().all(|one| one.error + one.doubt <= NEEDLESS);
+    Verdict {
+        needless: (right && !warned.is_empty()).then_some(warned),
+        ..Verdict::new(Word::Right, told)
+    }
+}
+
+/// An error of a figure.
+pub struct Off {
+    pub quantity: String,
+    pub figure: String,
+    pub value: f64,
+    pub reference: f64,
+    /// Relative to the quantity.
+    pub error: f64,
+    /// The reference's own.
+    pub doubt: f64,
+}
+
+impl Off {
+    /// Surely off by more than this.
+    pub fn beyond(&self, allowed: f64) -> bool {
+        self.doubt <= KNOWN * allowed.max(0.5 * self.error) && self.error > allowed + self.doubt
+    }
+
+    pub fn told(&self) -> String {
+        format!(
+            "{}/{} {:.4e} for {:.4e}, off by {:.2e} (reference known to {:.0e})",
+            self.quantity, self.figure, self.value, self.reference, self.error, self.doubt
+        )
+    }
+}
+
+/// Errors of all figures that count, worst first: those that are surely large before those that may be.
+pub fn errors(figures: &Figures, reference: &Reference, counts: impl Fn(&str) -> bool) -> Vec<Off> {
+    let mut all = vec![];
+    for (quantity, known) in &reference.figures {
+        for (figure, &(value, error)) in known.iter().filter(|(figure, _)| counts(figure)) {
+            let size = reference.sizes[quantity];
+            let got = figures.get(quantity).and_then(|q| q.get(figure.as_str())).copied();
+            let Some(got) = got else { continue };
+            all.push(Off {
+                quantity: quantity.clone(),
+                figure: figure.clone(),
+                value: got,
+                reference: value,
+                error: (got - value).abs() / size,
+                doubt: error / size,
+            });
+        }
+    }
+    all.sort_by(|a, b| (b.error - 3.0 * b.doubt).total_cmp(&(a.error - 3.0 * a.doubt)));
+    all
+}
+
+/// What an error needs: changes without which the best of runs has most of it again; where none has, single changes that mend
+/// the run.
+fn causes(case: &Case, reference: &Reference, worst: &Off) -> Vec<Cause> {
+    let all = [Cause::Effects, Cause::Time, Cause::Space, Cause::Outputs];
+    let error = |changes: &[Cause]| {
+        let mut better = case.clone();
+        for change in changes {
+            mend(&mut better, *change, reference.cells / 2);
+        }
+        let mut work = Work { left: WORK[1] };
+        let run = work.run(&better, guess(&better)).filter(finished)?;
+        let now = errors(&figures(&run), reference, |figure| figure == worst.figure);
+        now.iter()
+            .find(|off| off.quantity == worst.quantity)
+            .map(|off| off.error)
+    };
+    let others = |cause: Cause| all.iter().copied().filter(|c| *c != cause).collect::<Vec<_>>();
+    let needs = |cause: &Cause| error(&others(*cause)).is_some_and(|e| e > 0.3 * worst.error);
+    let needed: Vec<Cause> = all.iter().copied().filter(needs).collect();
+    let mends = |cause: &Cause| error(&[*cause]).is_some_and(|e| e < 0.4 * worst.error);
+    let found = if needed.is_empty() {
+        all.iter().copied().filter(mends).collect()
+    } else {
+        needed
+    };
+    if found.is_empty() { vec![Cause::Joint] } else { found }
+}
+
+fn mend(case: &mut Case, cause: Cause, cells: usize) {
+    match cause {
+        Cause::Effects => case.effects = slcbeam::case::schema::Effects::Full,
+        Cause::Time => case.solver.rtol = 1e-7,
+        Cause::Space => *case = slcbeam::study::accuracy::plan::refined(case, cells, case.solver.rtol),
+        Cause::Outputs | Cause::Joint => crate::run::sampled(case),
+    }
+}

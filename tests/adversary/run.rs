@@ -1,0 +1,107 @@
+//! One run within a budget that is counted, not timed, so that it is the same on every machine.
+
+use std::collections::BTreeMap;
+
+use slcbeam::case::Case;
+use slcbeam::case::schema::{Effects, Method};
+use slcbeam::error::Result;
+use slcbeam::run::dynamics;
+use slcbeam::run::record::{Control, Header, Progress, Recorder};
+use slcbeam::run::summary::{Status, Summary};
+use slcbeam::study::accuracy::plan;
+
+/// Why a run was cut short by its budget.
+pub const BUDGET: &str = "budget";
+
+/// Keeps nothing and stops when the steps are used up.
+pub struct Steps(pub u64);
+
+impl Recorder for Steps {
+    fn begin(&mut self, _: &Header) -> Result<()> {
+        Ok(())
+    }
+    fn history(&mut self, _: &[f64]) -> Result<()> {
+        Ok(())
+    }
+    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
+        Ok(())
+    }
+    fn progress(&mut self, progress: &Progress) -> Result<Control> {
+        Ok(match progress.steps >= self.0 {
+            true => Control::Stop(BUDGET.into()),
+            false => Control::Continue,
+        })
+    }
+}
+
+/// What may still be spent on a scene: steps times unknowns times stages.
+pub struct Work {
+    /// What is left.
+    pub left: f64,
+}
+
+impl Work {
+    /// Runs a case; `unknowns` is a guess of their number. No summary where the budget did not last.
+    pub fn run(&mut self, case: &Case, unknowns: f64) -> Option<Summary> {
+        let stages = match case.solver.method {
+            Method::Esdirk57 => 7.0,
+            Method::Esdirk46 => 6.0,
+            Method::Auto | Method::Ida | Method::Trbdf2 | Method::Esdirk34 => 2.0,
+        };
+        let price = unknowns.max(1.0) * stages;
+        let steps = (self.left / price) as u64;
+        if steps < 50 {
+            self.left = 0.0;
+            return None;
+        }
+        let outcome = dynamics::run(case, &mut Steps(steps)).ok()?;
+        self.left -= outcome.summary.solver.steps as f64 * price;
+        (outcome.summary.reason.as_deref() != Some(BUDGET)).then_some(outcome.summary)
+    }
+}
+
+/// The case with everything it describes, on a mesh, with a one-step method, no step longer than `fastest` [s], sampled finely.
+pub fn exact(case: &Case, cells: usize, method: Method, rtol: f64, fastest: f64) -> Case {
+    let mut case = plan::refined(case, cells, rtol);
+    case.effects = Effects::Full;
+    case.solver.method = method;
+    // Slow things too are looked at often, and nothing fast is stepped over.
+    case.solver.max_step_s = Some(fastest.min(case.time.end_s / 100.0));
+    sampled(&mut case);
+    case
+}
+
+/// Least number of samples in a run.
+const SAMPLES: f64 = 2000.0;
+
+/// Outputs at a whole part of their interval, enough to see every swing.
+pub fn sampled(case: &mut Case) {
+    let interval = case.time.output_interval();
+    let window = case.time.window();
+    let parts = (interval * SAMPLES / case.time.end_s - 1e-6).ceil().max(1.0);
+    case.time.output_interval_s = Some(interval / parts);
+    case.time.fields_interval_s = Some(case.time.end_s / 10.0).filter(|f| *f >= interval);
+    if case.time.fields_interval_s.is_none() {
+        case.time.fields_interval_s = Some(interval);
+    }
+    case.time.window_s = Some(window);
+}
+
+/// Figures of every quantity, by the names in `summary.json`.
+pub type Figures = BTreeMap<String, BTreeMap<String, f64>>;
+
+/// The figures of a summary.
+pub fn figures(summary: &Summary) -> Figures {
+    let of = |(name, q): (&String, &slcbeam::run::summary::Quantity)| {
+        (
+            name.clone(),
+            q.figures().map(|(figure, value)| (figure.to_owned(), value)).collect(),
+        )
+    };
+    summary.quantities.iter().map(of).collect()
+}
+
+/// Whether a run reached its end.
+pub fn finished(summary: &Summary) -> bool {
+    summary.status == Status::Finished
+}

@@ -1,0 +1,204 @@
+//! What was found so far, a line a scene, so that a search goes on where it ended.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, OpenOptions};
+use std::io::Write;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use serde_json::{Value, json};
+
+use crate::judge::{self, Both, Word};
+use crate::scene::{self, Kind};
+use crate::stored;
+
+/// Where scenes that fail, and the tally, are written.
+pub const FOLDER: &str = "target/adversary";
+
+/// Runs scenes on two threads and returns the line of each; with `resume` those of earlier runs of this build are kept.
+pub fn run(kind: Kind, first: u64, count: u64, resume: bool) -> Vec<Value> {
+    fs::create_dir_all(FOLDER).expect("a folder for what is found");
+    let file = format!("{FOLDER}/tally.jsonl");
+    let build = build();
+    let earlier = if resume {
+        read(&file, &build, kind)
+    } else {
+        BTreeMap::new()
+    };
+    let seeds: Vec<u64> = (first..first + count)
+        .filter(|seed| !earlier.contains_key(seed))
+        .collect();
+    let all = stored::read();
+    let next = AtomicUsize::new(0);
+    let lines: Vec<Value> = earlier
+        .into_iter()
+        .filter(|(s, _)| (first..first + count).contains(s))
+        .map(|(_, l)| l)
+        .collect();
+    let lines = Mutex::new(lines);
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while let Some(&seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let line = one(kind, seed, &build, &all);
+                    println!("{}", told(&line));
+                    let mut lines = lines.lock().expect("no thread panics while it writes");
+                    if resume {
+                        let mut file = OpenOptions::new()
+                            .create(true)
+                            .append(true)
+                            .open(&file)
+                            .expect("the tally");
+                        writeln!(file, "{line}").expect("the tally");
+                    }
+                    lines.push(line);
+                }
+            });
+        }
+    });
+    let mut lines = lines.into_inner().expect("no thread panics while it writes");
+    lines.sort_by_key(|line| line["seed"].as_u64());
+    lines
+}
+
+/// What was asked of a seed's scene.
+pub fn asked(seed: u64) -> f64 {
+    if seed.is_multiple_of(2) { 0.1 } else { 0.01 }
+}
+
+fn one(kind: Kind, seed: u64, build: &str, all: &stored::All) -> Value {
+    let scene = scene::draw(seed, kind);
+    let known =
+        stored::of(all, kind, seed, &scene).and_then(|one| Some((judge::read(&scene).ok()?, one.found.as_ref()?)));
+    let Both {
+        default,
+        promise,
+        asked,
+        ratios,
+    } = match known {
+        Some((case, found)) => judge::against(&case, found, asked(seed), [true, true]),
+        None => judge::judge(&scene, asked(seed), [true, true]),
+    };
+    for (part, verdict) in [("default", &default), ("promise", &promise)] {
+        if verdict.word == Word::Silent {
+            write(&format!("{FOLDER}/{}-{part}.json", name(kind, seed)), &scene);
+        }
+    }
+    json!({
+        "build": build, "kind": format!("{kind:?}"), "seed": seed, "asked": asked, "ratios": ratios,
+        "default": format!("{:?}", default.word), "default_why": default.why,
+        "causes": default.causes.iter().map(|c| format!("{c:?}")).collect::<Vec<_>>(),
+        "needless": default.needless.map(|codes| codes.iter().map(|c| c.id()).collect::<Vec<_>>()),
+        "promise": format!("{:?}", promise.word), "promise_why": promise.why
+    })
+}
+
+/// A scene's name.
+pub fn name(kind: Kind, seed: u64) -> String {
+    format!("{}-{seed}", if kind == Kind::Sane { "sane" } else { "scene" })
+}
+
+/// Writes a scene so that `slcbeam run` takes it.
+pub fn write(path: &str, scene: &Value) {
+    fs::write(Path::new(path), format!("{scene:#}\n")).expect("a scene that fails is written");
+}
+
+fn told(line: &Value) -> String {
+    let text = |key: &str| line[key].as_str().unwrap_or_default().to_owned();
+    format!(
+        "{:>5} default {:<8} {}\n      asked {:<4} {:<8} {}",
+        line["seed"],
+        text("default"),
+        text("default_why"),
+        line["asked"],
+        text("promise"),
+        text("promise_why")
+    )
+}
+
+fn read(file: &str, build: &str, kind: Kind) -> BTreeMap<u64, Value> {
+    let text = fs::read_to_string(file).unwrap_or_default();
+    let lines = text.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    let mine = lines.filter(|line| line["build"] == build && line["kind"] == format!("{kind:?}"));
+    mine.filter_map(|line| Some((line["seed"].as_u64()?, line))).collect()
+}
+
+/// A number that another build does not have (FNV-1a of the program that runs).
+fn build() -> String {
+    let program = std::env::current_exe()
+        .ok()
+        .and_then(|path| fs::read(path).ok())
+        .unwrap_or_default();
+    let hash = program.iter().fold(0xCBF2_9CE4_8422_2325_u64, |h, b| {
+        (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01B3)
+    });
+    format!("{hash:016x}")
+}
+
+/// The tally as a table.
+pub fn table(lines: &[Value]) -> String {
+    let words = [
+        Word::Right,
+        Word::Warned,
+        Word::Ended,
+        Word::Silent,
+        Word::Unknown,
+        Word::Refused,
+    ];
+    let mut table = format!(
+        "| of {} | default settings | accuracy asked | seeds |\n|---|---|---|---|\n",
+        lines.len()
+    );
+    for word in words {
+        let seeds = |part: &str| -> Vec<u64> {
+            let mine = lines.iter().filter(|line| line[part] == format!("{word:?}"));
+            mine.filter_map(|line| line["seed"].as_u64()).collect()
+        };
+        let (a, b) = (seeds("default"), seeds("promise"));
+        let some: BTreeSet<u64> = a.iter().chain(&b).copied().collect();
+        let some: Vec<String> = some.iter().take(8).map(u64::to_string).collect();
+        table += &format!(
+            "| {} | {} | {} | {} |\n",
+            words_of(word),
+            a.len(),
+            b.len(),
+            some.join(", ")
+        );
+    }
+    let needless = lines.iter().filter(|line| !line["needless"].is_null()).count();
+    table += &format!("\n{needless} of {} warned needlessly.\n", lines.len());
+    let ratios: Vec<f64> = lines
+        .iter()
+        .flat_map(|l| l["ratios"].as_array().into_iter().flatten())
+        .filter_map(Value::as_f64)
+        .collect();
+    let share =
+        |keep: &dyn Fn(f64) -> bool| ratios.iter().filter(|r| keep(**r)).count() as f64 / ratios.len().max(1) as f64;
+    table += &format!(
+        "Error within 5 times its estimate: {:.1} %, estimate within a factor of 5: {:.1} % of {} quantities.\n",
+        100.0 * share(&|r| r <= 5.0),
+        100.0 * share(&|r| (0.2..=5.0).contains(&r)),
+        ratios.len()
+    );
+    table
+}
+
+fn words_of(word: Word) -> &'static str {
+    match word {
+        Word::Right => "right",
+        Word::Warned => "off, and warned of",
+        Word::Ended => "ended early, and said why",
+        Word::Silent => "**silently wrong**",
+        Word::Unknown => "not judged: reference not known well enough, or too long",
+        Word::Refused => "refused by the check of the case",
+    }
+}
+
+/// Seeds that are silently wrong, and how.
+pub fn silent(lines: &[Value]) -> Vec<String> {
+    let wrong = lines
+        .iter()
+        .filter(|l| [&l["default"], &l["promise"]].iter().any(|w| **w == "Silent"));
+    wrong.map(told).collect()
+}
