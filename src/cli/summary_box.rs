@@ -218,10 +218,14 @@ fn accuracy(summary: &Summary) -> Option<String> {
     worst.sort_by(|a, b| b.1.total.unwrap_or(f64::MAX).total_cmp(&a.1.total.unwrap_or(f64::MAX)));
     let shown = worst.iter().take(3).map(|(name, e)| match (e.total, e.time, e.space) {
         (Some(total), Some(time), Some(space)) => format!(
-            "{name} {} (time {}, space {})",
+            "{name} {} (time {}, space {}{})",
             significant(total, 2),
             significant(time, 2),
-            significant(space, 2)
+            significant(space, 2),
+            e.effects.map_or(String::new(), |effects| format!(
+                ", effects {}",
+                significant(effects, 2)
+            ))
         ),
         _ => format!("{name} unknown"),
     });

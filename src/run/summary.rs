@@ -126,17 +126,29 @@ pub struct Estimate {
     pub time: Option<f64>,
     /// Of the mesh.
     pub space: Option<f64>,
-    /// Both.
+    /// What the effects that are left out change; absent where none is left out that is not exact, or where that is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effects: Option<f64>,
+    /// Distance to another method at the same tolerance, which the error of the time integration is not taken below.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub method: Option<f64>,
+    /// Of time, mesh and effects together.
     pub total: Option<f64>,
 }
 
 /// A run that others were judged by.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pilot {
+    /// What it is, besides coarser or looser: another method, or with effects that were left out. Empty: nothing else.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub with: String,
     /// Beam cells per segment.
     pub cells_per_segment: usize,
     /// Tolerance.
     pub rtol: f64,
+    /// Unknowns.
+    #[serde(default)]
+    pub unknowns: usize,
     /// Steps.
     pub steps: u64,
     /// Wall time [s].
@@ -159,7 +171,7 @@ pub enum Judged {
 pub struct Accuracy {
     /// Relative error asked for.
     pub asked: f64,
-    /// Whether every estimate is below it.
+    /// Whether every estimate is known and not above it, and the effects that are left out are among what was judged.
     pub reached: bool,
     /// Mesh chosen: beam cells per segment.
     pub cells_per_segment: usize,
@@ -170,6 +182,9 @@ pub struct Accuracy {
     /// What is judged: every figure, or statistics alone where the motion cannot be followed that far.
     #[serde(default)]
     pub judged_by: Judged,
+    /// What was found of the effects that are left out, in words.
+    #[serde(default)]
+    pub effects: String,
     /// Estimates by quantity.
     pub quantities: BTreeMap<String, Estimate>,
     /// The runs that led there, the result's own not among them.

@@ -1,29 +1,136 @@
 //! Which quantities of a run say something.
 
+use std::collections::BTreeMap;
+
+use crate::case::Case;
+use crate::model::Model;
 use crate::run::summary::{Quantity, Summary};
 
-/// Quantities whose size is below this part of others of their unit are round-off.
+/// Quantities whose size is below this part of others of their unit, or of what the case is expected to do, are round-off.
 const NOTHING: f64 = 1e-6;
+/// Displacements below this part of the length, and pressures below this part of the modulus, need not be more than round-off;
+/// they count where the case is expected to do no more.
+const SMALL: f64 = 1e-9;
+
+/// Sizes below which quantities are round-off, known from the case alone: of a run in which nothing of a kind happens every
+/// figure of that kind is, and none stands beside a larger one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Floors {
+    /// Length of the beam [m].
+    length: f64,
+    /// Displacement [m], and angle times length.
+    displacement: f64,
+    /// Pressure [Pa].
+    pressure: f64,
+}
+
+impl Floors {
+    /// Of a case.
+    pub fn of(case: &Case) -> Self {
+        let scales = Model::new(case).scales;
+        let (length, modulus) = (case.beam.length_m, case.beam.young_modulus_pa);
+        Self {
+            length,
+            displacement: (SMALL * length).min(NOTHING * scales.transverse.max(scales.axial)),
+            pressure: (SMALL * modulus).min(NOTHING * scales.pressure),
+        }
+    }
+
+    /// In the unit that a quantity is compared in.
+    fn of_unit(&self, unit: &str, energy: f64) -> f64 {
+        match unit {
+            "m" => self.displacement,
+            "pa" => self.pressure,
+            "j" => NOTHING * energy,
+            _ => 0.0,
+        }
+    }
+
+    /// Unit and size in which a quantity is compared with others: an angle as the displacement that it makes.
+    fn weighed<'a>(&self, name: &'a str, q: &Quantity) -> (&'a str, f64) {
+        match name.rsplit('_').next().unwrap_or_default() {
+            "rad" => ("m", size(q) * self.length),
+            unit => (unit, size(q)),
+        }
+    }
+}
 
 /// Largest figure of a quantity, without its sign.
 pub fn size(quantity: &Quantity) -> f64 {
     quantity.figures().fold(0.0, |s, (_, x)| s.max(x.abs()))
 }
 
-/// The quantities that are more than round-off beside others of their unit, by name; an angle beside displacements, over the
-/// beam's length [m].
-pub fn counted(summary: &Summary, length: f64) -> impl Iterator<Item = (&String, &Quantity)> {
-    let all = &summary.quantities;
-    let weighed = move |name: &str, q: &Quantity| match name.rsplit('_').next().unwrap_or_default() {
-        "rad" => ("m".to_string(), size(q) * length),
-        unit => (unit.to_string(), size(q)),
-    };
-    all.iter().filter(move |(name, q)| {
-        let (unit, own) = weighed(name, q);
+/// The quantities that are more than round-off, by name: beside others of their unit, an angle beside displacements over the
+/// beam's length; beside what the case is expected to do; energies beside the largest one stored or passed. A ratio of
+/// energies counts where both do. Figures that are no numbers always count.
+pub fn counted<'a>(summary: &'a Summary, floors: &'a Floors) -> impl Iterator<Item = (&'a String, &'a Quantity)> {
+    let energies = summary.balances.energy_j.values();
+    let energy = energies.fold(0.0_f64, |largest, e| largest.max(e.abs()));
+    among(&summary.quantities, energy, floors)
+}
+
+/// The same of quantities beside a largest energy [J].
+fn among<'a>(
+    all: &'a BTreeMap<String, Quantity>,
+    energy: f64,
+    floors: &'a Floors,
+) -> impl Iterator<Item = (&'a String, &'a Quantity)> {
+    let counts = move |name: &str, q: &Quantity| {
+        let (unit, own) = floors.weighed(name, q);
         let alike = all
             .iter()
-            .map(|(other, q)| weighed(other, q))
+            .map(|(other, q)| floors.weighed(other, q))
             .filter(|(u, _)| *u == unit);
-        own > NOTHING * alike.map(|(_, size)| size).fold(0.0, f64::max)
+        let largest = NOTHING * alike.map(|(_, size)| size).fold(0.0, f64::max);
+        own > largest.max(floors.of_unit(unit, energy)) || q.figures().any(|(_, x)| !x.is_finite())
+    };
+    all.iter().filter(move |(name, q)| {
+        let parts: &[&str] = match name.as_str() {
+            "efficiency" => &["input_energy_j", "harvested_energy_j"],
+            _ => &[],
+        };
+        counts(name, q) && parts.iter().all(|part| all.get(*part).is_none_or(|q| counts(part, q)))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: what a beam of a metre does by round-off alone does not count, with nothing larger beside it: angles of 1e-19 at
+    /// ends that are clamped, 3e-18 J where a millijoule is stored, and an efficiency made of that. What is small because the
+    /// case does little, a picometre expected and found, counts; so does what is no number.
+    #[test]
+    fn round_off_does_not_count() {
+        let names = |expected_m: f64, energy: f64, all: &[(&str, f64)]| -> Vec<String> {
+            let floors = Floors {
+                length: 1.0,
+                displacement: SMALL.min(NOTHING * expected_m),
+                pressure: 1e-3,
+            };
+            let quantity = |last| Quantity {
+                last: Some(last),
+                ..Quantity::default()
+            };
+            let all = all
+                .iter()
+                .map(|(name, last)| (name.to_string(), quantity(*last)))
+                .collect();
+            among(&all, energy, &floors).map(|(name, _)| name.clone()).collect()
+        };
+        let clamped = [("tip_u1_m", 0.0), ("tip_angle_rad", 1e-19), ("max_pressure_pa", 1e-9)];
+        assert!(names(1e-3, 1e-3, &clamped).is_empty());
+        let energies = [
+            ("input_energy_j", 3e-18),
+            ("harvested_energy_j", 1e-18),
+            ("efficiency", 0.3),
+        ];
+        assert!(names(1e-3, 1e-3, &energies).is_empty());
+        assert_eq!(names(1e-3, 3e-18, &energies).len(), 3);
+        assert_eq!(
+            names(1e-12, 0.0, &[("tip_u1_m", 1e-12), ("tip_angle_rad", 1e-19)]),
+            ["tip_u1_m"]
+        );
+        assert_eq!(names(1e-3, 0.0, &[("tip_u1_m", f64::NAN)]), ["tip_u1_m"]);
+    }
 }

@@ -10,6 +10,7 @@ use crate::case::Case;
 use crate::case::schema::Effects;
 use crate::error::{Error, Result};
 use crate::run::summary::Judged;
+use crate::study::counted::Floors;
 use crate::study::target::estimates::LOST;
 
 /// Tightest tolerance that is allowed.
@@ -208,7 +209,8 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
         found.spent_s = runs.spent_s();
         return Ok(found);
     };
-    known(measure, &Reference::new(summary, case.beam.length_m).measures(None))?;
+    let floors = Floors::of(case);
+    known(measure, &Reference::new(summary, &floors).measures(None))?;
     let mut tight_case = full_case;
     tight_case.solver.rtol = (0.1 * tight_case.solver.rtol).max(TIGHTEST);
     let tighter = runs.run("full, a tenth of the tolerance", tight_case);
@@ -232,7 +234,7 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
     runs.repeat();
     found.full = runs.trial(full).clone();
     found.tighter = runs.trial(tighter).clone();
-    let Some(judge) = judged(&mut found, plan, case.beam.length_m) else {
+    let Some(judge) = judged(&mut found, plan, &floors) else {
         return Ok(found);
     };
 
@@ -291,9 +293,9 @@ fn known(measure: Option<&str>, measures: &[Measure]) -> Result<()> {
 }
 
 /// What others are judged by: every figure, or those over the window where the integrator cannot follow the motion.
-fn judged(found: &mut Ablation, plan: Plan, length: f64) -> Option<Judge> {
+fn judged(found: &mut Ablation, plan: Plan, floors: &Floors) -> Option<Judge> {
     let full = found.full.summary.as_ref()?;
-    let mut reference = Reference::new(full, length);
+    let mut reference = Reference::new(full, floors);
     let own = |reference: &Reference| Some(reference.changes(full, found.tighter.summary.as_ref()?));
     let lost = own(&reference).is_some_and(|own| own.values().any(|error| *error > LOST));
     if lost {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::run::summary::{Judged, Quantity, Summary};
-use crate::study::counted::{counted, size};
+use crate::study::counted::{Floors, counted, size};
 
 /// Relative changes by quantity.
 pub type Changes = BTreeMap<String, f64>;
@@ -30,10 +30,10 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Of the full model's run, of a beam of this length [m]: the quantities that are more than round-off.
-    pub fn new(full: &Summary, length: f64) -> Self {
+    /// Of the full model's run: the quantities that are more than round-off.
+    pub fn new(full: &Summary, floors: &Floors) -> Self {
         Self {
-            quantities: counted(full, length).map(|(name, q)| (name.clone(), *q)).collect(),
+            quantities: counted(full, floors).map(|(name, q)| (name.clone(), *q)).collect(),
             judged_by: Judged::Figures,
         }
     }

@@ -1,76 +1,130 @@
-//! What runs on different meshes and at different tolerances tell of each other's errors.
+//! What runs on different meshes, at different tolerances, by different methods and with more effects tell of each other's errors.
 //!
 //! With `x(K, τ)` a figure on a mesh of K cells a segment at tolerance τ, and ρ how much smaller the next difference is
 //! expected to be,
 //!
 //! ```text
-//! e_time  = ρ_τ/(1 - ρ_τ) |x(K, τ) - x(K, 10 τ)|       ρ_τ = |x(K, τ) - x(K, 10 τ)|/|x(K, 10 τ) - x(K, 100 τ)|
-//! e_space = ρ_K/(1 - ρ_K) |x(K, τ) - x(K/2, τ)|        ρ_K = |x(K, τ) - x(K/2, τ)|/|x(K/2, τ) - x(K/4, τ)|
+//! e_time    = ρ_τ/(1 - ρ_τ) |x(K, τ) - x(K, 10 τ)|     ρ_τ = |x(K, τ) - x(K, 10 τ)|/|x(K, 10 τ) - x(K, 100 τ)|
+//! e_space   = ρ_K/(1 - ρ_K) |x(K, τ) - x(K/2, τ)|      ρ_K = |x(K, τ) - x(K/2, τ)|/|x(K/2, τ) - x(K/4, τ)|
+//! e_method  = |x(K', τ) - x'(K', τ)|                   x' by a method of higher order, K' = K or coarser
+//! e_effects = |x(K', τ') - x"(K', τ')|                 x" with the effects that are left out
+//! e         = max(e_time, e_method) + e_space + e_effects
 //! ```
 //!
-//! the sums of geometric series of differences. Where the third run is missing ρ is 1/4: second order in space, and in time
-//! about what ten times the tolerance does between the orders 2 and 4. An error of a quantity is the largest of its figures',
-//! relative to the quantity's largest figure.
+//! The first two are sums of geometric series of differences. Two runs show no ratio: without a third the last difference itself
+//! counts, three times what second order makes of it. Ratios that no order explains are not believed: of differences that hardly
+//! fall ρ is at most 0.7, and one that is small by accident counts as a tenth of the one before. Differences are the largest of
+//! a quantity's figures, relative to its largest figure. What relatives of a run all miss they do not show; another method, and
+//! the effects that were left out, are no relatives.
 //!
 //! Where finer runs go on to differ by a good part of the quantity, the motion is one of many that start nearly alike: it grows
 //! from what is no more than round-off, or is chaotic. From then on only its statistics over the window are judged.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use crate::run::summary::{Estimate, Judged, Summary};
-use crate::study::counted::counted;
+use crate::run::summary::{Estimate, Judged, Quantity, Summary};
+use crate::study::counted::{Floors, counted};
 
 /// Expected ratio of one difference to the one before, where it is not seen: halved cells at second order, and a decade of
 /// tolerance between orders 2 and 4.
 pub const EXPECTED_RATIO: f64 = 0.25;
 /// Ratios that are believed when seen: beyond them differences happen to be small or large.
-const BELIEVED: std::ops::RangeInclusive<f64> = 0.05..=0.7;
+const BELIEVED: std::ops::RangeInclusive<f64> = 0.1..=0.7;
 /// A difference that is this part of the quantity, on a mesh and at a tolerance that should resolve it, and no more than
-/// [`BELIEVED`]'s least part smaller than the one before: the motion cannot be followed.
+/// [`SETTLING`] smaller than the one before: the motion cannot be followed.
 pub const LOST: f64 = 0.3;
+/// How much smaller differences have to become for a motion to settle.
+const SETTLING: f64 = 0.7;
 /// A setting that should resolve a motion.
 const RESOLVED: At = (8, 5);
 /// How a series of meshes is called.
 const MESH: &str = "mesh";
+/// How much coarser the mesh may be on which methods, or effects, are compared.
+const COARSER: usize = 4;
+
 /// One way to compute the case: cells a segment, and `k` of `rtol = 10^-k`.
 pub type At = (usize, i32);
-/// Figures of each quantity of a run.
-type Figures = BTreeMap<String, Vec<f64>>;
+
+/// How a run is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Way {
+    /// As a candidate for the result.
+    Candidate,
+    /// By another method.
+    Method,
+    /// With the effects that a candidate leaves out.
+    Full,
+}
 
 /// Runs of one case, and by which of their figures they are judged.
-#[derive(Default)]
+#[derive(Clone)]
 pub struct Runs {
-    all: BTreeMap<At, Looked>,
+    all: BTreeMap<(Way, At), Looked>,
+    floors: Floors,
     /// Every figure, until that proves to be too much.
     pub judged_by: Judged,
     /// Why not by every figure.
     pub lost: Option<String>,
 }
 
-/// A run, as it is judged by every figure and by statistics.
+/// What is looked at of a run.
+#[derive(Clone)]
 struct Looked {
-    figures: Figures,
-    statistics: Figures,
+    quantities: BTreeMap<String, Quantity>,
+    /// Those that are more than round-off.
+    counted: BTreeSet<String>,
+    steps: u64,
 }
 
 impl Runs {
-    /// Takes in a run, of a beam of this length [m], that finished.
-    pub fn take(&mut self, at: At, summary: &Summary, length: f64) {
-        self.all.insert(at, Looked::new(summary, length));
+    /// None yet, of a case with these sizes of round-off.
+    pub fn new(floors: Floors) -> Self {
+        Self {
+            all: BTreeMap::new(),
+            floors,
+            judged_by: Judged::default(),
+            lost: None,
+        }
+    }
+
+    /// Takes in a run that finished.
+    pub fn take(&mut self, way: Way, at: At, summary: &Summary) {
+        let looked = Looked {
+            quantities: summary.quantities.clone(),
+            counted: counted(summary, &self.floors).map(|(name, _)| name.clone()).collect(),
+            steps: summary.solver.steps,
+        };
+        self.all.insert((way, at), looked);
+    }
+
+    /// Goes over to other candidates, of which nothing is known: with all effects, as those of [`Way::Full`] already are, or
+    /// with more of them.
+    pub fn go_over(&mut self, all_effects: bool) {
+        self.all.retain(|(way, _), _| *way == Way::Full);
+        if all_effects {
+            let full = std::mem::take(&mut self.all).into_iter();
+            self.all = full.map(|((_, at), run)| ((Way::Candidate, at), run)).collect();
+        }
     }
 
     /// Whether a run is known.
-    pub fn hold(&self, at: At) -> bool {
-        self.all.contains_key(&at)
+    pub fn hold(&self, way: Way, at: At) -> bool {
+        self.all.contains_key(&(way, at))
     }
 
-    /// A run's figures that are judged.
-    fn judged(&self, at: At) -> Option<&Figures> {
-        let run = self.all.get(&at)?;
-        Some(match self.judged_by {
-            Judged::Figures => &run.figures,
-            Judged::WindowStatistics => &run.statistics,
-        })
+    /// Steps of a candidate, or of the nearest coarser or looser one.
+    pub fn steps(&self, (cells, decades): At) -> Option<u64> {
+        let near = self.all.iter().rev();
+        let mut near = near.filter(|((way, at), _)| *way == Way::Candidate && at.0 <= cells && at.1 <= decades);
+        near.next().map(|(_, run)| run.steps)
+    }
+
+    /// A quantity's figures that are judged.
+    fn judged(&self, q: &Quantity) -> Vec<(&'static str, f64)> {
+        match self.judged_by {
+            Judged::Figures => q.figures().collect(),
+            Judged::WindowStatistics => q.statistics().collect(),
+        }
     }
 
     /// Goes over to statistics where a quantity does not settle.
@@ -84,23 +138,34 @@ impl Runs {
                 let last = self.difference(quantity, fine, coarse)?;
                 // meshes are a factor of two apart, tolerances ten: a first difference of meshes need not mean much
                 let before = self.difference(quantity, coarse, coarsest);
-                let settles = last < LOST || before.map_or(what == MESH, |before| last < *BELIEVED.end() * before);
+                let settles = last < LOST || before.map_or(what == MESH, |before| last < SETTLING * before);
                 (!settles).then(|| format!("{quantity} changes by {last:.1e} from {what} to {what}"))
             };
             apart("rtol", [(cells, decades - 2), (cells, decades - 1), at])
                 .or_else(|| apart(MESH, [(cells / 4, decades), (cells / 2, decades), at]))
         };
-        self.lost = self.judged(at).and_then(|figures| figures.keys().find_map(lost));
+        let run = self.all.get(&(Way::Candidate, at));
+        self.lost = run.and_then(|run| run.counted.iter().find_map(lost));
         if self.lost.is_some() {
             self.judged_by = Judged::WindowStatistics;
         }
     }
 
-    /// Largest change of a quantity's figures between two runs, relative to its largest figure.
-    fn difference(&self, quantity: &str, a: At, b: At) -> Option<f64> {
-        let (a, b) = (self.judged(a)?.get(quantity)?, self.judged(b)?.get(quantity)?);
-        let size = a.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
-        let apart = a.iter().zip(b).fold(0.0_f64, |d, (x, y)| d.max((x - y).abs()));
+    /// Largest change of a quantity's figures between two candidates.
+    pub fn difference(&self, quantity: &str, a: At, b: At) -> Option<f64> {
+        self.apart(quantity, (Way::Candidate, a), (Way::Candidate, b))
+    }
+
+    /// Largest change of a quantity's figures between two runs, relative to its largest figure in the first.
+    fn apart(&self, quantity: &str, a: (Way, At), b: (Way, At)) -> Option<f64> {
+        let of = |run: (Way, At)| Some(self.judged(self.all.get(&run)?.quantities.get(quantity)?));
+        let (a, b) = (of(a)?, of(b)?);
+        let size = a.iter().fold(0.0_f64, |s, (_, x)| s.max(x.abs()));
+        let other = |figure: &str| b.iter().find(|(name, _)| *name == figure).map_or(0.0, |(_, y)| *y);
+        let apart = a.iter().fold(0.0_f64, |d, (name, x)| {
+            let apart = (x - other(name)).abs();
+            d.max(if apart.is_nan() { f64::INFINITY } else { apart })
+        });
         Some(if apart > 0.0 {
             apart / size.max(f64::MIN_POSITIVE)
         } else {
@@ -108,65 +173,145 @@ impl Runs {
         })
     }
 
-    /// `ρ/(1 - ρ)` times the last difference of three runs, coarse to fine.
+    /// What is left over after the last difference of three runs, coarse to fine: see the top of the file.
     fn series(&self, quantity: &str, [coarsest, coarse, fine]: [At; 3]) -> Option<f64> {
         let last = self.difference(quantity, fine, coarse)?;
-        let ratio = match self.difference(quantity, coarse, coarsest) {
-            Some(before) if before > 0.0 => (last / before).clamp(*BELIEVED.start(), *BELIEVED.end()),
-            _ => EXPECTED_RATIO,
-        };
-        Some(last * ratio / (1.0 - ratio))
+        Some(match self.difference(quantity, coarse, coarsest) {
+            None => last,
+            Some(before) => left_over(last, before),
+        })
     }
 
-    /// Errors of every quantity of a run that are known.
+    /// The finest run of a kind that stands for those at a setting, beside a candidate at its own: no more than [`COARSER`], nor
+    /// looser than by so many decades.
+    fn beside(&self, way: Way, (cells, decades): At, looser: i32) -> Option<At> {
+        let all = self.all.keys().filter(|(w, _)| *w == way).map(|(_, at)| *at);
+        all.filter(|(k, d)| *k <= cells && COARSER * k >= cells && *d <= decades && d + looser >= decades)
+            .filter(|at| self.hold(Way::Candidate, *at))
+            .max_by_key(|(k, d)| (*d, *k))
+    }
+
+    /// Where another method was compared that stands for a setting.
+    pub fn method(&self, at: At) -> Option<At> {
+        self.beside(Way::Method, at, 0)
+    }
+
+    /// Where the effects left out were looked at that stands for a setting.
+    pub fn effects(&self, at: At) -> Option<At> {
+        self.beside(Way::Full, at, 1)
+    }
+
+    /// What leaving out effects changes in every quantity of a candidate, against the run with them at the same setting.
+    pub fn changes(&self, at: At) -> BTreeMap<String, f64> {
+        let counted = |way| {
+            self.all
+                .get(&(way, at))
+                .map(|run| run.counted.clone())
+                .unwrap_or_default()
+        };
+        let names: BTreeSet<String> = &counted(Way::Candidate) | &counted(Way::Full);
+        let change = |name: String| {
+            let apart = self.apart(&name, (Way::Full, at), (Way::Candidate, at));
+            (name, apart.unwrap_or(f64::INFINITY))
+        };
+        names.into_iter().map(change).collect()
+    }
+
+    /// Whether three meshes, and three tolerances, are known for a setting.
+    pub fn thirds(&self, (cells, decades): At) -> [bool; 2] {
+        let hold = |at| self.hold(Way::Candidate, at);
+        [hold((cells / 4, decades)), hold((cells, decades - 2))]
+    }
+
+    /// Errors of every quantity of a candidate that are known.
     pub fn estimates(&self, at: At) -> BTreeMap<String, Estimate> {
         let (cells, decades) = at;
-        let Some(run) = self.judged(at) else {
+        let Some(run) = self.all.get(&(Way::Candidate, at)) else {
             return BTreeMap::new();
         };
+        let changes = self.effects(at).map(|coarse| self.changes(coarse));
+        let method = self.method(at);
         let of = |quantity: &String| {
             let time = [(cells, decades - 2), (cells, decades - 1), at];
             let space = [(cells / 4, decades), (cells / 2, decades), at];
+            let method = method.and_then(|at| self.apart(quantity, (Way::Method, at), (Way::Candidate, at)));
             let (time, space) = (self.series(quantity, time), self.series(quantity, space));
+            let time = time.map(|time| method.map_or(time, |method| method.max(time)));
+            let effects = changes.as_ref().map(|all| all.get(quantity).copied().unwrap_or(0.0));
             let estimate = Estimate {
                 time,
                 space,
-                total: time.zip(space).map(|(t, s)| t + s),
+                effects,
+                method,
+                total: time.zip(space).map(|(t, s)| t + s + effects.unwrap_or(0.0)),
             };
             (quantity.clone(), estimate)
         };
-        run.keys().map(of).collect()
+        run.counted.iter().map(of).collect()
     }
 }
 
-impl Looked {
-    /// Of the quantities that are more than round-off, of a beam of this length [m].
-    fn new(summary: &Summary, length: f64) -> Self {
-        let (mut figures, mut statistics) = (Figures::new(), Figures::new());
-        for (name, q) in counted(summary, length) {
-            figures.insert(name.clone(), q.figures().map(|f| f.1).collect());
-            statistics.insert(name.clone(), q.statistics().map(|f| f.1).collect());
-        }
-        Self { figures, statistics }
+/// `ρ/(1 - ρ)` times the last of two differences, which counts as no less than what an order explains.
+fn left_over(last: f64, before: f64) -> f64 {
+    let least = BELIEVED.start() * before;
+    if last <= least {
+        return least * EXPECTED_RATIO / (1.0 - EXPECTED_RATIO);
     }
+    let ratio = (last / before).min(*BELIEVED.end());
+    last * ratio / (1.0 - ratio)
+}
+
+/// Largest error of integration in time and of the mesh; infinite where one is not known.
+pub fn numerical(estimates: &BTreeMap<String, Estimate>) -> f64 {
+    let both = |e: &Estimate| e.time.zip(e.space).map_or(f64::INFINITY, |(t, s)| t + s);
+    largest(estimates.values().map(both))
 }
 
 /// Largest estimate of a quantity; infinite where one is not known.
 pub fn worst(estimates: &BTreeMap<String, Estimate>) -> f64 {
-    let total = |e: &Estimate| e.total.unwrap_or(f64::INFINITY);
-    estimates.values().map(total).fold(0.0, f64::max)
+    largest(estimates.values().map(|e| e.total.unwrap_or(f64::INFINITY)))
+}
+
+/// What is no number is larger than any.
+fn largest(all: impl Iterator<Item = f64>) -> f64 {
+    all.fold(0.0, |m, x| m.max(if x.is_nan() { f64::INFINITY } else { x }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::Case;
+
+    fn case() -> Case {
+        let text = r#"{"name": "x", "beam": {"length_m": 1, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1e6,
+            "density_kg_m3": 1000}, "ends": {"root": "clamped", "tip": {"free": {"force_x_n": 1e-3}}}, "time": {"end_s": 1}}"#;
+        let path = std::path::Path::new("x.json");
+        match crate::case::parse(text, path, path, &[]) {
+            Ok(loaded) => loaded.case,
+            Err(error) => panic!("{error}"),
+        }
+    }
 
     fn looked(last: f64, rms: f64) -> Looked {
-        let one = |values: Vec<f64>| Figures::from([("tip_u1_m".to_string(), values)]);
+        let tip = Quantity {
+            last: Some(last),
+            max_abs: Some(1.0),
+            window_rms: Some(rms),
+            ..Quantity::default()
+        };
+        let name = "tip_u1_m".to_string();
         Looked {
-            figures: one(vec![last, 1.0, rms]),
-            statistics: one(vec![rms]),
+            quantities: [(name.clone(), tip)].into(),
+            counted: [name].into(),
+            steps: 1,
         }
+    }
+
+    fn runs(all: &[(Way, At, f64)]) -> Runs {
+        let mut runs = Runs::new(Floors::of(&case()));
+        let one = |(way, at, last): &(Way, At, f64)| ((*way, *at), looked(*last, 0.5 + 0.01 * last));
+        runs.all = all.iter().map(one).collect();
+        runs
     }
 
     /// A last value that is another one from tolerance to tolerance, with a root mean square that hardly changes: judged by
@@ -175,15 +320,11 @@ mod tests {
     fn a_motion_that_cannot_be_followed_is_judged_by_statistics() {
         let judge = |at: At, of: [f64; 3]| {
             let (cells, decades) = at;
-            let runs = [
-                ((cells, decades - 1), of[0]),
-                ((cells / 2, decades), of[1]),
-                (at, of[2]),
-            ];
-            let mut runs = Runs {
-                all: runs.map(|(at, last)| (at, looked(last, 0.5 + 0.01 * last))).into(),
-                ..Runs::default()
-            };
+            let mut runs = runs(&[
+                (Way::Candidate, (cells, decades - 1), of[0]),
+                (Way::Candidate, (cells / 2, decades), of[1]),
+                (Way::Candidate, at, of[2]),
+            ]);
             runs.lose_sight(at);
             (runs.judged_by, worst(&runs.estimates(at)))
         };
@@ -194,5 +335,43 @@ mod tests {
         assert_eq!(judged_by, Judged::Figures);
         assert!(error > 0.1, "{error}");
         assert_eq!(judge((8, 6), [0.9, 0.89, 0.895]).0, Judged::Figures);
+    }
+
+    /// Goal: two runs show no ratio and the difference itself counts; of three, a difference that is small by accident does
+    /// not hide the one before, and one that grows is not summed as if it fell.
+    #[test]
+    fn differences_that_no_order_explains_take_the_safe_side() {
+        let of = |all: &[(Way, At, f64)]| runs(all).estimates((4, 4))["tip_u1_m"];
+        let (same, coarse) = ((Way::Candidate, (4, 4), 0.9), (Way::Candidate, (2, 4), 0.86));
+        let looser = (Way::Candidate, (4, 3), 0.9);
+        let near = |a: Option<f64>, b: f64| assert!(a.is_some_and(|a| (a - b).abs() < 1e-12), "{a:?} instead of {b}");
+        near(of(&[same, coarse, looser]).space, 0.04);
+        near(
+            of(&[same, coarse, looser, (Way::Candidate, (1, 4), 0.7)]).space,
+            0.04 / 3.0,
+        );
+        let accident = (Way::Candidate, (1, 4), 0.06);
+        near(of(&[same, coarse, looser, accident]).space, 0.08 / 3.0);
+        let growing = (Way::Candidate, (1, 4), 0.85);
+        near(of(&[same, coarse, looser, growing]).space, 0.04 * 0.7 / 0.3);
+        near(of(&[same, coarse, looser]).time, 0.0);
+        // What all candidates miss another method shows, and so does a run with all effects.
+        let method = of(&[same, coarse, looser, (Way::Method, (2, 4), 0.88)]);
+        near(method.time, 0.02);
+        let full = of(&[same, coarse, looser, (Way::Full, (2, 4), 0.83)]);
+        near(full.effects, 0.03);
+        near(full.total, 0.04 + 0.03);
+        assert_eq!(of(&[same, looser]).total, None);
+    }
+
+    /// Goal: figures that are no numbers are not within any error.
+    #[test]
+    fn what_is_no_number_is_never_accurate() {
+        let runs = runs(&[
+            (Way::Candidate, (4, 4), f64::NAN),
+            (Way::Candidate, (2, 4), 0.5),
+            (Way::Candidate, (4, 3), 0.5),
+        ]);
+        assert_eq!(worst(&runs.estimates((4, 4))), f64::INFINITY);
     }
 }

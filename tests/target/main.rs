@@ -1,8 +1,11 @@
 //! An accuracy asked for: chosen meshes and tolerances hold it, estimates are honest.
 
+mod scenes;
+
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use slcbeam::case::schema::{Effects, Method};
 use slcbeam::case::{self, Case};
 use slcbeam::run::dynamics::{self, Outcome};
 use slcbeam::run::record::{Control, Progress, Unrecorded};
@@ -127,13 +130,17 @@ impl Tally {
             let summary = reached.expect("memory").summary;
             let accuracy = summary.accuracy.as_ref();
             let told = accuracy.map_or("nothing is known".into(), |a| {
+                let work = |unknowns: usize, steps: u64| unknowns as f64 * steps as f64;
+                let pilots: f64 = a.pilots.iter().map(|p| work(p.unknowns, p.steps)).sum();
                 format!(
-                    "{} with {} cells, rtol {:.0e}, {} pilots, {:?}",
+                    "{} with {} cells, rtol {:.0e}, {} pilots of {:.1} times its work, {:?}, {}",
                     if a.reached { "reached" } else { "not reached" },
                     a.cells_per_segment,
                     a.rtol,
                     a.pilots.len(),
+                    pilots / work(summary.unknowns, summary.solver.steps),
                     a.judged_by,
+                    a.effects,
                 )
             });
             println!("{name}, asked {asked}: {told}");
@@ -186,4 +193,134 @@ impl Tally {
         assert!(20 * held >= 19 * all, "{held} of {all}");
         assert!(5 * covered >= 4 * all, "{covered} of {all}");
     }
+}
+
+/// What random scenes came to.
+#[derive(Default)]
+struct Promises {
+    asked: usize,
+    reached: usize,
+    kept: usize,
+    quantities: usize,
+    near: usize,
+    broken: Vec<String>,
+}
+
+impl Promises {
+    /// Asks for accuracies of a scene and compares what is reached with all effects on twice the finest mesh, by a method of
+    /// order 5 at a hundredth of the tightest tolerance, extrapolated from that mesh and the one half as fine.
+    fn ask(&mut self, number: u64, accuracies: &[f64], time: Duration) {
+        let (kind, case) = scenes::scene(number);
+        let mut runs: Vec<(f64, Summary)> = vec![];
+        for &asked in accuracies {
+            let until = Instant::now() + time;
+            let hook = |_: &Progress| stop_after(until);
+            let reached = target::reach(&case, asked, &hook, &mut |case| Ok(record(case, until)));
+            let summary = reached.expect("memory").summary;
+            self.asked += 1;
+            match &summary.accuracy {
+                Some(found) if found.reached => runs.push((asked, summary)),
+                _ => {
+                    let said: Vec<_> = summary.warnings.iter().filter(|w| w.contains("accuracy")).collect();
+                    println!("{number} {kind} at {asked}: not reached, {said:?}");
+                    assert!(!said.is_empty(), "{number} {kind}: silent");
+                }
+            }
+        }
+        let found = |s: &Summary| s.accuracy.clone().expect("reached");
+        let finest = runs
+            .iter()
+            .map(|r| found(&r.1).cells_per_segment)
+            .max()
+            .unwrap_or(1)
+            .max(4);
+        let tightest = runs.iter().map(|r| found(&r.1).rtol).fold(1e-4, f64::min);
+        let best = |cells: usize| {
+            let mut case = plan::refined(&case, cells, (0.01 * tightest).max(1e-9));
+            (case.solver.method, case.effects) = (Method::Esdirk57, Effects::Full);
+            let run = record(&case, Instant::now() + 4 * time).summary;
+            (run.status == Status::Finished).then_some(run)
+        };
+        let (Some(coarse), Some(fine)) = (best(finest), best(2 * finest)) else {
+            println!("{number} {kind}: no time for a reference");
+            return;
+        };
+        for (asked, summary) in &runs {
+            self.reached += 1;
+            let found = found(summary);
+            let mut kept = true;
+            for (name, estimate) in &found.quantities {
+                let total = estimate.total.expect("reached, so known");
+                assert!(
+                    total <= *asked,
+                    "{number} {kind}: {name} {total} is said to be within {asked}"
+                );
+                let error = beyond(name, summary, [&coarse, &fine], found.judged_by);
+                self.quantities += 1;
+                let near = error <= 5.0 * total && total <= 5.0 * error || total.max(error) < 0.1 * asked;
+                self.near += usize::from(near);
+                if error > *asked {
+                    kept = false;
+                    let told = format!(
+                        "{number} {kind} at {asked}: {name} off by {error:.1e}, estimate {estimate:?}, {}",
+                        found.effects
+                    );
+                    println!("{told}");
+                    self.broken.push(told);
+                }
+            }
+            self.kept += usize::from(kept);
+        }
+    }
+
+    fn told(&self) -> String {
+        format!(
+            "{} asked, {} reached, {} kept; {} of {} estimates within a factor of 5 or a tenth of what was asked",
+            self.asked, self.reached, self.kept, self.near, self.quantities
+        )
+    }
+}
+
+/// Largest error of a quantity's figures against the limit to which two meshes point, relative to the largest of them.
+fn beyond(name: &str, run: &Summary, [coarse, fine]: [&Summary; 2], judged_by: Judged) -> f64 {
+    let of = |s: &Summary| figures(&s.quantities[name], judged_by);
+    let limit = of(coarse).into_iter().zip(of(fine)).map(|(c, f)| f + (f - c) / 3.0);
+    let limit: Vec<f64> = limit.collect();
+    let size = limit.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
+    of(run)
+        .iter()
+        .zip(&limit)
+        .fold(0.0_f64, |e, (x, y)| e.max((x - y).abs()))
+        / size
+}
+
+/// Goal: of random scenes with what few samples miss, at 10 % and 1 %, none that is said to be reached is not, and 90 % of the
+/// estimates are within a factor of 5 of the error.
+#[test]
+fn promises_are_kept_in_random_scenes() {
+    let mut promises = Promises::default();
+    for number in 0..12 {
+        promises.ask(number, &[1e-1, 1e-2], Duration::from_secs(60));
+    }
+    println!("{}", promises.told());
+    assert_eq!(promises.kept, promises.reached, "{:#?}", promises.broken);
+    assert!(10 * promises.near >= 9 * promises.quantities, "{}", promises.told());
+    assert!(3 * promises.reached >= 2 * promises.asked, "{}", promises.told());
+}
+
+/// Goal: the same of 500, promises kept in 99 %. `SCENES=40..80` takes others: `cargo test --release --test target
+/// promises_are_kept_in_500 -- --ignored --nocapture`.
+#[test]
+#[ignore = "an hour"]
+fn promises_are_kept_in_500_random_scenes() {
+    let asked = std::env::var("SCENES").ok();
+    let range = asked.as_deref().and_then(|all| all.split_once(".."));
+    let range = range.and_then(|(from, to)| Some(from.parse().ok()?..to.parse().ok()?));
+    let mut promises = Promises::default();
+    for number in range.unwrap_or(0..500) {
+        promises.ask(number, &[1e-1, 1e-2], Duration::from_secs(60));
+        println!("{number}: {}", promises.told());
+    }
+    assert!(100 * promises.kept >= 99 * promises.reached, "{:#?}", promises.broken);
+    assert!(10 * promises.near >= 9 * promises.quantities, "{}", promises.told());
 }

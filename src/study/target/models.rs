@@ -1,0 +1,123 @@
+//! Which effects a case leaves out by itself, and the cases that have more of them.
+
+use crate::case::Case;
+use crate::case::schema::{Choice, EffectChoices, Effects};
+use crate::model::effects::EffectSet;
+use crate::study::effects::choices::{choosable, effects, on, refusals, with_choices};
+
+/// Decades by which the tolerance of effects is tightened, each a candidate.
+const TIGHTER: i32 = 3;
+
+/// A case with the effects that another leaves out.
+#[derive(Clone, Debug)]
+pub struct Full {
+    /// The case.
+    pub case: Case,
+    /// What it has more.
+    pub left_out: Vec<&'static str>,
+}
+
+/// The case with everything that it leaves to the program. What it names off stays off; motion across stays out where nothing
+/// makes the beam leave its line, which is exact. `None` where nothing is then left out.
+pub fn full(case: &Case) -> Option<Full> {
+    let auto = effects(case);
+    let mut choices = named(case, &auto);
+    let open: Vec<&'static str> = choices
+        .iter()
+        .filter(|(name, choice)| *choice == Choice::Auto && !straight(&auto, name))
+        .map(|(name, _)| *name)
+        .collect();
+    for name in open {
+        let mut more = choices.clone();
+        more.iter_mut().filter(|c| c.0 == name).for_each(|c| c.1 = Choice::On);
+        let with = with_choices(case, &more);
+        if on(&effects(&with), name) && refusals(&with).is_empty() {
+            choices = more;
+        }
+    }
+    let case = with_choices(case, &choices);
+    let left_out = more(&auto, &effects(&case));
+    (!left_out.is_empty()).then_some(Full { case, left_out })
+}
+
+/// The case with tighter tolerances of effects, as far as that makes a difference to it and to the full one.
+pub fn tighter(case: &Case, full: &Full) -> Vec<Case> {
+    let all = effects(&full.case);
+    let mut before = effects(case);
+    let tolerance = case.effects_tolerance();
+    let mut found = vec![];
+    for decades in 1..=TIGHTER {
+        let mut candidate = case.clone();
+        candidate.effects_tolerance = Some(tolerance * 10_f64.powi(-decades));
+        let set = effects(&candidate);
+        let new = !more(&before, &set).is_empty();
+        if new && !more(&set, &all).is_empty() && refusals(&candidate).is_empty() {
+            found.push(candidate);
+            before = set;
+        }
+    }
+    found
+}
+
+/// Effects of one set that another has not.
+pub fn more(few: &EffectSet, many: &EffectSet) -> Vec<&'static str> {
+    let names = many.decisions.iter().filter(|d| d.on).map(|d| d.name);
+    names.filter(|name| !on(few, name)).collect()
+}
+
+/// What the case names, and what is there anyway.
+fn named(case: &Case, auto: &EffectSet) -> Vec<(&'static str, Choice)> {
+    let given = match &case.effects {
+        Effects::Auto | Effects::Full => EffectChoices::default(),
+        Effects::Chosen(choices) => choices.clone(),
+    };
+    let given = serde_json::to_value(given).unwrap_or_default();
+    let choice = |name: &'static str| {
+        let given = given.get(name).and_then(|c| serde_json::from_value(c.clone()).ok());
+        match given.unwrap_or_default() {
+            Choice::Auto if case.effects == Effects::Full || on(auto, name) => (name, Choice::On),
+            choice => (name, choice),
+        }
+    };
+    choosable().into_iter().map(choice).collect()
+}
+
+/// Whether an effect is motion across a beam that nothing makes leave its line, or follows from it.
+fn straight(auto: &EffectSet, name: &str) -> bool {
+    name == "transverse_motion" && !on(auto, name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(more: &str) -> Case {
+        let text = format!(
+            r#"{{"name": "x", "beam": {{"length_m": 1, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1e8,
+            "density_kg_m3": 1000}}, "ends": {{"root": "clamped", "tip": {{"free": {{"force_x_n":
+            {{"ramp": {{"to": 1e-4, "duration_s": 100}}}}}}}}}}, "time": {{"end_s": 100}}{more}}}"#
+        );
+        let path = std::path::Path::new("x.json");
+        match crate::case::parse(&text, path, path, &[]) {
+            Ok(loaded) => loaded.case,
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    /// Goal: a slow, small motion leaves out inertia and finite rotations, and the full case has both; what the case names off
+    /// stays off; of a full case nothing is left out.
+    #[test]
+    fn the_full_case_has_what_was_left_to_the_program() {
+        let found = full(&case("")).expect("something left out");
+        assert!(found.left_out.contains(&"solid_inertia"), "{:?}", found.left_out);
+        assert!(found.left_out.contains(&"finite_rotation"), "{:?}", found.left_out);
+        assert!(refusals(&found.case).is_empty());
+        assert!(full(&found.case).is_none());
+        let off = full(&case(r#", "effects": {"solid_inertia": "off"}"#)).expect("something left out");
+        assert!(!off.left_out.contains(&"solid_inertia"), "{:?}", off.left_out);
+        assert!(full(&case(r#", "effects": "full""#)).is_none());
+        for tighter in tighter(&case(""), &found) {
+            assert!(!more(&effects(&case("")), &effects(&tighter)).is_empty());
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! What is said in the end.
+
+use super::estimates::{At, Way, worst};
+use super::search::Search;
+use crate::error::Code;
+use crate::run::summary::{Accuracy, Estimate, Summary};
+use crate::study::accuracy::plan;
+
+impl Search<'_> {
+    /// Writes into the summary of the result what is known of its errors; `present` is false where candidates have since gained
+    /// effects that it has not.
+    pub fn conclude(self, at: At, present: bool, cut_short: Option<String>, summary: &mut Summary) {
+        let (cells, decades) = at;
+        let estimates = if present {
+            self.runs.estimates(at)
+        } else {
+            Default::default()
+        };
+        let within = worst(&estimates) <= self.asked;
+        let unseen = self.unseen(at, present);
+        let reached = present && within && unseen.is_empty();
+        let mut warn = |what: String| {
+            let warning = Code::Accuracy.warning(format!("accuracy: {what}"));
+            summary.warnings.push(warning);
+        };
+        if let Some(reason) = cut_short {
+            warn(format!("the search was cut short: {reason}"));
+        }
+        if !within {
+            let short = |(name, e): (&String, &Estimate)| match e.total {
+                Some(total) if total > self.asked => Some(format!("{name} {total:.1e}")),
+                Some(_) => None,
+                None => Some(format!("{name} unknown")),
+            };
+            let short: Vec<String> = estimates.iter().filter_map(short).collect();
+            warn(format!(
+                "{:e} is not reached with {cells} cells a segment and rtol 1e-{decades}: {}",
+                self.asked,
+                short.join(", ")
+            ));
+        }
+        if within {
+            unseen.into_iter().for_each(&mut warn);
+        }
+        if let Some(lost) = &self.runs.lost {
+            let grows = summary
+                .growth
+                .as_ref()
+                .map_or(String::new(), |g| format!(" (it grows at {:.2} 1/s)", g.rate_per_s));
+            let lost = Code::Accuracy.warning(format!(
+                "accuracy: {lost}: the motion{grows} is one of many that start alike, and cannot be followed to the end. Judged are root \
+                 mean squares and increments over the window, not single values"
+            ));
+            summary.warnings.push(lost);
+        }
+        summary.accuracy = Some(Accuracy {
+            asked: self.asked,
+            reached,
+            cells_per_segment: cells,
+            cells_per_bladder: plan::fluid_cells(cells),
+            rtol: 10_f64.powi(-decades),
+            judged_by: self.runs.judged_by,
+            effects: self.effects_in_words(at),
+            quantities: estimates,
+            pilots: self.pilots,
+        });
+    }
+
+    /// What nothing is known of, a clause each.
+    fn unseen(&self, at: At, present: bool) -> Vec<String> {
+        let why = |way: Way| {
+            let reason = self.failed.iter().rev().find(|((w, _), _)| *w == way);
+            reason.map_or(String::new(), |(_, why)| format!(": {why}"))
+        };
+        let mut all = vec![];
+        if !present {
+            let taken = self.taken_in.join(", ");
+            all.push(format!(
+                "the result leaves out effects that change it by more than may be: {taken}"
+            ));
+        } else if self.full.is_some() && self.runs.effects(at).is_none() {
+            all.push(format!(
+                "what the effects that are left out change was not judged{}",
+                why(Way::Full)
+            ));
+        }
+        if present && self.runs.method(at).is_none() {
+            all.push(format!("no other method was compared{}", why(Way::Method)));
+        }
+        all
+    }
+
+    /// What was found of the effects that are left out.
+    fn effects_in_words(&self, at: At) -> String {
+        let taken = match self.taken_in.as_slice() {
+            [] => String::new(),
+            all => format!("taken in, for what they change: {}; ", all.join(", ")),
+        };
+        let left = match (&self.full, self.runs.effects(at)) {
+            (None, _) => "none left out that is not exact".into(),
+            (Some(full), Some((cells, decades))) => format!(
+                "left out: {}; judged by a run with them, {cells} cells a segment, rtol 1e-{decades}",
+                full.left_out.join(", ")
+            ),
+            (Some(full), None) => format!("left out: {}; not judged", full.left_out.join(", ")),
+        };
+        format!("{taken}{left}")
+    }
+}
