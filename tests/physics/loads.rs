@@ -6,11 +6,13 @@
 use std::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
 use slcbeam::case::profile::{Integrals, Profile};
 use slcbeam::case::{Case, Clock};
 use slcbeam::discrete::{Instant, System, resolution, shapes, start};
 
-use super::common::{EI, run, shipped, within};
+use super::common::{EI, Run, run, shipped, within};
 
 fn profile(text: &str) -> Profile {
     serde_json::from_str(text).unwrap_or_else(|e| panic!("{text}: {e}"))
@@ -278,6 +280,45 @@ fn a_start_has_its_volume_on_any_number_of_cells() {
             within("mean area", sum / cells as f64, uniform[bladder], 1e-12);
         }
     }
+}
+
+/// Random loads on a coarse mesh, against the same on a fine one at the nodes of both: what is off by more than 6 % of the largest
+/// deflection is told.
+#[test]
+fn what_is_wrong_is_told() {
+    let mut runner = TestRunner::deterministic();
+    let (mut told, mut needless, mut wrong, mut all) = (0, 0, 0, 0);
+    for _ in 0..60 {
+        let (f, cells) = (profiles(), 1..4_usize).new_tree(&mut runner).unwrap().current();
+        let text = serde_json::to_string(&f).unwrap();
+        let amplitude = 0.5 / shapes::in_cells(&f, 50).iter().fold(1e-3, |m: f64, v| m.max(v.abs()));
+        let scaled = format!(r#"{{"product":[{amplitude},{text}]}}"#);
+        let case = pressed(&scaled, cells, &["/solver/rtol=1e-6"]);
+        let coarse = run(&case);
+        let fine = run(&pressed(&scaled, 32, &["/solver/rtol=1e-6"]));
+        let last = |run: &Run| run.field("u1_m").last().unwrap().clone();
+        let (coarse_u, fine_u) = (last(&coarse), last(&fine));
+        let at = |u: &[f64], segment: usize| u[segment * (u.len() - 1) / 10];
+        let off = (0..=10)
+            .map(|k| (at(&coarse_u, k) - at(&fine_u, k)).abs())
+            .fold(0.0, f64::max);
+        let error = off / fine_u.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let warned = coarse.summary.warnings.iter().any(|w| w.starts_with("W016"));
+        let left_out = left_out(&case)[0];
+        all += 1;
+        told += usize::from(warned);
+        needless += usize::from(warned && error < 0.01);
+        wrong += usize::from(error > 0.05);
+        println!(
+            "{cells} cells: off by {error:.1e}, left out {left_out:.1e}: {}",
+            &text[..text.len().min(90)]
+        );
+        assert!(
+            warned || error < 0.06,
+            "{cells} cells: off by {error} without a word, left out {left_out}: {text}"
+        );
+    }
+    println!("{all} loads: {wrong} off by more than 5 %, {told} told, {needless} of them off by less than 1 %");
 }
 
 fn left_out(case: &Case) -> Vec<f64> {
