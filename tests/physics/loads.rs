@@ -1,6 +1,5 @@
 //! Source: issue: "total force and moment are right on every mesh"; statics of beams.
-//! Goal: loads along the beam, and the start, reach the mesh by their integrals and not by samples at nodes; what a mesh then
-//! still leaves out is told.
+//! Goal: loads along the beam, and the start, reach the mesh by their integrals and not by samples at nodes.
 //! Tolerance: round-off where a sum must be right on every mesh; a few per cent of the finest mesh where cells bend.
 
 use std::f64::consts::{PI, TAU};
@@ -8,16 +7,16 @@ use std::f64::consts::{PI, TAU};
 use proptest::prelude::*;
 use slcbeam::case::profile::{Integrals, Profile};
 use slcbeam::case::{Case, Clock};
-use slcbeam::discrete::{Instant, System, resolution, shapes, start};
+use slcbeam::discrete::{Instant, System, shapes, start};
 
 use super::common::{EI, run, shipped, within};
 
-fn profile(text: &str) -> Profile {
+pub fn profile(text: &str) -> Profile {
     serde_json::from_str(text).unwrap_or_else(|e| panic!("{text}: {e}"))
 }
 
 /// A quasi-static cantilever under a load of the given profile, grown within 1 s.
-fn pressed(profile: &str, cells: usize, more: &[&str]) -> Case {
+pub fn pressed(profile: &str, cells: usize, more: &[&str]) -> Case {
     let load =
         format!(r#"/loads=[{{"force_x_n_m":{{"signal":{{"ramp":{{"to":1,"duration_s":1}}}},"profile":{profile}}}}}]"#);
     let cells = format!("/mesh/cells_per_segment={cells}");
@@ -35,14 +34,14 @@ fn pressed(profile: &str, cells: usize, more: &[&str]) -> Case {
 }
 
 /// A pad of the given value over 1 % of the length. Its edges are steep, not sudden.
-fn pad(middle: f64, value: f64) -> String {
+pub fn pad(middle: f64, value: f64) -> String {
     let (a, b) = (middle - 0.005, middle + 0.005);
     let places = [0.0, a - 1e-6, a, b, b + 1e-6, 1.0];
     format!(r#"{{"table":{{"positions":{places:?},"values":[0,0,{value},{value},0,0],"interpolation":"linear"}}}}"#)
 }
 
 /// -60 N/m on the pad beside 2 N/m everywhere.
-fn beside(middle: f64) -> String {
+pub fn beside(middle: f64) -> String {
     format!(r#"{{"sum":[2,{}]}}"#, pad(middle, -60.0))
 }
 
@@ -108,7 +107,7 @@ fn a_uniform_load_stays_exactly_what_it_was() {
     }
 }
 
-fn profiles() -> impl Strategy<Value = Profile> {
+pub fn profiles() -> impl Strategy<Value = Profile> {
     let wave = (0.1..3.0, 0.0..60.0, -3.0..3.0)
         .prop_map(|(a, n, p)| format!(r#"{{"amplitude":{a},"waves":{n},"phase_rad":{p}}}"#));
     let table = (0.0..0.9, 1e-5..0.1, prop::collection::vec(-2.0..2.0, 4), any::<bool>()).prop_map(
@@ -276,94 +275,6 @@ fn a_start_has_its_volume_on_any_number_of_cells() {
         for bladder in [0, 12] {
             let sum: f64 = found[bladder * cells..(bladder + 1) * cells].iter().sum();
             within("mean area", sum / cells as f64, uniform[bladder], 1e-12);
-        }
-    }
-}
-
-fn left_out(case: &Case) -> Vec<f64> {
-    let found = resolution::findings(case, &System::new(case));
-    found.iter().map(|f| f.left_out).collect()
-}
-
-#[test]
-fn what_the_mesh_leaves_out_is_told() {
-    let code = "W016";
-    // All of a wave that is as long as two cells, or as one.
-    for cells in [1, 2] {
-        let run = run(&pressed(r#"{"cosine":{"waves":20,"amplitude":100}}"#, cells, &[]));
-        assert!(
-            run.summary.warnings.iter().any(|w| w.starts_with(code)),
-            "{:?}",
-            run.summary.warnings
-        );
-    }
-    // Finer, the tip is right. Closed form: M = (1 - cos k x)/k².
-    let wave = pressed(r#"{"cosine":{"waves":20,"amplitude":100}}"#, 8, &[]);
-    let k = 20.0 * TAU / 0.1;
-    within(
-        "tip under waves",
-        run(&wave).last("tip_u1"),
-        100.0 / (k * k) * 0.005 / EI,
-        1e-3,
-    );
-    assert!(resolution::unresolved(&wave, &System::new(&wave)).is_empty());
-    // A narrow pad is a force, but for one close to what holds the beam.
-    for cells in [1, 2, 4] {
-        for middle in [0.3, 0.5, 0.5125, 0.99] {
-            let case = pressed(&beside(middle), cells, &[]);
-            assert!(
-                left_out(&case)[0] < resolution::LIMIT,
-                "{middle} {cells}: {:?}",
-                left_out(&case)
-            );
-        }
-    }
-    let near = pressed(&pad(0.03, 50.0), 1, &[]);
-    let found = resolution::unresolved(&near, &System::new(&near));
-    println!("{found:?}");
-    let (coarse, wanted) = (run(&near).last("tip_u1"), found[0].wanted.unwrap());
-    let finer = |cells| run(&pressed(&pad(0.03, 50.0), cells, &[])).last("tip_u1");
-    println!(
-        "tip {coarse:.3e} m, on {wanted} cells a segment {:.3e} m, on 64 {:.3e} m",
-        finer(wanted),
-        finer(64)
-    );
-    assert!((coarse / finer(64) - 1.0).abs() > 0.5);
-    within("tip with what it asks for", finer(wanted), finer(64), 0.05);
-}
-
-/// Uniform loads leave out what the trapezoidal rule does, whatever holds the beam.
-#[test]
-fn the_share_is_that_of_closed_forms() {
-    // ∫ M over h²/12 p each cell; cantilever 1/6, simply supported 1/12, clamped at both ends ∫|M| up to the first zero.
-    let cases = [
-        (r#"{"root":"clamped","tip":"free"}"#, 1.0 / 6.0),
-        (r#"{"root":"pinned","tip":"pinned"}"#, 1.0 / 12.0),
-    ];
-    for (ends, whole) in cases {
-        let ends = format!("/ends={ends}");
-        let found = left_out(&pressed("1", 1, &[&ends]))[0];
-        let angle = 0.01 / 12.0 / whole;
-        println!("{ends}: {found:.5}, change of the angle {angle:.5}");
-        assert!(found >= angle * (1.0 - 1e-9) && found < 2.0 * angle);
-    }
-    // A free beam under a uniform load moves and does not bend.
-    let free = left_out(&pressed("1", 1, &[r#"/ends={"root":"free","tip":"free"}"#]));
-    assert_eq!(free, [0.0]);
-}
-
-#[test]
-fn no_shipped_case_is_warned() {
-    for folder in ["cases", "cases/hard"] {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let name = entry.unwrap().file_name().into_string().unwrap();
-            let Some(stem) = name.strip_suffix(".json").filter(|stem| *stem != "schema") else {
-                continue;
-            };
-            let path = format!("{}{stem}", if folder == "cases" { "" } else { "hard/" });
-            let case = shipped::<&str>(&path, &[]);
-            let told = resolution::warnings(&case, &System::new(&case));
-            assert!(told.is_empty(), "{path}: {told:?}");
         }
     }
 }

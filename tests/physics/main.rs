@@ -13,6 +13,7 @@ mod mapping;
 mod meshes;
 mod networks;
 mod numbers;
+mod resolution;
 mod statics;
 mod valves;
 mod wiring;

@@ -1,0 +1,141 @@
+//! Source: statics of beams; the same loads on finer meshes.
+//! Goal: what a mesh leaves out of loads and of the start is told where it matters, and only there.
+//! Tolerance: 5 % of the deflection is what is told; closed forms to round-off.
+
+use std::f64::consts::TAU;
+
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+use slcbeam::case::Case;
+use slcbeam::discrete::{System, resolution, shapes};
+
+use super::common::{EI, Run, run, shipped, within};
+use super::loads::{beside, pad, pressed, profiles};
+
+/// Random loads on a coarse mesh, against the same on a fine one at the nodes of both: what is off by more than 6 % of the largest
+/// deflection is told.
+#[test]
+fn what_is_wrong_is_told() {
+    let mut runner = TestRunner::deterministic();
+    let (mut told, mut needless, mut wrong, mut all) = (0, 0, 0, 0);
+    for _ in 0..60 {
+        let (f, cells) = (profiles(), 1..4_usize).new_tree(&mut runner).unwrap().current();
+        let text = serde_json::to_string(&f).unwrap();
+        let amplitude = 0.5 / shapes::in_cells(&f, 50).iter().fold(1e-3, |m: f64, v| m.max(v.abs()));
+        let scaled = format!(r#"{{"product":[{amplitude},{text}]}}"#);
+        let case = pressed(&scaled, cells, &["/solver/rtol=1e-6"]);
+        let coarse = run(&case);
+        let fine = run(&pressed(&scaled, 32, &["/solver/rtol=1e-6"]));
+        let last = |run: &Run| run.field("u1_m").last().unwrap().clone();
+        let (coarse_u, fine_u) = (last(&coarse), last(&fine));
+        let at = |u: &[f64], segment: usize| u[segment * (u.len() - 1) / 10];
+        let off = (0..=10)
+            .map(|k| (at(&coarse_u, k) - at(&fine_u, k)).abs())
+            .fold(0.0, f64::max);
+        let error = off / fine_u.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let warned = coarse.summary.warnings.iter().any(|w| w.starts_with("W016"));
+        let left_out = left_out(&case)[0];
+        all += 1;
+        told += usize::from(warned);
+        needless += usize::from(warned && error < 0.01);
+        wrong += usize::from(error > 0.05);
+        println!(
+            "{cells} cells: off by {error:.1e}, left out {left_out:.1e}: {}",
+            &text[..text.len().min(90)]
+        );
+        assert!(
+            warned || error < 0.06,
+            "{cells} cells: off by {error} without a word, left out {left_out}: {text}"
+        );
+    }
+    println!("{all} loads: {wrong} off by more than 5 %, {told} told, {needless} of them off by less than 1 %");
+}
+
+fn left_out(case: &Case) -> Vec<f64> {
+    let found = resolution::findings(case, &System::new(case));
+    found.iter().map(|f| f.left_out).collect()
+}
+
+#[test]
+fn what_the_mesh_leaves_out_is_told() {
+    let code = "W016";
+    // All of a wave that is as long as two cells, or as one.
+    for cells in [1, 2] {
+        let run = run(&pressed(r#"{"cosine":{"waves":20,"amplitude":100}}"#, cells, &[]));
+        assert!(
+            run.summary.warnings.iter().any(|w| w.starts_with(code)),
+            "{:?}",
+            run.summary.warnings
+        );
+    }
+    // Finer, the tip is right. Closed form: M = (1 - cos k x)/k².
+    let wave = pressed(r#"{"cosine":{"waves":20,"amplitude":100}}"#, 8, &[]);
+    let k = 20.0 * TAU / 0.1;
+    within(
+        "tip under waves",
+        run(&wave).last("tip_u1"),
+        100.0 / (k * k) * 0.005 / EI,
+        1e-3,
+    );
+    assert!(resolution::unresolved(&wave, &System::new(&wave)).is_empty());
+    // A narrow pad is a force, but for one close to what holds the beam.
+    for cells in [1, 2, 4] {
+        for middle in [0.3, 0.5, 0.5125, 0.99] {
+            let case = pressed(&beside(middle), cells, &[]);
+            assert!(
+                left_out(&case)[0] < resolution::LIMIT,
+                "{middle} {cells}: {:?}",
+                left_out(&case)
+            );
+        }
+    }
+    let near = pressed(&pad(0.03, 50.0), 1, &[]);
+    let found = resolution::unresolved(&near, &System::new(&near));
+    println!("{found:?}");
+    let (coarse, wanted) = (run(&near).last("tip_u1"), found[0].wanted.unwrap());
+    let finer = |cells| run(&pressed(&pad(0.03, 50.0), cells, &[])).last("tip_u1");
+    println!(
+        "tip {coarse:.3e} m, on {wanted} cells a segment {:.3e} m, on 64 {:.3e} m",
+        finer(wanted),
+        finer(64)
+    );
+    assert!((coarse / finer(64) - 1.0).abs() > 0.5);
+    within("tip with what it asks for", finer(wanted), finer(64), 0.05);
+}
+
+/// Uniform loads leave out what the trapezoidal rule does, whatever holds the beam.
+#[test]
+fn the_share_is_that_of_closed_forms() {
+    // ∫ M over h²/12 p each cell; cantilever 1/6, simply supported 1/12, clamped at both ends ∫|M| up to the first zero.
+    let cases = [
+        (r#"{"root":"clamped","tip":"free"}"#, 1.0 / 6.0),
+        (r#"{"root":"pinned","tip":"pinned"}"#, 1.0 / 12.0),
+    ];
+    for (ends, whole) in cases {
+        let ends = format!("/ends={ends}");
+        let found = left_out(&pressed("1", 1, &[&ends]))[0];
+        let angle = 0.01 / 12.0 / whole;
+        println!("{ends}: {found:.5}, change of the angle {angle:.5}");
+        assert!(found >= angle * (1.0 - 1e-9) && found < 2.0 * angle);
+    }
+    // A free beam under a uniform load moves and does not bend.
+    let free = left_out(&pressed("1", 1, &[r#"/ends={"root":"free","tip":"free"}"#]));
+    assert_eq!(free, [0.0]);
+}
+
+#[test]
+fn no_shipped_case_is_warned() {
+    for folder in ["cases", "cases/hard"] {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            let Some(stem) = name.strip_suffix(".json").filter(|stem| *stem != "schema") else {
+                continue;
+            };
+            let path = format!("{}{stem}", if folder == "cases" { "" } else { "hard/" });
+            let case = shipped::<&str>(&path, &[]);
+            let told = resolution::warnings(&case, &System::new(&case));
+            assert!(told.is_empty(), "{path}: {told:?}");
+        }
+    }
+}
