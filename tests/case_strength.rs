@@ -13,7 +13,7 @@ const SCENE: &str = r#"{
     "chains": [{"bladders": [1, 2, 3], "ends": [{"pressure_pa": 1e4}, "sealed"]},
                {"bladders": [-1, -2], "ends": [{"flow_m3_s": 1e-6}, "connected"]}],
     "ports": [{"at": {"bladder": -2, "end": "outlet"}, "flow_m3_s": -1e-6}],
-    "turbines": [{"from": {"bladder": 5, "end": "inlet"}, "to": {"bladder": -5, "end": "inlet"}, "conductance": {"kappa": 1},
+    "turbines": [{"from": {"bladder": 5, "end": "inlet"}, "to": {"bladder": -5, "end": "inlet"}, "conductance": {"m3_s_pa": 1e-9},
       "rectifier": {"check_valves": {"cracking_pressure_pa": 10, "forward_conductance_m3_s_pa": 1e-8,
         "reverse_conductance_m3_s_pa": 1e-12, "smoothing_pa": 10}}}]
   },
@@ -74,7 +74,7 @@ fn what_no_beam_bears_is_refused_with_range_and_hint() {
         ("/bladders/area_per_force_m2_per_n/compression", "6.31e-2"),
         ("/bladders/coupling/published/slope_per_pressure_rad", "3.8e4"),
         ("/bladders/coupling/published/length_per_pressure_m", "1e4"),
-        ("/bladders/permeability_m4", "1e-5"),
+        ("/bladders/permeability_m4", "1e-3"),
         ("/tubes/permeability_m4", "6.72e-1"),
     ] {
         let told = faults(&[&format!("{pointer}={value}")]);
