@@ -1,8 +1,8 @@
 //! What the loads do to the beam at the least: numbers that may stand in a denominator.
 //!
 //! The linear drained beam at rest under the loads of some instants, those at which each of them is largest: what is reached at one
-//! instant is reached. A beam that follows its loads up to a part `h` of them, stiffened by sealed bladders, does at least
-//! `(1 - h)/(1 + stiffening)` of it. Nothing is known, and zero is said, where ends are moved, loads are couples along the beam, the
+//! instant is reached. A beam that follows its loads up to a part `h` of them, stiffened by sealed bladders and by tension (in parts of
+//! its buckling load), does at least `(1 - h)/(1 + stiffening)` of it. Nothing is known, and zero is said, where ends are moved, loads are couples along the beam, the
 //! beam departs from its loads by half, or a load is too narrow for the integrals here.
 
 use nalgebra::{DMatrix, DVector};
@@ -51,7 +51,7 @@ impl Least {
         let follows = |departure: f64| if departure < 0.5 { 1.0 - departure } else { 0.0 };
         let [bending, stretching] = scene.stiffenings();
         let (across_part, along_part) = (
-            MARGIN * follows(h) / (1.0 + bending),
+            MARGIN * follows(h) / (1.0 + bending + scene.normal_force()),
             MARGIN * follows(w) / (1.0 + stretching),
         );
         Self {
