@@ -9,7 +9,9 @@ use slcbeam::run::summary::{Status, Summary};
 
 fn shipped(name: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-    case::load(Path::new(&format!("cases/{name}.json")), &sets).unwrap().case
+    case::load(Path::new(&format!("cases/{name}.json")), &sets)
+        .unwrap()
+        .case
 }
 
 fn run(case: &Case) -> Summary {
@@ -52,7 +54,10 @@ fn the_stiff_beam_says_what_its_steps_do() {
     let (truth, estimate) = (apart("tip_angle_rad", &usual, &tight), usual.estimate.unwrap());
     let time = estimate.quantities["tip_angle_rad"].time.unwrap();
     println!("true {truth:.1e}, estimated {time:.1e}");
-    assert!(time > 0.5 * truth && time < 10.0 * truth, "true {truth:e}, estimated {time:e}");
+    assert!(
+        time > 0.5 * truth && time < 10.0 * truth,
+        "true {truth:e}, estimated {time:e}"
+    );
 }
 
 /// Goal: free vibration on a coarse mesh, whose frequencies are off by per cents, has a final value off by tens of per cent after
@@ -64,7 +69,10 @@ fn a_phase_that_the_mesh_shifts_is_told() {
     let truth = apart("tip_u1_m", &coarse, &fine);
     let estimate = coarse.estimate.as_ref().unwrap().quantities["tip_u1_m"].total.unwrap();
     println!("true {truth:.1e}, estimated {estimate:.1e}");
-    assert!(truth > 0.1 && estimate > 0.5 * truth && estimate < 10.0 * truth, "true {truth:e}, {estimate:e}");
+    assert!(
+        truth > 0.1 && estimate > 0.5 * truth && estimate < 10.0 * truth,
+        "true {truth:e}, {estimate:e}"
+    );
     assert!(warned(&coarse, "W021"), "{:?}", coarse.warnings);
     assert!(!warned(&fine, "W021"), "{:?}", fine.warnings);
 }
@@ -90,7 +98,9 @@ fn a_loose_tolerance_is_told() {
     let loose = run(&cantilever("0.5", 10, 4.0, 1e-2));
     let tight = run(&cantilever("0.5", 10, 4.0, 1e-6));
     let truth = apart("tip_angle_rad", &loose, &tight);
-    let time = loose.estimate.as_ref().unwrap().quantities["tip_angle_rad"].time.unwrap();
+    let time = loose.estimate.as_ref().unwrap().quantities["tip_angle_rad"]
+        .time
+        .unwrap();
     println!("true {truth:.1e}, estimated {time:.1e}");
     assert!(time > 0.5 * truth, "true {truth:e}, estimated {time:e}");
     assert!(tight.estimate.unwrap().time < 1e-2);
@@ -111,7 +121,10 @@ fn an_efficiency_counts_what_was_spent() {
     let published = run(&shipped("harvester-crossover-uniform", &[]));
     let words: Vec<&String> = published.warnings.iter().filter(|w| w.starts_with("W020")).collect();
     assert_eq!(words.len(), 1, "{words:?}");
-    assert!(words[0].contains("above one") && words[0].contains("published"), "{words:?}");
+    assert!(
+        words[0].contains("above one") && words[0].contains("published"),
+        "{words:?}"
+    );
 }
 
 /// Goal: the same beam under a wave, which does a thirtieth of the work: at the default tolerance the balance is open by a good part
@@ -122,7 +135,11 @@ fn open_balances_are_told_beside_their_figures() {
     let wave = |rtol: &str| {
         run(&shipped(
             "harvester-parallel-wave",
-            &[r#"/bladders/coupling="reciprocal""#, r#"/formulation="conservative""#, rtol],
+            &[
+                r#"/bladders/coupling="reciprocal""#,
+                r#"/formulation="conservative""#,
+                rtol,
+            ],
         ))
     };
     let (usual, tight) = (wave("/solver/rtol=1e-5"), wave("/solver/rtol=1e-7"));
@@ -131,6 +148,11 @@ fn open_balances_are_told_beside_their_figures() {
     assert!(usual.balances.energy_residual_relative < 0.01);
     assert!(warned(&usual, "W020"), "{:?}", usual.warnings);
     let window = |s: &Summary| s.quantities["efficiency"].window.unwrap();
-    assert!((window(&usual) / window(&tight) - 1.0).abs() < 0.2, "{} {}", window(&usual), window(&tight));
+    assert!(
+        (window(&usual) / window(&tight) - 1.0).abs() < 0.2,
+        "{} {}",
+        window(&usual),
+        window(&tight)
+    );
     assert!(tight.quantities["input_energy_j"].window_error.unwrap() < 0.5 * input.window_error.unwrap());
 }

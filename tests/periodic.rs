@@ -149,8 +149,15 @@ fn a_cycle_whose_energies_do_not_add_up_is_found_again() {
         .summary;
     let efficiency = summary.quantities["efficiency"];
     let (value, error) = (efficiency.window.unwrap(), efficiency.window_error.unwrap());
-    assert!(error < 0.05 && (value / 0.186 - 1.0).abs() < error.max(5e-3), "{efficiency:?}");
-    assert!(!summary.warnings.iter().any(|w| w.starts_with("W020")), "{:?}", summary.warnings);
+    assert!(
+        error < 0.05 && (value / 0.186 - 1.0).abs() < error.max(5e-3),
+        "{efficiency:?}"
+    );
+    assert!(
+        !summary.warnings.iter().any(|w| w.starts_with("W020")),
+        "{:?}",
+        summary.warnings
+    );
 }
 
 /// Prints what docs/stability-maps.md says of the work: 25 permeabilities, each cycle found from the one before, beside a run of

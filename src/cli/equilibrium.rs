@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use super::arguments::EquilibriumArguments;
 use super::{interrupt, line, terminal};
-use crate::case::{self, Case};
 use crate::case::parameter::Parameter;
+use crate::case::{self, Case};
 use crate::error::{Error, Result};
 use crate::model::{audit, characteristic};
 use crate::output::equilibrium as files;

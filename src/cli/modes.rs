@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use super::arguments::{FloquetArguments, ModesArguments};
 use super::line;
-use crate::case::{self, Case};
 use crate::case::parameter::Parameter;
+use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::modes::{self as files, Report};

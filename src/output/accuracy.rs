@@ -12,13 +12,20 @@ const TOLD: usize = 4;
 pub fn words(found: &Accuracy) -> String {
     let mut worst: Vec<_> = found.quantities.iter().collect();
     worst.sort_by(|a, b| b.1.total.unwrap_or(f64::MAX).total_cmp(&a.1.total.unwrap_or(f64::MAX)));
-    let told = worst.iter().take(TOLD).map(|(name, e)| match (e.total, e.time, e.space) {
-        (Some(_), Some(time), Some(space)) => {
-            format!("{name} {} by steps, {} by the mesh", significant(time, 2), significant(space, 2))
-        }
-        (Some(total), ..) => format!("{name} {}", significant(total, 2)),
-        _ => format!("{name} unknown"),
-    });
+    let told = worst
+        .iter()
+        .take(TOLD)
+        .map(|(name, e)| match (e.total, e.time, e.space) {
+            (Some(_), Some(time), Some(space)) => {
+                format!(
+                    "{name} {} by steps, {} by the mesh",
+                    significant(time, 2),
+                    significant(space, 2)
+                )
+            }
+            (Some(total), ..) => format!("{name} {}", significant(total, 2)),
+            _ => format!("{name} unknown"),
+        });
     format!(
         "accuracy {} {}; estimated relative errors: {}\nwith {} cells a segment, rtol {}, after {} computations\n",
         significant(found.asked, 2),

@@ -333,7 +333,10 @@ impl Run<'_> {
                 };
                 self.summary.time_s = step.time;
                 let method = self.options.one_step();
-                self.observer.seen.estimate.step(method, &step, [solver.y(), solver.yp()]);
+                self.observer
+                    .seen
+                    .estimate
+                    .step(method, &step, [solver.y(), solver.yp()]);
                 if let Some(reason) = self.sample(solver, recorder, false)? {
                     return Ok(End::Stopped(reason));
                 }

@@ -38,7 +38,13 @@ const DISSIPATED: &[&str] = &[
     "dissipated_damping",
 ];
 const ADDED: &[&str] = &["work_formulation", "work_reciprocity"];
-const STORED: &[&str] = &["kinetic_energy", "rotary_energy", "axial_energy", "bending_energy", "bladder_energy"];
+const STORED: &[&str] = &[
+    "kinetic_energy",
+    "rotary_energy",
+    "axial_energy",
+    "bending_energy",
+    "bladder_energy",
+];
 const RESIDUAL: &[&str] = &["energy_residual"];
 
 /// Energies at an instant, or gains over a time [J].
@@ -153,7 +159,10 @@ impl Energies {
     pub fn warning(&self, quantities: &BTreeMap<String, Quantity>) -> Option<String> {
         let mut all = vec![];
         let times = [("over the run", self.run), ("in the window", self.window)];
-        for (name, words) in [("input_energy_j", "energy put in"), ("harvested_energy_j", "energy harvested")] {
+        for (name, words) in [
+            ("input_energy_j", "energy put in"),
+            ("harvested_energy_j", "energy harvested"),
+        ] {
             let Some(q) = quantities.get(name) else { continue };
             let figures = [(q.last, q.final_error), (q.window, q.window_error)];
             for ((value, error), (when, _)) in figures.into_iter().zip(times) {
@@ -161,14 +170,19 @@ impl Energies {
                     && error > OPEN
                     && value.abs() > REMAINDER * self.largest_stored
                 {
-                    all.push(format!("the {words} {when}, {value:.3e} J, is open by {:.0} % of it", 100.0 * error));
+                    all.push(format!(
+                        "the {words} {when}, {value:.3e} J, is open by {:.0} % of it",
+                        100.0 * error
+                    ));
                 }
             }
         }
         if let Some(q) = quantities.get("efficiency").filter(|_| self.turbines) {
             let figures = [(q.last, q.final_error), (q.window, q.window_error)];
             for ((value, error), (when, since)) in figures.into_iter().zip(times) {
-                let (Some(value), Some(error)) = (value, error) else { continue };
+                let (Some(value), Some(error)) = (value, error) else {
+                    continue;
+                };
                 let what = format!("the efficiency {when}, {:.1} %", 100.0 * value);
                 if error > OPEN {
                     all.push(format!("{what}, has parts that are open by {:.0} %", 100.0 * error));
@@ -187,10 +201,13 @@ impl Energies {
 /// which is given [J].
 pub fn open_over_window(quantities: &BTreeMap<String, Quantity>, largest: f64) -> Option<f64> {
     let counts = |name: &str, value: f64| name == "efficiency" || value.abs() > REMAINDER * largest;
-    let figures = ["input_energy_j", "harvested_energy_j", "efficiency"].into_iter().filter_map(|name| {
-        let q = quantities.get(name)?;
-        q.window_error.filter(|_| q.window.is_some_and(|value| counts(name, value)))
-    });
+    let figures = ["input_energy_j", "harvested_energy_j", "efficiency"]
+        .into_iter()
+        .filter_map(|name| {
+            let q = quantities.get(name)?;
+            q.window_error
+                .filter(|_| q.window.is_some_and(|value| counts(name, value)))
+        });
     figures.reduce(f64::max)
 }
 

@@ -70,7 +70,13 @@ impl Estimated {
         if total <= LARGE {
             return None;
         }
-        let size = |x: f64| if x >= 1.0 { "all".to_string() } else { format!("{:.0} %", 100.0 * x) };
+        let size = |x: f64| {
+            if x >= 1.0 {
+                "all".to_string()
+            } else {
+                format!("{:.0} %", 100.0 * x)
+            }
+        };
         let because = if self.phase > 0.5 * total {
             format!(
                 "after {:.0} vibrations mesh and steps have shifted the phase by {:.2} rad; largest values and root mean squares are \
@@ -78,7 +84,8 @@ impl Estimated {
                 self.vibrations, self.shift_rad
             )
         } else {
-            "the mesh is coarse, or the tolerance loose, for what the beam does, and largest values are off as well".into()
+            "the mesh is coarse, or the tolerance loose, for what the beam does, and largest values are off as well"
+                .into()
         };
         Some(Code::ErrorEstimate.warning(format!(
             "estimate: the final {} may be off by about {} of its largest value ({} by steps, {} by the mesh): {because}; --accuracy \
@@ -113,8 +120,16 @@ impl Estimator {
         let length = model.length;
         let fine = (system.mesh.h / length).powi(2);
         let stiffer = sealed(system);
-        let across = if layout.free_u1.is_empty() { vec![] } else { small::bending(&model.ends) };
-        let along = if layout.free_u3.is_empty() { vec![] } else { small::axial(&model.ends) };
+        let across = if layout.free_u1.is_empty() {
+            vec![]
+        } else {
+            small::bending(&model.ends)
+        };
+        let along = if layout.free_u3.is_empty() {
+            vec![]
+        } else {
+            small::axial(&model.ends)
+        };
         let at_rest = [&across, &along].map(|modes| modes.first().map_or(0.0, |m| 2.0 * m.mesh.abs() * fine));
         let one = |mode: SmallMode, across: bool| {
             let (free, first, unit, more) = if across {
@@ -126,7 +141,11 @@ impl Estimator {
             };
             let [size, rate] = first.map(|k| layout.scales[k]);
             let frequency = mode.frequency * unit;
-            let material = if across { s.bending_damping_time } else { s.axial_damping_time };
+            let material = if across {
+                s.bending_damping_time
+            } else {
+                s.axial_damping_time
+            };
             let weight = |node: usize| {
                 let place = system.mesh.node_coordinate(node) / length;
                 mode.at(place) * system.mesh.node_length(node) / length * size
@@ -142,7 +161,11 @@ impl Estimator {
             })
         };
         let follow = |modes: Vec<SmallMode>, waves: bool, across: bool| -> Vec<Vibration> {
-            modes.into_iter().filter(|_| waves).map(|mode| one(mode, across)).collect()
+            modes
+                .into_iter()
+                .filter(|_| waves)
+                .map(|mode| one(mode, across))
+                .collect()
         };
         Self {
             bending: follow(across, layout.waves[0], true),
@@ -166,7 +189,8 @@ impl Estimator {
     pub fn judge(&self, quantities: &BTreeMap<String, Quantity>) -> Option<Estimated> {
         let largest = |name: &str| quantities.get(name).and_then(|q| q.max_abs).unwrap_or(0.0);
         let [u1, u3, angle] = ["tip_u1_m", "tip_u3_m", "tip_angle_rad"].map(largest);
-        let [bending, axial] = [&self.bending, &self.axial].map(|all| all.iter().map(Vibration::ended).collect::<Vec<_>>());
+        let [bending, axial] =
+            [&self.bending, &self.axial].map(|all| all.iter().map(Vibration::ended).collect::<Vec<_>>());
         let (across, turn, along) = (Off::of(&bending, 0), Off::of(&bending, 1), Off::of(&axial, 0));
         // a tip that has turned moves along as well
         let drawn = across.times(DRAWN * angle.min(1.0));

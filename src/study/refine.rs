@@ -132,7 +132,11 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn variant(&self, (cells, decades): At) -> Case {
-        let rtol = if self.in_time { 10_f64.powi(-decades) } else { self.case.solver.rtol };
+        let rtol = if self.in_time {
+            10_f64.powi(-decades)
+        } else {
+            self.case.solver.rtol
+        };
         plan::refined(self.case, cells, rtol)
     }
 
@@ -193,7 +197,11 @@ impl Search<'_> {
             return Some(0.0);
         }
         let [least, most] = BELIEVED;
-        let ratio = if before > 0.0 { (last / before).clamp(least, most) } else { most };
+        let ratio = if before > 0.0 {
+            (last / before).clamp(least, most)
+        } else {
+            most
+        };
         let size = number.value.abs().max(number.size).max(f64::MIN_POSITIVE);
         Some(SAFETY * ratio / (1.0 - ratio) * last / size).filter(|e| e.is_finite())
     }
@@ -225,17 +233,29 @@ mod tests {
             1.0 + 0.7 * h * h - 3.0 * case.solver.rtol.powf(0.8)
         };
         let mut compute = |case: &Case| {
-            let number = Number { value: value(case), size: 0.0 };
+            let number = Number {
+                value: value(case),
+                size: 0.0,
+            };
             Ok(Numbers::from([("x".to_string(), number)]))
         };
         let (chosen, found) = refine(&case(), 1e-3, true, &mut compute).unwrap();
         let (error, total) = ((value(&chosen) - 1.0).abs(), found.quantities["x"].total.unwrap());
-        assert!(found.reached && error <= total && total < 3.0 * error, "{error:e} {total:e}");
+        assert!(
+            found.reached && error <= total && total < 3.0 * error,
+            "{error:e} {total:e}"
+        );
         assert_eq!(warning(&found), None);
         let mut sign = 1.0;
         let mut jumps = |_: &Case| {
             sign = -sign;
-            Ok(Numbers::from([("x".to_string(), Number { value: 2.0 + sign, size: 0.0 })]))
+            Ok(Numbers::from([(
+                "x".to_string(),
+                Number {
+                    value: 2.0 + sign,
+                    size: 0.0,
+                },
+            )]))
         };
         let (_, found) = refine(&case(), 1e-3, false, &mut jumps).unwrap();
         assert!(!found.reached && warning(&found).unwrap().contains("W012"));

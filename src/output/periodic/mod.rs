@@ -131,12 +131,24 @@ pub fn figures(summary: &Summary) -> String {
         ("harvested_energy_j", "harvested"),
         ("efficiency", "efficiency"),
     ] {
-        let Some((value, q)) = quantities.get(name).and_then(|q| Some((q.window?, q))) else { continue };
-        let shown = if name == "efficiency" { percent(value) } else { quantity(value, "J", 4) };
-        let open = q.window_error.map_or(String::new(), |e| format!(" (balance open by {} of it)", percent(e)));
+        let Some((value, q)) = quantities.get(name).and_then(|q| Some((q.window?, q))) else {
+            continue;
+        };
+        let shown = if name == "efficiency" {
+            percent(value)
+        } else {
+            quantity(value, "J", 4)
+        };
+        let open = q
+            .window_error
+            .map_or(String::new(), |e| format!(" (balance open by {} of it)", percent(e)));
         let _ = writeln!(text, "{words:<22} {shown}{open}");
     }
-    for warning in summary.warnings.iter().filter(|w| w.starts_with(Code::EnergyFigure.id())) {
+    for warning in summary
+        .warnings
+        .iter()
+        .filter(|w| w.starts_with(Code::EnergyFigure.id()))
+    {
         let _ = writeln!(text, "warning: {warning}");
     }
     text

@@ -157,7 +157,12 @@ mod tests {
                 assert!(off.abs() < 1e-3, "{root}-{tip} {beta}: {off:e}");
                 let square: f64 = mode.shape.iter().map(|x| x * x).sum::<f64>() / CELLS as f64;
                 assert!((square - 1.0).abs() < 0.1, "{square}");
-                println!("{root}-{tip} {beta}: mesh {:.4}, tip {:.3}, slope {:.3}", mode.mesh, mode.at(1.0), mode.tip_slope());
+                println!(
+                    "{root}-{tip} {beta}: mesh {:.4}, tip {:.3}, slope {:.3}",
+                    mode.mesh,
+                    mode.at(1.0),
+                    mode.tip_slope()
+                );
             }
         }
         // pinned ends have no half cells that count: u'''' of a sine on the staggered mesh

@@ -140,7 +140,10 @@ impl Vibration {
         let (mean_square, square) = block.free(self.band);
         let amplitude = (2.0 * mean_square).sqrt();
         // what has decayed, and not by the steps alone, takes its error along
-        let decay = self.amplitude.filter(|a| *a > 0.0).map_or(1.0, |before| amplitude / before * (-block.lost).exp());
+        let decay = self
+            .amplitude
+            .filter(|a| *a > 0.0)
+            .map_or(1.0, |before| amplitude / before * (-block.lost).exp());
         let decay = decay.min((-self.damping * block.time).exp());
         self.off_time = self.off_time.map(|x| x * decay);
         self.off_space *= decay;
@@ -173,7 +176,10 @@ impl Vibration {
         let left = self.amplitude.unwrap_or(0.0);
         let without_loss = left * (-self.lost).min(30.0).exp();
         let most = 2.0 * without_loss.clamp(left, self.largest.max(left));
-        [self.off_time[0].hypot(self.off_time[1]).min(most), self.off_space.abs().min(most)]
+        [
+            self.off_time[0].hypot(self.off_time[1]).min(most),
+            self.off_space.abs().min(most),
+        ]
     }
 }
 

@@ -5,9 +5,9 @@
 
 use serde::Serialize;
 
+use super::record;
 use super::scene::Scene;
 use super::shoot::{Cycle, shoot};
-use super::record;
 use crate::case::schema::Case;
 use crate::error::Result;
 use crate::run::energies::{open_over_window, too_open};
@@ -78,7 +78,9 @@ pub fn settle(case: &Case, scene: Scene, cycle: Cycle) -> Result<Settled> {
         next.solver.rtol = rtol;
         let mut scene = now.scene.clone();
         scene.rtol = rtol;
-        let Ok(cycle) = shoot(&scene, Some(&now.cycle.y)) else { break };
+        let Ok(cycle) = shoot(&scene, Some(&now.cycle.y)) else {
+            break;
+        };
         let tried = Settled {
             case: next,
             scene,
@@ -114,5 +116,7 @@ fn open(of: &Settled) -> Result<Option<f64>> {
         ..
     } = &outcome.summary;
     let largest = balances.energy_j.values().fold(0.0_f64, |s, x| s.max(x.abs()));
-    Ok((*status == Status::Finished).then(|| open_over_window(quantities, largest)).flatten())
+    Ok((*status == Status::Finished)
+        .then(|| open_over_window(quantities, largest))
+        .flatten())
 }

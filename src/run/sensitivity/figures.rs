@@ -134,7 +134,9 @@ impl Figures {
         if let Some(now) = at("harvested").filter(|_| self.turbines) {
             track("harvested_energy_j", now);
             let parts = SPENT.iter().filter_map(|(column, sign)| Some((at(column)?, sign)));
-            let spent = parts.fold(now, |sum, (part, sign)| [sum[0] + sign * part[0], sum[1] + sign * part[1]]);
+            let spent = parts.fold(now, |sum, (part, sign)| {
+                [sum[0] + sign * part[0], sum[1] + sign * part[1]]
+            });
             track(SPENT_NAME, spent);
         }
     }
