@@ -59,6 +59,28 @@ fn floquet_tells_whether_a_cycle_is_stable() {
     );
 }
 
+/// An accuracy is reached or said not to be, in the words and in the file; one that makes no sense is refused.
+#[test]
+fn multipliers_and_cycles_know_an_accuracy() {
+    let dir = TempDir::new().unwrap();
+    let asked = ["floquet", "cases/wiring-1.json", "--count", "2", "--accuracy"];
+    let said = say(&[&asked[..], &["0.1"]].concat(), dir.path());
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(said.out.contains("accuracy 0.10 reached"), "{}", said.out);
+    let found = json(&dir.path().join("floquet.json"));
+    assert_eq!(found["accuracy"]["reached"], true);
+    let estimates = found["accuracy"]["quantities"].as_object().unwrap();
+    assert!(!estimates.is_empty() && estimates.values().all(|e| e["total"].as_f64().unwrap() < 0.1));
+    assert_eq!(say(&[&asked[..], &["3"]].concat(), dir.path()).code, 2);
+    let cycle = ["periodic", "cases/wiring-1.json", "--accuracy", "0.3"];
+    let beside = dir.path().join("cycle");
+    let said = say(&cycle, &beside);
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert!(said.out.contains("put in over the cycle"), "{}", said.out);
+    assert_eq!(json(&beside.join("summary.json"))["accuracy"]["reached"], true);
+    assert_eq!(json(&beside.join("cycle.json"))["accuracy"]["reached"], true);
+}
+
 #[test]
 fn a_map_has_a_row_a_point_and_a_panel_a_permeability() {
     let dir = TempDir::new().unwrap();

@@ -24,7 +24,7 @@ use crate::error::Code;
 /// Open by more than this part of a figure: it is warned of.
 const OPEN: f64 = 0.1;
 /// Figures of energy below this part of the largest energy stored are what remains of larger ones that cancel.
-const REMAINDER: f64 = 1e-3;
+const REMAINDER: f64 = 3e-3;
 /// An efficiency is above one, or below zero, when it is so by more than its round-off.
 const ROUND_OFF: f64 = 1e-6;
 
@@ -197,16 +197,18 @@ impl Energies {
     }
 }
 
-/// Largest error over the window of an efficiency, or of the energy put in where nothing is harvested, unless that is what
-/// remains of much larger energies [J].
+/// Largest error over the window of an efficiency and of energies, but of those that remain of much larger ones, the largest of
+/// which is given [J].
 pub fn open_over_window(quantities: &BTreeMap<String, Quantity>, largest: f64) -> Option<f64> {
-    let of = |name: &str| quantities.get(name).and_then(|q| q.window_error);
-    let put_in = quantities.get("input_energy_j").and_then(|q| q.window);
-    of("efficiency").or_else(|| {
-        put_in
-            .filter(|x| x.abs() > REMAINDER * largest)
-            .and_then(|_| of("input_energy_j"))
-    })
+    let counts = |name: &str, value: f64| name == "efficiency" || value.abs() > REMAINDER * largest;
+    let figures = ["input_energy_j", "harvested_energy_j", "efficiency"]
+        .into_iter()
+        .filter_map(|name| {
+            let q = quantities.get(name)?;
+            q.window_error
+                .filter(|_| q.window.is_some_and(|value| counts(name, value)))
+        });
+    figures.reduce(f64::max)
 }
 
 /// Whether a figure that is open by so much of it is to be warned of.

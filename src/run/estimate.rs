@@ -33,7 +33,14 @@ use vibration::{Known, Vibration};
 /// Above this a final value is warned of.
 const LARGE: f64 = 0.05;
 /// What a run's steps make of their tolerance in a motion that follows its drive.
-const GATHERED: f64 = 10.0;
+const GATHERED: f64 = 4.0;
+/// Part of a displacement's error that is seen at an instant, on average over phases.
+const SEEN: f64 = 0.7;
+/// How much a slope takes the tip along that turns with the deflection of the first mode, on average over phases of both.
+const DRAWN: f64 = 0.5;
+/// How much more than the last mode that is followed all beyond it are in errors by steps: their shares fall with the fourth power
+/// of the wave number.
+const BEYOND: f64 = 2.0;
 /// Figures below this part of others are nothing to be accurate about.
 const NOTHING: f64 = 1e-6;
 
@@ -184,42 +191,24 @@ impl Estimator {
         let [u1, u3, angle] = ["tip_u1_m", "tip_u3_m", "tip_angle_rad"].map(largest);
         let [bending, axial] =
             [&self.bending, &self.axial].map(|all| all.iter().map(Vibration::ended).collect::<Vec<_>>());
-        let sum = |modes: &[Vibration], what: usize| {
-            modes.iter().fold([0.0; 2], |sum, mode| {
-                let off = mode.off();
-                let share = mode.tip[what].abs();
-                [sum[0] + share * off[0], sum[1] + share * off[1]]
-            })
-        };
-        let (across, turn, along) = (sum(&bending, 0), sum(&bending, 1), sum(&axial, 0));
+        let (across, turn, along) = (Off::of(&bending, 0), Off::of(&bending, 1), Off::of(&axial, 0));
         // a tip that has turned moves along as well
-        let drawn = across.map(|x| x * angle.min(1.0));
+        let drawn = across.times(DRAWN * angle.min(1.0));
         let everything = u1.max(u3).max(angle * self.length);
         let mut found: Option<Estimated> = None;
         let mut all = BTreeMap::new();
-        for (name, size, vibrations, at_rest, scale) in [
-            ("tip_u1_m", u1, across, self.at_rest[0], self.scales[0]),
-            (
-                "tip_u3_m",
-                u3,
-                [along[0] + drawn[0], along[1] + drawn[1]],
-                self.at_rest[0].max(self.at_rest[1]),
-                self.scales[1],
-            ),
-            (
-                "tip_angle_rad",
-                angle,
-                turn,
-                self.at_rest[0],
-                self.scales[0] / self.length,
-            ),
+        let [bent, stretched] = self.at_rest;
+        let [wide, long] = self.scales;
+        for (name, size, off, at_rest, scale, unit) in [
+            ("tip_u1_m", u1, across, bent, wide, 1.0),
+            ("tip_u3_m", u3, along.and(drawn), bent.max(stretched), long, 1.0),
+            ("tip_angle_rad", angle, turn, bent, wide / self.length, self.length),
         ] {
-            let weight = if name.ends_with("rad") { self.length } else { 1.0 };
-            if size * weight <= NOTHING * everything || size == 0.0 || !size.is_finite() {
+            if size * unit <= NOTHING * everything || size == 0.0 || !size.is_finite() {
                 continue;
             }
-            let phase = vibrations.map(|x| x / size);
-            let time = phase[0] + GATHERED * self.rtol * (1.0 + scale / size).min(1.0 / self.rtol);
+            let phase = off.errors.map(|x| x / size);
+            let time = phase[0] + (GATHERED * self.rtol * (1.0 + scale / size)).min(1.0);
             let space = phase[1] + at_rest;
             all.insert(
                 name.to_string(),
@@ -227,21 +216,17 @@ impl Estimator {
                     time: Some(time),
                     space: Some(space),
                     total: Some(time + space),
+                    ..Estimate::default()
                 },
             );
             if found.as_ref().is_none_or(|f| time + space > f.time + f.space) {
-                let modes = bending.iter().chain(&axial);
-                let worst = modes.max_by(|a, b| {
-                    let off = |m: &Vibration| m.tip[0].abs() * m.off().iter().sum::<f64>();
-                    off(a).total_cmp(&off(b))
-                });
                 found = Some(Estimated {
                     time,
                     space,
                     of: name.into(),
                     phase: phase[0] + phase[1],
-                    vibrations: worst.map_or(0.0, |m| m.turned[2] / std::f64::consts::TAU),
-                    shift_rad: worst.map_or(0.0, |m| m.turned[0].abs() + m.turned[1].abs()),
+                    vibrations: off.vibrations,
+                    shift_rad: off.shift,
                     quantities: BTreeMap::new(),
                 });
             }
@@ -250,6 +235,47 @@ impl Estimator {
             quantities: all,
             ..found
         })
+    }
+}
+
+/// Errors of a figure by the phases of several modes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Off {
+    /// By steps and by the mesh.
+    errors: [f64; 2],
+    /// Vibrations of the mode that does most, its shift [rad], and what it does.
+    vibrations: f64,
+    shift: f64,
+    most: f64,
+}
+
+impl Off {
+    /// Of the tip's displacement (0) or slope (1). Phases of modes are nobody's: their errors add like squares.
+    fn of(modes: &[Vibration], what: usize) -> Self {
+        let mut all = Self::default();
+        for (k, mode) in modes.iter().enumerate() {
+            let [time, space] = mode.off().map(|x| SEEN * mode.tip[what].abs() * x);
+            let time = if k + 1 == modes.len() { BEYOND * time } else { time };
+            all.errors = [all.errors[0].hypot(time), all.errors[1].hypot(space)];
+            if time + space > all.most {
+                let [steps, mesh, turned] = mode.turned;
+                (all.vibrations, all.shift) = (turned / std::f64::consts::TAU, steps.abs() + mesh.abs());
+                all.most = time + space;
+            }
+        }
+        all
+    }
+
+    fn times(mut self, factor: f64) -> Self {
+        self.errors = self.errors.map(|x| factor * x);
+        self.most *= factor;
+        self
+    }
+
+    fn and(self, other: Self) -> Self {
+        let errors = [0, 1].map(|k| self.errors[k].hypot(other.errors[k]));
+        let most = if self.most >= other.most { self } else { other };
+        Self { errors, ..most }
     }
 }
 

@@ -93,6 +93,7 @@ pub fn refine(
         cells_per_bladder: case.mesh.cells_per_bladder,
         rtol: case.solver.rtol,
         judged_by: Judged::Figures,
+        effects: String::new(),
         quantities: estimates,
         pilots: search.pilots,
     };
@@ -157,6 +158,8 @@ impl Search<'_> {
         let numbers = compute(&case)?;
         self.runs.insert(at, numbers);
         self.pilots.push(Pilot {
+            with: String::new(),
+            unknowns: 0,
             cells_per_segment: at.0,
             rtol: case.solver.rtol,
             steps: 0,
@@ -182,6 +185,7 @@ impl Search<'_> {
                     None => space,
                     Some(time) => time.zip(space).map(|(t, s)| t + s),
                 },
+                ..Estimate::default()
             };
             (name.clone(), estimate)
         };

@@ -54,6 +54,27 @@ fn command_fills_its_folder() {
     assert_eq!(table.lines().next(), Some(head));
 }
 
+/// Goal: an accuracy is reached on a mesh of its own, and its estimates stand in the file and in the words.
+#[test]
+fn command_refines_until_it_is_accurate() {
+    let out = tempfile::tempdir().expect("a folder");
+    let run = slcbeam(
+        &["equilibrium", "cases/elastica.json", "--at", "0", "--accuracy", "0.01"],
+        out.path(),
+    );
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    assert!(String::from_utf8_lossy(&run.stdout).contains("accuracy 0.010 reached"));
+    let json = std::fs::read_to_string(out.path().join("equilibrium.json")).expect("a file");
+    let json: Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(json["accuracy"]["reached"], true);
+    assert!(
+        json["accuracy"]["quantities"]["tip_u1"]["total"]
+            .as_f64()
+            .expect("a number")
+            < 0.01
+    );
+}
+
 /// Goal: mistakes get one message and the house's exit codes; a path that ends early keeps its states.
 #[test]
 fn command_says_what_cannot_be() {

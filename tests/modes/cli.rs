@@ -109,3 +109,32 @@ fn bad_input_is_told() {
     let said = modes(&[SMALL, "--count", "1", "--out", "/dev/null/modes"]);
     assert_eq!(said.0, 5, "{}", said.2);
 }
+
+/// An accuracy of frequencies and rates is reached on a mesh of its own; the words and the file have the estimates.
+#[test]
+fn an_accuracy_is_reached_or_not() {
+    let dir = TempDir::new().unwrap();
+    let out = dir.path().to_str().unwrap();
+    let asked = [
+        "cases/dry-cantilever.json",
+        "--count",
+        "3",
+        "--accuracy",
+        "0.01",
+        "--quiet",
+        "--out",
+        out,
+    ];
+    let (code, said, error) = modes(&asked);
+    assert_eq!((code, error.as_str()), (0, ""));
+    assert!(said.contains("accuracy 0.010 reached"), "{said}");
+    let json: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("modes.json")).unwrap()).unwrap();
+    let accuracy = &json["accuracy"];
+    assert_eq!(accuracy["reached"], true);
+    assert!(
+        accuracy["quantities"]["across_1_frequency_hz"]["total"]
+            .as_f64()
+            .unwrap()
+            < 0.01
+    );
+}

@@ -38,7 +38,7 @@ pub struct Refined {
     pub from_rtol: f64,
     /// Tolerance at which the cycle was found in the end.
     pub rtol: f64,
-    /// How far the balance over the cycle was open, relative to the figure: at first, and in the end.
+    /// How far the balance over the cycle was open, relative to the figure that it is most of: at first, and in the end.
     pub open: [f64; 2],
 }
 
@@ -46,7 +46,7 @@ impl Refined {
     /// For people.
     pub fn words(&self) -> String {
         format!(
-            "at rtol {:e} energies over the cycle were open by {:.0} % of the efficiency's parts or of what is put in: found again at rtol \
+            "at rtol {:e} energies over the cycle were open by {:.0} % of a figure: found again at rtol \
              {:e}, where it is {:.2} %",
             self.from_rtol,
             100.0 * self.open[0],
@@ -70,7 +70,7 @@ pub fn settle(case: &Case, scene: Scene, cycle: Cycle) -> Result<Settled> {
     let Some(mut open) = open(&now)? else { return Ok(now) };
     let first = open;
     for _ in 0..DECADES {
-        let rtol = 0.1 * now.case.solver.rtol;
+        let rtol = tenth(now.case.solver.rtol);
         if !too_open(open) || rtol < TIGHTEST * (1.0 - 1e-9) {
             break;
         }
@@ -99,6 +99,11 @@ pub fn settle(case: &Case, scene: Scene, cycle: Cycle) -> Result<Settled> {
         };
     }
     Ok(now)
+}
+
+/// A tenth of a tolerance, without what division adds in its last digit.
+fn tenth(rtol: f64) -> f64 {
+    format!("{:.12e}", 0.1 * rtol).parse().unwrap_or(0.1 * rtol)
 }
 
 /// How far the balance is open over the cycle beside its figures, where there are any.

@@ -12,7 +12,7 @@ use crate::run::periodic::scene::fault;
 use crate::run::periodic::{Cycle, Scene, record, shoot};
 use crate::run::record::{Control, Unrecorded};
 use crate::run::summary::Status;
-use crate::study::counted::counted;
+use crate::study::counted::{Floors, counted};
 
 /// Numbers of a unit below this part of others are round-off.
 const NOTHING: f64 = 1e-6;
@@ -113,7 +113,7 @@ pub fn of_cycle(case: &Case) -> Result<Numbers> {
         ));
     }
     let mut all = Numbers::new();
-    for (name, quantity) in counted(&outcome.summary, case.beam.length_m) {
+    for (name, quantity) in counted(&outcome.summary, &Floors::of(case)) {
         let largest = quantity.figures().fold(0.0_f64, |s, (_, x)| s.max(x.abs()));
         for (figure, value) in quantity.figures().filter(|(figure, _)| figure.starts_with("window")) {
             all.insert(format!("{name}.{figure}"), Number { value, size: largest });
