@@ -245,6 +245,7 @@ fn balances(summary: &Summary) -> String {
     let parts = [
         ("energy", b.energy_residual_relative),
         ("volume", b.volume_residual_relative),
+        ("port flow", b.port_flow_residual_relative),
         ("momentum", b.momentum_residual_relative),
         ("angular momentum", b.angular_momentum_residual_relative),
     ];

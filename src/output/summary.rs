@@ -60,6 +60,8 @@ fn from_json(text: &str) -> serde_json::Result<Summary> {
         match key.as_str() {
             "energy_residual_relative" => balances.energy_residual_relative = f64::NAN,
             "volume_residual_relative" => balances.volume_residual_relative = f64::NAN,
+            "port_flow_residual_relative" => balances.port_flow_residual_relative = f64::NAN,
+            "reaction_difference_relative" => balances.reaction_difference_relative = f64::NAN,
             "momentum_residual_relative" => balances.momentum_residual_relative = f64::NAN,
             "angular_momentum_residual_relative" => balances.angular_momentum_residual_relative = f64::NAN,
             _ => {}

@@ -12,7 +12,8 @@ use super::summary::Quantity;
 use crate::case::schema::Case;
 use crate::discrete::glance::{Glance, Watched};
 
-/// Excess over the largest value seen for which a turning point between two steps is looked at.
+/// Excess over the largest value seen for which the state at a turning point between two steps is looked at; below it the cubic
+/// through values and rates at the step's ends is as good.
 const WORTH: f64 = 1e-3;
 /// Share of the characteristic size below which nothing is a motion.
 const FLOOR: f64 = 1e-9;
@@ -145,23 +146,27 @@ impl Figures {
         }
     }
 
-    /// Whether a value between two steps is worth a look: larger than what has been seen, and no mere round-off.
-    pub fn worth(&self, which: Watched, size: f64, t: f64) -> bool {
+    /// Takes a turning point of the cubic between two steps, so that largest values change steadily with the motion. Returns whether
+    /// it is worth a look at the state itself: much larger than what has been seen, and no mere round-off.
+    pub fn turn(&mut self, which: Watched, size: f64, t: f64) -> bool {
         let in_window = t >= self.window_start;
         let [length, modulus] = self.sizes;
-        match which {
-            Watched::High | Watched::Low => {
-                size > FLOOR * modulus && self.pressure.is_some_and(|track| track.worth(size, in_window))
-            }
+        let (track, floor) = match which {
+            Watched::High | Watched::Low => (self.pressure.as_mut(), FLOOR * modulus),
             _ => {
-                let track = SWINGING
-                    .iter()
-                    .position(|(_, of)| *of == which)
-                    .map(|k| self.swinging[k]);
+                let place = SWINGING.iter().position(|(_, of)| *of == which);
                 let floor = if which == Watched::Angle { FLOOR } else { FLOOR * length };
-                size > floor && track.is_some_and(|track| track.worth(size, in_window))
+                (place.map(|k| &mut self.swinging[k]), floor)
             }
+        };
+        let Some(track) = track.filter(|_| size > floor) else {
+            return false;
+        };
+        let worth = track.worth(size, in_window);
+        if !worth {
+            track.see(size, in_window);
         }
+        worth
     }
 
     /// The quantities by name.

@@ -176,13 +176,17 @@ impl Observer {
     }
 
     /// Watches the end of an accepted step, and finds out where between its ends something may have turned: see
-    /// [`Observer::turning`]. Returns what lies beyond the model there, if anything.
+    /// [`Observer::turning`]. Returns what lies beyond the model there, if anything; nothing is kept of such a step.
     pub fn arrive(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
         let half_height = self.half_height;
         let (system, now, w) = dae.accepted(t, y, yp);
         let glance = Glance::new(system, now, t, half_height, w);
-        self.watch(system, now, w, &glance, integrals);
         self.turning.clear();
+        let beyond = self.limits.beyond(&glance);
+        if beyond.is_some() {
+            return beyond;
+        }
+        self.watch(system, now, w, &glance, integrals);
         if let Some(before) = self.before.filter(|before| before.t < t) {
             self.seen.range.take(&self.limits, Some(&before), &glance);
             self.seen.figures.span(&before, &glance);
@@ -190,7 +194,7 @@ impl Observer {
             self.look_between(&before, &glance);
         }
         self.before = Some(glance);
-        self.limits.beyond(&glance)
+        None
     }
 
     /// Times [s] inside the step that [`Observer::arrive`] has seen, in order, at which to look as well.
@@ -203,9 +207,12 @@ impl Observer {
         let half_height = self.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
         let glance = Glance::new(system, now, t, half_height, w);
-        self.watch(system, now, w, &glance, integrals);
-        self.seen.range.take(&self.limits, None, &glance);
-        self.limits.beyond(&glance)
+        let beyond = self.limits.beyond(&glance);
+        if beyond.is_none() {
+            self.watch(system, now, w, &glance, integrals);
+            self.seen.range.take(&self.limits, None, &glance);
+        }
+        beyond
     }
 
     /// What lies beyond the model in a state, if anything; nothing is kept.
@@ -252,7 +259,7 @@ impl Observer {
             let cubic = Cubic::new(figures::sized(before, which), figures::sized(now, which), h);
             for x in cubic.turns() {
                 let (t, value) = (before.t + x * h, cubic.at(x));
-                let worth = self.seen.figures.worth(which, value.abs(), t);
+                let worth = self.seen.figures.turn(which, value.abs(), t);
                 if worth || self.limits.matters(which, value, &self.seen.range) {
                     self.turning.push(t);
                 }
@@ -262,7 +269,7 @@ impl Observer {
         self.turning.dedup_by(|next, kept| *next - *kept < APART * h);
     }
 
-    /// Records the sample number `number` of a scaled state. Returns what lies beyond the model there, if anything.
+    /// Records the sample number `number` of a scaled state.
     #[allow(clippy::too_many_arguments)]
     pub fn sample(
         &mut self,
@@ -273,12 +280,17 @@ impl Observer {
         yp: &[f64],
         integrals: &[f64],
         recorder: &mut dyn Recorder,
-    ) -> Result<Option<String>> {
+    ) -> Result<()> {
         let half_height = self.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
         let glance = Glance::new(system, now, t, half_height, w);
         let balance = self.watch(system, now, w, &glance, integrals);
-        self.seen.range.take(&self.limits, None, &glance);
+        // The last step's end is later, but where the run ends within the step.
+        let before = self.before.filter(|before| before.t < t);
+        self.seen.range.take(&self.limits, before.as_ref(), &glance);
+        if let Some(before) = before {
+            self.seen.figures.span(&before, &glance);
+        }
         sample::row(system, now, t, w, &balance, integrals, &mut self.row);
         recorder.history(&self.row)?;
         self.seen.figures.take(&self.row, &glance);
@@ -294,7 +306,7 @@ impl Observer {
             }
             recorder.fields(t, &arrays)?;
         }
-        Ok(self.limits.beyond(&glance))
+        Ok(())
     }
 
     /// The last row of the history.

@@ -89,25 +89,43 @@ impl Limits {
         }
     }
 
+    /// Whether a state lies within the model.
+    fn hold(&self, g: &Glance) -> bool {
+        let value = |which| g.of(which)[0];
+        let pressure = value(Watched::High).abs().max(value(Watched::Low).abs());
+        value(Watched::Opening) > 0.0
+            && value(Watched::Swelling) <= self.swelling
+            && value(Watched::Strain) <= STRAIN_ENDS
+            && pressure <= PRESSURE_ENDS * self.modulus
+            && g.moved <= MOTION_ENDS * self.length
+    }
+
     /// What lies beyond the model in a state, if anything does.
     pub fn beyond(&self, g: &Glance) -> Option<String> {
-        let (value, t) = (|which| g.of(which)[0], g.t);
+        if self.hold(g) {
+            return None;
+        }
+        let value = |which| g.of(which)[0];
+        let t = match g.t {
+            t if t.abs() < 1e-3 => format!("{t:.3e}"),
+            t => format!("{t:.6}"),
+        };
         if value(Watched::Opening) <= 0.0 {
             return Some(format!(
-                "a bladder is closed at t = {t:.6} s: its cross-section h_b w_b + a1 has reached zero, where the model ends"
+                "a bladder is closed at t = {t} s: its cross-section h_b w_b + a1 has reached zero, where the model ends"
             ));
         }
         let swelling = value(Watched::Swelling);
         if swelling > self.swelling {
             return Some(format!(
-                "a bladder has outgrown its segment at t = {t:.6} s: its cross-section h_b w_b + a1 has reached the half \
+                "a bladder has outgrown its segment at t = {t} s: its cross-section h_b w_b + a1 has reached the half \
                  section l_seg h_s/2 that holds it (a1 = {swelling:.3e} m^2)"
             ));
         }
         let strain = value(Watched::Strain);
         if strain > STRAIN_ENDS {
             return Some(format!(
-                "the fibre strain |lambda - 1| + |kappa| h_s/2 has reached {STRAIN_ENDS} at t = {t:.6} s, node {}: a law that \
+                "the fibre strain |lambda - 1| + |kappa| h_s/2 has reached {STRAIN_ENDS} at t = {t} s, node {}: a law that \
                  is linear in the strain ends before",
                 g.strained
             ));
@@ -115,15 +133,13 @@ impl Limits {
         let pressure = value(Watched::High).abs().max(value(Watched::Low).abs());
         if pressure > PRESSURE_ENDS * self.modulus {
             return Some(format!(
-                "a pressure has reached {PRESSURE_ENDS} times Young's modulus at t = {t:.6} s ({pressure:.3e} Pa)"
+                "a pressure has reached {PRESSURE_ENDS} times Young's modulus at t = {t} s ({pressure:.3e} Pa)"
             ));
         }
-        (g.moved > MOTION_ENDS * self.length).then(|| {
-            format!(
-                "a node has reached {MOTION_ENDS} lengths of the beam against the root at t = {t:.6} s ({:.3e} m)",
-                g.moved
-            )
-        })
+        Some(format!(
+            "a node has reached {MOTION_ENDS} lengths of the beam against the root at t = {t} s ({:.3e} m)",
+            g.moved
+        ))
     }
 
     /// Whether a value between two steps matters, given the largest seen: near or above a limit.

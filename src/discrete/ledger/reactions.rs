@@ -3,7 +3,8 @@
 use crate::discrete::{Instant, System, Workspace};
 use crate::model::Kinematics;
 
-/// Squares of reactions and of what they differ by [N^2], added over driven ends and directions.
+/// Squares of reactions and of what they differ by [N^2], added over driven ends and directions; with the reactions stand the end's
+/// moment over the length of the beam, beside which forces may be nothing but round-off.
 ///
 /// One is what the momentum of the end's half cell leaves over, which closes the balance of momentum whatever the mesh; the
 /// other the force of the section at the end, extrapolated from the two nearest cells.
@@ -25,17 +26,28 @@ pub fn compared(system: &System, now: &Instant, w: &Workspace<f64>) -> [f64; 2] 
             };
             length * (inertia - load + section.drag * velocity)
         };
-        let mut compare = |n: &[f64], of_half_cell: f64| {
+        let compare = |n: &[f64], of_half_cell: f64, squares: &mut [f64; 2]| {
             let reaction = of_half_cell + outward * n[near];
             let difference = reaction - outward * (1.5 * n[near] - 0.5 * n[next]);
             squares[0] += reaction * reaction;
             squares[1] += difference * difference;
         };
+        if end.slope.is_some() && end.u1.is_some() {
+            squares[0] += (w.moment[node] / system.model.length).powi(2);
+        }
         if end.u1.is_some() && system.model.kinematics != Kinematics::Bar {
-            compare(&w.sx, half_cell(w.a1[node], now.force_x[node], w.v1[node]));
+            compare(
+                &w.sx,
+                half_cell(w.a1[node], now.force_x[node], w.v1[node]),
+                &mut squares,
+            );
         }
         if end.u3.is_some() && system.model.effects.axial_stretch {
-            compare(&w.sz, half_cell(w.a3[node], now.force_z[node], w.v3[node]));
+            compare(
+                &w.sz,
+                half_cell(w.a3[node], now.force_z[node], w.v3[node]),
+                &mut squares,
+            );
         }
     }
     squares

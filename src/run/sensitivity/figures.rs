@@ -1,4 +1,5 @@
-//! Derivatives of the quantities of interest, followed as the history is.
+//! Derivatives of the quantities of interest, followed as the history is: of largest values and means over the output times, which must
+//! be close enough for these to be those of the motion.
 
 use std::collections::BTreeMap;
 
