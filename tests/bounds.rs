@@ -222,6 +222,29 @@ fn a_polynomial_pulse_is_seen_and_shortens_steps() {
     assert!(scale < 0.3, "{scale}");
 }
 
+/// An opening that leaves its range for a hundred-thousandth of the run, and ones that touch its ends.
+#[test]
+fn what_leaves_a_range_is_found_and_what_touches_it_is_not() {
+    for k in 0..40 {
+        let t = 0.7 + 2.3 * f64::from(k);
+        let pulse = format!(
+            r#"{{"sum":[0.6,{{"table":{{"times_s":[{t},{},{}],"values":[0,0.5,0],"interpolation":"linear"}}}}]}}"#,
+            t + 5e-4,
+            t + 1e-3
+        );
+        let found = signal(&pulse).leaves(0.0, 1.0, 100.0);
+        assert!(found.is_some_and(|excess| excess.value > 1.0), "{t}: {found:?}");
+    }
+    for touching in [
+        r#"{"sum":[0.5,{"sine":{"amplitude":0.5,"frequency_hz":50}}]}"#,
+        r#"{"product":[4,{"polynomial":{"coefficients":[0,0.01]}},{"polynomial":{"coefficients":[1,-0.01]}}]}"#,
+        r#"{"product":[{"sigmoid":{"amplitude":1,"steepness_per_s":20,"midpoint_s":30}},{"sum":[1,{"sigmoid":{"amplitude":-1,"steepness_per_s":20,"midpoint_s":60}}]}]}"#,
+    ] {
+        let found = signal(touching).leaves(-1e-9, 1.0 + 1e-9, 100.0);
+        assert!(found.is_none(), "{touching}: {found:?}");
+    }
+}
+
 /// Simple signals in microseconds, long tables in linear time, many cycles no slower.
 #[test]
 fn bounds_cost_little() {

@@ -105,7 +105,7 @@ fn slow_loads_go_without_inertia() {
 /// 2 ms in 5 s, as a table and as a product of steps.
 #[test]
 fn short_pulses_at_a_port_keep_inertia() {
-    for start in [0.1234, 1.0, 2.718, 4.9] {
+    for start in [0.1234, 1.0, 2.71, 4.9] {
         let pulses = [
             format!(
                 r#"{{"table":{{"times_s":[{start},{},{}],"values":[0,2e4,0],"interpolation":"linear"}}}}"#,
