@@ -11,6 +11,8 @@ const PERIODS: f64 = 2.0;
 const BELOW: f64 = 0.75;
 const ABOVE: f64 = 1.35;
 
+/// Up to this from one block to the next a vibration is steady.
+const STEADY: f64 = 1.05;
 /// More than this from one block to the next is no growth of a vibration, but a new one.
 const STRUCK: f64 = 2.0;
 
@@ -149,7 +151,7 @@ impl Vibration {
             Some(ratio) => (ratio * (-block.lost).exp()).min(1.0),
             None => 1.0,
         };
-        let decay = if grown < 1.0 {
+        let decay = if grown < STEADY {
             grown.min((-self.damping * block.time).exp())
         } else {
             grown
