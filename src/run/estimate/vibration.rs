@@ -11,6 +11,11 @@ const PERIODS: f64 = 2.0;
 const BELOW: f64 = 0.75;
 const ABOVE: f64 = 1.35;
 
+/// Up to this from one block to the next a vibration is steady.
+const STEADY: f64 = 1.05;
+/// More than this from one block to the next is no growth of a vibration, but a new one.
+const STRUCK: f64 = 2.0;
+
 /// A mode of the straight beam, and what became of it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Vibration {
@@ -139,12 +144,18 @@ impl Vibration {
         let block = std::mem::take(&mut self.block);
         let (mean_square, square) = block.free(self.band);
         let amplitude = (2.0 * mean_square).sqrt();
-        // what has decayed, and not by the steps alone, takes its error along
-        let decay = self
-            .amplitude
-            .filter(|a| *a > 0.0)
-            .map_or(1.0, |before| amplitude / before * (-block.lost).exp());
-        let decay = decay.min((-self.damping * block.time).exp());
+        // What decays, and not by the steps alone, takes its error along, and so does what grows; what was struck anew does not.
+        let grown = match self.amplitude.filter(|a| *a > 0.0).map(|before| amplitude / before) {
+            Some(ratio) if ratio > STRUCK => 1.0,
+            Some(ratio) if ratio > 1.0 => ratio,
+            Some(ratio) => (ratio * (-block.lost).exp()).min(1.0),
+            None => 1.0,
+        };
+        let decay = if grown < STEADY {
+            grown.min((-self.damping * block.time).exp())
+        } else {
+            grown
+        };
         self.off_time = self.off_time.map(|x| x * decay);
         self.off_space *= decay;
         self.frequency = square.sqrt();
