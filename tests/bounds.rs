@@ -198,6 +198,19 @@ fn departure(signal: &Signal, w: f64, held: f64) -> f64 {
 }
 
 #[test]
+fn size_of_a_sine_does_not_depend_on_the_length_of_the_run() {
+    let signal = signal(r#"{"sine": {"amplitude": 0.012, "frequency_hz": 20}}"#);
+    for end in [0.5, 50.0, 100.0, 200.0, 5000.0] {
+        let most = signal.largest(end);
+        let omega = 40.0 * std::f64::consts::PI;
+        assert!((most.value / 0.012 - 1.0).abs() < 1e-4, "{end}: {most:?}");
+        assert!((most.rate / (0.012 * omega) - 1.0).abs() < 1e-4, "{end}: {most:?}");
+        let acceleration = 0.012 * omega * omega;
+        assert!((most.acceleration / acceleration - 1.0).abs() < 1e-4, "{end}: {most:?}");
+    }
+}
+
+#[test]
 fn exact_bounds_of_single_forms() {
     let sine = signal(r#"{"sine":{"amplitude":3,"frequency_hz":1e4}}"#);
     let bounds = sine.largest(100.0);
