@@ -138,9 +138,9 @@ fn text(r: &mut Random, kind: &str) -> Value {
 
 /// Three bladders a row, with slopes well below passivity.
 fn wet(r: &mut Random, case: &mut Value, [length, height, width, modulus]: [f64; 4], ei: f64) {
-    let (high, wide, long) = (0.3 * height, 0.6 * width, 0.25 * length);
+    let (high, wide, long) = (0.3 * height, 0.6 * width, (0.25 * length).min(0.9 * width));
     let per_pressure = high * wide / modulus * r.log(1.0, 10.0);
-    let (ea, ratio) = (modulus * height * width, 0.75);
+    let (ea, ratio) = (modulus * height * width, 3.0 * long / length);
     let force = (0.1 * per_pressure / (2.0 * ea * ratio)).sqrt();
     let moment = (0.1 * per_pressure / (2.0 * ei * ratio)).sqrt();
     case["fluid"] = json!({"density_kg_m3": 1000.0, "viscosity_pa_s": r.log(1e-3, 1.0)});

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Hook;
-use super::estimates::{At, EXPECTED_RATIO, Runs, Way};
+use super::estimates::{At, EXPECTED_RATIO, Runs, UNSEEN, Way};
 use super::models::{self, Full};
 use crate::case::Case;
 use crate::case::schema::Method;
@@ -174,7 +174,7 @@ impl<'a> Search<'a> {
         let thirds = self.runs.thirds(at);
         // A third run shows that differences fall, and what is left over is then a part of the last.
         let summed = |known: bool, steps: i32| match (known, steps) {
-            (false, 1..) => EXPECTED_RATIO / (1.0 - EXPECTED_RATIO),
+            (false, 1..) => EXPECTED_RATIO / (1.0 - EXPECTED_RATIO) / UNSEEN,
             _ => 1.0,
         };
         let predicted = |refinements: i32, tighter: i32| {
