@@ -80,10 +80,7 @@ impl Glance {
             [sample::tip_angle(system, w), tip_angle_rate(system, now, w)],
         );
         let (a, b) = (last / 2, last.div_ceil(2));
-        set(
-            Watched::Middle1,
-            [0.5 * (w.u1[a] + w.u1[b]), 0.5 * (w.v1[a] + w.v1[b])],
-        );
+        set(Watched::Middle1, [0.5 * (w.u1[a] + w.u1[b]), 0.5 * (w.v1[a] + w.v1[b])]);
         set(Watched::Largest1, largest(&w.u1, &w.v1));
         set(Watched::Largest3, largest(&w.u3, &w.v3));
         (g.deflection, g.moved) = moved(w);

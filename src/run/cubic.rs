@@ -84,7 +84,11 @@ mod tests {
         // by hand: coefficients of the square over powers
         let square = [1.0, -4.0, 10.0, -14.0, 13.0, -6.0, 1.0];
         let primitive = |x: f64| -> f64 {
-            square.iter().enumerate().map(|(k, c)| c * x.powi(k as i32 + 1) / (k as f64 + 1.0)).sum()
+            square
+                .iter()
+                .enumerate()
+                .map(|(k, c)| c * x.powi(k as i32 + 1) / (k as f64 + 1.0))
+                .sum()
         };
         for from in [0.0, 0.25, 0.9] {
             assert!((integral(from, f) - (primitive(1.0) - primitive(from))).abs() < 1e-14);

@@ -457,13 +457,9 @@ impl Run<'_> {
         if let Err(end) = self.read(solver, t) {
             return Ok(Some(end));
         }
-        let left = self.observer.enter(
-            solver.dae_mut(),
-            t,
-            &self.state,
-            &self.rates,
-            &self.integrals,
-        );
+        let left = self
+            .observer
+            .enter(solver.dae_mut(), t, &self.state, &self.rates, &self.integrals);
         match left {
             Some(what) => self.leave(solver, t, what, recorder).map(Some),
             None => self.sample(solver, t, t, recorder),
@@ -483,7 +479,9 @@ impl Run<'_> {
             return Ok(Some(end));
         }
         let dae = solver.dae_mut();
-        let left = self.observer.arrive(dae, now, &self.state, &self.rates, &self.integrals);
+        let left = self
+            .observer
+            .arrive(dae, now, &self.state, &self.rates, &self.integrals);
         let mut left = left.map(|what| (now, what));
         let mut within = from;
         for k in 0..self.observer.turning().len() {
@@ -547,10 +545,7 @@ impl Run<'_> {
                 break;
             }
             self.read(solver, t)?;
-            match self
-                .observer
-                .beyond(solver.dae_mut(), t, &self.state, &self.rates)
-            {
+            match self.observer.beyond(solver.dae_mut(), t, &self.state, &self.rates) {
                 Some(found) => (beyond, what) = (t, found),
                 None => within = t,
             }
@@ -753,8 +748,12 @@ fn beyond(t: f64, what: String) -> SolverFault {
         time_s: t,
         what,
         unknown: None,
-        cause: Some("loads, pressures or flows beyond what the model describes, or a motion that grows without bounds".into()),
-        hint: Some("results stand up to this time; look at the fields before it, at the units of loads and flows".into()),
+        cause: Some(
+            "loads, pressures or flows beyond what the model describes, or a motion that grows without bounds".into(),
+        ),
+        hint: Some(
+            "results stand up to this time; look at the fields before it, at the units of loads and flows".into(),
+        ),
     }
 }
 

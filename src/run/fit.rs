@@ -48,7 +48,9 @@ mod tests {
     fn series(law: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         // ripples of a few per cent, as the largest values in windows have them
         let ripple = |k: usize| 1.0 + 0.04 * ((k * 7919) as f64).sin();
-        (4..16).map(|k| (k as f64 + 0.5, law(k as f64 + 0.5) * ripple(k))).collect()
+        (4..16)
+            .map(|k| (k as f64 + 0.5, law(k as f64 + 0.5) * ripple(k)))
+            .collect()
     }
 
     /// Goal: ramps, beats that rise in proportion to time and accelerated motion are no exponentials; exponentials are, from a

@@ -86,7 +86,14 @@ impl Growth {
 
     /// Takes a state, in whatever order of time: deflection relative to the root [m], bending energy [J], most negative normal
     /// force [N].
-    pub fn take(&mut self, now: &Instant, t: f64, [deflection, bending, least_force]: [f64; 3], integrals: &[f64], residual: f64) {
+    pub fn take(
+        &mut self,
+        now: &Instant,
+        t: f64,
+        [deflection, bending, least_force]: [f64; 3],
+        integrals: &[f64],
+        residual: f64,
+    ) {
         let k = ((t / self.end * WINDOWS as f64) as usize).min(WINDOWS - 1);
         self.compression = self.compression.max(-least_force);
         let Some(w) = self.windows.get_mut(k) else { return };
@@ -101,7 +108,10 @@ impl Growth {
             w.reciprocity = integrals[Flow::Reciprocity as usize];
             w.formulation = integrals[Flow::Formulation as usize];
             w.residual = residual;
-            w.work = [Flow::Loads, Flow::Ends, Flow::Ports].map(|f| integrals[f as usize].abs()).iter().sum();
+            w.work = [Flow::Loads, Flow::Ends, Flow::Ports]
+                .map(|f| integrals[f as usize].abs())
+                .iter()
+                .sum();
         }
     }
 
@@ -244,7 +254,11 @@ fn drives(now: &Instant) -> [f64; KINDS] {
         largest(&now.moment_x).max(largest(&now.moment_z)),
         end(&|k| ends[k].force_x),
         end(&|k| ends[k].force_z),
-        end(&|k| ends[k].follower.map_or(0.0, |(normal, shear)| normal.abs().max(shear.abs()))),
+        end(&|k| {
+            ends[k]
+                .follower
+                .map_or(0.0, |(normal, shear)| normal.abs().max(shear.abs()))
+        }),
         end(&|k| ends[k].moment.value).max(end(&|k| ends[k].slope.map_or(0.0, |s| s.value))),
         end(&|k| ends[k].u1.map_or(0.0, |u| u.value)),
         end(&|k| ends[k].u3.map_or(0.0, |u| u.value)),

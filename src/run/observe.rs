@@ -214,7 +214,14 @@ impl Observer {
     }
 
     /// Balances, growth and largest values of a state, in whatever order of time.
-    fn watch(&mut self, system: &System, now: &Instant, w: &Workspace<f64>, glance: &Glance, integrals: &[f64]) -> sample::EnergyBalance {
+    fn watch(
+        &mut self,
+        system: &System,
+        now: &Instant,
+        w: &Workspace<f64>,
+        glance: &Glance,
+        integrals: &[f64],
+    ) -> sample::EnergyBalance {
         let stored = ledger::energies(system, now, w);
         let invariants = ledger::invariants(system, now, w);
         let (at_start, first) = self

@@ -159,10 +159,13 @@ impl Limits {
 impl Range {
     /// Takes a state at the end of a step that began at `before`.
     pub fn take(&mut self, limits: &Limits, before: Option<&Glance>, now: &Glance) {
-        self.strain.take(Watched::Strain, 1.0, STRAIN, before, now, now.strained);
+        self.strain
+            .take(Watched::Strain, 1.0, STRAIN, before, now, now.strained);
         let factor = limits.reynolds_per_flow;
-        self.reynolds.take(Watched::Flow, factor, REYNOLDS, before, now, now.tube);
-        self.pressed.take(Watched::Pressed, 1.0, limits.convex_up_to, before, now, 0);
+        self.reynolds
+            .take(Watched::Flow, factor, REYNOLDS, before, now, now.tube);
+        self.pressed
+            .take(Watched::Pressed, 1.0, limits.convex_up_to, before, now, 0);
     }
 
     /// Limits that were passed.

@@ -51,7 +51,10 @@ fn a_crushed_beam_is_diagnosed() {
                 ran.sound();
             }
             Status::Stopped => panic!("{name}: nobody asked it to stop: {reason}"),
-            Status::OutOfRange => assert!(reason.contains("reached") && reason.contains("t = "), "{name}: {reason}"),
+            Status::OutOfRange => assert!(
+                reason.contains("reached") && reason.contains("t = "),
+                "{name}: {reason}"
+            ),
             Status::Failed => {
                 let fault = ran.fault.expect("a failure has a fault");
                 assert!(

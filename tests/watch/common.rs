@@ -73,7 +73,12 @@ pub fn warning<'a>(summary: &'a Summary, id: &str) -> Option<&'a str> {
 
 /// The number after `before` in a text.
 pub fn number_after(text: &str, before: &str) -> f64 {
-    let rest = text.split(before).nth(1).unwrap_or_else(|| panic!("no {before:?} in {text}"));
+    let rest = text
+        .split(before)
+        .nth(1)
+        .unwrap_or_else(|| panic!("no {before:?} in {text}"));
     let end = rest.find([' ', ')', ',', ';']).unwrap_or(rest.len());
-    rest[..end].parse().unwrap_or_else(|_| panic!("no number after {before:?} in {text}"))
+    rest[..end]
+        .parse()
+        .unwrap_or_else(|_| panic!("no number after {before:?} in {text}"))
 }

@@ -2,7 +2,8 @@
 
 use crate::common::{BEAM, finished, shipped, written};
 
-const DRIVE: &str = r#"/ends/root={"clamped": {"u1_m": {"sine": {"amplitude": 1e-3, "frequency_hz": 10, "ramp_cycles": 2}}}}"#;
+const DRIVE: &str =
+    r#"/ends/root={"clamped": {"u1_m": {"sine": {"amplitude": 1e-3, "frequency_hz": 10, "ramp_cycles": 2}}}}"#;
 
 /// Goal: a thousand cycles with the output times of a run that names none, each of them at a zero of the drive, report the largest
 /// deflection that output times twenty a cycle see. Tolerance: 1e-3, that within which turning points are sought.
@@ -48,7 +49,12 @@ fn figures_do_not_depend_on_output_times() {
 /// Goal: the same for the largest pressure, whose cell changes.
 #[test]
 fn the_largest_pressure_lies_between_output_times() {
-    let with = |interval: &str| finished(&shipped("shaken-sealed", &["/time/end_s=0.06", interval]));
+    let with = |interval: &str| {
+        finished(&shipped(
+            "shaken-sealed",
+            &["/time/end_s=0.06", "/time/window_s=0.03", interval],
+        ))
+    };
     let (often, rarely) = (
         with("/time/output_interval_s=2e-5"),
         with("/time/output_interval_s=0.03"),

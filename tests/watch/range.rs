@@ -40,12 +40,20 @@ fn strains_between_output_times() {
     );
     let s = finished(&written(
         BEAM,
-        &[&set, r#"/effects={"solid_inertia": "off"}"#, "/time/end_s=0.3", "/time/output_interval_s=0.1"],
+        &[
+            &set,
+            r#"/effects={"solid_inertia": "off"}"#,
+            "/time/end_s=0.3",
+            "/time/output_interval_s=0.1",
+        ],
     ));
     let text = warning(&s, "W004").expect("strains are large");
     assert!((number_after(text, "reached ") - 0.6).abs() < 0.011, "{text}");
     let began = (0.5_f64 / 0.6).asin() / (20.0 * std::f64::consts::PI);
-    assert!((number_after(text, "from t = ") - began).abs() < 1e-3, "{text}: {began}");
+    assert!(
+        (number_after(text, "from t = ") - began).abs() < 1e-3,
+        "{text}: {began}"
+    );
 }
 
 /// Goal: fast flow between two output times is warned of, as with many of them.
@@ -53,10 +61,17 @@ fn strains_between_output_times() {
 fn fast_flow_between_output_times() {
     let with = |interval: &str| {
         let s = finished(&shipped("pluck", &["/time/end_s=0.1", interval]));
-        let text = s.warnings.iter().find(|w| w.contains("Reynolds number reached")).cloned();
+        let text = s
+            .warnings
+            .iter()
+            .find(|w| w.contains("Reynolds number reached"))
+            .cloned();
         number_after(&text.expect("flow is fast"), "reached ")
     };
-    let (often, rarely) = (with("/time/output_interval_s=1e-4"), with("/time/output_interval_s=0.1"));
+    let (often, rarely) = (
+        with("/time/output_interval_s=1e-4"),
+        with("/time/output_interval_s=0.1"),
+    );
     assert!((rarely / often - 1.0).abs() < 0.02, "{often} {rarely}");
 }
 
@@ -70,7 +85,11 @@ fn a_strain_of_one_ends_the_run() {
     );
     let (outcome, _) = ended(&written(
         BEAM,
-        &[&set, r#"/effects={"solid_inertia": "off"}"#, "/time/output_interval_s=0.5"],
+        &[
+            &set,
+            r#"/effects={"solid_inertia": "off"}"#,
+            "/time/output_interval_s=0.5",
+        ],
     ));
     let s = outcome.summary;
     assert_eq!(s.status, Status::OutOfRange, "{:?}", s.reason);
@@ -98,7 +117,12 @@ fn bladders_beyond_the_section_end_the_run() {
         let s = 0.5 * (low + high);
         *(if rise(s) < wanted { &mut low } else { &mut high }) = s;
     }
-    assert!((s.time_s - 0.5 * low).abs() < 1e-2, "{} s, expected {}", s.time_s, 0.5 * low);
+    assert!(
+        (s.time_s - 0.5 * low).abs() < 1e-2,
+        "{} s, expected {}",
+        s.time_s,
+        0.5 * low
+    );
 }
 
 #[test]
@@ -106,12 +130,25 @@ fn a_river_into_a_bladder_exits_with_4() {
     let out = tempfile::tempdir().unwrap();
     let flow = r#"/network={"chains":[{"bladders":[1,2,3],"ends":[{"flow_m3_s":60},"sealed"]}]}"#;
     let run = Command::new(env!("CARGO_BIN_EXE_slcbeam"))
-        .args(["run", "cases/hard/closing-bladder.json", "--set", flow, "--quiet", "--json", "--out"])
+        .args([
+            "run",
+            "cases/hard/closing-bladder.json",
+            "--set",
+            flow,
+            "--quiet",
+            "--json",
+            "--out",
+        ])
         .arg(out.path())
         .output()
         .unwrap();
     let text = String::from_utf8_lossy(&run.stdout).into_owned();
-    assert_eq!(run.status.code(), Some(4), "{text}{}", String::from_utf8_lossy(&run.stderr));
+    assert_eq!(
+        run.status.code(),
+        Some(4),
+        "{text}{}",
+        String::from_utf8_lossy(&run.stderr)
+    );
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(summary["status"], "out_of_range");
     assert!(String::from_utf8_lossy(&run.stderr).contains("E048"));

@@ -247,7 +247,9 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
             (Some(c), None) => -share(c),
             _ => 0.0,
         };
-        let size = pressure_at(link.from, now, w).abs().max(pressure_at(link.to, now, w).abs());
+        let size = pressure_at(link.from, now, w)
+            .abs()
+            .max(pressure_at(link.to, now, w).abs());
         cross(link.from, link.to, [q - surplus, q, conductance * size], out);
     }
     for &MeshSource { number, into: place } in &fluid.sources {

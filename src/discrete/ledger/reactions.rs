@@ -19,7 +19,11 @@ pub fn compared(system: &System, now: &Instant, w: &Workspace<f64>) -> [f64; 2] 
         let outward = if node > 0 { 1.0 } else { -1.0 };
         let length = mesh.node_length(node);
         let half_cell = |acceleration: f64, load: f64, velocity: f64| {
-            let inertia = if l.inertia { section.mass_per_length * acceleration } else { 0.0 };
+            let inertia = if l.inertia {
+                section.mass_per_length * acceleration
+            } else {
+                0.0
+            };
             length * (inertia - load + section.drag * velocity)
         };
         let compare = |n: &[f64], of_half_cell: f64, squares: &mut [f64; 2]| {

@@ -80,7 +80,10 @@ fn others(summary: &Summary) -> Vec<Value> {
         ("flow through ports, against their law", b.port_flow_residual_relative),
         ("momentum", b.momentum_residual_relative),
         ("angular momentum", b.angular_momentum_residual_relative),
-        ("reactions, against the sections (the mesh)", b.reaction_difference_relative),
+        (
+            "reactions, against the sections (the mesh)",
+            b.reaction_difference_relative,
+        ),
     ];
     let shown = all.into_iter().filter(|(_, x)| *x != 0.0 && x.is_finite());
     shown.map(|(words, x)| json!({"words": words, "relative": x})).collect()
