@@ -52,7 +52,12 @@ fn the_largest_pressure_lies_between_output_times() {
     let with = |interval: &str| {
         finished(&shipped(
             "shaken-sealed",
-            &["/time/end_s=0.06", "/time/window_s=0.03", interval],
+            &[
+                "/time/end_s=0.06",
+                "/time/window_s=0.03",
+                "/time/fields_interval_s=0.03",
+                interval,
+            ],
         ))
     };
     let (often, rarely) = (
