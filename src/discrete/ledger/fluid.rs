@@ -203,7 +203,7 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
     let w = &*w;
     let count = network.open.len();
     // `noise` is the flow of which the law misses a share: `g |p|` of a pressure
-    // port, p no less than the size to which tolerances refer.
+    // port.
     let leave = |component: usize, [outward, by_law, noise]: [f64; 3], out: &mut [f64]| {
         if let Some(open) = network.open.iter().position(|&c| c == component) {
             out[FLOWS.len() + 2 * open] += outward;
@@ -249,7 +249,7 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
             _ => 0.0,
         };
         let ends = [link.from, link.to].map(|place| pressure_at(place, now, w).abs());
-        let size = ends.into_iter().fold(system.model.scales.pressure, f64::max);
+        let size = ends[0].max(ends[1]);
         cross(link.from, link.to, [q - surplus, q, conductance * size], out);
     }
     for &MeshSource { number, into: place } in &fluid.sources {
