@@ -121,6 +121,9 @@ fn driven_end_that_turns() {
 #[test]
 fn figures_of_a_shaken_beam() {
     let mut value = wet(0.05);
+    // largest values and means are those of the motion, their derivatives are taken at output times: close enough, they are the same,
+    // but for a largest pressure between two of them
+    value["time"]["output_interval_s"] = json!(2e-5);
     value["ends"]["root"] =
         json!({"clamped": {"u1_m": {"sine": {"amplitude": 0.001, "frequency_hz": 40.0, "ramp_cycles": 1.0}}}});
     for key in ["amplitude", "frequency_hz"] {
@@ -148,8 +151,9 @@ fn figures_of_a_shaken_beam() {
                 // a largest value is that of one sample and one cell; differences straddle where the frequency makes it another's
                 let largest = figure.contains("max") || name == "max_pressure_pa";
                 let moves = key == "frequency_hz" && largest && figure != "final";
+                let tolerance = if largest { 1e-3 } else { 1e-4 };
                 assert!(
-                    moves || deviation < 1e-4,
+                    moves || deviation < tolerance,
                     "{name} {figure} by {key}: {slope:e} for {exact:e}"
                 );
             }

@@ -49,7 +49,17 @@ fn figures_do_not_depend_on_output_times() {
 /// Goal: the same for the largest pressure, whose cell changes.
 #[test]
 fn the_largest_pressure_lies_between_output_times() {
-    let with = |interval: &str| finished(&shipped("shaken-sealed", &["/time/end_s=0.06", interval]));
+    let with = |interval: &str| {
+        finished(&shipped(
+            "shaken-sealed",
+            &[
+                "/time/end_s=0.06",
+                "/time/window_s=0.03",
+                "/time/fields_interval_s=0.03",
+                interval,
+            ],
+        ))
+    };
     let (often, rarely) = (
         with("/time/output_interval_s=2e-5"),
         with("/time/output_interval_s=0.03"),

@@ -202,7 +202,8 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
     surplus(system, now, w);
     let w = &*w;
     let count = network.open.len();
-    // `noise` is the flow that the law misses by at most, `g |p|` of a pressure port.
+    // `noise` is the flow of which the law misses a share: `g |p|` of a pressure
+    // port.
     let leave = |component: usize, [outward, by_law, noise]: [f64; 3], out: &mut [f64]| {
         if let Some(open) = network.open.iter().position(|&c| c == component) {
             out[FLOWS.len() + 2 * open] += outward;
@@ -247,9 +248,8 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
             (Some(c), None) => -share(c),
             _ => 0.0,
         };
-        let size = pressure_at(link.from, now, w)
-            .abs()
-            .max(pressure_at(link.to, now, w).abs());
+        let ends = [link.from, link.to].map(|place| pressure_at(place, now, w).abs());
+        let size = ends[0].max(ends[1]);
         cross(link.from, link.to, [q - surplus, q, conductance * size], out);
     }
     for &MeshSource { number, into: place } in &fluid.sources {

@@ -23,14 +23,18 @@ struct Track {
     first: Option<[f64; 2]>,
     largest: [f64; 2],
     window_largest: [f64; 2],
+    /// Integrals of the square and of value times derivative over the window, by the trapezoid rule between output times, and the
+    /// time that they cover.
     squares: f64,
     slopes: f64,
-    samples: u32,
+    time: f64,
+    /// The last output time in the window with both integrands.
+    before: Option<[f64; 3]>,
 }
 
 impl Track {
     /// Takes a value with its derivative.
-    fn take(&mut self, now: [f64; 2], in_window: bool) {
+    fn take(&mut self, t: f64, now: [f64; 2], in_window: bool) {
         let [value, slope] = now;
         let size = [value.abs(), slope * value.signum()];
         let larger = |old: &mut [f64; 2]| {
@@ -43,15 +47,20 @@ impl Track {
         if in_window {
             self.first.get_or_insert(now);
             larger(&mut self.window_largest);
-            self.squares += value * value;
-            self.slopes += value * slope;
-            self.samples += 1;
+            let here = [t, value * value, value * slope];
+            if let Some(before) = self.before {
+                let half = 0.5 * (t - before[0]);
+                self.squares += half * (before[1] + here[1]);
+                self.slopes += half * (before[2] + here[2]);
+                self.time += 2.0 * half;
+            }
+            self.before = Some(here);
         }
     }
 
-    /// Derivative of √(Σ v²/N), which is `Σ v v' / √(N Σ v²)`.
+    /// Derivative of `√(∫ v² dt/T)`, which is `∫ v v' dt / √(T ∫ v² dt)`.
     fn rms(&self) -> Option<f64> {
-        (self.squares > 0.0).then(|| self.slopes / (f64::from(self.samples) * self.squares).sqrt())
+        (self.squares > 0.0).then(|| self.slopes / (self.time * self.squares).sqrt())
     }
 
     fn sizes(&self) -> Quantity {
@@ -119,7 +128,7 @@ impl Figures {
     /// Takes one instant: `at` gives a column's value and its derivative, `None` where there is no such column.
     pub fn take(&mut self, t: f64, at: impl Fn(&str) -> Option<[f64; 2]>) {
         let in_window = t >= self.window_start;
-        let mut track = |name, now: [f64; 2]| self.tracks.entry(name).or_default().take(now, in_window);
+        let mut track = |name, now: [f64; 2]| self.tracks.entry(name).or_default().take(t, now, in_window);
         for (column, name) in PLAIN {
             if let Some(now) = at(column) {
                 track(name, now);
