@@ -29,7 +29,9 @@ fn cantilever(load: &str, segments: usize, end: f64, rtol: f64) -> Case {
             "mesh": {{"segments": {segments}}}, "time": {{"end_s": {end}, "output_interval_s": {}}}, "solver": {{"rtol": {rtol}}}}}"#,
         end / 100.0
     );
-    case::parse(&text, &[]).unwrap().case
+    case::parse(&text, Path::new("cantilever.json"), Path::new("."), &[])
+        .unwrap()
+        .case
 }
 
 fn warned(summary: &Summary, code: &str) -> bool {
