@@ -187,7 +187,7 @@ impl Energies {
                 if error > OPEN {
                     all.push(format!("{what}, has parts that are open by {:.0} %", 100.0 * error));
                 }
-                if value > 1.0 + ROUND_OFF || value < -ROUND_OFF {
+                if !(-ROUND_OFF..=1.0 + ROUND_OFF).contains(&value) {
                     let side = if value > 1.0 { "above one" } else { "below zero" };
                     all.push(format!("{what}, is {side}: {}", why(&since.gained(&self.last))));
                 }
