@@ -45,7 +45,7 @@ fn a_run_swings_and_decays_as_its_mode() {
     let table = |f: &dyn Fn(&Complex<f64>) -> f64| {
         let places: Vec<f64> = (0..nodes).map(|i| i as f64 / (nodes - 1) as f64).collect();
         let values: Vec<f64> = mode.shape.u1.iter().map(|u| size * f(u)).collect();
-        json!({"table": {"positions": places, "values": values}})
+        json!({"table": {"positions": places, "values": values, "interpolation": "linear"}})
     };
     let pressures: Value = (0..4)
         .map(|b: usize| {
