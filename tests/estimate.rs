@@ -158,3 +158,16 @@ fn open_balances_are_told_beside_their_figures() {
     );
     assert!(tight.quantities["input_energy_j"].window_error.unwrap() < 0.5 * input.window_error.unwrap());
 }
+
+/// Goal: a beam at rest, which is passed in long steps, has no phase to lose until something strikes it.
+#[test]
+fn steps_at_rest_shift_no_phase() {
+    let struck = r#"{"ramp": {"to": 0.5, "start_s": 1.5, "duration_s": 0.001}}"#;
+    let usual = run(&cantilever(struck, 10, 4.0, 1e-5));
+    let tight = run(&cantilever(struck, 10, 4.0, 1e-7));
+    let truth = apart("tip_u1_m", &usual, &tight);
+    let time = usual.estimate.as_ref().unwrap().quantities["tip_u1_m"].time.unwrap();
+    println!("true {truth:.1e}, estimated {time:.1e}");
+    assert!(truth < 5e-3 && time < 2e-2, "true {truth:e}, estimated {time:e}");
+    assert!(!warned(&usual, "W021"), "{:?}", usual.warnings);
+}

@@ -35,6 +35,9 @@ pub struct Vibration {
     /// Present guess of its frequency [1/s].
     frequency: f64,
     block: Block,
+    /// How fast it swung at the end of the step before [m/s].
+    #[serde(default)]
+    swing: f64,
     amplitude: Option<f64>,
     largest: f64,
     lost: f64,
@@ -50,8 +53,11 @@ struct Block {
     time: f64,
     mean: f64,
     squares: [f64; 3],
+    /// What steps take and turn, times how fast it swings at them [m/s], and the most of that.
     lost: f64,
     turned: f64,
+    #[serde(default)]
+    swing: f64,
 }
 
 /// What is known of a mode when it is made.
@@ -126,14 +132,19 @@ impl Vibration {
         let [u, v] = self.first;
         let values = [sum(&y[u..]), self.rate * sum(&y[v..]), self.rate * sum(&yp[v..])];
         let [lost, turned] = factor(tableau, step.order, self.frequency * step.size);
+        // `v² + (a/ω)²` is that of a vibration all along and nothing at rest, where steps are long and nothing is lost
+        let swing = values[1].hypot(values[2] / self.frequency);
+        let swings = swing.min(self.swing);
+        self.swing = swing;
         let block = &mut self.block;
+        block.swing = block.swing.max(swing);
         block.time += step.size;
         block.mean += step.size * values[0];
         for (square, value) in block.squares.iter_mut().zip(values) {
             *square += step.size * value * value;
         }
-        block.lost += lost;
-        block.turned += turned;
+        block.lost += swings * lost;
+        block.turned += swings * turned;
         if block.time * self.band[0] > PERIODS * std::f64::consts::TAU {
             self.conclude();
         }
@@ -141,7 +152,11 @@ impl Vibration {
 
     /// Ends a block: what of it is free vibration, and what that adds to the errors.
     fn conclude(&mut self) {
-        let block = std::mem::take(&mut self.block);
+        let mut block = std::mem::take(&mut self.block);
+        if block.swing > 0.0 {
+            block.lost /= block.swing;
+            block.turned /= block.swing;
+        }
         let (mean_square, square) = block.free(self.band);
         let amplitude = (2.0 * mean_square).sqrt();
         // What decays, and not by the steps alone, takes its error along, and so does what grows; what was struck anew does not.
