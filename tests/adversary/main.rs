@@ -20,7 +20,6 @@ mod run;
 mod scene;
 mod shrink;
 mod signals;
-mod stored;
 mod tally;
 mod trust;
 
@@ -29,8 +28,6 @@ use scene::Kind;
 
 /// Scenes of every test run.
 const SCENES: u64 = 200;
-/// Steps times unknowns times stages that a stored reference may cost.
-const REFERENCE_WORK: f64 = 2e8;
 
 fn number(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())
@@ -87,36 +84,6 @@ fn sane_scenes_are_rarely_warned_needlessly() {
     );
 }
 
-/// Writes the references of the scenes of every test run, after a change of what is drawn or of the model.
-#[test]
-#[ignore = "writes references.json, in half an hour"]
-fn write_references() {
-    let next = std::sync::atomic::AtomicU64::new(1);
-    let all = std::sync::Mutex::new(stored::read());
-    let draw = || {
-        let seed = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        (seed <= SCENES).then_some(seed)
-    };
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                while let Some(seed) = draw() {
-                    let scene = scene::draw(seed, Kind::Extreme);
-                    let known = stored::of(&all.lock().expect("no panic"), Kind::Extreme, seed, &scene).is_some();
-                    if known {
-                        continue;
-                    }
-                    let found = judge::reference(&scene, REFERENCE_WORK);
-                    println!("{seed} {}", serde_json::to_string(&found).expect("JSON"));
-                    let mut all = all.lock().expect("no panic");
-                    all.insert(tally::name(Kind::Extreme, seed), stored::keep(&scene, found));
-                    stored::write(&all);
-                }
-            });
-        }
-    });
-}
-
 /// Makes the scene of `SLCBEAM_ADVERSARY_SEED` smaller, as long as it is silently wrong for the same cause.
 #[test]
 #[ignore = "for a seed that fails"]
@@ -131,7 +98,8 @@ fn shrink_one() {
     };
     let tries = number("SLCBEAM_ADVERSARY_TRIES").unwrap_or(150) as usize;
     let scene = scene::draw(seed, kind);
-    let both = judge::judge(&scene, tally::asked(seed), [true, true]);
+    let close = tally::close(kind, tally::asked(seed), true);
+    let both = judge::judge(&scene, tally::asked(seed), [true, true], close);
     println!(
         "{:?} {}\n{:?} {}",
         both.default.word, both.default.why, both.promise.word, both.promise.why
@@ -151,10 +119,13 @@ fn shrink_one() {
         if old.word != Word::Silent {
             continue;
         }
-        let fails = |scene: &serde_json::Value| alike(&old, &of(&judge::judge(scene, both.asked, part)));
+        let fails = |scene: &serde_json::Value| alike(&old, &of(&judge::judge(scene, both.asked, part, close)));
         let small = shrink::shrink(&scene, tries, fails);
         let path = format!("{}/{}-{name}-small.json", tally::FOLDER, tally::name(kind, seed));
         tally::write(&path, &small);
-        println!("{path}: {}\n{small:#}", of(&judge::judge(&small, both.asked, part)).why);
+        println!(
+            "{path}: {}\n{small:#}",
+            of(&judge::judge(&small, both.asked, part, close)).why
+        );
     }
 }
