@@ -62,7 +62,7 @@ pub const KNOWN: f64 = 0.2;
 /// Right to this, a warning was needless.
 pub const NEEDLESS: f64 = 0.01;
 /// Steps times unknowns times stages for one scene: with the default settings, and for the reference.
-const WORK: [f64; 2] = [4e6, 2.5e7];
+const WORK: [f64; 2] = [2e6, 1e7];
 
 /// Reads a scene.
 pub fn read(scene: &Value) -> Result<Case, String> {
@@ -271,32 +271,29 @@ pub fn errors(figures: &Figures, reference: &Reference, counts: impl Fn(&str) ->
     all
 }
 
-/// What an error needs: changes without which the best of runs has most of it again; where none has, single changes that mend
-/// the run.
+/// Where an error comes from: the change that alone takes most of it away; where none does, all without which it comes back.
 fn causes(case: &Case, reference: &Reference, worst: &Off) -> Vec<Cause> {
-    let all = [Cause::Effects, Cause::Time, Cause::Space, Cause::Outputs];
+    let all = [Cause::Space, Cause::Effects, Cause::Time, Cause::Outputs];
     let error = |changes: &[Cause]| {
         let mut better = case.clone();
         for change in changes {
             mend(&mut better, *change, reference.cells / 2);
         }
-        let mut work = Work { left: WORK[1] };
+        let mut work = Work { left: WORK[0] };
         let run = work.run(&better, guess(&better)).filter(finished)?;
         let now = errors(&figures(&run), reference, |figure| figure == worst.figure);
         now.iter()
             .find(|off| off.quantity == worst.quantity)
             .map(|off| off.error)
     };
+    let mends = |cause: &&Cause| error(&[**cause]).is_some_and(|e| e < 0.4 * worst.error);
+    if let Some(alone) = all.iter().find(mends) {
+        return vec![*alone];
+    }
     let others = |cause: Cause| all.iter().copied().filter(|c| *c != cause).collect::<Vec<_>>();
     let needs = |cause: &Cause| error(&others(*cause)).is_some_and(|e| e > 0.3 * worst.error);
     let needed: Vec<Cause> = all.iter().copied().filter(needs).collect();
-    let mends = |cause: &Cause| error(&[*cause]).is_some_and(|e| e < 0.4 * worst.error);
-    let found = if needed.is_empty() {
-        all.iter().copied().filter(mends).collect()
-    } else {
-        needed
-    };
-    if found.is_empty() { vec![Cause::Joint] } else { found }
+    if needed.is_empty() { vec![Cause::Joint] } else { needed }
 }
 
 fn mend(case: &mut Case, cause: Cause, cells: usize) {
