@@ -62,7 +62,7 @@ pub const KNOWN: f64 = 0.2;
 /// Right to this, a warning was needless.
 pub const NEEDLESS: f64 = 0.01;
 /// Steps times unknowns times stages for one scene: with the default settings, and for the reference.
-const WORK: [f64; 2] = [2e6, 1e7];
+const WORK: [f64; 2] = [2e6, 1.5e7];
 
 /// Reads a scene.
 pub fn read(scene: &Value) -> Result<Case, String> {

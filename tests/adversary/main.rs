@@ -84,6 +84,19 @@ fn sane_scenes_are_rarely_warned_needlessly() {
     );
 }
 
+/// Writes the scene of `SLCBEAM_ADVERSARY_SEED` as a file that `slcbeam run` takes.
+#[test]
+#[ignore = "for a seed to be looked at"]
+fn write_one() {
+    let Some(seed) = number("SLCBEAM_ADVERSARY_SEED") else {
+        return;
+    };
+    let path = format!("{}/{}.json", tally::FOLDER, tally::name(Kind::Extreme, seed));
+    std::fs::create_dir_all(tally::FOLDER).expect("a folder for what is found");
+    tally::write(&path, &scene::draw(seed, Kind::Extreme));
+    println!("{path}");
+}
+
 /// Makes the scene of `SLCBEAM_ADVERSARY_SEED` smaller, as long as it is silently wrong for the same cause.
 #[test]
 #[ignore = "for a seed that fails"]
