@@ -46,6 +46,8 @@ const BEYOND: f64 = 2.0;
 /// How much more than its deflection a mesh changes a beam's work and the pressures in it: these go with curvatures, of which higher
 /// modes have more. Measured on random beams of 8 to 16 cells.
 const CURVED: f64 = 3.0;
+/// Below this part of the displacement along the beam one across it stores nothing that counts.
+const ALONG: f64 = 0.1;
 /// An energy is the square of a motion.
 const SQUARED: f64 = 2.0;
 /// Figures below this part of others are nothing to be accurate about.
@@ -216,8 +218,8 @@ impl Estimator {
         let [along, along_anywhere] = [0, 2].map(|what| Off::of(&axial, what));
         // a tip that has turned moves along as well, and so does what has bent between ends that hold it
         let drawn = across.times(DRAWN * angle.min(1.0));
-        let bent_slope = std::f64::consts::PI * wide_u1 / self.length;
-        let drawn_anywhere = anywhere.times(DRAWN * bent_slope.min(1.0));
+        let mean_slope = 2.0 * wide_u1 / self.length;
+        let drawn_anywhere = anywhere.times(DRAWN * mean_slope.min(1.0));
         // an end that is held has round-off, which is no motion
         let everything = u1.max(u3).max(wide_u1).max(wide_u3).max(angle * self.length);
         let mut found: Option<Estimated> = None;
@@ -265,7 +267,8 @@ impl Estimator {
         let mut found = found?;
         let worked = quantities.get("input_energy_j").and_then(|q| q.last).unwrap_or(0.0);
         if worked != 0.0 && worked.is_finite() {
-            let (off, size, at_rest) = match wide_u1 >= wide_u3 {
+            // ends that are driven along the beam move all of it, and store nothing
+            let (off, size, at_rest) = match wide_u1 >= ALONG * wide_u3 {
                 true => (anywhere, wide_u1, bent),
                 false => (along_anywhere, wide_u3, stretched),
             };

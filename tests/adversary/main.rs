@@ -29,22 +29,42 @@ use scene::Kind;
 /// Scenes of every test run.
 const SCENES: u64 = 200;
 
-fn number(name: &str) -> Option<u64> {
-    std::env::var(name).ok().and_then(|text| text.parse().ok())
-}
-
-/// Goal: of 200 scenes none is silently wrong.
-#[test]
-fn no_scene_is_silently_wrong() {
-    let lines = tally::run(Kind::Extreme, 1, SCENES, false);
-    println!("{}", tally::table(&lines));
-    let silent = tally::silent(&lines);
+fn none_silent(lines: &[serde_json::Value]) {
+    let silent: Vec<String> = tally::silent(lines).into_iter().map(|(_, told)| told).collect();
     assert!(
         silent.is_empty(),
         "{} silently wrong:\n{}",
         silent.len(),
         silent.join("\n")
     );
+}
+
+fn number(name: &str) -> Option<u64> {
+    std::env::var(name).ok().and_then(|text| text.parse().ok())
+}
+
+/// Seeds among them that are silently wrong and known to be, and why: `docs/stability.md`, "What stays open".
+const KNOWN: &[(u64, &str)] = &[];
+
+/// Goal: of 200 scenes none is silently wrong but those that are known to be, and these still are.
+#[test]
+fn no_scene_is_silently_wrong() {
+    let lines = tally::run(Kind::Extreme, 1, SCENES, false);
+    println!("{}", tally::table(&lines));
+    let known = |seed: &u64| KNOWN.iter().any(|(known, _)| known == seed);
+    let silent = tally::silent(&lines);
+    let new: Vec<&str> = silent
+        .iter()
+        .filter(|(s, _)| !known(s))
+        .map(|(_, told)| told.as_str())
+        .collect();
+    assert!(new.is_empty(), "{} silently wrong:\n{}", new.len(), new.join("\n"));
+    for (seed, cause) in KNOWN {
+        assert!(
+            silent.iter().any(|(s, _)| s == seed),
+            "{seed} is right now, of which was known: {cause}"
+        );
+    }
 }
 
 /// The same of 5000 scenes, or of `SLCBEAM_ADVERSARY` from `SLCBEAM_ADVERSARY_FIRST`; goes on where it ended.
@@ -54,13 +74,7 @@ fn no_scene_of_five_thousand_is_silently_wrong() {
     let (count, first) = (number("SLCBEAM_ADVERSARY"), number("SLCBEAM_ADVERSARY_FIRST"));
     let lines = tally::run(Kind::Extreme, first.unwrap_or(1), count.unwrap_or(5000), true);
     println!("{}", tally::table(&lines));
-    let silent = tally::silent(&lines);
-    assert!(
-        silent.is_empty(),
-        "{} silently wrong:\n{}",
-        silent.len(),
-        silent.join("\n")
-    );
+    none_silent(&lines);
 }
 
 /// Goal: of 200 sane scenes at most 5 % carry a warning that the reference shows to be needless, and none is silently wrong.
@@ -75,13 +89,7 @@ fn sane_scenes_are_rarely_warned_needlessly() {
     println!("{}", tally::table(&lines));
     let needless = lines.iter().filter(|line| !line["needless"].is_null()).count() as u64;
     assert!(20 * needless <= count, "{needless} of {count} warned needlessly");
-    let silent = tally::silent(&lines);
-    assert!(
-        silent.is_empty(),
-        "{} silently wrong:\n{}",
-        silent.len(),
-        silent.join("\n")
-    );
+    none_silent(&lines);
 }
 
 /// Writes the scene of `SLCBEAM_ADVERSARY_SEED` as a file that `slcbeam run` takes.

@@ -35,6 +35,8 @@ pub enum Found {
     Unknown(String),
 }
 
+/// How a reason begins where runs of the reference fail, or end at different times.
+pub const FAILED: &str = "failed";
 /// Tolerance, and that of the check.
 const TOLERANCES: [(f64, f64); 2] = [(1e-8, 1e-7), (1e-7, 1e-6)];
 /// Largest mesh: cells a segment.
@@ -55,7 +57,7 @@ pub fn find(case: &Case, scene: &Value, coarse: usize, unknowns: f64, close: f64
     for (rtol, check) in TOLERANCES {
         last = on_meshes(case, cells, [rtol, check], unknowns, fastest, close, work);
         match &last {
-            Found::Unknown(why) if why.starts_with("failed") => {}
+            Found::Unknown(why) if why.starts_with(FAILED) => {}
             _ => return last,
         }
     }
@@ -130,7 +132,7 @@ fn ended(a: &Summary, b: &Summary) -> Found {
     let alike = !finished(a) && !finished(b) && (a.time_s - b.time_s).abs() <= 0.05 * a.time_s.max(b.time_s);
     match alike && a.status == b.status && a.status != slcbeam::run::summary::Status::Failed {
         true => Found::Ends(stopped(b)),
-        false => Found::Unknown(format!("failed: {} / {}", stopped(a), stopped(b))),
+        false => Found::Unknown(format!("{FAILED}: {} / {}", stopped(a), stopped(b))),
     }
 }
 

@@ -216,9 +216,11 @@ fn words_of(word: Word) -> &'static str {
 }
 
 /// Seeds that are silently wrong, and how.
-pub fn silent(lines: &[Value]) -> Vec<String> {
+pub fn silent(lines: &[Value]) -> Vec<(u64, String)> {
     let wrong = lines
         .iter()
         .filter(|l| [&l["default"], &l["promise"]].iter().any(|w| **w == "Silent"));
-    wrong.map(told).collect()
+    wrong
+        .filter_map(|line| Some((line["seed"].as_u64()?, told(line))))
+        .collect()
 }
