@@ -20,7 +20,6 @@ mod run;
 mod scene;
 mod shrink;
 mod signals;
-mod stored;
 mod tally;
 mod trust;
 
@@ -29,25 +28,43 @@ use scene::Kind;
 
 /// Scenes of every test run.
 const SCENES: u64 = 200;
-/// Steps times unknowns times stages that a stored reference may cost.
-const REFERENCE_WORK: f64 = 2e8;
 
-fn number(name: &str) -> Option<u64> {
-    std::env::var(name).ok().and_then(|text| text.parse().ok())
-}
-
-/// Goal: of 200 scenes none is silently wrong.
-#[test]
-fn no_scene_is_silently_wrong() {
-    let lines = tally::run(Kind::Extreme, 1, SCENES, false);
-    println!("{}", tally::table(&lines));
-    let silent = tally::silent(&lines);
+fn none_silent(lines: &[serde_json::Value]) {
+    let silent: Vec<String> = tally::silent(lines).into_iter().map(|(_, told)| told).collect();
     assert!(
         silent.is_empty(),
         "{} silently wrong:\n{}",
         silent.len(),
         silent.join("\n")
     );
+}
+
+fn number(name: &str) -> Option<u64> {
+    std::env::var(name).ok().and_then(|text| text.parse().ok())
+}
+
+/// Seeds among them that are silently wrong and known to be, and why: `docs/stability.md`, "What stays open".
+const KNOWN: &[(u64, &str)] = &[];
+
+/// Goal: of 200 scenes none is silently wrong but those that are known to be, and these still are.
+#[test]
+fn no_scene_is_silently_wrong() {
+    let lines = tally::run(Kind::Extreme, 1, SCENES, false);
+    println!("{}", tally::table(&lines));
+    let known = |seed: &u64| KNOWN.iter().any(|(known, _)| known == seed);
+    let silent = tally::silent(&lines);
+    let new: Vec<&str> = silent
+        .iter()
+        .filter(|(s, _)| !known(s))
+        .map(|(_, told)| told.as_str())
+        .collect();
+    assert!(new.is_empty(), "{} silently wrong:\n{}", new.len(), new.join("\n"));
+    for (seed, cause) in KNOWN {
+        assert!(
+            silent.iter().any(|(s, _)| s == seed),
+            "{seed} is right now, of which was known: {cause}"
+        );
+    }
 }
 
 /// The same of 5000 scenes, or of `SLCBEAM_ADVERSARY` from `SLCBEAM_ADVERSARY_FIRST`; goes on where it ended.
@@ -57,13 +74,7 @@ fn no_scene_of_five_thousand_is_silently_wrong() {
     let (count, first) = (number("SLCBEAM_ADVERSARY"), number("SLCBEAM_ADVERSARY_FIRST"));
     let lines = tally::run(Kind::Extreme, first.unwrap_or(1), count.unwrap_or(5000), true);
     println!("{}", tally::table(&lines));
-    let silent = tally::silent(&lines);
-    assert!(
-        silent.is_empty(),
-        "{} silently wrong:\n{}",
-        silent.len(),
-        silent.join("\n")
-    );
+    none_silent(&lines);
 }
 
 /// Goal: of 200 sane scenes at most 5 % carry a warning that the reference shows to be needless, and none is silently wrong.
@@ -78,43 +89,20 @@ fn sane_scenes_are_rarely_warned_needlessly() {
     println!("{}", tally::table(&lines));
     let needless = lines.iter().filter(|line| !line["needless"].is_null()).count() as u64;
     assert!(20 * needless <= count, "{needless} of {count} warned needlessly");
-    let silent = tally::silent(&lines);
-    assert!(
-        silent.is_empty(),
-        "{} silently wrong:\n{}",
-        silent.len(),
-        silent.join("\n")
-    );
+    none_silent(&lines);
 }
 
-/// Writes the references of the scenes of every test run, after a change of what is drawn or of the model.
+/// Writes the scene of `SLCBEAM_ADVERSARY_SEED` as a file that `slcbeam run` takes.
 #[test]
-#[ignore = "writes references.json, in half an hour"]
-fn write_references() {
-    let next = std::sync::atomic::AtomicU64::new(1);
-    let all = std::sync::Mutex::new(stored::read());
-    let draw = || {
-        let seed = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        (seed <= SCENES).then_some(seed)
+#[ignore = "for a seed to be looked at"]
+fn write_one() {
+    let Some(seed) = number("SLCBEAM_ADVERSARY_SEED") else {
+        return;
     };
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                while let Some(seed) = draw() {
-                    let scene = scene::draw(seed, Kind::Extreme);
-                    let known = stored::of(&all.lock().expect("no panic"), Kind::Extreme, seed, &scene).is_some();
-                    if known {
-                        continue;
-                    }
-                    let found = judge::reference(&scene, REFERENCE_WORK);
-                    println!("{seed} {}", serde_json::to_string(&found).expect("JSON"));
-                    let mut all = all.lock().expect("no panic");
-                    all.insert(tally::name(Kind::Extreme, seed), stored::keep(&scene, found));
-                    stored::write(&all);
-                }
-            });
-        }
-    });
+    let path = format!("{}/{}.json", tally::FOLDER, tally::name(Kind::Extreme, seed));
+    std::fs::create_dir_all(tally::FOLDER).expect("a folder for what is found");
+    tally::write(&path, &scene::draw(seed, Kind::Extreme));
+    println!("{path}");
 }
 
 /// Makes the scene of `SLCBEAM_ADVERSARY_SEED` smaller, as long as it is silently wrong for the same cause.
@@ -131,7 +119,8 @@ fn shrink_one() {
     };
     let tries = number("SLCBEAM_ADVERSARY_TRIES").unwrap_or(150) as usize;
     let scene = scene::draw(seed, kind);
-    let both = judge::judge(&scene, tally::asked(seed), [true, true]);
+    let close = tally::close(kind, tally::asked(seed), true);
+    let both = judge::judge(&scene, tally::asked(seed), [true, true], close);
     println!(
         "{:?} {}\n{:?} {}",
         both.default.word, both.default.why, both.promise.word, both.promise.why
@@ -151,10 +140,13 @@ fn shrink_one() {
         if old.word != Word::Silent {
             continue;
         }
-        let fails = |scene: &serde_json::Value| alike(&old, &of(&judge::judge(scene, both.asked, part)));
+        let fails = |scene: &serde_json::Value| alike(&old, &of(&judge::judge(scene, both.asked, part, close)));
         let small = shrink::shrink(&scene, tries, fails);
         let path = format!("{}/{}-{name}-small.json", tally::FOLDER, tally::name(kind, seed));
         tally::write(&path, &small);
-        println!("{path}: {}\n{small:#}", of(&judge::judge(&small, both.asked, part)).why);
+        println!(
+            "{path}: {}\n{small:#}",
+            of(&judge::judge(&small, both.asked, part, close)).why
+        );
     }
 }

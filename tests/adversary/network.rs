@@ -16,7 +16,7 @@ pub fn pressure(case: &Value) -> f64 {
 /// Adds fluid, bladders, tubes and a network.
 pub fn fluid(r: &mut Random, b: &Beam, case: &mut Value) {
     let sane = b.times.sane;
-    let per_row = 1 + r.below(4);
+    let per_row = if r.one_in(6) { 3 } else { 1 + r.below(2) };
     let height = b.height * r.between(0.1, 0.45);
     let width = b.length / per_row as f64 * r.between(0.3, 0.9);
     let length = b.width * r.between(0.4, 0.95);

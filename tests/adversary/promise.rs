@@ -8,7 +8,7 @@ use slcbeam::run::record::{Control, Progress};
 use slcbeam::run::summary::{Judged, Summary};
 use slcbeam::study::target;
 
-use crate::judge::{KNOWN, Verdict, Word, errors, guess, should_end};
+use crate::judge::{KNOWN, Verdict, Word, errors, guess, should_end, unknown};
 use crate::reference::{Found, Reference};
 use crate::run::{BUDGET, Steps, figures, finished};
 
@@ -52,7 +52,8 @@ fn kept(run: &Summary, asked: f64, reference: &Reference) -> (Verdict, Vec<f64>)
     let statistics = |figure: &str| matches!(figure, "window_rms" | "window");
     let counts = |figure: &str| accuracy.judged_by == Judged::Figures || statistics(figure);
     let off = errors(&figures(run), reference, counts);
-    let Some(worst) = off.first() else {
+    let surely = off.iter().find(|one| one.beyond(asked));
+    let Some(worst) = surely.or(off.first()) else {
         return (Verdict::new(Word::Unknown, "no figures"), vec![]);
     };
     let estimate = |quantity: &str| accuracy.quantities.get(quantity).and_then(|e| e.total);
@@ -74,14 +75,10 @@ fn kept(run: &Summary, asked: f64, reference: &Reference) -> (Verdict, Vec<f64>)
             }
         }
     }
-    let doubt = off
-        .iter()
-        .filter(|one| one.quantity != "efficiency")
-        .fold(0.0, |m: f64, one| m.max(one.doubt));
     let word = match (worst.beyond(asked), accuracy.reached) {
         (true, true) => Word::Silent,
         (true, false) => Word::Warned,
-        (false, _) if doubt > KNOWN * asked => Word::Unknown,
+        (false, _) if unknown(&off, asked).is_some() => Word::Unknown,
         (false, _) => Word::Right,
     };
     (Verdict::new(word, told), ratios)

@@ -72,7 +72,7 @@ pub fn exact(case: &Case, cells: usize, method: Method, rtol: f64, fastest: f64)
 }
 
 /// Least number of samples in a run.
-const SAMPLES: f64 = 2000.0;
+const SAMPLES: f64 = 500.0;
 
 /// Outputs at a whole part of their interval, enough to see every swing.
 pub fn sampled(case: &mut Case) {

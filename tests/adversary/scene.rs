@@ -63,7 +63,7 @@ pub fn draw(seed: u64, kind: Kind) -> Value {
         case["formulation"] = json!("published");
     }
     if !wet && !r.one_in(4) {
-        case["mesh"] = json!({"segments": 1 + r.below(5)});
+        case["mesh"] = json!({"segments": 1 + r.below(3)});
     }
     case
 }
@@ -85,7 +85,13 @@ fn beam(r: &mut Random, sane: bool) -> (Beam, Value) {
     let period = 2.0 * PI * time / 3.516;
     // Slow long runs are those where inertia may be left out.
     let slow = r.one_in(4);
-    let end = period * if slow { r.log(10.0, 300.0) } else { r.log(0.3, 4.0) };
+    let damped = slow || !r.one_in(8);
+    let end = period
+        * match (slow, damped) {
+            (true, _) => r.log(10.0, 300.0),
+            (_, true) => r.log(0.3, 3.0),
+            _ => r.log(0.1, 1.0),
+        };
     let mut case = json!({
         "name": "",
         "beam": {
@@ -94,12 +100,13 @@ fn beam(r: &mut Random, sane: bool) -> (Beam, Value) {
             "axial_stiffness_factor": short(fe), "bending_stiffness_factor": short(fi)
         }
     });
-    if slow || !r.one_in(4) {
+    if damped {
         // Axial waves, which no one follows for their own sake, are damped within some of their periods.
-        let axial = length * (mass / ea).sqrt() * r.log(0.02, 0.5);
-        let least = if slow { 1e-2 } else { 1e-4 };
+        let axial = length * (mass / ea).sqrt() * r.log(0.05, 0.5);
+        // A long run follows what is slow: what rings is gone within a few periods.
+        let (least, most) = if slow { (0.1, 0.5) } else { (3e-3, 1e-1) };
         case["beam"]["damping"] = json!({
-            "axial_time_s": short(axial), "bending_time_s": short(time * r.log(least, 1e-1)),
+            "axial_time_s": short(axial), "bending_time_s": short(time * r.log(least, most)),
             "drag_n_s_m2": if r.one_in(2) { short(mass / time * r.log(1e-2, 1e1)) } else { json!(0.0) }
         });
     }

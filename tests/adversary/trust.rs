@@ -36,28 +36,41 @@ const TRUST: [(Code, &[Cause]); 11] = [
     (Code::Unresolved, &[Cause::Space]),
     // Only figures of energy, whatever made them wrong.
     (Code::EnergyFigure, ALL),
-    (Code::ErrorEstimate, ALL),
+    (Code::ErrorEstimate, &[Cause::Time, Cause::Space]),
     // Says itself that results are not those of the model.
     (Code::OutOfRange, ALL),
 ];
 
+/// What W021 says where it is about more than phases.
+const LARGEST_TOO: &str = "largest values are off as well";
+
 const ALL: &[Cause] = &[Cause::Effects, Cause::Time, Cause::Space, Cause::Outputs, Cause::Joint];
 
-/// The warnings of a run that are about trust.
+/// The codes of warnings about trust.
 pub fn warned(warnings: &[String]) -> Vec<Code> {
-    let code = |warning: &String| warning.split_whitespace().next().and_then(Code::find);
-    let all = warnings.iter().filter_map(code);
-    let mut all: Vec<Code> = all.filter(|code| TRUST.iter().any(|(c, _)| c == code)).collect();
+    let mut all: Vec<Code> = warnings.iter().filter_map(code).collect();
     all.dedup();
     all
 }
 
-/// Whether a warning names an error of these causes in this quantity. Where no cause was found by itself any will do.
-pub fn names(code: Code, causes: &[Cause], quantity: &str) -> bool {
+fn code(warning: &String) -> Option<Code> {
+    let code = warning.split_whitespace().next().and_then(Code::find);
+    code.filter(|code| TRUST.iter().any(|(c, _)| c == code))
+}
+
+/// Whether a warning names an error of these causes in this figure. Where no cause was found by itself any will do.
+pub fn names(warning: &String, causes: &[Cause], quantity: &str, figure: &str) -> bool {
+    let Some(code) = code(warning) else { return false };
     let energy = quantity.ends_with("_j") || quantity == "efficiency";
     let of = TRUST
         .iter()
         .find(|(c, _)| *c == code)
         .map_or(&[][..], |(_, causes)| causes);
-    (code != Code::EnergyFigure || energy) && (causes == [Cause::Joint] || causes.iter().any(|c| of.contains(c)))
+    let about = match code {
+        Code::EnergyFigure => energy,
+        // Of a phase that is lost it says that only final values have it.
+        Code::ErrorEstimate => figure == "final" || warning.contains(LARGEST_TOO),
+        _ => true,
+    };
+    about && (causes == [Cause::Joint] || causes.iter().any(|c| of.contains(c)))
 }

@@ -35,6 +35,11 @@ impl SmallMode {
         self.shape[cell] * (1.0 - part) + self.shape[cell + 1] * part
     }
 
+    /// The largest displacement anywhere.
+    pub fn most(&self) -> f64 {
+        self.shape.iter().fold(0.0, |most, u| most.max(u.abs()))
+    }
+
     /// Its slope at the tip, per length.
     pub fn tip_slope(&self) -> f64 {
         let cells = self.shape.len() - 1;

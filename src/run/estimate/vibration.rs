@@ -30,8 +30,8 @@ pub struct Vibration {
     mesh: f64,
     /// Rate at which drag and material take it away [1/s].
     damping: f64,
-    /// What a unit of the coordinate is at the tip: displacement, and slope [1/m].
-    pub tip: [f64; 2],
+    /// What a unit of the coordinate is: displacement of the tip, its slope [1/m], largest displacement anywhere.
+    pub places: [f64; 3],
     /// Present guess of its frequency [1/s].
     frequency: f64,
     block: Block,
@@ -74,8 +74,8 @@ pub struct Known {
     pub mesh: f64,
     /// Rate at which drag and material take it away [1/s].
     pub damping: f64,
-    /// What a unit of the coordinate is at the tip: displacement, and slope [1/m].
-    pub tip: [f64; 2],
+    /// What a unit of the coordinate is: displacement of the tip, its slope [1/m], largest displacement anywhere.
+    pub places: [f64; 3],
 }
 
 /// Factor by which a step multiplies a vibration beside the exact one, as logarithm of its modulus, and angle [rad], θ the angle
@@ -115,7 +115,7 @@ impl Vibration {
             band: [BELOW * low, ABOVE * high],
             mesh: known.mesh,
             damping: known.damping,
-            tip: known.tip,
+            places: known.places,
             frequency: (low * high).sqrt(),
             ..Self::default()
         }
@@ -196,10 +196,15 @@ impl Vibration {
         end
     }
 
+    /// How far it swings at last [m].
+    pub fn amplitude(&self) -> f64 {
+        self.amplitude.unwrap_or(0.0)
+    }
+
     /// Errors of the coordinate by steps and by the mesh: at most twice the vibration that there is, or would be if the steps had not
     /// taken it away.
     pub fn off(&self) -> [f64; 2] {
-        let left = self.amplitude.unwrap_or(0.0);
+        let left = self.amplitude();
         let without_loss = left * (-self.lost).min(30.0).exp();
         let most = 2.0 * without_loss.clamp(left, self.largest.max(left));
         [
