@@ -48,12 +48,12 @@ const ALL: &[Cause] = &[Cause::Effects, Cause::Time, Cause::Space, Cause::Output
 
 /// The codes of warnings about trust.
 pub fn warned(warnings: &[String]) -> Vec<Code> {
-    let mut all: Vec<Code> = warnings.iter().filter_map(code).collect();
+    let mut all: Vec<Code> = warnings.iter().filter_map(|w| code(w)).collect();
     all.dedup();
     all
 }
 
-fn code(warning: &String) -> Option<Code> {
+fn code(warning: &str) -> Option<Code> {
     let code = warning.split_whitespace().next().and_then(Code::find);
     code.filter(|code| TRUST.iter().any(|(c, _)| c == code))
 }
