@@ -217,6 +217,18 @@ fn outputs_that_miss_the_motion_are_told() {
     assert!(out.contains("W015"), "{out}");
     let (_, out, _) = slcbeam(Path::new("."), &["check", "cases/wiring-3.json"]);
     assert!(!out.contains("W015"), "{out}");
+    let window = ["check", "cases/wiring-3.json", "--set", "/time/window_s=0.002"];
+    let (_, out, _) = slcbeam(Path::new("."), &window);
+    assert!(out.contains("W015") && out.contains("in the window"), "{out}");
+}
+
+/// A step steeper than steps can follow is refused with what to write instead.
+#[test]
+fn a_step_too_steep_to_follow_is_a_jump() {
+    let steep =
+        r#"/ends/tip={"free":{"force_x_n":{"sigmoid":{"amplitude":1,"steepness_per_s":1e12,"midpoint_s":0.1}}}}"#;
+    let (code, _, err) = slcbeam(Path::new("."), &["check", "cases/wiring-3.json", "--set", steep]);
+    assert!(code == 3 && err.contains("E009") && err.contains("duration 0"), "{err}");
 }
 
 /// A sine is heard wherever it acts, alone or as a term or factor.

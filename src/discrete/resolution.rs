@@ -5,6 +5,7 @@
 //! a wave shorter than a cell is all bending between the nodes.
 
 mod held;
+mod ports;
 mod statics;
 
 use crate::case::profile::{Integrals, Profile};
@@ -55,6 +56,15 @@ pub fn findings(case: &Case, system: &System) -> Vec<Finding> {
     if let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid)
         && system.model.effects.flow_along_bladders
     {
+        for pulse in ports::pulses(case, wet) {
+            all.push(finding(
+                pulse.pointer(),
+                "pressure along the bladder behind it",
+                fluid.cells_per_bladder,
+                "/mesh/cells_per_bladder",
+                |cells| pulse.left_out(cells),
+            ));
+        }
         for (k, start) in case.start.pressures.iter().enumerate() {
             let flows = |b: &i64| wet.storage[bladder_index(*b, wet.per_row)] == Storage::Flowing;
             if start.bladders.iter().any(flows) {

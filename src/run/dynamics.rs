@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::checkpoint::{Checkpoint, VERSION};
 use super::equilibrium;
+use super::estimate::resonance;
 use super::growth::Linear;
 use super::method::{self, Integrator, Options};
 use super::observe::Observer;
@@ -127,6 +128,7 @@ impl<'a> Run<'a> {
         let characteristic = characteristic::numbers(case, &system.model);
         let mut warnings = audit::lasting(case, &system.model, &characteristic);
         warnings.extend(resolution::warnings(case, &system));
+        warnings.extend(resonance::warning(&system));
         let decisions = &system.model.effects.decisions;
         let chosen = if parameters.is_empty() {
             method::choose(case, &system)

@@ -3,6 +3,7 @@
 //! ```text
 //! small      vibrations of the straight beam, and what a mesh does to their frequencies
 //! vibration  one of them followed along the run
+//! resonance  a drive that comes near one which the mesh misplaces
 //! ```
 //!
 //! What a mesh and what steps change of a beam that vibrates freely is first of all its phase, and that grows with every period. So
@@ -13,6 +14,7 @@
 //! It is an order of magnitude, by linear theory: growth, waves in the fluid and large rotations do more than it sees. Two runs on
 //! two meshes measure; `slcbeam run --accuracy` does that.
 
+pub mod resonance;
 pub mod small;
 pub mod vibration;
 

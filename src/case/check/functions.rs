@@ -11,6 +11,9 @@ use crate::error::{Code, Violation};
 /// Beyond this a beam does not move [Hz].
 const HIGHEST_FREQUENCY: f64 = 1e6;
 
+/// Beyond this a logistic step is followed in steps that never end [1/s].
+const STEEPEST: f64 = 1e8;
+
 /// What a signal is used for.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Role {
@@ -119,6 +122,12 @@ fn signal_parts(pointer: &str, signal: &Signal, faults: &mut Faults) {
             let what = format!("{} Hz is not a plausible frequency", plain(sine.frequency_hz));
             let fault = Violation::new(Code::Function, format!("{pointer}/sine/frequency_hz"), what);
             faults.push(fault.allowed(format!("up to {} Hz", plain(HIGHEST_FREQUENCY))));
+        }
+        Signal::Sigmoid(sigmoid) if sigmoid.steepness_per_s.abs() > STEEPEST => {
+            let what = format!("a steepness of {} 1/s is a jump", plain(sigmoid.steepness_per_s));
+            let fault = Violation::new(Code::Function, format!("{pointer}/sigmoid/steepness_per_s"), what);
+            let fault = fault.allowed(format!("up to {} 1/s", plain(STEEPEST)));
+            faults.push(fault.hint("for a jump take a ramp of duration 0, which the integrator stops at"));
         }
         Signal::Table(table) if !table.is_sound() => {
             table_fault(

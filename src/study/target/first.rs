@@ -4,8 +4,10 @@ use crate::case::Case;
 use crate::discrete::{System, resolution};
 use crate::study::accuracy::plan;
 
-/// Cells a segment to begin with where nothing asks for more.
+/// Cells a segment to begin with where nothing asks for more, and with bladders, so that half of them have fewer cells along a
+/// bladder as well.
 const LEAST: usize = 2;
+const LEAST_WET: usize = 4;
 /// And where much does.
 const MOST: usize = 32;
 
@@ -14,7 +16,8 @@ const MOST: usize = 32;
 pub fn least_cells(case: &Case) -> usize {
     let coarse = plan::refined(case, LEAST, case.solver.rtol);
     let cells = resolution::cells_that_resolve(&coarse, &System::new(&coarse));
-    cells.next_power_of_two().clamp(LEAST, MOST)
+    let least = if case.bladders.is_some() { LEAST_WET } else { LEAST };
+    cells.next_power_of_two().clamp(least, MOST)
 }
 
 #[cfg(test)]

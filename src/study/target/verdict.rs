@@ -19,6 +19,11 @@ impl Search<'_> {
         let within = worst(&estimates) <= self.asked;
         let unseen = self.unseen(at, present);
         let reached = present && within && unseen.is_empty();
+        // measured errors stand in place of the rough ones
+        if present && unseen.is_empty() {
+            let rough = Code::ErrorEstimate.id();
+            summary.warnings.retain(|warning| !warning.starts_with(rough));
+        }
         let mut warn = |what: String| {
             let warning = Code::Accuracy.warning(format!("accuracy: {what}"));
             summary.warnings.push(warning);
