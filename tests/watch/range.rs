@@ -128,7 +128,7 @@ fn bladders_beyond_the_section_end_the_run() {
 #[test]
 fn a_river_into_a_bladder_exits_with_4() {
     let out = tempfile::tempdir().unwrap();
-    let flow = r#"/network={"chains":[{"bladders":[1,2,3],"ends":[{"flow_m3_s":0.1},"sealed"]}]}"#;
+    let flow = r#"/network={"chains":[{"bladders":[1,2,3],"ends":[{"flow_m3_s":1e-3},"sealed"]}]}"#;
     let run = Command::new(env!("CARGO_BIN_EXE_slcbeam"))
         .args([
             "run",

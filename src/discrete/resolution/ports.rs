@@ -51,10 +51,10 @@ pub fn pulses(case: &Case, wet: &Wet) -> Vec<Pulse> {
     pressures.chain(flows).filter_map(of).collect()
 }
 
-/// Angular frequency of what goes to and fro [1/s]; none of what comes and stays.
+/// Angular frequency of what goes to and fro [1/s], of a pulse one over its time; none of what comes and stays.
 fn fastest(signal: &Signal, end: f64) -> Option<f64> {
     let tone = signal.highest_tone_hz().map(|f| TAU * f);
     let back = signal.value(end).abs() < BACK * signal.largest(end).value;
-    let pulse = signal.shortest_time_s(end).filter(|_| back).map(|time| TAU / time);
+    let pulse = signal.shortest_time_s(end).filter(|_| back).map(f64::recip);
     tone.into_iter().chain(pulse).reduce(f64::max)
 }
