@@ -10,7 +10,7 @@ use slcbeam::study::target;
 
 use crate::judge::{KNOWN, Verdict, Word, errors, guess, should_end, unknown};
 use crate::reference::{Found, Reference};
-use crate::run::{BUDGET, Steps, figures, finished};
+use crate::run::{BUDGET, figures, finished, steps};
 
 /// Steps of the runs that a search makes beside those that it keeps.
 const STEPS: u64 = 10_000;
@@ -27,7 +27,7 @@ pub fn judge(case: &Case, asked: f64, found: &Found) -> (Verdict, Vec<f64>) {
             Control::Continue
         }
     };
-    let mut record = |case: &Case| dynamics::run(case, &mut Steps((WORK / guess(case)) as u64));
+    let mut record = |case: &Case| dynamics::run(case, &mut steps((WORK / guess(case)) as u64));
     let outcome = match target::reach(case, asked, &hook, &mut record) {
         Ok(outcome) => outcome,
         Err(error) => return (Verdict::new(Word::Silent, format!("search: {error}")), vec![]),

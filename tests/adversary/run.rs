@@ -4,34 +4,20 @@ use std::collections::BTreeMap;
 
 use slcbeam::case::Case;
 use slcbeam::case::schema::{Effects, Method};
-use slcbeam::error::Result;
 use slcbeam::run::dynamics;
-use slcbeam::run::record::{Control, Header, Progress, Recorder};
+use slcbeam::run::record::{Control, Progress, Recorder, Unrecorded};
 use slcbeam::run::summary::{Status, Summary};
 use slcbeam::study::accuracy::plan;
 
 /// Why a run was cut short by its budget.
 pub const BUDGET: &str = "budget";
 
-/// Keeps nothing and stops when the steps are used up.
-pub struct Steps(pub u64);
-
-impl Recorder for Steps {
-    fn begin(&mut self, _: &Header) -> Result<()> {
-        Ok(())
-    }
-    fn history(&mut self, _: &[f64]) -> Result<()> {
-        Ok(())
-    }
-    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
-        Ok(())
-    }
-    fn progress(&mut self, progress: &Progress) -> Result<Control> {
-        Ok(match progress.steps >= self.0 {
-            true => Control::Stop(BUDGET.into()),
-            false => Control::Continue,
-        })
-    }
+/// Keeps nothing and stops when so many steps are used up.
+pub fn steps(count: u64) -> impl Recorder {
+    Unrecorded(move |progress: &Progress| match progress.steps >= count {
+        true => Control::Stop(BUDGET.into()),
+        false => Control::Continue,
+    })
 }
 
 /// What may still be spent on a scene: steps times unknowns times stages.
@@ -54,7 +40,7 @@ impl Work {
             self.left = 0.0;
             return None;
         }
-        let outcome = dynamics::run(case, &mut Steps(steps)).ok()?;
+        let outcome = dynamics::run(case, &mut self::steps(steps)).ok()?;
         self.left -= outcome.summary.solver.steps as f64 * price;
         (outcome.summary.reason.as_deref() != Some(BUDGET)).then_some(outcome.summary)
     }
