@@ -1,0 +1,89 @@
+//! Why a run cannot go on, in words.
+
+use super::pace::STALL_STEPS;
+use crate::error::{Code, SolverFault};
+use crate::sundials::{IdaFailure, StartFailure};
+
+pub(super) fn fault(failure: &IdaFailure) -> SolverFault {
+    SolverFault {
+        code: if failure.singular.is_some() { Code::Singular } else { Code::Integrator },
+        time_s: failure.time,
+        what: failure.to_string(),
+        unknown: failure.worst.as_ref().map(|w| w.name.clone()).or_else(|| failure.singular.clone()),
+        cause: Some(
+            if failure.singular.is_some() {
+                "the equations lose their unique solution here: a buckled quasi-static beam, or a coupling that is not convex"
+            } else {
+                "the solution changes faster than the smallest step: a bladder closing, an instability, or a tolerance \
+                 beyond double precision"
+            }
+            .into(),
+        ),
+        hint: Some("look at the balances and fields up to this time; try another rtol, a wider kink_width, or damping".into()),
+    }
+}
+
+pub(super) fn beyond(t: f64, what: String) -> SolverFault {
+    SolverFault {
+        code: Code::OutOfRange,
+        time_s: t,
+        what,
+        unknown: None,
+        cause: Some(
+            "loads, pressures or flows beyond what the model describes, or a motion that grows without bounds".into(),
+        ),
+        hint: Some(
+            "results stand up to this time; look at the fields before it, at the units of loads and flows".into(),
+        ),
+    }
+}
+
+pub(super) fn too_many_steps(t: f64, step: f64) -> SolverFault {
+    SolverFault {
+        code: Code::Steps,
+        time_s: t,
+        what: format!("the number of steps allowed is used up at t = {t:.6} s, with steps of {step:.2e} s"),
+        unknown: None,
+        cause: Some("fast waves that the tolerance asks to follow".into()),
+        hint: Some("raise /solver/max_steps, or loosen /solver/rtol".into()),
+    }
+}
+
+pub(super) fn inconsistent(t: f64, failure: &StartFailure) -> SolverFault {
+    let (what, cause, hint) = if t == 0.0 {
+        (
+            "no consistent start".to_string(),
+            "start values that contradict each other, or a model without a unique state",
+            "look at `slcbeam check`, and at /start and /ends of the case",
+        )
+    } else {
+        (
+            format!("no consistent state after the switching time {t:.6} s"),
+            "what switches leaves the equations without a unique state",
+            "switch more slowly (a ramp with a duration)",
+        )
+    };
+    SolverFault {
+        code: Code::NoStart,
+        time_s: t,
+        what: format!("{what}: {}", failure.what),
+        unknown: failure.worst.as_ref().map(|(_, name)| name.clone()),
+        cause: Some(cause.into()),
+        hint: Some(hint.into()),
+    }
+}
+
+pub(super) fn stalled(t: f64, step: f64) -> SolverFault {
+    SolverFault {
+        code: Code::Stalled,
+        time_s: t,
+        what: format!(
+            "no progress: {STALL_STEPS} steps have hardly moved the time on from t = {t:.9} s (step {step:.2e} s)"
+        ),
+        unknown: None,
+        cause: Some(
+            "the solution changes ever faster towards this time: a closing bladder, an instability, a jump".into(),
+        ),
+        hint: Some("look at the fields just before this time; damping or a smoother signal may help".into()),
+    }
+}

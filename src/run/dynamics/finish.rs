@@ -1,0 +1,104 @@
+//! The end of a run: what it cost and what its summary says.
+
+use super::{End, Outcome, Run};
+use crate::dae::BeamDae;
+use crate::discrete::ledger::FLOWS;
+use crate::error::Code;
+use crate::run::method::{Integrator, Options};
+use crate::run::order;
+use crate::run::sensitivity::forward::Forward;
+use crate::run::summary::{Status, WallTimes};
+
+impl Run<'_> {
+    pub(super) fn count(&mut self, solver: &Integrator<BeamDae>) {
+        self.summary.solver = solver.counters();
+        self.summary.solver.add(&self.earlier);
+        let s = &self.summary.solver;
+        self.held = match self.options {
+            Options::OneStep(_) => None,
+            Options::Ida(_) => order::held_by_stability(
+                solver.dae().system(),
+                s.max_order,
+                self.summary.time_s,
+                s.steps,
+                s.error_test_failures,
+            ),
+        };
+        let wall = solver.wall();
+        self.summary.wall_s = WallTimes {
+            total: 0.0,
+            residual: wall.residual.as_secs_f64(),
+            jacobian: wall.jacobian.as_secs_f64(),
+            linear_solver: wall.linear_solver.as_secs_f64(),
+            output: self.output_wall + wall.integrands.as_secs_f64(),
+        };
+    }
+
+    pub(super) fn finish(mut self, end: End) -> Outcome {
+        let s = &mut self.summary;
+        let fault = match end {
+            End::Finished => {
+                s.status = Status::Finished;
+                None
+            }
+            End::Stopped(reason) => {
+                s.status = Status::Stopped;
+                s.reason = Some(reason);
+                None
+            }
+            End::Left(fault) => {
+                s.status = Status::OutOfRange;
+                s.reason = Some(fault.what.clone());
+                s.time_s = fault.time_s;
+                Some(fault)
+            }
+            End::Failed(fault) => {
+                s.reason = Some(fault.what.clone());
+                s.time_s = fault.time_s;
+                Some(fault)
+            }
+        };
+        let o = &self.observer.seen;
+        s.quantities = o.figures.quantities();
+        o.energies.complete(&mut s.quantities);
+        s.warnings.extend(o.energies.warning(&s.quantities));
+        s.estimate = o.estimate.judge(&s.quantities);
+        s.warnings.extend(s.estimate.as_ref().and_then(|e| e.warning()));
+        s.sensitivities = self.forward.as_ref().map(Forward::summary).unwrap_or_default();
+        let b = &mut s.balances;
+        b.energy_residual_relative = o.residuals.energy_relative();
+        b.volume_residual_relative = o.residuals.volume_relative();
+        b.closed_volume_residual_relative = o.residuals.closed_volume_relative();
+        b.port_flow_residual_relative = o.residuals.port_flow_relative();
+        b.reaction_difference_relative = o.residuals.reaction_relative();
+        b.momentum_residual_relative = o.residuals.momentum_relative();
+        b.angular_momentum_residual_relative = o.residuals.angular_relative();
+        for flow in FLOWS.iter().filter(|f| f.energy_sign() != 0.0) {
+            b.energy_j.insert(flow.name().into(), o.integrals[*flow as usize]);
+        }
+        let e = &o.stored;
+        for (name, value) in [
+            ("kinetic_energy", e.kinetic),
+            ("rotary_energy", e.rotary),
+            ("axial_energy", e.axial),
+            ("bending_energy", e.bending),
+            ("bladder_energy", e.bladders),
+        ] {
+            b.energy_j.insert(name.into(), value);
+        }
+        s.growth = o.growth.judge(self.case.beam.length_m, &self.linear);
+        s.warnings
+            .extend(s.growth.as_ref().map(|g| Code::Growth.warning(g.warning())));
+        if !self.inertia {
+            let buckled = o.growth.straight_beyond_buckling(self.case.beam.length_m, &self.linear);
+            s.warnings.extend(buckled.map(|w| Code::Buckling.warning(w)));
+        }
+        s.warnings.extend(self.held.map(|w| Code::OrderHeld.warning(w)));
+        s.warnings.extend(self.observer.warnings());
+        s.wall_s.total = self.begin.elapsed().as_secs_f64();
+        Outcome {
+            summary: self.summary,
+            fault,
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Follows the accepted steps of a run: reads states within them, takes samples, finds where the model was left.
+
+use std::time::Instant;
+
+use super::faults::beyond;
+use super::{End, Run};
+use crate::dae::BeamDae;
+use crate::error::Result;
+use crate::run::method::Integrator;
+use crate::run::record::Recorder;
+
+/// Halvings of a step in search of the time at which the model was left.
+const HALVINGS: u32 = 30;
+
+impl Run<'_> {
+    /// Looks at the start of a run or of what follows a stop, and takes the sample that is due there.
+    pub(super) fn enter(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        recorder: &mut dyn Recorder,
+    ) -> Result<Option<End>> {
+        let t = solver.time();
+        if let Err(end) = self.read(solver, t) {
+            return Ok(Some(end));
+        }
+        let left = self
+            .observer
+            .enter(solver.dae_mut(), t, &self.state, &self.rates, &self.integrals);
+        match left {
+            Some(what) => self.leave(solver, t, what, recorder).map(Some),
+            None => self.sample(solver, t, t, recorder),
+        }
+    }
+
+    /// Follows an accepted step from time `from` [s]: looks at its end, and inside wherever something may have turned, takes every
+    /// sample that is due, and finds out where in the step the model was left, if it was.
+    pub(super) fn follow(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        from: f64,
+        recorder: &mut dyn Recorder,
+    ) -> Result<Option<End>> {
+        let now = solver.time();
+        if let Err(end) = self.read(solver, now) {
+            return Ok(Some(end));
+        }
+        let dae = solver.dae_mut();
+        let left = self
+            .observer
+            .arrive(dae, now, &self.state, &self.rates, &self.integrals);
+        let mut left = left.map(|what| (now, what));
+        let mut within = from;
+        for k in 0..self.observer.turning().len() {
+            let t = self.observer.turning()[k];
+            if let Err(end) = self.read(solver, t) {
+                return Ok(Some(end));
+            }
+            let dae = solver.dae_mut();
+            match self.observer.look(dae, t, &self.state, &self.rates, &self.integrals) {
+                Some(what) => {
+                    left = Some((t, what));
+                    break;
+                }
+                None => within = t,
+            }
+        }
+        match left {
+            None => self.sample(solver, from, now, recorder),
+            Some((t, what)) => {
+                let (t, what) = match self.narrow(solver, [within, t], what) {
+                    Ok(found) => found,
+                    Err(end) => return Ok(Some(end)),
+                };
+                match self.sample(solver, from, t, recorder)? {
+                    Some(end) => Ok(Some(end)),
+                    None => self.leave(solver, t, what, recorder).map(Some),
+                }
+            }
+        }
+    }
+
+    /// Reads state, rates and integrals at a time within the last step from the integrator's own polynomial, or as they are at
+    /// the present time.
+    pub(super) fn read(&mut self, solver: &mut Integrator<BeamDae>, t: f64) -> std::result::Result<(), End> {
+        let read = if t == solver.time() {
+            self.state.copy_from_slice(solver.y());
+            self.rates.copy_from_slice(solver.yp());
+            solver.integrals(None, &mut self.integrals)
+        } else {
+            solver
+                .interpolate(t, 0, &mut self.state)
+                .and_then(|()| solver.interpolate(t, 1, &mut self.rates))
+                .and_then(|()| solver.integrals(Some(t), &mut self.integrals))
+        };
+        for (total, carried) in self.integrals.iter_mut().zip(&self.carried) {
+            *total += carried;
+        }
+        read.map_err(|failure| End::Stopped(format!("the state at t = {t:.6} s could not be read: {failure}")))
+    }
+
+    /// The time, and in words, at which the model was left, between a time at which it held and one at which it did not [s].
+    pub(super) fn narrow(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        [mut within, mut beyond]: [f64; 2],
+        mut what: String,
+    ) -> std::result::Result<(f64, String), End> {
+        for _ in 0..HALVINGS {
+            let t = 0.5 * (within + beyond);
+            if t <= within || t >= beyond {
+                break;
+            }
+            self.read(solver, t)?;
+            match self.observer.beyond(solver.dae_mut(), t, &self.state, &self.rates) {
+                Some(found) => (beyond, what) = (t, found),
+                None => within = t,
+            }
+        }
+        Ok((beyond, what))
+    }
+
+    /// Ends the run where the model was left; the state there is recorded last.
+    pub(super) fn leave(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        t: f64,
+        what: String,
+        recorder: &mut dyn Recorder,
+    ) -> Result<End> {
+        if let Err(end) = self.read(solver, t) {
+            return Ok(end);
+        }
+        if let Some(end) = self.record(solver, 0, t, recorder)? {
+            return Ok(end);
+        }
+        Ok(End::Left(beyond(t, what)))
+    }
+
+    /// Takes every sample that is due up to a time `until` [s] within the last step, which began at `from` [s].
+    pub(super) fn sample(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        from: f64,
+        until: f64,
+        recorder: &mut dyn Recorder,
+    ) -> Result<Option<End>> {
+        let mut begin = None;
+        let mut within = from;
+        while let Some((number, t)) = self.outputs.due(until) {
+            begin.get_or_insert_with(Instant::now);
+            if let Err(end) = self.read(solver, t.max(from)) {
+                return Ok(Some(end));
+            }
+            let left = self.observer.beyond(solver.dae_mut(), t, &self.state, &self.rates);
+            if let Some(what) = left {
+                let (t, what) = match self.narrow(solver, [within, t], what) {
+                    Ok(found) => found,
+                    Err(end) => return Ok(Some(end)),
+                };
+                return self.leave(solver, t, what, recorder).map(Some);
+            }
+            if let Some(end) = self.record(solver, number, t, recorder)? {
+                return Ok(Some(end));
+            }
+            within = t;
+        }
+        if let Some(begin) = begin {
+            self.output_wall += begin.elapsed().as_secs_f64();
+        }
+        Ok(None)
+    }
+
+    /// Records the state that has been read, as sample number `number`.
+    pub(super) fn record(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        number: u64,
+        t: f64,
+        recorder: &mut dyn Recorder,
+    ) -> Result<Option<End>> {
+        self.observer.sample(
+            solver.dae_mut(),
+            number,
+            t,
+            &self.state,
+            &self.rates,
+            &self.integrals,
+            recorder,
+        )?;
+        if let (Some(forward), Some(ida)) = (&mut self.forward, solver.ida_mut()) {
+            match forward.sample(ida, t, [&self.state, &self.rates], self.observer.row()) {
+                Ok(row) => recorder.sensitivities(row)?,
+                Err(failure) => {
+                    return Ok(Some(End::Stopped(format!(
+                        "sensitivities at t = {t:.6} s could not be read: {failure}"
+                    ))));
+                }
+            }
+        }
+        Ok(None)
+    }
+}

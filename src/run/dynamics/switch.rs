@@ -1,0 +1,96 @@
+//! Passes the stops of a run: switches, checkpoints, a fresh start of the integrator.
+
+use super::Run;
+use super::faults::{fault, inconsistent};
+use crate::dae::BeamDae;
+use crate::error::{Result, SolverFault};
+use crate::run::checkpoint::{Checkpoint, VERSION};
+use crate::run::method::Integrator;
+use crate::run::record::Recorder;
+use crate::run::schedule::Stop;
+use crate::run::summary::Counters;
+use crate::sundials::{StartOptions, consistent_start};
+
+impl Run<'_> {
+    /// Passes a switch: the next smooth branch of every signal, a consistent state, and what is done in no time in between.
+    pub(super) fn switch(&mut self, dae: &mut BeamDae, t: f64, ahead: f64) -> Option<SolverFault> {
+        let (before, within) = (self.state.clone(), dae.within());
+        dae.switch(t, ahead, &mut self.state);
+        if let Err(failure) = consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default()) {
+            return Some(inconsistent(t, &failure));
+        }
+        dae.jump(t, (&before, within), &self.state, &mut self.carried);
+        None
+    }
+
+    /// Passes a stop: the next smooth branch of every signal, a consistent state, a checkpoint if one is due, a fresh
+    /// start of the integrator.
+    pub(super) fn pass(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        stop: usize,
+        next: f64,
+        recorder: &mut dyn Recorder,
+    ) -> Result<Option<SolverFault>> {
+        let Stop {
+            t,
+            switches,
+            checkpoint,
+        } = self.stops[stop];
+        self.state.copy_from_slice(solver.y());
+        self.rates.copy_from_slice(solver.yp());
+        if let Err(failure) = solver.integrals(None, &mut self.integrals) {
+            return Ok(Some(fault(&failure)));
+        }
+        for (carried, more) in self.carried.iter_mut().zip(&self.integrals) {
+            *carried += more;
+        }
+        if checkpoint {
+            self.count(solver);
+            recorder.checkpoint(&Checkpoint {
+                version: VERSION.into(),
+                case: self.case.resolved_json(),
+                t,
+                stop,
+                y: self.state.clone(),
+                yp: self.rates.clone(),
+                integrals: self.carried.clone(),
+                next_output: self.outputs.next(),
+                counters: Counters {
+                    restarts: self.summary.solver.restarts + 1,
+                    ..self.summary.solver.clone()
+                },
+                observed: self.observer.seen.clone(),
+            })?;
+        }
+        let before = match (&mut self.forward, solver.ida_mut()) {
+            (Some(forward), Some(ida)) => match forward.leave(ida, t, [&self.state, &self.rates]) {
+                Ok(before) => Some(before),
+                Err(failure) => return Ok(Some(fault(&failure))),
+            },
+            _ => None,
+        };
+        let dae = solver.dae_mut();
+        let ahead = 0.5 * (t + next);
+        if !switches {
+            dae.look_within(ahead);
+        } else if let Some(fault) = self.switch(dae, t, ahead) {
+            return Ok(Some(fault));
+        }
+        if let (Some(forward), Some(before)) = (&mut self.forward, &before) {
+            if !switches {
+                forward.go_on(dae, stop);
+            } else if let Err(fault) = forward.pass(dae, stop, t, before, [&self.state, &self.rates]) {
+                return Ok(Some(fault));
+            }
+        }
+        let restarted =
+            solver
+                .restart(t, &self.state, &self.rates)
+                .and_then(|()| match (&self.forward, solver.ida_mut()) {
+                    (Some(forward), Some(ida)) => forward.hand_over(ida, true),
+                    _ => Ok(()),
+                });
+        Ok(restarted.err().map(|failure| fault(&failure)))
+    }
+}
