@@ -245,10 +245,21 @@ fn over(numbers: &BTreeMap<String, f64>, code: Code, name: &str, limit: f64, wha
     )))
 }
 
-/// Output times in the window below which what is told of it is not that of the window.
+/// Output times in the window below which derivatives told of it are not those of the window.
 const OUTPUTS_A_WINDOW: f64 = 10.0;
 /// Output times in a period of the drive below which its peaks are missed.
 const OUTPUTS_A_PERIOD: f64 = 10.0;
+
+/// Warning of a run with derivatives: of largest values and means they are those of the output times.
+pub fn derivatives(case: &Case) -> Option<String> {
+    let within = case.time.window() / case.time.output_interval();
+    (within < OUTPUTS_A_WINDOW).then(|| {
+        Code::FewOutputs.warning(format!(
+            "output: {within:.1} output times in the window: derivatives of what is largest in it, and of its root mean squares, are told \
+             from these"
+        ))
+    })
+}
 
 /// Warnings of a case whatever a run finds: bad findings, and characteristic numbers out of the model's range.
 pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> Vec<String> {
@@ -277,13 +288,6 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
                 "output: {outputs:.1} output times in a period of the drive at {f} Hz: histories and fields as written miss its peaks"
             )));
         }
-    }
-    let within = case.time.window() / case.time.output_interval();
-    if within < OUTPUTS_A_WINDOW {
-        all.push(Code::FewOutputs.warning(format!(
-            "output: {within:.1} output times in the window: increments and efficiencies over it, and what is largest where it begins, are \
-             told from these"
-        )));
     }
     if let Some(&bound) = numbers.get("mathieu_growth_bound_per_s")
         && let Some(&rate) = numbers.get("mathieu_growth_rate_per_s")

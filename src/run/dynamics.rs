@@ -136,6 +136,9 @@ impl<'a> Run<'a> {
         let mut warnings = audit::lasting(case, &system.model, &characteristic);
         warnings.extend(resolution::warnings(case, &system));
         warnings.extend(resonance::warning(&system));
+        if !parameters.is_empty() {
+            warnings.extend(audit::derivatives(case));
+        }
         let decisions = &system.model.effects.decisions;
         let chosen = if parameters.is_empty() {
             method::choose(case, &system)
@@ -152,7 +155,7 @@ impl<'a> Run<'a> {
         let mut run = Self {
             case,
             observer: Observer::new(case, &system, interval),
-            outputs: Outputs::new(interval, case.time.end_s),
+            outputs: Outputs::new(case),
             stops: schedule::stops(case, &system.model),
             summary: Summary {
                 case: case.name.clone(),
@@ -323,7 +326,7 @@ impl Run<'_> {
         self.carried.clone_from(&checkpoint.integrals);
         self.earlier.clone_from(&checkpoint.counters);
         self.observer.seen.clone_from(&checkpoint.observed);
-        self.outputs.go_on(checkpoint.next_output);
+        self.outputs.go_on(checkpoint.next_output, checkpoint.t);
     }
 
     fn integrate(

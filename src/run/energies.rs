@@ -17,6 +17,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::schedule::SAME;
 use super::summary::Quantity;
 use crate::case::schema::Case;
 use crate::error::Code;
@@ -74,17 +75,25 @@ impl Parts {
     }
 }
 
-/// Since an instant: what was there, and how far the balance has opened from then on [J].
+/// Since an instant: what was there with the residual of the balance, and between what it has been from then on [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Since {
     start: Option<(Parts, f64)>,
-    open: f64,
+    residual: Option<[f64; 2]>,
 }
 
 impl Since {
-    fn take(&mut self, now: Parts, residual: f64) {
-        let (_, first) = *self.start.get_or_insert((now, residual));
-        self.open = self.open.max((residual - first).abs());
+    fn see(&mut self, residual: f64) {
+        let [low, high] = self.residual.unwrap_or([residual; 2]);
+        self.residual = Some([low.min(residual), high.max(residual)]);
+    }
+
+    /// How far the balance has opened.
+    fn open(&self) -> f64 {
+        match (self.start, self.residual) {
+            (Some((_, first)), Some([low, high])) => (high - first).max(first - low).max(0.0),
+            _ => 0.0,
+        }
     }
 
     fn gained(&self, now: &Parts) -> Parts {
@@ -108,14 +117,14 @@ impl Energies {
     /// For a case whose history has the given columns.
     pub fn new(case: &Case, columns: &[&'static str]) -> Self {
         Self {
-            window_start: case.time.end_s - case.time.window() * (1.0 + 1e-9),
+            window_start: case.time.end_s - case.time.window() * (1.0 + SAME),
             turbines: case.network.as_ref().is_some_and(|n| !n.turbines.is_empty()),
             columns: columns.iter().enumerate().map(|(k, c)| (c.to_string(), k)).collect(),
             ..Self::default()
         }
     }
 
-    /// Takes one row of the history.
+    /// Takes one row, as of the history.
     pub fn take(&mut self, row: &[f64]) {
         let sum = |names: &[&str]| -> f64 { names.iter().filter_map(|n| self.columns.get(*n)).map(|k| row[*k]).sum() };
         let now = Parts {
@@ -128,16 +137,25 @@ impl Energies {
         let residual = sum(RESIDUAL);
         self.last = now;
         self.largest_stored = self.largest_stored.max(now.stored.abs());
-        self.run.take(now, residual);
+        self.see(row[0], residual);
+        self.run.start.get_or_insert((now, residual));
         if row[0] >= self.window_start {
-            self.window.take(now, residual);
+            self.window.start.get_or_insert((now, residual));
+        }
+    }
+
+    /// Takes the residual of the balance [J] at any time [s].
+    pub fn see(&mut self, t: f64, residual: f64) {
+        self.run.see(residual);
+        if t >= self.window_start {
+            self.window.see(residual);
         }
     }
 
     /// Gives every figure of energy its error, and the window its efficiency.
     pub fn complete(&self, quantities: &mut BTreeMap<String, Quantity>) {
         let (run, window) = (self.run.gained(&self.last), self.window.gained(&self.last));
-        let (opened, open) = (self.run.open, self.window.open);
+        let (opened, open) = (self.run.open(), self.window.open());
         let relative = |open: f64, size: f64| finite(open / size.abs());
         for (name, run, window) in [
             ("input_energy_j", run.input, window.input),

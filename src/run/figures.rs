@@ -1,13 +1,15 @@
 //! The quantities of interest of a run: last value, largest value, and what happened in the window at its end.
 //!
 //! Largest values and root mean squares are those of the motion: of every step's end, of the turning points between, and of
-//! the output times; last values and increments are those of the output times.
+//! the output times; last values and increments are those of the run's and the window's ends, where the state is taken whether
+//! there is an output or not.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 use super::cubic::{self, Cubic};
+use super::schedule::SAME;
 use super::summary::Quantity;
 use crate::case::schema::Case;
 use crate::discrete::glance::{Glance, Watched};
@@ -40,7 +42,7 @@ struct Track {
 }
 
 impl Track {
-    /// Takes the value at an output time.
+    /// Takes the value at an output time, or at an end of the window.
     fn take(&mut self, value: f64, in_window: bool) {
         self.last = value;
         if in_window {
@@ -88,7 +90,7 @@ impl Figures {
         let wet = columns.contains(&"max_pressure");
         let turbines = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
         Self {
-            window_start: case.time.end_s - window * (1.0 + 1e-9),
+            window_start: case.time.end_s - window * (1.0 + SAME),
             window_time: 0.0,
             columns: columns.iter().enumerate().map(|(k, c)| (c.to_string(), k)).collect(),
             swinging: [Track::default(); SWINGING.len()],
@@ -99,7 +101,7 @@ impl Figures {
         }
     }
 
-    /// Takes one row of the history, with the look at the same state.
+    /// Takes one row, as of the history, with the look at the same state.
     pub fn take(&mut self, row: &[f64], glance: &Glance) {
         let at = |name: &str| row[self.columns[name]];
         let in_window = row[0] >= self.window_start;

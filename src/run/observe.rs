@@ -249,6 +249,7 @@ impl Observer {
             balance.residual,
         );
         self.seen.figures.see(glance);
+        self.seen.energies.see(glance.t, balance.residual);
         balance
     }
 
@@ -269,12 +270,12 @@ impl Observer {
         self.turning.dedup_by(|next, kept| *next - *kept < APART * h);
     }
 
-    /// Records the sample number `number` of a scaled state.
+    /// Takes a scaled state into the figures, in order of time, and records it as the output of a number, if it is one.
     #[allow(clippy::too_many_arguments)]
     pub fn sample(
         &mut self,
         dae: &mut BeamDae,
-        number: u64,
+        output: Option<u64>,
         t: f64,
         y: &[f64],
         yp: &[f64],
@@ -292,11 +293,14 @@ impl Observer {
             self.seen.figures.span(&before, &glance);
         }
         sample::row(system, now, t, w, &balance, integrals, &mut self.row);
-        recorder.history(&self.row)?;
         self.seen.figures.take(&self.row, &glance);
         self.seen.energies.take(&self.row);
         self.seen.integrals.copy_from_slice(integrals);
         self.seen.stored = balance.stored;
+        let Some(number) = output else {
+            return Ok(());
+        };
+        recorder.history(&self.row)?;
         if number.is_multiple_of(self.fields_every) {
             let along = |values: &[f64]| -> Vec<f64> { self.cell_order.iter().map(|&c| values[c]).collect() };
             let (pressure, area) = (along(&w.pressure), along(&w.area));

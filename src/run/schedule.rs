@@ -1,4 +1,6 @@
-//! When a run stops to switch, and when it gives output.
+//! When a run stops to switch, when it gives output, and where its window begins.
+
+use std::collections::VecDeque;
 
 use crate::case::schema::Case;
 use crate::model::{Model, each_signal};
@@ -76,23 +78,44 @@ pub fn changes(model: &Model) -> bool {
     changes
 }
 
-/// Output times `k interval`, up to and including the end.
-#[derive(Clone, Copy, Debug)]
+/// A time at which the state is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Due {
+    /// When [s].
+    pub t: f64,
+    /// Number of the output that is due; none at an end of the window between two of them.
+    pub output: Option<u64>,
+}
+
+/// Output times `k interval`, up to and including the end, and the ends of the window.
+#[derive(Clone, Debug)]
 pub struct Outputs {
     interval: f64,
     end: f64,
     next: u64,
     last: u64,
+    /// Ends of the window still to come at which there is no output [s].
+    marks: VecDeque<f64>,
 }
 
+/// Share of the window by which an output counts as one at its end.
+pub const SAME: f64 = 1e-9;
+
 impl Outputs {
-    /// Times from zero.
-    pub fn new(interval: f64, end: f64) -> Self {
+    /// Times of a case, from zero.
+    pub fn new(case: &Case) -> Self {
+        let (interval, end, window) = (case.time.output_interval(), case.time.end_s, case.time.window());
+        let last = (end / interval * (1.0 + 1e-12)).floor();
+        let apart = |t: f64| (t - (t / interval).round().min(last) * interval).abs() > SAME * window;
         Self {
             interval,
             end,
             next: 0,
-            last: (end / interval * (1.0 + 1e-12)).floor() as u64,
+            last: last as u64,
+            marks: [end - window, end]
+                .into_iter()
+                .filter(|t| *t > 0.0 && apart(*t))
+                .collect(),
         }
     }
 
@@ -101,21 +124,29 @@ impl Outputs {
         self.next
     }
 
-    /// Goes on with the output of this number.
-    pub fn go_on(&mut self, next: u64) {
+    /// Goes on after a time `t` [s], up to which all has been taken, with the output of this number.
+    pub fn go_on(&mut self, next: u64, t: f64) {
         self.next = next;
+        self.marks.retain(|mark| *mark > t);
     }
 
-    /// Next output time not after `t`, and its number.
-    pub fn due(&mut self, t: f64) -> Option<(u64, f64)> {
-        if self.next > self.last {
-            return None;
+    /// What is due next, not after `t` [s].
+    pub fn due(&mut self, t: f64) -> Option<Due> {
+        let output = (self.next <= self.last).then(|| (self.next as f64 * self.interval).min(self.end));
+        let mark = self.marks.front().copied();
+        match (output, mark) {
+            (output, Some(mark)) if mark <= t && output.is_none_or(|output| mark < output) => {
+                self.marks.pop_front();
+                Some(Due { t: mark, output: None })
+            }
+            (Some(output), _) if output <= t => {
+                self.next += 1;
+                Some(Due {
+                    t: output,
+                    output: Some(self.next - 1),
+                })
+            }
+            _ => None,
         }
-        let time = (self.next as f64 * self.interval).min(self.end);
-        if time > t {
-            return None;
-        }
-        self.next += 1;
-        Some((self.next - 1, time))
     }
 }

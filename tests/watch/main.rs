@@ -5,3 +5,4 @@ mod common;
 mod growth;
 mod motion;
 mod range;
+mod window;

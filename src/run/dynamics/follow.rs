@@ -8,6 +8,7 @@ use crate::dae::BeamDae;
 use crate::error::Result;
 use crate::run::method::Integrator;
 use crate::run::record::Recorder;
+use crate::run::schedule::Due;
 
 /// Halvings of a step in search of the time at which the model was left.
 const HALVINGS: u32 = 30;
@@ -130,13 +131,13 @@ impl Run<'_> {
         if let Err(end) = self.read(solver, t) {
             return Ok(end);
         }
-        if let Some(end) = self.record(solver, 0, t, recorder)? {
+        if let Some(end) = self.record(solver, Some(0), t, recorder)? {
             return Ok(end);
         }
         Ok(End::Left(beyond(t, what)))
     }
 
-    /// Takes every sample that is due up to a time `until` [s] within the last step, which began at `from` [s].
+    /// Takes every sample that is due, the ends of the window among them, up to a time `until` [s] within the last step, which began at `from` [s].
     pub(super) fn sample(
         &mut self,
         solver: &mut Integrator<BeamDae>,
@@ -146,7 +147,7 @@ impl Run<'_> {
     ) -> Result<Option<End>> {
         let mut begin = None;
         let mut within = from;
-        while let Some((number, t)) = self.outputs.due(until) {
+        while let Some(Due { t, output }) = self.outputs.due(until) {
             begin.get_or_insert_with(Instant::now);
             if let Err(end) = self.read(solver, t.max(from)) {
                 return Ok(Some(end));
@@ -159,7 +160,7 @@ impl Run<'_> {
                 };
                 return self.leave(solver, t, what, recorder).map(Some);
             }
-            if let Some(end) = self.record(solver, number, t, recorder)? {
+            if let Some(end) = self.record(solver, output, t, recorder)? {
                 return Ok(Some(end));
             }
             within = t;
@@ -170,17 +171,17 @@ impl Run<'_> {
         Ok(None)
     }
 
-    /// Records the state that has been read, as sample number `number`.
+    /// Takes the state that has been read into all figures, and records it where it is an output.
     pub(super) fn record(
         &mut self,
         solver: &mut Integrator<BeamDae>,
-        number: u64,
+        output: Option<u64>,
         t: f64,
         recorder: &mut dyn Recorder,
     ) -> Result<Option<End>> {
         self.observer.sample(
             solver.dae_mut(),
-            number,
+            output,
             t,
             &self.state,
             &self.rates,
@@ -189,7 +190,8 @@ impl Run<'_> {
         )?;
         if let (Some(forward), Some(ida)) = (&mut self.forward, solver.ida_mut()) {
             match forward.sample(ida, t, [&self.state, &self.rates], self.observer.row()) {
-                Ok(row) => recorder.sensitivities(row)?,
+                Ok(row) if output.is_some() => recorder.sensitivities(row)?,
+                Ok(_) => {}
                 Err(failure) => {
                     return Ok(Some(End::Stopped(format!(
                         "sensitivities at t = {t:.6} s could not be read: {failure}"

@@ -1,5 +1,5 @@
 //! Derivatives of the quantities of interest, followed as the history is: of largest values and means over the output times, which must
-//! be close enough for these to be those of the motion.
+//! be close enough for these to be those of the motion; of last values and increments at the ends of the run and of the window.
 
 use std::collections::BTreeMap;
 

@@ -93,7 +93,7 @@ impl<'a> Forward<'a> {
             .position(|(_, name)| *name == "work_loads")
             .unwrap_or(columns.len());
         let turbines = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
-        let window_start = case.time.end_s - case.time.window() * (1.0 + 1e-9);
+        let window_start = case.time.end_s - case.time.window() * (1.0 + schedule::SAME);
         let forward = Self {
             parameters,
             cases: all_cases,
