@@ -13,6 +13,7 @@ mod interval;
 mod period;
 mod profile;
 mod search;
+mod stretches;
 mod tones;
 mod variation;
 
@@ -23,6 +24,7 @@ pub use excites::{Excitation, NEAR};
 use interval::Bounded;
 pub use interval::{Interval, Span};
 use search::{Search, overflows, reached, sizes};
+pub use stretches::{Stretch, merged};
 pub use variation::Variation;
 
 /// Largest magnitudes of a signal over the run.

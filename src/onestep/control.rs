@@ -37,6 +37,12 @@ impl Control {
         }
     }
 
+    /// Largest step [s] from now on.
+    pub fn limit(&mut self, largest: f64) {
+        self.largest = largest;
+        self.size = self.size.min(largest);
+    }
+
     /// Begins with a step [s], without a past.
     pub fn begin(&mut self, size: f64) {
         (self.size, self.last, self.failed) = (size.min(self.largest), None, false);

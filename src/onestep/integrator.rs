@@ -96,6 +96,11 @@ impl<D: Dae> OneStep<D> {
         Err(IdaFailure::request(message, self.time))
     }
 
+    /// Largest step [s] from now on.
+    pub fn limit(&mut self, largest: f64) {
+        self.control.limit(largest);
+    }
+
     /// One accepted step, which does not pass `stop` [s]. A stop closer than round-off counts as reached.
     pub fn step(&mut self, stop: f64) -> Result<Step, Box<IdaFailure>> {
         let order = self.options.method.order();

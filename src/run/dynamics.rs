@@ -20,6 +20,7 @@ use super::observe::Observer;
 use super::record::{Control, Header, Progress, Recorder};
 use super::schedule::{self, Outputs, Stop};
 use super::sensitivity::forward::Forward;
+use super::strides::Strides;
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
 use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
@@ -80,17 +81,9 @@ pub fn resume(case: &Case, checkpoint: &Checkpoint, recorder: &mut dyn Recorder)
     run.go(dae, Some(checkpoint), recorder)
 }
 
-/// Largest step [s]: as given, or a 16th of the shortest time scale of the signals, at most a tenth of the run. More at tolerances
-/// looser than 1e-3, with the fourth root, so that errors go on to follow the tolerance; a hundredth of the run where something
-/// changes without inertia: a high order would stride over what the ledger integrates.
+/// The shortest of the largest steps [s], that where signals are fastest.
 pub fn max_step(case: &Case, system: &System) -> f64 {
-    case.solver.max_step_s.unwrap_or_else(|| {
-        let strides = system.layout.inertia || !schedule::changes(&system.model);
-        let part = if strides { 0.1 } else { 0.01 };
-        let parts = 16.0 * (1e-3 / case.solver.rtol.max(1e-3)).powf(0.25);
-        let largest = part * case.time.end_s;
-        schedule::fastest_period(&system.model, case.time.end_s).map_or(largest, |p| largest.min(p / parts))
-    })
+    Strides::new(case, system).least()
 }
 
 struct Run<'a> {
@@ -98,6 +91,7 @@ struct Run<'a> {
     observer: Observer,
     outputs: Outputs,
     stops: Vec<Stop>,
+    strides: Strides,
     summary: Summary,
     options: Options,
     linear: Linear,
@@ -145,7 +139,8 @@ impl<'a> Run<'a> {
         } else {
             method::with_sensitivities(case, &system)
         };
-        let options = Options::new(case, &system, &chosen, max_step(case, &system));
+        let strides = Strides::new(case, &system);
+        let options = Options::new(case, &system, &chosen, strides.least());
         let inertia = system.layout.inertia;
         let mathieu = characteristic::mathieu(&system.model);
         let linear = Linear {
@@ -157,6 +152,7 @@ impl<'a> Run<'a> {
             observer: Observer::new(case, &system, interval),
             outputs: Outputs::new(case),
             stops: schedule::stops(case, &system.model),
+            strides,
             summary: Summary {
                 case: case.name.clone(),
                 status: Status::Failed,
@@ -343,7 +339,11 @@ impl Run<'_> {
             let stop = self.stops[k];
             loop {
                 let from = solver.time();
-                let step = match solver.step(stop.t) {
+                let stride = self.strides.at(from);
+                let stepped = solver
+                    .limit(stride.largest)
+                    .and_then(|()| solver.step(stop.t.min(stride.to)));
+                let step = match stepped {
                     Ok(step) => step,
                     Err(failure) => return Ok(End::Failed(fault(&failure))),
                 };
@@ -373,7 +373,7 @@ impl Run<'_> {
                 if pace.stalled(steps, step.time, self.case.time.end_s) {
                     return Ok(End::Failed(stalled(step.time, step.size)));
                 }
-                if step.stopped {
+                if step.stopped && step.time >= stop.t {
                     break;
                 }
             }

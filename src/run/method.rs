@@ -183,6 +183,17 @@ impl<D: Dae> Integrator<D> {
         either!(self, one => one.step(stop))
     }
 
+    /// Largest step [s] from now on; what has been learned of the motion is kept.
+    pub fn limit(&mut self, largest: f64) -> Result<(), Box<IdaFailure>> {
+        match self {
+            Self::Ida(ida) => ida.limit(largest),
+            Self::OneStep(one) => {
+                one.limit(largest);
+                Ok(())
+            }
+        }
+    }
+
     /// Present time [s].
     pub fn time(&self) -> f64 {
         either!(self, one => one.time())

@@ -22,4 +22,5 @@ pub mod record;
 pub mod residuals;
 pub mod schedule;
 pub mod sensitivity;
+pub mod strides;
 pub mod summary;

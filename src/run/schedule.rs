@@ -58,17 +58,6 @@ pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
     all
 }
 
-/// Shortest time scale of any signal that no stop marks, until `end` [s].
-pub fn fastest_period(model: &Model, end: f64) -> Option<f64> {
-    let mut fastest: Option<f64> = None;
-    each_signal(&model.ends, &model.loads, model.wet.as_ref().map(|w| &w.network), |s| {
-        if let Some(period) = s.shortest_unmarked_time_s(end) {
-            fastest = Some(fastest.map_or(period, |f| f.min(period)));
-        }
-    });
-    fastest
-}
-
 /// Whether any signal changes in time.
 pub fn changes(model: &Model) -> bool {
     let mut changes = false;

@@ -56,6 +56,8 @@ pub struct Ida<D: Dae> {
     pub(super) context: Context,
     pub(super) time: f64,
     pub(super) stepped: bool,
+    /// Largest step [s]; zero when there is none.
+    largest: f64,
     base: Counters,
 }
 
@@ -135,6 +137,7 @@ impl<D: Dae> Ida<D> {
             context,
             time: t0,
             stepped: false,
+            largest: options.max_step.unwrap_or(0.0),
             base,
         })
     }
@@ -153,13 +156,20 @@ impl<D: Dae> Ida<D> {
             });
         }
         let memory = self.memory.0;
+        // the next step has been chosen, perhaps before the largest became shorter
+        let limited = self.largest > 0.0 && self.next_step() > self.largest * (1.0 + 1e-9);
+        let until = if limited {
+            stop.min(self.time + self.largest)
+        } else {
+            stop
+        };
         let before = self.number(s::IDAGetNumSteps);
         self.bridge.get_mut().recoverable = None;
         let mut time = self.time;
         // SAFETY: everything IDA points to is alive, and no reference into it is held during the call.
         let flag = unsafe {
-            match s::IDASetStopTime(memory, stop) {
-                s::IDA_SUCCESS => s::IDASolve(memory, stop, &mut time, self.y.raw(), self.yp.raw(), s::IDA_ONE_STEP),
+            match s::IDASetStopTime(memory, until) {
+                s::IDA_SUCCESS => s::IDASolve(memory, until, &mut time, self.y.raw(), self.yp.raw(), s::IDA_ONE_STEP),
                 refused => refused,
             }
         };
@@ -179,7 +189,7 @@ impl<D: Dae> Ida<D> {
             time,
             size,
             order,
-            stopped: flag == s::IDA_TSTOP_RETURN,
+            stopped: flag == s::IDA_TSTOP_RETURN && until == stop,
         })
     }
 
@@ -241,6 +251,20 @@ impl<D: Dae> Ida<D> {
         };
         self.time = t;
         self.stepped = false;
+        Ok(())
+    }
+
+    /// Largest step [s] from now on; order and past are kept.
+    pub fn limit(&mut self, largest: f64) -> Result<(), Box<IdaFailure>> {
+        if largest == self.largest {
+            return Ok(());
+        }
+        // SAFETY: IDA is alive.
+        let flag = unsafe { s::IDASetMaxStep(self.memory.0, largest) };
+        if flag < 0 {
+            return Err(self.failure(flag));
+        }
+        self.largest = largest;
         Ok(())
     }
 
@@ -314,6 +338,16 @@ impl<D: Dae> Ida<D> {
         // SAFETY: IDA is alive.
         unsafe { s::IDAGetLastOrder(self.memory.0, &mut order) };
         u8::try_from(order).unwrap_or(0)
+    }
+
+    /// Size of the step to try next [s]; zero before the first.
+    fn next_step(&self) -> f64 {
+        let mut step = 0.0;
+        if self.stepped {
+            // SAFETY: IDA is alive.
+            unsafe { s::IDAGetCurrentStep(self.memory.0, &mut step) };
+        }
+        step
     }
 
     fn last_step(&self) -> f64 {

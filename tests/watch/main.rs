@@ -5,4 +5,5 @@ mod common;
 mod growth;
 mod motion;
 mod range;
+mod strides;
 mod window;

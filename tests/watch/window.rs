@@ -26,7 +26,7 @@ fn alike(case: &str, window: &[&str], often: &str, rarely: &[&str]) {
                 assert!((b - a).abs() <= near, "{interval}: {name} {which}: {a} {b}");
             }
         }
-        assert_eq!(warning(&few, "W015"), None);
+        assert!(!few.warnings.iter().any(|w| w.contains("in the window")));
     }
 }
 

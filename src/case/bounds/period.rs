@@ -9,7 +9,7 @@ const MOST_CYCLES: f64 = 64.0;
 /// Part of a cycle that sines may drift against each other in the span.
 const DRIFT: f64 = 1e-7;
 /// Slopes of a logistic step beyond which it is at rest to the last digit.
-const AT_REST: f64 = 45.0;
+pub(super) const AT_REST: f64 = 45.0;
 
 impl Signal {
     /// An end of the span up to which the signal takes all values that it takes until `to`.
@@ -82,7 +82,7 @@ impl Signal {
 impl Polynomial {
     /// `2 π` times the least quotient of the largest rate, acceleration and jerk by their largest rates: each is the period of a
     /// sine.
-    fn scale(&self, end: f64) -> Option<f64> {
+    pub(super) fn scale(&self, end: f64) -> Option<f64> {
         if self.coefficients.len() < 3 {
             return None;
         }

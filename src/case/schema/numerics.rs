@@ -113,8 +113,8 @@ pub struct Solver {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub initial_step_s: Option<f64>,
-    /// Largest step [s]; absent: a tenth of the run (a hundredth without inertia), at most a 16th of the shortest period among the
-    /// signals, more where `rtol` is looser than 1e-3.
+    /// Largest step [s]; absent: a tenth of the run (a hundredth without inertia), at most a 16th of the shortest period that
+    /// signals have at the time, more where `rtol` is looser than 1e-3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub max_step_s: Option<f64>,

@@ -1,0 +1,192 @@
+//! How fast a signal changes, stretch by stretch: a step that is over in a millisecond is no reason for short steps in the ten
+//! seconds around it.
+//!
+//! Outside its stretches a signal is at rest to the last digit, so that nothing can be missed there:
+//!
+//! - a logistic step beyond 45 slopes on either side (`e^-45 = 3e-20`); nearer than 12 slopes, where all but `6e-6` of it happens, its
+//!   time scale is `4/k`, in the tails between, plain exponentials that error tests see, 16 times that;
+//! - a polynomial where all its variation is below round-off of its largest value;
+//! - a spline beyond its ends; in each piece, which is a cubic, the time scale is the distance of the points;
+//! - a sine, never; its start, where it is shorter than a period, is a stretch of its own.
+
+use super::interval::Bounded;
+use super::period::AT_REST;
+use crate::case::curve::Interpolation;
+use crate::case::signals::{Polynomial, Sigmoid, Signal, Sine};
+
+/// Slopes of a logistic step within which it happens.
+const HAPPENS: f64 = 12.0;
+/// How much longer the time scale of its tails is.
+const TAIL: f64 = 16.0;
+/// Halvings of the run in search of where a polynomial rests.
+const HALVINGS: u32 = 12;
+
+/// A stretch from the end of the one before to its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// Its end [s].
+    pub to: f64,
+    /// Shortest time scale [s]; infinite where nothing changes.
+    pub scale: f64,
+}
+
+impl Signal {
+    /// Shortest time scales of what no switching time marks, as [`Self::shortest_unmarked_time_s`], stretch by stretch from 0 to `end` [s].
+    pub fn stretches(&self, end: f64) -> Vec<Stretch> {
+        let whole = |scale: Option<f64>| up_to(end, [(end, scale.unwrap_or(f64::INFINITY))]);
+        match self {
+            _ if self.is_constant() => whole(None),
+            Self::Sine(sine) => up_to(end, sine.scales()),
+            Self::Sigmoid(sigmoid) => up_to(end, sigmoid.scales()),
+            Self::Polynomial(polynomial) => polynomial.stretches(end),
+            Self::Table(table) if table.interpolation == Interpolation::Cubic => {
+                let knots = table.curve.knots();
+                let first = knots.first().map(|first| (*first, f64::INFINITY));
+                up_to(
+                    end,
+                    first.into_iter().chain(knots.windows(2).map(|w| (w[1], w[1] - w[0]))),
+                )
+            }
+            Self::Sum(terms) => together(end, terms, f64::min),
+            Self::Product(factors) => together(end, factors, |a, b| (a.recip() + b.recip()).recip()),
+            _ => whole(self.shortest_unmarked_time_s(end)),
+        }
+    }
+}
+
+/// Stretches of two at once; `both` gives the time scale where each has one.
+pub fn merged(a: &[Stretch], b: &[Stretch], both: impl Fn(f64, f64) -> f64) -> Vec<Stretch> {
+    let mut all: Vec<Stretch> = Vec::with_capacity(a.len() + b.len());
+    let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
+    while let (Some(&&p), Some(&&q)) = (a.peek(), b.peek()) {
+        push(&mut all, p.to.min(q.to), both(p.scale, q.scale));
+        if p.to <= q.to {
+            a.next();
+        }
+        if q.to <= p.to {
+            b.next();
+        }
+    }
+    all
+}
+
+fn together(end: f64, parts: &[Signal], both: impl Fn(f64, f64) -> f64) -> Vec<Stretch> {
+    let rest = up_to(end, []);
+    parts
+        .iter()
+        .fold(rest, |all, part| merged(&all, &part.stretches(end), &both))
+}
+
+/// Stretches with their ends and time scales, as far as they lie in the run; nothing changes after the last.
+fn up_to(end: f64, ends: impl IntoIterator<Item = (f64, f64)>) -> Vec<Stretch> {
+    let mut all = vec![];
+    for (to, scale) in ends {
+        push(&mut all, to.min(end), if scale > 0.0 { scale } else { f64::INFINITY });
+    }
+    push(&mut all, end, f64::INFINITY);
+    all
+}
+
+fn push(all: &mut Vec<Stretch>, to: f64, scale: f64) {
+    if to <= all.last().map_or(0.0, |last| last.to) {
+        return;
+    }
+    match all.last_mut() {
+        Some(last) if last.scale == scale => last.to = to,
+        _ => all.push(Stretch { to, scale }),
+    }
+}
+
+impl Sine {
+    fn scales(&self) -> [(f64, f64); 2] {
+        let period = 1.0 / self.frequency_hz;
+        let start = if self.ramp_cycles < 1.0 {
+            self.ramp_cycles * period
+        } else {
+            0.0
+        };
+        [(start, start), (f64::INFINITY, period)]
+    }
+}
+
+impl Sigmoid {
+    fn scales(&self) -> [(f64, f64); 4] {
+        let slope = 1.0 / self.steepness_per_s.abs();
+        let at = |slopes: f64| self.midpoint_s + slopes * slope;
+        let happens = 4.0 * slope;
+        [
+            (at(-AT_REST), f64::INFINITY),
+            (at(-HAPPENS), TAIL * happens),
+            (at(HAPPENS), happens),
+            (at(AT_REST), TAIL * happens),
+        ]
+    }
+}
+
+impl Polynomial {
+    fn stretches(&self, end: f64) -> Vec<Stretch> {
+        let Some(scale) = self.scale(end) else {
+            return up_to(end, []);
+        };
+        let largest = Signal::Polynomial(self.clone()).largest(end).value;
+        let mut all = vec![];
+        self.part(&mut all, [0.0, end], [scale, largest], HALVINGS);
+        all
+    }
+
+    /// Halves what is not at rest down to the time scale.
+    fn part(&self, all: &mut Vec<Stretch>, [from, to]: [f64; 2], [scale, largest]: [f64; 2], halvings: u32) {
+        let value = Bounded::span(&Signal::Polynomial(self.clone()), from, to).0[0];
+        if value.high - value.low <= f64::EPSILON * largest {
+            push(all, to, f64::INFINITY);
+        } else if halvings == 0 || to - from <= scale {
+            push(all, to, scale);
+        } else {
+            let middle = 0.5 * (from + to);
+            self.part(all, [from, middle], [scale, largest], halvings - 1);
+            self.part(all, [middle, to], [scale, largest], halvings - 1);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn signal(text: &str) -> Signal {
+        serde_json::from_str(text).expect("a signal")
+    }
+
+    /// Goal: where no stretch has a time scale of its own, the signal keeps its value to the last digit; the least of the scales is that
+    /// of the whole run, as without stretches.
+    #[test]
+    fn nothing_happens_between_stretches() {
+        let pulse = r#"{"product": [{"sigmoid": {"amplitude": 2, "steepness_per_s": 1e5, "midpoint_s": 3}},
+            {"sum": [1, {"sigmoid": {"amplitude": -1, "steepness_per_s": 2e4, "midpoint_s": 3.5}}]}]}"#;
+        let power = format!(r#"{{"polynomial": {{"coefficients": [{}1]}}}}"#, "0,".repeat(60));
+        let table = r#"{"table": {"times_s": [2, 3, 3.001, 3.002, 4], "values": [1, 0, 5, 0, 1]}}"#;
+        for text in [pulse, &power, table] {
+            let signal = signal(text);
+            let (end, mut from) = (if text == power { 1.0 } else { 10.0 }, 0.0);
+            let all = signal.stretches(end);
+            let size = signal.largest(end).value;
+            let mut quiet = 0.0;
+            for stretch in &all {
+                let range = signal.range(from, stretch.to);
+                if stretch.scale == f64::INFINITY {
+                    assert!(range.high - range.low <= 1e-14 * size, "{text}: {from} to {stretch:?}");
+                    quiet += stretch.to - from;
+                }
+                from = stretch.to;
+            }
+            assert_eq!(from, end);
+            assert!(quiet > 0.4 * end, "{text}: {all:?}");
+            let least = all.iter().map(|s| s.scale).fold(f64::INFINITY, f64::min);
+            let whole = signal.shortest_unmarked_time_s(end).expect("it changes");
+            assert!(
+                least >= whole * (1.0 - 1e-12) && least <= 2.0 * whole,
+                "{text}: {least} {whole}"
+            );
+        }
+    }
+}

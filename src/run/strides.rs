@@ -1,0 +1,118 @@
+//! The largest steps of a run, stretch by stretch: short where a signal is fast, and nowhere else.
+
+use super::schedule;
+use crate::case::bounds::{Stretch, merged};
+use crate::case::schema::Case;
+use crate::discrete::System;
+use crate::model::{Model, each_signal};
+
+/// Stretches whose largest steps are nearer than this factor share the shorter.
+const NEAR: f64 = 4.0;
+/// A stretch that is as long as this many of its neighbour's steps has steps of its own.
+const WORTH: f64 = 20.0;
+
+/// Steps up to a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stride {
+    /// Where the next stretch begins, at which the integrator stops [s].
+    pub to: f64,
+    /// Largest step [s].
+    pub largest: f64,
+}
+
+/// Largest steps from the start to the end of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strides(Vec<Stride>);
+
+impl Strides {
+    /// Of a case: as given, or a 16th of the shortest time scale that its signals have on a stretch, at most a tenth of the run. More at
+    /// tolerances looser than 1e-3, with the fourth root, so that errors go on to follow the tolerance; a hundredth of the run where
+    /// something changes without inertia: a high order would stride over what the ledger integrates.
+    pub fn new(case: &Case, system: &System) -> Self {
+        let end = case.time.end_s;
+        if let Some(largest) = case.solver.max_step_s {
+            return Self(vec![Stride { to: end, largest }]);
+        }
+        let strides = system.layout.inertia || !schedule::changes(&system.model);
+        let part = if strides { 0.1 } else { 0.01 };
+        let parts = 16.0 * (1e-3 / case.solver.rtol.max(1e-3)).powf(0.25);
+        let mut all = Self(vec![]);
+        for Stretch { to, scale } in stretches(&system.model, end) {
+            all.add(Stride {
+                to,
+                largest: (part * end).min(scale / parts),
+            });
+        }
+        all
+    }
+
+    /// The shortest of the largest steps [s].
+    pub fn least(&self) -> f64 {
+        self.0.iter().map(|stride| stride.largest).fold(f64::INFINITY, f64::min)
+    }
+
+    /// What holds from a time [s] on.
+    pub fn at(&self, t: f64) -> Stride {
+        let next = self.0.partition_point(|stride| stride.to <= t);
+        let last = self.0.len().saturating_sub(1);
+        self.0[next.min(last)]
+    }
+
+    /// Adds the next stretch to the last, or as one of its own where that is worth a stop.
+    fn add(&mut self, next: Stride) {
+        let from = self.0.len().checked_sub(2).map_or(0.0, |k| self.0[k].to);
+        match self.0.last_mut() {
+            Some(last) => {
+                let least = last.largest.min(next.largest);
+                let slow = if next.largest > last.largest {
+                    next.to - last.to
+                } else {
+                    last.to - from
+                };
+                if last.largest.max(next.largest) <= NEAR * least || slow < WORTH * least {
+                    *last = Stride {
+                        to: next.to,
+                        largest: least,
+                    };
+                } else {
+                    self.0.push(next);
+                }
+            }
+            None => self.0.push(next),
+        }
+    }
+}
+
+/// Shortest time scales of all signals that no stop marks.
+fn stretches(model: &Model, end: f64) -> Vec<Stretch> {
+    let mut all = vec![Stretch {
+        to: end,
+        scale: f64::INFINITY,
+    }];
+    each_signal(&model.ends, &model.loads, model.wet.as_ref().map(|w| &w.network), |s| {
+        all = merged(&all, &s.stretches(end), f64::min);
+    });
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn joined(parts: &[(f64, f64)]) -> Vec<(f64, f64)> {
+        let mut all = Strides(vec![]);
+        parts.iter().for_each(|&(to, largest)| all.add(Stride { to, largest }));
+        all.0.iter().map(|stride| (stride.to, stride.largest)).collect()
+    }
+
+    #[test]
+    fn stretches_that_are_not_worth_a_stop_are_joined() {
+        let apart = [(1.0, 1.0), (1.1, 1e-3), (10.0, 1.0)];
+        assert_eq!(joined(&apart), apart);
+        assert_eq!(joined(&[(1.0, 1.0), (1.1, 0.3), (10.0, 1.0)]), [(10.0, 0.3)]);
+        assert_eq!(joined(&[(1.0, 1e-3), (1.01, 1.0), (2.0, 1e-3)]), [(2.0, 1e-3)]);
+        let all = Strides(vec![Stride { to: 1.0, largest: 1.0 }, Stride { to: 2.0, largest: 0.1 }]);
+        assert_eq!([0.0, 0.5, 1.0, 2.0].map(|t| all.at(t).largest), [1.0, 1.0, 0.1, 0.1]);
+        assert_eq!(all.least(), 0.1);
+    }
+}
