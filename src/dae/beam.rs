@@ -3,7 +3,7 @@
 use super::dual::Dual;
 use super::{Dae, Fault, Neighbours, Pattern, Seeds, colour, trace};
 use crate::case::signals::Clock;
-use crate::discrete::{Instant, System, Workspace, ledger, recipe, start};
+use crate::discrete::{Instant, System, Workspace, kick, ledger, recipe, start};
 
 /// Directions differentiated in one sweep.
 const LANES: usize = 8;
@@ -40,6 +40,17 @@ impl<T: crate::model::Scalar> Buffers<T> {
             yp: zeros.clone(),
             residual: zeros,
         }
+    }
+}
+
+impl Buffers<f64> {
+    /// Evaluates a scaled state whose rates do not matter: its place and its velocities.
+    fn take_up(&mut self, system: &System, now: &Instant, state: &[f64]) {
+        for ((y, state), scale) in self.y.iter_mut().zip(state).zip(&system.layout.scales) {
+            *y = state * scale;
+        }
+        self.yp.fill(0.0);
+        recipe::evaluate(system, now, &self.y, &self.yp, &mut self.workspace);
     }
 }
 
@@ -116,12 +127,18 @@ impl BeamDae {
     }
 
     /// At a switching time `t` [s]: looks at signals in the smooth interval around `within` from now on, and restates the
-    /// scaled unknowns so that the beam stays where it is and as fast as it is.
+    /// scaled unknowns so that the beam stays where it is and as fast as it is, but for what a driven end whose velocity jumps hands on
+    /// to sections that turn, [`kick`].
     pub fn switch(&mut self, t: f64, within: f64, y: &mut [f64]) {
         let before = self.instant(t).1.clone();
         self.look_within(within);
-        let (system, after) = self.instant(t);
-        start::change_frame(system, &before, after, y);
+        let after = self.instant(t).1.clone();
+        let (system, b) = (&self.system, &mut self.plain);
+        start::change_frame(system, &before, &after, y);
+        b.take_up(system, &after, y);
+        if let Some(jumps) = kick::spread(system, [&before, &after], &b.workspace) {
+            start::speed_up(system, &jumps, y);
+        }
     }
 
     /// The instant by which the smooth interval is chosen in which signals are looked at [s].
@@ -163,7 +180,11 @@ impl BeamDae {
                 *total += 0.5 * part;
             }
         }
-        ledger::strokes(system, [&from, &to], &b.workspace, integrals);
+        let velocities = [(before, &from), (after, &to)].map(|(state, side)| {
+            b.take_up(system, side, state);
+            kick::velocities(&b.workspace)
+        });
+        ledger::strokes(system, [&from, &to], &velocities, &b.workspace, integrals);
     }
 
     /// The system, and the values of time alone at an instant.

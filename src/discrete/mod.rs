@@ -3,6 +3,7 @@
 pub mod fluid_mesh;
 pub mod glance;
 pub mod instant;
+pub mod kick;
 pub mod layout;
 pub mod ledger;
 pub mod mesh;

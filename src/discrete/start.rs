@@ -128,6 +128,17 @@ fn fill_bladders(system: &System, case: &Case, now: &Instant, y: &mut [f64]) {
     }
 }
 
+/// Adds jumps [m/s] to the velocities of free nodes.
+pub fn speed_up(system: &System, jumps: &[[f64; 2]], y: &mut [f64]) {
+    let l = &system.layout;
+    let lines = [(&l.free_u1, l.v1, l.waves[0]), (&l.free_u3, l.v3, l.waves[1])];
+    for (k, (free, v, _)) in lines.into_iter().enumerate().filter(|(_, line)| line.2) {
+        for (unknown, node) in free.clone().enumerate() {
+            y[v + unknown] += jumps[node][k] / l.scales[v + unknown];
+        }
+    }
+}
+
 /// Keeps displacements and velocities what they are while the ends' signals pass from one smooth branch to the next.
 pub fn change_frame(system: &System, before: &Instant, after: &Instant, y: &mut [f64]) {
     let l = &system.layout;

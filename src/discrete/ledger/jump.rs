@@ -2,6 +2,7 @@
 
 use super::{Flow, add, complete, fluid, solid};
 use crate::case::signals::Jet;
+use crate::discrete::kick::{self, Nodal};
 use crate::discrete::{Instant, System, Workspace};
 use crate::model::Kinematics;
 
@@ -45,45 +46,56 @@ pub fn side(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f64>, 
     }
 }
 
-/// Impulses and work of driven ends whose velocity jumps: they carry half a cell along, without axial waves the whole beam.
-/// The workspace holds the state; sides give velocities.
-pub fn strokes(system: &System, [before, after]: [&Instant; 2], w: &Workspace<f64>, out: &mut [f64]) {
+/// Impulses and work of driven ends whose velocity jumps: they carry half a cell along, without axial waves the whole beam, and turn
+/// the sections around. The workspace holds the state, `velocities` are those of nodes on both sides of the jump.
+pub fn strokes(
+    system: &System,
+    [before, after]: [&Instant; 2],
+    [was, is]: &[Nodal; 2],
+    w: &Workspace<f64>,
+    out: &mut [f64],
+) {
     let (mesh, l) = (&system.mesh, &system.layout);
     if !l.inertia {
         return;
     }
     let last = mesh.nodes - 1;
+    let jumps: Nodal = was.iter().zip(is).map(|(a, b)| [b[0] - a[0], b[1] - a[1]]).collect();
+    let impulses = kick::impulses(system, &jumps, w);
     for node in 0..=last {
-        let mass = system.model.section.mass_per_length * mesh.node_length(node);
-        let share = node as f64 / last as f64;
-        let end = |now: &Instant| match node {
-            0 => Some(now.ends[0]),
-            _ if node == last => Some(now.ends[1]),
+        let end = match node {
+            0 => Some(&after.ends[0]),
+            _ if node == last => Some(&after.ends[1]),
             _ => None,
         };
-        let rate = |jet: Option<Jet>| jet.map(|jet| jet.rate);
-        let across = |now: &Instant| end(now).and_then(|end| rate(end.u1));
-        let along = |now: &Instant| {
-            if l.waves[1] {
-                end(now).and_then(|end| rate(end.u3))
-            } else {
-                now.frame_3().map(|frame| frame.at(share).rate)
-            }
+        let stroke = |k: usize| {
+            (
+                impulses[node][k],
+                0.5 * impulses[node][k] * (was[node][k] + is[node][k]),
+            )
         };
-        let stroke = |velocity: &dyn Fn(&Instant) -> Option<f64>| match (velocity(before), velocity(after)) {
-            (Some(from), Some(to)) => (mass * (to - from), 0.5 * mass * (to * to - from * from)),
-            _ => (0.0, 0.0),
-        };
-        let (px, work_x) = if system.model.kinematics == Kinematics::Bar {
-            (0.0, 0.0)
+        let across = system.model.kinematics != Kinematics::Bar && end.is_some_and(|end| end.u1.is_some());
+        let (px, work_x) = if across { stroke(0) } else { (0.0, 0.0) };
+        let (pz, work_z) = if l.waves[1] {
+            let driven = end.is_some_and(|end| end.u3.is_some());
+            if driven { stroke(1) } else { (0.0, 0.0) }
         } else {
-            stroke(&across)
+            carried(system, [before, after], node)
         };
-        let (pz, work_z) = stroke(&along);
         add(out, Flow::Ends, work_x + work_z);
         add(out, Flow::ImpulseX, px);
         add(out, Flow::ImpulseZ, pz);
         let ([x, z], _) = solid::arms(system, w, node);
         add(out, Flow::AngularImpulse, z * px - x * pz);
+    }
+}
+
+/// Impulse and work of a node that goes along with the frame.
+fn carried(system: &System, sides: [&Instant; 2], node: usize) -> (f64, f64) {
+    let mass = system.model.section.mass_per_length * system.mesh.node_length(node);
+    let share = node as f64 / (system.mesh.nodes - 1) as f64;
+    match sides.map(|now| now.frame_3().map(|frame| frame.at(share).rate)) {
+        [Some(from), Some(to)] => (mass * (to - from), 0.5 * mass * (to * to - from * from)),
+        _ => (0.0, 0.0),
     }
 }

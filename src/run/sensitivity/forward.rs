@@ -211,7 +211,7 @@ impl<'a> Forward<'a> {
     /// s⁺ = s⁻ + (y'⁻ - y'⁺) dt*/dσ + dΔ/dσ        (∂I/∂σ)⁺ = (∂I/∂σ)⁻ + (g⁻ - g⁺) dt*/dσ
     /// ```
     ///
-    /// Δ is what [`BeamDae::switch`] adds to unknowns that are counted from the driven ends.
+    /// Δ is what [`BeamDae::switch`] adds to unknowns that are counted from the driven ends, and to velocities that these hand on.
     pub fn pass(
         &mut self,
         dae: &mut BeamDae,
@@ -232,8 +232,12 @@ impl<'a> Forward<'a> {
             });
             let never = never.and_then(|()| {
                 neighbours.slope(&mut restated, |j, beam, out| {
-                    out.fill(0.0);
-                    beam.switch(stops[j][stop].t, middle(&stops[j], stop + 1), out);
+                    let (change, own) = (STEPS[j].0 * CHANGE, stops[j][stop].t);
+                    let from = moved_by([change, own - t], [&before.state, &before.rates, &before.s[k]]);
+                    out.copy_from_slice(&from);
+                    beam.look_within(middle(&stops[j], stop));
+                    beam.switch(own, middle(&stops[j], stop + 1), out);
+                    out.iter_mut().zip(&from).for_each(|(out, from)| *out -= from);
                     Ok(())
                 })
             });
@@ -259,12 +263,9 @@ impl<'a> Forward<'a> {
             let (left, right) = (&before.s[k], &self.s[k]);
             let never = neighbours.slope(&mut jumped, |j, beam, out| {
                 let (change, own) = (STEPS[j].0 * CHANGE, stops[j][stop].t);
-                let moved = |y: &[f64], yp: &[f64], s: &[f64]| -> Vec<f64> {
-                    let rates = y.iter().zip(yp).zip(s);
-                    rates.map(|((y, yp), s)| y + change * s + (own - t) * yp).collect()
-                };
-                let from = moved(&before.state, &before.rates, left);
-                let to = moved(state[0], state[1], right);
+                let by = [change, own - t];
+                let from = moved_by(by, [&before.state, &before.rates, left]);
+                let to = moved_by(by, [state[0], state[1], right]);
                 out.fill(0.0);
                 beam.look_within(middle(&stops[j], stop + 1));
                 beam.jump(own, (&from, middle(&stops[j], stop)), &to, out);
@@ -337,6 +338,12 @@ impl<'a> Forward<'a> {
         };
         self.parameters.iter().zip(&self.figures).map(of).collect()
     }
+}
+
+/// A state at a changed number, `change` of it away, and at an instant later by so much [s].
+fn moved_by([change, later]: [f64; 2], [y, yp, s]: [&[f64]; 3]) -> Vec<f64> {
+    let rates = y.iter().zip(yp).zip(s);
+    rates.map(|((y, yp), s)| y + change * s + later * yp).collect()
 }
 
 /// The middle of the interval before a stop [s].
