@@ -7,6 +7,7 @@
 //!   time scale is `4/k`, in the tails between, plain exponentials that error tests see, 16 times that;
 //! - a polynomial where all its variation is below round-off of its largest value;
 //! - a spline beyond its ends; in each piece, which is a cubic, the time scale is the distance of the points;
+//! - a product where a factor keeps it so;
 //! - a sine, never; its start, where it is shorter than a period, is a stretch of its own.
 
 use super::interval::Bounded;
@@ -48,9 +49,34 @@ impl Signal {
                 )
             }
             Self::Sum(terms) => together(end, terms, f64::min),
-            Self::Product(factors) => together(end, factors, |a, b| (a.recip() + b.recip()).recip()),
+            Self::Product(factors) => {
+                self.without_rests(end, &together(end, factors, |a, b| (a.recip() + b.recip()).recip()))
+            }
             _ => whole(self.shortest_unmarked_time_s(end)),
         }
+    }
+}
+
+impl Signal {
+    /// Time scales of a product, but none where a factor keeps it at rest, before and after a burst.
+    fn without_rests(&self, end: f64, all: &[Stretch]) -> Vec<Stretch> {
+        let mut ends: Vec<f64> = all.iter().map(|stretch| stretch.to).collect();
+        self.breaks(&mut ends);
+        ends.retain(|to| *to > 0.0 && *to <= end);
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        let largest = if ends.len() > 1 { self.largest(end).value } else { 0.0 };
+        let (mut rested, mut from) = (vec![], 0.0);
+        for to in ends {
+            let scale = all
+                .get(all.partition_point(|stretch| stretch.to < to))
+                .map_or(f64::INFINITY, |stretch| stretch.scale);
+            let value = Bounded::span(self, from, to).0[0];
+            let rests = value.high - value.low <= f64::EPSILON * largest;
+            push(&mut rested, to, if rests { f64::INFINITY } else { scale });
+            from = to;
+        }
+        rested
     }
 }
 
@@ -165,7 +191,10 @@ mod tests {
             {"sum": [1, {"sigmoid": {"amplitude": -1, "steepness_per_s": 2e4, "midpoint_s": 3.5}}]}]}"#;
         let power = format!(r#"{{"polynomial": {{"coefficients": [{}1]}}}}"#, "0,".repeat(60));
         let table = r#"{"table": {"times_s": [2, 3, 3.001, 3.002, 4], "values": [1, 0, 5, 0, 1]}}"#;
-        for text in [pulse, &power, table] {
+        let burst = r#"{"product": [{"sine": {"amplitude": 1, "frequency_hz": 1e4}},
+            {"ramp": {"to": 1, "start_s": 3, "duration_s": 0.01}},
+            {"sum": [1, {"ramp": {"to": -1, "start_s": 3.1, "duration_s": 0.01}}]}]}"#;
+        for text in [pulse, &power, table, burst] {
             let signal = signal(text);
             let (end, mut from) = (if text == power { 1.0 } else { 10.0 }, 0.0);
             let all = signal.stretches(end);
