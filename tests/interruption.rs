@@ -60,6 +60,27 @@ fn resumed_run_repeats_the_uninterrupted_one_in_memory() {
     }
 }
 
+/// A window that begins between two outputs, before one checkpoint and after another, and steps that a steep step in time makes short.
+#[test]
+fn resumed_run_knows_where_its_window_begins() {
+    let steep = r#"/loads=[{"force_x_n_m": {"signal": {"sigmoid": {"amplitude": 1, "steepness_per_s": 1e5, "midpoint_s": 0.1}}}}]"#;
+    let more = [
+        "/time/window_s=0.0437",
+        "/time/output_interval_s=0.01",
+        "/time/fields_interval_s=0.01",
+        steep,
+    ];
+    let sets: Vec<String> = SETS.iter().chain(&more).map(|s| s.to_string()).collect();
+    let case = case::load(Path::new(CASE), &sets).unwrap().case;
+    let mut whole = Memory::default();
+    let quantities = dynamics::run(&case, &mut whole).unwrap().summary.quantities;
+    assert!(whole.checkpoints.iter().any(|c| c.t > 0.15 - 0.0437));
+    for checkpoint in &whole.checkpoints {
+        let outcome = dynamics::resume(&case, checkpoint, &mut Memory::default()).unwrap();
+        assert_eq!(quantities, outcome.summary.quantities, "from t = {}", checkpoint.t);
+    }
+}
+
 #[test]
 fn checkpoint_of_another_case_is_refused() {
     let sets: Vec<String> = SETS.iter().map(|s| s.to_string()).collect();
