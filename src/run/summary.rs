@@ -26,7 +26,7 @@ pub enum Status {
 /// A quantity over the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Quantity {
-    /// At the last output time.
+    /// At the end.
     #[serde(rename = "final", skip_serializing_if = "Option::is_none")]
     pub last: Option<f64>,
     /// Largest absolute value of the motion, between the output times too.
