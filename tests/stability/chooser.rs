@@ -45,7 +45,13 @@ fn change(a: &Summary, b: &Summary) -> (f64, String) {
     for (name, of_a) in &a.quantities {
         let Some(of_b) = b.quantities.get(name) else { continue };
         let alike = a.quantities.keys().filter(|n| unit(n) == unit(name));
-        let largest = alike.map(|n| size(n)).fold(0.0, f64::max);
+        // angles have no other quantity beside them: that of a clamped end is the round-off of cosines
+        let alone = if unit(name).as_deref() == Some("rad") {
+            1e-6
+        } else {
+            0.0
+        };
+        let largest = alike.map(|n| size(n)).fold(alone, f64::max);
         // ratios of energies are as good as the energies
         if size(name) <= 1e-6 * largest || name == "efficiency" {
             continue;
@@ -160,8 +166,18 @@ fn chooser_keeps_what_it_promises() {
     assert!(20 * missed <= judged, "{missed} of {judged}");
 }
 
+/// Goal: what flows along bladders is small beside the motion, by 4e-4 and 6e-4 of a bladder's own time here, but damps
+/// vibrations of hundreds of cycles by more than the tolerance.
 #[test]
-#[ignore = "ten minutes"]
+fn what_damps_long_vibrations_stays() {
+    for seed in [373, 414] {
+        let fate = judge(seed);
+        assert!(!matches!(fate, Fate::Beyond(_)), "{fate:?}");
+    }
+}
+
+#[test]
+#[ignore = "two minutes"]
 fn chooser_keeps_what_it_promises_600_times() {
     let (judged, missed) = judge_all(600);
     assert!(judged >= 200, "{judged}");
