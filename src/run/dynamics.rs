@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use super::checkpoint::{Checkpoint, VERSION};
 use super::equilibrium;
-use super::estimate::resonance;
 use super::growth::Linear;
 use super::method::{self, Integrator, Options};
 use super::observe::Observer;
@@ -128,7 +127,6 @@ impl<'a> Run<'a> {
         let characteristic = characteristic::numbers(case, &system.model);
         let mut warnings = audit::lasting(case, &system.model, &characteristic);
         warnings.extend(resolution::warnings(case, &system));
-        warnings.extend(resonance::warning(&system));
         let decisions = &system.model.effects.decisions;
         let chosen = if parameters.is_empty() {
             method::choose(case, &system)
@@ -343,6 +341,7 @@ impl Run<'_> {
                     .seen
                     .estimate
                     .step(method, &step, [solver.y(), solver.yp()]);
+                self.observer.seen.estimate.erred(solver.local_errors());
                 if let Some(end) = self.follow(solver, from, recorder)? {
                     return Ok(end);
                 }
@@ -696,8 +695,9 @@ impl Run<'_> {
         s.quantities = o.figures.quantities();
         o.energies.complete(&mut s.quantities);
         s.warnings.extend(o.energies.warning(&s.quantities));
-        s.estimate = o.estimate.judge(&s.quantities);
-        s.warnings.extend(s.estimate.as_ref().and_then(|e| e.warning()));
+        let (estimate, warning) = o.estimate.judge(&s.quantities, o.growth.amplification());
+        s.estimate = estimate;
+        s.warnings.extend(warning);
         s.sensitivities = self.forward.as_ref().map(Forward::summary).unwrap_or_default();
         let b = &mut s.balances;
         b.energy_residual_relative = o.residuals.energy_relative();

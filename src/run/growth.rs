@@ -15,6 +15,9 @@ const OUTGROWN: f64 = 2.0;
 /// Factor over the later part of a run from which on growth is worth a word.
 const GROWN: f64 = 3.0;
 
+/// Squared correlation of its logarithm with time from which on a deflection grows exponentially.
+const STRAIGHT: f64 = 0.6;
+
 /// Kinds of what drives a beam: loads along x and z and their moments, forces, followers and moments of ends, their motions
 /// and slopes, pressures and flows of ports.
 const KINDS: usize = 10;
@@ -141,7 +144,7 @@ impl Growth {
         let still =
             largest(&late[late.len() - quarter..]) / largest(&late[late.len() - 2 * quarter..late.len() - quarter]);
         // A factor over the span, along a straight line in the logarithm, and still going on.
-        if factor < GROWN || straight < 0.6 || still < 1.2 || rate <= 0.0 {
+        if factor < GROWN || straight < STRAIGHT || still < 1.2 || rate <= 0.0 {
             return None;
         }
         // What a straight line or a power of time explains as well is no instability, nor is what follows its drive.
@@ -153,6 +156,25 @@ impl Growth {
             factor,
             drivers: self.drivers(late, rate, linear),
         })
+    }
+
+    /// The factor by which the deflection has grown by itself up to where it was largest, whether or not it goes on; none where it did not.
+    pub fn amplification(&self) -> Option<f64> {
+        let seen: Vec<&Window> = self.windows.iter().take_while(|w| w.samples > 0).collect();
+        let top = (0..seen.len()).max_by(|a, b| seen[*a].deflection.total_cmp(&seen[*b].deflection))?;
+        let width = self.end / WINDOWS as f64;
+        let from = |first: usize| {
+            let part = seen.get(first..=top)?;
+            let points: Vec<(f64, f64)> = (first..=top)
+                .map(|k| ((k as f64 + 0.5) * width, seen[k].deflection))
+                .filter(|(_, d)| *d > 0.0)
+                .collect();
+            let (rate, straight) = fit::exponential(&points)?;
+            let factor = points.last()?.1 / points.first()?.1;
+            let grows = factor >= GROWN && rate > 0.0 && straight >= STRAIGHT;
+            (grows && fit::is_exponential(&points) && !follows(part)).then_some(factor)
+        };
+        [seen.len() / 4, 1].into_iter().filter_map(from).reduce(f64::max)
     }
 
     /// A warning when a beam without inertia stayed straight although its compression passed Euler's load: an equilibrium,
