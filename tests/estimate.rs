@@ -296,7 +296,10 @@ fn errors_grow_with_a_deflection_that_grows_by_itself() {
     let on = |cells: &str| {
         run(&shipped(
             "valves-open",
-            &[&format!("/mesh/cells_per_segment={cells}"), "/time/output_interval_s=0.005"],
+            &[
+                &format!("/mesh/cells_per_segment={cells}"),
+                "/time/output_interval_s=0.005",
+            ],
         ))
     };
     let (coarse, fine) = (on("2"), on("6"));
@@ -308,7 +311,10 @@ fn errors_grow_with_a_deflection_that_grows_by_itself() {
         assert!(told > 0.5 * truth.min(1.0), "{name}: true {truth}, estimated {told}");
     }
     let words = told(&coarse).unwrap();
-    assert!(words.contains("grows by a factor") && words.contains("tip_u1_m"), "{words}");
+    assert!(
+        words.contains("grows by a factor") && words.contains("tip_u1_m"),
+        "{words}"
+    );
     // what is shaken along does not grow
     assert!(estimate.quantities["tip_u3_m"].total.unwrap() < 0.05, "{estimate:?}");
 }
@@ -341,9 +347,14 @@ fn energies_are_named_beside_the_motion() {
     )));
     let last = |s: &Summary| s.quantities["input_energy_j"].last.unwrap();
     let truth = (last(&usual) / last(&tight) - 1.0).abs();
-    let estimate = usual.estimate.as_ref().unwrap().quantities["input_energy_j"].total.unwrap();
+    let estimate = usual.estimate.as_ref().unwrap().quantities["input_energy_j"]
+        .total
+        .unwrap();
     println!("true {truth:.3}, estimated {estimate:.3}");
-    assert!(truth > 0.05 && estimate > 0.5 * truth, "true {truth}, estimated {estimate}");
+    assert!(
+        truth > 0.05 && estimate > 0.5 * truth,
+        "true {truth}, estimated {estimate}"
+    );
     assert!(told(&usual).unwrap().contains("input_energy_j"), "{:?}", usual.warnings);
     assert!(told(&tight).is_none(), "{:?}", tight.warnings);
 }

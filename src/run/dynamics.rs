@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::checkpoint::{Checkpoint, VERSION};
 use super::equilibrium;
+use super::estimate::Unstable;
 use super::growth::Linear;
 use super::method::{self, Integrator, Options};
 use super::observe::Observer;
@@ -341,7 +342,7 @@ impl Run<'_> {
                     .seen
                     .estimate
                     .step(method, &step, [solver.y(), solver.yp()]);
-                self.observer.seen.estimate.erred(solver.local_errors());
+                self.observer.seen.estimate.erred(step.size, solver.local_errors());
                 if let Some(end) = self.follow(solver, from, recorder)? {
                     return Ok(end);
                 }
@@ -695,7 +696,8 @@ impl Run<'_> {
         s.quantities = o.figures.quantities();
         o.energies.complete(&mut s.quantities);
         s.warnings.extend(o.energies.warning(&s.quantities));
-        let (estimate, warning) = o.estimate.judge(&s.quantities, o.growth.amplification());
+        let unstable = Unstable::of(&o.growth, self.case.beam.length_m, &self.linear);
+        let (estimate, warning) = o.estimate.judge(&s.quantities, &unstable);
         s.estimate = estimate;
         s.warnings.extend(warning);
         s.sensitivities = self.forward.as_ref().map(Forward::summary).unwrap_or_default();

@@ -34,6 +34,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::floors::Floors;
+use super::growth::{Growth, Linear};
 use super::summary::Quantity;
 use crate::case::schema::Case;
 use crate::discrete::System;
@@ -60,6 +61,25 @@ const SQUARED: f64 = 2.0;
 /// Figures below this part of others are nothing to be accurate about.
 const NOTHING: f64 = 1e-6;
 
+/// What makes errors larger than those of a vibration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unstable {
+    /// The factor by which the deflection has grown by itself, at least 1.
+    pub grown: f64,
+    /// How many times as much as a part of Euler's load a deflection changes, at least 1.
+    pub softened: f64,
+}
+
+impl Unstable {
+    /// Of what was followed in a run of a beam of a length [m].
+    pub fn of(growth: &Growth, length: f64, linear: &Linear) -> Self {
+        Self {
+            grown: growth.amplification(length, linear),
+            softened: growth.softened(linear),
+        }
+    }
+}
+
 /// Follows the first modes of bending and of stretch.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimator {
@@ -72,6 +92,8 @@ pub struct Estimator {
     floors: Floors,
     /// Pressures that a deflection and a stretch cause, of the shapes of the first modes [Pa/m].
     pressed: [f64; 2],
+    /// Energies that they store, of the same shapes, over squares of these [J/m^2].
+    stored: [f64; 2],
     /// Part of the run that the window is.
     window: f64,
     /// Cells a segment, and tolerance.
@@ -142,15 +164,18 @@ impl Estimator {
             let all = modes.into_iter().filter(|_| layout.waves[which]);
             all.map(|mode| one(mode, which)).collect()
         };
-        let scales = [model.scales.transverse, model.scales.axial];
         Self {
             bending: follow(across, 0),
             axial: follow(along, 1),
             at_rest: first.map(|(mesh, _)| 2.0 * mesh * fine),
-            tolerance: Tolerance::new(case.solver.rtol, scales, layout),
+            tolerance: Tolerance::new(case.solver.rtol, &model.scales, layout),
             near: resonance::nearest(system),
             floors,
             pressed: [0, 1].map(|which| pressed[which] * first[which].1),
+            stored: [
+                s.bending_stiffness / length.powi(3) * first[0].1.powi(2),
+                s.axial_stiffness / length * first[1].1.powi(2),
+            ],
             window: case.time.window() / case.time.end_s,
             settings: (case.mesh.cells_per_segment, case.solver.rtol),
         }
@@ -164,26 +189,26 @@ impl Estimator {
         }
     }
 
-    /// Takes what the same step is estimated to have added to the errors of the scaled unknowns; none where that is not known.
-    pub fn erred(&mut self, errors: &[f64]) {
-        self.tolerance.step(errors);
+    /// Takes what the same step, of a size [s], is estimated to have added to the errors of the scaled unknowns; none where that is not known.
+    pub fn erred(&mut self, size: f64, errors: &[f64]) {
+        self.tolerance.step(size, errors);
     }
 
-    /// Errors of the final values, as far as they can be told, none where nothing moves, and what to know of them. `growth`: the factor by
-    /// which the deflection grows by itself.
+    /// Errors of the final values, as far as they can be told, none where nothing moves, and what to know of them.
     pub fn judge(
         &self,
         quantities: &BTreeMap<String, Quantity>,
-        growth: Option<f64>,
+        unstable: &Unstable,
     ) -> (Option<Estimated>, Option<String>) {
-        let rows = self.rows(quantities, growth.unwrap_or(1.0));
-        let found = Estimated::of(&rows, growth, self.near);
+        let rows = self.rows(quantities, unstable);
+        let found = Estimated::of(&rows, unstable, self.near);
         let (cells, rtol) = self.settings;
         let warning = found.as_ref().and_then(|found| found.warning(&rows, cells, rtol));
         (found, warning)
     }
 
-    fn rows(&self, quantities: &BTreeMap<String, Quantity>, grown: f64) -> Vec<Row> {
+    fn rows(&self, quantities: &BTreeMap<String, Quantity>, unstable: &Unstable) -> Vec<Row> {
+        let grown = unstable.grown;
         let largest = |name: &str| quantities.get(name).and_then(|q| q.max_abs).unwrap_or(0.0);
         let [wide, long, angle] = ["largest_u1_m", "largest_u3_m", "tip_angle_rad"].map(largest);
         let length = self.floors.length;
@@ -193,6 +218,7 @@ impl Estimator {
         let drawn = |place: Place, slope: f64| Off::of(&bending, place).times(DRAWN * slope.min(1.0));
         let anywhere = Off::of(&bending, Place::Anywhere);
         let [bent, stretched] = self.at_rest;
+        let bent = (bent * unstable.softened).min(1.0).max(bent);
         let near = self.near.map_or(0.0, |near| near.change);
         let within = |which: usize, size: f64| self.tolerance.of(which, size);
         // what follows a deflection that is wrong by so much, as what it draws in does, about the square of its slope
@@ -248,25 +274,32 @@ impl Estimator {
     /// Energies: of displacements across, or along where those are nothing beside them.
     fn energies(&self, rows: &mut Vec<Row>, quantities: &BTreeMap<String, Quantity>, [wide, long]: [f64; 2]) {
         // ends that are driven along the beam move all of it, and store nothing
-        let (moved, at_rest): (&[&str], f64) = match wide >= ALONG * long {
-            true => (&["largest_u1_m", "tip_angle_rad"], self.at_rest[0]),
-            false => (&["largest_u3_m"], self.at_rest[1]),
+        let (moved, which, size): (&[&str], usize, f64) = match wide >= ALONG * long {
+            true => (&["largest_u1_m", "tip_angle_rad"], 0, wide),
+            false => (&["largest_u3_m"], 1, long),
         };
         let moved = rows.iter().filter(|row| moved.contains(&row.name));
         let Some(most) = moved.max_by(|a, b| a.total().total_cmp(&b.total())).cloned() else {
             return;
         };
-        let [time, space] = most.errors.map(|x| SQUARED * x);
+        let stored = self.stored[which] * size * size;
         for name in ["input_energy_j", "harvested_energy_j"] {
             let size = quantities.get(name).and_then(|q| q.last).map_or(0.0, f64::abs);
-            if self.counts(name, size, quantities) {
-                rows.push(Row {
-                    name,
-                    errors: [time, space + (CURVED - SQUARED) * at_rest],
-                    phase: SQUARED * most.phase,
-                    ..most
-                });
+            if !self.counts(name, size, quantities) {
+                continue;
             }
+            // where fluid is pumped through a beam that hardly moves, its motion says nothing
+            let (errors, phase) = match stored > NOTHING * size {
+                true => (most.errors, most.phase),
+                false => ([self.tolerance.gathered(), 0.0], 0.0),
+            };
+            let [time, space] = errors.map(|x| SQUARED * x);
+            rows.push(Row {
+                name,
+                errors: [time, space + (CURVED - SQUARED) * self.at_rest[which]],
+                phase: SQUARED * phase,
+                ..most
+            });
         }
     }
 

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::discrete::Layout;
+use crate::model::Scales;
 
 /// What steps make of a tolerance of 1 in a motion that they follow, at least, and of its root at most: what is measured with stiff
 /// and soft beams at tolerances from 1e-7 to 1e-2. Between the two it gathers like the root of their number.
@@ -21,33 +22,41 @@ pub struct Tolerance {
     /// First unknowns of displacement and of velocity, and their number; across, along.
     groups: [[(usize, usize); 2]; 2],
     /// Sums over steps of mean squares of their errors over the tolerance.
-    squares: [f64; 2],
+    squares: [[f64; 2]; 2],
+    /// Size of velocities over that of displacements [1/s], and time gone [s]: a velocity's error needs time to become one of displacement.
+    frequency: f64,
+    /// See above.
+    time: f64,
 }
 
 impl Tolerance {
-    /// Of a layout with scales across and along [m].
-    pub fn new(rtol: f64, scales: [f64; 2], layout: &Layout) -> Self {
+    /// Of a layout of unknowns of these sizes.
+    pub fn new(rtol: f64, scales: &Scales, layout: &Layout) -> Self {
         let groups = [
             (layout.u1, layout.v1, layout.free_u1.len(), layout.waves[0]),
             (layout.u3, layout.v3, layout.free_u3.len(), layout.waves[1]),
         ];
         Self {
             rtol,
-            scales,
+            scales: [scales.transverse, scales.axial],
+            frequency: scales.frequency,
             groups: groups.map(|(u, v, number, waves)| [(u, number), (v, if waves { number } else { 0 })]),
             ..Self::default()
         }
     }
 
-    /// Takes a step's own estimates of its errors, of the scaled unknowns; none: as large as they may be.
-    pub fn step(&mut self, errors: &[f64]) {
+    /// Takes the estimates that a step of a size [s] made of its errors, of the scaled unknowns; none: as large as they may be.
+    pub fn step(&mut self, size: f64, errors: &[f64]) {
         self.steps += 1;
-        for (sum, groups) in self.squares.iter_mut().zip(&self.groups) {
-            let mean = |(first, number): &(usize, usize)| match errors.get(*first..first + number) {
-                Some(part) => part.iter().map(|e| e * e).sum::<f64>() / (*number).max(1) as f64,
-                None => self.rtol * self.rtol,
-            };
-            *sum += groups.iter().map(mean).fold(0.0, f64::max) / (self.rtol * self.rtol);
+        self.time += size;
+        let allowed = self.rtol * self.rtol;
+        for (sums, groups) in self.squares.iter_mut().zip(&self.groups) {
+            for (sum, &(first, number)) in sums.iter_mut().zip(groups) {
+                *sum += match errors.get(first..first + number) {
+                    Some(part) => part.iter().map(|e| e * e).sum::<f64>() / number.max(1) as f64 / allowed,
+                    None => 1.0,
+                };
+            }
         }
     }
 
@@ -60,7 +69,8 @@ impl Tolerance {
     /// Error by steps of a displacement of a size [m] across (0) or along (1), relative to it: of the relative tolerance, and as much of
     /// the absolute one as they used.
     pub fn of(&self, which: usize, size: f64) -> f64 {
-        let used = (self.squares[which] / (self.steps as f64).max(1.0)).sqrt();
+        let [displacement, velocity] = self.squares[which].map(|sum| (sum / (self.steps as f64).max(1.0)).sqrt());
+        let used = displacement.max(velocity * (self.frequency * self.time).min(1.0));
         let beyond = self.scales[which] / size.max(f64::MIN_POSITIVE);
         (self.gathered() * (1.0 + used.min(1.0) * beyond)).min(1.0)
     }

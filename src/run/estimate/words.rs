@@ -4,12 +4,15 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::Unstable;
 use super::resonance::Near;
 use crate::error::Code;
 use crate::run::summary::Estimate;
 
 /// Above this a figure is warned of.
 pub const LARGE: f64 = 0.05;
+/// From this factor on that compression softens a column it is told.
+const SOFT: f64 = 10.0;
 /// Finest mesh, in cells a segment, that is proposed.
 const FINEST: f64 = 64.0;
 /// Tightest tolerance that is proposed.
@@ -33,6 +36,9 @@ pub struct Estimated {
     /// By what factor the deflection grows by itself, and errors with it; absent where it does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub growth: Option<f64>,
+    /// How many times as much as a part of Euler's load a deflection changes, where compression came near it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub softened: Option<f64>,
     /// A drive near a vibration that the mesh misplaces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub near: Option<Near>,
@@ -64,7 +70,7 @@ impl Row {
 
 impl Estimated {
     /// Of all quantities that say something; none where there is none.
-    pub fn of(rows: &[Row], growth: Option<f64>, near: Option<Near>) -> Option<Self> {
+    pub fn of(rows: &[Row], unstable: &Unstable, near: Option<Near>) -> Option<Self> {
         let worst = rows.iter().max_by(|a, b| a.total().total_cmp(&b.total()))?;
         let one = |row: &Row| {
             let [time, space] = row.errors;
@@ -83,7 +89,8 @@ impl Estimated {
             phase: worst.phase,
             vibrations: worst.vibrations,
             shift_rad: worst.shift,
-            growth,
+            growth: beyond_one(unstable.grown),
+            softened: beyond_one(unstable.softened).filter(|x| *x > SOFT),
             near,
             quantities: rows.iter().map(one).collect(),
         })
@@ -99,7 +106,7 @@ impl Estimated {
             .map(|r| format!("{} {}", r.name, size(r.total())))
             .collect();
         let phase = |row: &Row| row.total() - row.phase <= LARGE && row.phase > 0.5 * row.total();
-        let only_phase = self.growth.is_none() && large.iter().all(|row| phase(row));
+        let only_phase = self.growth.is_none() && self.softened.is_none() && large.iter().all(|row| phase(row));
         let (figures, because) = match only_phase {
             true => (
                 "final values",
@@ -149,7 +156,10 @@ impl Estimated {
                 "the deflection grows by a factor of {factor:.3}, and errors at least with it, so that this is a guess"
             )
         });
-        let all: Vec<String> = near.into_iter().chain(growth).collect();
+        let soft = self.softened.map(|factor| {
+            format!("compression came so near Euler's load that what the mesh changes of that counts {factor:.0} times")
+        });
+        let all: Vec<String> = near.into_iter().chain(growth).chain(soft).collect();
         let why = match all.is_empty() {
             true => "the mesh is coarse, or the tolerance loose, for what the beam does".into(),
             false => all.join("; "),
@@ -157,6 +167,10 @@ impl Estimated {
         let most = if energies { ", energies most" } else { "" };
         format!("{why}; largest values are off as well{most}")
     }
+}
+
+fn beyond_one(factor: f64) -> Option<f64> {
+    (factor > 1.0).then_some(factor)
 }
 
 /// An error in words.
