@@ -56,6 +56,8 @@ const DRAWN: f64 = 0.5;
 const CURVED: f64 = 3.0;
 /// Below this part of the displacement along the beam one across it stores nothing that counts.
 const ALONG: f64 = 0.1;
+/// Slope of the tip in the first mode of a cantilever, over its deflection over the length.
+const SLOPED: f64 = 1.376;
 /// An energy is the square of a motion, and so is what a deflection draws in.
 const SQUARED: f64 = 2.0;
 /// Figures below this part of others are nothing to be accurate about.
@@ -89,6 +91,9 @@ pub struct Estimator {
     at_rest: [f64; 2],
     tolerance: Tolerance,
     near: Option<Near>,
+    /// Velocities across: first unknown, number, size [m/s]; largest acceleration seen [m/s^2].
+    velocities: (usize, usize, f64),
+    acceleration: f64,
     floors: Floors,
     /// Pressures that a deflection and a stretch cause, of the shapes of the first modes [Pa/m].
     pressed: [f64; 2],
@@ -170,6 +175,11 @@ impl Estimator {
             at_rest: first.map(|(mesh, _)| 2.0 * mesh * fine),
             tolerance: Tolerance::new(case.solver.rtol, &model.scales, layout),
             near: resonance::nearest(system),
+            velocities: match layout.waves[0] {
+                true => (layout.v1, layout.free_u1.len(), model.scales.transverse_rate),
+                false => (0, 0, 0.0),
+            },
+            acceleration: 0.0,
             floors,
             pressed: [0, 1].map(|which| pressed[which] * first[which].1),
             stored: [
@@ -183,6 +193,11 @@ impl Estimator {
 
     /// Takes an accepted step, with the unknowns and their rates at its end; `None`: of BDF.
     pub fn step(&mut self, method: Option<Method>, step: &Step, values: [&[f64]; 2]) {
+        let (first, number, size) = self.velocities;
+        let fastest = values[1][first..first + number]
+            .iter()
+            .fold(0.0_f64, |most, a| most.max(a.abs()));
+        self.acceleration = self.acceleration.max(size * fastest);
         let tableau = vibration::tableau(method);
         for mode in self.bending.iter_mut().chain(&mut self.axial) {
             mode.step(tableau.as_ref(), step, values);
@@ -219,14 +234,15 @@ impl Estimator {
         let anywhere = Off::of(&bending, Place::Anywhere);
         let [bent, stretched] = self.at_rest;
         let bent = (bent * unstable.softened).min(1.0).max(bent);
-        let near = self.near.map_or(0.0, |near| near.change);
+        let nearly = |size: f64, turned: bool| self.near.map_or(0.0, |near| near.of(size, turned, self.acceleration));
+        let near = nearly(wide, false);
         let within = |which: usize, size: f64| self.tolerance.of(which, size);
         // what follows a deflection that is wrong by so much, as what it draws in does, about the square of its slope
         let of_wide = [
             within(0, wide),
             bent + near,
             self.more(
-                anywhere.errors.iter().sum::<f64>() / wide + within(0, wide) + bent + near,
+                anywhere.errors.iter().sum::<f64>() / wide.max(f64::MIN_POSITIVE) + within(0, wide) + bent + near,
                 grown,
             ),
         ];
@@ -243,7 +259,7 @@ impl Estimator {
             ("largest_u1_m", Place::Anywhere, 1.0),
         ] {
             let size = largest(name);
-            let extra = [within(0, size * unit), bent + near];
+            let extra = [within(0, size * unit), bent + nearly(size, place == Place::Slope)];
             row(name, size, Off::of(&bending, place), extra, grown);
         }
         for (name, place, slope) in [
@@ -267,19 +283,25 @@ impl Estimator {
             share[0] * (CURVED * bent + near + of_wide[2]) + share[1] * CURVED * stretched,
         ];
         row("max_pressure_pa", size, off, extra, 1.0);
-        self.energies(&mut rows, quantities, [wide, long]);
+        self.energies(&mut rows, quantities, [wide, long, angle]);
         rows
     }
 
     /// Energies: of displacements across, or along where those are nothing beside them.
-    fn energies(&self, rows: &mut Vec<Row>, quantities: &BTreeMap<String, Quantity>, [wide, long]: [f64; 2]) {
+    fn energies(&self, rows: &mut Vec<Row>, quantities: &BTreeMap<String, Quantity>, [wide, long, angle]: [f64; 3]) {
         // ends that are driven along the beam move all of it, and store nothing
         let (moved, which, size): (&[&str], usize, f64) = match wide >= ALONG * long {
             true => (&["largest_u1_m", "tip_angle_rad"], 0, wide),
             false => (&["largest_u3_m"], 1, long),
         };
-        let moved = rows.iter().filter(|row| moved.contains(&row.name));
-        let Some(most) = moved.max_by(|a, b| a.total().total_cmp(&b.total())).cloned() else {
+        // a tip that hardly turns while the beam moves says nothing of it
+        let turned = (angle * self.floors.length / (SLOPED * wide)).min(1.0);
+        let moved = rows.iter().filter(|row| moved.contains(&row.name)).cloned();
+        let moved = moved.map(|row| match row.name {
+            "tip_angle_rad" => row.times(turned),
+            _ => row,
+        });
+        let Some(most) = moved.max_by(|a, b| a.total().total_cmp(&b.total())) else {
             return;
         };
         let stored = self.stored[which] * size * size;

@@ -27,6 +27,18 @@ pub struct Near {
     pub misplaced: f64,
     /// Relative change of what the drive excites.
     pub change: f64,
+    /// Wave number of the vibration [1/m].
+    pub wave_number: f64,
+}
+
+impl Near {
+    /// Relative change of a displacement of a size [m], or of a slope (`turned`), in a motion whose accelerations are no larger than given
+    /// [m/s^2]: no more than `a/Ω²` of it is at the drive's frequency.
+    pub fn of(&self, size: f64, turned: bool, acceleration: f64) -> f64 {
+        let swing = acceleration / (TAU * self.drive_hz).powi(2);
+        let swing = if turned { swing * self.wave_number } else { swing };
+        self.change * (swing / size.max(f64::MIN_POSITIVE)).min(1.0)
+    }
 }
 
 /// The drive across the beam that comes so near a vibration that the mesh changes most what it excites: with δ the relative error of
@@ -59,6 +71,7 @@ pub fn nearest(system: &System) -> Option<Near> {
                     vibration_hz: omega / TAU,
                     misplaced,
                     change,
+                    wave_number: beta / length,
                 });
             }
         }

@@ -62,6 +62,15 @@ pub struct Row {
 }
 
 impl Row {
+    /// With errors times a factor.
+    pub fn times(self, factor: f64) -> Self {
+        Self {
+            errors: self.errors.map(|x| factor * x),
+            phase: factor * self.phase,
+            ..self
+        }
+    }
+
     /// By steps and by the mesh.
     pub fn total(&self) -> f64 {
         self.errors[0] + self.errors[1]
