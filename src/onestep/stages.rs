@@ -53,7 +53,7 @@ pub(super) struct Work {
     pub inverse: Vec<f64>,
     /// Rates, 0 for algebraic unknowns.
     pub yp: Vec<f64>,
-    /// Residual, then correction.
+    /// Residual, then correction; after a step what it is estimated to be off by.
     pub r: Vec<f64>,
     /// Weights of the error norm.
     pub weights: Vec<f64>,
@@ -238,6 +238,7 @@ impl<D: Dae> OneStep<D> {
             .residual(t1, &self.now.y[s - 1], &self.work.yp, &mut self.work.r)?;
         let factor = self.matrix.solve(&mut self.work.r, cj);
         let error = factor * norm(&self.work.r, &self.work.weights);
+        self.work.r.iter_mut().for_each(|r| *r *= factor);
         if error.is_finite() {
             Ok(error)
         } else {

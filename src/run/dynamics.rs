@@ -13,7 +13,6 @@ use pace::Pace;
 
 use super::checkpoint::{Checkpoint, VERSION};
 use super::equilibrium;
-use super::estimate::resonance;
 use super::growth::Linear;
 use super::method::{self, Integrator, Options};
 use super::observe::Observer;
@@ -129,7 +128,6 @@ impl<'a> Run<'a> {
         let characteristic = characteristic::numbers(case, &system.model);
         let mut warnings = audit::lasting(case, &system.model, &characteristic);
         warnings.extend(resolution::warnings(case, &system));
-        warnings.extend(resonance::warning(&system));
         if !parameters.is_empty() {
             warnings.extend(audit::derivatives(case));
         }
@@ -353,6 +351,7 @@ impl Run<'_> {
                     .seen
                     .estimate
                     .step(method, &step, [solver.y(), solver.yp()]);
+                self.observer.seen.estimate.erred(step.size, solver.local_errors());
                 if let Some(end) = self.follow(solver, from, recorder)? {
                     return Ok(end);
                 }

@@ -109,14 +109,18 @@ pub struct Energies {
     columns: BTreeMap<String, usize>,
     last: Parts,
     largest_stored: f64,
+    /// Energies that are round-off [J].
+    #[serde(default)]
+    floor: f64,
     run: Since,
     window: Since,
 }
 
 impl Energies {
-    /// For a case whose history has the given columns.
-    pub fn new(case: &Case, columns: &[&'static str]) -> Self {
+    /// For a case whose history has the given columns, and where energies below a floor [J] are round-off.
+    pub fn new(case: &Case, columns: &[&'static str], floor: f64) -> Self {
         Self {
+            floor,
             window_start: case.time.end_s - case.time.window() * (1.0 + SAME),
             turbines: case.network.as_ref().is_some_and(|n| !n.turbines.is_empty()),
             columns: columns.iter().enumerate().map(|(k, c)| (c.to_string(), k)).collect(),
@@ -186,7 +190,7 @@ impl Energies {
             for ((value, error), (when, _)) in figures.into_iter().zip(times) {
                 if let (Some(value), Some(error)) = (value, error)
                     && error > OPEN
-                    && value.abs() > REMAINDER * self.largest_stored
+                    && value.abs() > (REMAINDER * self.largest_stored).max(self.floor)
                 {
                     all.push(format!(
                         "the {words} {when}, {value:.3e} J, is open by {:.0} % of it",
@@ -201,13 +205,17 @@ impl Energies {
                 let (Some(value), Some(error)) = (value, error) else {
                     continue;
                 };
+                let gained = since.gained(&self.last);
+                if gained.input.abs().max(gained.spent().abs()) <= self.floor {
+                    continue;
+                }
                 let what = format!("the efficiency {when}, {:.1} %", 100.0 * value);
                 if error > OPEN {
                     all.push(format!("{what}, has parts that are open by {:.0} %", 100.0 * error));
                 }
                 if !(-ROUND_OFF..=1.0 + ROUND_OFF).contains(&value) {
                     let side = if value > 1.0 { "above one" } else { "below zero" };
-                    all.push(format!("{what}, is {side}: {}", why(&since.gained(&self.last))));
+                    all.push(format!("{what}, is {side}: {}", why(&gained)));
                 }
             }
         }

@@ -3,7 +3,11 @@
 //! ```text
 //! small      vibrations of the straight beam, and what a mesh does to their frequencies
 //! vibration  one of them followed along the run
+//! off        what several of them together make of a figure
 //! resonance  a drive that comes near one which the mesh misplaces
+//! coupled    what sealed fluid does to them
+//! tolerance  what steps make of their tolerance
+//! words      what is said of it
 //! ```
 //!
 //! What a mesh and what steps change of a beam that vibrates freely is first of all its phase, and that grows with every period. So
@@ -11,101 +15,70 @@
 //! what a step of this method does to it. Where a motion follows what drives it there is no phase to lose: there the mesh changes
 //! the deflection by twice what it changes the first frequency, and steps by about their tolerance.
 //!
-//! It is an order of magnitude, by linear theory: growth, waves in the fluid and large rotations do more than it sees. Two runs on
+//! Energies go as squares of the motion. Where the deflection grows by itself, errors of the first moments grow with it, and so does what
+//! the mesh changes of the rate: all errors are taken to be larger by as much as the deflection has grown.
+//!
+//! It is an order of magnitude, by linear theory: waves in the fluid and large rotations do more than it sees. Two runs on
 //! two meshes measure; `slcbeam run --accuracy` does that.
 
+pub mod coupled;
+pub mod off;
 pub mod resonance;
 pub mod small;
+pub mod tolerance;
 pub mod vibration;
+pub mod words;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::summary::{Estimate, Quantity};
+use super::floors::Floors;
+use super::growth::{Growth, Linear};
+use super::summary::Quantity;
 use crate::case::schema::Case;
 use crate::discrete::System;
-use crate::error::Code;
 use crate::onestep::Method;
 use crate::sundials::Step;
 
+use off::Off;
+use resonance::Near;
 use small::SmallMode;
-use vibration::{Known, Vibration};
+use tolerance::Tolerance;
+use vibration::{Known, Place, Vibration};
+pub use words::Estimated;
+use words::Row;
 
-/// Above this a final value is warned of.
-const LARGE: f64 = 0.05;
-/// What steps make of a tolerance of 1 in a motion that they follow, at least, and of its root at most: what is measured with stiff
-/// and soft beams at tolerances from 1e-7 to 1e-2. Between the two it gathers like the root of their number.
-const AT_LEAST: f64 = 2.0;
-const AT_MOST: f64 = 0.05;
-/// Part of a displacement's error that is seen at an instant, on average over phases.
-const SEEN: f64 = 0.7;
 /// How much a slope takes the tip along that turns with the deflection of the first mode, on average over phases of both.
 const DRAWN: f64 = 0.5;
-/// How much more than the last mode that is followed all beyond it are in errors by steps: their shares fall with the fourth power
-/// of the wave number.
-const BEYOND: f64 = 2.0;
 /// How much more than its deflection a mesh changes a beam's work and the pressures in it: these go with curvatures, of which higher
 /// modes have more. Measured on random beams of 8 to 16 cells.
 const CURVED: f64 = 3.0;
 /// Below this part of the displacement along the beam one across it stores nothing that counts.
 const ALONG: f64 = 0.1;
-/// An energy is the square of a motion.
+/// Slope of the tip in the first mode of a cantilever, over its deflection over the length.
+const SLOPED: f64 = 1.376;
+/// An energy is the square of a motion, and so is what a deflection draws in.
 const SQUARED: f64 = 2.0;
 /// Figures below this part of others are nothing to be accurate about.
 const NOTHING: f64 = 1e-6;
 
-/// What the estimate says.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Estimated {
-    /// By steps, of the figure that is off most, relative to the largest value of its quantity.
-    pub time: f64,
-    /// By the mesh, likewise.
-    pub space: f64,
-    /// The quantity whose final value that is.
-    pub of: String,
-    /// Part of it that is phase of one vibration: it is in final values, and hardly in largest values or root mean squares.
-    pub phase: f64,
-    /// Vibrations gone, of the mode that is off most.
-    pub vibrations: f64,
-    /// By what angle mesh and steps have shifted it [rad].
-    pub shift_rad: f64,
-    /// All quantities.
-    pub quantities: BTreeMap<String, Estimate>,
+/// What makes errors larger than those of a vibration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unstable {
+    /// The factor by which the deflection has grown by itself, at least 1.
+    pub grown: f64,
+    /// How many times as much as a part of Euler's load a deflection changes, at least 1.
+    pub softened: f64,
 }
 
-impl Estimated {
-    /// What to know where it is large.
-    pub fn warning(&self) -> Option<String> {
-        let total = self.time + self.space;
-        if total <= LARGE {
-            return None;
+impl Unstable {
+    /// Of what was followed in a run of a beam of a length [m].
+    pub fn of(growth: &Growth, length: f64, linear: &Linear) -> Self {
+        Self {
+            grown: growth.amplification(length, linear),
+            softened: growth.softened(linear),
         }
-        let size = |x: f64| {
-            if x >= 1.0 {
-                "all".to_string()
-            } else {
-                format!("{:.0} %", 100.0 * x)
-            }
-        };
-        let because = if total - self.phase <= LARGE && self.phase > 0.5 * total {
-            format!(
-                "after {:.0} vibrations mesh and steps have shifted the phase by {:.2} rad; largest values and root mean squares are \
-                 hardly affected",
-                self.vibrations, self.shift_rad
-            )
-        } else {
-            "the mesh is coarse, or the tolerance loose, for what the beam does, and largest values are off as well, energies and pressures most"
-                .into()
-        };
-        Some(Code::ErrorEstimate.warning(format!(
-            "estimate: the final {} may be off by about {} of its largest value ({} by steps, {} by the mesh): {because}; --accuracy \
-             measures",
-            self.of,
-            size(total),
-            size(self.time),
-            size(self.space)
-        )))
     }
 }
 
@@ -116,25 +89,32 @@ pub struct Estimator {
     axial: Vec<Vibration>,
     /// What the mesh makes of a deflection at rest, of a stretch at rest.
     at_rest: [f64; 2],
-    rtol: f64,
-    /// Steps taken.
-    steps: u64,
-    /// Sizes of displacements to which the tolerance refers [m].
-    scales: [f64; 2],
-    /// Length of the beam [m].
-    length: f64,
+    tolerance: Tolerance,
+    near: Option<Near>,
+    /// Velocities across: first unknown, number, size [m/s]; largest acceleration seen [m/s^2].
+    velocities: (usize, usize, f64),
+    acceleration: f64,
+    floors: Floors,
+    /// Pressures that a deflection and a stretch cause, of the shapes of the first modes [Pa/m].
+    pressed: [f64; 2],
+    /// Energies that they store, of the same shapes, over squares of these [J/m^2].
+    stored: [f64; 2],
     /// Part of the run that the window is.
     window: f64,
+    /// Cells a segment, and tolerance.
+    settings: (usize, f64),
 }
 
 impl Estimator {
-    /// Of a system of the case.
-    pub fn new(case: &Case, system: &System) -> Self {
+    /// Of a system of the case, and what is round-off in it.
+    pub fn new(case: &Case, system: &System, floors: Floors) -> Self {
         let (model, layout) = (&system.model, &system.layout);
         let s = &model.section;
         let length = model.length;
         let fine = (system.mesh.h / length).powi(2);
-        let stiffer = sealed(system);
+        let stiffer = coupled::sealed(system);
+        let pressed = coupled::pressed(system);
+        let tones = resonance::tones(system);
         let across = if layout.free_u1.is_empty() {
             vec![]
         } else {
@@ -145,235 +125,236 @@ impl Estimator {
         } else {
             small::axial(&model.ends)
         };
-        let at_rest = [&across, &along].map(|modes| modes.first().map_or(0.0, |m| 2.0 * m.mesh.abs() * fine));
-        let one = |mode: SmallMode, across: bool| {
-            let (free, first, unit, more) = if across {
-                let unit = (s.bending_stiffness / s.mass_per_length).sqrt() / (length * length);
-                (&layout.free_u1, [layout.u1, layout.v1], unit, stiffer[0])
-            } else {
-                let unit = (s.axial_stiffness / s.mass_per_length).sqrt() / length;
-                (&layout.free_u3, [layout.u3, layout.v3], unit, stiffer[1])
+        let first = [&across, &along].map(|modes| modes.first().map_or((0.0, 0.0), |m| (m.mesh.abs(), m.frequency)));
+        let one = |mode: SmallMode, which: usize| {
+            let (free, first, unit) = match which {
+                0 => {
+                    let unit = (s.bending_stiffness / s.mass_per_length).sqrt() / (length * length);
+                    (&layout.free_u1, [layout.u1, layout.v1], unit)
+                }
+                _ => {
+                    let unit = (s.axial_stiffness / s.mass_per_length).sqrt() / length;
+                    (&layout.free_u3, [layout.u3, layout.v3], unit)
+                }
             };
             let [size, rate] = first.map(|k| layout.scales[k]);
             let frequency = mode.frequency * unit;
-            let material = if across {
-                s.bending_damping_time
-            } else {
-                s.axial_damping_time
-            };
+            let frequencies = [frequency, frequency * stiffer[which]];
+            let material = [s.bending_damping_time, s.axial_damping_time][which];
             let weight = |node: usize| {
                 let place = system.mesh.node_coordinate(node) / length;
                 mode.at(place) * system.mesh.node_length(node) / length * size
             };
+            let [low, high] = vibration::band(frequencies);
             Vibration::new(Known {
                 first,
                 weights: free.clone().map(weight).collect(),
                 rate: rate / size,
-                frequencies: [frequency, frequency * more],
+                frequencies,
                 mesh: mode.mesh * fine,
                 damping: 0.5 * s.drag / s.mass_per_length + 0.5 * material * frequency * frequency,
-                places: [mode.at(1.0), mode.tip_slope() / length, mode.most()],
+                places: [
+                    mode.at(1.0),
+                    mode.tip_slope() / length,
+                    mode.most(),
+                    mode.at(0.5),
+                    pressed[which] * mode.frequency * mode.most(),
+                ],
+                driven: tones[which]
+                    .iter()
+                    .any(|tone| (low..high).contains(&(std::f64::consts::TAU * tone))),
             })
         };
-        let follow = |modes: Vec<SmallMode>, waves: bool, across: bool| -> Vec<Vibration> {
-            modes
-                .into_iter()
-                .filter(|_| waves)
-                .map(|mode| one(mode, across))
-                .collect()
+        let follow = |modes: Vec<SmallMode>, which: usize| -> Vec<Vibration> {
+            let all = modes.into_iter().filter(|_| layout.waves[which]);
+            all.map(|mode| one(mode, which)).collect()
         };
         Self {
-            bending: follow(across, layout.waves[0], true),
-            axial: follow(along, layout.waves[1], false),
-            at_rest,
-            rtol: case.solver.rtol,
-            steps: 0,
-            scales: [model.scales.transverse, model.scales.axial],
-            length,
+            bending: follow(across, 0),
+            axial: follow(along, 1),
+            at_rest: first.map(|(mesh, _)| 2.0 * mesh * fine),
+            tolerance: Tolerance::new(case.solver.rtol, &model.scales, layout),
+            near: resonance::nearest(system),
+            velocities: match layout.waves[0] {
+                true => (layout.v1, layout.free_u1.len(), model.scales.transverse_rate),
+                false => (0, 0, 0.0),
+            },
+            acceleration: 0.0,
+            floors,
+            pressed: [0, 1].map(|which| pressed[which] * first[which].1),
+            stored: [
+                s.bending_stiffness / length.powi(3) * first[0].1.powi(2),
+                s.axial_stiffness / length * first[1].1.powi(2),
+            ],
             window: case.time.window() / case.time.end_s,
+            settings: (case.mesh.cells_per_segment, case.solver.rtol),
         }
     }
 
     /// Takes an accepted step, with the unknowns and their rates at its end; `None`: of BDF.
     pub fn step(&mut self, method: Option<Method>, step: &Step, values: [&[f64]; 2]) {
-        self.steps += 1;
+        let (first, number, size) = self.velocities;
+        let fastest = values[1][first..first + number]
+            .iter()
+            .fold(0.0_f64, |most, a| most.max(a.abs()));
+        self.acceleration = self.acceleration.max(size * fastest);
         let tableau = vibration::tableau(method);
         for mode in self.bending.iter_mut().chain(&mut self.axial) {
             mode.step(tableau.as_ref(), step, values);
         }
     }
 
-    /// What the steps make of their tolerance where they follow the motion, relative to what it refers to.
-    fn gathered(&self) -> f64 {
-        let more = self.rtol * (self.steps as f64).sqrt();
-        more.min(AT_MOST * self.rtol.sqrt()).max(AT_LEAST * self.rtol)
+    /// Takes what the same step, of a size [s], is estimated to have added to the errors of the scaled unknowns; none where that is not known.
+    pub fn erred(&mut self, size: f64, errors: &[f64]) {
+        self.tolerance.step(size, errors);
     }
 
-    /// Errors of the final values, as far as they can be told; none where nothing moves.
-    pub fn judge(&self, quantities: &BTreeMap<String, Quantity>) -> Option<Estimated> {
+    /// Errors of the final values, as far as they can be told, none where nothing moves, and what to know of them.
+    pub fn judge(
+        &self,
+        quantities: &BTreeMap<String, Quantity>,
+        unstable: &Unstable,
+    ) -> (Option<Estimated>, Option<String>) {
+        let rows = self.rows(quantities, unstable);
+        let found = Estimated::of(&rows, unstable, self.near);
+        let (cells, rtol) = self.settings;
+        let warning = found.as_ref().and_then(|found| found.warning(&rows, cells, rtol));
+        (found, warning)
+    }
+
+    fn rows(&self, quantities: &BTreeMap<String, Quantity>, unstable: &Unstable) -> Vec<Row> {
+        let grown = unstable.grown;
         let largest = |name: &str| quantities.get(name).and_then(|q| q.max_abs).unwrap_or(0.0);
-        let [u1, u3, angle] = ["tip_u1_m", "tip_u3_m", "tip_angle_rad"].map(largest);
-        let [wide_u1, wide_u3] = ["largest_u1_m", "largest_u3_m"].map(largest);
+        let [wide, long, angle] = ["largest_u1_m", "largest_u3_m", "tip_angle_rad"].map(largest);
+        let length = self.floors.length;
         let [bending, axial] =
             [&self.bending, &self.axial].map(|all| all.iter().map(Vibration::ended).collect::<Vec<_>>());
-        let [across, turn, anywhere] = [0, 1, 2].map(|what| Off::of(&bending, what));
-        let [along, along_anywhere] = [0, 2].map(|what| Off::of(&axial, what));
         // a tip that has turned moves along as well, and so does what has bent between ends that hold it
-        let drawn = across.times(DRAWN * angle.min(1.0));
-        let mean_slope = 2.0 * wide_u1 / self.length;
-        let drawn_anywhere = anywhere.times(DRAWN * mean_slope.min(1.0));
-        // an end that is held has round-off, which is no motion
-        let everything = u1.max(u3).max(wide_u1).max(wide_u3).max(angle * self.length);
-        let mut found: Option<Estimated> = None;
-        let mut all = BTreeMap::new();
+        let drawn = |place: Place, slope: f64| Off::of(&bending, place).times(DRAWN * slope.min(1.0));
+        let anywhere = Off::of(&bending, Place::Anywhere);
         let [bent, stretched] = self.at_rest;
-        let [wide, long] = self.scales;
-        let both = bent.max(stretched);
-        for (name, size, off, at_rest, scale, unit) in [
-            ("tip_u1_m", u1, across, bent, wide, 1.0),
-            ("tip_u3_m", u3, along.and(drawn), both, long, 1.0),
-            ("tip_angle_rad", angle, turn, bent, wide / self.length, self.length),
-            ("largest_u1_m", wide_u1, anywhere, bent, wide, 1.0),
-            (
-                "largest_u3_m",
-                wide_u3,
-                along_anywhere.and(drawn_anywhere),
-                both,
-                long,
-                1.0,
+        let bent = (bent * unstable.softened).min(1.0).max(bent);
+        let nearly = |size: f64, turned: bool| self.near.map_or(0.0, |near| near.of(size, turned, self.acceleration));
+        let near = nearly(wide, false);
+        let within = |which: usize, size: f64| self.tolerance.of(which, size);
+        // what follows a deflection that is wrong by so much, as what it draws in does, about the square of its slope
+        let of_wide = [
+            within(0, wide),
+            bent + near,
+            self.more(
+                anywhere.errors.iter().sum::<f64>() / wide.max(f64::MIN_POSITIVE) + within(0, wide) + bent + near,
+                grown,
             ),
+        ];
+        let mut rows = vec![];
+        let mut row = |name: &'static str, size: f64, off: Off, extra: [f64; 2], grown: f64| {
+            if self.counts(name, size, quantities) {
+                rows.push(self.row(name, size, off, extra, grown));
+            }
+        };
+        for (name, place, unit) in [
+            ("tip_u1_m", Place::Tip, 1.0),
+            ("tip_angle_rad", Place::Slope, length),
+            ("midspan_u1_m", Place::Middle, 1.0),
+            ("largest_u1_m", Place::Anywhere, 1.0),
         ] {
-            if size * unit <= NOTHING * everything || size == 0.0 || !size.is_finite() {
+            let size = largest(name);
+            let extra = [within(0, size * unit), bent + nearly(size, place == Place::Slope)];
+            row(name, size, Off::of(&bending, place), extra, grown);
+        }
+        for (name, place, slope) in [
+            ("tip_u3_m", Place::Tip, angle),
+            ("largest_u3_m", Place::Anywhere, 2.0 * wide / length),
+        ] {
+            let size = largest(name);
+            let share = SQUARED * (slope.max(angle).powi(2) * length / size).min(1.0);
+            let off = Off::of(&axial, place).and(drawn(place, slope));
+            let extra = [
+                within(1, size) + share * of_wide[0],
+                bent.max(stretched) + share * (near + of_wide[2]),
+            ];
+            row(name, size, off, extra, 1.0);
+        }
+        let size = largest("max_pressure_pa");
+        let share = [self.pressed[0] * wide / size, self.pressed[1] * long / size].map(|x| x.min(1.0));
+        let off = Off::of(&bending, Place::Pressure).and(Off::of(&axial, Place::Pressure));
+        let extra = [
+            self.tolerance.gathered() + share[0] * of_wide[0],
+            share[0] * (CURVED * bent + near + of_wide[2]) + share[1] * CURVED * stretched,
+        ];
+        row("max_pressure_pa", size, off, extra, 1.0);
+        self.energies(&mut rows, quantities, [wide, long, angle]);
+        rows
+    }
+
+    /// Energies: of displacements across, or along where those are nothing beside them.
+    fn energies(&self, rows: &mut Vec<Row>, quantities: &BTreeMap<String, Quantity>, [wide, long, angle]: [f64; 3]) {
+        // ends that are driven along the beam move all of it, and store nothing
+        let (moved, which, size): (&[&str], usize, f64) = match wide >= ALONG * long {
+            true => (&["largest_u1_m", "tip_angle_rad"], 0, wide),
+            false => (&["largest_u3_m"], 1, long),
+        };
+        // a tip that hardly turns while the beam moves says nothing of it
+        let turned = (angle * self.floors.length / (SLOPED * wide)).min(1.0);
+        let moved = rows.iter().filter(|row| moved.contains(&row.name)).cloned();
+        let moved = moved.map(|row| match row.name {
+            "tip_angle_rad" => row.times(turned),
+            _ => row,
+        });
+        let Some(most) = moved.max_by(|a, b| a.total().total_cmp(&b.total())) else {
+            return;
+        };
+        let stored = self.stored[which] * size * size;
+        for name in ["input_energy_j", "harvested_energy_j"] {
+            let size = quantities.get(name).and_then(|q| q.last).map_or(0.0, f64::abs);
+            if !self.counts(name, size, quantities) {
                 continue;
             }
-            let phase = off.errors.map(|x| x / size);
-            let time = phase[0] + (self.gathered() * (1.0 + scale / size)).min(1.0);
-            let space = phase[1] + at_rest;
-            all.insert(name.to_string(), estimate(time, space));
-            if found.as_ref().is_none_or(|f| time + space > f.time + f.space) {
-                found = Some(Estimated {
-                    time,
-                    space,
-                    of: name.into(),
-                    // less than a vibration in the window: its root mean square knows of the phase
-                    phase: match off.vibrations * self.window < 1.0 {
-                        true => 0.0,
-                        false => (phase[0] + phase[1] - off.peaks / size).max(0.0),
-                    },
-                    vibrations: off.vibrations,
-                    shift_rad: off.shift,
-                    quantities: BTreeMap::new(),
-                });
-            }
-        }
-        let mut found = found?;
-        let worked = quantities.get("input_energy_j").and_then(|q| q.last).unwrap_or(0.0);
-        if worked != 0.0 && worked.is_finite() {
-            // ends that are driven along the beam move all of it, and store nothing
-            let (off, size, at_rest) = match wide_u1 >= ALONG * wide_u3 {
-                true => (anywhere, wide_u1, bent),
-                false => (along_anywhere, wide_u3, stretched),
+            // where fluid is pumped through a beam that hardly moves, its motion says nothing
+            let (errors, phase) = match stored > NOTHING * size {
+                true => (most.errors, most.phase),
+                false => ([self.tolerance.gathered(), 0.0], 0.0),
             };
-            let phase = off.errors.map(|x| SQUARED * x / size.max(f64::MIN_POSITIVE));
-            let (time, space) = (
-                phase[0] + (SQUARED * self.gathered()).min(1.0),
-                phase[1] + CURVED * at_rest,
-            );
-            all.insert("input_energy_j".into(), estimate(time, space));
-            // one that has lost its phase names the displacement: that says more
-            if found.time + found.space <= LARGE && time + space > LARGE {
-                found = Estimated {
-                    time,
-                    space,
-                    of: "input_energy_j".into(),
-                    phase: 0.0,
-                    vibrations: off.vibrations,
-                    shift_rad: off.shift,
-                    quantities: BTreeMap::new(),
-                };
-            }
-        }
-        found.quantities = all;
-        Some(found)
-    }
-}
-
-fn estimate(time: f64, space: f64) -> Estimate {
-    Estimate {
-        time: Some(time),
-        space: Some(space),
-        total: Some(time + space),
-        ..Estimate::default()
-    }
-}
-
-/// Errors of a figure by the phases of several modes.
-#[derive(Clone, Copy, Debug, Default)]
-struct Off {
-    /// By steps and by the mesh.
-    errors: [f64; 2],
-    /// Of all modes but the one that swings most: how they meet makes the largest values.
-    peaks: f64,
-    /// Vibrations of the mode that does most, its shift [rad], and what it does.
-    vibrations: f64,
-    shift: f64,
-    most: f64,
-}
-
-impl Off {
-    /// Of the tip's displacement (0) or slope (1), or of the displacement anywhere (2). Phases of modes are nobody's: their errors add like squares.
-    fn of(modes: &[Vibration], what: usize) -> Self {
-        let mut all = Self::default();
-        let swing = |mode: &Vibration| mode.places[what].abs() * mode.amplitude();
-        let widest = (0..modes.len()).max_by(|a, b| swing(&modes[*a]).total_cmp(&swing(&modes[*b])));
-        for (k, mode) in modes.iter().enumerate() {
-            let [time, space] = mode.off().map(|x| SEEN * mode.places[what].abs() * x);
-            let time = if k + 1 == modes.len() { BEYOND * time } else { time };
-            all.errors = [all.errors[0].hypot(time), all.errors[1].hypot(space)];
-            if Some(k) != widest {
-                all.peaks = all.peaks.hypot(time + space);
-            }
-            if time + space > all.most {
-                let [steps, mesh, turned] = mode.turned;
-                (all.vibrations, all.shift) = (turned / std::f64::consts::TAU, steps.abs() + mesh.abs());
-                all.most = time + space;
-            }
-        }
-        all
-    }
-
-    fn times(mut self, factor: f64) -> Self {
-        self.errors = self.errors.map(|x| factor * x);
-        self.most *= factor;
-        self.peaks *= factor;
-        self
-    }
-
-    fn and(self, other: Self) -> Self {
-        let errors = [0, 1].map(|k| self.errors[k].hypot(other.errors[k]));
-        let most = if self.most >= other.most { self } else { other };
-        Self {
-            errors,
-            peaks: self.peaks.hypot(other.peaks),
-            ..most
+            let [time, space] = errors.map(|x| SQUARED * x);
+            rows.push(Row {
+                name,
+                errors: [time, space + (CURVED - SQUARED) * self.at_rest[which]],
+                phase: SQUARED * phase,
+                ..most
+            });
         }
     }
-}
 
-/// How much higher the frequencies of bending and of stretch are where fluid cannot leave its bladders, at least 1.
-///
-/// ```text
-/// p_R = -(R am M + an N)/a_p     ω_sealed/ω = (1 + EI α_p(p)/M)^(-1/2),  (1 + EA λ_p(p)/N)^(-1/2)
-/// ```
-fn sealed(system: &System) -> [f64; 2] {
-    let (model, s) = (&system.model, &system.model.section);
-    let Some(wet) = &model.wet else { return [1.0; 2] };
-    let (area, coupling) = (&wet.area, &wet.coupling);
-    let bent = area.moment_mean / area.per_pressure;
-    let stretched = area.force_mean / area.per_pressure;
-    let soft = [
-        s.bending_stiffness * coupling.curvature(area, 0.0, -bent, bent),
-        s.axial_stiffness * coupling.stretch(area, 0.0, -stretched, -stretched),
-    ];
-    soft.map(|soft| (1.0 / (1.0 + soft).clamp(0.05, 1.0)).sqrt())
+    /// Whether a quantity of a size is more than round-off, of what the case does and beside others.
+    fn counts(&self, name: &str, size: f64, quantities: &BTreeMap<String, Quantity>) -> bool {
+        let (unit, own) = self.floors.weighed(name, size);
+        let alike = quantities.iter().filter_map(|(other, q)| {
+            let (of, size) = self.floors.weighed(other, q.max_abs.or(q.last)?.abs());
+            (of == unit).then_some(size)
+        });
+        let beside = alike.fold(0.0, f64::max);
+        own.is_finite() && own > (NOTHING * beside).max(self.floors.of_unit(unit, 0.0))
+    }
+
+    /// What an error gains where the deflection grows, no more than all.
+    fn more(&self, error: f64, grown: f64) -> f64 {
+        (grown * error).min(1.0).max(error) - error
+    }
+
+    fn row(&self, name: &'static str, size: f64, off: Off, extra: [f64; 2], grown: f64) -> Row {
+        let phase = off.errors.map(|x| x / size);
+        let errors = [0, 1].map(|k| phase[k] + extra[k]);
+        let more = self.more(errors[0] + errors[1], grown);
+        Row {
+            name,
+            errors: [errors[0], errors[1] + more],
+            // less than a vibration in the window: its root mean square knows of the phase
+            phase: match off.vibrations * self.window < 1.0 {
+                true => 0.0,
+                false => (phase[0] + phase[1] - off.peaks / size).max(0.0),
+            },
+            vibrations: off.vibrations,
+            shift: off.shift,
+        }
+    }
 }

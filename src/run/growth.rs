@@ -15,6 +15,9 @@ const OUTGROWN: f64 = 2.0;
 /// Factor over the later part of a run from which on growth is worth a word.
 const GROWN: f64 = 3.0;
 
+/// Squared correlation of its logarithm with time from which on a deflection grows exponentially.
+const STRAIGHT: f64 = 0.6;
+
 /// Kinds of what drives a beam: loads along x and z and their moments, forces, followers and moments of ends, their motions
 /// and slopes, pressures and flows of ports.
 const KINDS: usize = 10;
@@ -141,7 +144,7 @@ impl Growth {
         let still =
             largest(&late[late.len() - quarter..]) / largest(&late[late.len() - 2 * quarter..late.len() - quarter]);
         // A factor over the span, along a straight line in the logarithm, and still going on.
-        if factor < GROWN || straight < 0.6 || still < 1.2 || rate <= 0.0 {
+        if factor < GROWN || straight < STRAIGHT || still < 1.2 || rate <= 0.0 {
             return None;
         }
         // What a straight line or a power of time explains as well is no instability, nor is what follows its drive.
@@ -153,6 +156,43 @@ impl Growth {
             factor,
             drivers: self.drivers(late, rate, linear),
         })
+    }
+
+    /// The factor by which the deflection has grown by itself, 1 where it has not: to the end, or, where the scene is known to be
+    /// unstable, up to where it was largest.
+    pub fn amplification(&self, length: f64, linear: &Linear) -> f64 {
+        let to_the_end = self.judge(length, linear).map_or(1.0, |growing| growing.factor);
+        let tongue = linear.mathieu.is_some_and(|m| m.growth_rate > 0.0);
+        let buckles = linear.euler_load.is_some_and(|euler| self.compression > euler);
+        match tongue || buckles {
+            true => to_the_end.max(self.risen().unwrap_or(1.0)),
+            false => to_the_end,
+        }
+    }
+
+    /// Exponential growth up to the largest deflection.
+    fn risen(&self) -> Option<f64> {
+        let seen: Vec<&Window> = self.windows.iter().take_while(|w| w.samples > 0).collect();
+        let top = (0..seen.len()).max_by(|a, b| seen[*a].deflection.total_cmp(&seen[*b].deflection))?;
+        let part = seen.get(1..=top)?;
+        let width = self.end / WINDOWS as f64;
+        let points: Vec<(f64, f64)> = part
+            .iter()
+            .enumerate()
+            .map(|(k, w)| ((k as f64 + 1.5) * width, w.deflection))
+            .collect();
+        let points: Vec<(f64, f64)> = points.into_iter().filter(|(_, d)| *d > 0.0).collect();
+        let (rate, straight) = fit::exponential(&points)?;
+        let factor = points.last()?.1 / points.first()?.1;
+        let grows = factor >= GROWN && rate > 0.0 && straight >= STRAIGHT;
+        (grows && fit::is_exponential(&points) && !follows(part)).then_some(factor)
+    }
+
+    /// How much softer than a straight one a compressed column is, at least 1: `1/|1 - N/N_E|` with the largest compression seen. What changes
+    /// Euler's load by a part changes its deflection by so many times as much.
+    pub fn softened(&self, linear: &Linear) -> f64 {
+        let share = linear.euler_load.map_or(0.0, |euler| self.compression.max(0.0) / euler);
+        (share / (1.0 - share).abs().max(f64::EPSILON)).max(1.0)
     }
 
     /// A warning when a beam without inertia stayed straight although its compression passed Euler's load: an equilibrium,

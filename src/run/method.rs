@@ -209,6 +209,11 @@ impl<D: Dae> Integrator<D> {
         either!(self, one => one.yp())
     }
 
+    /// What the last step is estimated to have added to the errors of the unknowns; empty where that is not known.
+    pub fn local_errors(&mut self) -> &[f64] {
+        either!(self, one => one.local_errors())
+    }
+
     /// Derivative number `k` of the unknowns at a time [s] within the last step.
     pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
         either!(self, one => one.interpolate(time, k, out))

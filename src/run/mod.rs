@@ -9,6 +9,7 @@ pub mod equilibrium;
 pub mod estimate;
 pub mod figures;
 pub mod fit;
+pub mod floors;
 pub mod floquet;
 pub mod growth;
 pub mod krylov;

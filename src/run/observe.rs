@@ -14,6 +14,7 @@ use super::cubic::Cubic;
 use super::energies::Energies;
 use super::estimate::Estimator;
 use super::figures::{self, Figures};
+use super::floors::Floors;
 use super::growth::Growth;
 use super::range::{Limits, Range};
 use super::record::{Axis, Column, Field, Header, Recorder};
@@ -84,6 +85,7 @@ impl Observer {
         });
         let fields_every = (case.time.fields_interval() / interval).round().max(1.0) as u64;
         let columns: Vec<&str> = sample::columns(system).iter().map(|c| c.0).collect();
+        let floors = Floors::of_model(case, &system.model);
         Self {
             half_height: 0.5 * case.beam.height_m,
             cell_order,
@@ -93,10 +95,10 @@ impl Observer {
             before: None,
             turning: vec![],
             seen: Observed {
-                residuals: Residuals::new(system, case.solver.rtol),
+                residuals: Residuals::new(system, case.solver.rtol, floors),
                 figures: Figures::new(case, &columns),
-                energies: Energies::new(case, &columns),
-                estimate: Estimator::new(case, system),
+                energies: Energies::new(case, &columns, floors.energy),
+                estimate: Estimator::new(case, system, floors),
                 growth: Growth::new(case.time.end_s),
                 integrals: vec![0.0; ledger::flow_count(system)],
                 ..Observed::default()

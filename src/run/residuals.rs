@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::floors::Floors;
 use crate::discrete::ledger::{self, Flow, Invariants};
 use crate::discrete::sample::EnergyBalance;
 use crate::discrete::{Instant, System, Workspace};
@@ -36,11 +37,14 @@ pub struct Residuals {
     digits: f64,
     /// Squares of reactions and of their differences, integrated over time.
     reactions: [f64; 2],
+    /// Sizes that are round-off.
+    #[serde(default)]
+    floors: Floors,
 }
 
 impl Residuals {
-    /// Of a system of which nothing has been seen, integrated to a relative tolerance.
-    pub fn new(system: &System, rtol: f64) -> Self {
+    /// Of a system of which nothing has been seen, integrated to a relative tolerance; nothing is relative to what is below the floors.
+    pub fn new(system: &System, rtol: f64, floors: Floors) -> Self {
         let network = system.model.wet.as_ref().map(|wet| &wet.network);
         let closed: Vec<bool> = network.map_or(vec![], |n| (0..n.components).map(|c| n.is_closed(c)).collect());
         Self {
@@ -49,6 +53,7 @@ impl Residuals {
             port_flow: vec![[0.0; 3]; closed.len()],
             closed,
             digits: (DIGITS * rtol).min(MOST_DIGITS),
+            floors,
             ..Self::default()
         }
     }
@@ -120,7 +125,8 @@ impl Residuals {
 
     /// Worst difference of a network's flow through ports, by law and by storage, over the volume passed.
     pub fn port_flow_relative(&self) -> f64 {
-        let each = self.port_flow.iter().filter(|[_, passed, _]| *passed > 0.0);
+        let floor = self.floors.volume;
+        let each = self.port_flow.iter().filter(|[_, passed, _]| *passed > floor);
         each.map(|[missed, passed, finest]| (missed - self.digits * finest) / passed)
             .fold(0.0, f64::max)
     }
@@ -131,7 +137,7 @@ impl Residuals {
 
     /// Energy residual over the largest energy stored or put in.
     pub fn energy_relative(&self) -> f64 {
-        Self::relative(self.energy, self.energy_seen)
+        Self::relative(self.energy, self.energy_seen.max(self.floors.energy))
     }
 
     /// Worst volume residual over the largest volume displaced in the same network, or passed through its ports.
@@ -156,12 +162,13 @@ impl Residuals {
 
     /// Momentum residual over the largest momentum or impulse.
     pub fn momentum_relative(&self) -> f64 {
-        Self::relative(self.momentum, self.momentum_seen)
+        Self::relative(self.momentum, self.momentum_seen.max(self.floors.momentum))
     }
 
     /// Angular momentum residual over the largest angular momentum or angular impulse.
     pub fn angular_relative(&self) -> f64 {
-        Self::relative(self.angular, self.angular_seen)
+        let floor = self.floors.momentum * self.floors.length;
+        Self::relative(self.angular, self.angular_seen.max(floor))
     }
 
     /// Balances that stay open.

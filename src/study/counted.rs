@@ -2,58 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::case::Case;
-use crate::model::Model;
+pub use crate::run::floors::Floors;
+use crate::run::floors::NOTHING;
 use crate::run::summary::{Quantity, Summary};
-
-/// Quantities whose size is below this part of others of their unit, or of what the case is expected to do, are round-off.
-const NOTHING: f64 = 1e-6;
-/// Displacements below this part of the length, and pressures below this part of the modulus, need not be more than round-off;
-/// they count where the case is expected to do no more.
-const SMALL: f64 = 1e-9;
-
-/// Sizes below which quantities are round-off, known from the case alone: of a run in which nothing of a kind happens every
-/// figure of that kind is, and none stands beside a larger one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Floors {
-    /// Length of the beam [m].
-    length: f64,
-    /// Displacement [m], and angle times length.
-    displacement: f64,
-    /// Pressure [Pa].
-    pressure: f64,
-}
-
-impl Floors {
-    /// Of a case.
-    pub fn of(case: &Case) -> Self {
-        let scales = Model::new(case).scales;
-        let (length, modulus) = (case.beam.length_m, case.beam.young_modulus_pa);
-        Self {
-            length,
-            displacement: (SMALL * length).min(NOTHING * scales.transverse.max(scales.axial)),
-            pressure: (SMALL * modulus).min(NOTHING * scales.pressure),
-        }
-    }
-
-    /// In the unit that a quantity is compared in.
-    fn of_unit(&self, unit: &str, energy: f64) -> f64 {
-        match unit {
-            "m" => self.displacement,
-            "pa" => self.pressure,
-            "j" => NOTHING * energy,
-            _ => 0.0,
-        }
-    }
-
-    /// Unit and size in which a quantity is compared with others: an angle as the displacement that it makes.
-    fn weighed<'a>(&self, name: &'a str, q: &Quantity) -> (&'a str, f64) {
-        match name.rsplit('_').next().unwrap_or_default() {
-            "rad" => ("m", size(q) * self.length),
-            unit => (unit, size(q)),
-        }
-    }
-}
 
 /// Largest figure of a quantity, without its sign.
 pub fn size(quantity: &Quantity) -> f64 {
@@ -76,10 +27,10 @@ fn among<'a>(
     floors: &'a Floors,
 ) -> impl Iterator<Item = (&'a String, &'a Quantity)> {
     let counts = move |name: &str, q: &Quantity| {
-        let (unit, own) = floors.weighed(name, q);
+        let (unit, own) = floors.weighed(name, size(q));
         let alike = all
             .iter()
-            .map(|(other, q)| floors.weighed(other, q))
+            .map(|(other, q)| floors.weighed(other, size(q)))
             .filter(|(u, _)| *u == unit);
         let largest = NOTHING * alike.map(|(_, size)| size).fold(0.0, f64::max);
         own > largest.max(floors.of_unit(unit, energy)) || q.figures().any(|(_, x)| !x.is_finite())
@@ -105,8 +56,9 @@ mod tests {
         let names = |expected_m: f64, energy: f64, all: &[(&str, f64)]| -> Vec<String> {
             let floors = Floors {
                 length: 1.0,
-                displacement: SMALL.min(NOTHING * expected_m),
+                displacement: 1e-9_f64.min(NOTHING * expected_m),
                 pressure: 1e-3,
+                ..Floors::default()
             };
             let quantity = |last| Quantity {
                 last: Some(last),

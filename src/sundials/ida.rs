@@ -225,6 +225,13 @@ impl<D: Dae> Ida<D> {
         Ok(())
     }
 
+    /// What the last step is estimated to have added to the errors of the unknowns; empty where IDA does not tell.
+    pub fn local_errors(&mut self) -> &[f64] {
+        // SAFETY: IDA and the vector, to which it copies, are alive.
+        let flag = unsafe { s::IDAGetEstLocalErrors(self.memory.0, self.scratch.raw()) };
+        if flag < 0 { &[] } else { self.scratch.entries() }
+    }
+
     /// Goes on from consistent values at time `t` [s], forgetting the past, factors and pivots included, so that a new
     /// integrator from the same values would do the same bit for bit. Integrals start at zero. Costs about a dozen
     /// short steps.

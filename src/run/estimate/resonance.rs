@@ -1,9 +1,12 @@
 //! Drives near a vibration that the mesh misplaces.
 
+use std::f64::consts::TAU;
+
+use serde::{Deserialize, Serialize};
+
 use super::small::{self, SmallMode};
 use crate::case::{Rotation, Signal, Translation};
 use crate::discrete::System;
-use crate::error::Code;
 use crate::model::loads::LoadKind;
 
 /// Vibrations that are looked at: the first are computed, the others follow from the spacing of their wave numbers.
@@ -13,12 +16,38 @@ const NEAR: f64 = 3.0;
 /// Change of the answer that is told.
 const LARGE: f64 = 0.05;
 
-/// What to know of a drive across the beam that comes near a vibration: with δ the relative error of its frequency on this mesh,
+/// A drive near a vibration.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Near {
+    /// Of the drive [Hz].
+    pub drive_hz: f64,
+    /// Of the vibration without fluid [Hz].
+    pub vibration_hz: f64,
+    /// Relative error of that on this mesh.
+    pub misplaced: f64,
+    /// Relative change of what the drive excites.
+    pub change: f64,
+    /// Wave number of the vibration [1/m].
+    pub wave_number: f64,
+}
+
+impl Near {
+    /// Relative change of a displacement of a size [m], or of a slope (`turned`), in a motion whose accelerations are no larger than given
+    /// [m/s^2]: no more than `a/Ω²` of it is at the drive's frequency.
+    pub fn of(&self, size: f64, turned: bool, acceleration: f64) -> f64 {
+        let swing = acceleration / (TAU * self.drive_hz).powi(2);
+        let swing = if turned { swing * self.wave_number } else { swing };
+        self.change * (swing / size.max(f64::MIN_POSITIVE)).min(1.0)
+    }
+}
+
+/// The drive across the beam that comes so near a vibration that the mesh changes most what it excites: with δ the relative error of
+/// its frequency on this mesh,
 ///
 /// ```text
 /// q = f/(ω² - Ω²)     Δq/q = 2 δ ω²/(ω² - Ω²)
 /// ```
-pub fn warning(system: &System) -> Option<String> {
+pub fn nearest(system: &System) -> Option<Near> {
     if !system.layout.waves[0] {
         return None;
     }
@@ -27,32 +56,63 @@ pub fn warning(system: &System) -> Option<String> {
     let unit = (s.bending_stiffness / s.mass_per_length).sqrt() / (length * length);
     let fine = (system.mesh.h / length).powi(2);
     let modes = wave_numbers(&small::bending(&system.model.ends));
-    let mut worst: Option<(f64, f64, f64, f64)> = None;
-    across(system, |signal| {
-        let Some(tone) = signal.highest_tone_hz() else { return };
-        let drive = std::f64::consts::TAU * tone;
+    let mut worst: Option<Near> = None;
+    for drive_hz in tones(system)[0].iter().copied() {
+        let drive = TAU * drive_hz;
         for (beta, mesh) in &modes {
             let omega = beta * beta * unit;
             let damping = s.drag / s.mass_per_length + s.bending_damping_time * omega * omega;
             let answer = omega * omega / (omega * omega - drive * drive).hypot(damping * drive);
             let misplaced = (mesh * fine).abs();
             let change = 2.0 * misplaced * answer;
-            if answer > NEAR && change > LARGE && worst.is_none_or(|w| change > w.3) {
-                worst = Some((tone, omega / std::f64::consts::TAU, misplaced, change));
+            if answer > NEAR && change > LARGE && worst.is_none_or(|w| change > w.change) {
+                worst = Some(Near {
+                    drive_hz,
+                    vibration_hz: omega / TAU,
+                    misplaced,
+                    change,
+                    wave_number: beta / length,
+                });
             }
         }
-    });
-    let (tone, mode, misplaced, change) = worst?;
-    let size = if change < 1.0 {
-        format!("{:.0} %", 100.0 * change)
-    } else {
-        "all".into()
-    };
-    Some(Code::ErrorEstimate.warning(format!(
-        "estimate: the drive at {tone:.4} Hz comes near a vibration at {mode:.4} Hz, which the mesh misplaces by {:.1} %: what it excites may \
-         be off by about {size}, and largest values are off as well; more /mesh/cells_per_segment, or --accuracy, which measures",
-        100.0 * misplaced
-    )))
+    }
+    worst
+}
+
+/// Tones of what acts across and along the beam [Hz].
+pub fn tones(system: &System) -> [Vec<f64>; 2] {
+    let model = &system.model;
+    let (mut across, mut along) = (vec![], vec![]);
+    let hear = |tones: &mut Vec<f64>, signal: &Signal| tones.extend(signal.highest_tone_hz());
+    for end in &model.ends {
+        let (Translation::Displacement(moves) | Translation::Force(moves)) = &end.transverse;
+        let (Rotation::Slope(turns) | Rotation::Moment(turns)) = &end.rotation;
+        hear(&mut across, moves);
+        hear(&mut across, turns);
+        let (Translation::Displacement(moves) | Translation::Force(moves)) = &end.axial;
+        hear(&mut along, moves);
+        if let Some(follower) = &end.follower {
+            hear(&mut across, &follower.shear);
+            hear(&mut along, &follower.normal);
+        }
+    }
+    for load in &model.loads {
+        let tones = if load.kind == LoadKind::ForceZ {
+            &mut along
+        } else {
+            &mut across
+        };
+        hear(tones, &load.signal);
+    }
+    if let Some(wet) = &model.wet {
+        let network = &wet.network;
+        let ports = network.ports.iter().map(|port| &port.pressure);
+        for signal in ports.chain(network.sources.iter().map(|source| &source.flow)) {
+            hear(&mut across, signal);
+            hear(&mut along, signal);
+        }
+    }
+    [across, along]
 }
 
 /// `β` and the factor of the mesh's error of the frequency; beyond the computed ones `β` rises by π and the error with `β²`.
@@ -65,24 +125,4 @@ fn wave_numbers(computed: &[SmallMode]) -> Vec<(f64, f64)> {
         }
     }
     all
-}
-
-/// Visits what acts across the beam.
-fn across(system: &System, mut visit: impl FnMut(&Signal)) {
-    let model = &system.model;
-    for end in &model.ends {
-        let (Translation::Displacement(moves) | Translation::Force(moves)) = &end.transverse;
-        let (Rotation::Slope(turns) | Rotation::Moment(turns)) = &end.rotation;
-        visit(moves);
-        visit(turns);
-        if let Some(follower) = &end.follower {
-            visit(&follower.shear);
-        }
-    }
-    let loads = model.loads.iter().filter(|load| load.kind != LoadKind::ForceZ);
-    loads.for_each(|load| visit(&load.signal));
-    if let Some(wet) = &model.wet {
-        wet.network.ports.iter().for_each(|port| visit(&port.pressure));
-        wet.network.sources.iter().for_each(|source| visit(&source.flow));
-    }
 }

@@ -16,6 +16,31 @@ const STEADY: f64 = 1.05;
 /// More than this from one block to the next is no growth of a vibration, but a new one.
 const STRUCK: f64 = 2.0;
 
+/// Where a vibration is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Displacement of the tip.
+    Tip,
+    /// Slope of the tip [1/m].
+    Slope,
+    /// Largest displacement anywhere.
+    Anywhere,
+    /// Displacement in the middle.
+    Middle,
+    /// Pressure in sealed bladders where it is largest [Pa/m].
+    Pressure,
+}
+
+impl Place {
+    /// How many there are.
+    pub const COUNT: usize = 5;
+}
+
+/// Angular frequencies [1/s] between which a vibration is looked for, of the drained and of the sealed beam.
+pub fn band([low, high]: [f64; 2]) -> [f64; 2] {
+    [BELOW * low, ABOVE * high]
+}
+
 /// A mode of the straight beam, and what became of it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Vibration {
@@ -30,8 +55,10 @@ pub struct Vibration {
     mesh: f64,
     /// Rate at which drag and material take it away [1/s].
     damping: f64,
-    /// What a unit of the coordinate is: displacement of the tip, its slope [1/m], largest displacement anywhere.
-    pub places: [f64; 3],
+    /// What a unit of the coordinate is at every [`Place`].
+    pub places: [f64; Place::COUNT],
+    /// Whether something drives it within its band: it is no free vibration, and a shift of its frequency changes how far it swings.
+    pub driven: bool,
     /// Present guess of its frequency [1/s].
     frequency: f64,
     block: Block,
@@ -74,8 +101,10 @@ pub struct Known {
     pub mesh: f64,
     /// Rate at which drag and material take it away [1/s].
     pub damping: f64,
-    /// What a unit of the coordinate is: displacement of the tip, its slope [1/m], largest displacement anywhere.
-    pub places: [f64; 3],
+    /// What a unit of the coordinate is at every [`Place`].
+    pub places: [f64; Place::COUNT],
+    /// Whether something drives it within its band: it is no free vibration, and a shift of its frequency changes how far it swings.
+    pub driven: bool,
 }
 
 /// Factor by which a step multiplies a vibration beside the exact one, as logarithm of its modulus, and angle [rad], θ the angle
@@ -112,10 +141,11 @@ impl Vibration {
             first: known.first,
             weights: known.weights,
             rate: known.rate,
-            band: [BELOW * low, ABOVE * high],
+            band: band(known.frequencies),
             mesh: known.mesh,
             damping: known.damping,
             places: known.places,
+            driven: known.driven,
             frequency: (low * high).sqrt(),
             ..Self::default()
         }

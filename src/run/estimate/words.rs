@@ -1,0 +1,212 @@
+//! What the estimate says, and when it warns.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::Unstable;
+use super::resonance::Near;
+use crate::error::Code;
+use crate::run::summary::Estimate;
+
+/// Above this a figure is warned of.
+pub const LARGE: f64 = 0.05;
+/// From this factor on that compression softens a column it is told.
+const SOFT: f64 = 10.0;
+/// Finest mesh, in cells a segment, that is proposed.
+const FINEST: f64 = 64.0;
+/// Tightest tolerance that is proposed.
+const TIGHTEST: f64 = 1e-9;
+
+/// What the estimate says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Estimated {
+    /// By steps, of the figure that is off most, relative to the largest value of its quantity.
+    pub time: f64,
+    /// By the mesh, likewise.
+    pub space: f64,
+    /// The quantity whose final value that is.
+    pub of: String,
+    /// Part of it that is phase of one vibration: it is in final values, and hardly in largest values or root mean squares.
+    pub phase: f64,
+    /// Vibrations gone, of the mode that is off most.
+    pub vibrations: f64,
+    /// By what angle mesh and steps have shifted it [rad].
+    pub shift_rad: f64,
+    /// By what factor the deflection grows by itself, and errors with it; absent where it does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub growth: Option<f64>,
+    /// How many times as much as a part of Euler's load a deflection changes, where compression came near it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub softened: Option<f64>,
+    /// A drive near a vibration that the mesh misplaces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub near: Option<Near>,
+    /// All quantities.
+    pub quantities: BTreeMap<String, Estimate>,
+}
+
+/// One quantity as it is judged.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The quantity.
+    pub name: &'static str,
+    /// Errors by steps and by the mesh, relative to its largest value.
+    pub errors: [f64; 2],
+    /// Part that is phase of one free vibration.
+    pub phase: f64,
+    /// Vibrations gone, and the angle of their shift [rad].
+    pub vibrations: f64,
+    /// See above.
+    pub shift: f64,
+}
+
+impl Row {
+    /// With errors times a factor.
+    pub fn times(self, factor: f64) -> Self {
+        Self {
+            errors: self.errors.map(|x| factor * x),
+            phase: factor * self.phase,
+            ..self
+        }
+    }
+
+    /// By steps and by the mesh.
+    pub fn total(&self) -> f64 {
+        self.errors[0] + self.errors[1]
+    }
+}
+
+impl Estimated {
+    /// Of all quantities that say something; none where there is none.
+    pub fn of(rows: &[Row], unstable: &Unstable, near: Option<Near>) -> Option<Self> {
+        let worst = rows.iter().max_by(|a, b| a.total().total_cmp(&b.total()))?;
+        let one = |row: &Row| {
+            let [time, space] = row.errors;
+            let estimate = Estimate {
+                time: Some(time),
+                space: Some(space),
+                total: Some(time + space),
+                ..Estimate::default()
+            };
+            (row.name.to_string(), estimate)
+        };
+        Some(Self {
+            time: worst.errors[0],
+            space: worst.errors[1],
+            of: worst.name.into(),
+            phase: worst.phase,
+            vibrations: worst.vibrations,
+            shift_rad: worst.shift,
+            growth: beyond_one(unstable.grown),
+            softened: beyond_one(unstable.softened).filter(|x| *x > SOFT),
+            near,
+            quantities: rows.iter().map(one).collect(),
+        })
+    }
+
+    /// What to know where it is large: which figures, why, and what to set. `cells` a segment, `rtol`: those of the run.
+    pub fn warning(&self, rows: &[Row], cells: usize, rtol: f64) -> Option<String> {
+        let mut large: Vec<&Row> = rows.iter().filter(|row| row.total() > LARGE).collect();
+        large.sort_by(|a, b| b.total().total_cmp(&a.total()));
+        let worst = *large.first()?;
+        let names: Vec<String> = large
+            .iter()
+            .map(|r| format!("{} {}", r.name, size(r.total())))
+            .collect();
+        let phase = |row: &Row| row.total() - row.phase <= LARGE && row.phase > 0.5 * row.total();
+        let only_phase = self.growth.is_none() && self.softened.is_none() && large.iter().all(|row| phase(row));
+        let (figures, because) = match only_phase {
+            true => (
+                "final values",
+                format!(
+                    "after {:.0} vibrations mesh and steps have shifted the phase by {:.2} rad; largest values and root mean \
+                     squares are hardly affected",
+                    worst.vibrations, worst.shift
+                ),
+            ),
+            false => ("values", self.because(large.iter().any(|row| row.name.ends_with("_j")))),
+        };
+        let [time, space] = worst.errors;
+        let (by, other) = match time > space {
+            true => (
+                "by steps",
+                format!("{} by the mesh), {}", size(space), tighter(time, rtol)),
+            ),
+            false => (
+                "by the mesh",
+                format!(
+                    "{} by steps), {}",
+                    size(time),
+                    finer(space.max(if only_phase { worst.shift } else { 0.0 }), cells)
+                ),
+            ),
+        };
+        Some(Code::ErrorEstimate.warning(format!(
+            "estimate: {figures} may be off by about these parts of the largest: {}; mostly {by} ({} of {}, {other}: {because}; --accuracy \
+             measures",
+            names.join(", "),
+            size(time.max(space)),
+            worst.name,
+        )))
+    }
+
+    fn because(&self, energies: bool) -> String {
+        let near = self.near.map(|near| {
+            format!(
+                "the drive at {:.4} Hz comes near a vibration at {:.4} Hz, which the mesh misplaces by {:.1} %",
+                near.drive_hz,
+                near.vibration_hz,
+                100.0 * near.misplaced
+            )
+        });
+        let growth = self.growth.map(|factor| {
+            format!(
+                "the deflection grows by a factor of {factor:.3}, and errors at least with it, so that this is a guess"
+            )
+        });
+        let soft = self.softened.map(|factor| {
+            format!("compression came so near Euler's load that what the mesh changes of that counts {factor:.0} times")
+        });
+        let all: Vec<String> = near.into_iter().chain(growth).chain(soft).collect();
+        let why = match all.is_empty() {
+            true => "the mesh is coarse, or the tolerance loose, for what the beam does".into(),
+            false => all.join("; "),
+        };
+        let most = if energies { ", energies most" } else { "" };
+        format!("{why}; largest values are off as well{most}")
+    }
+}
+
+fn beyond_one(factor: f64) -> Option<f64> {
+    (factor > 1.0).then_some(factor)
+}
+
+/// An error in words.
+fn size(x: f64) -> String {
+    match x {
+        x if x >= 1.0 => "all".into(),
+        x if x < 0.005 => "0 %".into(),
+        x => format!("{:.0} %", 100.0 * x),
+    }
+}
+
+/// Cells a segment that leave half of what is warned of, of an error on fewer: of second order.
+fn finer(error: f64, cells: usize) -> String {
+    let doubled = (2.0 * error / LARGE).sqrt().log2().ceil().max(1.0);
+    let wanted = cells as f64 * doubled.exp2();
+    match wanted <= FINEST {
+        true => format!("/mesh/cells_per_segment={wanted:.0} in place of {cells}"),
+        false => format!(
+            "/mesh/cells_per_segment={:.0} or more in place of {cells}",
+            FINEST.max(2.0 * cells as f64)
+        ),
+    }
+}
+
+/// The tolerance that leaves half of what is warned of, of an error at another one.
+fn tighter(error: f64, rtol: f64) -> String {
+    let tenths = (2.0 * error / LARGE).log10().ceil().max(1.0);
+    let wanted = (rtol * 10.0_f64.powf(-tenths)).max(TIGHTEST);
+    format!("/solver/rtol={wanted:.0e} in place of {rtol:.0e}")
+}
