@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use super::checkpoint::{Checkpoint, VERSION};
 use super::equilibrium;
-use super::estimate::resonance;
 use super::growth::Linear;
+use super::known;
 use super::method::{self, Integrator, Options};
 use super::observe::Observer;
 use super::order;
@@ -17,9 +17,9 @@ use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::ledger::FLOWS;
-use crate::discrete::{System, resolution, start};
+use crate::discrete::{System, start};
 use crate::error::{Code, Error, Result, SolverFault};
-use crate::model::{audit, characteristic};
+use crate::model::characteristic;
 use crate::sundials::{IdaFailure, StartFailure, StartOptions, consistent_start};
 
 /// A run that ended, in whatever way; everything up to its end is recorded.
@@ -126,9 +126,7 @@ impl<'a> Run<'a> {
         let begin = Instant::now();
         let interval = case.time.output_interval();
         let characteristic = characteristic::numbers(case, &system.model);
-        let mut warnings = audit::lasting(case, &system.model, &characteristic);
-        warnings.extend(resolution::warnings(case, &system));
-        warnings.extend(resonance::warning(&system));
+        let warnings = known::lasting(case, &system);
         let decisions = &system.model.effects.decisions;
         let chosen = if parameters.is_empty() {
             method::choose(case, &system)

@@ -11,6 +11,7 @@ pub mod figures;
 pub mod fit;
 pub mod floquet;
 pub mod growth;
+pub mod known;
 pub mod krylov;
 pub mod method;
 pub mod modes;

@@ -15,6 +15,8 @@ const MODES: usize = 96;
 const FOLLOWED: usize = 4;
 /// Cells on which shape and vibrations are compared, eight a half-wave of the shortest.
 const CELLS: usize = 8 * MODES;
+/// Part of a shape below which a vibration in it is round-off.
+const NOTHING: f64 = 1e-9;
 /// Below this exponent a wave that dies away from an end is gone.
 const GONE: f64 = -40.0;
 
@@ -46,16 +48,18 @@ impl Vibrations {
             ((s.axial_stiffness / s.mass_per_length).sqrt() / length, s.axial_damping_time)
         };
         let modes = if bends { bending(model) } else { axial(model) };
-        let against = shapes::at_nodes(profile, CELLS);
+        let mut given = shapes::at_nodes(profile, CELLS);
+        let largest = given.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        for rigid in rigid(model, bends) {
+            let [part, square] = products(&given, rigid);
+            let removed = part / square;
+            let values = given.iter_mut().enumerate();
+            values.for_each(|(k, value)| *value -= removed * rigid(k as f64 / CELLS as f64));
+        }
         let one = |mode: &Mode| {
-            let (mut part, mut square) = (0.0, 0.0);
-            for (k, value) in against.iter().enumerate() {
-                let share = if k == 0 || k == CELLS { 0.5 } else { 1.0 };
-                let shape = mode.at(k as f64 / CELLS as f64);
-                part += share * value * shape;
-                square += share * shape * shape;
-            }
+            let [part, square] = products(&given, |x| mode.at(x));
             let amplitude = part / (CELLS as f64 * square).sqrt();
+            let amplitude = if amplitude.abs() > NOTHING * largest { amplitude } else { 0.0 };
             let swings = if bends { mode.beta * mode.beta } else { mode.beta };
             (mode.beta, if displacement { amplitude } else { amplitude / swings })
         };
@@ -122,6 +126,35 @@ impl Mode {
             if factor == 0.0 || exponent < GONE { 0.0 } else { factor * exponent.exp() }
         };
         a * cos + b * sin + dying(c, x) + dying(d, 1.0 - x)
+    }
+}
+
+/// `Σ f g` and `Σ g²` over nodes, half at the ends.
+fn products(f: &[f64], g: impl Fn(f64) -> f64) -> [f64; 2] {
+    let mut sums = [0.0; 2];
+    for (k, value) in f.iter().enumerate() {
+        let share = if k == 0 || k == CELLS { 0.5 } else { 1.0 };
+        let shape = g(k as f64 / CELLS as f64);
+        sums[0] += share * value * shape;
+        sums[1] += share * shape * shape;
+    }
+    sums
+}
+
+/// Motions of the beam as a whole that its ends let it do, across each other.
+fn rigid(model: &Model, bends: bool) -> Vec<fn(f64) -> f64> {
+    let [root, tip] = [0, 1].map(|end| {
+        let end = &model.ends[end];
+        let motion = if bends { &end.transverse } else { &end.axial };
+        matches!(motion, Translation::Displacement(_))
+    });
+    let turns = bends && !model.ends.iter().any(|end| matches!(end.rotation, Rotation::Slope(_)));
+    match (root, tip) {
+        (false, false) if turns => vec![|_| 1.0, |x| x - 0.5],
+        (false, false) => vec![|_| 1.0],
+        (true, false) if turns => vec![|x| x],
+        (false, true) if turns => vec![|x| 1.0 - x],
+        _ => vec![],
     }
 }
 
