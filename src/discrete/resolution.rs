@@ -60,7 +60,11 @@ fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Findin
     for begun in Begun::all(case, system) {
         let on = |cells: usize| {
             let cells = segments * cells;
-            if later { begun.left_out(cells) } else { begun.at_once(cells) }
+            if later {
+                begun.left_out(cells)
+            } else {
+                begun.at_once(cells)
+            }
         };
         all.push(finding(begun.pointer(), cells, along, on));
     }

@@ -66,11 +66,7 @@ impl At {
     /// So many times coarser, or finer, by a factor of two, or of ten.
     fn moved(self, axis: Axis, finer: i32) -> Self {
         let times = |count: usize| {
-            if finer < 0 {
-                count >> -finer
-            } else {
-                count << finer
-            }
+            if finer < 0 { count >> -finer } else { count << finer }
         };
         let mut at = self;
         match axis {
@@ -249,7 +245,11 @@ impl Search<'_> {
             .map(|(axis, errors)| (most(errors.values().copied()), at.moved(*axis, 1)))
             .collect();
         worst.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let stuck: f64 = worst.iter().filter(|(_, to)| !to.possible()).map(|(error, _)| error).sum();
+        let stuck: f64 = worst
+            .iter()
+            .filter(|(_, to)| !to.possible())
+            .map(|(error, _)| error)
+            .sum();
         let best = worst.into_iter().find(|(error, to)| *error > 0.0 && to.possible())?;
         (stuck <= asked).then_some(best.1)
     }

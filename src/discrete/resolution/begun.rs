@@ -47,7 +47,11 @@ impl<'a> Begun<'a> {
         let model = &system.model;
         let of = |(key, profile, displacement, bends): (&'static str, &'a Option<Profile>, bool, bool)| {
             let profile = profile.as_ref()?;
-            let free = if bends { &system.layout.free_u1 } else { &system.layout.free_u3 };
+            let free = if bends {
+                &system.layout.free_u1
+            } else {
+                &system.layout.free_u3
+            };
             let waves = system.layout.waves[usize::from(!bends)] && !free.is_empty();
             Some(Self {
                 key,
@@ -145,7 +149,10 @@ impl Held {
         };
         let inner: f64 = slopes.windows(2).map(|s| (s[1] - s[0]).powi(2) / h).sum();
         let end = |given: Option<f64>, slope: f64| given.map_or(0.0, |given| 2.0 * (slope - given).powi(2) / h);
-        (inner + end(at_root, slopes[0]) + end(at_tip, slopes[cells - 1]), largest / h)
+        (
+            inner + end(at_root, slopes[0]) + end(at_tip, slopes[cells - 1]),
+            largest / h,
+        )
     }
 }
 
@@ -182,7 +189,10 @@ fn of_squares(profile: &Profile, cells: usize) -> f64 {
     let over_nodes = |of: &dyn Fn(usize) -> f64| (0..=cells).map(|i| length(i) * of(i)).sum::<f64>();
     let both = over_nodes(&|i| w[i] * means[i]);
     let lumped = over_nodes(&|i| w[i] * w[i]);
-    let lines = w.windows(2).map(|w| h / 3.0 * (w[0] * (w[0] + w[1]) + w[1] * w[1])).sum::<f64>();
+    let lines = w
+        .windows(2)
+        .map(|w| h / 3.0 * (w[0] * (w[0] + w[1]) + w[1] * w[1]))
+        .sum::<f64>();
     let square = Profile::Product(vec![profile.clone(), profile.clone()]);
     let exact = Integrals::of(&square).moments(0.0, 1.0)[0].max(0.0);
     if exact <= 0.0 {

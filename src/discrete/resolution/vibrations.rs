@@ -45,7 +45,10 @@ impl Vibrations {
                 s.bending_damping_time,
             )
         } else {
-            ((s.axial_stiffness / s.mass_per_length).sqrt() / length, s.axial_damping_time)
+            (
+                (s.axial_stiffness / s.mass_per_length).sqrt() / length,
+                s.axial_damping_time,
+            )
         };
         let modes = if bends { bending(model) } else { axial(model) };
         let mut given = shapes::at_nodes(profile, CELLS);
@@ -59,7 +62,11 @@ impl Vibrations {
         let one = |mode: &Mode| {
             let [part, square] = products(&given, |x| mode.at(x));
             let amplitude = part / (CELLS as f64 * square).sqrt();
-            let amplitude = if amplitude.abs() > NOTHING * largest { amplitude } else { 0.0 };
+            let amplitude = if amplitude.abs() > NOTHING * largest {
+                amplitude
+            } else {
+                0.0
+            };
             let swings = if bends { mode.beta * mode.beta } else { mode.beta };
             (mode.beta, if displacement { amplitude } else { amplitude / swings })
         };
@@ -107,7 +114,11 @@ impl Vibrations {
         let decay = 0.5 * (self.damping[0] + self.damping[1] * omega * omega);
         let time = self.end.min(1.0 / decay.max(f64::MIN_POSITIVE));
         let phase = omega * (1.0 - ratio) * time;
-        if phase < FRAC_PI_2 { 2.0 * (0.5 * phase).sin() } else { SQRT_2 }
+        if phase < FRAC_PI_2 {
+            2.0 * (0.5 * phase).sin()
+        } else {
+            SQRT_2
+        }
     }
 }
 
@@ -123,7 +134,11 @@ impl Mode {
         let (sin, cos) = (self.beta * x).sin_cos();
         let dying = |factor: f64, distance: f64| {
             let exponent = -self.beta * distance;
-            if factor == 0.0 || exponent < GONE { 0.0 } else { factor * exponent.exp() }
+            if factor == 0.0 || exponent < GONE {
+                0.0
+            } else {
+                factor * exponent.exp()
+            }
         };
         a * cos + b * sin + dying(c, x) + dying(d, 1.0 - x)
     }
@@ -163,7 +178,11 @@ fn axial(model: &Model) -> Vec<Mode> {
     let shift = if held[0] == held[1] { 0.0 } else { FRAC_PI_2 };
     let one = |k: usize| Mode {
         beta: k as f64 * PI - shift,
-        factors: if held[0] { [0.0, 1.0, 0.0, 0.0] } else { [1.0, 0.0, 0.0, 0.0] },
+        factors: if held[0] {
+            [0.0, 1.0, 0.0, 0.0]
+        } else {
+            [1.0, 0.0, 0.0, 0.0]
+        },
     };
     (1..=MODES).map(one).collect()
 }

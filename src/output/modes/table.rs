@@ -54,8 +54,16 @@ pub fn table(report: &Report) -> String {
         let cells = cells.zip(shown).filter(|(_, shown)| *shown).map(|(cell, _)| cell);
         let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ").trim_end());
     }
-    if found.modes.iter().any(|m| m.by_mesh.beam.or(m.by_mesh.bladders).is_some()) {
-        let bladders = if found.bladders_compared { " and twice those of each bladder" } else { "" };
+    if found
+        .modes
+        .iter()
+        .any(|m| m.by_mesh.beam.or(m.by_mesh.bladders).is_some())
+    {
+        let bladders = if found.bladders_compared {
+            " and twice those of each bladder"
+        } else {
+            ""
+        };
         let _ = writeln!(
             text,
             "\nmesh error: how far half the cells of the beam{bladders} say that this one is off, to second order"

@@ -85,7 +85,10 @@ impl Mode {
     /// None where neither mesh could be compared.
     pub fn extrapolated(&self) -> Option<Complex<f64>> {
         let ByMesh { beam, bladders } = self.by_mesh;
-        beam.into_iter().chain(bladders).reduce(|a, b| a + b).map(|more| self.s + more)
+        beam.into_iter()
+            .chain(bladders)
+            .reduce(|a, b| a + b)
+            .map(|more| self.s + more)
     }
 
     /// The frequency to which meshes point [Hz]; None where nothing swings or no other mesh has such a mode.
@@ -104,13 +107,17 @@ impl Mode {
     /// is none.
     pub fn rate_error(&self) -> Option<f64> {
         let rate = self.s.re.abs();
-        (rate > UNDAMPED * self.s.norm()).then(|| self.off(|s| s.re, rate)).flatten()
+        (rate > UNDAMPED * self.s.norm())
+            .then(|| self.off(|s| s.re, rate))
+            .flatten()
     }
 
     fn off(&self, part: fn(Complex<f64>) -> f64, of: f64) -> Option<f64> {
         let ByMesh { beam, bladders } = self.by_mesh;
         let both = beam.into_iter().chain(bladders);
-        both.map(|more| part(more).abs()).reduce(|a, b| a + b).map(|off| off / of.abs())
+        both.map(|more| part(more).abs())
+            .reduce(|a, b| a + b)
+            .map(|off| off / of.abs())
     }
 
     /// Damping ratio, negative where the mode grows; None where nothing swings.
@@ -168,7 +175,8 @@ pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
         };
         for fluid in [Fluid::Sealed, Fluid::Free] {
             // more than asked for may be more than converge; a limit that is not found is not shown
-            let Ok(others) = search(&about, fluid, &wider, &mut tally).or_else(|_| search(&about, fluid, plan, &mut tally))
+            let Ok(others) =
+                search(&about, fluid, &wider, &mut tally).or_else(|_| search(&about, fluid, plan, &mut tally))
             else {
                 continue;
             };
@@ -269,7 +277,12 @@ fn mode(about: &Linearised, shapes: &mut Shapes, pair: &Pair) -> Option<Mode> {
 
 /// Pairs oscillations with those of other equations: places in both lists, and the likeness of the shapes.
 fn matched(modes: &[Mode], others: &[Mode]) -> Vec<(usize, usize, f64)> {
-    paired(modes, others, |mode| mode.kind.swings(), |a, b| likeness(&a.shape, &b.shape))
+    paired(
+        modes,
+        others,
+        |mode| mode.kind.swings(),
+        |a, b| likeness(&a.shape, &b.shape),
+    )
 }
 
 /// Likeness above which two modes may be the same.

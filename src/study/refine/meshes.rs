@@ -88,19 +88,27 @@ impl Meshes {
         };
         for (name, number) in here {
             let size = number.value.abs().max(number.size).max(f64::MIN_POSITIVE);
-            let error = there.get(name).map(|other| factor * (other.value - number.value).abs() / size);
+            let error = there
+                .get(name)
+                .map(|other| factor * (other.value - number.value).abs() / size);
             *part(self.quantities.entry(name.clone()).or_default()) = error.filter(|e| e.is_finite());
         }
     }
 
     fn worst(&self) -> Option<(&String, &Share)> {
-        self.quantities.iter().max_by(|a, b| a.1.total().total_cmp(&b.1.total()))
+        self.quantities
+            .iter()
+            .max_by(|a, b| a.1.total().total_cmp(&b.1.total()))
     }
 
     /// The worst of them, in a line.
     pub fn words(&self) -> Option<String> {
         let (name, share) = self.worst()?;
-        Some(format!("mesh error: at most about {}, that of {name}{}", percent(share.total()), share.parts()))
+        Some(format!(
+            "mesh error: at most about {}, that of {name}{}",
+            percent(share.total()),
+            share.parts()
+        ))
     }
 
     /// What to know where it is large, or not known.
@@ -124,10 +132,16 @@ impl Meshes {
                 share.parts()
             )
         });
-        let unknown = self.unknown.first().map(|why| format!("what a mesh does is not known, of the {why}"));
+        let unknown = self
+            .unknown
+            .first()
+            .map(|why| format!("what a mesh does is not known, of the {why}"));
         let all: Vec<String> = large.into_iter().chain(unknown).collect();
         (!all.is_empty()).then(|| {
-            Code::ErrorEstimate.warning(format!("estimate: {}, or --accuracy, which refines the meshes", all.join("; ")))
+            Code::ErrorEstimate.warning(format!(
+                "estimate: {}, or --accuracy, which refines the meshes",
+                all.join("; ")
+            ))
         })
     }
 }
