@@ -91,3 +91,26 @@ pub fn diagnosis(fault: &SolverFault) -> String {
     }
     lines.join("\n")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: what does not run does not fail at a time of a run.
+    #[test]
+    fn only_runs_fail_at_a_time() {
+        let words = |code| {
+            diagnosis(&SolverFault {
+                code,
+                time_s: 0.25,
+                what: "no such thing".into(),
+                unknown: None,
+                cause: None,
+                hint: None,
+            })
+        };
+        assert_eq!(words(Code::NoModes), "slcbeam: no such thing (slcbeam explain E047)");
+        assert!(words(Code::Integrator).contains("the run failed at t = 2.500000e-1 s"));
+        assert!(words(Code::NoCycle).contains("no cycle") && !words(Code::NoCycle).contains("run failed"));
+    }
+}
