@@ -57,7 +57,12 @@ fn say(command: &str, case: &Value, more: &[&str]) -> Said {
 fn warned(said: &Said, code: &str) -> Option<String> {
     let all = said.json["warnings"].as_array().expect("warnings");
     let found = all.iter().filter_map(Value::as_str).find(|w| w.starts_with(code));
-    assert_eq!(found.is_some(), said.out.contains(&format!("warning: {code}")), "{}", said.out);
+    assert_eq!(
+        found.is_some(),
+        said.out.contains(&format!("warning: {code}")),
+        "{}",
+        said.out
+    );
     found.map(String::from)
 }
 
@@ -94,14 +99,24 @@ fn every_command_tells_what_is_known_of_a_case() {
 #[test]
 fn modes_tell_what_cells_along_bladders_do_to_rates() {
     let said = say("modes", &through(), &["--count", "2"]);
-    let fine = say("modes", &through(), &["--count", "2", "--set", "/mesh/cells_per_bladder=16"]);
-    assert!(warned(&said, "W021").is_some_and(|w| w.contains("the rate of mode 2")), "{}", said.out);
+    let fine = say(
+        "modes",
+        &through(),
+        &["--count", "2", "--set", "/mesh/cells_per_bladder=16"],
+    );
+    assert!(
+        warned(&said, "W021").is_some_and(|w| w.contains("the rate of mode 2")),
+        "{}",
+        said.out
+    );
     for k in 0..2 {
         let number = |said: &Said, key: &str| said.json["modes"][k][key].as_f64().unwrap();
         let (here, exact) = (number(&said, "growth_per_s"), number(&fine, "growth_per_s"));
         let extrapolated = number(&said, "extrapolated_growth_per_s");
         let (error, told) = ((exact / here - 1.0).abs(), number(&said, "rate_mesh_error"));
-        println!("rate {here:.3} 1/s, extrapolated {extrapolated:.3}, on 16 cells {exact:.3}: off by {error:.3}, told {told:.3}");
+        println!(
+            "rate {here:.3} 1/s, extrapolated {extrapolated:.3}, on 16 cells {exact:.3}: off by {error:.3}, told {told:.3}"
+        );
         assert!(told > 0.8 * error && told < 3.0 * error);
         assert!((extrapolated - exact).abs() < 0.35 * (here - exact).abs());
     }
@@ -113,11 +128,17 @@ fn modes_tell_what_cells_along_bladders_do_to_rates() {
 fn equilibria_and_cycles_tell_what_meshes_do() {
     let said = say("equilibrium", &through(), &[]);
     let told = warned(&said, "W021").unwrap_or_else(|| panic!("{}", said.out));
-    assert!(told.contains("max_pressure") && told.contains("/mesh/cells_per_bladder"), "{told}");
+    assert!(
+        told.contains("max_pressure") && told.contains("/mesh/cells_per_bladder"),
+        "{told}"
+    );
     let error = 5000.0 / said.json["quantities"]["max_pressure_pa"].as_f64().unwrap() - 1.0;
     let share = &said.json["meshes"]["quantities"]["max_pressure"];
     let by_bladders = share["bladders"].as_f64().unwrap();
-    assert!((by_bladders / error - 1.0).abs() < 0.05 && error > 0.05, "{error} {share}");
+    assert!(
+        (by_bladders / error - 1.0).abs() < 0.05 && error > 0.05,
+        "{error} {share}"
+    );
     let fine = say("equilibrium", &through(), &["--set", "/mesh/cells_per_bladder=16"]);
     assert!(warned(&fine, "W021").is_none(), "{}", fine.out);
 
@@ -158,5 +179,8 @@ fn cells_are_refined_where_it_helps() {
     let accuracy = &said.json["accuracy"];
     assert_eq!(accuracy["reached"], true, "{accuracy:#}");
     let cells = |key: &str| accuracy[key].as_u64().unwrap();
-    assert!(cells("cells_per_segment") <= 8 && cells("cells_per_bladder") >= 8, "{accuracy:#}");
+    assert!(
+        cells("cells_per_segment") <= 8 && cells("cells_per_bladder") >= 8,
+        "{accuracy:#}"
+    );
 }

@@ -54,9 +54,10 @@ fn one(asked: &FloquetArguments, loaded: &LoadedCase) -> Result<ExitCode> {
     let found = floquet::multipliers(&scene, &mut cycle, asked.count);
     bar.set_message("the same on other meshes");
     let accuracy = refined.as_ref().map(|(_, accuracy)| accuracy);
-    let meshes = accuracy
-        .is_none()
-        .then(|| refine::meshes::judge(case, &refine::numbers::of_floquet(&found), &mut of));
+    let meshes = accuracy.is_none().then(|| {
+        let mut of = |case: &Case| refine::numbers::of_growth(case, asked.period, asked.count);
+        refine::meshes::judge(case, &refine::numbers::of_stability(&found), &mut of)
+    });
     bar.finish_and_clear();
     let mut warnings = known::without_outputs(case, &System::with(case, whole(case)));
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));

@@ -79,7 +79,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let meshes = (outcome.summary.accuracy.is_none() && finished).then(|| {
         bar.set_message("the same on other meshes");
         let mut here = refine::numbers::of_summary(&case, &outcome.summary);
-        here.extend(refine::numbers::of_floquet(&found));
+        here.extend(refine::numbers::of_stability(&found));
         let mut of = |case: &Case| refine::numbers::of_cycle_and_multipliers(case, COUNT);
         refine::meshes::judge(&case, &here, &mut of)
     });

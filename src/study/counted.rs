@@ -19,9 +19,9 @@ pub struct Floors {
     /// Length of the beam [m].
     length: f64,
     /// Displacement [m], and angle times length.
-    displacement: f64,
+    pub(in crate::study) displacement: f64,
     /// Pressure [Pa].
-    pressure: f64,
+    pub(in crate::study) pressure: f64,
 }
 
 impl Floors {

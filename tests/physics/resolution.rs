@@ -161,7 +161,13 @@ fn waves_that_a_mesh_slows_down_are_told() {
     let early = begun("u3_m", &triangle(0.5, 0.1, 1e-4), r#""free""#, 16, 1e-5);
     assert!(resolution::unresolved(&early, &System::new(&early)).is_empty());
     // The first vibration loses its phase in the long run, which is told by the run itself.
-    let first = begun("u3_m", r#"{"sine":{"waves":0.25,"amplitude":1e-4}}"#, r#""free""#, 2, 1.0);
+    let first = begun(
+        "u3_m",
+        r#"{"sine":{"waves":0.25,"amplitude":1e-4}}"#,
+        r#""free""#,
+        2,
+        1.0,
+    );
     assert!(resolution::unresolved(&first, &System::new(&first)).is_empty());
 }
 
@@ -169,7 +175,13 @@ fn waves_that_a_mesh_slows_down_are_told() {
 #[test]
 fn velocities_between_nodes_are_told_on_every_coarse_mesh() {
     for cells in [1, 2, 4, 5, 8] {
-        let case = begun("u1_rate_m_s", &triangle(0.52, 0.02, 3.0), r#"{"guided":{}}"#, cells, 0.3);
+        let case = begun(
+            "u1_rate_m_s",
+            &triangle(0.52, 0.02, 3.0),
+            r#"{"guided":{}}"#,
+            cells,
+            0.3,
+        );
         assert!(left_out(&case)[0] > resolution::LIMIT, "{cells}: {:?}", left_out(&case));
     }
     let fine = begun("u1_rate_m_s", &triangle(0.52, 0.02, 3.0), r#"{"guided":{}}"#, 32, 0.3);
@@ -181,20 +193,31 @@ fn velocities_between_nodes_are_told_on_every_coarse_mesh() {
 fn energy_that_is_wrong_at_the_start_is_told() {
     let energy = |case: &Case| -> f64 {
         let all = &run(case).summary.balances.energy_j;
-        ["kinetic_energy", "axial_energy", "bending_energy"].iter().map(|name| all[*name]).sum()
+        ["kinetic_energy", "axial_energy", "bending_energy"]
+            .iter()
+            .map(|name| all[*name])
+            .sum()
     };
     let mut runner = TestRunner::deterministic();
     let (mut told, mut wrong) = (0, 0);
     for _ in 0..40 {
         let drawn = (0..4_usize, 0.15..0.85_f64, 0.01..0.14_f64, 1..4_usize);
         let (what, middle, half, cells) = drawn.new_tree(&mut runner).unwrap().current();
-        let (key, height) = [("u1_m", 1e-4), ("u3_m", 1e-6), ("u1_rate_m_s", 0.01), ("u3_rate_m_s", 0.01)][what];
+        let (key, height) = [
+            ("u1_m", 1e-4),
+            ("u3_m", 1e-6),
+            ("u1_rate_m_s", 0.01),
+            ("u3_rate_m_s", 0.01),
+        ][what];
         let on = |cells| begun(key, &triangle(middle, half, height), r#""free""#, cells, 1e-7);
         let (coarse, fine) = (energy(&on(cells)), energy(&on(8 * cells)));
         let error = ((coarse / fine).sqrt() - 1.0).abs();
         let found = !resolution::unresolved(&on(cells), &System::new(&on(cells))).is_empty();
         (told, wrong) = (told + usize::from(found), wrong + usize::from(error > 0.05));
-        assert!(found || error < 0.06, "{key} at {middle} of {half}, {cells} cells: {error}");
+        assert!(
+            found || error < 0.06,
+            "{key} at {middle} of {half}, {cells} cells: {error}"
+        );
     }
     println!("40 starts: {wrong} off by more than 5 %, {told} told");
 }

@@ -117,10 +117,19 @@ fn elsewhere(
     Some((others, pairs))
 }
 
-/// Pairs of what decays, or grows, without swinging: the most alike in displacements and pressures together.
+/// Pairs of what decays, or grows, without swinging: the most alike in displacements and pressures together. Of flows to and fro within
+/// bladders neither tells much: what is left goes in the order in which it was found.
 fn real(modes: &[Mode], others: &[Mode], length: f64) -> Vec<(usize, usize, f64)> {
     let real = |mode: &Mode| !mode.kind.swings() && !mode.kind.stays();
-    super::paired(modes, others, real, |a, b| alike(&a.shape, &b.shape, length))
+    let mut pairs = super::paired(modes, others, real, |a, b| alike(&a.shape, &b.shape, length));
+    let left = |all: &[Mode], taken: &dyn Fn(usize) -> bool| -> Vec<usize> {
+        let open = all.iter().enumerate().filter(|(k, mode)| real(mode) && !taken(*k));
+        open.map(|(k, _)| k).collect()
+    };
+    let here = left(modes, &|k| pairs.iter().any(|pair| pair.0 == k));
+    let there = left(others, &|j| pairs.iter().any(|pair| pair.1 == j));
+    pairs.extend(here.into_iter().zip(there).map(|(k, j)| (k, j, 0.0)));
+    pairs
 }
 
 /// Error of a frequency or rate that is told.

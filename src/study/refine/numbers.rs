@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::{Number, Numbers};
 use crate::case::Case;
 use crate::error::{Error, Result};
+use crate::model::Model;
 use crate::run::equilibrium::{self, Options, Path};
 use crate::run::floquet::{self, Floquet};
 use crate::run::modes::{self, Kind, Mode, Plan};
@@ -16,6 +17,10 @@ use crate::study::counted::{Floors, counted};
 
 /// Numbers of a unit below this part of others are round-off.
 const NOTHING: f64 = 1e-6;
+/// Strain whose energy is round-off beside that of moving as a whole.
+const STRAIN: f64 = 1e-9;
+/// Multipliers below this are of what is gone after a period.
+const GONE: f64 = 0.01;
 /// A rate of growth counts beside this part of the mode's own frequency.
 const DAMPING: f64 = 0.01;
 
@@ -43,11 +48,20 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Numbers {
         let same = all().map(|(c, x)| (alike(c.unit), x)).filter(|((u, _), _)| *u == unit);
         same.map(|((_, factor), x)| factor * x.abs()).fold(0.0, f64::max)
     };
+    // what nothing moves or presses is round-off, and so is all that is made of it
+    let (floors, section) = (Floors::of(case), Model::new(case).section);
+    let floor = |unit: &str| match unit {
+        "m" => floors.displacement,
+        "Pa" => floors.pressure,
+        "J" => section.axial_stiffness * length * STRAIN * STRAIN,
+        "W" if largest("Pa") <= floors.pressure => f64::INFINITY,
+        _ => 0.0,
+    };
     let number = |unit: &'static str, value: f64| {
         let (unit, factor) = alike(unit);
         Number {
             value,
-            size: NOTHING * largest(unit) / factor,
+            size: (NOTHING * largest(unit)).max(floor(unit)) / factor,
         }
     };
     all().map(|(c, x)| (c.name.clone(), number(c.unit, *x))).collect()
@@ -143,7 +157,7 @@ pub fn of_summary(case: &Case, summary: &Summary) -> Numbers {
 pub fn of_cycle_and_multipliers(case: &Case, count: usize) -> Result<Numbers> {
     let (scene, mut cycle) = cycle(case, None)?;
     let mut all = recorded(case, &scene, &cycle)?;
-    all.extend(of_floquet(&floquet::multipliers(&scene, &mut cycle, count)));
+    all.extend(of_stability(&floquet::multipliers(&scene, &mut cycle, count)));
     Ok(all)
 }
 
@@ -156,8 +170,30 @@ pub fn of_multipliers(case: &Case, period: Option<f64>, count: usize) -> Result<
     Ok(of_floquet(&floquet::multipliers(&scene, &mut cycle, count)))
 }
 
+/// The multipliers of the cycle, and how fast that grows or decays which is not gone after a period.
+///
+/// # Errors
+/// As [`cycle`].
+pub fn of_growth(case: &Case, period: Option<f64>, count: usize) -> Result<Numbers> {
+    let (scene, mut cycle) = cycle(case, period)?;
+    Ok(of_stability(&floquet::multipliers(&scene, &mut cycle, count)))
+}
+
+/// Multipliers that were found, and what is shown of them.
+pub fn of_stability(found: &Floquet) -> Numbers {
+    let mut all = of_floquet(found);
+    for (k, m) in found.multipliers.iter().enumerate().filter(|(_, m)| m.modulus > GONE) {
+        let growth = Number {
+            value: m.growth_per_s,
+            size: DAMPING * m.growth_per_s.hypot(std::f64::consts::TAU * m.frequency_hz),
+        };
+        all.insert(format!("multiplier_{}.growth_per_s", k + 1), growth);
+    }
+    all
+}
+
 /// Multipliers that were found.
-pub fn of_floquet(found: &Floquet) -> Numbers {
+fn of_floquet(found: &Floquet) -> Numbers {
     let mut counts = BTreeMap::new();
     let mut all = Numbers::new();
     for m in &found.multipliers {
