@@ -71,10 +71,10 @@ fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Findin
     if let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid)
         && system.model.effects.flow_along_bladders
     {
-        for pulse in ports::pulses(case, wet) {
-            let on = |cells| (pulse.left_out(cells), "pressure along the bladder behind it");
+        for port in ports::ports(case, wet) {
+            let on = |cells| port.left_out(cells);
             all.push(finding(
-                pulse.pointer(),
+                port.pointer(),
                 fluid.cells_per_bladder,
                 "/mesh/cells_per_bladder",
                 on,

@@ -222,6 +222,34 @@ fn energy_that_is_wrong_at_the_start_is_told() {
     println!("40 starts: {wrong} off by more than 5 %, {told} told");
 }
 
+/// A flow through few bladders has its largest pressure in the middle of a cell, half a cell below that of its port; in a row of ten
+/// that is little.
+#[test]
+fn pressures_that_fall_along_a_cell_are_told() {
+    let case = |bladders: &str, cells: usize| {
+        let text = format!(
+            r#"{{"name": "through", "preset": "matia-gat-beam", "fluid": {{"viscosity_pa_s": 1.0}},
+            "beam": {{"damping": {{"bending_time_s": 0.002, "axial_time_s": 0.002}}}},
+            "network": {{"chains": [{{"bladders": {bladders}, "ends": [{{"pressure_pa": 5000}}, {{"pressure_pa": 0}}]}}]}},
+            "ends": {{"root": "clamped", "tip": "free"}}, "mesh": {{"cells_per_bladder": {cells}}}, "time": {{"end_s": 0.5}}}}"#
+        );
+        written::<&str>(&text, &[])
+    };
+    let two = case("[1,2]", 2);
+    let found = resolution::unresolved(&two, &System::new(&two));
+    let largest = run(&two).summary.quantities["max_pressure_pa"].max_abs.unwrap();
+    println!("largest pressure {largest:.0} Pa of 5000: {found:?}");
+    let off = 5000.0 / largest - 1.0;
+    assert!(off > resolution::LIMIT);
+    assert!(found[0].setting == "/mesh/cells_per_bladder" && found[0].left_out > off && found[0].left_out < 3.0 * off);
+    for fine in [
+        case("[1,2]", found[0].wanted.unwrap()),
+        case("[1,2,3,4,5,6,7,8,9,10]", 2),
+    ] {
+        assert!(resolution::unresolved(&fine, &System::new(&fine)).is_empty());
+    }
+}
+
 #[test]
 fn no_shipped_case_is_warned() {
     for folder in ["cases", "cases/hard"] {
