@@ -215,6 +215,14 @@ impl Search<'_> {
 
     /// Computes what a setting is judged by.
     fn look(&mut self, at: At, settled: f64, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<()> {
+        // coarse before fine, as long as nothing is known
+        if self.known.is_empty() {
+            for &axis in &self.axes.clone() {
+                for coarser in [-2, -1] {
+                    self.run(at.moved(axis, coarser), compute)?;
+                }
+            }
+        }
         self.run(at, compute)?;
         let mut known = vec![];
         for (k, &axis) in self.axes.clone().iter().enumerate() {

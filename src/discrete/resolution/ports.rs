@@ -80,7 +80,8 @@ fn falls(end: f64, wet: &Wet) -> Vec<f64> {
     let network = &wet.network;
     let bladder = wet.bladder_length / network.bladder_mobility;
     let ways = ways(wet, bladder);
-    let largest = network.ports.iter().map(|p| p.pressure.largest(end).value);
+    let size = |signal: &Signal| signal.largest(end).value;
+    let largest = network.ports.iter().map(|port| size(&port.pressure));
     let largest = largest.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
     let difference = |a: &Signal, b: &Signal| {
         let less = Signal::Product(vec![Signal::Constant(-1.0), b.clone()]);
@@ -90,6 +91,8 @@ fn falls(end: f64, wet: &Wet) -> Vec<f64> {
         let others = network.ports.iter().enumerate().filter(|(j, _)| *j != k);
         others
             .filter(|(j, other)| ways[k][*j].is_finite() && other.pressure != port.pressure)
+            // a flow has its largest pressure where it comes from
+            .filter(|(_, other)| size(&other.pressure) <= size(&port.pressure))
             .map(|(j, other)| difference(&port.pressure, &other.pressure) / largest * bladder / ways[k][j])
             .fold(0.0, f64::max)
     };
