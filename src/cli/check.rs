@@ -7,11 +7,11 @@ use serde_json::json;
 
 use super::arguments::CheckArguments;
 use crate::case;
-use crate::discrete::{System, resolution};
+use crate::discrete::System;
 use crate::error::Result;
 use crate::model::{audit, characteristic};
 use crate::output::numbers::significant;
-use crate::run::method;
+use crate::run::{known, method};
 
 /// Prints characteristic numbers, coupling audit, chosen effects and warnings.
 pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
@@ -21,8 +21,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     super::refuse(&loaded, &system)?;
     let numbers = characteristic::numbers(case, &system.model);
     let findings = audit::coupling(case, &system.model);
-    let mut warnings = audit::warnings(case, &system.model, &numbers);
-    warnings.extend(resolution::warnings(case, &system));
+    let warnings = known::warnings(case, &system);
     let chosen = method::choose(case, &system);
     let (order, why) = (chosen.order.order, &chosen.order.reason);
     if asked.json {

@@ -8,14 +8,13 @@ use super::arguments::EquilibriumArguments;
 use super::{interrupt, line, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{self, Case};
-use crate::discrete::resolution;
 use crate::error::{Error, Result};
-use crate::model::{audit, characteristic};
 use crate::output::equilibrium as files;
 use crate::output::report;
 use crate::run::equilibrium::{self, Options};
+use crate::run::known;
 use crate::run::record::Control;
-use crate::study::refine;
+use crate::study::refine::{self, meshes::Meshes};
 
 /// Follows the path, writes the folder, prints the table.
 pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
@@ -50,11 +49,14 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         }
     });
     bar.finish_and_clear();
-    let numbers = characteristic::numbers(case, &system.model);
-    let mut warnings = audit::warnings(case, &system.model, &numbers);
-    warnings.extend(resolution::warnings(case, &system));
-    warnings.extend(accuracy.and_then(refine::warning));
     let columns = equilibrium::columns(&system);
+    let meshes = (path.fault.is_none() && accuracy.is_none()).then(|| {
+        let here = refine::numbers::of_path(case, &columns, &path);
+        refine::meshes::judge(case, &here, &mut of)
+    });
+    let mut warnings = known::without_outputs(case, &system);
+    warnings.extend(meshes.as_ref().and_then(Meshes::warning));
+    warnings.extend(accuracy.and_then(refine::warning));
     let sensitivities = match path.states.last() {
         Some(last) if path.fault.is_none() => equilibrium::differentiate(case, &options, last, &parameters)?,
         _ => vec![],
@@ -68,6 +70,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         warnings: &warnings,
         sensitivities: &sensitivities,
         accuracy,
+        meshes: meshes.as_ref(),
     };
     let out = asked
         .out

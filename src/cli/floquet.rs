@@ -11,9 +11,10 @@ use crate::error::{Error, Result};
 use crate::output::floquet as files;
 use crate::output::report;
 use crate::run::floquet;
+use crate::run::known;
 use crate::run::periodic::scene::{fault, whole};
 use crate::run::periodic::{Scene, shoot};
-use crate::study::refine;
+use crate::study::refine::{self, meshes::Meshes};
 use crate::study::stability::tongue::{self, Plan};
 
 /// Points of a map at most.
@@ -51,13 +52,24 @@ fn one(asked: &FloquetArguments, loaded: &LoadedCase) -> Result<ExitCode> {
     let mut cycle = shoot(&scene, None).map_err(fault)?;
     bar.set_message("carrying disturbances over the period");
     let found = floquet::multipliers(&scene, &mut cycle, asked.count);
+    bar.set_message("the same on other meshes");
+    let accuracy = refined.as_ref().map(|(_, accuracy)| accuracy);
+    let meshes = accuracy.is_none().then(|| {
+        let mut of = |case: &Case| refine::numbers::of_growth(case, asked.period, asked.count);
+        refine::meshes::judge(case, &refine::numbers::of_stability(&found), &mut of)
+    });
     bar.finish_and_clear();
+    let mut warnings = known::without_outputs(case, &System::with(case, whole(case)));
+    warnings.extend(meshes.as_ref().and_then(Meshes::warning));
+    warnings.extend(accuracy.and_then(refine::warning));
     let found = files::Found {
         case: &case.name,
         search: &cycle.search,
         floquet: &found,
-        accuracy: refined.as_ref().map(|(_, accuracy)| accuracy),
+        accuracy,
         refined: None,
+        meshes: meshes.as_ref(),
+        warnings: &warnings,
     };
     let out = folder(asked, &case.name, "floquet");
     files::write(&out, &found)?;
@@ -86,12 +98,18 @@ fn map(asked: &FloquetArguments, loaded: &LoadedCase, parameters: &str) -> Resul
     bar.finish_and_clear();
     let found = found?;
     let out = folder(asked, &case.name, "map");
-    files::write_map(&out, &found)?;
+    let warnings = known::without_outputs(case, &System::with(case, whole(case)));
+    files::write_map(&out, &found, &warnings)?;
     report::complete(&out, report::Kind::Map, case)?;
     if asked.json {
-        super::print(&files::map_json(&found))?;
+        super::print(&files::map_json(&found, &warnings))?;
     } else {
-        super::print(&format!("{}\nfiles in {}\n", files::map_words(&found), out.display()))?;
+        let told = line::warnings(&warnings);
+        super::print(&format!(
+            "{}{told}\nfiles in {}\n",
+            files::map_words(&found),
+            out.display()
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }

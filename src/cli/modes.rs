@@ -11,6 +11,7 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::modes::{self as files, Report};
 use crate::output::report;
+use crate::run::known;
 use crate::run::modes::{self, Plan};
 use crate::study::refine;
 
@@ -53,7 +54,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         .map(|pointer| Parameter::find(case, pointer))
         .collect::<Result<_>>()?;
     let mut found = modes::of(about, &plan)?;
-    modes::halve_the_mesh(case, asked.at, &plan, &mut found)?;
+    modes::compare_meshes(case, asked.at, &plan, &mut found);
     let sensitivities = modes::differentiate(case, asked.at, &found.about, &found.modes, &parameters)?;
     let out = asked
         .out
@@ -66,6 +67,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         about: &words,
         sensitivities: &sensitivities,
         accuracy: refined.as_ref().map(|(_, accuracy)| accuracy),
+        known: &known::without_outputs(case, &System::new(case)),
     };
     files::write(&out, &report)?;
     report::complete(&out, report::Kind::Modes, case)?;

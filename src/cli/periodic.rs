@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use super::arguments::PeriodicArguments;
 use super::{line, terminal};
-use crate::case::{self, LoadedCase};
+use crate::case::{self, Case, LoadedCase};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::floquet as stability;
@@ -14,10 +14,12 @@ use crate::output::periodic as files;
 use crate::output::recorder::{FolderRecorder, Labels};
 use crate::output::report;
 use crate::run::floquet;
+use crate::run::known;
 use crate::run::periodic::scene::whole;
 use crate::run::periodic::{Settled, record, settle};
 use crate::run::record::Control;
-use crate::study::refine;
+use crate::run::summary::Status;
+use crate::study::refine::{self, meshes::Meshes};
 use crate::study::stability::along;
 
 /// Multipliers told.
@@ -64,7 +66,6 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         refined,
     } = settle(case, scene, cycle)?;
     let found = floquet::multipliers(&scene, &mut cycle, COUNT);
-    bar.finish_and_clear();
     let labels = Labels {
         case_name: case.name.clone(),
         case_json: case.resolved_json(),
@@ -74,7 +75,17 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let mut outcome = record::record(&case, &scene, &cycle, &mut recorder)?;
     outcome.summary.accuracy = asked_for.map(|(_, accuracy)| accuracy);
     let short = outcome.summary.accuracy.as_ref().and_then(refine::warning);
-    outcome.summary.warnings.extend(short);
+    let finished = outcome.summary.status == Status::Finished;
+    let meshes = (outcome.summary.accuracy.is_none() && finished).then(|| {
+        bar.set_message("the same on other meshes");
+        let mut here = refine::numbers::of_summary(&case, &outcome.summary);
+        here.extend(refine::numbers::of_stability(&found));
+        let mut of = |case: &Case| refine::numbers::of_cycle_and_multipliers(case, COUNT);
+        refine::meshes::judge(&case, &here, &mut of)
+    });
+    bar.finish_and_clear();
+    let by_mesh = meshes.as_ref().and_then(Meshes::warning);
+    outcome.summary.warnings.extend(by_mesh.into_iter().chain(short));
     recorder.finish(&outcome.summary)?;
     let told = stability::Found {
         case: &case.name,
@@ -82,6 +93,8 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         floquet: &found,
         accuracy: outcome.summary.accuracy.as_ref(),
         refined: refined.as_ref(),
+        meshes: meshes.as_ref(),
+        warnings: &outcome.summary.warnings,
     };
     ResultFolder::create(&out)?.write(files::CYCLE, stability::json(&told).as_bytes())?;
     report::write(&out, None)?;
@@ -115,14 +128,17 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     bar.finish_and_clear();
     let found = found?;
     let out = folder(asked, &found.case, "cycles");
-    files::write(&out, &found)?;
+    let of_case = |(_, case): &(f64, Case)| known::without_outputs(case, &System::with(case, whole(case)));
+    let warnings = cases.first().map(of_case).unwrap_or_default();
+    files::write(&out, &found, &warnings)?;
     if let Some((_, case)) = cases.first() {
         report::complete(&out, report::Kind::Sweep, case)?;
     }
     if asked.json {
-        super::print(&files::json(&found))?;
+        super::print(&files::json(&found, &warnings))?;
     } else {
-        super::print(&format!("{}\nfiles in {}\n", files::words(&found), out.display()))?;
+        let told = line::warnings(&warnings);
+        super::print(&format!("{}{told}\nfiles in {}\n", files::words(&found), out.display()))?;
     }
     Ok(ExitCode::from(if found.members.is_empty() { 4 } else { 0 }))
 }

@@ -5,7 +5,7 @@ use std::io::IsTerminal as _;
 use serde_json::{Value, json};
 
 use crate::case;
-use crate::error::{CaseFault, Error, SolverFault, Violation};
+use crate::error::{CaseFault, Code, Error, SolverFault, Violation};
 
 /// Whether standard output wants colour: a terminal, and `NO_COLOR` not set.
 pub fn colour_out() -> bool {
@@ -69,9 +69,14 @@ fn violation(fault: &CaseFault, violation: &Violation) -> Value {
 
 /// A failed run in words.
 pub fn diagnosis(fault: &SolverFault) -> String {
+    // modes and equilibria belong to an instant and do not run
+    let failed = match fault.code {
+        Code::NoModes | Code::NoEquilibrium => String::new(),
+        Code::NoCycle => format!("no cycle, t = {:.6e} s of its period: ", fault.time_s),
+        _ => format!("the run failed at t = {:.6e} s: ", fault.time_s),
+    };
     let mut lines = vec![format!(
-        "slcbeam: the run failed at t = {:.6e} s: {} (slcbeam explain {})",
-        fault.time_s,
+        "slcbeam: {failed}{} (slcbeam explain {})",
         fault.what,
         fault.code.id()
     )];
@@ -85,4 +90,27 @@ pub fn diagnosis(fault: &SolverFault) -> String {
         }
     }
     lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: what does not run does not fail at a time of a run.
+    #[test]
+    fn only_runs_fail_at_a_time() {
+        let words = |code| {
+            diagnosis(&SolverFault {
+                code,
+                time_s: 0.25,
+                what: "no such thing".into(),
+                unknown: None,
+                cause: None,
+                hint: None,
+            })
+        };
+        assert_eq!(words(Code::NoModes), "slcbeam: no such thing (slcbeam explain E047)");
+        assert!(words(Code::Integrator).contains("the run failed at t = 2.500000e-1 s"));
+        assert!(words(Code::NoCycle).contains("no cycle") && !words(Code::NoCycle).contains("run failed"));
+    }
 }

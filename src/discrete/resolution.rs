@@ -2,11 +2,14 @@
 //!
 //! Loads reach the mesh with the force and the moment that they have, so that M is right at nodes; how it goes between two nodes is
 //! left out. Each shape is judged by what that does to the beam: a narrow load far from what holds the beam is nothing but its force,
-//! a wave shorter than a cell is all bending between the nodes.
+//! a wave shorter than a cell is all bending between the nodes. What a beam begins with is judged by its energy, and by what becomes of
+//! its short waves while they run.
 
+mod begun;
 mod held;
 mod ports;
 mod statics;
+mod vibrations;
 
 use crate::case::profile::{Integrals, Profile};
 use crate::case::schema::Case;
@@ -16,6 +19,7 @@ use crate::model::network::bladder_index;
 use crate::model::{Load, Model, Storage};
 
 use super::{System, shapes};
+use begun::Begun;
 use statics::Shape;
 
 /// Share of a shape's effect beyond which leaving it out is told.
@@ -41,39 +45,50 @@ pub struct Finding {
 
 /// Everything that the mesh of a system leaves out of the shapes of its case, by more than [`LIMIT`] or not.
 pub fn findings(case: &Case, system: &System) -> Vec<Finding> {
+    of_beam_and_bladders(case, system, true)
+}
+
+/// What is left out from the beginning, or also what becomes of it later.
+fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Finding> {
     let (segments, cells) = (system.mesh.segments, system.mesh.cells_per_segment);
+    let along = "/mesh/cells_per_segment";
     let mut all = vec![];
-    for shape in shapes_along(case, &system.model) {
-        let on = |cells: usize| shape.left_out(segments * cells);
-        all.push(finding(
-            shape.pointer(),
-            shape.what(),
-            cells,
-            "/mesh/cells_per_segment",
-            on,
-        ));
+    for shape in loads_along(case, &system.model) {
+        let on = |cells: usize| (shape.left_out(segments * cells), shape.what());
+        all.push(finding(shape.pointer.clone(), cells, along, on));
+    }
+    for begun in Begun::all(case, system) {
+        let on = |cells: usize| {
+            let cells = segments * cells;
+            if later {
+                begun.left_out(cells)
+            } else {
+                begun.at_once(cells)
+            }
+        };
+        all.push(finding(begun.pointer(), cells, along, on));
     }
     if let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid)
         && system.model.effects.flow_along_bladders
     {
-        for pulse in ports::pulses(case, wet) {
+        for port in ports::ports(case, wet) {
+            let on = |cells| port.left_out(cells);
             all.push(finding(
-                pulse.pointer(),
-                "pressure along the bladder behind it",
+                port.pointer(),
                 fluid.cells_per_bladder,
                 "/mesh/cells_per_bladder",
-                |cells| pulse.left_out(cells),
+                on,
             ));
         }
         for (k, start) in case.start.pressures.iter().enumerate() {
             let flows = |b: &i64| wet.storage[bladder_index(*b, wet.per_row)] == Storage::Flowing;
             if start.bladders.iter().any(flows) {
+                let what = "pressure along the bladder at the start";
                 all.push(finding(
                     format!("/start/pressures/{k}/pressure_pa"),
-                    "pressure along the bladder at the start",
                     fluid.cells_per_bladder,
                     "/mesh/cells_per_bladder",
-                    |cells| of_means(&start.pressure_pa, cells),
+                    |cells| (of_means(&start.pressure_pa, cells), what),
                 ));
             }
         }
@@ -88,11 +103,11 @@ pub fn unresolved(case: &Case, system: &System) -> Vec<Finding> {
     all
 }
 
-/// Cells in a segment that resolve every shape along the beam; those of the case where they do, or where none do.
+/// Cells in a segment that resolve every shape along the beam as it is given; those of the case where they do, or where none do.
 pub fn cells_that_resolve(case: &Case, system: &System) -> usize {
-    unresolved(case, system)
+    of_beam_and_bladders(case, system, false)
         .iter()
-        .filter(|finding| finding.setting == "/mesh/cells_per_segment")
+        .filter(|finding| finding.left_out > LIMIT && finding.setting == "/mesh/cells_per_segment")
         .filter_map(|finding| finding.wanted)
         .fold(system.mesh.cells_per_segment, usize::max)
 }
@@ -116,18 +131,17 @@ pub fn warnings(case: &Case, system: &System) -> Vec<String> {
 
 fn finding(
     pointer: String,
-    what: &'static str,
     cells: usize,
     setting: &'static str,
-    left_out: impl Fn(usize) -> f64,
+    left_out: impl Fn(usize) -> (f64, &'static str),
 ) -> Finding {
-    let here = left_out(cells);
+    let (here, what) = left_out(cells);
     let doubled = std::iter::successors(Some(cells), |cells| Some(2 * cells));
     let wanted = if here > LIMIT {
         doubled
             .skip(1)
             .take_while(|cells| *cells <= FINEST)
-            .find(|cells| left_out(*cells) <= LIMIT)
+            .find(|cells| left_out(*cells).0 <= LIMIT)
     } else {
         Some(cells)
     };
@@ -140,9 +154,9 @@ fn finding(
     }
 }
 
-/// Shapes along the beam that take part: loads of one time function together, for they act together.
-fn shapes_along<'a>(case: &'a Case, model: &Model) -> Vec<Along<'a>> {
-    let mut groups: Vec<(Option<&'a Signal>, Shape)> = vec![];
+/// Loads along the beam that take part: those of one time function together, for they act together.
+fn loads_along(case: &Case, model: &Model) -> Vec<Shape> {
+    let mut groups: Vec<(Option<&Signal>, Shape)> = vec![];
     for (k, written) in case.loads.iter().enumerate() {
         let signal = written.distributed().map(|(_, load)| &load.signal);
         // Loads that never change act together whatever their values.
@@ -162,90 +176,11 @@ fn shapes_along<'a>(case: &'a Case, model: &Model) -> Vec<Along<'a>> {
         }
     }
     let across = !model.effects.transverse_motion;
-    let mut all: Vec<Along> = groups
+    groups
         .into_iter()
         .map(|(_, shape)| shape)
         .filter(|shape| !(across && shape.bends()))
-        .map(Along::Load)
-        .collect();
-    let start = &case.start;
-    let given = [
-        ("u1_m", &start.u1_m, true),
-        ("u3_m", &start.u3_m, true),
-        ("u1_rate_m_s", &start.u1_rate_m_s, false),
-        ("u3_rate_m_s", &start.u3_rate_m_s, false),
-    ];
-    for (key, profile, displacement) in given {
-        if let Some(profile) = profile {
-            all.push(if displacement {
-                Along::Displacement(key, profile)
-            } else {
-                Along::Velocity(key, profile)
-            });
-        }
-    }
-    all
-}
-
-/// Something along the beam that the mesh resolves or not.
-enum Along<'a> {
-    Load(Shape),
-    Displacement(&'static str, &'a Profile),
-    Velocity(&'static str, &'a Profile),
-}
-
-impl Along<'_> {
-    fn pointer(&self) -> String {
-        match self {
-            Self::Load(shape) => shape.pointer.clone(),
-            Self::Displacement(key, _) | Self::Velocity(key, _) => format!("/start/{key}"),
-        }
-    }
-
-    fn what(&self) -> &'static str {
-        match self {
-            Self::Load(shape) if shape.bends() => "the bending moment of this load between the nodes",
-            Self::Load(_) => "the normal force of this load within the cells",
-            Self::Displacement(..) => "the displacement between the nodes",
-            Self::Velocity(..) => "the velocity between the nodes",
-        }
-    }
-
-    fn left_out(&self, cells: usize) -> f64 {
-        match self {
-            Self::Load(shape) => shape.left_out(cells),
-            Self::Displacement(_, profile) => of_lines(profile, cells),
-            Self::Velocity(_, profile) => of_squares(profile, cells),
-        }
-    }
-}
-
-/// Largest distance of a function from the lines through its values at the nodes, over its largest distance from the line
-/// through its ends: moving and turning the beam as a whole costs no mesh anything.
-fn of_lines(profile: &Profile, cells: usize) -> f64 {
-    let integrals = Integrals::of(profile);
-    let line = |a: f64, b: f64, x: f64| {
-        let t = (x - a) / (b - a);
-        profile.value(a) * (1.0 - t) + profile.value(b) * t
-    };
-    let (mut lost, mut whole, mut largest) = (0.0_f64, 0.0_f64, 0.0_f64);
-    for (a, b) in (0..cells).map(|c| shapes::within(c, cells)) {
-        for x in shapes::places(&integrals, a, b).into_iter().chain([a, b]) {
-            let value = profile.value(x);
-            lost = lost.max((value - line(a, b, x)).abs());
-            whole = whole.max((value - line(0.0, 1.0, x)).abs());
-            largest = largest.max(value.abs());
-        }
-    }
-    ratio(lost, whole, largest)
-}
-
-/// Change of the root of the mean square of a velocity: the root of its kinetic energy.
-fn of_squares(profile: &Profile, cells: usize) -> f64 {
-    let values = shapes::nearest(profile, cells);
-    let inner: f64 = values[1..cells].iter().map(|v| v * v).sum();
-    let ends = 0.5 * (values[0] * values[0] + values[cells] * values[cells]);
-    change((inner + ends) / cells as f64, profile)
+        .collect()
 }
 
 /// Change of the root of the mean square of a pressure by taking means over cells.

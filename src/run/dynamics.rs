@@ -14,6 +14,7 @@ use pace::Pace;
 use super::checkpoint::{Checkpoint, VERSION};
 use super::equilibrium;
 use super::growth::Linear;
+use super::known;
 use super::method::{self, Integrator, Options};
 use super::observe::Observer;
 use super::record::{Control, Header, Progress, Recorder};
@@ -24,7 +25,7 @@ use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
 use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae};
-use crate::discrete::{System, resolution, start};
+use crate::discrete::{System, start};
 use crate::error::{Error, Result, SolverFault};
 use crate::model::{audit, characteristic};
 use crate::sundials::{StartOptions, consistent_start};
@@ -126,8 +127,7 @@ impl<'a> Run<'a> {
         let begin = Instant::now();
         let interval = case.time.output_interval();
         let characteristic = characteristic::numbers(case, &system.model);
-        let mut warnings = audit::lasting(case, &system.model, &characteristic);
-        warnings.extend(resolution::warnings(case, &system));
+        let mut warnings = known::lasting(case, &system);
         if !parameters.is_empty() {
             warnings.extend(audit::derivatives(case));
         }

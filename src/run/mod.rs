@@ -12,6 +12,7 @@ pub mod fit;
 pub mod floors;
 pub mod floquet;
 pub mod growth;
+pub mod known;
 pub mod krylov;
 pub mod method;
 pub mod modes;

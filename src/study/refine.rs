@@ -1,14 +1,16 @@
 //! Named numbers with estimated errors, of whatever computes a case at once: equilibria, modes, cycles, multipliers.
 //!
-//! With `x(K, τ)` a number on a mesh of K cells a segment at tolerance τ,
+//! With `x(K, G, τ)` a number on a mesh of K cells a segment and G a bladder at tolerance τ,
 //!
 //! ```text
-//! e_space = S ρ/(1 - ρ) |x(K) - x(K/2)|      ρ = |x(K) - x(K/2)|/|x(K/2) - x(K/4)|      e_time likewise with 10 τ, 100 τ
+//! e_beam = S ρ/(1 - ρ) |x(K) - x(K/2)|      ρ = |x(K) - x(K/2)|/|x(K/2) - x(K/4)|      likewise with G/2, G/4 and 10 τ, 100 τ
 //! ```
 //!
 //! the sum of the geometric series of differences, with a factor S for safety. No mesh is believed whose half and quarter have not
-//! been looked at, no tolerance without ten times it.
+//! been looked at, no tolerance without ten times it. What is worst is refined; what was a tenth of the accuracy that is asked for is not
+//! looked at again while others are refined.
 
+pub mod meshes;
 pub mod numbers;
 
 use std::collections::BTreeMap;
@@ -16,23 +18,70 @@ use std::time::Instant;
 
 use super::accuracy::plan;
 use crate::case::Case;
+use crate::discrete::System;
 use crate::error::{Code, Result};
+use crate::model::Model;
 use crate::run::summary::{Accuracy, Estimate, Judged, Pilot};
 
-/// Finest mesh and tightest tolerance that are tried: cells a segment, decades.
+/// Finest meshes and tightest tolerance that are tried: cells a segment, cells a bladder, decades.
 const FINEST: usize = 64;
+const FINEST_ALONG_BLADDERS: usize = 64;
 const TIGHTEST: i32 = 9;
 /// First mesh and tolerance that may do.
-const FIRST: At = (4, 5);
+const FIRST: At = At {
+    cells: 4,
+    along: None,
+    decades: 5,
+};
+/// First cells a bladder that may do: their quarter is one.
+const FIRST_ALONG_BLADDERS: usize = 4;
+/// Coarsest first mesh, where coarser ones have no answer.
+const LAST_FIRST: usize = 16;
 /// Ratios of differences that are believed: beyond them differences happen to be small or large.
 const BELIEVED: [f64; 2] = [0.2, 0.7];
+/// Part of what is asked for below which an error is not looked at again.
+const SETTLED: f64 = 0.1;
 /// Of an estimate, for safety.
 const SAFETY: f64 = 1.25;
 /// Largest dimensionless accuracy that makes sense, and least.
 const SENSIBLE: std::ops::RangeInclusive<f64> = 1e-6..=0.5;
 
-/// Cells a segment, and `k` of `rtol = 10^-k`.
-type At = (usize, i32);
+/// Cells a segment, cells a bladder where flows along bladders are resolved, and `k` of `rtol = 10^-k`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct At {
+    cells: usize,
+    along: Option<usize>,
+    decades: i32,
+}
+
+/// What can be refined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Axis {
+    Bladders,
+    Beam,
+    Time,
+}
+
+impl At {
+    /// So many times coarser, or finer, by a factor of two, or of ten.
+    fn moved(self, axis: Axis, finer: i32) -> Self {
+        let times = |count: usize| {
+            if finer < 0 { count >> -finer } else { count << finer }
+        };
+        let mut at = self;
+        match axis {
+            Axis::Bladders => at.along = self.along.map(times),
+            Axis::Beam => at.cells = times(self.cells),
+            Axis::Time => at.decades += finer,
+        }
+        at
+    }
+
+    fn possible(self) -> bool {
+        let along = self.along.is_none_or(|along| along <= FINEST_ALONG_BLADDERS);
+        along && self.cells <= FINEST && self.decades <= TIGHTEST
+    }
+}
 
 /// A number that is computed, and the size beside which its errors count when it is smaller itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,29 +106,34 @@ pub fn refine(
     in_time: bool,
     compute: &mut dyn FnMut(&Case) -> Result<Numbers>,
 ) -> Result<(Case, Accuracy)> {
+    let along = has_cells_along_bladders(case);
     let mut search = Search {
         case,
+        axes: [(Axis::Bladders, along), (Axis::Beam, true), (Axis::Time, in_time)]
+            .into_iter()
+            .filter_map(|(axis, there)| there.then_some(axis))
+            .collect(),
         in_time,
         runs: BTreeMap::new(),
+        known: vec![],
         pilots: vec![],
     };
-    let mut at = FIRST;
-    for needed in search.needed(at) {
-        search.run(needed, compute)?;
+    let mut at = At {
+        along: along.then_some(FIRST_ALONG_BLADDERS),
+        ..FIRST
+    };
+    // a coarse mesh may have no answer at all: fewer modes than are asked for, no equilibrium
+    let settled = SETTLED * asked;
+    while let Err(fault) = search.look(at, settled, compute) {
+        if at.cells >= LAST_FIRST {
+            return Err(fault);
+        }
+        at.cells *= 2;
     }
     let mut estimates = search.estimates(at);
     while largest(&estimates) > asked {
-        let (cells, decades) = at;
-        let part = |of: fn(&Estimate) -> Option<f64>| estimates.values().filter_map(of).fold(0.0, f64::max);
-        let (time, space) = (part(|e| e.time), part(|e| e.space));
-        let finer = (2 * cells, decades);
-        let next = match in_time && (time > space || finer.0 > FINEST) {
-            true => (cells, decades + 1),
-            false => finer,
-        };
-        let possible = next.0 <= FINEST && next.1 <= TIGHTEST;
-        let needed = search.needed(next);
-        if !possible || needed.into_iter().any(|needed| search.run(needed, compute).is_err()) {
+        let Some(next) = search.next(at, asked) else { break };
+        if search.look(next, settled, compute).is_err() {
             break;
         }
         at = next;
@@ -115,39 +169,97 @@ pub fn warning(found: &Accuracy) -> Option<String> {
     let short: Vec<String> = short.collect();
     (!found.reached).then(|| {
         Code::Accuracy.warning(format!(
-            "accuracy: {:e} is not reached with {} cells a segment and rtol {:e}: {}",
+            "accuracy: {:e} is not reached with {} cells a segment, {} a bladder and rtol {:e}: {}",
             found.asked,
             found.cells_per_segment,
+            found.cells_per_bladder,
             found.rtol,
             short.join(", ")
         ))
     })
 }
 
+/// Whether a case has cells along its bladders: flows within them, and effects that keep these.
+pub fn has_cells_along_bladders(case: &Case) -> bool {
+    let system = System::with(case, Model::whole(case, true));
+    let flows = system.fluid.as_ref().is_some_and(|fluid| !fluid.flowing.is_empty());
+    flows && system.model.effects.flow_along_bladders
+}
+
+/// Errors by name, relative; none where they are not known.
+type Errors = BTreeMap<String, Option<f64>>;
+
 struct Search<'a> {
     case: &'a Case,
+    axes: Vec<Axis>,
     in_time: bool,
     runs: BTreeMap<At, Numbers>,
+    /// Of every axis, in its order.
+    known: Vec<Errors>,
     pilots: Vec<Pilot>,
 }
 
 impl Search<'_> {
-    fn variant(&self, (cells, decades): At) -> Case {
+    fn variant(&self, at: At) -> Case {
         let rtol = if self.in_time {
-            10_f64.powi(-decades)
+            10_f64.powi(-at.decades)
         } else {
             self.case.solver.rtol
         };
-        plan::refined(self.case, cells, rtol)
+        let mut case = plan::refined(self.case, at.cells, rtol);
+        if let Some(along) = at.along {
+            case.mesh.cells_per_bladder = along;
+        }
+        case
     }
 
-    /// A setting and those that it is judged by.
-    fn needed(&self, (cells, decades): At) -> Vec<At> {
-        let mut all = vec![(cells / 4, decades), (cells / 2, decades), (cells, decades)];
-        if self.in_time {
-            all.extend([(cells, decades - 1), (cells, decades - 2)]);
+    /// Computes what a setting is judged by.
+    fn look(&mut self, at: At, settled: f64, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<()> {
+        // coarse before fine, as long as nothing is known
+        if self.known.is_empty() {
+            for &axis in &self.axes.clone() {
+                for coarser in [-2, -1] {
+                    self.run(at.moved(axis, coarser), compute)?;
+                }
+            }
         }
-        all
+        self.run(at, compute)?;
+        let mut known = vec![];
+        for (k, &axis) in self.axes.clone().iter().enumerate() {
+            let names = self.runs.get(&at).into_iter().flat_map(BTreeMap::keys);
+            let small = |errors: &Errors| {
+                let error = |name: &String| errors.get(name).copied().flatten();
+                names.clone().all(|name| error(name).is_some_and(|e| e <= settled))
+            };
+            if let Some(before) = self.known.get(k).filter(|errors| small(errors)) {
+                known.push(before.clone());
+                continue;
+            }
+            for coarser in [-2, -1] {
+                self.run(at.moved(axis, coarser), compute)?;
+            }
+            known.push(self.errors(at, axis));
+        }
+        self.known = known;
+        Ok(())
+    }
+
+    /// What is worst, refined; nothing where what cannot be refined is too much by itself.
+    fn next(&self, at: At, asked: f64) -> Option<At> {
+        let mut worst: Vec<(f64, At)> = self
+            .axes
+            .iter()
+            .zip(&self.known)
+            .map(|(axis, errors)| (most(errors.values().copied()), at.moved(*axis, 1)))
+            .collect();
+        worst.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let stuck: f64 = worst
+            .iter()
+            .filter(|(_, to)| !to.possible())
+            .map(|(error, _)| error)
+            .sum();
+        let best = worst.into_iter().find(|(error, to)| *error > 0.0 && to.possible())?;
+        (stuck <= asked).then_some(best.1)
     }
 
     fn run(&mut self, at: At, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<()> {
@@ -160,7 +272,7 @@ impl Search<'_> {
         self.pilots.push(Pilot {
             with: String::new(),
             unknowns: 0,
-            cells_per_segment: at.0,
+            cells_per_segment: at.cells,
             rtol: case.solver.rtol,
             steps: 0,
             wall_s: begin.elapsed().as_secs_f64(),
@@ -168,28 +280,36 @@ impl Search<'_> {
         Ok(())
     }
 
+    fn errors(&self, at: At, axis: Axis) -> Errors {
+        let numbers = self.runs.get(&at).into_iter().flatten();
+        let before = [at.moved(axis, -2), at.moved(axis, -1)];
+        numbers
+            .map(|(name, number)| (name.clone(), self.series(name, number, before)))
+            .collect()
+    }
+
     fn estimates(&self, at: At) -> BTreeMap<String, Estimate> {
-        let (cells, decades) = at;
-        let Some(numbers) = self.runs.get(&at) else {
-            return BTreeMap::new();
-        };
-        let of = |(name, number): (&String, &Number)| {
-            let space = self.series(name, number, [(cells / 4, decades), (cells / 2, decades)]);
-            let time = self
-                .in_time
-                .then(|| self.series(name, number, [(cells, decades - 2), (cells, decades - 1)]));
+        let names = self.runs.get(&at).into_iter().flat_map(BTreeMap::keys);
+        let of = |name: &String| {
+            let along = |wanted: fn(Axis) -> bool| {
+                let chosen = self.axes.iter().zip(&self.known).filter(|(axis, _)| wanted(**axis));
+                let errors = chosen.map(|(_, errors)| errors.get(name).copied().flatten());
+                errors.reduce(|a, b| Some(a? + b?)).flatten()
+            };
+            let (space, time) = (along(|axis| axis != Axis::Time), along(|axis| axis == Axis::Time));
             let estimate = Estimate {
-                time: time.flatten(),
+                time,
                 space,
-                total: match time {
-                    None => space,
-                    Some(time) => time.zip(space).map(|(t, s)| t + s),
+                total: if self.in_time {
+                    time.zip(space).map(|(t, s)| t + s)
+                } else {
+                    space
                 },
                 ..Estimate::default()
             };
             (name.clone(), estimate)
         };
-        numbers.iter().map(of).collect()
+        names.map(of).collect()
     }
 
     /// Error of a number, relative to it, by what it was twice before.
@@ -212,8 +332,12 @@ impl Search<'_> {
 }
 
 fn largest(estimates: &BTreeMap<String, Estimate>) -> f64 {
-    let total = |e: &Estimate| e.total.unwrap_or(f64::INFINITY);
-    estimates.values().map(total).fold(0.0, f64::max)
+    most(estimates.values().map(|e| e.total))
+}
+
+/// The largest of errors, without bounds where one is not known.
+fn most(errors: impl Iterator<Item = Option<f64>>) -> f64 {
+    errors.map(|e| e.unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -35,7 +35,7 @@ fn a_folder_is_filled_and_a_table_printed() {
     let csv = fs::read_to_string(out.join("modes.csv")).unwrap();
     assert!(csv.starts_with("mode [1],kind,frequency [Hz],damping ratio [1],growth rate [1/s],"));
     let widths: Vec<usize> = csv.lines().map(|l| l.split(',').count()).collect();
-    assert!(widths.iter().all(|w| *w == 15), "{csv}");
+    assert!(widths.iter().all(|w| *w == 16), "{csv}");
     let json: Value = serde_json::from_str(&fs::read_to_string(out.join("modes.json")).unwrap()).unwrap();
     let all = json["modes"].as_array().unwrap();
     assert_eq!(all.len() + 1, csv.lines().count());

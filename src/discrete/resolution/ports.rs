@@ -1,54 +1,146 @@
-//! Pressures and flows of ports that change faster than they get through a cell of the bladder behind them.
+//! Pressures and flows of ports that change faster than they get through a cell of the bladder behind them, and pressures that fall along
+//! such a cell.
 
 use std::f64::consts::TAU;
 
-use crate::case::schema::Case;
+use crate::case::schema::{BladderEnd, Case};
 use crate::case::signals::Signal;
 use crate::model::Wet;
+use crate::model::network::{Node, PressurePort};
 
 /// Part of the depth that a wave gets into a bladder which half a cell of that depth leaves out; measured with 1 to 32 cells.
 const LEFT_OUT: f64 = 1.0 / 3.0;
 /// What comes back to less than this part of its largest value is a pulse.
 const BACK: f64 = 0.5;
 
-/// What goes to and fro at a port.
-pub struct Pulse {
+/// What a port does to the bladders behind it.
+pub struct Port {
     name: String,
-    /// Length of a bladder over the depth that it gets into one.
+    /// Length of a bladder over the depth that what goes to and fro gets into one; 0: nothing does.
     depths: f64,
+    /// Of a flow through to another port, what its pressure falls by along the bladder behind this one, over the largest pressure.
+    falls: f64,
 }
 
-impl Pulse {
+impl Port {
     /// Where it stands in the case.
     pub fn pointer(&self) -> String {
         format!("the port \"{}\"", self.name)
     }
 
-    /// Share of the pressure behind the port that so many cells along a bladder leave out.
-    pub fn left_out(&self, cells: usize) -> f64 {
-        (LEFT_OUT * self.depths / cells as f64).min(1.0)
+    /// Share of the pressure behind the port that so many cells along a bladder leave out, and in words what that is. A flow through has
+    /// its largest pressure in the middle of the first cell, half a cell from the port.
+    pub fn left_out(&self, cells: usize) -> (f64, &'static str) {
+        let swings = (LEFT_OUT * self.depths / cells as f64).min(1.0);
+        let flows = 0.5 * self.falls / cells as f64;
+        if flows > swings {
+            (
+                flows,
+                "the largest pressure of a flow through, in the middle of the first cell,",
+            )
+        } else {
+            (swings, "pressure along the bladder behind it")
+        }
     }
 }
 
-/// Of every port whose pressure or flow goes to and fro, its depth in a bladder:
+/// Of every port, what its pressure or flow does. Where that goes to and fro, the depth in a bladder is
 ///
 /// ```text
 /// a_p dp/dt = (q1b/μ) d²p/ds²     δ = (q1b/(μ a_p ω))^(1/2),   ω of its highest tone or its shortest time
 /// ```
-pub fn pulses(case: &Case, wet: &Wet) -> Vec<Pulse> {
+///
+/// Where it differs from another port's, a bladder's pressure falls by `|p - p'| r/R`, r the resistance of a bladder, R that of the easiest
+/// way to the other one.
+pub fn ports(case: &Case, wet: &Wet) -> Vec<Port> {
     let end = case.time.end_s;
     let network = &wet.network;
-    let pressures = network.ports.iter().map(|port| (&port.name, &port.pressure));
-    let flows = network.sources.iter().map(|source| (&source.name, &source.flow));
-    let of = |(name, signal): (&String, &Signal)| {
-        let omega = fastest(signal, end)?;
-        let depth = (network.bladder_mobility / (wet.area.per_pressure * omega)).sqrt();
-        Some(Pulse {
-            name: name.clone(),
-            depths: wet.bladder_length / depth,
+    let depths = |signal: &Signal| {
+        fastest(signal, end).map_or(0.0, |omega| {
+            let depth = (network.bladder_mobility / (wet.area.per_pressure * omega)).sqrt();
+            wet.bladder_length / depth
         })
     };
-    pressures.chain(flows).filter_map(of).collect()
+    let falls = falls(end, wet);
+    let pressures = network.ports.iter().zip(falls).map(|(port, falls)| Port {
+        name: port.name.clone(),
+        depths: depths(&port.pressure),
+        falls,
+    });
+    let flows = network.sources.iter().map(|source| Port {
+        name: source.name.clone(),
+        depths: depths(&source.flow),
+        falls: 0.0,
+    });
+    pressures.chain(flows).collect()
+}
+
+/// Of every pressure port, the largest fall along the bladder behind it.
+fn falls(end: f64, wet: &Wet) -> Vec<f64> {
+    let network = &wet.network;
+    let bladder = wet.bladder_length / network.bladder_mobility;
+    let ways = ways(wet, bladder);
+    let size = |signal: &Signal| signal.largest(end).value;
+    let largest = network.ports.iter().map(|port| size(&port.pressure));
+    let largest = largest.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+    let difference = |a: &Signal, b: &Signal| {
+        let less = Signal::Product(vec![Signal::Constant(-1.0), b.clone()]);
+        Signal::Sum(vec![a.clone(), less]).largest(end).value
+    };
+    let of = |(k, port): (usize, &PressurePort)| {
+        let others = network.ports.iter().enumerate().filter(|(j, _)| *j != k);
+        others
+            .filter(|(j, other)| ways[k][*j].is_finite() && other.pressure != port.pressure)
+            // a flow has its largest pressure where it comes from
+            .filter(|(_, other)| size(&other.pressure) <= size(&port.pressure))
+            .map(|(j, other)| difference(&port.pressure, &other.pressure) / largest * bladder / ways[k][j])
+            .fold(0.0, f64::max)
+    };
+    network.ports.iter().enumerate().map(of).collect()
+}
+
+/// Resistance of the easiest way from port to port; infinite where there is none, or none through a bladder.
+fn ways(wet: &Wet, bladder: f64) -> Vec<Vec<f64>> {
+    let network = &wet.network;
+    let (ports, bladders) = (network.ports.len(), network.component_of_bladder.len());
+    let place = |node: Node| match node {
+        Node::Port(port) => port,
+        Node::Cell { bladder, end } => ports + 2 * bladder + usize::from(end == BladderEnd::Outlet),
+        Node::Junction(junction) => ports + 2 * bladders + junction,
+    };
+    let size = ports + 2 * bladders + network.junctions.len();
+    let within = (0..bladders).map(|b| (ports + 2 * b, ports + 2 * b + 1, bladder));
+    let links = network.links.iter().filter(|link| !link.is_shut());
+    let links = links.map(|link| (place(link.from), place(link.to), link.resistance));
+    let turbines = network.bridges.iter().map(|bridge| {
+        let conductance = network.turbines[bridge.turbine].conductance;
+        (place(bridge.from), place(bridge.to), 1.0 / conductance)
+    });
+    let edges: Vec<_> = within.chain(links).chain(turbines).collect();
+    let from = |port: usize| {
+        let mut far = vec![f64::INFINITY; size];
+        far[port] = 0.0;
+        let mut nearer = true;
+        while nearer {
+            nearer = false;
+            for &(a, b, resistance) in &edges {
+                for (a, b) in [(a, b), (b, a)] {
+                    // a way does not lead through another port, whose pressure is given
+                    let through = a >= ports || a == port;
+                    if through && far[a] + resistance < far[b] {
+                        far[b] = far[a] + resistance;
+                        nearer = true;
+                    }
+                }
+            }
+        }
+        far.truncate(ports);
+        far
+    };
+    let behind = |way: f64| if way >= bladder { way } else { f64::INFINITY };
+    (0..ports)
+        .map(|port| from(port).into_iter().map(behind).collect())
+        .collect()
 }
 
 /// Angular frequency of what goes to and fro [1/s], of a pulse one over its time; none of what comes and stays.

@@ -52,6 +52,15 @@ impl Shape {
         self.loads[0].0.kind != LoadKind::ForceZ
     }
 
+    /// What a mesh leaves out of it, in words.
+    pub fn what(&self) -> &'static str {
+        if self.bends() {
+            "the bending moment of this load between the nodes"
+        } else {
+            "the normal force of this load within the cells"
+        }
+    }
+
     /// Whether both do the same kind of thing to a straight beam. A first moment across turns only what is bent.
     pub fn acts_with(&self, other: &Self) -> bool {
         let kind = |shape: &Self| match shape.loads[0].0.kind {

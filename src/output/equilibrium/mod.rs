@@ -7,7 +7,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use serde_json::{Map, Value, json};
 
-use super::accuracy::with_accuracy;
+use super::accuracy::{with_accuracy, with_meshes};
 use super::folder::{fault, part_of, replace};
 use super::history::HistoryWriter;
 use super::numbers::shortest;
@@ -18,6 +18,7 @@ use crate::error::Result;
 use crate::run::equilibrium::{Kind, Options, Path, Sensitivity, State};
 use crate::run::record::Column;
 use crate::run::summary::Accuracy;
+use crate::study::refine::meshes::Meshes;
 
 pub use words::words;
 
@@ -51,6 +52,8 @@ pub struct Found<'a> {
     pub sensitivities: &'a [Sensitivity],
     /// Estimated errors, when an accuracy was asked for.
     pub accuracy: Option<&'a Accuracy>,
+    /// What meshes do to the last state, where none was.
+    pub meshes: Option<&'a Meshes>,
 }
 
 /// The text of `equilibrium.json`.
@@ -85,7 +88,7 @@ pub fn json(found: &Found) -> String {
         "wall_s": {"total": found.wall_s},
         "warnings": found.warnings,
     });
-    let value = with_accuracy(value, found.accuracy);
+    let value = with_meshes(with_accuracy(value, found.accuracy), found.meshes);
     format!("{value:#}\n")
 }
 

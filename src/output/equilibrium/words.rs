@@ -2,6 +2,7 @@
 
 use super::Found;
 use crate::output::numbers::{count, quantity, significant};
+use crate::study::refine::meshes::Meshes;
 
 /// Rows of the table at most.
 const ROWS: usize = 12;
@@ -16,6 +17,9 @@ pub fn words(found: &Found) -> String {
             significant(event.share, 6),
             event.words()
         ));
+    }
+    if let Some(words) = found.meshes.and_then(Meshes::words) {
+        text.push_str(&format!("\n{words}\n"));
     }
     for warning in found.warnings {
         text.push_str(&format!("warning: {warning}\n"));

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::accuracy::with_accuracy;
+use super::accuracy::{with_accuracy, with_meshes, with_warnings};
 use super::numbers::{shortest, significant};
 use super::plot::multipliers::{self, Dot, Multipliers};
 use super::plot::tongue::{self, Tongue, TonguePanel};
@@ -15,7 +15,7 @@ use crate::run::floquet::Floquet;
 use crate::run::periodic::Search;
 use crate::run::periodic::settle::Refined;
 use crate::run::summary::Accuracy;
-use crate::study::refine;
+use crate::study::refine::meshes::Meshes;
 use crate::study::stability::Map;
 
 /// The stability of one case's cycle.
@@ -31,15 +31,21 @@ pub struct Found<'a> {
     pub accuracy: Option<&'a Accuracy>,
     /// Why the tolerance of the cycle is not the case's own.
     pub refined: Option<&'a Refined>,
+    /// What meshes do to it, where no accuracy was asked for.
+    pub meshes: Option<&'a Meshes>,
+    /// What to know of case and cycle.
+    pub warnings: &'a [String],
 }
 
 /// The text of `floquet.json`.
 pub fn json(found: &Found) -> String {
-    let mut value = json!({"case": found.case, "cycle": found.search, "floquet": found.floquet});
+    let mut value = json!({
+        "case": found.case, "cycle": found.search, "floquet": found.floquet, "warnings": found.warnings
+    });
     if let (Some(object), Some(refined)) = (value.as_object_mut(), found.refined) {
         object.insert("refined".into(), serde_json::to_value(refined).unwrap_or_default());
     }
-    let value = with_accuracy(value, found.accuracy);
+    let value = with_meshes(with_accuracy(value, found.accuracy), found.meshes);
     format!("{value:#}\n")
 }
 
@@ -102,9 +108,12 @@ pub fn words(found: &Found) -> String {
     }
     if let Some(accuracy) = found.accuracy {
         let _ = write!(text, "\n{}", super::accuracy::words(accuracy));
-        if let Some(warning) = refine::warning(accuracy) {
-            let _ = writeln!(text, "warning: {warning}");
-        }
+    }
+    if let Some(words) = found.meshes.and_then(Meshes::words) {
+        let _ = writeln!(text, "\n{words}");
+    }
+    for warning in found.warnings {
+        let _ = writeln!(text, "warning: {warning}");
     }
     text
 }
@@ -126,9 +135,9 @@ pub fn write(dir: &Path, found: &Found) -> Result<Vec<PathBuf>> {
     super::folder::put(dir, files)
 }
 
-/// The text of `map.json`.
-pub fn map_json(map: &Map) -> String {
-    let value = serde_json::to_value(map).unwrap_or_default();
+/// The text of `map.json`, with what to know of the case.
+pub fn map_json(map: &Map, warnings: &[String]) -> String {
+    let value = with_warnings(serde_json::to_value(map).unwrap_or_default(), warnings);
     format!("{value:#}\n")
 }
 
@@ -204,7 +213,7 @@ pub fn map_words(map: &Map) -> String {
 }
 
 /// Writes the files of a map into a folder, which is made.
-pub fn write_map(dir: &Path, map: &Map) -> Result<Vec<PathBuf>> {
+pub fn write_map(dir: &Path, map: &Map, warnings: &[String]) -> Result<Vec<PathBuf>> {
     let panels = map.sheets.iter().map(|sheet| TonguePanel {
         name: sheet
             .permeability_factor
@@ -223,7 +232,7 @@ pub fn write_map(dir: &Path, map: &Map) -> Result<Vec<PathBuf>> {
         own: map.own,
         panels: panels.collect(),
     });
-    let mut files = vec![("map.csv", map_csv(map)), ("map.json", map_json(map))];
+    let mut files = vec![("map.csv", map_csv(map)), ("map.json", map_json(map, warnings))];
     files.extend(picture.map(|text| ("map.svg", text)));
     super::folder::put(dir, files)
 }

@@ -17,7 +17,7 @@ use super::numbers::significant;
 use super::plot::modes::{self as picture, ModeShapes, Shown};
 use crate::error::{Code, Result};
 use crate::model::passivity::{self, Passivity};
-use crate::run::modes::{Kind, Limit, Mode, Modes, Plan, Sensitivity};
+use crate::run::modes::{Kind, Limit, Mode, Modes, Plan, Sensitivity, meshes};
 use crate::run::summary::Accuracy;
 use crate::study::refine;
 
@@ -46,6 +46,8 @@ pub struct Report<'a> {
     pub sensitivities: &'a [Sensitivity],
     /// Estimated errors, when an accuracy was asked for.
     pub accuracy: Option<&'a Accuracy>,
+    /// What is known of the case without them.
+    pub known: &'a [String],
 }
 
 impl Report<'_> {
@@ -89,7 +91,9 @@ impl Report<'_> {
             )
         });
         let short = self.accuracy.and_then(refine::warning);
-        moving.into_iter().chain(still).chain(short).collect()
+        let known = self.known.iter().cloned();
+        let by_mesh = meshes::warning(self.found);
+        known.chain(moving).chain(still).chain(by_mesh).chain(short).collect()
     }
 
     /// What a number of the case does to each mode: `mode 2: +0.0608 Hz, −1.2e-5 1/s`, for one percent of it.
@@ -170,7 +174,9 @@ fn mode(mode: &Mode) -> Value {
         "angular_frequency_per_s": mode.s.im, "error_per_s": mode.error, "residual": mode.residual,
         "transverse_share": mode.shape.transverse(),
         "undrained": limit(&mode.undrained), "drained": limit(&mode.drained),
-        "on_half_the_cells": limit(&mode.coarse), "extrapolated_frequency_hz": mode.extrapolated_hz()
+        "on_half_the_cells": limit(&mode.coarse), "extrapolated_frequency_hz": mode.extrapolated_hz(),
+        "extrapolated_growth_per_s": mode.extrapolated().map(|s| s.re),
+        "mesh_error": mode.mesh_error(), "rate_mesh_error": mode.rate_error()
     })
 }
 

@@ -9,7 +9,7 @@ use crate::run::modes::{Limit, Mode};
 /// Digits shown at most.
 const DIGITS: f64 = 6.0;
 
-const HEADINGS: [&str; 10] = [
+const HEADINGS: [&str; 11] = [
     "",
     "mode",
     "moves",
@@ -17,6 +17,7 @@ const HEADINGS: [&str; 10] = [
     "mesh error",
     "damping ratio",
     "growth rate",
+    "its mesh error",
     "time constant",
     "undrained",
     "drained",
@@ -42,9 +43,9 @@ pub fn table(report: &Report) -> String {
     );
     let mut lines = vec![HEADINGS.map(String::from)];
     lines.extend(found.modes.iter().enumerate().map(|(k, mode)| line(k + 1, mode)));
-    let widths: [usize; 10] = std::array::from_fn(|k| lines.iter().map(|l| l[k].chars().count()).max().unwrap_or(0));
+    let widths: [usize; 11] = std::array::from_fn(|k| lines.iter().map(|l| l[k].chars().count()).max().unwrap_or(0));
     // a column of which no mode has anything says nothing
-    let shown: [bool; 10] = std::array::from_fn(|k| k == 0 || lines[1..].iter().any(|l| !l[k].is_empty()));
+    let shown: [bool; 11] = std::array::from_fn(|k| k == 0 || lines[1..].iter().any(|l| !l[k].is_empty()));
     for line in &lines {
         let cells = line.iter().zip(widths).enumerate().map(|(k, (cell, width))| match k {
             1 | 2 => format!("{cell:<width$}"),
@@ -53,8 +54,20 @@ pub fn table(report: &Report) -> String {
         let cells = cells.zip(shown).filter(|(_, shown)| *shown).map(|(cell, _)| cell);
         let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ").trim_end());
     }
-    if found.modes.iter().any(|m| m.coarse.is_some()) {
-        text += "\nmesh error: how far the frequency on half the cells says that this one is off, to second order\n";
+    if found
+        .modes
+        .iter()
+        .any(|m| m.by_mesh.beam.or(m.by_mesh.bladders).is_some())
+    {
+        let bladders = if found.bladders_compared {
+            " and twice those of each bladder"
+        } else {
+            ""
+        };
+        let _ = writeln!(
+            text,
+            "\nmesh error: how far half the cells of the beam{bladders} say that this one is off, to second order"
+        );
     }
     if found.modes.iter().any(|m| m.undrained.is_some() || m.drained.is_some()) {
         text += "\nundrained: the same shape with every bladder sealed; drained: with networks of one pressure\n";
@@ -62,7 +75,7 @@ pub fn table(report: &Report) -> String {
     text
 }
 
-fn line(number: usize, mode: &Mode) -> [String; 10] {
+fn line(number: usize, mode: &Mode) -> [String; 11] {
     let cell = |value: Option<f64>, error: f64, unit: &str| {
         value.map_or(String::new(), |value| quantity(value, unit, digits(value, error)))
     };
@@ -81,6 +94,7 @@ fn line(number: usize, mode: &Mode) -> [String; 10] {
         } else {
             format!("{} 1/s", significant(mode.s.re, digits(mode.s.re, mode.error)))
         },
+        mode.rate_error().map_or(String::new(), percent),
         cell(mode.time_s(), mode.error / mode.s.re.powi(2), "s"),
         limit(&mode.undrained),
         limit(&mode.drained),
@@ -116,7 +130,7 @@ pub fn csv(report: &Report) -> String {
     let mut text = String::from(
         "mode [1],kind,frequency [Hz],damping ratio [1],growth rate [1/s],time constant [s],error bound [1/s],residual [1],\
          transverse share [1],undrained frequency [Hz],undrained likeness [1],drained frequency [Hz],drained likeness [1],\
-         frequency on half the cells [Hz],extrapolated frequency [Hz]\n",
+         frequency on half the cells [Hz],extrapolated frequency [Hz],extrapolated growth rate [1/s]\n",
     );
     let number = |value: Option<f64>| value.filter(|v| v.is_finite()).map_or(String::new(), shortest);
     for (k, mode) in report.found.modes.iter().enumerate() {
@@ -136,6 +150,7 @@ pub fn csv(report: &Report) -> String {
         cells.extend(limit(&mode.drained));
         cells.push(number(mode.coarse.map(|l| l.frequency_hz)));
         cells.push(number(mode.extrapolated_hz()));
+        cells.push(number(mode.extrapolated().map(|s| s.re)));
         let _ = writeln!(text, "{}", cells.join(","));
     }
     text

@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use super::accuracy::with_warnings;
 use super::numbers::{count, percent, quantity, shortest, significant};
 use super::plot::cycles::{self, Cycles, Quantity};
-use crate::error::{Code, Result};
+use crate::error::Result;
 use crate::run::floquet::Stability;
 use crate::run::periodic::Search;
 use crate::run::summary::Summary;
@@ -21,9 +22,9 @@ fn largest(member: &Member, name: &str) -> Option<f64> {
     member.quantities.get(name).and_then(|q| q.window_max_abs)
 }
 
-/// The text of `sweep.json`.
-pub fn json(found: &Along) -> String {
-    let value = serde_json::to_value(found).unwrap_or_default();
+/// The text of `sweep.json`, with what to know of the first case.
+pub fn json(found: &Along, warnings: &[String]) -> String {
+    let value = with_warnings(serde_json::to_value(found).unwrap_or_default(), warnings);
     format!("{value:#}\n")
 }
 
@@ -82,7 +83,7 @@ pub fn words(found: &Along) -> String {
 }
 
 /// Writes the files of a sweep into a folder, which is made.
-pub fn write(dir: &Path, found: &Along) -> Result<Vec<PathBuf>> {
+pub fn write(dir: &Path, found: &Along, warnings: &[String]) -> Result<Vec<PathBuf>> {
     let quantities = SHOWN.iter().filter_map(|(name, unit)| {
         let values: Option<Vec<f64>> = found.members.iter().map(|m| largest(m, name)).collect();
         let short = name.trim_end_matches(&format!("_{}", unit.to_lowercase())).to_string();
@@ -111,7 +112,7 @@ pub fn write(dir: &Path, found: &Along) -> Result<Vec<PathBuf>> {
             }])
             .collect(),
     });
-    let mut files = vec![("sweep.csv", csv(found)), ("sweep.json", json(found))];
+    let mut files = vec![("sweep.csv", csv(found)), ("sweep.json", json(found, warnings))];
     files.extend(picture.map(|text| ("sweep.svg", text)));
     super::folder::put(dir, files)
 }
@@ -143,13 +144,6 @@ pub fn figures(summary: &Summary) -> String {
             .window_error
             .map_or(String::new(), |e| format!(" (balance open by {} of it)", percent(e)));
         let _ = writeln!(text, "{words:<22} {shown}{open}");
-    }
-    for warning in summary
-        .warnings
-        .iter()
-        .filter(|w| w.starts_with(Code::EnergyFigure.id()))
-    {
-        let _ = writeln!(text, "warning: {warning}");
     }
     text
 }

@@ -3,12 +3,14 @@
 //! ```text
 //! linearise   the pencil of a case about a state, with the fluid as it is, held, or free
 //! shape       displacements and pressures of an eigenvector; likeness of two
+//! meshes       the same modes on other meshes
 //! sensitivity  derivatives by numbers of the case
 //! kind        oscillation, decay, growth, rigid motion, kept volume
 //! ```
 
 pub mod kind;
 pub mod linearise;
+pub mod meshes;
 pub mod sensitivity;
 pub mod shape;
 
@@ -20,6 +22,7 @@ use crate::spectral::{self, Failure, Options, Pair, Pencil};
 
 pub use kind::Kind;
 pub use linearise::{Fluid, Linearised, at_equilibrium, linearise};
+pub use meshes::{ByMesh, compare_meshes};
 pub use sensitivity::{Sensitivity, differentiate};
 pub use shape::{Shape, Shapes, likeness};
 
@@ -62,6 +65,8 @@ pub struct Mode {
     pub drained: Option<Limit>,
     /// On a mesh of half the cells.
     pub coarse: Option<Limit>,
+    /// What meshes do to it.
+    pub by_mesh: ByMesh,
 }
 
 impl Mode {
@@ -70,22 +75,49 @@ impl Mode {
         self.kind.swings().then(|| self.s.im / std::f64::consts::TAU)
     }
 
-    /// `[E45]` What halving the cells says of the mesh (Richardson, second order): the frequency to which the two point [Hz],
+    /// `[E45]` What other meshes say of these (Richardson, second order): the eigenvalue to which half the cells of the beam and
+    /// twice those of a bladder point [1/s],
     ///
     /// ```text
-    /// f(h) = f + c h² + ..        f ≈ f(h) + (f(h) - f(2h))/3
+    /// s ≈ s(h, g) + (s(h, g) - s(2h, g))/3 + 4 (s(h, g/2) - s(h, g))/3        h: cells of the beam, g: of a bladder
     /// ```
     ///
-    /// None where nothing swings or the coarser mesh has no such mode.
-    pub fn extrapolated_hz(&self) -> Option<f64> {
-        let (fine, coarse) = (self.frequency_hz()?, self.coarse?.frequency_hz);
-        Some(fine + (fine - coarse) / 3.0)
+    /// None where neither mesh could be compared.
+    pub fn extrapolated(&self) -> Option<Complex<f64>> {
+        let ByMesh { beam, bladders } = self.by_mesh;
+        beam.into_iter()
+            .chain(bladders)
+            .reduce(|a, b| a + b)
+            .map(|more| self.s + more)
     }
 
-    /// Error that the mesh makes of the frequency, relative to it, as [`Mode::extrapolated_hz`] has it.
+    /// The frequency to which meshes point [Hz]; None where nothing swings or no other mesh has such a mode.
+    pub fn extrapolated_hz(&self) -> Option<f64> {
+        self.frequency_hz()?;
+        Some(self.extrapolated()?.im / std::f64::consts::TAU)
+    }
+
+    /// Error that meshes make of the frequency, relative to it, one beside the other.
     pub fn mesh_error(&self) -> Option<f64> {
-        let fine = self.frequency_hz()?;
-        Some((self.extrapolated_hz()? - fine).abs() / fine)
+        self.frequency_hz()?;
+        self.off(|s| s.im, self.s.im)
+    }
+
+    /// Error that meshes make of the growth or decay, relative to it, likewise. None where there is none; a damping ratio below 1e-6
+    /// is none.
+    pub fn rate_error(&self) -> Option<f64> {
+        let rate = self.s.re.abs();
+        (rate > UNDAMPED * self.s.norm())
+            .then(|| self.off(|s| s.re, rate))
+            .flatten()
+    }
+
+    fn off(&self, part: fn(Complex<f64>) -> f64, of: f64) -> Option<f64> {
+        let ByMesh { beam, bladders } = self.by_mesh;
+        let both = beam.into_iter().chain(bladders);
+        both.map(|more| part(more).abs())
+            .reduce(|a, b| a + b)
+            .map(|off| off / of.abs())
     }
 
     /// Damping ratio, negative where the mode grows; None where nothing swings.
@@ -99,6 +131,9 @@ impl Mode {
         (self.s.re != 0.0).then(|| 1.0 / self.s.re.abs())
     }
 }
+
+/// Damping ratio below which a mode is not damped.
+const UNDAMPED: f64 = 1e-6;
 
 /// The modes of a case about a state.
 pub struct Modes {
@@ -114,6 +149,8 @@ pub struct Modes {
     pub solves: u64,
     /// Whether all eigenvalues were computed at once.
     pub dense: bool,
+    /// Whether there is a mesh along bladders that could be compared with another.
+    pub bladders_compared: bool,
 }
 
 /// Modes of everything that a case describes, about its start.
@@ -137,8 +174,17 @@ pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
             ..*plan
         };
         for fluid in [Fluid::Sealed, Fluid::Free] {
-            let others = search(&about, fluid, &wider, &mut tally)?;
-            for (k, limit) in matched(&modes, &others) {
+            // more than asked for may be more than converge; a limit that is not found is not shown
+            let Ok(others) =
+                search(&about, fluid, &wider, &mut tally).or_else(|_| search(&about, fluid, plan, &mut tally))
+            else {
+                continue;
+            };
+            for (k, j, likeness) in matched(&modes, &others) {
+                let Some(frequency_hz) = others[j].frequency_hz() else {
+                    continue;
+                };
+                let limit = Limit { frequency_hz, likeness };
                 match fluid {
                     Fluid::Sealed => modes[k].undrained = Some(limit),
                     _ => modes[k].drained = Some(limit),
@@ -153,46 +199,8 @@ pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
         factorizations: tally.factorizations,
         solves: tally.solves,
         dense: tally.dense,
+        bladders_compared: false,
     })
-}
-
-/// Looks for the same modes on half the cells, about the start or the equilibrium under the loads of an instant [s]: what the mesh
-/// does to them. Does nothing where the cells cannot be halved.
-///
-/// # Errors
-/// As [`modes`] and [`at_equilibrium`].
-pub fn halve_the_mesh(case: &Case, at_rest_under: Option<f64>, plan: &Plan, found: &mut Modes) -> Result<()> {
-    let mut case = case.clone();
-    let mesh = &mut case.mesh;
-    match (&case.bladders, mesh.segments) {
-        _ if mesh.cells_per_segment.is_multiple_of(2) => mesh.cells_per_segment /= 2,
-        (None, Some(segments)) if segments.is_multiple_of(2) => mesh.segments = Some(segments / 2),
-        _ => return Ok(()),
-    }
-    let about = match at_rest_under {
-        Some(at) => at_equilibrium(&case, at)?,
-        None => linearise(&case, found.about.at, None)?,
-    };
-    let wider = Plan {
-        count: plan.count + 4,
-        ..*plan
-    };
-    let mut tally = Tally::default();
-    let others = search(&about, Fluid::Flowing, &wider, &mut tally)?;
-    let every_other: Vec<Mode> = found
-        .modes
-        .iter()
-        .map(|mode| Mode {
-            shape: mode.shape.on_every_other_node(),
-            ..mode.clone()
-        })
-        .collect();
-    for (k, limit) in matched(&every_other, &others) {
-        found.modes[k].coarse = Some(limit);
-    }
-    found.factorizations += tally.factorizations;
-    found.solves += tally.solves;
-    Ok(())
 }
 
 #[derive(Default)]
@@ -263,32 +271,46 @@ fn mode(about: &Linearised, shapes: &mut Shapes, pair: &Pair) -> Option<Mode> {
         undrained: None,
         drained: None,
         coarse: None,
+        by_mesh: ByMesh::default(),
     })
 }
 
-/// Pairs oscillations with those of other equations, the most alike first, each at most once.
-fn matched(modes: &[Mode], others: &[Mode]) -> Vec<(usize, Limit)> {
-    let swinging = |m: &&(usize, &Mode)| m.1.kind.swings();
+/// Pairs oscillations with those of other equations: places in both lists, and the likeness of the shapes.
+fn matched(modes: &[Mode], others: &[Mode]) -> Vec<(usize, usize, f64)> {
+    paired(
+        modes,
+        others,
+        |mode| mode.kind.swings(),
+        |a, b| likeness(&a.shape, &b.shape),
+    )
+}
+
+/// Likeness above which two modes may be the same.
+const ALIKE: f64 = 0.5;
+
+/// Pairs modes of a sort, the most alike first, each at most once.
+fn paired(
+    modes: &[Mode],
+    others: &[Mode],
+    of_sort: impl Fn(&Mode) -> bool,
+    alike: impl Fn(&Mode, &Mode) -> f64,
+) -> Vec<(usize, usize, f64)> {
     let mut all = vec![];
-    for (k, mode) in modes.iter().enumerate().filter(|m| swinging(&m)) {
-        for (j, other) in others.iter().enumerate().filter(|m| swinging(&m)) {
-            all.push((likeness(&mode.shape, &other.shape), k, j));
+    for (k, mode) in modes.iter().enumerate().filter(|m| of_sort(m.1)) {
+        for (j, other) in others.iter().enumerate().filter(|m| of_sort(m.1)) {
+            all.push((k, j, alike(mode, other)));
         }
     }
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    all.sort_by(|a, b| b.2.total_cmp(&a.2));
     let (mut taken, mut given) = (vec![false; modes.len()], vec![false; others.len()]);
-    let mut found = vec![];
-    for (likeness, k, j) in all {
-        if let Some(frequency_hz) = others[j].frequency_hz()
-            && !taken[k]
-            && !given[j]
-            && likeness > 0.5
-        {
+    all.retain(|&(k, j, alike)| {
+        let new = !taken[k] && !given[j] && alike > ALIKE;
+        if new {
             (taken[k], given[j]) = (true, true);
-            found.push((k, Limit { frequency_hz, likeness }));
         }
-    }
-    found
+        new
+    });
+    all
 }
 
 fn failed(about: &Linearised, failure: &Failure) -> Error {

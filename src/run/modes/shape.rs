@@ -151,6 +151,24 @@ pub fn likeness(a: &Shape, b: &Shape) -> f64 {
     }
 }
 
+/// The same of displacements and pressures together, each over what it is shown with, of a beam of this length [m]: of motions that are mostly flow.
+pub fn alike(a: &Shape, b: &Shape, length: f64) -> f64 {
+    let inner = |a: &Shape, b: &Shape| -> Complex<f64> {
+        let part = |u: &[Complex<f64>], w: &[Complex<f64>], size: f64| -> Complex<f64> {
+            let sum: Complex<f64> = u.iter().zip(w).map(|(u, w)| u.conj() * w).sum();
+            sum / (size * size * u.len().max(1) as f64)
+        };
+        let moved = DISPLACEMENT * length;
+        part(&a.u1, &b.u1, moved) + part(&a.u3, &b.u3, moved) + part(&a.pressure, &b.pressure, PRESSURE)
+    };
+    let whole = inner(a, a).re * inner(b, b).re;
+    if whole > 0.0 {
+        inner(a, b).norm_sqr() / whole
+    } else {
+        0.0
+    }
+}
+
 fn largest<'a>(values: impl Iterator<Item = &'a Complex<f64>>) -> Complex<f64> {
     values.fold(
         Complex::default(),

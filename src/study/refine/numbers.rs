@@ -5,17 +5,22 @@ use std::collections::BTreeMap;
 use super::{Number, Numbers};
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::run::equilibrium::{self, Options};
-use crate::run::floquet;
+use crate::model::Model;
+use crate::run::equilibrium::{self, Options, Path};
+use crate::run::floquet::{self, Floquet};
 use crate::run::modes::{self, Kind, Mode, Plan};
 use crate::run::periodic::scene::fault;
 use crate::run::periodic::{Cycle, Scene, record, shoot};
-use crate::run::record::{Control, Unrecorded};
-use crate::run::summary::Status;
+use crate::run::record::{Column, Control, Unrecorded};
+use crate::run::summary::{Status, Summary};
 use crate::study::counted::{Floors, counted};
 
 /// Numbers of a unit below this part of others are round-off.
 const NOTHING: f64 = 1e-6;
+/// Strain whose energy is round-off beside that of moving as a whole.
+const STRAIN: f64 = 1e-9;
+/// Multipliers below this are of what is gone after a period.
+const GONE: f64 = 0.01;
 /// A rate of growth counts beside this part of the mode's own frequency.
 const DAMPING: f64 = 0.01;
 
@@ -29,6 +34,11 @@ pub fn of_equilibrium(case: &Case, options: &Options) -> Result<Numbers> {
         return Err(Error::Solver(Box::new(fault)));
     }
     let columns = equilibrium::columns(&equilibrium::system(case, options.at_s));
+    Ok(of_path(case, &columns, &path))
+}
+
+/// The last state of a load path that was followed.
+pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Numbers {
     let row = path.states.last().map_or(&[][..], |state| &state.row);
     let length = case.beam.length_m;
     // an angle counts beside displacements
@@ -38,14 +48,23 @@ pub fn of_equilibrium(case: &Case, options: &Options) -> Result<Numbers> {
         let same = all().map(|(c, x)| (alike(c.unit), x)).filter(|((u, _), _)| *u == unit);
         same.map(|((_, factor), x)| factor * x.abs()).fold(0.0, f64::max)
     };
+    // what nothing moves or presses is round-off, and so is all that is made of it
+    let (floors, section) = (Floors::of(case), Model::new(case).section);
+    let floor = |unit: &str| match unit {
+        "m" => floors.displacement,
+        "Pa" => floors.pressure,
+        "J" => section.axial_stiffness * length * STRAIN * STRAIN,
+        "W" if largest("Pa") <= floors.pressure => f64::INFINITY,
+        _ => 0.0,
+    };
     let number = |unit: &'static str, value: f64| {
         let (unit, factor) = alike(unit);
         Number {
             value,
-            size: NOTHING * largest(unit) / factor,
+            size: (NOTHING * largest(unit)).max(floor(unit)) / factor,
         }
     };
-    Ok(all().map(|(c, x)| (c.name.clone(), number(c.unit, *x))).collect())
+    all().map(|(c, x)| (c.name.clone(), number(c.unit, *x))).collect()
 }
 
 /// Frequencies and rates of the modes: those across by their order, those along, those of the fluid.
@@ -105,20 +124,40 @@ pub fn cycle(case: &Case, period: Option<f64>) -> Result<(Scene, Cycle)> {
 /// As [`cycle`], and where the cycle cannot be followed for a period.
 pub fn of_cycle(case: &Case) -> Result<Numbers> {
     let (scene, cycle) = cycle(case, None)?;
-    let outcome = record::record(case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?;
+    recorded(case, &scene, &cycle)
+}
+
+fn recorded(case: &Case, scene: &Scene, cycle: &Cycle) -> Result<Numbers> {
+    let outcome = record::record(case, scene, cycle, &mut Unrecorded(|_| Control::Continue))?;
     if outcome.summary.status != Status::Finished {
         return Err(outcome.fault.map_or_else(
             || Error::Usage(outcome.summary.reason.unwrap_or_default()),
             |fault| Error::Solver(Box::new(fault)),
         ));
     }
+    Ok(of_summary(case, &outcome.summary))
+}
+
+/// Figures over a cycle that was recorded.
+pub fn of_summary(case: &Case, summary: &Summary) -> Numbers {
     let mut all = Numbers::new();
-    for (name, quantity) in counted(&outcome.summary, &Floors::of(case)) {
+    for (name, quantity) in counted(summary, &Floors::of(case)) {
         let largest = quantity.figures().fold(0.0_f64, |s, (_, x)| s.max(x.abs()));
         for (figure, value) in quantity.figures().filter(|(figure, _)| figure.starts_with("window")) {
             all.insert(format!("{name}.{figure}"), Number { value, size: largest });
         }
     }
+    all
+}
+
+/// Figures over the cycle, and so many multipliers.
+///
+/// # Errors
+/// As [`of_cycle`].
+pub fn of_cycle_and_multipliers(case: &Case, count: usize) -> Result<Numbers> {
+    let (scene, mut cycle) = cycle(case, None)?;
+    let mut all = recorded(case, &scene, &cycle)?;
+    all.extend(of_stability(&floquet::multipliers(&scene, &mut cycle, count)));
     Ok(all)
 }
 
@@ -128,7 +167,33 @@ pub fn of_cycle(case: &Case) -> Result<Numbers> {
 /// As [`cycle`].
 pub fn of_multipliers(case: &Case, period: Option<f64>, count: usize) -> Result<Numbers> {
     let (scene, mut cycle) = cycle(case, period)?;
-    let found = floquet::multipliers(&scene, &mut cycle, count);
+    Ok(of_floquet(&floquet::multipliers(&scene, &mut cycle, count)))
+}
+
+/// The multipliers of the cycle, and how fast that grows or decays which is not gone after a period.
+///
+/// # Errors
+/// As [`cycle`].
+pub fn of_growth(case: &Case, period: Option<f64>, count: usize) -> Result<Numbers> {
+    let (scene, mut cycle) = cycle(case, period)?;
+    Ok(of_stability(&floquet::multipliers(&scene, &mut cycle, count)))
+}
+
+/// Multipliers that were found, and what is shown of them.
+pub fn of_stability(found: &Floquet) -> Numbers {
+    let mut all = of_floquet(found);
+    for (k, m) in found.multipliers.iter().enumerate().filter(|(_, m)| m.modulus > GONE) {
+        let growth = Number {
+            value: m.growth_per_s,
+            size: DAMPING * m.growth_per_s.hypot(std::f64::consts::TAU * m.frequency_hz),
+        };
+        all.insert(format!("multiplier_{}.growth_per_s", k + 1), growth);
+    }
+    all
+}
+
+/// Multipliers that were found.
+fn of_floquet(found: &Floquet) -> Numbers {
     let mut counts = BTreeMap::new();
     let mut all = Numbers::new();
     for m in &found.multipliers {
@@ -144,5 +209,5 @@ pub fn of_multipliers(case: &Case, period: Option<f64>, count: usize) -> Result<
             },
         );
     }
-    Ok(all)
+    all
 }

@@ -1,0 +1,203 @@
+//! How a mesh carries the displacements and the velocities that a beam begins with.
+
+use crate::case::profile::{Integrals, Profile};
+use crate::case::schema::Case;
+use crate::case::signals::Clock;
+use crate::case::{Rotation, Translation};
+use crate::discrete::{System, shapes};
+use crate::model::Model;
+
+use super::ratio;
+use super::vibrations::Vibrations;
+
+/// How much finer the mesh is whose energy one is compared with.
+const FINER: usize = 4;
+
+/// A displacement or a velocity at the start.
+pub(super) struct Begun<'a> {
+    key: &'static str,
+    profile: &'a Profile,
+    what: What,
+    vibrations: Option<Vibrations>,
+}
+
+enum What {
+    Displacement(Held),
+    Velocity,
+}
+
+/// What holds a displacement at the ends.
+struct Held {
+    /// Displacements of root and tip [m], where they are given.
+    ends: [Option<f64>; 2],
+    /// Slopes there over the length, where they are given, of what bends; what stretches has none.
+    slopes: Option<[Option<f64>; 2]>,
+}
+
+impl<'a> Begun<'a> {
+    /// All that a case gives.
+    pub fn all(case: &'a Case, system: &System) -> Vec<Self> {
+        let start = &case.start;
+        let given = [
+            ("u1_m", &start.u1_m, true, true),
+            ("u3_m", &start.u3_m, true, false),
+            ("u1_rate_m_s", &start.u1_rate_m_s, false, true),
+            ("u3_rate_m_s", &start.u3_rate_m_s, false, false),
+        ];
+        let model = &system.model;
+        let of = |(key, profile, displacement, bends): (&'static str, &'a Option<Profile>, bool, bool)| {
+            let profile = profile.as_ref()?;
+            let free = if bends {
+                &system.layout.free_u1
+            } else {
+                &system.layout.free_u3
+            };
+            let waves = system.layout.waves[usize::from(!bends)] && !free.is_empty();
+            Some(Self {
+                key,
+                profile,
+                what: if displacement {
+                    What::Displacement(Held::of(model, bends))
+                } else {
+                    What::Velocity
+                },
+                vibrations: waves.then(|| Vibrations::new(profile, displacement, bends, model, case.time.end_s)),
+            })
+        };
+        given.into_iter().filter_map(of).collect()
+    }
+
+    /// Where it stands in the case.
+    pub fn pointer(&self) -> String {
+        format!("/start/{}", self.key)
+    }
+
+    /// What the mesh leaves out of it, and in words what that is.
+    pub fn left_out(&self, cells: usize) -> (f64, &'static str) {
+        let there = self.at_once(cells);
+        match self.vibrations.as_ref().map(|v| v.left_out(cells)) {
+            Some(later) if later > there.0 => (later, "the motion by its short waves, which the mesh slows down,"),
+            _ => there,
+        }
+    }
+
+    /// What of that is so from the beginning.
+    pub fn at_once(&self, cells: usize) -> (f64, &'static str) {
+        match &self.what {
+            What::Displacement(held) => {
+                let between = of_lines(self.profile, cells);
+                // one that the mesh does not see has no energy to judge
+                let energy = if between > super::LIMIT {
+                    0.0
+                } else {
+                    held.energy_left_out(self.profile, cells)
+                };
+                if energy > between {
+                    (energy, "the root of the elastic energy of the displacement")
+                } else {
+                    (between, "the displacement between the nodes")
+                }
+            }
+            What::Velocity => (of_squares(self.profile, cells), "the velocity between the nodes"),
+        }
+    }
+}
+
+impl Held {
+    fn of(model: &Model, bends: bool) -> Self {
+        let clock = Clock { t: 0.0, within: 0.0 };
+        let moved = |motion: &Translation| match motion {
+            Translation::Displacement(signal) => Some(signal.jet(clock).value),
+            Translation::Force(_) => None,
+        };
+        let turned = |rotation: &Rotation| match rotation {
+            Rotation::Slope(signal) => Some(signal.jet(clock).value * model.length),
+            Rotation::Moment(_) => None,
+        };
+        let ends = [0, 1].map(|k| {
+            let end = &model.ends[k];
+            moved(if bends { &end.transverse } else { &end.axial })
+        });
+        Self {
+            ends,
+            slopes: bends.then(|| [0, 1].map(|k| turned(&model.ends[k].rotation))),
+        }
+    }
+
+    /// Change of the root of the elastic energy from a mesh to a finer one. A kink in what bends, a jump in what stretches, have
+    /// all the energy that a mesh can give them.
+    fn energy_left_out(&self, profile: &Profile, cells: usize) -> f64 {
+        let [(here, scale), (there, _)] = [cells, FINER * cells].map(|cells| self.energy(profile, cells));
+        ratio((there.sqrt() - here.sqrt()).abs(), there.sqrt(), scale)
+    }
+
+    /// Elastic energy on a mesh, times 2 over the stiffness, the length being 1, and what round-off counts beside.
+    ///
+    /// ```text
+    /// φ = Δu/h    stretch  Σ h φ²    bending  Σ h_i κ_i²,  κ_i = Δφ/h,  κ_0 = (φ_{1/2} - φ_0)/(h/2) where the slope is given
+    /// ```
+    fn energy(&self, profile: &Profile, cells: usize) -> (f64, f64) {
+        let h = 1.0 / cells as f64;
+        let mut u: Vec<f64> = (0..=cells).map(|i| profile.value(i as f64 * h)).collect();
+        let [root, tip] = self.ends;
+        u[0] = root.unwrap_or(u[0]);
+        u[cells] = tip.unwrap_or(u[cells]);
+        let largest = u.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+        let slopes: Vec<f64> = u.windows(2).map(|u| (u[1] - u[0]) / h).collect();
+        let Some([at_root, at_tip]) = self.slopes else {
+            return (slopes.iter().map(|s| h * s * s).sum(), largest);
+        };
+        let inner: f64 = slopes.windows(2).map(|s| (s[1] - s[0]).powi(2) / h).sum();
+        let end = |given: Option<f64>, slope: f64| given.map_or(0.0, |given| 2.0 * (slope - given).powi(2) / h);
+        (
+            inner + end(at_root, slopes[0]) + end(at_tip, slopes[cells - 1]),
+            largest / h,
+        )
+    }
+}
+
+/// Largest distance of a function from the lines through its values at the nodes, over its largest distance from the line
+/// through its ends: moving and turning the beam as a whole costs no mesh anything.
+fn of_lines(profile: &Profile, cells: usize) -> f64 {
+    let integrals = Integrals::of(profile);
+    let line = |a: f64, b: f64, x: f64| {
+        let t = (x - a) / (b - a);
+        profile.value(a) * (1.0 - t) + profile.value(b) * t
+    };
+    let (mut lost, mut whole, mut largest) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for (a, b) in (0..cells).map(|c| shapes::within(c, cells)) {
+        for x in shapes::places(&integrals, a, b).into_iter().chain([a, b]) {
+            let value = profile.value(x);
+            lost = lost.max((value - line(a, b, x)).abs());
+            whole = whole.max((value - line(0.0, 1.0, x)).abs());
+            largest = largest.max(value.abs());
+        }
+    }
+    ratio(lost, whole, largest)
+}
+
+/// What a mesh does to the root of the kinetic energy: by what lies between the velocity v and its lines w on the mesh, and by lumping
+/// the mass of these, one beside the other, for they may have opposite signs by chance:
+///
+/// ```text
+/// 1 - (1 - ∫(v - w)²/∫v²)^(1/2) + |(Σ h_i w_i²)^(1/2) - (∫w²)^(1/2)|/(∫v²)^(1/2)
+/// ```
+fn of_squares(profile: &Profile, cells: usize) -> f64 {
+    let (w, means) = (shapes::nearest(profile, cells), shapes::at_nodes(profile, cells));
+    let h = 1.0 / cells as f64;
+    let length = |i: usize| if i == 0 || i == cells { 0.5 * h } else { h };
+    let over_nodes = |of: &dyn Fn(usize) -> f64| (0..=cells).map(|i| length(i) * of(i)).sum::<f64>();
+    let both = over_nodes(&|i| w[i] * means[i]);
+    let lumped = over_nodes(&|i| w[i] * w[i]);
+    let lines = w
+        .windows(2)
+        .map(|w| h / 3.0 * (w[0] * (w[0] + w[1]) + w[1] * w[1]))
+        .sum::<f64>();
+    let square = Profile::Product(vec![profile.clone(), profile.clone()]);
+    let exact = Integrals::of(&square).moments(0.0, 1.0)[0].max(0.0);
+    if exact <= 0.0 {
+        return 0.0;
+    }
+    let between = ((exact - 2.0 * both + lines) / exact).clamp(0.0, 1.0);
+    1.0 - (1.0 - between).sqrt() + (lumped.sqrt() - lines.max(0.0).sqrt()).abs() / exact.sqrt()
+}

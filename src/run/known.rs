@@ -1,0 +1,30 @@
+//! What is known of a case before anything is computed, for every command in the same words.
+
+use crate::case::schema::Case;
+use crate::discrete::{System, resolution};
+use crate::error::Code;
+use crate::model::{audit, characteristic};
+
+/// What stays true whatever a run finds: of the case and its mesh.
+pub fn lasting(case: &Case, system: &System) -> Vec<String> {
+    let numbers = characteristic::numbers(case, &system.model);
+    with_the_mesh(audit::lasting(case, &system.model, &numbers), case, system)
+}
+
+/// That, and what is expected of it: of what does not run and look for itself.
+pub fn warnings(case: &Case, system: &System) -> Vec<String> {
+    let numbers = characteristic::numbers(case, &system.model);
+    with_the_mesh(audit::warnings(case, &system.model, &numbers), case, system)
+}
+
+/// The same of what has no output times: an equilibrium, modes, multipliers.
+pub fn without_outputs(case: &Case, system: &System) -> Vec<String> {
+    let mut all = warnings(case, system);
+    all.retain(|warning| !warning.starts_with(Code::FewOutputs.id()));
+    all
+}
+
+fn with_the_mesh(mut all: Vec<String>, case: &Case, system: &System) -> Vec<String> {
+    all.extend(resolution::warnings(case, system));
+    all
+}
