@@ -18,7 +18,7 @@ use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::ledger::FLOWS;
 use crate::discrete::{System, resolution, start};
-use crate::error::{Code, Error, Result, SolverFault};
+use crate::error::{Code, Result, SolverFault};
 use crate::model::{audit, characteristic};
 use crate::sundials::{IdaFailure, StartFailure, StartOptions, consistent_start};
 
@@ -64,11 +64,7 @@ pub fn header(case: &Case) -> Header {
 
 /// Goes on from a checkpoint of the same case; the recorder holds what was recorded before it.
 pub fn resume(case: &Case, checkpoint: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
-    if checkpoint.case != case.resolved_json() || checkpoint.version != VERSION {
-        return Err(Error::Usage(
-            "the checkpoint belongs to another case or another version of the program".into(),
-        ));
-    }
+    checkpoint.fits(case)?;
     let (run, dae) = Run::new(case, &[])?;
     run.go(dae, Some(checkpoint), recorder)
 }

@@ -2,11 +2,12 @@
 //! a map, and their words.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde_json::json;
 
 use super::accuracy::with_accuracy;
+use super::folder::ResultFolder;
 use super::numbers::{shortest, significant};
 use super::plot::multipliers::{self, Dot, Multipliers};
 use super::plot::tongue::{self, Tongue, TonguePanel};
@@ -109,8 +110,8 @@ pub fn words(found: &Found) -> String {
     text
 }
 
-/// Writes the files of one case into a folder, which is made.
-pub fn write(dir: &Path, found: &Found) -> Result<Vec<PathBuf>> {
+/// Writes the files of one case into a folder.
+pub fn write(folder: &mut ResultFolder, found: &Found) -> Result<Vec<PathBuf>> {
     let dots = found.floquet.multipliers.iter().map(|m| Dot {
         re: m.re,
         im: m.im,
@@ -123,7 +124,7 @@ pub fn write(dir: &Path, found: &Found) -> Result<Vec<PathBuf>> {
     });
     let mut files = vec![("floquet.csv", csv(found.floquet)), ("floquet.json", json(found))];
     files.extend(picture.map(|text| ("floquet.svg", text)));
-    super::folder::put(dir, files)
+    folder.fill(files)
 }
 
 /// The text of `map.json`.
@@ -203,8 +204,8 @@ pub fn map_words(map: &Map) -> String {
     text
 }
 
-/// Writes the files of a map into a folder, which is made.
-pub fn write_map(dir: &Path, map: &Map) -> Result<Vec<PathBuf>> {
+/// Writes the files of a map into a folder.
+pub fn write_map(folder: &mut ResultFolder, map: &Map) -> Result<Vec<PathBuf>> {
     let panels = map.sheets.iter().map(|sheet| TonguePanel {
         name: sheet
             .permeability_factor
@@ -225,5 +226,5 @@ pub fn write_map(dir: &Path, map: &Map) -> Result<Vec<PathBuf>> {
     });
     let mut files = vec![("map.csv", map_csv(map)), ("map.json", map_json(map))];
     files.extend(picture.map(|text| ("map.svg", text)));
-    super::folder::put(dir, files)
+    folder.fill(files)
 }
