@@ -147,7 +147,8 @@ fn unequal_slopes_are_needed_and_nothing_that_is_needed_is_recommended_off() {
     assert_eq!(json["rows"].as_array().unwrap().len(), TABLE.len());
     assert!(json["sentence"].as_str().unwrap().contains("\"effects\": "));
     let dir = TempDir::new().unwrap();
-    let written = files::write(dir.path(), &found, &shown).unwrap();
+    let mut folder = ResultFolder::claim(dir.path(), Kind::Effects, false).unwrap();
+    let written = files::write(&mut folder, &found, &shown).unwrap();
     assert_eq!(written.len(), 3);
     let picture = fs::read_to_string(dir.path().join(files::PICTURE)).unwrap();
     for r in found.rows.iter().filter(|r| r.left_out.is_some()) {
