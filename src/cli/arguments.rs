@@ -91,7 +91,7 @@ impl Command {
 /// A case file and changes to it.
 #[derive(Clone, Debug, Args)]
 pub struct CaseArguments {
-    /// Case file (JSON)
+    /// Case file (JSON); - is standard input
     pub case: PathBuf,
     /// Change a value of the case, repeatable: a JSON pointer and a JSON value, such as /solver/rtol=1e-7
     #[arg(long = "set", value_name = "POINTER=JSON")]
@@ -117,7 +117,7 @@ pub struct RunArguments {
     #[arg(long, conflicts_with = "force")]
     pub resume: bool,
     /// Stop after so many seconds of wall time, with everything so far written
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", value_parser = super::line::duration)]
     pub max_wall: Option<f64>,
     /// No progress bar
     #[arg(long)]

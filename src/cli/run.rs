@@ -79,7 +79,7 @@ fn hook(asked: &RunArguments) -> SharedHook {
     let mut watcher = Watcher::new(asked.quiet);
     let deadline = asked
         .max_wall
-        .map(|seconds| Instant::now() + Duration::from_secs_f64(seconds.clamp(0.0, 1e9)));
+        .map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
     Rc::new(RefCell::new(Box::new(move |progress: &Progress| {
         watcher.step(progress);
         if interrupt::raised(&interrupted) {
