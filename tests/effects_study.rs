@@ -8,7 +8,9 @@ use assert_cmd::Command;
 use serde_json::{Value, json};
 use slcbeam::case::{self, Case};
 use slcbeam::model::effects::{Effect, TABLE};
+use slcbeam::output::ResultFolder;
 use slcbeam::output::effects::{self as files, Shown};
+use slcbeam::output::kind::Kind;
 use slcbeam::study::effects::change::{Measure, Size, judge, largest};
 use slcbeam::study::effects::choices::{choosable, effects, on};
 use slcbeam::study::effects::{Ablation, Plan, Row, Verdict, ablate};
@@ -147,7 +149,8 @@ fn unequal_slopes_are_needed_and_nothing_that_is_needed_is_recommended_off() {
     assert_eq!(json["rows"].as_array().unwrap().len(), TABLE.len());
     assert!(json["sentence"].as_str().unwrap().contains("\"effects\": "));
     let dir = TempDir::new().unwrap();
-    let written = files::write(dir.path(), &found, &shown).unwrap();
+    let mut folder = ResultFolder::claim(dir.path(), Kind::Effects, false).unwrap();
+    let written = files::write(&mut folder, &found, &shown).unwrap();
     assert_eq!(written.len(), 3);
     let picture = fs::read_to_string(dir.path().join(files::PICTURE)).unwrap();
     for r in found.rows.iter().filter(|r| r.left_out.is_some()) {

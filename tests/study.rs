@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use slcbeam::case::{self, Case};
+use slcbeam::output::ResultFolder;
+use slcbeam::output::kind::Kind;
 use slcbeam::output::study as files;
 use slcbeam::study::accuracy::front::{self, Mark};
 use slcbeam::study::accuracy::study::Study;
@@ -153,7 +155,8 @@ fn a_wet_beam_is_studied_in_its_pressures_too() {
         "{json}"
     );
     let dir = tempfile::tempdir().unwrap();
-    assert_eq!(files::write(dir.path(), &found).unwrap().len(), 3);
+    let mut folder = ResultFolder::claim(dir.path(), Kind::Study, false).unwrap();
+    assert_eq!(files::write(&mut folder, &found).unwrap().len(), 3);
 }
 
 #[test]

@@ -1,9 +1,11 @@
 //! Faults as they are collected: by pointer first, placed in the text at the end.
 
+use std::collections::{HashMap, HashSet};
+
 use serde_json::Value;
 
 use super::locate::{Node, Place, tokens};
-use crate::error::Violation;
+use crate::error::{Code, Violation};
 
 /// What a fault points at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,14 +38,22 @@ impl Faults {
         self.push_at_key(violation);
     }
 
+    /// Whether a key was found not to be known.
+    pub fn is_unknown_key(&self, pointer: &str) -> bool {
+        self.unknown_keys.iter().any(|known| known == pointer)
+    }
+
     /// Takes the members with unknown keys out of the value, so that the rest can be looked at.
     pub fn remove_unknown_keys(&self, value: &mut Value) {
+        let mut by_parent: HashMap<&str, HashSet<String>> = HashMap::new();
         for pointer in &self.unknown_keys {
-            let Some((parent, _)) = pointer.rsplit_once('/') else {
-                continue;
-            };
-            if let (Some(Value::Object(members)), Some(key)) = (value.pointer_mut(parent), tokens(pointer).last()) {
-                members.shift_remove(&key);
+            if let (Some((parent, _)), Some(key)) = (pointer.rsplit_once('/'), tokens(pointer).last()) {
+                by_parent.entry(parent).or_default().insert(key);
+            }
+        }
+        for (parent, keys) in by_parent {
+            if let Some(Value::Object(members)) = value.pointer_mut(parent) {
+                members.retain(|key, _| !keys.contains(key));
             }
         }
     }
@@ -69,8 +79,10 @@ impl Faults {
             .retain(|(fault, _)| !pointers.iter().any(|p| is_below(&fault.pointer, p)));
     }
 
-    /// All faults with their places, in the order of the text.
-    pub fn placed(self, source: &Source) -> Vec<Violation> {
+    /// All faults with their places, in the order of the text; of very many the first, and how many there are besides.
+    pub fn placed(mut self, source: &Source) -> Vec<Violation> {
+        let more = self.list.len().saturating_sub(MOST);
+        self.list.truncate(MOST);
         let mut placed: Vec<_> = self
             .list
             .into_iter()
@@ -78,9 +90,16 @@ impl Faults {
             .collect();
         sort(&mut placed);
         placed.dedup();
+        if more > 0 {
+            let code = placed.last().map_or(Code::Text, |last| last.code);
+            placed.push(Violation::new(code, "", format!("and {more} more faults")));
+        }
         placed
     }
 }
+
+/// Faults that are told at once.
+const MOST: usize = 1000;
 
 /// Orders faults as the text does; those in `--set` arguments last.
 pub fn sort(faults: &mut [Violation]) {

@@ -1,5 +1,6 @@
 //! From a file to a checked case.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
@@ -13,6 +14,16 @@ use crate::error::{CaseFault, Code, Error, Result, Violation};
 
 /// Largest case file that is read.
 const LARGEST: u64 = 64 << 20;
+
+/// The name of standard input.
+const STANDARD_INPUT: &str = "-";
+
+/// All bytes, or one more than a case may have.
+fn bounded(from: impl Read) -> std::io::Result<Vec<u8>> {
+    let mut bytes = vec![];
+    from.take(LARGEST + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
 
 /// A checked case with the text it came from.
 #[derive(Clone, Debug)]
@@ -35,16 +46,24 @@ pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase> {
         let meant = nearest_file(path).map_or_else(String::new, |name| format!("; did you mean {}?", name.display()));
         Error::Usage(format!("cannot read the case {}: {e}{meant}", path.display()))
     };
-    let size = std::fs::metadata(path).map_err(unreadable)?.len();
-    if size > LARGEST {
-        let what = format!("the file has {} MB", size >> 20);
+    let bytes = if path == Path::new(STANDARD_INPUT) {
+        bounded(std::io::stdin().lock()).map_err(unreadable)?
+    } else {
+        let there = std::fs::metadata(path).map_err(unreadable)?;
+        if !there.is_file() {
+            let what = "it is no file with an end; a case on standard input is named -";
+            return Err(unreadable(std::io::Error::new(std::io::ErrorKind::InvalidInput, what)));
+        }
+        bounded(std::fs::File::open(path).map_err(unreadable)?).map_err(unreadable)?
+    };
+    if bytes.len() as u64 > LARGEST {
+        let what = "the case is larger than 64 MB";
         return Err(fault(
             path,
             "",
             vec![Violation::new(Code::Text, "", what).allowed("case files of up to 64 MB")],
         ));
     }
-    let bytes = std::fs::read(path).map_err(unreadable)?;
     let text = match String::from_utf8(bytes) {
         Ok(text) => text,
         Err(e) => return Err(not_utf8(path, e.as_bytes(), e.utf8_error().valid_up_to())),
@@ -90,6 +109,13 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Lo
     let mut faults = Faults::default();
     validate::validate(&value, &schema_json::CASE, &mut faults);
     faults.drop_below(&told);
+    // `null` from the command line leaves out what could stand there.
+    let cleared = source.sets.iter().map(|set| set.pointer.clone());
+    let cleared: Vec<String> = cleared
+        .filter(|p| value.pointer(p).is_some_and(Value::is_null) && !faults.is_unknown_key(p))
+        .collect();
+    faults.drop_below(&cleared);
+    cleared.iter().for_each(|pointer| sets::remove(&mut value, pointer));
     let case = match value.is_object() {
         true => build(value.clone(), base, &mut faults, violations.is_empty()),
         false => None,

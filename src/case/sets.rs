@@ -39,7 +39,8 @@ fn apply_one(value: &mut Value, argument: &str) -> Result<SetValue> {
     };
     let new = node.to_value();
     let json_at = pointer.len() + 1;
-    let (pointer, node) = if new.is_null() {
+    // what is not there is put there as null, so that a name that is none is told as such
+    let (pointer, node) = if new.is_null() && value.pointer(pointer).is_some() {
         remove(value, pointer);
         (pointer.to_owned(), None)
     } else {

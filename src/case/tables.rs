@@ -9,6 +9,9 @@ use super::locate::child;
 use super::wording::nearest;
 use crate::error::{Code, Violation};
 
+/// Largest file of a table that is read.
+const LARGEST: u64 = 64 << 20;
+
 /// Replaces `csv` and its columns by `times_s` and `values` in every table below `value`.
 pub fn resolve(value: &mut Value, base: &Path, pointer: &str, faults: &mut Faults) {
     match value {
@@ -54,6 +57,15 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
     if table.contains_key("times_s") || table.contains_key("values") {
         let fault = Violation::new(Code::Table, child(pointer, "csv"), "points given here and in a file");
         return Err(Box::new(fault.hint("keep \"times_s\" and \"values\", or \"csv\"")));
+    }
+    let there = std::fs::metadata(base.join(&name)).ok();
+    if let Some(there) = there.filter(|there| !there.is_file() || there.len() > LARGEST) {
+        let why = if there.is_file() {
+            "larger than 64 MB"
+        } else {
+            "no file with an end"
+        };
+        return Err(at("csv", format!("{} is {why}", base.join(&name).display())));
     }
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)

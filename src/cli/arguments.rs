@@ -10,6 +10,7 @@ use super::completions::CompletionsArguments;
 use super::explain::ExplainArguments;
 use super::export::ExportArguments;
 use super::new::NewArguments;
+use super::place::PlaceArguments;
 use super::report::ReportArguments;
 use super::schema::SchemaArguments;
 pub use map::MapArguments;
@@ -90,7 +91,7 @@ impl Command {
 /// A case file and changes to it.
 #[derive(Clone, Debug, Args)]
 pub struct CaseArguments {
-    /// Case file (JSON)
+    /// Case file (JSON); - is standard input
     pub case: PathBuf,
     /// Change a value of the case, repeatable: a JSON pointer and a JSON value, such as /solver/rtol=1e-7
     #[arg(long = "set", value_name = "POINTER=JSON")]
@@ -103,9 +104,9 @@ pub struct RunArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
-    /// Result folder [default: out/<case name>]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
     /// Choose mesh and tolerance so that the estimated relative error of every quantity is below this, such as 0.01
     #[arg(long, value_name = "REL", conflicts_with = "resume")]
     pub accuracy: Option<f64>,
@@ -113,10 +114,10 @@ pub struct RunArguments {
     #[arg(long = "sensitivity", value_name = "POINTER", conflicts_with_all = ["resume", "accuracy"])]
     pub sensitivities: Vec<String>,
     /// Go on from the last checkpoint in the result folder (needs /time/checkpoint_interval_s in the case)
-    #[arg(long)]
+    #[arg(long, conflicts_with = "force")]
     pub resume: bool,
     /// Stop after so many seconds of wall time, with everything so far written
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", value_parser = super::line::duration)]
     pub max_wall: Option<f64>,
     /// No progress bar
     #[arg(long)]
@@ -162,9 +163,9 @@ pub struct EquilibriumArguments {
     /// Choose mesh so that the estimated relative error of every number is below this, such as 0.01
     #[arg(long, value_name = "REL")]
     pub accuracy: Option<f64>,
-    /// Folder for path.csv, shapes.csv, equilibrium.json, path.svg [default: out/<case name>-equilibrium]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
     /// No progress
     #[arg(long)]
     pub quiet: bool,
@@ -179,9 +180,9 @@ pub struct StudyArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
-    /// Folder for study.csv, study.json, study.svg [default: out/<case name>-study]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
     /// Wall time for everything, such as 90s or 2m; half of it is for points, the rest for their references
     #[arg(long, value_name = "TIME", default_value = "120s")]
     pub budget: String,
@@ -225,9 +226,9 @@ pub struct EffectsArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
-    /// Folder for effects.csv, effects.json, effects.svg [default: out/<case name>-effects]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
     /// Wall time for everything, such as 90s or 2m
     #[arg(long, value_name = "TIME", default_value = "120s")]
     pub budget: String,
@@ -274,9 +275,9 @@ pub struct ModesArguments {
     /// Choose mesh so that the estimated relative error of every number is below this, such as 0.01
     #[arg(long, value_name = "REL", conflicts_with = "map")]
     pub accuracy: Option<f64>,
-    /// Folder for modes.csv, modes.json, modes.npz, modes.svg [default: out/<case name>-modes]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
     /// No progress
     #[arg(long)]
     pub quiet: bool,
@@ -303,9 +304,9 @@ pub struct FloquetArguments {
     /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
     #[arg(long, value_name = "REL", conflicts_with = "map")]
     pub accuracy: Option<f64>,
-    /// Folder for the files [default: out/<case name>-floquet or -map]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
     /// No progress
     #[arg(long)]
     pub quiet: bool,
@@ -327,9 +328,9 @@ pub struct PeriodicArguments {
     /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
     #[arg(long, value_name = "REL", conflicts_with = "sweep")]
     pub accuracy: Option<f64>,
-    /// Result folder [default: out/<case name>-periodic or -cycles]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
     /// No progress
     #[arg(long)]
     pub quiet: bool,

@@ -1,14 +1,13 @@
 //! `slcbeam compare`: two results side by side.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::process::ExitCode;
 
 use serde_json::Value;
 
 use super::arguments::CompareArguments;
 use crate::error::{Error, Result};
-use crate::output::folder::fault;
+use crate::output::folder::replace;
 use crate::output::numbers::{quantity, significant};
 use crate::output::{comparison, reading};
 use crate::study::compare::changes::Change;
@@ -26,7 +25,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     if let Some(path) = &asked.out {
         let text = comparison::picture(&a, &b, &found)
             .ok_or_else(|| Error::Usage("nothing to draw: the two have no quantity in common".into()))?;
-        fs::write(path, text).map_err(|e| fault("write", path, e))?;
+        replace(path, &text)?;
     }
     if asked.json {
         super::print(&format!("{:#}\n", serde_json::to_value(&found).unwrap_or_default()))?;

@@ -1,18 +1,19 @@
 //! `slcbeam effects`: what each effect does to a case, and which of them it should leave out.
 
 use std::io::IsTerminal as _;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::arguments::EffectsArguments;
+use super::terminal;
 use crate::case::schema::Effects;
 use crate::case::{self, LoadedCase};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::effects as files;
 use crate::output::folder::replace;
+use crate::output::kind::Kind;
 use crate::output::numbers::duration;
 use crate::output::report;
 use crate::study::effects::{Ablation, Event, Plan, ablate};
@@ -28,10 +29,7 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
         repeats: asked.repeats,
         budget_s: super::study::seconds(&asked.budget)?,
     };
-    let out = asked
-        .out
-        .clone()
-        .unwrap_or_else(|| PathBuf::from("out").join(format!("{}-effects", loaded.case.name)));
+    let mut folder = asked.place.claim(&loaded, Kind::Effects)?;
     let progress = Progress::new(asked.quiet);
     let found = ablate(&loaded.case, plan, asked.measure.as_deref(), &|event| {
         progress.show(event)
@@ -39,8 +37,8 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
     progress.done();
     let found = found?;
     let shown = files::Shown::choose(&found, asked.measure.as_deref());
-    files::write(&out, &found, &shown)?;
-    report::complete(&out, report::Kind::Effects, &loaded.case)?;
+    files::write(&mut folder, &found, &shown)?;
+    report::complete(&folder, &loaded.case)?;
     let written = if asked.write {
         Some(write(&loaded, &found)?)
     } else {
@@ -51,7 +49,10 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
     } else {
         let written = written.map_or(String::new(), |words| format!("{words}\n"));
         let (table, sentence) = (files::table(&found, &shown), files::sentence(&found));
-        super::print(&format!("{table}\n{sentence}\n\n{written}files in {}\n", out.display()))?;
+        super::print(&format!(
+            "{table}\n{sentence}\n\n{written}files in {}\n",
+            folder.dir().display()
+        ))?;
     }
     Ok(if found.full.summary.is_none() {
         ExitCode::from(4)
@@ -111,7 +112,7 @@ impl Progress {
             bar.set_message(format!("{} · {spent}", event.what));
             bar.tick();
         } else if self.lines && !event.what.ends_with("again") {
-            eprintln!("{}; {spent}", event.what);
+            terminal::tell(&format!("{}; {spent}", event.what));
         }
     }
 

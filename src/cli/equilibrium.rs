@@ -1,6 +1,5 @@
 //! `slcbeam equilibrium`: the path of equilibria from rest to the full load.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -10,6 +9,7 @@ use crate::case::parameter::Parameter;
 use crate::case::{self, Case};
 use crate::error::{Error, Result};
 use crate::output::equilibrium as files;
+use crate::output::kind::Kind;
 use crate::output::report;
 use crate::run::equilibrium::{self, Options};
 use crate::run::known;
@@ -29,6 +29,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         .iter()
         .map(|pointer| Parameter::find(case, pointer))
         .collect::<Result<_>>()?;
+    let mut folder = asked.place.claim(&loaded, Kind::Equilibrium)?;
     let begin = Instant::now();
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let mut of = |case: &Case| refine::numbers::of_equilibrium(case, &options);
@@ -72,18 +73,18 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         accuracy,
         meshes: meshes.as_ref(),
     };
-    let out = asked
-        .out
-        .clone()
-        .unwrap_or_else(|| PathBuf::from("out").join(format!("{}-equilibrium", case.name)));
     if !path.states.is_empty() {
-        files::write(&out, &found)?;
-        report::complete(&out, report::Kind::Equilibrium, case)?;
+        files::write(&mut folder, &found)?;
+        report::complete(&folder, case)?;
     }
     if asked.json {
         super::print(&files::json(&found))?;
     } else {
-        super::print(&format!("{}\nfiles in {}\n", files::words(&found), out.display()))?;
+        super::print(&format!(
+            "{}\nfiles in {}\n",
+            files::words(&found),
+            folder.dir().display()
+        ))?;
     }
     match path.fault {
         None => Ok(ExitCode::SUCCESS),

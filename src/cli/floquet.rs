@@ -1,6 +1,5 @@
 //! `slcbeam floquet`: the steady cycle's multipliers, or a map of where shaking is stable.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use super::arguments::FloquetArguments;
@@ -9,6 +8,7 @@ use crate::case::{self, Case, LoadedCase};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::floquet as files;
+use crate::output::kind::Kind;
 use crate::output::report;
 use crate::run::floquet;
 use crate::run::known;
@@ -30,16 +30,12 @@ pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
     }
 }
 
-fn folder(asked: &FloquetArguments, name: &str, what: &str) -> PathBuf {
-    let usual = || PathBuf::from("out").join(format!("{name}-{what}"));
-    asked.out.clone().unwrap_or_else(usual)
-}
-
 fn one(asked: &FloquetArguments, loaded: &LoadedCase) -> Result<ExitCode> {
     if asked.count == 0 {
         return Err(Error::Usage("--count 0: at least one multiplier".into()));
     }
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+    let mut folder = asked.place.claim(loaded, Kind::Floquet)?;
     let mut of = |case: &Case| refine::numbers::of_multipliers(case, asked.period, asked.count);
     let refined = accuracy
         .map(|accuracy| refine::refine(&loaded.case, accuracy, true, &mut of))
@@ -71,13 +67,16 @@ fn one(asked: &FloquetArguments, loaded: &LoadedCase) -> Result<ExitCode> {
         meshes: meshes.as_ref(),
         warnings: &warnings,
     };
-    let out = folder(asked, &case.name, "floquet");
-    files::write(&out, &found)?;
-    report::complete(&out, report::Kind::Floquet, case)?;
+    files::write(&mut folder, &found)?;
+    report::complete(&folder, case)?;
     if asked.json {
         super::print(&files::json(&found))?;
     } else {
-        super::print(&format!("{}\nfiles in {}\n", files::words(&found), out.display()))?;
+        super::print(&format!(
+            "{}\nfiles in {}\n",
+            files::words(&found),
+            folder.dir().display()
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -90,6 +89,7 @@ fn map(asked: &FloquetArguments, loaded: &LoadedCase, parameters: &str) -> Resul
     }
     let case = &loaded.case;
     let plan = plan(asked, tongue::shaking(case)?)?;
+    let mut folder = asked.place.claim(loaded, Kind::Map)?;
     let bar = line::line(asked.quiet);
     let found = tongue::map(case, &plan, &|done, count| {
         bar.set_message(format!("{done} of {count} columns"));
@@ -97,10 +97,9 @@ fn map(asked: &FloquetArguments, loaded: &LoadedCase, parameters: &str) -> Resul
     });
     bar.finish_and_clear();
     let found = found?;
-    let out = folder(asked, &case.name, "map");
     let warnings = known::without_outputs(case, &System::with(case, whole(case)));
-    files::write_map(&out, &found, &warnings)?;
-    report::complete(&out, report::Kind::Map, case)?;
+    files::write_map(&mut folder, &found, &warnings)?;
+    report::complete(&folder, case)?;
     if asked.json {
         super::print(&files::map_json(&found, &warnings))?;
     } else {
@@ -108,7 +107,7 @@ fn map(asked: &FloquetArguments, loaded: &LoadedCase, parameters: &str) -> Resul
         super::print(&format!(
             "{}{told}\nfiles in {}\n",
             files::map_words(&found),
-            out.display()
+            folder.dir().display()
         ))?;
     }
     Ok(ExitCode::SUCCESS)

@@ -17,6 +17,19 @@ pub fn line(quiet: bool) -> ProgressBar {
     bar
 }
 
+/// A time span [s] that a clock can wait for.
+pub fn duration(text: &str) -> std::result::Result<f64, String> {
+    let seconds: f64 = text
+        .trim()
+        .parse()
+        .map_err(|_| "a number of seconds is wanted".to_string())?;
+    if seconds.is_finite() && seconds >= 0.0 {
+        Ok(seconds.min(1e9))
+    } else {
+        Err("a number of seconds, 0 or more, is wanted".into())
+    }
+}
+
 /// `from:to` as two finite numbers, ascending.
 pub fn range(text: &str) -> Option<(f64, f64)> {
     let (from, to) = text.split_once(':')?;

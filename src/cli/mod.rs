@@ -15,6 +15,7 @@ mod mapping;
 mod modes;
 mod new;
 mod periodic;
+mod place;
 pub mod progress;
 mod report;
 mod run;

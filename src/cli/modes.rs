@@ -1,14 +1,14 @@
 //! `slcbeam modes`: frequencies, damping, shapes and stability of small motions.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use super::arguments::{FloquetArguments, ModesArguments};
-use super::line;
+use super::{line, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
+use crate::output::kind::Kind;
 use crate::output::modes::{self as files, Report};
 use crate::output::report;
 use crate::run::known;
@@ -24,7 +24,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
             period: None,
             accuracy: None,
             map: asked.map.clone(),
-            out: asked.out.clone(),
+            place: asked.place.clone(),
             quiet: asked.quiet,
             json: asked.json,
         });
@@ -32,8 +32,9 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     let plan = plan(asked)?;
     let loaded = case::load(&asked.case.case, &asked.case.sets)?;
     super::refuse(&loaded, &System::new(&loaded.case))?;
+    let mut folder = asked.place.claim(&loaded, Kind::Modes)?;
     if !asked.quiet {
-        eprintln!("modes of {}", loaded.case.name);
+        terminal::tell(&format!("modes of {}", loaded.case.name));
     }
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let mut of = |case: &Case| refine::numbers::of_modes(case, asked.at, &plan);
@@ -56,10 +57,6 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     let mut found = modes::of(about, &plan)?;
     modes::compare_meshes(case, asked.at, &plan, &mut found);
     let sensitivities = modes::differentiate(case, asked.at, &found.about, &found.modes, &parameters)?;
-    let out = asked
-        .out
-        .clone()
-        .unwrap_or_else(|| PathBuf::from("out").join(format!("{}-modes", loaded.case.name)));
     let report = Report {
         case: &loaded.case.name,
         plan: &plan,
@@ -69,13 +66,16 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         accuracy: refined.as_ref().map(|(_, accuracy)| accuracy),
         known: &known::without_outputs(case, &System::new(case)),
     };
-    files::write(&out, &report)?;
-    report::complete(&out, report::Kind::Modes, case)?;
+    files::write(&mut folder, &report)?;
+    report::complete(&folder, case)?;
     if asked.json {
         super::print(&files::json(&report))?;
     } else {
         let (table, sentences) = (files::table(&report), report.sentences());
-        super::print(&format!("{table}\n{sentences}\n\nfiles in {}\n", out.display()))?;
+        super::print(&format!(
+            "{table}\n{sentences}\n\nfiles in {}\n",
+            folder.dir().display()
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }

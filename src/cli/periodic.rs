@@ -1,6 +1,5 @@
 //! `slcbeam periodic`: the steady cycle of a driven case, or cycles along a parameter.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use super::arguments::PeriodicArguments;
@@ -9,7 +8,7 @@ use crate::case::{self, Case, LoadedCase};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::floquet as stability;
-use crate::output::folder::ResultFolder;
+use crate::output::kind::Kind;
 use crate::output::periodic as files;
 use crate::output::recorder::{FolderRecorder, Labels};
 use crate::output::report;
@@ -42,15 +41,10 @@ fn load(asked: &PeriodicArguments, more: Option<String>) -> Result<LoadedCase> {
     Ok(loaded)
 }
 
-fn folder(asked: &PeriodicArguments, name: &str, what: &str) -> PathBuf {
-    let usual = || PathBuf::from("out").join(format!("{name}-{what}"));
-    asked.out.clone().unwrap_or_else(usual)
-}
-
 fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let loaded = load(asked, None)?;
-    let out = folder(asked, &loaded.case.name, "periodic");
-    let result = ResultFolder::create(&out)?;
+    let result = asked.place.claim(&loaded, Kind::Cycle)?;
+    let out = result.dir().to_path_buf();
     let bar = line::line(asked.quiet);
     bar.set_message("looking for the cycle");
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
@@ -75,8 +69,8 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let mut outcome = record::record(&case, &scene, &cycle, &mut recorder)?;
     outcome.summary.accuracy = asked_for.map(|(_, accuracy)| accuracy);
     let short = outcome.summary.accuracy.as_ref().and_then(refine::warning);
-    let finished = outcome.summary.status == Status::Finished;
-    let meshes = (outcome.summary.accuracy.is_none() && finished).then(|| {
+    let ended = outcome.summary.status == Status::Finished;
+    let meshes = (outcome.summary.accuracy.is_none() && ended).then(|| {
         bar.set_message("the same on other meshes");
         let mut here = refine::numbers::of_summary(&case, &outcome.summary);
         here.extend(refine::numbers::of_stability(&found));
@@ -86,7 +80,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     bar.finish_and_clear();
     let by_mesh = meshes.as_ref().and_then(Meshes::warning);
     outcome.summary.warnings.extend(by_mesh.into_iter().chain(short));
-    recorder.finish(&outcome.summary)?;
+    let finished = recorder.finish(&outcome.summary)?;
     let told = stability::Found {
         case: &case.name,
         search: &cycle.search,
@@ -96,8 +90,11 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         meshes: meshes.as_ref(),
         warnings: &outcome.summary.warnings,
     };
-    ResultFolder::create(&out)?.write(files::CYCLE, stability::json(&told).as_bytes())?;
+    finished
+        .folder()
+        .write(files::CYCLE, stability::json(&told).as_bytes())?;
     report::write(&out, None)?;
+    finished.close()?;
     if asked.json {
         super::print(&stability::json(&told))?;
     } else {
@@ -108,7 +105,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     Ok(match outcome.fault {
         None => ExitCode::SUCCESS,
         Some(fault) => {
-            eprintln!("{}", terminal::diagnosis(&fault));
+            terminal::tell(&terminal::diagnosis(&fault));
             ExitCode::from(4)
         }
     })
@@ -118,8 +115,14 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     let (pointer, values, logarithmic) = parse(text)?;
     let cases = values
         .into_iter()
-        .map(|value| Ok((value, load(asked, Some(format!("{pointer}={value}")))?.case)))
+        .map(|value| Ok((value, load(asked, Some(format!("{pointer}={value}")))?)))
         .collect::<Result<Vec<_>>>()?;
+    let Some((_, first)) = cases.first() else {
+        return Err(Error::Usage(format!("--sweep {text}: no values")));
+    };
+    let mut folder = asked.place.claim(first, Kind::Sweep)?;
+    let first = first.case.clone();
+    let cases: Vec<_> = cases.into_iter().map(|(value, loaded)| (value, loaded.case)).collect();
     let bar = line::line(asked.quiet);
     let found = along(&pointer, logarithmic, &cases, &|done| {
         bar.set_message(format!("{done} of {} cycles", cases.len()));
@@ -127,18 +130,19 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     let found = found?;
-    let out = folder(asked, &found.case, "cycles");
     let of_case = |(_, case): &(f64, Case)| known::without_outputs(case, &System::with(case, whole(case)));
     let warnings = cases.first().map(of_case).unwrap_or_default();
-    files::write(&out, &found, &warnings)?;
-    if let Some((_, case)) = cases.first() {
-        report::complete(&out, report::Kind::Sweep, case)?;
-    }
+    files::write(&mut folder, &found, &warnings)?;
+    report::complete(&folder, &first)?;
     if asked.json {
         super::print(&files::json(&found, &warnings))?;
     } else {
         let told = line::warnings(&warnings);
-        super::print(&format!("{}{told}\nfiles in {}\n", files::words(&found), out.display()))?;
+        super::print(&format!(
+            "{}{told}\nfiles in {}\n",
+            files::words(&found),
+            folder.dir().display()
+        ))?;
     }
     Ok(ExitCode::from(if found.members.is_empty() { 4 } else { 0 }))
 }

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::terminal;
 use crate::output::numbers::{count, duration, percent, quantity, significant};
 use crate::run::record::Progress;
 
@@ -110,7 +111,7 @@ impl Watcher {
                 bar.set_message(text);
                 bar.set_position((share * FULL as f64) as u64);
             }
-            Place::Lines => eprintln!("{}: {text}", percent(share)),
+            Place::Lines => terminal::tell(&format!("{}: {text}", percent(share))),
         }
     }
 }

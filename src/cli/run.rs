@@ -1,10 +1,13 @@
 //! `slcbeam run`.
 
 use std::cell::RefCell;
-use std::path::{Path, PathBuf};
+use std::fs;
+use std::path::Path;
 use std::process::ExitCode;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
+
+use serde_json::Value;
 
 use super::arguments::RunArguments;
 use super::progress::Watcher;
@@ -15,14 +18,19 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::model::characteristic;
 use crate::output::checkpoint;
-use crate::output::folder::{HISTORY, ResultFolder};
-use crate::output::recorder::{FolderRecorder, Hook, Labels};
+use crate::output::folder::{CASE, HISTORY, ResultFolder, fault};
+use crate::output::kind::Kind;
+use crate::output::recorder::{Finished, FolderRecorder, Hook, Labels};
 use crate::output::report;
 use crate::output::summary;
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::{Control, Progress};
 use crate::run::summary::Status;
+use crate::study::compare::changes::changes;
 use crate::study::target;
+
+/// Differences between two cases that are told.
+const DIFFERENCES: usize = 4;
 
 /// Runs a case into a result folder.
 pub fn run(asked: &RunArguments) -> Result<ExitCode> {
@@ -30,27 +38,34 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
     let case = &loaded.case;
     super::refuse(&loaded, &System::new(case))?;
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
-    let out = asked
-        .out
-        .clone()
-        .unwrap_or_else(|| PathBuf::from("out").join(&case.name));
+    let out = asked.place.folder(&case.name, Kind::Run);
     let hook = hook(asked);
-    let outcome = match (accuracy, asked.resume) {
-        (Some(accuracy), _) => reach(case, accuracy, &out, &hook)?,
+    let (outcome, finished) = match (accuracy, asked.resume) {
+        (Some(accuracy), _) => reach(case, accuracy, asked.place.claim(&loaded, Kind::Run)?, &hook)?,
         (None, true) => resume(case, &out, &hook)?,
-        (None, false) => record(case, &parameters(case, &asked.sensitivities)?, &out, &hook)?,
+        (None, false) => {
+            let parameters = parameters(case, &asked.sensitivities)?;
+            record(case, &parameters, asked.place.claim(&loaded, Kind::Run)?, &hook)?
+        }
     };
+    let page = report::write(&out, None);
     if asked.json {
         super::print(&summary::to_json(&outcome.summary))?;
     } else {
         let box_text = summary_box::render(&outcome.summary, &out, terminal::colour_out(), terminal::width());
         super::print(&box_text)?;
     }
-    report::write(&out, None)?;
+    page?;
+    if let Some(finished) = finished {
+        if let Some(aside) = &finished.aside {
+            terminal::tell(&format!("slcbeam: the older result is in {}", aside.display()));
+        }
+        finished.close()?;
+    }
     Ok(match outcome.fault {
         None => ExitCode::SUCCESS,
         Some(fault) => {
-            eprintln!("{}", terminal::diagnosis(&fault));
+            terminal::tell(&terminal::diagnosis(&fault));
             ExitCode::from(4)
         }
     })
@@ -64,7 +79,7 @@ fn hook(asked: &RunArguments) -> SharedHook {
     let mut watcher = Watcher::new(asked.quiet);
     let deadline = asked
         .max_wall
-        .map(|seconds| Instant::now() + Duration::from_secs_f64(seconds.clamp(0.0, 1e9)));
+        .map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
     Rc::new(RefCell::new(Box::new(move |progress: &Progress| {
         watcher.step(progress);
         if interrupt::raised(&interrupted) {
@@ -101,30 +116,30 @@ fn parameters(case: &Case, pointers: &[String]) -> Result<Vec<Parameter>> {
     Ok(all)
 }
 
-fn record(case: &Case, parameters: &[Parameter], out: &Path, hook: &SharedHook) -> Result<Outcome> {
-    let mut recorder = FolderRecorder::new(ResultFolder::create(out)?, labels(case), own(hook));
+/// A run, and its folder unless it is complete already.
+type Recorded = (Outcome, Option<Finished>);
+
+fn record(case: &Case, parameters: &[Parameter], folder: ResultFolder, hook: &SharedHook) -> Result<Recorded> {
+    let mut recorder = FolderRecorder::new(folder, labels(case), own(hook));
     let outcome = dynamics::run_with(case, parameters, &mut recorder)?;
-    recorder.finish(&outcome.summary)?;
-    Ok(outcome)
+    let finished = recorder.finish(&outcome.summary)?;
+    Ok((outcome, Some(finished)))
 }
 
-/// Candidates are recorded beside the result and take its place when they finish, so that one that is stopped leaves the
+/// Candidates are recorded inside the folder and take the result's place when they finish, so that one that is stopped leaves the
 /// one before. The first may end early, as long as it began: then it is all there is.
-fn reach(case: &Case, accuracy: f64, out: &Path, hook: &SharedHook) -> Result<Outcome> {
-    let mut result = ResultFolder::create(out)?;
-    let mut name = out.as_os_str().to_owned();
-    name.push(".next");
-    let beside = PathBuf::from(name);
+fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, hook: &SharedHook) -> Result<Recorded> {
     let ask = |progress: &Progress| hook.borrow_mut()(progress);
     let mut placed = false;
     let mut candidate = |case: &Case| -> Result<Outcome> {
-        let outcome = record(case, &[], &beside, hook)?;
-        let begun = beside.join(HISTORY).exists() || !result.holds_older();
+        let inside = result.candidate()?;
+        let folder = ResultFolder::claim(inside.path(), Kind::Run, false)?;
+        let (outcome, finished) = record(case, &[], folder, hook)?;
+        finished.map_or(Ok(()), Finished::close)?;
+        let begun = inside.path().join(HISTORY).exists() || !result.holds_older();
         if outcome.summary.status == Status::Finished || !placed && begun {
-            result.replace(&beside)?;
+            result.replace(inside.path())?;
             placed = true;
-        } else {
-            ResultFolder::discard(&beside)?;
         }
         Ok(outcome)
     };
@@ -132,15 +147,67 @@ fn reach(case: &Case, accuracy: f64, out: &Path, hook: &SharedHook) -> Result<Ou
     if placed {
         summary::write(&result, &outcome.summary)?;
     }
-    Ok(outcome)
+    Ok((outcome, None))
 }
 
-fn resume(case: &Case, out: &Path, hook: &SharedHook) -> Result<Outcome> {
-    let folder = ResultFolder::create(out)?;
-    let saved = checkpoint::read(out)?
-        .ok_or_else(|| Error::Usage(format!("{} holds no checkpoint to resume from", out.display())))?;
+/// Goes on from the newest checkpoint. What does not fit is told before anything is touched; a run that has ended is left as it is.
+fn resume(case: &Case, out: &Path, hook: &SharedHook) -> Result<Recorded> {
+    let folder = ResultFolder::again(out)?;
+    let Some((saved, damage)) = checkpoint::read(out)? else {
+        return ended(case, &folder).map(|outcome| (outcome, None));
+    };
+    if saved.run.case != case.resolved_json() {
+        return Err(another_case(&saved.run.case, case, "the checkpoint"));
+    }
+    saved.run.fits(case)?;
+    if let Some(damage) = damage {
+        terminal::tell(&format!("slcbeam: {damage}; going on from the one before"));
+    }
     let mut recorder = FolderRecorder::resume(folder, labels(case), own(hook), &saved, &dynamics::header(case))?;
     let outcome = dynamics::resume(case, &saved.run, &mut recorder)?;
-    recorder.finish(&outcome.summary)?;
-    Ok(outcome)
+    let finished = recorder.finish(&outcome.summary)?;
+    Ok((outcome, Some(finished)))
+}
+
+/// A run without a checkpoint that has ended: its outcome as it was told; leftovers of its raw arrays go.
+fn ended(case: &Case, folder: &ResultFolder) -> Result<Outcome> {
+    let summary = summary::read(folder.dir())
+        .ok()
+        .filter(|s| s.status == Status::Finished);
+    let summary = summary.ok_or_else(|| {
+        let dir = folder.dir().display();
+        Error::Usage(format!(
+            "{dir} holds no checkpoint to resume from; a case writes some with /time/checkpoint_interval_s"
+        ))
+    })?;
+    let there = fs::read_to_string(folder.path(CASE)).map_err(|e| fault("read", &folder.path(CASE), e))?;
+    if there != case.resolved_json() {
+        return Err(another_case(&there, case, "the result"));
+    }
+    folder.remove_raw()?;
+    terminal::tell("slcbeam: the run had ended; nothing to resume");
+    Ok(Outcome { summary, fault: None })
+}
+
+/// Says where two cases differ.
+fn another_case(there: &str, here: &Case, whose: &str) -> Error {
+    let value = |text: &str| serde_json::from_str::<Value>(text).unwrap_or_default();
+    let (physics, numerics) = changes(&value(there), &value(&here.resolved_json()));
+    let mut told: Vec<String> = physics
+        .iter()
+        .chain(&numerics)
+        .map(|c| format!("{} is {} there and {} here", c.pointer, c.a, c.b))
+        .collect();
+    let more = told.len().saturating_sub(DIFFERENCES);
+    told.truncate(DIFFERENCES);
+    if more > 0 {
+        told.push(format!("and {more} more"));
+    }
+    if told.is_empty() {
+        told.push("name or words differ".into());
+    }
+    Error::Usage(format!(
+        "{whose} belongs to another case: {}; nothing was changed",
+        told.join(", ")
+    ))
 }

@@ -1,7 +1,6 @@
 //! `slcbeam study`: what accuracy costs.
 
 use std::io::IsTerminal as _;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::Duration;
@@ -9,9 +8,11 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::arguments::StudyArguments;
+use super::terminal;
 use crate::case;
 use crate::discrete::System;
 use crate::error::{Error, Result};
+use crate::output::kind::Kind;
 use crate::output::numbers::duration;
 use crate::output::report;
 use crate::output::study as files;
@@ -32,15 +33,12 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
         parallel: asked.parallel,
     }
     .checked()?;
-    let out = asked
-        .out
-        .clone()
-        .unwrap_or_else(|| PathBuf::from("out").join(format!("{}-study", case.name)));
+    let mut folder = asked.place.claim(&loaded, Kind::Study)?;
     let progress = Progress::new(asked.quiet);
     let found = run_study(case, plan, asked.measure.as_deref(), &|event| progress.show(event))?;
     progress.done();
-    files::write(&out, &found)?;
-    report::complete(&out, report::Kind::Study, case)?;
+    files::write(&mut folder, &found)?;
+    report::complete(&folder, case)?;
     if asked.json {
         super::print(&files::json(&found))?;
     } else {
@@ -49,7 +47,7 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
             "{}\n{notes}{}\n\nfiles in {}\n",
             files::table(&found),
             files::sentence(&found),
-            out.display()
+            folder.dir().display()
         );
         super::print(&text)?;
     }
@@ -128,10 +126,10 @@ impl Progress {
             if *last != now {
                 *last = now;
                 let (done, of) = (event.done, event.of);
-                eprintln!(
+                terminal::tell(&format!(
                     "{done}/{of}: {what}{} cells, {}{expected} each or more; {spent}",
                     s.cells, s.scheme
-                );
+                ));
             }
         }
     }

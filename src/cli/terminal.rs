@@ -1,6 +1,6 @@
 //! What the terminal can do, and how errors look on it.
 
-use std::io::IsTerminal as _;
+use std::io::{IsTerminal as _, Write as _};
 
 use serde_json::{Value, json};
 
@@ -24,13 +24,18 @@ pub fn width() -> usize {
         .unwrap_or(100)
 }
 
+/// Writes a line to standard error; where nobody takes it, the work goes on.
+pub fn tell(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
 /// Prints an error to standard error.
 pub fn report(error: &Error) {
     let colour = std::io::stderr().is_terminal() && wants_colour();
     match error {
-        Error::Case(fault) => eprint!("{}", case::render(fault, colour, width())),
-        Error::Solver(fault) => eprintln!("{}", diagnosis(fault)),
-        other => eprintln!("slcbeam: {other} (slcbeam explain {})", other.code().id()),
+        Error::Case(fault) => tell(case::render(fault, colour, width()).trim_end_matches('\n')),
+        Error::Solver(fault) => tell(&diagnosis(fault)),
+        other => tell(&format!("slcbeam: {other} (slcbeam explain {})", other.code().id())),
     }
 }
 

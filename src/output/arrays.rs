@@ -3,6 +3,7 @@
 //! While a run is under way `fields.part/NAME.f64` holds little-endian doubles, time after time, and
 //! `fields.part/t_fields_s.f64` the times; what a killed run leaves there `numpy.fromfile` reads.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -12,13 +13,17 @@ use npyz::WriterBuilder;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use super::folder::{fault, part_of};
+use super::folder::{fault, put_whole};
 use super::history::FLUSH;
+use super::stream::{Mark, Stream};
 use crate::error::Result;
 use crate::run::record::{Axis, Field, Header};
 
 /// Name of the array of times.
 pub const TIMES: &str = "t_fields_s";
+
+/// What of each raw file was safe on disk at a checkpoint.
+pub type Marks = BTreeMap<String, Mark>;
 
 /// Streams fields into raw files and packs them.
 #[derive(Debug)]
@@ -48,33 +53,51 @@ impl ArraysWriter {
         })
     }
 
-    /// Opens the raw files of an interrupted run and drops what came after the first `instants`.
-    pub fn reopen(dir: &Path, header: &Header, instants: u64) -> Result<Self> {
-        let raw = header
-            .fields
-            .iter()
-            .map(|f| RawFile::reopen(dir, f.name, instants * f.len as u64));
+    /// Checks that the raw files of an interrupted run still hold what was marked, and as many instants of each field.
+    pub fn verify(dir: &Path, header: &Header, marks: &Marks) -> Result<()> {
+        let instants = marks.get(TIMES).map_or(0, |mark| mark.bytes / 8);
+        let fields = header.fields.iter().map(|f| (f.name, f.len as u64));
+        for (name, len) in fields.chain([(TIMES, 1)]) {
+            let path = RawFile::path(dir, name);
+            match marks.get(name) {
+                Some(mark) if mark.bytes == 8 * len * instants => Stream::verify(&path, *mark)?,
+                _ => {
+                    let why = "the checkpoint has another number of instants of it";
+                    return Err(fault(
+                        "go on with",
+                        &path,
+                        io::Error::new(io::ErrorKind::InvalidData, why),
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Opens the raw files of an interrupted run, verified, and drops what came after the marks.
+    pub fn reopen(dir: &Path, header: &Header, marks: &Marks) -> Result<Self> {
+        let mark = |name: &str| marks.get(name).copied().unwrap_or(Mark { bytes: 0, crc32: 0 });
+        let raw = header.fields.iter().map(|f| RawFile::reopen(dir, f.name, mark(f.name)));
         Ok(Self {
             dir: dir.to_path_buf(),
             axes: header.axes.clone(),
             fields: header.fields.clone(),
-            times: RawFile::reopen(dir, TIMES, instants)?,
+            times: RawFile::reopen(dir, TIMES, mark(TIMES))?,
             raw: raw.collect::<Result<_>>()?,
-            instants,
+            instants: mark(TIMES).bytes / 8,
             flushed: Instant::now(),
         })
     }
 
-    /// Number of instants so far, all of them safe on disk.
-    pub fn secure(&mut self) -> Result<u64> {
+    /// All instants so far, safe on disk.
+    pub fn secure(&mut self) -> Result<Marks> {
         self.flush()?;
-        for raw in self.raw.iter().chain([&self.times]) {
-            raw.out
-                .get_ref()
-                .sync_data()
-                .map_err(|e| fault("write", &raw.path, e))?;
-        }
-        Ok(self.instants)
+        let names = self.fields.iter().map(|f| f.name).chain([TIMES]);
+        let raw = self.raw.iter().chain([&self.times]);
+        names
+            .zip(raw)
+            .map(|(name, raw)| Ok((name.to_string(), raw.out.get_ref().secure()?)))
+            .collect()
     }
 
     /// Appends one instant of all fields, in the order of the header.
@@ -136,27 +159,16 @@ impl ArraysWriter {
         arrays.collect::<Result<_>>().map(Some)
     }
 
-    /// Packs axes, times and fields into `target`; removes the raw files unless they are to be `kept`.
+    /// Packs axes, times and fields into `target`; the raw files stay.
     ///
     /// Arrays are stored, not deflated: doubles of a simulation hardly shrink, and stored ones load at once.
-    pub fn finish(mut self, target: &Path, kept: bool) -> Result<()> {
+    pub fn finish(mut self, target: &Path) -> Result<()> {
         self.flush()?;
-        let part = part_of(target);
-        let packed = self.pack(&part).and_then(|()| fs::rename(&part, target));
-        packed.map_err(|e| {
-            let _ = fs::remove_file(&part);
-            fault("write", target, e)
-        })?;
-        if kept {
-            return Ok(());
-        }
-        let dir = self.dir.clone();
-        drop(self);
-        fs::remove_dir_all(&dir).map_err(|e| fault("remove", &dir, e))
+        put_whole(target, |file| self.pack(file))
     }
 
-    fn pack(&self, path: &Path) -> io::Result<()> {
-        let mut npz = ZipWriter::new(BufWriter::new(File::create(path)?));
+    fn pack(&self, file: &mut File) -> io::Result<()> {
+        let mut npz = ZipWriter::new(BufWriter::new(file));
         for axis in &self.axes {
             let shape = [axis.values.len() as u64];
             write_array(&mut npz, axis.name, &shape, axis.values.iter().map(|&x| Ok(x)))?;
@@ -170,8 +182,8 @@ impl ArraysWriter {
 }
 
 /// Writes one array of a zip archive of arrays.
-pub(super) fn write_array(
-    npz: &mut ZipWriter<BufWriter<File>>,
+pub(super) fn write_array<W: Write + Seek>(
+    npz: &mut ZipWriter<W>,
     name: &str,
     shape: &[u64],
     values: impl Iterator<Item = io::Result<f64>>,
@@ -196,36 +208,29 @@ pub(super) fn write_array(
 #[derive(Debug)]
 struct RawFile {
     path: PathBuf,
-    out: BufWriter<File>,
+    out: BufWriter<Stream>,
     bytes: Vec<u8>,
 }
 
 impl RawFile {
-    fn create(dir: &Path, name: &str) -> Result<Self> {
-        let path = dir.join(format!("{name}.f64"));
-        let file = File::create(&path).map_err(|e| fault("create", &path, e))?;
-        Ok(Self {
-            path,
-            out: BufWriter::with_capacity(1 << 16, file),
-            bytes: Vec::new(),
-        })
+    fn path(dir: &Path, name: &str) -> PathBuf {
+        dir.join(format!("{name}.f64"))
     }
 
-    /// Opens a file and keeps its first `values`.
-    fn reopen(dir: &Path, name: &str, values: u64) -> Result<Self> {
-        let path = dir.join(format!("{name}.f64"));
-        let open = || -> io::Result<File> {
-            let mut file = File::options().write(true).open(&path)?;
-            file.set_len(8 * values)?;
-            file.seek(SeekFrom::End(0))?;
-            Ok(file)
-        };
-        let file = open().map_err(|e| fault("open", &path, e))?;
-        Ok(Self {
-            path,
-            out: BufWriter::with_capacity(1 << 16, file),
+    fn create(dir: &Path, name: &str) -> Result<Self> {
+        Ok(Self::of(Stream::create(&Self::path(dir, name))?))
+    }
+
+    fn reopen(dir: &Path, name: &str, mark: Mark) -> Result<Self> {
+        Ok(Self::of(Stream::reopen(&Self::path(dir, name), mark)?))
+    }
+
+    fn of(stream: Stream) -> Self {
+        Self {
+            path: stream.path().to_path_buf(),
+            out: BufWriter::with_capacity(1 << 16, stream),
             bytes: Vec::new(),
-        })
+        }
     }
 
     fn append(&mut self, values: &[f64]) -> Result<()> {

@@ -1,40 +1,144 @@
-//! `checkpoint.json`: a checkpoint with the sizes of the streams that belong to it.
+//! `checkpoint.json`: a checkpoint with marks of the files that belong to it, in two generations.
+//!
+//! Two lines: what the file is, with length and checksum of the second; and the checkpoint. A new one takes its name only when it
+//! is safe on disk, and the one before stays as `checkpoint-before.json`.
 
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, Read as _};
 use std::path::Path;
+use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::folder::{CHECKPOINT, ResultFolder, fault};
+use super::arrays::Marks;
+use super::folder::{CHECKPOINT, CHECKPOINT_BEFORE, ResultFolder, fault};
+use super::stream::Mark;
 use crate::error::Result;
 use crate::run::checkpoint::Checkpoint;
+
+/// Number of the format.
+const FORMAT: u32 = 2;
 
 /// A checkpoint on disk.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
-    /// Bytes of `history.csv` that belong to it.
-    pub history_bytes: u64,
-    /// Instants of the raw fields that belong to it.
-    pub instants: u64,
+    /// What of `history.csv` belongs to it.
+    pub history: Mark,
+    /// What of each raw file of fields does.
+    pub fields: Marks,
     /// The run.
     pub run: Checkpoint,
 }
 
-/// Writes it whole or not at all.
-pub fn write(folder: &ResultFolder, saved: &Saved) -> Result<()> {
-    let text = serde_json::to_vec(saved).map_err(|e| fault("write", &folder.path(CHECKPOINT), e.into()))?;
-    folder.write(CHECKPOINT, &text).map(|_| ())
+/// The first line.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Heading {
+    format: u32,
+    /// The program that wrote it, [`build`].
+    build: String,
+    /// Of the second line.
+    #[serde(flatten)]
+    body: Mark,
 }
 
-/// The checkpoint of a folder; `None` when there is none.
-pub fn read(dir: &Path) -> Result<Option<Saved>> {
-    let path = dir.join(CHECKPOINT);
-    match fs::read(&path) {
-        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(e) => Err(fault("read", &path, e)),
-        Ok(text) => serde_json::from_slice(&text)
-            .map(Some)
-            .map_err(|e| fault("read", &path, e.into())),
+/// Writes it whole or not at all; the one before stays.
+pub fn write(folder: &ResultFolder, saved: &Saved) -> Result<()> {
+    let path = folder.path(CHECKPOINT);
+    let body = serde_json::to_vec(saved).map_err(|e| fault("write", &path, e.into()))?;
+    let heading = Heading {
+        format: FORMAT,
+        build: build(),
+        body: mark(&body),
+    };
+    let mut text = serde_json::to_vec(&heading).map_err(|e| fault("write", &path, e.into()))?;
+    text.push(b'\n');
+    text.extend(body);
+    match fs::rename(&path, folder.path(CHECKPOINT_BEFORE)) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => return Err(fault("rename", &path, e)),
+        _ => {}
     }
+    folder.write(CHECKPOINT, &text)?;
+    folder.secure()
+}
+
+/// The newest checkpoint of a folder that is whole, and what is wrong with a newer one; `None` when there is none.
+///
+/// # Errors
+///
+/// There are checkpoints, but none can be used.
+pub fn read(dir: &Path) -> Result<Option<(Saved, Option<String>)>> {
+    let newest = one(&dir.join(CHECKPOINT));
+    let before = || one(&dir.join(CHECKPOINT_BEFORE));
+    match newest {
+        Ok(Some(saved)) => Ok(Some((saved, None))),
+        Ok(None) => Ok(before()?.map(|saved| (saved, None))),
+        Err(e) => match before() {
+            Ok(Some(saved)) => Ok(Some((saved, Some(e.to_string())))),
+            _ => Err(e),
+        },
+    }
+}
+
+fn one(path: &Path) -> Result<Option<Saved>> {
+    let text = match fs::read(path) {
+        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(e) => return Err(fault("read", path, e)),
+        Ok(text) => text,
+    };
+    let damaged = |why: &str| {
+        Err(fault(
+            "go on from",
+            path,
+            io::Error::new(io::ErrorKind::InvalidData, why),
+        ))
+    };
+    let end = text.iter().position(|&b| b == b'\n').unwrap_or(text.len());
+    let (heading, body) = (&text[..end], text.get(end + 1..).unwrap_or_default());
+    let Ok(heading) = serde_json::from_slice::<Heading>(heading) else {
+        return damaged("its first line is not that of a checkpoint of this version of the program");
+    };
+    if heading.format != FORMAT {
+        return damaged("it has the format of another version of the program");
+    }
+    if heading.body != mark(body) {
+        return damaged("it is cut short or changed: its checksum differs");
+    }
+    if heading.build != build() {
+        return damaged(
+            "another build of the program wrote it, with which the run may differ from here on; go on with that one",
+        );
+    }
+    serde_json::from_slice(body)
+        .map(Some)
+        .map_err(|e| fault("go on from", path, e.into()))
+}
+
+fn mark(bytes: &[u8]) -> Mark {
+    Mark {
+        bytes: bytes.len() as u64,
+        crc32: crc32fast::hash(bytes),
+    }
+}
+
+/// What only this build of the program has: version, and length and checksum of the file that runs.
+pub fn build() -> String {
+    static BUILD: OnceLock<String> = OnceLock::new();
+    let of = || -> io::Result<(u64, u32)> {
+        let mut file = File::open(std::env::current_exe()?)?;
+        let (mut sum, mut bytes, mut block) = (crc32fast::Hasher::new(), 0, vec![0; 1 << 20]);
+        loop {
+            match file.read(&mut block)? {
+                0 => return Ok((bytes, sum.finalize())),
+                n => {
+                    sum.update(&block[..n]);
+                    bytes += n as u64;
+                }
+            }
+        }
+    };
+    let name = || {
+        let (bytes, sum) = of().unwrap_or_default();
+        format!("{} {bytes} {sum:08x}", env!("CARGO_PKG_VERSION"))
+    };
+    BUILD.get_or_init(name).clone()
 }

@@ -1,14 +1,18 @@
-//! The result folder: made with care, filled file by file.
+//! The result folder: one writer at a time, no file half written, nothing of others taken.
+
+mod lock;
 
 use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader, Write};
+use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
+use super::kind::Kind;
 use crate::error::{Error, Result};
+use lock::Lock;
 
 /// The case as resolved.
 pub const CASE: &str = "case.json";
-/// What came out, in numbers; written last, so that its presence says the run was brought to an end.
+/// What came out, in numbers; written after history and arrays, so that its presence says that these are whole.
 pub const SUMMARY: &str = "summary.json";
 /// One row an output time.
 pub const HISTORY: &str = "history.csv";
@@ -20,6 +24,8 @@ pub const FIELDS: &str = "fields.npz";
 pub const RAW_FIELDS: &str = "fields.part";
 /// Where an interrupted run goes on.
 pub const CHECKPOINT: &str = "checkpoint.json";
+/// The checkpoint before it, for when that is damaged.
+pub const CHECKPOINT_BEFORE: &str = "checkpoint-before.json";
 /// The page made by `slcbeam report`.
 pub const REPORT: &str = "report.html";
 /// Tables of the fields made by `slcbeam export`.
@@ -28,29 +34,72 @@ pub const TABLES: &str = "csv";
 pub const VTK: &str = "vtk";
 /// Pictures.
 pub const PICTURES: [&str; 4] = ["deflection.svg", "pressure.svg", "history.svg", "energy.svg"];
+/// Files of a run; the summary goes first: without it the rest does not pass for a finished run.
+pub const RUN_FILES: [&str; 10] = [
+    SUMMARY,
+    CHECKPOINT,
+    CHECKPOINT_BEFORE,
+    FIELDS,
+    HISTORY,
+    SENSITIVITIES,
+    PICTURES[0],
+    PICTURES[1],
+    PICTURES[2],
+    PICTURES[3],
+];
 
-/// A folder that holds one result, or will.
-#[derive(Clone, Debug)]
+/// A folder that holds one result, or will. While this lives, no other process writes into it by this program.
+#[derive(Debug)]
 pub struct ResultFolder {
     dir: PathBuf,
-    holds_older: bool,
+    kind: Kind,
+    older: Option<Kind>,
+    _lock: Lock,
 }
 
 impl ResultFolder {
-    /// Makes the folder and its parents, or takes over one that is empty or holds an older result.
+    /// Makes the folder and its parents, or takes one that is empty or holds an older result of the same command, which stays
+    /// untouched until [`ResultFolder::clear`].
     ///
-    /// The older result stays untouched until [`ResultFolder::clear`]. A folder with other files in it is refused.
-    pub fn create(dir: &Path) -> Result<Self> {
+    /// # Errors
+    ///
+    /// It holds something else and `force` is not given, another process writes into it, or it cannot be made.
+    pub fn claim(dir: &Path, kind: Kind, force: bool) -> Result<Self> {
         fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
-        let holds_older = is_result(dir);
-        if !holds_older && has_files(dir)? {
-            let why = "it holds files but no slcbeam result; name another folder with --out";
-            return Err(fault("use", dir, io::Error::new(io::ErrorKind::AlreadyExists, why)));
+        let lock = Lock::take(dir)?;
+        let older = Kind::within(dir);
+        if !force {
+            let why = match older {
+                // a run that has not ended may be that of a cycle
+                Some(Kind::Run) if kind == Kind::Cycle && !dir.join(SUMMARY).exists() => None,
+                Some(older) if older == kind => foreign(dir, kind)?,
+                Some(older) => Some(format!("it holds the result of `slcbeam {}`", older.command())),
+                None if has_files(dir)? => Some("it holds files but no slcbeam result".into()),
+                None => None,
+            };
+            if let Some(why) = why {
+                let why = format!("{why}; name another folder with --out, or take this one with --force");
+                return Err(fault("use", dir, io::Error::new(io::ErrorKind::AlreadyExists, why)));
+            }
         }
         Ok(Self {
             dir: dir.to_path_buf(),
-            holds_older,
+            kind,
+            older,
+            _lock: lock,
         })
+    }
+
+    /// Takes the folder of a run that was interrupted.
+    ///
+    /// # Errors
+    ///
+    /// There is none, or another process writes into it.
+    pub fn again(dir: &Path) -> Result<Self> {
+        if Kind::within(dir) != Some(Kind::Run) {
+            return Err(Error::Usage(format!("{} holds no run to go on with", dir.display())));
+        }
+        Self::claim(dir, Kind::Run, false)
     }
 
     /// Where it is.
@@ -60,7 +109,7 @@ impl ResultFolder {
 
     /// Whether an older result was found and still stands.
     pub fn holds_older(&self) -> bool {
-        self.holds_older
+        self.older.is_some()
     }
 
     /// Path of a file in it.
@@ -68,22 +117,38 @@ impl ResultFolder {
         self.dir.join(name)
     }
 
-    /// Writes a file whole or not at all: under another name first, then renamed.
+    /// Writes a file whole or not at all: under another name first, safe on disk, then renamed.
     pub fn write(&self, name: &str, contents: &[u8]) -> Result<PathBuf> {
         let target = self.path(name);
-        let part = part_of(&target);
-        let put = || -> io::Result<()> {
-            let mut file = File::create(&part)?;
-            file.write_all(contents)?;
-            file.sync_all()?;
-            drop(file);
-            fs::rename(&part, &target)
-        };
-        put().map_err(|e| {
-            let _ = fs::remove_file(&part);
-            fault("write", &target, e)
-        })?;
+        put_whole(&target, |file| file.write_all(contents))?;
         Ok(target)
+    }
+
+    /// Writes all files of a result that has no run, its sign last, in place of an older one. Returns their paths.
+    pub fn fill<T: AsRef<[u8]>>(&mut self, files: Vec<(&str, T)>) -> Result<Vec<PathBuf>> {
+        if self.older.is_some_and(|older| older != self.kind) {
+            self.clear()?;
+        }
+        let (last, first): (Vec<_>, Vec<_>) = files.into_iter().partition(|f| f.0 == self.kind.sign());
+        let all: Vec<_> = first.into_iter().chain(last).collect();
+        for name in self.kind.files() {
+            if all.iter().all(|f| f.0 != name) {
+                self.remove(name)?;
+            }
+        }
+        let written = all
+            .iter()
+            .map(|(name, bytes)| self.write(name, bytes.as_ref()))
+            .collect();
+        self.secure()?;
+        self.older = Some(self.kind);
+        written
+    }
+
+    /// Brings the names of files to the disk itself.
+    pub fn secure(&self) -> Result<()> {
+        let sync = || File::open(&self.dir)?.sync_all();
+        sync().map_err(|e| fault("write", &self.dir, e))
     }
 
     /// Removes one file, if it is there.
@@ -91,81 +156,122 @@ impl ResultFolder {
         remove(&self.path(name))
     }
 
+    /// Removes the raw arrays of a run, if they are there.
+    pub fn remove_raw(&self) -> Result<()> {
+        let raw = self.path(RAW_FIELDS);
+        match fs::remove_dir_all(&raw) {
+            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(fault("remove", &raw, e)),
+            _ => Ok(()),
+        }
+    }
+
     /// Removes the files of an older result, by name; whatever else lies there stays.
     pub fn clear(&mut self) -> Result<()> {
-        // The summary goes first: without it the rest does not pass for a finished run.
-        for name in [SUMMARY, CHECKPOINT, REPORT, FIELDS, HISTORY, SENSITIVITIES]
-            .into_iter()
-            .chain(PICTURES)
-        {
-            remove(&self.path(name))?;
+        let Some(older) = self.older else { return Ok(()) };
+        for name in older.files().into_iter().chain([REPORT]) {
+            self.remove(name)?;
         }
-        let raw = self.path(RAW_FIELDS);
-        if raw.is_dir() {
-            fs::remove_dir_all(&raw).map_err(|e| fault("remove", &raw, e))?;
-        }
+        self.remove_raw()?;
         // What was exported from the older result would pass for the new one's.
         for (name, endings) in [(TABLES, &["csv"][..]), (VTK, &["vtp", "pvd"])] {
             remove_folder_of(&self.path(name), endings)?;
         }
-        self.holds_older = false;
+        self.older = None;
         Ok(())
     }
 
-    /// Takes over the result in another folder of the same file system, in place of its own, and removes that folder.
+    /// Moves the older result into a folder of its own beside this one, which is returned; `None` where there is none.
+    pub fn set_aside(&mut self) -> Result<Option<PathBuf>> {
+        let Some(older) = self.older.take() else {
+            return Ok(None);
+        };
+        let whole = fs::canonicalize(&self.dir).map_err(|e| fault("read", &self.dir, e))?;
+        let name = |k: usize| {
+            let mut name = whole.as_os_str().to_owned();
+            name.push(if k == 0 {
+                ".older".into()
+            } else {
+                format!(".older-{}", k + 1)
+            });
+            PathBuf::from(name)
+        };
+        let aside = (0..).map(name).find(|dir| !dir.exists()).unwrap_or_else(|| name(0));
+        fs::create_dir_all(&aside).map_err(|e| fault("create", &aside, e))?;
+        let names = [RAW_FIELDS, TABLES, VTK, CASE, REPORT];
+        // the sign last, so that what was cut short does not pass for a result
+        for name in names.into_iter().chain(older.files().into_iter().rev()) {
+            let from = self.path(name);
+            if from.exists() {
+                fs::rename(&from, aside.join(name)).map_err(|e| fault("move", &from, e))?;
+            }
+        }
+        Ok(Some(aside))
+    }
+
+    /// A folder inside this one for a result that may take its place; removed when dropped.
+    pub fn candidate(&self) -> Result<tempfile::TempDir> {
+        let inside = tempfile::Builder::new().prefix(".next-").tempdir_in(&self.dir);
+        inside.map_err(|e| fault("create", &self.dir, e))
+    }
+
+    /// Takes over the result in another folder of the same file system, in place of its own.
     pub fn replace(&mut self, with: &Path) -> Result<()> {
         self.clear()?;
         let entries = fs::read_dir(with).map_err(|e| fault("read", with, e))?;
-        for entry in entries {
-            let entry = entry.map_err(|e| fault("read", with, e))?;
-            let target = self.dir.join(entry.file_name());
-            fs::rename(entry.path(), &target).map_err(|e| fault("write", &target, e))?;
+        let names: io::Result<Vec<_>> = entries.map(|entry| Ok(entry?.file_name())).collect();
+        let mut names = names.map_err(|e| fault("read", with, e))?;
+        names.retain(|name| !name.to_string_lossy().starts_with('.'));
+        names.sort_by_key(|name| name == self.kind.sign());
+        for name in names {
+            let target = self.dir.join(&name);
+            fs::rename(with.join(&name), &target).map_err(|e| fault("write", &target, e))?;
         }
-        fs::remove_dir(with).map_err(|e| fault("remove", with, e))
-    }
-
-    /// Removes a folder and the result in it.
-    pub fn discard(dir: &Path) -> Result<()> {
-        fs::remove_dir_all(dir).map_err(|e| fault("remove", dir, e))
+        self.secure()
     }
 }
 
-/// Writes files into a folder, which is made; each whole or not at all, other files in it stay. Returns their paths.
-pub(crate) fn put(dir: &Path, files: Vec<(&str, String)>) -> Result<Vec<PathBuf>> {
-    fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
-    files
-        .into_iter()
-        .map(|(name, text)| {
-            let path = dir.join(name);
-            replace(&path, &text)?;
-            Ok(path)
-        })
-        .collect()
-}
-
-/// Writes a file whole or not at all; one that is there keeps its permissions, and what a link points to is replaced.
+/// Writes a file that the user names, whole or not at all; one that is there keeps its permissions, and what a link points to is
+/// replaced.
 pub fn replace(path: &Path, text: &str) -> Result<()> {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-    let part = part_of(&target);
-    let written = || {
-        let old = match fs::OpenOptions::new().write(true).open(&target) {
-            Ok(file) => Some(file.metadata()?.permissions()),
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => None,
-            Err(e) => return Err(e),
-        };
-        fs::write(&part, text)?;
-        if let Some(permissions) = old {
-            fs::set_permissions(&part, permissions)?;
+    let old = match fs::OpenOptions::new()
+        .write(true)
+        .open(&target)
+        .and_then(|file| file.metadata())
+    {
+        Ok(there) if !there.is_file() => {
+            // a pipe or a device takes the text as it comes
+            return fs::write(&target, text).map_err(|e| fault("write", path, e));
         }
-        fs::rename(&part, &target)
+        Ok(there) => Some(there.permissions()),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => None,
+        Err(e) => return Err(fault("write", path, e)),
     };
-    written().map_err(|e| fault("write", path, e))
+    put_whole(&target, |file| {
+        file.write_all(text.as_bytes())?;
+        old.map_or(Ok(()), |permissions| file.set_permissions(permissions))
+    })
+}
+
+/// Fills a file under another name, brings it to the disk and renames it; what could not be filled is removed.
+pub(crate) fn put_whole(target: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
+    let part = part_of(target);
+    let put = || -> io::Result<()> {
+        let mut file = File::create(&part)?;
+        fill(&mut file)?;
+        file.sync_all()?;
+        fs::rename(&part, target)
+    };
+    put().map_err(|e| {
+        let _ = fs::remove_file(&part);
+        fault("write", target, e)
+    })
 }
 
 /// The name under which a file grows before it takes its own.
-pub(crate) fn part_of(target: &Path) -> PathBuf {
+fn part_of(target: &Path) -> PathBuf {
     let name = target.file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
-    target.with_file_name(format!(".{name}.part"))
+    target.with_file_name(format!(".{name}.{}.part", std::process::id()))
 }
 
 /// An output error with its place.
@@ -197,20 +303,25 @@ fn remove_folder_of(dir: &Path, endings: &[&str]) -> Result<()> {
     fs::remove_dir_all(dir).map_err(|e| fault("remove", dir, e))
 }
 
-/// A result has a summary with the house's keys or, when interrupted, a history that begins with time.
-fn is_result(dir: &Path) -> bool {
-    let summary = fs::read_to_string(dir.join(SUMMARY))
-        .ok()
-        .and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok())
-        .is_some_and(|v| v.get("case").is_some() && v.get("status").is_some());
-    summary || history_begins_with_time(&dir.join(HISTORY))
+/// Why the sign of a kind in a folder is not that of a result of this program, if it is not: a JSON object with a case, or, of a run
+/// that was interrupted, a history that begins with time.
+fn foreign(dir: &Path, kind: Kind) -> Result<Option<String>> {
+    let sign = dir.join(kind.sign());
+    if !sign.exists() {
+        let own = history_begins_with_time(&dir.join(HISTORY));
+        return Ok((!own).then(|| format!("its {HISTORY} is none of slcbeam's")));
+    }
+    let text = fs::read_to_string(&sign).ok();
+    let own = text.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
+    let own = own.is_some_and(|v| v.get("case").is_some());
+    Ok((!own).then(|| format!("its {} is none of slcbeam's", kind.sign())))
 }
 
 fn history_begins_with_time(path: &Path) -> bool {
-    let mut line = String::new();
+    let mut begin = [0; 5];
     File::open(path)
-        .and_then(|f| BufReader::new(f).read_line(&mut line))
-        .is_ok_and(|_| line.starts_with("t [s]"))
+        .and_then(|mut file| file.read_exact(&mut begin))
+        .is_ok_and(|()| begin == *b"t [s]")
 }
 
 /// Hidden files do not count: systems leave them everywhere.

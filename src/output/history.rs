@@ -1,12 +1,12 @@
 //! `history.csv`: written row by row, read back as envelopes of bounded size.
 
-use std::fs::File;
-use std::io::{self, Seek as _, SeekFrom};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::folder::fault;
 use super::numbers::shortest;
+use super::stream::{Mark, Stream};
 use crate::error::Result;
 use crate::run::record::Column;
 
@@ -17,7 +17,7 @@ pub(crate) const FLUSH: Duration = Duration::from_millis(500);
 #[derive(Debug)]
 pub struct HistoryWriter {
     path: PathBuf,
-    out: csv::Writer<File>,
+    out: csv::Writer<Stream>,
     columns: usize,
     flushed: Instant,
 }
@@ -33,10 +33,9 @@ impl HistoryWriter {
 
     /// Creates the file with its line of names, which hold the units already.
     pub fn with_names(path: &Path, names: Vec<String>) -> Result<Self> {
-        let file = File::create(path).map_err(|e| fault("create", path, e))?;
         let mut writer = Self {
             path: path.to_path_buf(),
-            out: csv::Writer::from_writer(file),
+            out: csv::Writer::from_writer(Stream::create(path)?),
             columns: names.len(),
             flushed: Instant::now(),
         };
@@ -46,32 +45,20 @@ impl HistoryWriter {
         Ok(writer)
     }
 
-    /// Opens the file of an interrupted run and drops what came after its first `bytes`.
-    pub fn reopen(path: &Path, columns: usize, bytes: u64) -> Result<Self> {
-        let open = || -> io::Result<File> {
-            let mut file = File::options().write(true).open(path)?;
-            file.set_len(bytes)?;
-            file.seek(SeekFrom::End(0))?;
-            Ok(file)
-        };
-        let file = open().map_err(|e| fault("open", path, e))?;
+    /// Opens the file of an interrupted run, verified, and drops what came after the mark.
+    pub fn reopen(path: &Path, columns: usize, mark: Mark) -> Result<Self> {
         Ok(Self {
             path: path.to_path_buf(),
-            out: csv::Writer::from_writer(file),
+            out: csv::Writer::from_writer(Stream::reopen(path, mark)?),
             columns,
             flushed: Instant::now(),
         })
     }
 
-    /// Size of the file so far, all of it safe on disk.
-    pub fn secure(&mut self) -> Result<u64> {
+    /// All rows so far, safe on disk.
+    pub fn secure(&mut self) -> Result<Mark> {
         self.flush()?;
-        let measure = || -> io::Result<u64> {
-            let file = self.out.get_ref();
-            file.sync_data()?;
-            Ok(file.metadata()?.len())
-        };
-        measure().map_err(|e| fault("write", &self.path, e))
+        self.out.get_ref().secure()
     }
 
     /// Appends a row; as many numbers as columns.

@@ -1,7 +1,9 @@
 //! Results as files: history, arrays, summary and pictures of a run. Nothing here prints.
 //!
 //! ```text
-//! folder    which folder, and how files get into it without ever being half written
+//! folder    which folder, one writer at a time, and how files get into it without ever being half written
+//! kind      which command filled a folder
+//! stream    files that grow with a run, with checksums
 //! history   history.csv, row by row
 //! envelope  a history of any length, read back in bounded memory
 //! arrays    fields.npz, streamed through raw files
@@ -35,6 +37,7 @@ pub mod export;
 pub mod floquet;
 pub mod folder;
 pub mod history;
+pub mod kind;
 pub mod modes;
 pub mod numbers;
 pub mod periodic;
@@ -43,6 +46,7 @@ pub mod plot;
 pub mod reading;
 pub mod recorder;
 pub mod report;
+pub mod stream;
 pub mod study;
 pub mod summary;
 

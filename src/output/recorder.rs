@@ -5,9 +5,12 @@ use std::path::PathBuf;
 use super::arrays::ArraysWriter;
 use super::checkpoint::{self, Saved};
 use super::envelope::Envelope;
-use super::folder::{CASE, CHECKPOINT, FIELDS, HISTORY, RAW_FIELDS, ResultFolder, SENSITIVITIES, SUMMARY};
+use super::folder::{
+    CASE, CHECKPOINT, CHECKPOINT_BEFORE, FIELDS, HISTORY, RAW_FIELDS, ResultFolder, SENSITIVITIES, SUMMARY,
+};
 use super::history::HistoryWriter;
 use super::pictures::{self, STRETCHES};
+use super::stream::Stream;
 use super::summary;
 use crate::error::Result;
 use crate::run::checkpoint::Checkpoint;
@@ -52,67 +55,96 @@ impl FolderRecorder {
         }
     }
 
-    /// Goes on in the folder of an interrupted run; what was recorded after its checkpoint is dropped.
+    /// Goes on in the folder of an interrupted run; what was recorded after its checkpoint is dropped. All files are verified
+    /// before any is touched.
+    ///
+    /// # Errors
+    ///
+    /// A file is damaged or gone; then the folder is as it was.
     pub fn resume(folder: ResultFolder, labels: Labels, hook: Hook, saved: &Saved, header: &Header) -> Result<Self> {
+        let (history, raw) = (folder.path(HISTORY), folder.path(RAW_FIELDS));
+        Stream::verify(&history, saved.history)?;
+        ArraysWriter::verify(&raw, header, &saved.fields)?;
         folder.remove(SUMMARY)?;
-        let history = HistoryWriter::reopen(&folder.path(HISTORY), header.columns.len(), saved.history_bytes)?;
-        let arrays = ArraysWriter::reopen(&folder.path(RAW_FIELDS), header, saved.instants)?;
+        let history = HistoryWriter::reopen(&history, header.columns.len(), saved.history)?;
+        let arrays = ArraysWriter::reopen(&raw, header, &saved.fields)?;
         Ok(Self {
             open: Some((history, arrays)),
             ..Self::new(folder, labels, hook)
         })
     }
 
-    /// Completes the folder however the run ended: arrays packed, pictures drawn, summary last. Returns the files.
+    /// Completes the folder however the run ended: history and arrays whole and on the disk, then the summary that says so, then
+    /// pictures. What a run could go on from stays until [`Finished::close`], so that all of this can be repeated.
     ///
-    /// A run that failed before it began leaves an older result alone, and otherwise case and summary only.
-    pub fn finish(mut self, summary: &Summary) -> Result<Vec<PathBuf>> {
-        let mut files = Vec::new();
-        let derivatives = self.sensitivities.take().map_or(Ok(()), |mut rows| {
-            files.push(self.folder.path(SENSITIVITIES));
-            rows.flush()
-        });
+    /// A run that failed before it began leaves case and summary, and moves an older result aside.
+    pub fn finish(mut self, summary: &Summary) -> Result<Finished> {
+        let began = self.open.is_some();
+        let aside = if began { None } else { self.folder.set_aside()? };
+        let mut drawn = vec![];
         let completed = match self.open.take() {
-            Some((history, arrays)) => {
-                let resumable = summary.status != Status::Finished && self.folder.path(CHECKPOINT).exists();
-                self.complete(history, arrays, resumable, &mut files)
-            }
-            None if self.folder.holds_older() => return Ok(files),
+            Some((history, arrays)) => self.complete(history, arrays, &mut drawn),
             None => Ok(()),
         };
-        // The summary matters most: it is tried even when arrays or pictures could not be written.
-        let case = self.labels.case_json.as_bytes();
-        files.push(self.folder.write(CASE, case)?);
-        files.push(summary::write(&self.folder, summary)?);
-        completed.and(derivatives)?;
-        Ok(files)
+        let derivatives = self.sensitivities.take();
+        let derived = derivatives.map_or(Ok(()), |mut rows| rows.secure().map(|_| ()));
+        // The summary matters most: it is tried whatever could not be written before.
+        let cased = self.folder.write(CASE, self.labels.case_json.as_bytes());
+        let told = summary::write(&self.folder, summary);
+        completed.and(derived).and(cased.map(|_| ())).and(told.map(|_| ()))?;
+        self.folder.secure()?;
+        for (name, text) in drawn {
+            self.folder.write(name, text.as_bytes())?;
+        }
+        Ok(Finished {
+            resumable: summary.status != Status::Finished && self.folder.path(CHECKPOINT).exists(),
+            folder: self.folder,
+            aside,
+        })
     }
 
     fn complete(
         &self,
         mut history: HistoryWriter,
         mut arrays: ArraysWriter,
-        resumable: bool,
-        files: &mut Vec<PathBuf>,
+        drawn: &mut Vec<pictures::Picture>,
     ) -> Result<()> {
-        history.flush()?;
+        history.secure()?;
         drop(history);
         let path = self.folder.path(HISTORY);
         let case = &self.labels.case_name;
-        let mut drawn = pictures::over_time(case, &Envelope::read(&path, STRETCHES)?);
-        files.push(path);
+        *drawn = pictures::over_time(case, &Envelope::read(&path, STRETCHES)?);
         drawn.extend(pictures::over_space(case, self.labels.frequency_hz, &mut arrays)?);
-        let path = self.folder.path(FIELDS);
-        arrays.finish(&path, resumable)?;
-        files.push(path);
-        for (name, text) in drawn {
-            files.push(self.folder.write(name, text.as_bytes())?);
+        arrays.finish(&self.folder.path(FIELDS))
+    }
+}
+
+/// A folder whose result is complete.
+#[derive(Debug)]
+#[must_use = "what the run could go on from is still there"]
+pub struct Finished {
+    folder: ResultFolder,
+    resumable: bool,
+    /// Where an older result went.
+    pub aside: Option<PathBuf>,
+}
+
+impl Finished {
+    /// Removes what a run could go on from, unless it is yet to go on; what is left of an ended run otherwise.
+    pub fn close(self) -> Result<()> {
+        if self.resumable {
+            return Ok(());
         }
-        if resumable {
-            Ok(())
-        } else {
-            self.folder.remove(CHECKPOINT)
-        }
+        self.folder.secure()?;
+        self.folder.remove(CHECKPOINT_BEFORE)?;
+        self.folder.remove(CHECKPOINT)?;
+        self.folder.secure()?;
+        self.folder.remove_raw()
+    }
+
+    /// The folder, still locked.
+    pub fn folder(&self) -> &ResultFolder {
+        &self.folder
     }
 }
 
@@ -153,8 +185,8 @@ impl Recorder for FolderRecorder {
             return Ok(());
         };
         let saved = Saved {
-            history_bytes: history.secure()?,
-            instants: arrays.secure()?,
+            history: history.secure()?,
+            fields: arrays.secure()?,
             run: checkpoint.clone(),
         };
         checkpoint::write(&self.folder, &saved)

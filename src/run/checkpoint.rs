@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::observe::Observed;
 use super::summary::Counters;
+use crate::case::Case;
+use crate::discrete::System;
+use crate::error::{Error, Result};
 
 /// State of a run at a checkpoint time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,6 +34,35 @@ pub struct Checkpoint {
     pub counters: Counters,
     /// What the observer has seen.
     pub observed: Observed,
+}
+
+impl Checkpoint {
+    /// Checks that a run of this case can go on from here.
+    ///
+    /// # Errors
+    ///
+    /// Another case or version of the program wrote it, or its numbers are not as many as the case has.
+    pub fn fits(&self, case: &Case) -> Result<()> {
+        let fault = |why: &str| Err(Error::Usage(format!("the checkpoint {why}; nothing was changed")));
+        if self.case != case.resolved_json() || self.version != VERSION {
+            return fault("belongs to another case or another version of the program");
+        }
+        let unknowns = System::new(case).layout.len;
+        if self.y.len() != unknowns || self.yp.len() != unknowns {
+            return fault("has another number of unknowns than the case");
+        }
+        if self
+            .y
+            .iter()
+            .chain(&self.yp)
+            .chain(&self.integrals)
+            .any(|x| !x.is_finite())
+            || !self.t.is_finite()
+        {
+            return fault("has numbers that are not finite");
+        }
+        Ok(())
+    }
 }
 
 /// Version written into checkpoints.

@@ -11,7 +11,7 @@ use std::time::Instant;
 use faults::{fault, inconsistent, stalled, too_many_steps};
 use pace::Pace;
 
-use super::checkpoint::{Checkpoint, VERSION};
+use super::checkpoint::Checkpoint;
 use super::equilibrium;
 use super::growth::Linear;
 use super::known;
@@ -26,7 +26,7 @@ use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::{System, start};
-use crate::error::{Error, Result, SolverFault};
+use crate::error::{Result, SolverFault};
 use crate::model::{audit, characteristic};
 use crate::sundials::{StartOptions, consistent_start};
 
@@ -72,11 +72,7 @@ pub fn header(case: &Case) -> Header {
 
 /// Goes on from a checkpoint of the same case; the recorder holds what was recorded before it.
 pub fn resume(case: &Case, checkpoint: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
-    if checkpoint.case != case.resolved_json() || checkpoint.version != VERSION {
-        return Err(Error::Usage(
-            "the checkpoint belongs to another case or another version of the program".into(),
-        ));
-    }
+    checkpoint.fits(case)?;
     let (run, dae) = Run::new(case, &[])?;
     run.go(dae, Some(checkpoint), recorder)
 }

@@ -25,11 +25,11 @@ fn pressures(case: &Case, faults: &mut Faults) {
     for (i, some) in case.start.pressures.iter().enumerate() {
         for (k, &index) in some.bladders.iter().enumerate() {
             let pointer = format!("/start/pressures/{i}/bladders/{k}");
-            if super::network::exists(index, bladders.per_row, &pointer, faults) {
-                if let Some(first) = known.insert(index, pointer.clone()) {
-                    let what = format!("the pressure of bladder {index} is given twice, first at {first}");
-                    faults.push(Violation::new(Code::Start, pointer, what));
-                }
+            if super::network::exists(index, bladders.per_row, &pointer, faults)
+                && let Some(first) = known.insert(index, pointer.clone())
+            {
+                let what = format!("the pressure of bladder {index} is given twice, first at {first}");
+                faults.push(Violation::new(Code::Start, pointer, what));
             }
         }
     }

@@ -4,6 +4,12 @@ use crate::case::faults::Faults;
 use crate::case::schema::Case;
 use crate::error::{Code, Violation};
 
+/// Rows of a history at most: some 2 GB, more than anything reads.
+const MOST_ROWS: f64 = 1e7;
+
+/// Checkpoints at most; each costs a start afresh of the integrator.
+const MOST_CHECKPOINTS: f64 = 1e5;
+
 pub(super) fn check(case: &Case, faults: &mut Faults) {
     let time = &case.time;
     let mut refuse = |key: &str, what: String, allowed: String| {
@@ -18,6 +24,26 @@ pub(super) fn check(case: &Case, faults: &mut Faults) {
         if let Some(interval) = interval.filter(|interval| *interval > time.end_s * (1.0 + 1e-9)) {
             let what = format!("{interval} s is longer than the run of {} s", time.end_s);
             refuse(key, what, format!("at most {} s", time.end_s));
+        }
+    }
+    let counted = [
+        ("output_interval_s", Some(time.output_interval()), MOST_ROWS, "rows"),
+        ("fields_interval_s", time.fields_interval_s, MOST_ROWS, "instants"),
+        (
+            "checkpoint_interval_s",
+            time.checkpoint_interval_s,
+            MOST_CHECKPOINTS,
+            "checkpoints",
+        ),
+    ];
+    for (key, interval, most, what) in counted {
+        if let Some(interval) = interval.filter(|interval| time.end_s / interval > most * (1.0 + 1e-9)) {
+            let count = time.end_s / interval;
+            refuse(
+                key,
+                format!("{interval:e} s makes {count:.1e} {what} in a run of {} s", time.end_s),
+                format!("at least {:e} s, which makes {most:.0} of them", time.end_s / most),
+            );
         }
     }
     let output = time.output_interval();

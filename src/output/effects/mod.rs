@@ -2,9 +2,9 @@
 
 mod table;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use super::folder::put;
+use super::folder::ResultFolder;
 use super::plot::ablation::{self, AblationBars, Bar};
 use crate::error::Result;
 use crate::study::effects::ablation::{Compared, LARGEST};
@@ -73,11 +73,11 @@ pub fn json(found: &Ablation) -> String {
     format!("{value:#}\n")
 }
 
-/// Writes the files into a folder, which is made; other files in it stay.
-pub fn write(dir: &Path, found: &Ablation, shown: &Shown) -> Result<Vec<PathBuf>> {
+/// Writes the files into a folder; others in it stay.
+pub fn write(folder: &mut ResultFolder, found: &Ablation, shown: &Shown) -> Result<Vec<PathBuf>> {
     let mut files = vec![(CSV, csv(found)), (JSON, json(found))];
     files.extend(ablation::draw(&bars(found, shown)).map(|text| (PICTURE, text)));
-    put(dir, files)
+    folder.fill(files)
 }
 
 /// The picture's data.

@@ -2,14 +2,12 @@
 
 mod words;
 
-use std::fs;
-use std::path::{Path as FilePath, PathBuf};
+use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
 
 use super::accuracy::{with_accuracy, with_meshes};
-use super::folder::{fault, part_of, replace};
-use super::history::HistoryWriter;
+use super::folder::{CASE, ResultFolder};
 use super::numbers::shortest;
 use super::plot::Curve;
 use super::plot::loadpath::{self, LoadPath};
@@ -104,35 +102,33 @@ fn key(column: &Column) -> String {
     format!("{}_{unit}", column.name)
 }
 
-/// Writes the files into a folder, which is made; other files in it stay.
-pub fn write(dir: &FilePath, found: &Found) -> Result<Vec<PathBuf>> {
-    fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
-    let mut columns = found.columns.to_vec();
-    columns.push(Column {
-        name: "unstable_modes".into(),
-        unit: "1",
-        about: "independent ways in which the state gives way".into(),
-    });
-    let table = dir.join(CSV);
-    let mut writer = HistoryWriter::create(&part_of(&table), &columns)?;
+/// Writes the files into a folder; others in it stay.
+pub fn write(folder: &mut ResultFolder, found: &Found) -> Result<Vec<PathBuf>> {
+    let mut files = vec![
+        (CSV, table(found)),
+        (SHAPES, shapes(found)),
+        (JSON, json(found)),
+        (CASE, found.case.resolved_json()),
+    ];
+    files.extend(loadpath::draw(&drawn(found)).map(|text| (PICTURE, text)));
+    folder.fill(files)
+}
+
+/// One row a state.
+fn table(found: &Found) -> String {
+    let mut text: String = found
+        .columns
+        .iter()
+        .map(|c| format!("{} [{}],", c.name, c.unit))
+        .collect();
+    text.push_str("unstable_modes [1]\n");
     for state in &found.path.states {
-        let mut row = state.row.clone();
-        row.push(state.stability.as_ref().map_or(f64::NAN, |s| s.unstable as f64));
-        writer.row(&row)?;
+        let unstable = state.stability.as_ref().map_or(f64::NAN, |s| s.unstable as f64);
+        let row: Vec<String> = state.row.iter().chain([&unstable]).map(|&x| shortest(x)).collect();
+        text.push_str(&row.join(","));
+        text.push('\n');
     }
-    writer.flush()?;
-    drop(writer);
-    fs::rename(part_of(&table), &table).map_err(|e| fault("write", &table, e))?;
-    let mut files = vec![table];
-    let mut texts = vec![(SHAPES, shapes(found)), (JSON, json(found))];
-    texts.extend(loadpath::draw(&drawn(found)).map(|text| (PICTURE, text)));
-    texts.push((super::folder::CASE, found.case.resolved_json()));
-    for (name, text) in texts {
-        let path = dir.join(name);
-        replace(&path, &text)?;
-        files.push(path);
-    }
-    Ok(files)
+    text
 }
 
 /// One row a node: `theta [m]`, then x and z of every state.

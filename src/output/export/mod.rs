@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! instants  which of the recorded times
+//! staged    a folder that appears whole
 //! tables    csv/: one table a field
 //! vtk       vtk/: beam, bladders and tubes as surfaces and lines in space
 //! ```
 
 pub mod instants;
+mod staged;
 pub mod tables;
 pub mod vtk;
 

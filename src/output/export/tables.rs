@@ -1,11 +1,11 @@
 //! `csv/FIELD.csv`: a row an instant, a column a place, times first.
 
-use std::fs;
 use std::path::Path;
 
 use super::Written;
+use super::staged::Staged;
 use crate::error::Result;
-use crate::output::folder::{TABLES, fault};
+use crate::output::folder::TABLES;
 use crate::output::history::HistoryWriter;
 use crate::output::numbers::shortest;
 use crate::study::compare::{Array, Recording};
@@ -15,11 +15,10 @@ use crate::study::compare::{Array, Recording};
 /// Columns are `t [s]`, then places: `theta=0.0025 m` along the beam, `bladder=-3 s=0.0115 m` in the fluid, `s` from the
 /// bladder's inlet. The unit of the values stands in the field's name, which is the file's.
 pub fn write(dir: &Path, from: &Recording, instants: &[usize]) -> Result<Written> {
-    let dir = dir.join(TABLES);
-    fs::create_dir_all(&dir).map_err(|e| fault("create", &dir, e))?;
-    let mut written = Written::new(dir.clone());
+    let staged = Staged::new(dir, TABLES)?;
+    let mut written = Written::new(staged.target().to_path_buf());
     for field in &from.fields {
-        let path = dir.join(format!("{}.csv", field.name));
+        let path = staged.path(&format!("{}.csv", field.name));
         let mut names = vec!["t [s]".to_string()];
         names.extend(places(from, field));
         let mut table = HistoryWriter::with_names(&path, names)?;
@@ -30,8 +29,9 @@ pub fn write(dir: &Path, from: &Recording, instants: &[usize]) -> Result<Written
                 .collect();
             table.row(&row)?;
         }
-        written.count(table.secure()?);
+        written.count(table.secure()?.bytes);
     }
+    staged.place(|name| name.ends_with(".csv"))?;
     Ok(written)
 }
 

@@ -2,11 +2,12 @@
 //! a map, and their words.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde_json::json;
 
 use super::accuracy::{with_accuracy, with_meshes, with_warnings};
+use super::folder::ResultFolder;
 use super::numbers::{shortest, significant};
 use super::plot::multipliers::{self, Dot, Multipliers};
 use super::plot::tongue::{self, Tongue, TonguePanel};
@@ -118,8 +119,8 @@ pub fn words(found: &Found) -> String {
     text
 }
 
-/// Writes the files of one case into a folder, which is made.
-pub fn write(dir: &Path, found: &Found) -> Result<Vec<PathBuf>> {
+/// Writes the files of one case into a folder.
+pub fn write(folder: &mut ResultFolder, found: &Found) -> Result<Vec<PathBuf>> {
     let dots = found.floquet.multipliers.iter().map(|m| Dot {
         re: m.re,
         im: m.im,
@@ -132,7 +133,7 @@ pub fn write(dir: &Path, found: &Found) -> Result<Vec<PathBuf>> {
     });
     let mut files = vec![("floquet.csv", csv(found.floquet)), ("floquet.json", json(found))];
     files.extend(picture.map(|text| ("floquet.svg", text)));
-    super::folder::put(dir, files)
+    folder.fill(files)
 }
 
 /// The text of `map.json`, with what to know of the case.
@@ -212,8 +213,8 @@ pub fn map_words(map: &Map) -> String {
     text
 }
 
-/// Writes the files of a map into a folder, which is made.
-pub fn write_map(dir: &Path, map: &Map, warnings: &[String]) -> Result<Vec<PathBuf>> {
+/// Writes the files of a map into a folder.
+pub fn write_map(folder: &mut ResultFolder, map: &Map, warnings: &[String]) -> Result<Vec<PathBuf>> {
     let panels = map.sheets.iter().map(|sheet| TonguePanel {
         name: sheet
             .permeability_factor
@@ -234,5 +235,5 @@ pub fn write_map(dir: &Path, map: &Map, warnings: &[String]) -> Result<Vec<PathB
     });
     let mut files = vec![("map.csv", map_csv(map)), ("map.json", map_json(map, warnings))];
     files.extend(picture.map(|text| ("map.svg", text)));
-    super::folder::put(dir, files)
+    folder.fill(files)
 }

@@ -2,9 +2,8 @@
 
 mod table;
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write as _};
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::PathBuf;
 
 use nalgebra::Complex;
 use serde_json::{Value, json};
@@ -12,7 +11,7 @@ use zip::ZipWriter;
 
 use super::accuracy::{self, with_accuracy};
 use super::arrays::write_array;
-use super::folder::{fault, part_of, replace};
+use super::folder::{ResultFolder, fault};
 use super::numbers::significant;
 use super::plot::modes::{self as picture, ModeShapes, Shown};
 use crate::error::{Code, Result};
@@ -180,28 +179,21 @@ fn mode(mode: &Mode) -> Value {
     })
 }
 
-/// Writes the files into a folder, which is made; other files in it stay.
-pub fn write(dir: &Path, report: &Report) -> Result<Vec<PathBuf>> {
-    fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
-    let mut texts = vec![(CSV, csv(report)), (JSON, json(report))];
-    texts.extend(picture::draw(&shapes(report)).map(|text| (PICTURE, text)));
-    let mut written = vec![];
-    for (name, text) in texts {
-        let path = dir.join(name);
-        replace(&path, &text)?;
-        written.push(path);
-    }
-    let target = dir.join(ARRAYS);
-    let part = part_of(&target);
-    let packed = pack(&part, report.found).and_then(|()| fs::rename(&part, &target));
-    packed.map_err(|e| fault("write", &target, e))?;
-    written.push(target);
-    Ok(written)
+/// Writes the files into a folder; others in it stay.
+pub fn write(folder: &mut ResultFolder, report: &Report) -> Result<Vec<PathBuf>> {
+    let arrays = pack(report.found).map_err(|e| fault("write", &folder.path(ARRAYS), e))?;
+    let mut files = vec![
+        (CSV, csv(report).into_bytes()),
+        (JSON, json(report).into_bytes()),
+        (ARRAYS, arrays),
+    ];
+    files.extend(picture::draw(&shapes(report)).map(|text| (PICTURE, text.into_bytes())));
+    folder.fill(files)
 }
 
 /// Arrays mode × place; `u1_m` is that of `u1_amplitude_m cos(ω t + u1_phase_rad) e^{σ t}`.
-fn pack(path: &Path, found: &Modes) -> io::Result<()> {
-    let mut npz = ZipWriter::new(BufWriter::new(File::create(path)?));
+fn pack(found: &Modes) -> io::Result<Vec<u8>> {
+    let mut npz = ZipWriter::new(io::Cursor::new(Vec::new()));
     let system = found.about.system();
     let count = found.modes.len() as u64;
     let one = |f: fn(&Mode) -> f64| found.modes.iter().map(move |m| Ok(f(m)));
@@ -234,7 +226,7 @@ fn pack(path: &Path, found: &Modes) -> io::Result<()> {
         )?;
         write_array(&mut npz, &format!("{name}_phase_rad"), &shape, values(|x| x.arg()))?;
     }
-    npz.finish()?.flush()
+    Ok(npz.finish()?.into_inner())
 }
 
 /// The picture's data.

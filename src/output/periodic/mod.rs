@@ -1,9 +1,10 @@
 //! What cycles leave behind besides a result folder: `cycle.json`; `sweep.csv`, `sweep.json`, `sweep.svg`; and their words.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::accuracy::with_warnings;
+use super::folder::ResultFolder;
 use super::numbers::{count, percent, quantity, shortest, significant};
 use super::plot::cycles::{self, Cycles, Quantity};
 use crate::error::Result;
@@ -83,7 +84,7 @@ pub fn words(found: &Along) -> String {
 }
 
 /// Writes the files of a sweep into a folder, which is made.
-pub fn write(dir: &Path, found: &Along, warnings: &[String]) -> Result<Vec<PathBuf>> {
+pub fn write(folder: &mut ResultFolder, found: &Along, warnings: &[String]) -> Result<Vec<PathBuf>> {
     let quantities = SHOWN.iter().filter_map(|(name, unit)| {
         let values: Option<Vec<f64>> = found.members.iter().map(|m| largest(m, name)).collect();
         let short = name.trim_end_matches(&format!("_{}", unit.to_lowercase())).to_string();
@@ -114,7 +115,7 @@ pub fn write(dir: &Path, found: &Along, warnings: &[String]) -> Result<Vec<PathB
     });
     let mut files = vec![("sweep.csv", csv(found)), ("sweep.json", json(found, warnings))];
     files.extend(picture.map(|text| ("sweep.svg", text)));
-    super::folder::put(dir, files)
+    folder.fill(files)
 }
 
 /// Largest values and energies over the period, in words; energies with how far their balance is open beside them.

@@ -27,7 +27,6 @@ mod equilibrium;
 mod facts;
 mod frames;
 mod history;
-mod kind;
 mod modes;
 mod pack;
 mod page;
@@ -44,10 +43,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
-use super::folder::{CASE, REPORT, put, replace};
+use super::folder::{CASE, REPORT, ResultFolder, replace};
+use super::kind::Kind;
 use crate::case::{self, Case};
 use crate::error::Result;
-pub use kind::Kind;
 
 /// Bytes beyond which a picture or the text of a case is left to its file.
 const LARGEST_TEXT: usize = 800_000;
@@ -74,15 +73,15 @@ pub fn write(dir: &Path, out: Option<&Path>) -> Result<Written> {
 }
 
 /// Completes a folder that a command has filled: the case as resolved beside its files, and the page.
-pub fn complete(dir: &Path, kind: Kind, case: &Case) -> Result<Written> {
-    put(dir, vec![(CASE, case.resolved_json())])?;
-    of_kind(dir, kind, None)
+pub fn complete(folder: &ResultFolder, case: &Case) -> Result<Written> {
+    folder.write(CASE, case.resolved_json().as_bytes())?;
+    write(folder.dir(), None)
 }
 
 fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
     let place = Place::new(dir);
     let mut data = match kind {
-        Kind::Run => run::data(&place)?,
+        Kind::Run | Kind::Cycle => run::data(&place)?,
         Kind::Equilibrium => equilibrium::data(&place)?,
         Kind::Modes => modes::data(&place)?,
         Kind::Study => studies::study(&place)?,

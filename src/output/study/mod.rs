@@ -8,9 +8,9 @@
 mod table;
 mod words;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use super::folder::put;
+use super::folder::ResultFolder;
 use super::plot::workprecision::{self, Balance, Line, Marker, WorkPrecision};
 use crate::error::Result;
 use crate::study::accuracy::Study;
@@ -32,12 +32,12 @@ pub fn json(study: &Study) -> String {
     format!("{value:#}\n")
 }
 
-/// Writes the files into a folder, which is made; other files in it stay.
-pub fn write(dir: &Path, study: &Study) -> Result<Vec<PathBuf>> {
+/// Writes the files into a folder; others in it stay.
+pub fn write(folder: &mut ResultFolder, study: &Study) -> Result<Vec<PathBuf>> {
     let picture = picture(study).and_then(|data| workprecision::draw(&data));
     let mut files = vec![(CSV, csv(study)), (JSON, json(study))];
     files.extend(picture.map(|text| (PICTURE, text)));
-    put(dir, files)
+    folder.fill(files)
 }
 
 /// The picture's data; `None` when nothing could be compared.

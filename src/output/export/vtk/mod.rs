@@ -20,9 +20,10 @@ mod surface;
 mod tubes;
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::Written;
+use super::staged::Staged;
 use crate::case::Case;
 use crate::error::Result;
 use crate::model::Model;
@@ -38,20 +39,18 @@ const PARTS: [&str; 3] = ["beam", "bladders", "tubes"];
 
 /// Writes `dir/vtk`; older files of the same kind there go first. Returns the path of the `.pvd`.
 pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> Result<Written> {
-    let dir = dir.join(VTK);
-    fs::create_dir_all(&dir).map_err(|e| fault("create", &dir, e))?;
-    remove_older(&dir)?;
+    let staged = Staged::new(dir, VTK)?;
     let scene = Scene::new(case, from);
     let digits = from.field_times.len().to_string().len();
-    let collection = dir.join(format!("{}.pvd", case.name));
-    let mut written = Written::new(collection.clone());
+    let collection = format!("{}.pvd", case.name);
+    let mut written = Written::new(staged.target().join(&collection));
     let mut sets = String::new();
     for &k in instants {
         let t = from.field_times[k];
         for (part, surface) in scene.at(k).into_iter().enumerate() {
             let name = PARTS[part];
             let file = format!("{name}-{k:0digits$}.vtp");
-            written.count(put(&dir.join(&file), &surface.file(t))?);
+            written.count(put(&staged.path(&file), &surface.file(t))?);
             sets += &format!(
                 "    <DataSet timestep=\"{}\" part=\"{part}\" name=\"{name}\" file=\"{file}\"/>\n",
                 shortest(t)
@@ -61,32 +60,15 @@ pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> R
     let text = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n{sets}  </Collection>\n</VTKFile>\n"
     );
-    written.count(put(&collection, text.as_bytes())?);
+    written.count(put(&staged.path(&collection), text.as_bytes())?);
+    // films of another choice of instants would mix with this one
+    staged.place(|name| name.ends_with(".vtp") && PARTS.iter().any(|part| name.starts_with(&format!("{part}-"))))?;
     Ok(written)
 }
 
 fn put(path: &Path, bytes: &[u8]) -> Result<u64> {
     fs::write(path, bytes).map_err(|e| fault("write", path, e))?;
     Ok(bytes.len() as u64)
-}
-
-/// Films of another choice of instants would mix with this one.
-fn remove_older(dir: &Path) -> Result<()> {
-    let ours = |path: &PathBuf| {
-        let name = path
-            .file_name()
-            .map(|n| n.to_string_lossy().into_owned())
-            .unwrap_or_default();
-        let frame = PARTS
-            .iter()
-            .any(|part| name.strip_prefix(part).is_some_and(|rest| rest.starts_with('-')));
-        frame && name.ends_with(".vtp")
-    };
-    let entries = fs::read_dir(dir).map_err(|e| fault("read", dir, e))?;
-    for path in entries.flatten().map(|e| e.path()).filter(ours) {
-        fs::remove_file(&path).map_err(|e| fault("remove", &path, e))?;
-    }
-    Ok(())
 }
 
 /// What does not move: sizes, windows, which bladder is where, which tube joins what.

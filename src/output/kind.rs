@@ -1,0 +1,164 @@
+//! What kind of result a folder holds, by the files in it.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::folder::{HISTORY, RUN_FILES, SUMMARY, fault};
+use crate::error::Result;
+
+/// Which command filled a folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// `run`.
+    Run,
+    /// `equilibrium`.
+    Equilibrium,
+    /// `modes`.
+    Modes,
+    /// `study`.
+    Study,
+    /// `effects`.
+    Effects,
+    /// `floquet`.
+    Floquet,
+    /// `floquet --map`.
+    Map,
+    /// `periodic`: a run of one cycle, and what is told of it.
+    Cycle,
+    /// `periodic --sweep`.
+    Sweep,
+}
+
+impl Kind {
+    /// All of them; a cycle before the run in its folder.
+    const ALL: [Self; 9] = [
+        Self::Cycle,
+        Self::Run,
+        Self::Equilibrium,
+        Self::Modes,
+        Self::Study,
+        Self::Effects,
+        Self::Floquet,
+        Self::Map,
+        Self::Sweep,
+    ];
+
+    /// Name in the page.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Run | Self::Cycle => "run",
+            Self::Equilibrium => "equilibrium",
+            Self::Modes => "modes",
+            Self::Study => "study",
+            Self::Effects => "effects",
+            Self::Floquet => "floquet",
+            Self::Map => "map",
+            Self::Sweep => "sweep",
+        }
+    }
+
+    /// The command, as it is typed.
+    pub fn command(self) -> &'static str {
+        match self {
+            Self::Run => "run",
+            Self::Equilibrium => "equilibrium",
+            Self::Modes => "modes",
+            Self::Study => "study",
+            Self::Effects => "effects",
+            Self::Floquet => "floquet",
+            Self::Map => "floquet --map",
+            Self::Cycle => "periodic",
+            Self::Sweep => "periodic --sweep",
+        }
+    }
+
+    /// The file that tells it; it is written last.
+    pub fn sign(self) -> &'static str {
+        match self {
+            Self::Run => SUMMARY,
+            Self::Equilibrium => "equilibrium.json",
+            Self::Modes => "modes.json",
+            Self::Study => "study.json",
+            Self::Effects => "effects.json",
+            Self::Floquet => "floquet.json",
+            Self::Map => "map.json",
+            Self::Cycle => "cycle.json",
+            Self::Sweep => "sweep.json",
+        }
+    }
+
+    /// All files that the command writes itself, the sign first; case and page come besides.
+    pub fn files(self) -> Vec<&'static str> {
+        let own: &[&str] = match self {
+            Self::Run | Self::Cycle => &RUN_FILES,
+            Self::Equilibrium => &["path.csv", "shapes.csv", "path.svg"],
+            Self::Modes => &["modes.csv", "modes.npz", "modes.svg"],
+            Self::Study => &["study.csv", "study.svg"],
+            Self::Effects => &["effects.csv", "effects.svg"],
+            Self::Floquet => &["floquet.csv", "floquet.svg"],
+            Self::Map => &["map.csv", "map.svg"],
+            Self::Sweep => &["sweep.csv", "sweep.svg"],
+        };
+        [self.sign()].into_iter().chain(own.iter().copied()).collect()
+    }
+
+    /// Whose result a folder holds; that of a run that was killed has a history, but no summary.
+    pub fn within(dir: &Path) -> Option<Self> {
+        let found = Self::ALL.into_iter().find(|kind| dir.join(kind.sign()).is_file());
+        found.or_else(|| dir.join(HISTORY).is_file().then_some(Self::Run))
+    }
+
+    /// Looks at the files of a folder.
+    ///
+    /// # Errors
+    ///
+    /// There is no such folder, or nothing in it is a result; the message names what would be one, and a result nearby.
+    pub fn find(dir: &Path) -> Result<Self> {
+        if let Some(kind) = Self::within(dir) {
+            return Ok(kind);
+        }
+        let exists = dir.is_dir();
+        let what = if exists {
+            let signs: Vec<String> = Self::ALL
+                .iter()
+                .map(|kind| format!("{} ({})", kind.sign(), kind.command()))
+                .collect();
+            format!("it holds no result, which would be one of {}", signs.join(", "))
+        } else {
+            "there is no such folder".into()
+        };
+        let hint = near(dir).map_or(String::new(), |found| format!("; did you mean {found}?"));
+        let kind = if exists {
+            io::ErrorKind::InvalidData
+        } else {
+            io::ErrorKind::NotFound
+        };
+        Err(fault("report on", dir, io::Error::new(kind, format!("{what}{hint}"))))
+    }
+}
+
+/// A result in the folder, or else the one beside it whose name is most like it.
+fn near(dir: &Path) -> Option<String> {
+    let results = |of: &Path| -> Vec<PathBuf> {
+        let entries = fs::read_dir(of).into_iter().flatten().flatten().map(|e| e.path());
+        let mut all: Vec<_> = entries.filter(|p| Kind::within(p).is_some()).collect();
+        all.sort();
+        all
+    };
+    if let Some(inside) = results(dir).first() {
+        return Some(inside.display().to_string());
+    }
+    let name = dir.file_name()?.to_string_lossy().into_owned();
+    let parent = dir
+        .parent()
+        .filter(|p| !p.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let likeness = |path: &Path| {
+        let other = path.file_name().map(|n| n.to_string_lossy().into_owned());
+        strsim::jaro_winkler(&name, &other.unwrap_or_default())
+    };
+    let beside = results(parent).into_iter().map(|p| (likeness(&p), p));
+    let (alike, path) = beside.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (alike > 0.7).then(|| path.display().to_string())
+}

@@ -1,0 +1,122 @@
+//! Files that grow with a run, and marks from which they are known again: so many bytes, with such a checksum.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read as _, Seek as _, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::folder::fault;
+use crate::error::Result;
+
+/// Bytes read at once.
+const BLOCK: usize = 1 << 16;
+
+/// The part of a file that was safe on disk at a checkpoint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Mark {
+    /// Its length [byte].
+    pub bytes: u64,
+    /// CRC-32 (ISO-HDLC) of it.
+    pub crc32: u32,
+}
+
+/// A file that is appended to, with the checksum of all that went into it.
+#[derive(Debug)]
+pub struct Stream {
+    path: PathBuf,
+    file: File,
+    bytes: u64,
+    sum: crc32fast::Hasher,
+}
+
+impl Stream {
+    /// Makes the file, empty.
+    pub fn create(path: &Path) -> Result<Self> {
+        let file = File::create(path).map_err(|e| fault("create", path, e))?;
+        Ok(Self {
+            path: path.to_path_buf(),
+            file,
+            bytes: 0,
+            sum: crc32fast::Hasher::new(),
+        })
+    }
+
+    /// Checks that a file still begins with what was marked; changes nothing.
+    ///
+    /// # Errors
+    ///
+    /// It is not there, is shorter, or holds something else.
+    pub fn verify(path: &Path, mark: Mark) -> Result<()> {
+        let verify = || -> io::Result<()> {
+            let damaged = |why: String| Err(io::Error::new(io::ErrorKind::InvalidData, why));
+            let file = File::open(path)?;
+            let there = file.metadata()?.len();
+            if there < mark.bytes {
+                return damaged(format!(
+                    "{there} bytes are left of the {} that the checkpoint needs; what there is can be read, but no run goes on from it",
+                    mark.bytes
+                ));
+            }
+            let mut rest = BufReader::with_capacity(BLOCK, file).take(mark.bytes);
+            let (mut sum, mut block) = (crc32fast::Hasher::new(), [0; BLOCK]);
+            loop {
+                match rest.read(&mut block)? {
+                    0 => break,
+                    n => sum.update(&block[..n]),
+                }
+            }
+            if sum.finalize() != mark.crc32 {
+                return damaged(
+                    "it is not what was written up to the checkpoint (its checksum differs); no run goes on from it"
+                        .into(),
+                );
+            }
+            Ok(())
+        };
+        verify().map_err(|e| fault("go on with", path, e))
+    }
+
+    /// Opens a file that is verified and drops what came after the mark.
+    pub fn reopen(path: &Path, mark: Mark) -> Result<Self> {
+        let open = || -> io::Result<File> {
+            let mut file = File::options().write(true).open(path)?;
+            file.set_len(mark.bytes)?;
+            file.seek(SeekFrom::End(0))?;
+            Ok(file)
+        };
+        Ok(Self {
+            path: path.to_path_buf(),
+            file: open().map_err(|e| fault("open", path, e))?,
+            bytes: mark.bytes,
+            sum: crc32fast::Hasher::new_with_initial_len(mark.crc32, mark.bytes),
+        })
+    }
+
+    /// Brings what was written to the disk itself.
+    pub fn secure(&self) -> Result<Mark> {
+        self.file.sync_data().map_err(|e| fault("write", &self.path, e))?;
+        Ok(Mark {
+            bytes: self.bytes,
+            crc32: self.sum.clone().finalize(),
+        })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Write for Stream {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(buffer)?;
+        self.sum.update(&buffer[..written]);
+        self.bytes += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}

@@ -1,0 +1,162 @@
+//! Folders of others, and of another process.
+
+use std::fs;
+use std::io::Write as _;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+use crate::program::{CASE, contents, run, slcbeam, stderr, unchanged};
+
+const COMMANDS: [&[&str]; 6] = [
+    &["run"],
+    &["equilibrium"],
+    &["modes", "--count", "2"],
+    &["study", "--budget", "1s"],
+    &["effects", "--budget", "1s"],
+    &["periodic"],
+];
+
+fn into(command: &[&str], case: &Path, out: &Path, more: &[&str]) -> std::process::Output {
+    slcbeam()
+        .args(&command[..1])
+        .arg(case)
+        .args(&command[1..])
+        .args(["--quiet", "--set", "/time/end_s=0.01"])
+        .args(more)
+        .arg("--out")
+        .arg(out)
+        .output()
+        .expect("it starts")
+}
+
+/// Every command leaves a folder alone that holds a case and notes of the user.
+#[test]
+fn no_command_writes_into_a_folder_of_the_user() {
+    let folder = tempfile::tempdir().expect("a place");
+    let case = folder.path().join("case.json");
+    fs::copy("cases/two-bladders.json", &case).expect("a case");
+    fs::write(folder.path().join("notes.txt"), "mine").expect("notes");
+    let before = contents(folder.path());
+    for command in COMMANDS {
+        let output = into(command, &case, folder.path(), &[]);
+        assert!(!output.status.success(), "{command:?}");
+        assert!(stderr(&output).contains("name another folder"), "{}", stderr(&output));
+        unchanged(folder.path(), &before, &format!("{command:?}"));
+        // not even by force over the case itself
+        let output = into(command, &case, folder.path(), &["--force"]);
+        assert_eq!(output.status.code(), Some(2), "{command:?}: {}", stderr(&output));
+        unchanged(folder.path(), &before, &format!("{command:?} by force"));
+    }
+}
+
+/// A command leaves the result of another alone, and takes it when told to.
+#[test]
+fn results_of_other_commands_stay() {
+    let folder = tempfile::tempdir().expect("a place");
+    let case = Path::new("cases/two-bladders.json");
+    let out = folder.path().join("result");
+    assert!(into(&["run"], case, &out, &[]).status.success());
+    let before = contents(&out);
+    for command in &COMMANDS[1..] {
+        let output = into(command, case, &out, &[]);
+        assert_eq!(output.status.code(), Some(5), "{command:?}");
+        assert!(
+            stderr(&output).contains("it holds the result of `slcbeam run`"),
+            "{}",
+            stderr(&output)
+        );
+        unchanged(&out, &before, &format!("{command:?}"));
+    }
+    assert!(into(COMMANDS[2], case, &out, &["--force"]).status.success());
+    assert!(out.join("modes.json").exists() && !out.join("summary.json").exists());
+    assert!(
+        !out.join("fields.npz").exists(),
+        "nothing of the run is left to be taken for modes"
+    );
+    // and its own again, without being told
+    assert!(into(COMMANDS[2], case, &out, &[]).status.success());
+}
+
+/// Of two runs in one folder the second is refused, and told whose it is; a lock that was left by a killed one holds nobody up.
+#[test]
+fn two_runs_do_not_mix() {
+    let folder = tempfile::tempdir().expect("a place");
+    let out = folder.path().join("one");
+    let mut first = slcbeam()
+        .args(["run", CASE, "--quiet", "--set", "/time/end_s=1000", "--out"])
+        .arg(&out)
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("it starts");
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !out.join("history.csv").exists() {
+        assert!(Instant::now() < deadline, "no history within a minute");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    for more in [&[][..], &["--force"][..], &["--resume"][..], &["--accuracy", "0.1"][..]] {
+        let second = run(&out, more);
+        let told = stderr(&second);
+        assert_eq!(second.status.code(), Some(5), "{more:?}: {told}");
+        assert!(
+            told.contains(&format!("process {} on ", first.id())),
+            "{more:?}: {told}"
+        );
+    }
+    first.kill().expect("it is killed");
+    first.wait().expect("it ends");
+    assert!(out.join(".slcbeam.lock").exists(), "a killed run leaves its file");
+    let third = run(&out, &[]);
+    assert!(third.status.success(), "{}", stderr(&third));
+    assert!(!out.join(".slcbeam.lock").exists());
+}
+
+/// `--accuracy` works inside its folder: what lies beside it is not its own.
+#[test]
+fn an_accuracy_takes_no_folder_beside() {
+    let folder = tempfile::tempdir().expect("a place");
+    let beside = folder.path().join("x.next");
+    fs::create_dir(&beside).expect("a folder");
+    fs::write(
+        beside.join("summary.json"),
+        "{\"case\": \"mine\", \"status\": \"finished\"}",
+    )
+    .expect("a file");
+    let before = contents(&beside);
+    let out = folder.path().join("x");
+    let output = run(
+        &out,
+        &["--accuracy", "0.1", "--set", "/time/checkpoint_interval_s=null"],
+    );
+    assert!(output.status.success(), "{}", stderr(&output));
+    unchanged(&beside, &before, "left alone");
+    let left: Vec<_> = contents(&out).into_iter().filter(|f| f.0.starts_with('.')).collect();
+    assert!(left.is_empty(), "{left:?}");
+}
+
+/// A run that cannot start says so in its folder; the older result is moved, whole.
+#[test]
+fn a_failed_start_is_told_in_its_folder() {
+    let folder = tempfile::tempdir().expect("a place");
+    let out = folder.path().join("x");
+    assert!(run(&out, &[]).status.success());
+    let older = contents(&out);
+    // a beam whose start cannot be made consistent: buckled far beyond what is found from rest
+    let output = run(&out, &["--set", "/solver/max_steps=1"]);
+    if output.status.code() == Some(4) && folder.path().join("x.older").exists() {
+        let aside = contents(&folder.path().join("x.older"));
+        assert!(aside == older, "all of it");
+    }
+    let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
+    assert!(summary.contains("\"failed\""), "{summary}");
+}
+
+/// A file in the way is a message, not a loss.
+#[test]
+fn a_file_in_place_of_the_folder_stays() {
+    let mut file = tempfile::NamedTempFile::new().expect("a file");
+    file.write_all(b"mine").expect("it is written");
+    let output = run(file.path(), &[]);
+    assert_eq!(output.status.code(), Some(5));
+    assert_eq!(fs::read(file.path()).expect("it is read"), b"mine");
+}

@@ -1,0 +1,132 @@
+//! The program under attack, with a short run that writes checkpoints.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+use serde_json::Value;
+
+pub const CASE: &str = "cases/wiring-2.json";
+
+/// A run of 0.05 s with four checkpoints.
+pub const SETS: [&str; 7] = [
+    "/time/checkpoint_interval_s=0.01",
+    "/time/end_s=0.05",
+    "/time/window_s=0.02",
+    "/time/output_interval_s=0.001",
+    "/solver/rtol=1e-3",
+    "/mesh/cells_per_segment=1",
+    "/mesh/cells_per_bladder=1",
+];
+
+/// `slcbeam run CASE --quiet` with the short run's changes.
+pub fn arguments() -> Vec<String> {
+    let mut all = vec!["run".to_string(), CASE.into(), "--quiet".into()];
+    for set in SETS {
+        all.extend(["--set".into(), set.into()]);
+    }
+    all
+}
+
+/// The short run into a folder.
+pub fn run(out: &Path, more: &[&str]) -> Output {
+    slcbeam()
+        .args(arguments())
+        .args(more)
+        .arg("--out")
+        .arg(out)
+        .output()
+        .expect("it starts")
+}
+
+pub fn slcbeam() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_slcbeam"))
+}
+
+/// What makes the run long enough to be killed in its middle.
+const LONG: [&str; 4] = ["--set", "/time/end_s=0.6", "--set", "/time/checkpoint_interval_s=0.05"];
+
+/// The longer run into a folder.
+pub fn run_long(out: &Path, more: &[&str]) -> Output {
+    run(out, &[&LONG, more].concat())
+}
+
+/// The longer run, killed after its second checkpoint.
+pub fn killed(out: &Path) {
+    for _ in 0..20 {
+        let _ = fs::remove_dir_all(out);
+        let mut child = slcbeam()
+            .args(arguments())
+            .args(LONG)
+            .arg("--out")
+            .arg(out)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("it starts");
+        while !out.join("checkpoint-before.json").exists() && child.try_wait().expect("its state").is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        child.kill().expect("it is killed");
+        child.wait().expect("it ends");
+        if out.join("checkpoint-before.json").exists() && out.join("checkpoint.json").exists() {
+            return;
+        }
+        // the run was faster than the kill, or struck while it changed checkpoints
+    }
+    panic!("the run is too fast to be killed");
+}
+
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Whether two results are the same, but for wall time.
+pub fn same(a: &Path, b: &Path) -> Result<(), String> {
+    for name in ["history.csv", "fields.npz", "case.json"] {
+        let read = |dir: &Path| fs::read(dir.join(name)).map_err(|e| format!("{name}: {e}"));
+        if read(a)? != read(b)? {
+            return Err(format!("{name} differs"));
+        }
+    }
+    let summary = |dir: &Path| -> Result<Value, String> {
+        let text = fs::read_to_string(dir.join("summary.json")).map_err(|e| format!("summary: {e}"))?;
+        let mut value: Value = serde_json::from_str(&text).map_err(|e| format!("summary: {e}"))?;
+        value.as_object_mut().map(|v| v.remove("wall_s"));
+        Ok(value)
+    };
+    if summary(a)? != summary(b)? {
+        return Err("summary.json differs".into());
+    }
+    Ok(())
+}
+
+/// All files of a folder with their contents, but for the lock that a killed process leaves.
+pub fn contents(dir: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut all = vec![];
+    for entry in fs::read_dir(dir)
+        .expect("a folder")
+        .map(|e| e.expect("an entry").path())
+    {
+        let name = entry.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if entry.is_dir() {
+            all.extend(contents(&entry).into_iter().map(|(n, c)| (format!("{name}/{n}"), c)));
+        } else if name != ".slcbeam.lock" {
+            all.push((name, fs::read(&entry).expect("a file")));
+        }
+    }
+    all.sort();
+    all
+}
+
+/// That a folder is as it was.
+#[track_caller]
+pub fn unchanged(dir: &Path, before: &[(String, Vec<u8>)], what: &str) {
+    let after = contents(dir);
+    let names = |all: &[(String, Vec<u8>)]| all.iter().map(|f| f.0.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&after), names(before), "{what}");
+    for (a, b) in after.iter().zip(before) {
+        assert!(a.1 == b.1, "{what}: {} has changed", a.0);
+    }
+}
