@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use slcbeam::case::{self, Case};
+use slcbeam::output::kind::Kind;
 use slcbeam::output::{FolderRecorder, Labels, ResultFolder, comparison, reading};
 use slcbeam::run::dynamics;
 use slcbeam::run::record::Control;
@@ -52,12 +53,12 @@ fn run_into(dir: &Path, text: &str, sets: &[&str]) -> compare::Recording {
         frequency_hz: None,
     };
     let mut recorder = FolderRecorder::new(
-        ResultFolder::create(dir).unwrap(),
+        ResultFolder::claim(dir, Kind::Run, false).unwrap(),
         labels,
         Box::new(|_| Control::Continue),
     );
     let outcome = dynamics::run(&case, &mut recorder).unwrap();
-    recorder.finish(&outcome.summary).unwrap();
+    recorder.finish(&outcome.summary).unwrap().close().unwrap();
     reading::read(dir).unwrap()
 }
 
