@@ -54,7 +54,9 @@ pub struct ResultFolder {
     dir: PathBuf,
     kind: Kind,
     older: Option<Kind>,
-    _lock: Lock,
+    /// Whether it was made here; it goes again if nothing comes into it.
+    made: bool,
+    lock: Option<Lock>,
 }
 
 impl ResultFolder {
@@ -65,6 +67,7 @@ impl ResultFolder {
     ///
     /// It holds something else and `force` is not given, another process writes into it, or it cannot be made.
     pub fn claim(dir: &Path, kind: Kind, force: bool) -> Result<Self> {
+        let made = !dir.exists();
         fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
         let lock = Lock::take(dir)?;
         let older = Kind::within(dir);
@@ -86,7 +89,8 @@ impl ResultFolder {
             dir: dir.to_path_buf(),
             kind,
             older,
-            _lock: lock,
+            made,
+            lock: Some(lock),
         })
     }
 
@@ -227,6 +231,16 @@ impl ResultFolder {
             fs::rename(with.join(&name), &target).map_err(|e| fault("write", &target, e))?;
         }
         self.secure()
+    }
+}
+
+impl Drop for ResultFolder {
+    fn drop(&mut self) {
+        self.lock.take();
+        if self.made {
+            // only an empty one can be removed so
+            let _ = fs::remove_dir(&self.dir);
+        }
     }
 }
 

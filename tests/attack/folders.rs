@@ -134,23 +134,6 @@ fn an_accuracy_takes_no_folder_beside() {
     assert!(left.is_empty(), "{left:?}");
 }
 
-/// A run that cannot start says so in its folder; the older result is moved, whole.
-#[test]
-fn a_failed_start_is_told_in_its_folder() {
-    let folder = tempfile::tempdir().expect("a place");
-    let out = folder.path().join("x");
-    assert!(run(&out, &[]).status.success());
-    let older = contents(&out);
-    // a beam whose start cannot be made consistent: buckled far beyond what is found from rest
-    let output = run(&out, &["--set", "/solver/max_steps=1"]);
-    if output.status.code() == Some(4) && folder.path().join("x.older").exists() {
-        let aside = contents(&folder.path().join("x.older"));
-        assert!(aside == older, "all of it");
-    }
-    let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
-    assert!(summary.contains("\"failed\""), "{summary}");
-}
-
 /// A file in the way is a message, not a loss.
 #[test]
 fn a_file_in_place_of_the_folder_stays() {
