@@ -5,5 +5,7 @@ mod finishing;
 mod flips;
 mod folders;
 mod fuzz;
+mod pipes;
+mod power;
 mod program;
 mod resuming;
