@@ -34,6 +34,8 @@ pub const TABLES: &str = "csv";
 pub const VTK: &str = "vtk";
 /// Pictures.
 pub const PICTURES: [&str; 4] = ["deflection.svg", "pressure.svg", "history.svg", "energy.svg"];
+/// How the names of folders begin in which candidates are recorded.
+const CANDIDATE: &str = ".next-";
 /// Files of a run; the summary goes first: without it the rest does not pass for a finished run.
 pub const RUN_FILES: [&str; 10] = [
     SUMMARY,
@@ -85,13 +87,37 @@ impl ResultFolder {
                 return Err(fault("use", dir, io::Error::new(io::ErrorKind::AlreadyExists, why)));
             }
         }
-        Ok(Self {
+        let folder = Self {
             dir: dir.to_path_buf(),
             kind,
             older,
             made,
             lock: Some(lock),
-        })
+        };
+        folder.sweep();
+        Ok(folder)
+    }
+
+    /// Removes what a killed process had half written here, which is hidden; what cannot be removed does no harm.
+    fn sweep(&self) {
+        let own: Vec<&str> = self.kind.files().into_iter().chain([CASE]).collect();
+        for path in fs::read_dir(&self.dir)
+            .into_iter()
+            .flatten()
+            .flatten()
+            .map(|e| e.path())
+        {
+            let name = path
+                .file_name()
+                .map(|n| n.to_string_lossy().into_owned())
+                .unwrap_or_default();
+            let half = name.strip_prefix('.').and_then(|name| name.strip_suffix(".part"));
+            if half.is_some_and(|half| own.iter().any(|own| half.starts_with(&format!("{own}.")))) {
+                let _ = fs::remove_file(&path);
+            } else if name.starts_with(CANDIDATE) && path.is_dir() {
+                let _ = fs::remove_dir_all(&path);
+            }
+        }
     }
 
     /// Takes the folder of a run that was interrupted.
@@ -214,7 +240,7 @@ impl ResultFolder {
 
     /// A folder inside this one for a result that may take its place; removed when dropped.
     pub fn candidate(&self) -> Result<tempfile::TempDir> {
-        let inside = tempfile::Builder::new().prefix(".next-").tempdir_in(&self.dir);
+        let inside = tempfile::Builder::new().prefix(CANDIDATE).tempdir_in(&self.dir);
         inside.map_err(|e| fault("create", &self.dir, e))
     }
 
@@ -332,10 +358,11 @@ fn foreign(dir: &Path, kind: Kind) -> Result<Option<String>> {
 }
 
 fn history_begins_with_time(path: &Path) -> bool {
-    let mut begin = [0; 5];
+    // one that was killed at once has nothing in it yet
+    let mut begin = vec![];
     File::open(path)
-        .and_then(|mut file| file.read_exact(&mut begin))
-        .is_ok_and(|()| begin == *b"t [s]")
+        .and_then(|file| file.take(5).read_to_end(&mut begin))
+        .is_ok_and(|_| begin.is_empty() || begin == b"t [s]")
 }
 
 /// Hidden files do not count: systems leave them everywhere.
