@@ -92,6 +92,14 @@ fn sane_scenes_are_rarely_warned_needlessly() {
     none_silent(&lines);
 }
 
+/// Of which scenes a seed is: of the sane ones with `SLCBEAM_ADVERSARY_SANE`.
+fn kind() -> Kind {
+    match std::env::var("SLCBEAM_ADVERSARY_SANE") {
+        Ok(_) => Kind::Sane,
+        Err(_) => Kind::Extreme,
+    }
+}
+
 /// Writes the scene of `SLCBEAM_ADVERSARY_SEED` as a file that `slcbeam run` takes.
 #[test]
 #[ignore = "for a seed to be looked at"]
@@ -99,9 +107,10 @@ fn write_one() {
     let Some(seed) = number("SLCBEAM_ADVERSARY_SEED") else {
         return;
     };
-    let path = format!("{}/{}.json", tally::FOLDER, tally::name(Kind::Extreme, seed));
+    let kind = kind();
+    let path = format!("{}/{}.json", tally::FOLDER, tally::name(kind, seed));
     std::fs::create_dir_all(tally::FOLDER).expect("a folder for what is found");
-    tally::write(&path, &scene::draw(seed, Kind::Extreme));
+    tally::write(&path, &scene::draw(seed, kind));
     println!("{path}");
 }
 
@@ -112,11 +121,7 @@ fn shrink_one() {
     let Some(seed) = number("SLCBEAM_ADVERSARY_SEED") else {
         return;
     };
-    let kind = if std::env::var("SLCBEAM_ADVERSARY_SANE").is_ok() {
-        Kind::Sane
-    } else {
-        Kind::Extreme
-    };
+    let kind = kind();
     let tries = number("SLCBEAM_ADVERSARY_TRIES").unwrap_or(150) as usize;
     let scene = scene::draw(seed, kind);
     let close = tally::close(kind, tally::asked(seed), true);

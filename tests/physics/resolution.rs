@@ -251,6 +251,30 @@ fn pressures_that_fall_along_a_cell_are_told() {
     }
 }
 
+/// The same of a flow that is pumped in at one end and out at the other.
+#[test]
+fn flows_through_few_bladders_are_told() {
+    let case = |bladders: &str, cells: usize| {
+        let text = format!(
+            r#"{{"name": "pumped", "preset": "matia-gat-beam", "fluid": {{"viscosity_pa_s": 0.1}},
+            "beam": {{"length_m": 0.03, "damping": {{"bending_time_s": 0.002, "axial_time_s": 0.002}}}}, "bladders": {{"per_row": 3}},
+            "network": {{"chains": [{{"bladders": {bladders}, "ends": [{{"flow_m3_s": 1e-7}}, {{"flow_m3_s": -1e-7}}]}}]}},
+            "ends": {{"root": "clamped", "tip": "free"}}, "mesh": {{"cells_per_bladder": {cells}}}, "time": {{"end_s": 2}}}}"#
+        );
+        written::<&str>(&text, &[])
+    };
+    let coarse = case("[1,2,3]", 2);
+    let found = resolution::unresolved(&coarse, &System::new(&coarse));
+    let largest = |case: &Case| run(case).summary.quantities["max_pressure_pa"].max_abs.unwrap();
+    let off = 1.0 - largest(&coarse) / largest(&case("[1,2,3]", 32));
+    println!("off by {off:.3}: {found:?}");
+    assert!(off > resolution::LIMIT && found.len() == 2, "both ends");
+    let told = found[0].left_out;
+    assert!(told > off && told < 1.3 * off, "{told} for {off}");
+    let fine = case("[1,2,3]", found[0].wanted.unwrap());
+    assert!(resolution::unresolved(&fine, &System::new(&fine)).is_empty());
+}
+
 #[test]
 fn no_shipped_case_is_warned() {
     for folder in ["cases", "cases/hard"] {

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use crate::case::schema::{BladderEnd, Case};
 use crate::case::signals::Signal;
 use crate::model::Wet;
-use crate::model::network::{Node, PressurePort};
+use crate::model::network::{Node, PressurePort, Source};
 
 /// Part of the depth that a wave gets into a bladder which half a cell of that depth leaves out; measured with 1 to 32 cells.
 const LEFT_OUT: f64 = 1.0 / 3.0;
@@ -62,20 +62,20 @@ pub fn ports(case: &Case, wet: &Wet) -> Vec<Port> {
         })
     };
     let falls = falls(end, wet);
-    let pressures = network.ports.iter().zip(falls).map(|(port, falls)| Port {
-        name: port.name.clone(),
-        depths: depths(&port.pressure),
+    let pressures = network.ports.iter().map(|port| (&port.name, &port.pressure));
+    let flows = network.sources.iter().map(|source| (&source.name, &source.flow));
+    let all = pressures.chain(flows).zip(falls);
+    all.map(|((name, signal), falls)| Port {
+        name: name.clone(),
+        depths: depths(signal),
         falls,
-    });
-    let flows = network.sources.iter().map(|source| Port {
-        name: source.name.clone(),
-        depths: depths(&source.flow),
-        falls: 0.0,
-    });
-    pressures.chain(flows).collect()
+    })
+    .collect()
 }
 
-/// Of every pressure port, the largest fall along the bladder behind it.
+/// Of every port, those of pressure first, the largest fall along the bladder behind it, over the largest pressure: from a port of
+/// pressure `|p - p'| r/R`; from one of flow that goes out at a port of pressure `q r/(q R + p')`, and `2 r/R` where it is taken out as
+/// a flow, as half of what falls between the two is above the mean at least.
 fn falls(end: f64, wet: &Wet) -> Vec<f64> {
     let network = &wet.network;
     let bladder = wet.bladder_length / network.bladder_mobility;
@@ -87,7 +87,7 @@ fn falls(end: f64, wet: &Wet) -> Vec<f64> {
         let less = Signal::Product(vec![Signal::Constant(-1.0), b.clone()]);
         Signal::Sum(vec![a.clone(), less]).largest(end).value
     };
-    let of = |(k, port): (usize, &PressurePort)| {
+    let of_pressure = |(k, port): (usize, &PressurePort)| {
         let others = network.ports.iter().enumerate().filter(|(j, _)| *j != k);
         others
             .filter(|(j, other)| ways[k][*j].is_finite() && other.pressure != port.pressure)
@@ -96,10 +96,28 @@ fn falls(end: f64, wet: &Wet) -> Vec<f64> {
             .map(|(j, other)| difference(&port.pressure, &other.pressure) / largest * bladder / ways[k][j])
             .fold(0.0, f64::max)
     };
-    network.ports.iter().enumerate().map(of).collect()
+    let ports = network.ports.len();
+    let of_flow = |(k, source): (usize, &Source)| {
+        let (ways, flow) = (&ways[ports + k], size(&source.flow));
+        let out = network.ports.iter().zip(ways);
+        let out = out.filter(|(_, way)| way.is_finite() && flow > 0.0);
+        let out = out.map(|(port, way)| flow * bladder / (flow * way + size(&port.pressure)));
+        let taken = network.sources.iter().zip(&ways[ports..]);
+        let taken = taken.filter(|(other, way)| way.is_finite() && against(&source.flow, &other.flow, end));
+        out.chain(taken.map(|(_, way)| 2.0 * bladder / way)).fold(0.0, f64::max)
+    };
+    let pressures = network.ports.iter().enumerate().map(of_pressure);
+    let flows = network.sources.iter().enumerate().map(of_flow);
+    pressures.chain(flows).collect()
 }
 
-/// Resistance of the easiest way from port to port; infinite where there is none, or none through a bladder.
+/// Whether one flow comes in while the other may go out.
+fn against(a: &Signal, b: &Signal, end: f64) -> bool {
+    let (a, b) = (a.range(0.0, end), b.range(0.0, end));
+    (a.high > 0.0 && b.low < 0.0) || (a.low < 0.0 && b.high > 0.0)
+}
+
+/// Resistance of the easiest way from port to port, those of pressure first; infinite where there is none, or none through a bladder.
 fn ways(wet: &Wet, bladder: f64) -> Vec<Vec<f64>> {
     let network = &wet.network;
     let (ports, bladders) = (network.ports.len(), network.component_of_bladder.len());
@@ -117,16 +135,19 @@ fn ways(wet: &Wet, bladder: f64) -> Vec<Vec<f64>> {
         (place(bridge.from), place(bridge.to), 1.0 / conductance)
     });
     let edges: Vec<_> = within.chain(links).chain(turbines).collect();
-    let from = |port: usize| {
+    let ends: Vec<usize> = (0..ports)
+        .chain(network.sources.iter().map(|source| place(source.into)))
+        .collect();
+    let from = |start: usize| {
         let mut far = vec![f64::INFINITY; size];
-        far[port] = 0.0;
+        far[start] = 0.0;
         let mut nearer = true;
         while nearer {
             nearer = false;
             for &(a, b, resistance) in &edges {
                 for (a, b) in [(a, b), (b, a)] {
                     // a way does not lead through another port, whose pressure is given
-                    let through = a >= ports || a == port;
+                    let through = a >= ports || a == start;
                     if through && far[a] + resistance < far[b] {
                         far[b] = far[a] + resistance;
                         nearer = true;
@@ -134,12 +155,14 @@ fn ways(wet: &Wet, bladder: f64) -> Vec<Vec<f64>> {
                 }
             }
         }
-        far.truncate(ports);
         far
     };
     let behind = |way: f64| if way >= bladder { way } else { f64::INFINITY };
-    (0..ports)
-        .map(|port| from(port).into_iter().map(behind).collect())
+    ends.iter()
+        .map(|&start| {
+            let far = from(start);
+            ends.iter().map(|&end| behind(far[end])).collect()
+        })
         .collect()
 }
 
