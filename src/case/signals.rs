@@ -43,9 +43,9 @@ pub(super) enum NamedSignal {
     /// A curve through points, constant beyond its ends.
     Table(Table),
     /// Sum of signals.
-    Sum(#[schemars(length(min = 1))] Vec<Signal>),
+    Sum(#[schemars(length(min = 1, max = 1000))] Vec<Signal>),
     /// Product of signals.
-    Product(#[schemars(length(min = 1))] Vec<Signal>),
+    Product(#[schemars(length(min = 1, max = 1000))] Vec<Signal>),
 }
 
 /// `amplitude r(min(t f/ramp_cycles, 1)) sin(2 pi f t + phase)`, `r(s) = 10 s^3 - 15 s^4 + 6 s^5`.

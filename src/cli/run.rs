@@ -53,7 +53,7 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
         super::print(&summary::to_json(&outcome.summary))?;
     } else {
         let box_text = summary_box::render(&outcome.summary, &out, terminal::colour_out(), terminal::width());
-        super::print(&box_text)?;
+        super::print_painted(&box_text)?;
     }
     page?;
     if let Some(finished) = finished {

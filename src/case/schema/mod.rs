@@ -57,6 +57,7 @@ pub struct Case {
     pub network: Option<Network>,
     /// Distributed forces and moments, body force, gravity. They add.
     #[serde(default)]
+    #[schemars(length(max = 10000))]
     pub loads: Vec<Load>,
     /// Conditions at the root (theta = 0) and the tip (theta = length).
     pub ends: Ends,
