@@ -14,7 +14,8 @@ const MOST_TERMS: usize = 4000;
 
 /// The fault of an array of which nothing is looked at, it has so many entries.
 pub(super) fn overfull(pointer: &str, count: u64, most: u64) -> Violation {
-    let fault = Violation::new(Code::Count, pointer, format!("an array of {count} entries")).allowed(format!("at most {most}"));
+    let fault =
+        Violation::new(Code::Count, pointer, format!("an array of {count} entries")).allowed(format!("at most {most}"));
     if pointer.ends_with("/sum") || pointer.ends_with("/product") {
         return fault.hint("a table says what many terms add up to");
     }

@@ -56,24 +56,20 @@ pub fn render(fault: &CaseFault, colour: bool, width: usize) -> String {
     out
 }
 
-fn one(
-    fault: &CaseFault,
-    violation: &Violation,
-    places: &mut Places,
-    paint: &Paint,
-    width: usize,
-    out: &mut String,
-) {
+fn one(fault: &CaseFault, violation: &Violation, places: &mut Places, paint: &Paint, width: usize, out: &mut String) {
     let label = format!("fault[{}]:", violation.code.id());
-    let _ = writeln!(out, "{} {}", paint.bold_red(&label), paint.bold(&visible(&violation.what)));
+    let _ = writeln!(
+        out,
+        "{} {}",
+        paint.bold_red(&label),
+        paint.bold(&visible(&violation.what))
+    );
     let text = violation.set.as_deref().unwrap_or(&fault.text);
     let span = violation.span.clone().filter(|span| span.end <= text.len());
-    let excerpt = span
-        .filter(|_| !text.is_empty())
-        .map(|span| match &violation.set {
-            Some(set) => Excerpt::cut(&mut Places::new(set), span, width),
-            None => Excerpt::cut(places, span, width),
-        });
+    let excerpt = span.filter(|_| !text.is_empty()).map(|span| match &violation.set {
+        Some(set) => Excerpt::cut(&mut Places::new(set), span, width),
+        None => Excerpt::cut(places, span, width),
+    });
     let name = match &violation.set {
         Some(_) => "--set".to_owned(),
         None => visible(&fault.path.display().to_string()).into_owned(),
@@ -119,7 +115,10 @@ fn one(
     for (label, note) in notes {
         let Some(note) = note else { continue };
         let head = format!("{:margin$} = {label}: ", "");
-        for (i, line) in wrapped(&visible(note), width.saturating_sub(head.len())).iter().enumerate() {
+        for (i, line) in wrapped(&visible(note), width.saturating_sub(head.len()))
+            .iter()
+            .enumerate()
+        {
             let start = if i == 0 { head.clone() } else { " ".repeat(head.len()) };
             let _ = writeln!(out, "{start}{line}");
         }
@@ -231,4 +230,3 @@ fn plain(c: char) -> char {
         c
     }
 }
-

@@ -20,6 +20,7 @@ pub mod progress;
 mod report;
 mod run;
 mod schema;
+mod size;
 mod study;
 pub mod summary_box;
 mod terminal;

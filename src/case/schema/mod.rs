@@ -124,10 +124,4 @@ impl Case {
         case.effects_tolerance = Some(self.effects_tolerance());
         case
     }
-
-    /// The case as JSON text with every default filled in; reads back as the same case.
-    pub fn resolved_json(&self) -> String {
-        let value = serde_json::to_value(self.resolved()).unwrap_or_default();
-        format!("{value:#}\n")
-    }
 }
