@@ -127,9 +127,12 @@ impl Faults {
 /// Faults that are told at once.
 const MOST: usize = 1000;
 
-/// Orders faults as the text does; those in `--set` arguments last.
+/// Orders faults as the text does; those in `--set` arguments behind them, and what has no place last.
 pub fn sort(faults: &mut [Violation]) {
-    faults.sort_by_key(|fault| (fault.set.is_some(), fault.span.as_ref().map_or(0, |span| span.start)));
+    faults.sort_by_key(|fault| {
+        let start = fault.span.as_ref().map_or(0, |span| span.start);
+        (fault.span.is_none(), fault.set.is_some(), start)
+    });
 }
 
 /// Whether `pointer` leads to what `ancestor` leads to, or into it.
