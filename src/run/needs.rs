@@ -15,7 +15,7 @@ const DERIVATIVE: f64 = 1e3;
 /// Time for each unknown, and for each of those pairs, until the first step is made [s].
 const SET_UP: [f64; 2] = [5e-5, 1e-5];
 
-/// Estimates of size, from sums over blocks of unknowns with constants that were measured; they hold to a factor of two or so.
+/// Estimates of size, from sums over blocks of unknowns with constants that were measured; they hold to a factor of three.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Needs {
     /// Unknowns at most: with inertia, and every bladder's cells among them.
