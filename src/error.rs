@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 mod code;
+mod visible;
 
 pub use code::Code;
+pub use visible::{is_hidden, visible};
 
 /// One fault in a case: what, where, what is allowed, what was probably meant.
 #[derive(Clone, Debug, PartialEq)]

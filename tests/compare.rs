@@ -49,7 +49,7 @@ fn run_into(dir: &Path, text: &str, sets: &[&str]) -> compare::Recording {
     let case = parsed(text, sets);
     let labels = Labels {
         case_name: case.name.clone(),
-        case_json: case.resolved_json(),
+        case: case.written(),
         frequency_hz: None,
     };
     let mut recorder = FolderRecorder::new(

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
+use slcbeam::case::Written;
 use slcbeam::output::kind::Kind;
 use slcbeam::output::recorder::Finished;
 use slcbeam::output::{FolderRecorder, Labels, ResultFolder, folder, plot, summary};
@@ -132,7 +133,10 @@ fn sample(recorder: &mut dyn Recorder, header: &Header, t: f64, scale: f64) {
 fn recorder(dir: &Path) -> FolderRecorder {
     let labels = Labels {
         case_name: "wiring-3 <&>".to_string(),
-        case_json: "{\"name\": \"wiring-3\"}\n".to_string(),
+        case: Written {
+            json: "{\"name\": \"wiring-3\"}\n".to_string(),
+            tables: vec![],
+        },
         frequency_hz: Some(FREQUENCY),
     };
     let folder = ResultFolder::claim(dir, Kind::Run, false).expect("a folder");
@@ -404,7 +408,10 @@ fn the_hook_decides_whether_to_go_on() {
     let folder = ResultFolder::claim(dir.path(), Kind::Run, false).expect("a folder");
     let labels = Labels {
         case_name: "x".into(),
-        case_json: "{}".into(),
+        case: Written {
+            json: "{}".into(),
+            tables: vec![],
+        },
         frequency_hz: None,
     };
     let stop = Control::Stop("enough".into());

@@ -18,18 +18,45 @@ enum Mark {
 #[derive(Debug, Default)]
 pub struct Faults {
     list: Vec<(Violation, Mark)>,
+    /// Those found after so many that nobody reads them: counted, not kept.
+    more: usize,
     unknown_keys: Vec<String>,
+    overfull: bool,
 }
 
 impl Faults {
     /// Adds a fault in a value.
     pub fn push(&mut self, violation: Violation) {
-        self.list.push((violation, Mark::Value));
+        self.keep(violation, Mark::Value);
+    }
+
+    fn keep(&mut self, violation: Violation, mark: Mark) {
+        if self.is_full() {
+            self.more += 1;
+        } else {
+            self.list.push((violation, mark));
+        }
+    }
+
+    /// Whether what comes now is no longer told in words.
+    pub fn is_full(&self) -> bool {
+        self.list.len() >= MOST
+    }
+
+    /// Adds the fault that an array has more entries than are looked at.
+    pub fn push_overfull(&mut self, violation: Violation) {
+        self.overfull = true;
+        self.push(violation);
+    }
+
+    /// Whether there is more in the case than is looked at.
+    pub fn is_overfull(&self) -> bool {
+        self.overfull
     }
 
     /// Adds a fault in the key of a value, or in something missing from it.
     pub fn push_at_key(&mut self, violation: Violation) {
-        self.list.push((violation, Mark::Key));
+        self.keep(violation, Mark::Key);
     }
 
     /// Adds the fault that a key is not known.
@@ -65,7 +92,7 @@ impl Faults {
 
     /// How many were found.
     pub fn count(&self) -> usize {
-        self.list.len()
+        self.list.len() + self.more
     }
 
     /// Nothing found.
@@ -80,9 +107,8 @@ impl Faults {
     }
 
     /// All faults with their places, in the order of the text; of very many the first, and how many there are besides.
-    pub fn placed(mut self, source: &Source) -> Vec<Violation> {
-        let more = self.list.len().saturating_sub(MOST);
-        self.list.truncate(MOST);
+    pub fn placed(self, source: &Source) -> Vec<Violation> {
+        let more = self.more;
         let mut placed: Vec<_> = self
             .list
             .into_iter()
@@ -101,9 +127,12 @@ impl Faults {
 /// Faults that are told at once.
 const MOST: usize = 1000;
 
-/// Orders faults as the text does; those in `--set` arguments last.
+/// Orders faults as the text does; those in `--set` arguments behind them, and what has no place last.
 pub fn sort(faults: &mut [Violation]) {
-    faults.sort_by_key(|fault| (fault.set.is_some(), fault.span.as_ref().map_or(0, |span| span.start)));
+    faults.sort_by_key(|fault| {
+        let start = fault.span.as_ref().map_or(0, |span| span.start);
+        (fault.span.is_none(), fault.set.is_some(), start)
+    });
 }
 
 /// Whether `pointer` leads to what `ancestor` leads to, or into it.

@@ -9,7 +9,7 @@ use super::faults::{Faults, Source, sort};
 use super::origins::Origins;
 use super::schema::Case;
 use super::wording::nearest;
-use super::{check, parse as json, presets, schema_json, sets, tables, validate};
+use super::{check, counts, parse as json, presets, schema_json, sets, tables, validate};
 use crate::error::{CaseFault, Code, Error, Result, Violation};
 
 /// Largest case file that is read.
@@ -143,6 +143,12 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Lo
 /// cannot be read stands aside while the others are looked at, so that one run tells all faults.
 fn build(mut value: Value, base: &Path, faults: &mut Faults, sound: bool) -> Option<Case> {
     faults.remove_unknown_keys(&mut value);
+    if !faults.is_overfull() {
+        counts::check(&value, faults);
+    }
+    if faults.is_overfull() {
+        return None;
+    }
     tables::resolve(&mut value, base, "", faults);
     match serde_json::from_value(value.clone()) {
         Ok(case) => {

@@ -8,7 +8,7 @@ use super::wording::short;
 use crate::error::{Code, Violation};
 
 /// Deepest nesting that is read; a case needs about ten.
-const DEEPEST: usize = 100;
+pub(super) const DEEPEST: usize = 100;
 /// Faults after which nothing more is collected.
 const MOST_FAULTS: usize = 100;
 

@@ -48,9 +48,9 @@ enum NamedProfile {
     /// A curve through points, constant beyond its ends.
     Table(PlaceTable),
     /// Sum of profiles.
-    Sum(#[schemars(length(min = 1))] Vec<Profile>),
+    Sum(#[schemars(length(min = 1, max = 1000))] Vec<Profile>),
     /// Product of profiles.
-    Product(#[schemars(length(min = 1))] Vec<Profile>),
+    Product(#[schemars(length(min = 1, max = 1000))] Vec<Profile>),
 }
 
 /// A wave along the beam.

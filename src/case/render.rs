@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use std::ops::Range;
 
-use crate::error::{CaseFault, Violation};
+use super::places::{Places, floor};
+use crate::error::{CaseFault, Violation, is_hidden, visible};
 
 /// Faults that are shown in full.
 const SHOWN: usize = 50;
@@ -35,8 +36,9 @@ pub fn render(fault: &CaseFault, colour: bool, width: usize) -> String {
     let paint = Paint(colour);
     let width = width.clamp(40, 400);
     let mut out = String::new();
+    let mut places = Places::new(&fault.text);
     for violation in fault.violations.iter().take(SHOWN) {
-        one(fault, violation, &paint, width, &mut out);
+        one(fault, violation, &mut places, &paint, width, &mut out);
     }
     let count = fault.violations.len();
     if count > SHOWN {
@@ -46,7 +48,7 @@ pub fn render(fault: &CaseFault, colour: bool, width: usize) -> String {
         out,
         "{count} {} in {}",
         if count == 1 { "fault" } else { "faults" },
-        fault.path.display()
+        visible(&fault.path.display().to_string())
     );
     if let Some(first) = fault.violations.first() {
         let _ = writeln!(out, "more about the first: slcbeam explain {}", first.code.id());
@@ -54,22 +56,28 @@ pub fn render(fault: &CaseFault, colour: bool, width: usize) -> String {
     out
 }
 
-fn one(fault: &CaseFault, violation: &Violation, paint: &Paint, width: usize, out: &mut String) {
+fn one(fault: &CaseFault, violation: &Violation, places: &mut Places, paint: &Paint, width: usize, out: &mut String) {
     let label = format!("fault[{}]:", violation.code.id());
-    let _ = writeln!(out, "{} {}", paint.bold_red(&label), paint.bold(&violation.what));
+    let _ = writeln!(
+        out,
+        "{} {}",
+        paint.bold_red(&label),
+        paint.bold(&visible(&violation.what))
+    );
     let text = violation.set.as_deref().unwrap_or(&fault.text);
     let span = violation.span.clone().filter(|span| span.end <= text.len());
-    let excerpt = span
-        .filter(|_| !text.is_empty())
-        .map(|span| Excerpt::cut(text, span, width));
+    let excerpt = span.filter(|_| !text.is_empty()).map(|span| match &violation.set {
+        Some(set) => Excerpt::cut(&mut Places::new(set), span, width),
+        None => Excerpt::cut(places, span, width),
+    });
     let name = match &violation.set {
         Some(_) => "--set".to_owned(),
-        None => fault.path.display().to_string(),
+        None => visible(&fault.path.display().to_string()).into_owned(),
     };
     let at = if violation.pointer.is_empty() {
         String::new()
     } else {
-        format!(" at {}", clipped(&violation.pointer, width))
+        format!(" at {}", visible(&clipped(&violation.pointer, width)))
     };
     let margin = excerpt.as_ref().map_or(1, |e| e.line.to_string().len());
     let bar = paint.blue("|");
@@ -107,7 +115,10 @@ fn one(fault: &CaseFault, violation: &Violation, paint: &Paint, width: usize, ou
     for (label, note) in notes {
         let Some(note) = note else { continue };
         let head = format!("{:margin$} = {label}: ", "");
-        for (i, line) in wrapped(note, width.saturating_sub(head.len())).iter().enumerate() {
+        for (i, line) in wrapped(&visible(note), width.saturating_sub(head.len()))
+            .iter()
+            .enumerate()
+        {
             let start = if i == 0 { head.clone() } else { " ".repeat(head.len()) };
             let _ = writeln!(out, "{start}{line}");
         }
@@ -123,16 +134,6 @@ fn clipped(pointer: &str, width: usize) -> String {
     }
     let end: String = pointer.chars().skip(count - width / 2).collect();
     format!("...{end}")
-}
-
-/// Line and column of a byte, from 1.
-pub fn line_and_column(text: &str, at: usize) -> (usize, usize) {
-    let before = &text[..floor(text, at)];
-    let line_start = before.rfind('\n').map_or(0, |i| i + 1);
-    (
-        1 + before.bytes().filter(|b| *b == b'\n').count(),
-        1 + before[line_start..].chars().count(),
-    )
 }
 
 /// Words in lines of at most `width` characters.
@@ -164,9 +165,10 @@ struct Excerpt {
 
 impl Excerpt {
     /// The line around `span`, cut to the width with `...` where it goes on.
-    fn cut(text: &str, span: Range<usize>, width: usize) -> Self {
+    fn cut(places: &mut Places, span: Range<usize>, width: usize) -> Self {
+        let text = places.text();
         let start = floor(text, span.start);
-        let (line, column) = line_and_column(text, start);
+        let (line, column) = places.of(start);
         let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
         let room = width.saturating_sub(line.to_string().len() + 3);
         // Never look further than the eye can see: a line may have megabytes.
@@ -218,22 +220,13 @@ impl Excerpt {
     }
 }
 
-/// Tabs and control characters take one column.
+/// Tabs, control characters and marks that turn the direction of writing take one column.
 fn plain(c: char) -> char {
     if c == '\t' {
         ' '
-    } else if c.is_control() {
+    } else if is_hidden(c) {
         '\u{fffd}'
     } else {
         c
     }
-}
-
-/// The character boundary at or before a byte.
-fn floor(text: &str, mut at: usize) -> usize {
-    at = at.min(text.len());
-    while !text.is_char_boundary(at) {
-        at -= 1;
-    }
-    at
 }

@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::faults::SetValue;
 use super::locate::{child, tokens};
-use super::parse::parse;
+use super::parse::{DEEPEST, parse};
 use super::wording::short;
 use crate::error::{Error, Result};
 
@@ -25,6 +25,9 @@ fn apply_one(value: &mut Value, argument: &str) -> Result<SetValue> {
             "a JSON pointer starts with `/`: /{}",
             pointer.replace('.', "/")
         )));
+    }
+    if pointer.matches('/').count() > DEEPEST {
+        return Err(usage(format!("a pointer of more than {DEEPEST} parts")));
     }
     let (node, faults) = parse(json);
     let node = match (node, faults.first()) {

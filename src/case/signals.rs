@@ -43,9 +43,9 @@ pub(super) enum NamedSignal {
     /// A curve through points, constant beyond its ends.
     Table(Table),
     /// Sum of signals.
-    Sum(#[schemars(length(min = 1))] Vec<Signal>),
+    Sum(#[schemars(length(min = 1, max = 1000))] Vec<Signal>),
     /// Product of signals.
-    Product(#[schemars(length(min = 1))] Vec<Signal>),
+    Product(#[schemars(length(min = 1, max = 1000))] Vec<Signal>),
 }
 
 /// `amplitude r(min(t f/ramp_cycles, 1)) sin(2 pi f t + phase)`, `r(s) = 10 s^3 - 15 s^4 + 6 s^5`.
@@ -152,6 +152,9 @@ pub(super) struct TableText {
     /// Heading of the column with the values; absent: the second column.
     #[serde(default, skip_serializing)]
     value_column: Option<String>,
+    /// Checksum of the points that the file holds, as the program writes it; a file with other points is refused.
+    #[serde(default, skip_serializing)]
+    checksum: Option<String>,
     /// What happens in between; a cubic curve is smooth and swings beyond the values of points that jump.
     #[serde(default)]
     interpolation: Interpolation,
@@ -161,8 +164,8 @@ impl TryFrom<TableText> for Table {
     type Error = &'static str;
     fn try_from(text: TableText) -> Result<Self, Self::Error> {
         // Files are read with the case, see `tables`.
-        match (text.csv, text.time_column, text.value_column) {
-            (None, None, None) => Ok(Self::new(text.times_s, text.values, text.interpolation)),
+        match (text.csv, text.time_column, text.value_column, text.checksum) {
+            (None, None, None, None) => Ok(Self::new(text.times_s, text.values, text.interpolation)),
             _ => Err("a table whose CSV file has not been read"),
         }
     }
@@ -182,6 +185,7 @@ impl From<Table> for TableText {
             csv: None,
             time_column: None,
             value_column: None,
+            checksum: None,
             interpolation,
         }
     }

@@ -1,4 +1,4 @@
-//! Tables from CSV files, read when the case is read, so that the resolved case stands alone.
+//! Tables from CSV files, read when the case is read.
 
 use std::path::Path;
 
@@ -7,10 +7,14 @@ use serde_json::{Map, Value};
 use super::faults::Faults;
 use super::locate::child;
 use super::wording::nearest;
+use super::written::checksum;
 use crate::error::{Code, Violation};
 
 /// Largest file of a table that is read.
 const LARGEST: u64 = 64 << 20;
+
+/// The same of a file that the program wrote: the same numbers may be longer there.
+const LARGEST_WRITTEN: u64 = 4 * LARGEST;
 
 /// Replaces `csv` and its columns by `times_s` and `values` in every table below `value`.
 pub fn resolve(value: &mut Value, base: &Path, pointer: &str, faults: &mut Faults) {
@@ -38,7 +42,7 @@ pub fn resolve(value: &mut Value, base: &Path, pointer: &str, faults: &mut Fault
 }
 
 fn has_csv_keys(table: &Map<String, Value>) -> bool {
-    ["csv", "time_column", "value_column"]
+    ["csv", "time_column", "value_column", "checksum"]
         .iter()
         .any(|key| table.contains_key(*key))
 }
@@ -51,7 +55,7 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
     let text = |key: &str| table.get(key).and_then(Value::as_str).map(str::to_owned);
     let Some(name) = text("csv") else {
         return Err(Box::new(
-            Violation::new(Code::Table, pointer, "a column is named but no file").hint("add \"csv\""),
+            Violation::new(Code::Table, pointer, "a column or checksum is given but no file").hint("add \"csv\""),
         ));
     };
     if table.contains_key("times_s") || table.contains_key("values") {
@@ -59,11 +63,13 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         return Err(Box::new(fault.hint("keep \"times_s\" and \"values\", or \"csv\"")));
     }
     let there = std::fs::metadata(base.join(&name)).ok();
-    if let Some(there) = there.filter(|there| !there.is_file() || there.len() > LARGEST) {
+    let wanted = text("checksum");
+    let largest = if wanted.is_some() { LARGEST_WRITTEN } else { LARGEST };
+    if let Some(there) = there.filter(|there| !there.is_file() || there.len() > largest) {
         let why = if there.is_file() {
-            "larger than 64 MB"
+            format!("larger than {} MB", largest >> 20)
         } else {
-            "no file with an end"
+            "no file with an end".into()
         };
         return Err(at("csv", format!("{} is {why}", base.join(&name).display())));
     }
@@ -97,7 +103,7 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         })
     };
     let columns = [column("time_column", 0)?, column("value_column", 1)?];
-    let (mut times, mut values) = (vec![], vec![]);
+    let (mut times, mut values): (Vec<f64>, Vec<f64>) = (vec![], vec![]);
     for record in reader.records() {
         let record = record.map_err(|e| at("csv", format!("cannot read {name}: {e}")))?;
         let line = record.position().map_or(0, csv::Position::line);
@@ -105,10 +111,20 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
             let cell = record.get(*column).unwrap_or("");
             let number = cell.parse::<f64>().ok().filter(|n| n.is_finite());
             let number = number.ok_or_else(|| at("csv", format!("{name}, line {line}: \"{cell}\" is not a number")))?;
-            out.push(Value::from(number));
+            out.push(number);
         }
     }
-    for key in ["csv", "time_column", "value_column"] {
+    if let Some(wanted) = wanted {
+        let found = checksum(&times, &values);
+        if found != wanted {
+            let what = format!("{name} holds other points: their checksum is {found}, not {wanted}");
+            let fault = Violation::new(Code::Table, child(pointer, "checksum"), what);
+            return Err(Box::new(
+                fault.hint("if the points are as they should be, leave \"checksum\" out"),
+            ));
+        }
+    }
+    for key in ["csv", "time_column", "value_column", "checksum"] {
         table.shift_remove(key);
     }
     table.insert("times_s".to_owned(), times.into());

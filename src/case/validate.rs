@@ -6,6 +6,7 @@
 
 use serde_json::{Map, Value};
 
+use super::counts;
 use super::faults::Faults;
 use super::locate::child;
 use super::numbers;
@@ -199,6 +200,10 @@ impl<'a> Walk<'a> {
             child(pointer, key),
             format!("unknown key \"{}\"", short(key)),
         );
+        if self.faults.is_full() {
+            self.faults.push_unknown_key(fault);
+            return nearest;
+        }
         let names: Vec<&str> = properties.keys().map(String::as_str).collect();
         let allowed = if names.is_empty() {
             "no keys at all".to_owned()
@@ -213,13 +218,17 @@ impl<'a> Walk<'a> {
     }
 
     fn array(&mut self, items: &[Value], schema: &'a Value, pointer: &str) {
+        let bound = |key| schema.get(key).and_then(Value::as_u64);
+        let count = items.len() as u64;
+        if let Some(max) = bound("maxItems").filter(|max| count > *max && *max >= counts::MANY) {
+            self.faults.push_overfull(counts::overfull(pointer, count, max));
+            return;
+        }
         if let Some(inner) = schema.get("items") {
             for (i, item) in items.iter().enumerate() {
                 self.check(item, inner, &child(pointer, i));
             }
         }
-        let bound = |key| schema.get(key).and_then(Value::as_u64);
-        let count = items.len() as u64;
         let allowed = match (bound("minItems"), bound("maxItems")) {
             (Some(min), Some(max)) if min == max && count != min => format!("exactly {min}"),
             (Some(min), _) if count < min => format!("at least {min}"),

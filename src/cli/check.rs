@@ -1,21 +1,24 @@
 //! `slcbeam check`: what a case is, before anything is run.
 
 use std::fmt::Write as _;
+use std::path::Path;
 use std::process::ExitCode;
 
 use serde_json::json;
 
 use super::arguments::CheckArguments;
-use crate::case;
+use super::size;
 use crate::discrete::System;
 use crate::error::Result;
 use crate::model::{audit, characteristic};
-use crate::output::numbers::significant;
+use crate::output::machine;
+use crate::output::numbers::{duration, significant};
+use crate::run::needs::Needs;
 use crate::run::{known, method};
 
 /// Prints characteristic numbers, coupling audit, chosen effects and warnings.
 pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
-    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let loaded = size::load(&asked.case)?;
     let case = &loaded.case;
     let system = System::new(case);
     super::refuse(&loaded, &system)?;
@@ -24,6 +27,9 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     let warnings = known::warnings(case, &system);
     let chosen = method::choose(case, &system);
     let (order, why) = (chosen.order.order, &chosen.order.reason);
+    let needs = Needs::of(case, 0);
+    let disk = size::disk(case, &system, 0).all();
+    let free = machine::free(Path::new("."));
     if asked.json {
         let audit: Vec<_> = findings
             .iter()
@@ -44,6 +50,10 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         let all = json!({
             "case": case.name, "unknowns": system.layout.len, "characteristic": numbers, "audit": audit,
             "effects": effects, "method": {"value": chosen.name(), "reason": chosen.reason},
+            "needs": {
+                "memory_bytes": needs.memory, "memory_available_bytes": machine::memory(),
+                "disk_bytes": disk, "disk_free_bytes": free, "set_up_s": needs.set_up_s,
+            },
             "max_order": {"value": order, "reason": why}, "origins": case.origins.words(), "warnings": warnings,
         });
         super::print(&format!("{all:#}\n"))?;
@@ -90,6 +100,18 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         system.layout.len,
         chosen.name(),
         chosen.reason
+    );
+    let _ = writeln!(
+        text,
+        "a run needs about {} of memory, {} to set up, {} of disk{}",
+        size::bytes(needs.memory),
+        duration(needs.set_up_s),
+        size::bytes(disk),
+        free.filter(|free| disk > *free)
+            .map_or_else(String::new, |free| format!(
+                ", more than the {} that are free here",
+                size::bytes(free)
+            ))
     );
     if !warnings.is_empty() {
         text += "\nwarnings\n";

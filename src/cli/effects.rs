@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::arguments::EffectsArguments;
-use super::terminal;
+use super::{size, terminal};
 use crate::case::schema::Effects;
 use crate::case::{self, LoadedCase};
 use crate::discrete::System;
@@ -20,7 +20,7 @@ use crate::study::effects::{Ablation, Event, Plan, ablate};
 
 /// Runs the models, writes the folder, prints the table and the recommendation, writes that into the case when asked.
 pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
-    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let loaded = size::load(&asked.case)?;
     super::refuse(&loaded, &System::new(&loaded.case))?;
     let mut full = loaded.clone();
     full.case.effects = Effects::Full;

@@ -4,9 +4,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use super::arguments::EquilibriumArguments;
-use super::{interrupt, line, terminal};
+use super::{interrupt, line, size, terminal};
+use crate::case::Case;
 use crate::case::parameter::Parameter;
-use crate::case::{self, Case};
 use crate::error::{Error, Result};
 use crate::output::equilibrium as files;
 use crate::output::kind::Kind;
@@ -18,7 +18,7 @@ use crate::study::refine::{self, meshes::Meshes};
 
 /// Follows the path, writes the folder, prints the table.
 pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
-    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let loaded = size::load(&asked.case)?;
     let case = &loaded.case;
     let at_s = asked.at.unwrap_or(case.time.end_s);
     let system = equilibrium::system(case, at_s);

@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use super::arguments::FloquetArguments;
-use super::line;
-use crate::case::{self, Case, LoadedCase};
+use super::{line, size};
+use crate::case::{Case, LoadedCase};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::floquet as files;
@@ -22,7 +22,7 @@ const MOST_POINTS: usize = 100_000;
 
 /// Finds cycle and multipliers, or the map; writes the folder, prints the words.
 pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
-    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let loaded = size::load(&asked.case)?;
     super::refuse(&loaded, &System::with(&loaded.case, whole(&loaded.case)))?;
     match &asked.map.map {
         Some(parameters) => map(asked, &loaded, parameters),

@@ -5,14 +5,14 @@ use std::process::ExitCode;
 use serde_json::{Value, json};
 
 use super::arguments::{MappingArguments, Table};
-use crate::case;
+use super::size;
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::run::observe::network_coordinate;
 
 /// Prints one or both tables as CSV, six significant digits.
 pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
-    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let loaded = size::load(&asked.case)?;
     let model = Model::new(&loaded.case);
     let Some(wet) = &model.wet else {
         return Err(Error::Usage("the case has no bladders: there is nothing to map".into()));

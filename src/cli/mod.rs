@@ -20,6 +20,7 @@ pub mod progress;
 mod report;
 mod run;
 mod schema;
+mod size;
 mod study;
 pub mod summary_box;
 mod terminal;
@@ -31,7 +32,7 @@ use clap::Parser;
 
 use crate::case::LoadedCase;
 use crate::discrete::System;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, visible};
 use crate::model::audit;
 use crate::run::order;
 use arguments::{Arguments, Command};
@@ -42,9 +43,16 @@ pub fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(answer) => {
             // Help and version are answers, everything else is a usage error; clap prints both.
-            let code = if answer.use_stderr() { 2 } else { 0 };
-            let _ = answer.print();
-            return ExitCode::from(code);
+            terminal::answer(&answer);
+            if !answer.use_stderr() {
+                return ExitCode::SUCCESS;
+            }
+            if std::env::args_os().skip(1).any(|argument| argument == "--json") {
+                let words = answer.render().to_string();
+                let error = Error::Usage(words.trim().trim_start_matches("error: ").to_owned());
+                let _ = print(&format!("{:#}\n", terminal::json(&error)));
+            }
+            return ExitCode::from(2);
         }
     };
     match act(&arguments.command) {
@@ -92,8 +100,13 @@ fn refuse(loaded: &LoadedCase, system: &System) -> Result<()> {
     Err(loaded.fault(violations.into_iter().map(|v| loaded.violation(v)).collect()))
 }
 
-/// Writes to standard output; a closed pipe ends the output, not the program.
+/// Writes to standard output, with what a terminal would obey written out; a closed pipe ends the output, not the program.
 fn print(text: &str) -> Result<()> {
+    print_painted(&visible(text))
+}
+
+/// The same for text with the program's own colours, in which all that is not the program's is visible already.
+fn print_painted(text: &str) -> Result<()> {
     use std::io::Write as _;
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

@@ -3,9 +3,9 @@
 use std::process::ExitCode;
 
 use super::arguments::{FloquetArguments, ModesArguments};
-use super::{line, terminal};
+use super::{line, size, terminal};
+use crate::case::Case;
 use crate::case::parameter::Parameter;
-use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::kind::Kind;
@@ -30,7 +30,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         });
     }
     let plan = plan(asked)?;
-    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let loaded = size::load(&asked.case)?;
     super::refuse(&loaded, &System::new(&loaded.case))?;
     let mut folder = asked.place.claim(&loaded, Kind::Modes)?;
     if !asked.quiet {

@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use super::arguments::PeriodicArguments;
-use super::{line, terminal};
-use crate::case::{self, Case, LoadedCase};
+use super::{line, size, terminal};
+use crate::case::{Case, LoadedCase};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::floquet as stability;
@@ -36,7 +36,7 @@ pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
 
 fn load(asked: &PeriodicArguments, more: Option<String>) -> Result<LoadedCase> {
     let sets: Vec<String> = asked.case.sets.iter().cloned().chain(more).collect();
-    let loaded = case::load(&asked.case.case, &sets)?;
+    let loaded = size::load_with(&asked.case.case, &sets, 0)?;
     super::refuse(&loaded, &System::with(&loaded.case, whole(&loaded.case)))?;
     Ok(loaded)
 }
@@ -62,7 +62,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let found = floquet::multipliers(&scene, &mut cycle, COUNT);
     let labels = Labels {
         case_name: case.name.clone(),
-        case_json: case.resolved_json(),
+        case: case.written(),
         frequency_hz: Some(1.0 / scene.drive.period),
     };
     let mut recorder = FolderRecorder::new(result, labels, Box::new(|_| Control::Continue));

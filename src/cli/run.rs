@@ -11,9 +11,9 @@ use serde_json::Value;
 
 use super::arguments::RunArguments;
 use super::progress::Watcher;
-use super::{interrupt, line, summary_box, terminal};
+use super::{interrupt, line, size, summary_box, terminal};
+use crate::case::Case;
 use crate::case::parameter::Parameter;
-use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::model::characteristic;
@@ -34,11 +34,16 @@ const DIFFERENCES: usize = 4;
 
 /// Runs a case into a result folder.
 pub fn run(asked: &RunArguments) -> Result<ExitCode> {
-    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let loaded = size::load_with(&asked.case.case, &asked.case.sets, asked.sensitivities.len())?;
     let case = &loaded.case;
-    super::refuse(&loaded, &System::new(case))?;
+    let system = System::new(case);
+    super::refuse(&loaded, &system)?;
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let out = asked.place.folder(&case.name, Kind::Run);
+    if !asked.resume {
+        size::run_fits(&loaded, &system, asked.sensitivities.len(), &out)?;
+    }
+    drop(system);
     let hook = hook(asked);
     let Recorded {
         outcome,
@@ -57,7 +62,7 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
         super::print(&summary::to_json(&outcome.summary))?;
     } else {
         let box_text = summary_box::render(&outcome.summary, &out, terminal::colour_out(), terminal::width());
-        super::print(&box_text)?;
+        super::print_painted(&box_text)?;
     }
     page?;
     if let Some(aside) = aside {
@@ -97,7 +102,7 @@ fn hook(asked: &RunArguments) -> SharedHook {
 fn labels(case: &Case) -> Labels {
     Labels {
         case_name: case.name.clone(),
-        case_json: case.resolved_json(),
+        case: case.written(),
         frequency_hz: characteristic::forcing_period(case).map(|p| 1.0 / p),
     }
 }

@@ -8,8 +8,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::arguments::StudyArguments;
-use super::terminal;
-use crate::case;
+use super::{size, terminal};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::kind::Kind;
@@ -21,7 +20,7 @@ use crate::study::accuracy::{Budget, Event, Plan, Scheme, study as run_study};
 
 /// Runs the settings, writes the folder, prints the table and the sentence.
 pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
-    let loaded = case::load(&asked.case.case, &asked.case.sets)?;
+    let loaded = size::load(&asked.case)?;
     let case = &loaded.case;
     super::refuse(&loaded, &System::new(case))?;
     let plan = Plan {

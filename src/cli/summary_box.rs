@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::error::visible;
 use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
 use crate::run::sensitivity::figures::Sensitivity;
 use crate::run::summary::{Quantity, Status, Summary};
@@ -53,13 +54,13 @@ pub fn render(summary: &Summary, dir: &Path, colour: bool, width: usize) -> Stri
         Status::Failed => ("FAILED", Tone::Bad),
     };
     let room = width - status.chars().count() - 9;
-    let case: String = summary.case.chars().take(room).collect();
+    let case: String = visible(&summary.case).chars().take(room).collect();
     let rule = "─".repeat(width - case.chars().count() - status.chars().count() - 8);
     let mut out = format!("╭─ {case} {rule} {} ─╮\n", tone.paint(status, colour));
     for row in rows(summary, tone) {
         push_row(&mut out, &row, width, colour);
     }
-    let files = format!("report.html and data in {}", dir.display());
+    let files = visible(&format!("report.html and data in {}", dir.display())).into_owned();
     let length = files.chars().count();
     if length + 6 <= width {
         out.push_str(&format!("╰─ {files} {}╯\n", "─".repeat(width - length - 5)));
@@ -74,6 +75,7 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     let mut rows = Vec::new();
     let mut add = |name, text: Option<String>, tone| {
         if let Some(text) = text.filter(|t| !t.is_empty()) {
+            let text = visible(&text).into_owned();
             rows.push(Row { name, text, tone });
         }
     };

@@ -4,8 +4,8 @@ use std::io::{IsTerminal as _, Write as _};
 
 use serde_json::{Value, json};
 
-use crate::case;
-use crate::error::{CaseFault, Code, Error, SolverFault, Violation};
+use crate::case::{self, Places};
+use crate::error::{Code, Error, SolverFault, Violation, visible};
 
 /// Whether standard output wants colour: a terminal, and `NO_COLOR` not set.
 pub fn colour_out() -> bool {
@@ -24,8 +24,13 @@ pub fn width() -> usize {
         .unwrap_or(100)
 }
 
-/// Writes a line to standard error; where nobody takes it, the work goes on.
+/// Writes a line to standard error, with what a terminal would obey written out; where nobody takes it, the work goes on.
 pub fn tell(line: &str) {
+    tell_painted(&visible(line));
+}
+
+/// The same for text with the program's own colours, in which all that is not the program's is visible already.
+fn tell_painted(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
@@ -33,7 +38,7 @@ pub fn tell(line: &str) {
 pub fn report(error: &Error) {
     let colour = std::io::stderr().is_terminal() && wants_colour();
     match error {
-        Error::Case(fault) => tell(case::render(fault, colour, width()).trim_end_matches('\n')),
+        Error::Case(fault) => tell_painted(case::render(fault, colour, width()).trim_end_matches('\n')),
         Error::Solver(fault) => tell(&diagnosis(fault)),
         other => tell(&format!("slcbeam: {other} (slcbeam explain {})", other.code().id())),
     }
@@ -46,7 +51,8 @@ pub fn json(error: &Error) -> Value {
         Error::Case(fault) => {
             told["status"] = "invalid".into();
             told["file"] = fault.path.display().to_string().into();
-            told["faults"] = fault.violations.iter().map(|v| violation(fault, v)).collect();
+            let mut places = Places::new(&fault.text);
+            told["faults"] = fault.violations.iter().map(|v| violation(&mut places, v)).collect();
         }
         Error::Solver(fault) => {
             told["time_s"] = fault.time_s.into();
@@ -59,17 +65,26 @@ pub fn json(error: &Error) -> Value {
     told
 }
 
-fn violation(fault: &CaseFault, violation: &Violation) -> Value {
-    let text = violation.set.as_deref().unwrap_or(&fault.text);
-    let place = violation
-        .span
-        .as_ref()
-        .map(|span| case::line_and_column(text, span.start));
+fn violation(places: &mut Places, violation: &Violation) -> Value {
+    let place = violation.span.as_ref().map(|span| match &violation.set {
+        Some(set) => Places::new(set).of(span.start),
+        None => places.of(span.start),
+    });
     json!({
         "code": violation.code.id(), "what": violation.what, "pointer": violation.pointer, "set": violation.set,
         "line": place.map(|p| p.0), "column": place.map(|p| p.1),
         "allowed": violation.allowed, "nearest": violation.nearest, "hint": violation.hint
     })
+}
+
+/// Prints what the command line's reader has to say: help as it is, the user's own words made visible.
+pub fn answer(answer: &clap::Error) {
+    let text = answer.render().to_string();
+    if *visible(&text) == text {
+        let _ = answer.print();
+    } else {
+        tell(text.trim_end());
+    }
 }
 
 /// A failed run in words.

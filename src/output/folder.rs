@@ -1,5 +1,6 @@
 //! The result folder: one writer at a time, no file half written, nothing of others taken.
 
+mod cased;
 mod lock;
 
 use std::fs::{self, File};
@@ -7,6 +8,7 @@ use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::kind::Kind;
+use crate::case::Written;
 use crate::error::{Error, Result};
 use lock::Lock;
 
@@ -175,6 +177,14 @@ impl ResultFolder {
         written
     }
 
+    /// Writes all files of a result that has no run with its case, as [`ResultFolder::fill`].
+    pub fn fill_with<T: AsRef<[u8]>>(&mut self, case: &Written, files: Vec<(&str, T)>) -> Result<Vec<PathBuf>> {
+        self.write_tables(case)?;
+        let written = self.fill(files)?;
+        self.remove_other_tables(case)?;
+        Ok(written)
+    }
+
     /// Brings the names of files to the disk itself.
     pub fn secure(&self) -> Result<()> {
         let sync = || File::open(&self.dir)?.sync_all();
@@ -229,9 +239,9 @@ impl ResultFolder {
         fs::create_dir_all(&aside).map_err(|e| fault("create", &aside, e))?;
         let names = [RAW_FIELDS, TABLES, VTK, CASE, REPORT];
         // the sign last, so that what was cut short does not pass for a result
-        for name in names.into_iter().chain(older.files().into_iter().rev()) {
-            let from = self.path(name);
-            if from.exists() {
+        let all = names.into_iter().chain(older.files().into_iter().rev());
+        for from in self.tables()?.into_iter().chain(all.map(|name| self.path(name))) {
+            if let Some(name) = from.file_name().filter(|_| from.exists()) {
                 fs::rename(&from, aside.join(name)).map_err(|e| fault("move", &from, e))?;
             }
         }

@@ -5,13 +5,12 @@ use std::path::PathBuf;
 use super::arrays::ArraysWriter;
 use super::checkpoint::{self, Saved};
 use super::envelope::Envelope;
-use super::folder::{
-    CASE, CHECKPOINT, CHECKPOINT_BEFORE, FIELDS, HISTORY, RAW_FIELDS, ResultFolder, SENSITIVITIES, SUMMARY,
-};
+use super::folder::{CHECKPOINT, CHECKPOINT_BEFORE, FIELDS, HISTORY, RAW_FIELDS, ResultFolder, SENSITIVITIES, SUMMARY};
 use super::history::HistoryWriter;
 use super::pictures::{self, STRETCHES};
 use super::stream::Stream;
 use super::summary;
+use crate::case::Written;
 use crate::error::Result;
 use crate::run::checkpoint::Checkpoint;
 use crate::run::record::{Control, Header, Progress, Recorder};
@@ -25,8 +24,8 @@ pub type Hook = Box<dyn FnMut(&Progress) -> Control>;
 pub struct Labels {
     /// Name of the case, for the pictures.
     pub case_name: String,
-    /// The case as resolved, the text of `case.json`.
-    pub case_json: String,
+    /// The case as resolved.
+    pub case: Written,
     /// Frequency of the drive [Hz]: pictures over space then show its last cycle.
     pub frequency_hz: Option<f64>,
 }
@@ -89,9 +88,9 @@ impl FolderRecorder {
         let derivatives = self.sensitivities.take();
         let derived = derivatives.map_or(Ok(()), |mut rows| rows.secure().map(|_| ()));
         // The summary matters most: it is tried whatever could not be written before.
-        let cased = self.folder.write(CASE, self.labels.case_json.as_bytes());
+        let cased = self.folder.write_case(&self.labels.case);
         let told = summary::write(&self.folder, summary);
-        completed.and(derived).and(cased.map(|_| ())).and(told.map(|_| ()))?;
+        completed.and(derived).and(cased).and(told.map(|_| ()))?;
         self.folder.secure()?;
         for (name, text) in drawn {
             self.folder.write(name, text.as_bytes())?;
@@ -153,7 +152,7 @@ impl Recorder for FolderRecorder {
         self.folder.clear()?;
         let history = HistoryWriter::create(&self.folder.path(HISTORY), &header.columns)?;
         let arrays = ArraysWriter::create(&self.folder.path(RAW_FIELDS), header)?;
-        self.folder.write(CASE, self.labels.case_json.as_bytes())?;
+        self.folder.write_case(&self.labels.case)?;
         if !header.sensitivities.is_empty() {
             let path = self.folder.path(SENSITIVITIES);
             self.sensitivities = Some(HistoryWriter::with_names(&path, header.sensitivities.clone())?);

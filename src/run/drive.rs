@@ -49,8 +49,8 @@ pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
             Some(period) if period.is_finite() && period > 0.0 => Ok(Drive { period, driven: false }),
             Some(period) => Err(Error::Usage(format!("--period {period}: a time > 0, in seconds"))),
             None => Err(Error::Usage(format!(
-                "nothing drives {name} periodically: give an end, a load, a valve or a port a sine, or name a period with \
-                 --period SECONDS"
+                "nothing drives {name} periodically: give an end, a load, a valve or a port a sine; or let `slcbeam floquet` \
+                 look at it as it is, over --period SECONDS"
             ))),
         };
     }

@@ -171,13 +171,19 @@ impl Figures {
         worth
     }
 
+    /// Whether the motion has come to the window: before, there is nothing to tell of it.
+    fn in_window(&self) -> bool {
+        self.window_time > 0.0 || self.input.window_start.is_some()
+    }
+
     /// The quantities by name.
     pub fn quantities(&self) -> BTreeMap<String, Quantity> {
         let mut all = BTreeMap::new();
+        let reached = self.in_window();
         let size = |t: &Track| Quantity {
             last: Some(t.last),
             max_abs: Some(t.max_abs),
-            window_max_abs: Some(t.window_max_abs),
+            window_max_abs: reached.then_some(t.window_max_abs),
             window_rms: (self.window_time > 0.0).then(|| (t.window_squares / self.window_time).sqrt()),
             ..Quantity::default()
         };
@@ -189,7 +195,7 @@ impl Figures {
         }
         let energy = |t: &Track| Quantity {
             last: Some(t.last),
-            window: Some(t.increment()),
+            window: reached.then(|| t.increment()),
             ..Quantity::default()
         };
         all.insert("input_energy_j".into(), energy(&self.input));
@@ -200,7 +206,7 @@ impl Figures {
                 "efficiency".into(),
                 Quantity {
                     last: ratio(h.last, self.input.last),
-                    window: ratio(h.increment(), self.input.increment()),
+                    window: ratio(h.increment(), self.input.increment()).filter(|_| reached),
                     ..Quantity::default()
                 },
             );

@@ -16,6 +16,7 @@ pub mod known;
 pub mod krylov;
 pub mod method;
 pub mod modes;
+pub mod needs;
 pub mod observe;
 pub mod order;
 pub mod periodic;

@@ -5,6 +5,7 @@ mod finishing;
 mod flips;
 mod folders;
 mod fuzz;
+mod inputs;
 mod pipes;
 mod power;
 mod program;

@@ -57,6 +57,7 @@ pub struct Case {
     pub network: Option<Network>,
     /// Distributed forces and moments, body force, gravity. They add.
     #[serde(default)]
+    #[schemars(length(max = 10000))]
     pub loads: Vec<Load>,
     /// Conditions at the root (theta = 0) and the tip (theta = length).
     pub ends: Ends,
@@ -122,11 +123,5 @@ impl Case {
         case.mesh.segments = Some(self.segments());
         case.effects_tolerance = Some(self.effects_tolerance());
         case
-    }
-
-    /// The case as JSON text with every default filled in; reads back as the same case.
-    pub fn resolved_json(&self) -> String {
-        let value = serde_json::to_value(self.resolved()).unwrap_or_default();
-        format!("{value:#}\n")
     }
 }

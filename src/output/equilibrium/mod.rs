@@ -104,14 +104,15 @@ fn key(column: &Column) -> String {
 
 /// Writes the files into a folder; others in it stay.
 pub fn write(folder: &mut ResultFolder, found: &Found) -> Result<Vec<PathBuf>> {
+    let case = found.case.written();
     let mut files = vec![
         (CSV, table(found)),
         (SHAPES, shapes(found)),
         (JSON, json(found)),
-        (CASE, found.case.resolved_json()),
+        (CASE, case.json.clone()),
     ];
     files.extend(loadpath::draw(&drawn(found)).map(|text| (PICTURE, text)));
-    folder.fill(files)
+    folder.fill_with(&case, files)
 }
 
 /// One row a state.

@@ -74,7 +74,7 @@ pub fn write(dir: &Path, out: Option<&Path>) -> Result<Written> {
 
 /// Completes a folder that a command has filled: the case as resolved beside its files, and the page.
 pub fn complete(folder: &ResultFolder, case: &Case) -> Result<Written> {
-    folder.write(CASE, case.resolved_json().as_bytes())?;
+    folder.write_case(&case.written())?;
     write(folder.dir(), None)
 }
 

@@ -82,7 +82,7 @@ impl Track {
     fn energy(&self) -> Quantity {
         Quantity {
             last: Some(self.last[1]),
-            window: Some(self.increment()[1]),
+            window: self.first.map(|_| self.increment()[1]),
             ..Quantity::default()
         }
     }

@@ -1,0 +1,82 @@
+//! Lines and columns of bytes.
+
+/// Tells lines and columns of a text; bytes in ascending order take one walk through it, however many they are.
+#[derive(Clone, Debug)]
+pub struct Places<'t> {
+    text: &'t str,
+    at: usize,
+    line: usize,
+    column: usize,
+}
+
+impl<'t> Places<'t> {
+    /// At the begin of a text.
+    pub fn new(text: &'t str) -> Self {
+        Self {
+            text,
+            at: 0,
+            line: 1,
+            column: 1,
+        }
+    }
+
+    /// The text.
+    pub(super) fn text(&self) -> &'t str {
+        self.text
+    }
+
+    /// Line and column of a byte, from 1.
+    pub fn of(&mut self, at: usize) -> (usize, usize) {
+        let at = floor(self.text, at);
+        if at < self.at {
+            *self = Self::new(self.text);
+        }
+        let passed = &self.text[self.at..at];
+        let last = match passed.rfind('\n') {
+            Some(end) => {
+                self.line += passed.bytes().filter(|b| *b == b'\n').count();
+                self.column = 1;
+                &passed[end + 1..]
+            }
+            None => passed,
+        };
+        self.column += last.chars().count();
+        self.at = at;
+        (self.line, self.column)
+    }
+}
+
+/// The character boundary at or before a byte.
+pub(super) fn floor(text: &str, mut at: usize) -> usize {
+    at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: in whatever order bytes are asked for, each has its line and column.
+    #[test]
+    fn places_do_not_depend_on_what_was_asked_before() {
+        let text = "ab\nä\n\nlast";
+        let mut places = Places::new(text);
+        let all: Vec<_> = [0, 1, 3, 5, 7, 8, 100, 3, 6, 4].map(|at| places.of(at)).into();
+        let wanted = [
+            (1, 1),
+            (1, 2),
+            (2, 1),
+            (2, 2),
+            (4, 1),
+            (4, 2),
+            (4, 5),
+            (2, 1),
+            (3, 1),
+            (2, 1),
+        ];
+        assert_eq!(all, wanted);
+    }
+}

@@ -1,0 +1,84 @@
+//! Whether the machine can hold what a case asks for.
+
+use std::path::Path;
+
+use super::arguments::CaseArguments;
+use super::terminal;
+use crate::case::{self, Case, LoadedCase};
+use crate::discrete::System;
+use crate::error::{Code, Result, Violation};
+use crate::output::disk::Disk;
+use crate::output::machine;
+use crate::output::numbers::{duration, significant};
+use crate::run::needs::Needs;
+use crate::run::observe::Observer;
+
+/// Set-up beyond which a run says what is ahead [s].
+const LONG_S: f64 = 10.0;
+
+/// Reads and checks a case of a size that the machine can hold; nothing of that size is made yet.
+///
+/// # Errors
+/// As [`case::load`]; E006 with the numbers where the memory is not there.
+pub fn load(asked: &CaseArguments) -> Result<LoadedCase> {
+    load_with(&asked.case, &asked.sets, 0)
+}
+
+/// The same with derivatives by so many numbers.
+pub fn load_with(path: &Path, sets: &[String], parameters: usize) -> Result<LoadedCase> {
+    let loaded = case::load(path, sets)?;
+    let needs = Needs::of(&loaded.case, parameters);
+    if let Some(there) = machine::memory().filter(|there| needs.memory > *there) {
+        let what = format!(
+            "some {:.3e} unknowns need about {} of memory; {} are there",
+            needs.unknowns,
+            bytes(needs.memory),
+            bytes(there)
+        );
+        let fault = Violation::new(Code::Range, "/mesh", what);
+        return Err(loaded.fault(vec![fault.hint("fewer cells per segment, per bladder, or segments")]));
+    }
+    Ok(loaded)
+}
+
+/// What a run's files will take.
+pub fn disk(case: &Case, system: &System, parameters: usize) -> Disk {
+    Disk::of(case, &Observer::header(case, system), system.layout.len, parameters)
+}
+
+/// Refuses a run whose files do not fit where they go, and says what is ahead where it takes long to begin.
+///
+/// # Errors
+/// E006 with the numbers.
+pub fn run_fits(loaded: &LoadedCase, system: &System, parameters: usize, out: &Path) -> Result<()> {
+    let disk = disk(&loaded.case, system, parameters);
+    if let Some(free) = machine::free(out).filter(|free| disk.all() > *free) {
+        let key = if disk.history > disk.fields { "output" } else { "fields" };
+        let what = format!(
+            "the files of this run need about {}; {} are free where they go",
+            bytes(disk.all()),
+            bytes(free)
+        );
+        let fault = Violation::new(Code::Range, format!("/time/{key}_interval_s"), what);
+        return Err(loaded.fault(vec![fault.hint("a longer interval, or another folder with --out")]));
+    }
+    let needs = Needs::of(&loaded.case, parameters);
+    if needs.set_up_s > LONG_S {
+        terminal::tell(&format!(
+            "slcbeam: {} unknowns take some {} to set up; neither Ctrl-C nor --max-wall is looked at before (a second Ctrl-C \
+             ends at once)",
+            system.layout.len,
+            duration(needs.set_up_s)
+        ));
+    }
+    Ok(())
+}
+
+/// As people read it.
+pub fn bytes(count: f64) -> String {
+    let (scale, unit) = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB")]
+        .into_iter()
+        .find(|(scale, _)| count >= *scale)
+        .unwrap_or((1e3, "kB"));
+    format!("{} {unit}", significant(count / scale, 3))
+}

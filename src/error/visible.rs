@@ -1,0 +1,48 @@
+//! Text of others, made visible: names, keys, headings and file names may hold what a terminal takes for orders.
+
+use std::borrow::Cow;
+use std::fmt::Write as _;
+
+/// Whether a character does something to a terminal or to the order of what stands beside it, instead of being seen: control
+/// characters (C0 and C1, DEL), marks that turn the direction of writing, and tags.
+pub fn is_hidden(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}')
+        || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{e0000}'..='\u{e007f}')
+}
+
+/// The text with hidden characters as `\u001b`, as JSON writes them, so that JSON stays the same JSON. Ends of lines and tabs stay.
+pub fn visible(text: &str) -> Cow<'_, str> {
+    let hidden = |c: char| is_hidden(c) && c != '\n' && c != '\t';
+    if !text.contains(hidden) {
+        return Cow::Borrowed(text);
+    }
+    let mut out = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        if hidden(c) {
+            for unit in c.encode_utf16(&mut [0; 2]) {
+                let _ = write!(out, "\\u{unit:04x}");
+            }
+        } else {
+            out.push(c);
+        }
+    }
+    Cow::Owned(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: nothing hidden is left, what is seen stays, and JSON still says what it said.
+    #[test]
+    fn hidden_characters_are_written_out() {
+        let text = "a\u{1b}]0;x\u{7}\r\u{85}\u{202e}ä\u{e0041}\tb\n";
+        let shown = visible(text);
+        assert_eq!(shown, "a\\u001b]0;x\\u0007\\u000d\\u0085\\u202eä\\udb40\\udc41\tb\n");
+        assert!(matches!(visible("plain ä ₁ \n"), Cow::Borrowed(_)));
+        let json = serde_json::Value::from("\u{7f}\u{202e}\u{e0041}").to_string();
+        let back: String = serde_json::from_str(&visible(&json)).expect("still JSON");
+        assert_eq!(back, "\u{7f}\u{202e}\u{e0041}");
+    }
+}

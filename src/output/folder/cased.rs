@@ -1,0 +1,41 @@
+//! The case of a result, and the tables it names.
+
+use std::fs;
+use std::path::PathBuf;
+
+use super::{CASE, ResultFolder, fault, remove};
+use crate::case::{Written, is_table};
+use crate::error::Result;
+
+impl ResultFolder {
+    /// Writes the case: its tables first, so that one that is there has all it names; then those go that it does not name.
+    pub fn write_case(&self, case: &Written) -> Result<()> {
+        self.write_tables(case)?;
+        self.write(CASE, case.json.as_bytes())?;
+        self.remove_other_tables(case)
+    }
+
+    /// Writes the tables of a case; one that is there already stays.
+    pub(super) fn write_tables(&self, case: &Written) -> Result<()> {
+        for (name, text) in &case.tables {
+            if fs::read(self.path(name)).ok().as_deref() != Some(text.as_bytes()) {
+                self.write(name, text.as_bytes())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes tables of an older case.
+    pub(super) fn remove_other_tables(&self, case: &Written) -> Result<()> {
+        let named = |path: &PathBuf| case.tables.iter().any(|(name, _)| self.path(name) == *path);
+        let all = self.tables()?;
+        all.iter().filter(|path| !named(path)).try_for_each(|path| remove(path))
+    }
+
+    /// The tables of cases in the folder.
+    pub(super) fn tables(&self) -> Result<Vec<PathBuf>> {
+        let entries = fs::read_dir(&self.dir).map_err(|e| fault("read", &self.dir, e))?;
+        let names = entries.flatten().filter(|e| is_table(&e.file_name().to_string_lossy()));
+        Ok(names.map(|e| e.path()).collect())
+    }
+}

@@ -1,0 +1,61 @@
+//! What the machine has left.
+
+use std::fs;
+use std::path::Path;
+
+/// Memory that the process can have without others losing theirs [byte]: what the system says is available, within the limits of
+/// the process and its group. None where the system does not say.
+pub fn memory() -> Option<f64> {
+    let told = fs::read_to_string("/proc/meminfo").ok()?;
+    let available = kilobytes(&told, "MemAvailable:")?;
+    let limits = [group(), address_space()];
+    Some(limits.into_iter().flatten().fold(available, f64::min))
+}
+
+/// Bytes that a user can still write where a path is or will be.
+pub fn free(path: &Path) -> Option<f64> {
+    let there = path.ancestors().find(|part| part.exists()).unwrap_or(Path::new("."));
+    let told = rustix::fs::statvfs(there).ok()?;
+    Some(told.f_bavail as f64 * told.f_frsize as f64)
+}
+
+/// `NAME   123 kB` in bytes.
+fn kilobytes(text: &str, name: &str) -> Option<f64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    Some(1024.0 * line.trim().trim_end_matches("kB").trim().parse::<f64>().ok()?)
+}
+
+/// The limit of the process's group.
+fn group() -> Option<f64> {
+    let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
+    let own = groups.lines().find_map(|line| line.strip_prefix("0::"))?;
+    let places = [
+        format!("/sys/fs/cgroup{own}/memory.max"),
+        "/sys/fs/cgroup/memory.max".into(),
+    ];
+    let limits = places
+        .iter()
+        .filter_map(|place| fs::read_to_string(place).ok()?.trim().parse::<f64>().ok());
+    limits.reduce(f64::min)
+}
+
+/// What is left of the addresses that the process may have.
+fn address_space() -> Option<f64> {
+    let limits = fs::read_to_string("/proc/self/limits").ok()?;
+    let limit = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    let most: f64 = limit.split_whitespace().next()?.parse().ok()?;
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    Some((most - kilobytes(&status, "VmSize:")?).max(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_in_bytes() {
+        let text = "MemTotal:  10 kB\nMemAvailable:    3 kB\n";
+        assert_eq!(kilobytes(text, "MemAvailable:"), Some(3072.0));
+        assert_eq!(kilobytes(text, "MemFree:"), None);
+    }
+}
