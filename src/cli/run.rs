@@ -1,7 +1,6 @@
 //! `slcbeam run`.
 
 use std::cell::RefCell;
-use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 use std::rc::Rc;
@@ -18,7 +17,7 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::model::characteristic;
 use crate::output::checkpoint;
-use crate::output::folder::{CASE, HISTORY, ResultFolder, fault};
+use crate::output::folder::{CASE, HISTORY, ResultFolder, text_of};
 use crate::output::kind::Kind;
 use crate::output::recorder::{Finished, FolderRecorder, Hook, Labels};
 use crate::output::report;
@@ -180,7 +179,7 @@ fn ended(case: &Case, folder: &ResultFolder) -> Result<Outcome> {
             "{dir} holds no checkpoint to resume from; a case writes some with /time/checkpoint_interval_s"
         ))
     })?;
-    let there = fs::read_to_string(folder.path(CASE)).map_err(|e| fault("read", &folder.path(CASE), e))?;
+    let there = text_of(&folder.path(CASE))?;
     if there != case.resolved_json() {
         return Err(another_case(&there, case, "the result"));
     }

@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 
 use super::arrays::Marks;
-use super::folder::{CHECKPOINT, CHECKPOINT_BEFORE, ResultFolder, fault};
+use super::folder::{CHECKPOINT, CHECKPOINT_BEFORE, ResultFolder, fault, open};
 use super::stream::Mark;
 use crate::error::Result;
 use crate::run::checkpoint::Checkpoint;
@@ -80,11 +80,12 @@ pub fn read(dir: &Path) -> Result<Option<(Saved, Option<String>)>> {
 }
 
 fn one(path: &Path) -> Result<Option<Saved>> {
-    let text = match fs::read(path) {
+    let mut text = vec![];
+    match open(path).and_then(|mut file| file.read_to_end(&mut text)) {
         Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(e) => return Err(fault("read", path, e)),
-        Ok(text) => text,
-    };
+        Ok(_) => {}
+    }
     let damaged = |why: &str| {
         Err(fault(
             "go on from",

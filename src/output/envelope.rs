@@ -4,7 +4,7 @@
 use std::io;
 use std::path::Path;
 
-use super::folder::fault;
+use super::folder::{fault, open};
 use crate::error::Result;
 
 /// Least and largest value of a stretch, each with its time.
@@ -67,8 +67,7 @@ impl Envelope {
         let failed = |e: csv::Error| fault("read", path, io::Error::from(e));
         let mut reader = csv::ReaderBuilder::new()
             .flexible(true)
-            .from_path(path)
-            .map_err(failed)?;
+            .from_reader(open(path).map_err(|e| fault("read", path, e))?);
         let names = reader.headers().map_err(failed)?.iter().map(split_name).collect();
         let mut envelope = Self::new(names, most);
         let mut record = csv::StringRecord::new();

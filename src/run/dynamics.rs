@@ -95,6 +95,8 @@ struct Run<'a> {
     forward: Option<Forward<'a>>,
     held: Option<String>,
     begin: Instant,
+    /// Where the last step ended.
+    latest: Progress,
     output_wall: f64,
     state: Vec<f64>,
     rates: Vec<f64>,
@@ -200,6 +202,13 @@ impl<'a> Run<'a> {
             forward: None,
             held: None,
             begin,
+            latest: Progress {
+                t: 0.0,
+                end: case.time.end_s,
+                steps: 0,
+                step: 0.0,
+                order: 0,
+            },
             output_wall: 0.0,
             state: vec![],
             rates: vec![],
@@ -225,9 +234,9 @@ impl Run<'_> {
                 let (system, now) = dae.instant(0.0);
                 self.state = start::state(system, self.case, now);
                 if let Some(start) = &self.case.start.equilibrium {
-                    match equilibrium::at_start(self.case, start.loads_at_s, &mut dae, &self.state) {
+                    match self.seek(start.loads_at_s, &mut dae, recorder)? {
                         Ok(state) => self.state = state,
-                        Err(fault) => return Ok(self.finish(End::Failed(fault))),
+                        Err(end) => return Ok(self.finish(end)),
                     }
                 }
                 (0.0, 0)
@@ -259,6 +268,25 @@ impl Run<'_> {
             None => self.solve(dae, t, first_stop, header, recorder)?,
         };
         Ok(self.finish(end))
+    }
+
+    /// The equilibrium under the loads of an instant [s]; the recorder is asked at every point of the way to it.
+    fn seek(
+        &self,
+        loads_at_s: f64,
+        dae: &mut BeamDae,
+        recorder: &mut dyn Recorder,
+    ) -> Result<std::result::Result<Vec<f64>, End>> {
+        let mut asked = Ok(Control::Continue);
+        let found = equilibrium::at_start_watched(self.case, loads_at_s, dae, &self.state, &mut || {
+            asked = recorder.progress(&self.latest);
+            asked.as_ref().map_or(Control::Stop(String::new()), Control::clone)
+        });
+        let stopped = |reason: String| End::Stopped(format!("{reason}, in search of the equilibrium to start from"));
+        Ok(match asked? {
+            Control::Stop(reason) => Err(stopped(reason)),
+            Control::Continue => found.map_err(End::Failed),
+        })
     }
 
     fn header(&self, system: &System) -> Header {
@@ -348,17 +376,18 @@ impl Run<'_> {
                     .estimate
                     .step(method, &step, [solver.y(), solver.yp()]);
                 self.observer.seen.estimate.erred(step.size, solver.local_errors());
-                if let Some(end) = self.follow(solver, from, recorder)? {
-                    return Ok(end);
-                }
                 let steps = solver.steps();
                 let progress = Progress {
                     t: step.time,
-                    end: self.case.time.end_s,
                     steps: self.earlier.steps + steps,
                     step: step.size,
                     order: step.order,
+                    ..self.latest
                 };
+                self.latest = progress;
+                if let Some(end) = self.follow(solver, from, recorder)? {
+                    return Ok(end);
+                }
                 if let Control::Stop(reason) = recorder.progress(&progress)? {
                     return Ok(End::Stopped(reason));
                 }

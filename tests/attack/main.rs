@@ -4,5 +4,6 @@
 mod finishing;
 mod flips;
 mod folders;
+mod outputs;
 mod program;
 mod resuming;

@@ -10,7 +10,7 @@ use crate::case::Case;
 use crate::discrete::System;
 use crate::error::Result;
 use crate::output::envelope::Envelope;
-use crate::output::folder::{HISTORY, fault};
+use crate::output::folder::{HISTORY, fault, open};
 use crate::output::numbers::count;
 use crate::run::observe::Observer;
 
@@ -39,7 +39,7 @@ impl History {
     }
 
     fn of(path: &Path) -> csv::Result<Self> {
-        let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(path)?;
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(open(path)?);
         let names: Vec<(String, String)> = reader.headers()?.iter().map(split).collect();
         let mut envelope = Envelope::new(names.clone(), STRETCHES);
         let mut found = Self {
