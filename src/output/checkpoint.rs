@@ -17,13 +17,19 @@ use crate::error::Result;
 use crate::run::checkpoint::Checkpoint;
 
 /// Number of the format.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// A checkpoint on disk.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
     /// What of `history.csv` belongs to it.
     pub history: Mark,
+    /// What of `envelope.csv` does, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub envelope: Option<Mark>,
+    /// What of `sensitivities.csv` does, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensitivities: Option<Mark>,
     /// What of each raw file of fields does.
     pub fields: Marks,
     /// The run.

@@ -16,6 +16,8 @@ pub const CASE: &str = "case.json";
 pub const SUMMARY: &str = "summary.json";
 /// One row an output time.
 pub const HISTORY: &str = "history.csv";
+/// What is left of output times that the history leaves out.
+pub const ENVELOPE: &str = "envelope.csv";
 /// Derivatives of the history's columns, one row an output time.
 pub const SENSITIVITIES: &str = "sensitivities.csv";
 /// Arrays over time and space.
@@ -35,12 +37,13 @@ pub const VTK: &str = "vtk";
 /// Pictures.
 pub const PICTURES: [&str; 4] = ["deflection.svg", "pressure.svg", "history.svg", "energy.svg"];
 /// Files of a run; the summary goes first: without it the rest does not pass for a finished run.
-pub const RUN_FILES: [&str; 10] = [
+pub const RUN_FILES: [&str; 11] = [
     SUMMARY,
     CHECKPOINT,
     CHECKPOINT_BEFORE,
     FIELDS,
     HISTORY,
+    ENVELOPE,
     SENSITIVITIES,
     PICTURES[0],
     PICTURES[1],

@@ -19,7 +19,7 @@ use super::method::{self, Integrator, Options};
 use super::observe::Observer;
 use super::record::{Control, Header, Progress, Recorder};
 use super::schedule::{self, Outputs, Stop};
-use super::sensitivity::forward::Forward;
+use super::sensitivity::forward::{Before, Forward};
 use super::strides::Strides;
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
 use crate::case::parameter::Parameter;
@@ -73,7 +73,8 @@ pub fn header(case: &Case) -> Header {
 /// Goes on from a checkpoint of the same case; the recorder holds what was recorded before it.
 pub fn resume(case: &Case, checkpoint: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
     checkpoint.fits(case)?;
-    let (run, dae) = Run::new(case, &[])?;
+    let parameters = checkpoint.forward.as_ref().map_or(&[][..], |kept| &kept.parameters);
+    let (run, dae) = Run::new(case, parameters)?;
     run.go(dae, Some(checkpoint), recorder)
 }
 
@@ -254,6 +255,7 @@ impl Run<'_> {
             }
             _ => dae.look_within(ahead),
         }
+        let before = from.and_then(|c| self.before(&mut dae, c));
         let consistent = match from.map(|c| self.stops[c.stop].switches) {
             Some(true) => self.switch(&mut dae, t, ahead),
             Some(false) => None,
@@ -261,7 +263,10 @@ impl Run<'_> {
                 .map_err(|failure| inconsistent(t, &failure))
                 .err(),
         };
-        let consistent = consistent.or_else(|| self.begin_forward(&mut dae).err());
+        let consistent = consistent.or_else(|| match from {
+            None => self.begin_forward(&mut dae).err(),
+            Some(checkpoint) => self.go_on_forward(&mut dae, checkpoint, before).err(),
+        });
         let header = from.is_none().then(|| self.header(dae.system()));
         let end = match consistent {
             Some(fault) => End::Failed(fault),
@@ -295,6 +300,29 @@ impl Run<'_> {
             header.sensitivities = forward.names(&header.columns);
         }
         header
+    }
+
+    /// Sensitivities as a checkpoint has kept them, on the left side of its stop.
+    fn before(&mut self, dae: &mut BeamDae, from: &Checkpoint) -> Option<Before> {
+        let (forward, kept) = (self.forward.as_mut()?, from.forward.as_ref()?);
+        Some(forward.take_up(kept, dae, from.t, [&self.state, &self.rates]))
+    }
+
+    /// Sensitivities on the right side of a checkpoint's stop.
+    fn go_on_forward(
+        &mut self,
+        dae: &mut BeamDae,
+        from: &Checkpoint,
+        before: Option<Before>,
+    ) -> std::result::Result<(), SolverFault> {
+        let (Some(forward), Some(before)) = (&mut self.forward, before) else {
+            return Ok(());
+        };
+        if self.stops[from.stop].switches {
+            return forward.pass(dae, from.stop, from.t, &before, [&self.state, &self.rates]);
+        }
+        forward.go_on(dae, from.stop);
+        Ok(())
     }
 
     fn begin_forward(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverFault> {
@@ -332,6 +360,7 @@ impl Run<'_> {
                 }
                 header.map_or(Ok(()), |header| recorder.begin(&header))?;
                 let end = self.integrate(&mut solver, first_stop, recorder)?;
+                self.observer.close(recorder)?;
                 self.count(&solver);
                 Ok(end)
             }

@@ -24,5 +24,6 @@ pub mod record;
 pub mod residuals;
 pub mod schedule;
 pub mod sensitivity;
+pub mod stretch;
 pub mod strides;
 pub mod summary;

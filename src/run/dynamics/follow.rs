@@ -192,7 +192,7 @@ impl Run<'_> {
         t: f64,
         recorder: &mut dyn Recorder,
     ) -> Result<Option<End>> {
-        self.observer.sample(
+        let written = self.observer.sample(
             solver.dae_mut(),
             output,
             t,
@@ -203,7 +203,7 @@ impl Run<'_> {
         )?;
         if let (Some(forward), Some(ida)) = (&mut self.forward, solver.ida_mut()) {
             match forward.sample(ida, t, [&self.state, &self.rates], self.observer.row()) {
-                Ok(row) if output.is_some() => recorder.sensitivities(row)?,
+                Ok(row) if written => recorder.sensitivities(row)?,
                 Ok(_) => {}
                 Err(failure) => {
                     return Ok(Some(End::Stopped(format!(

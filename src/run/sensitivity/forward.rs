@@ -5,6 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::figures::{Figures, Sensitivity};
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
@@ -36,6 +38,31 @@ pub struct Forward<'a> {
     carried: Vec<Vec<f64>>,
     figures: Vec<Figures>,
     row: Vec<f64>,
+}
+
+/// What a checkpoint keeps of sensitivities, from which they go on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Kept {
+    /// The numbers by which is differentiated.
+    pub parameters: Vec<Parameter>,
+    s: Vec<Vec<f64>>,
+    sp: Vec<Vec<f64>>,
+    carried: Vec<Vec<f64>>,
+    figures: Vec<Figures>,
+}
+
+impl Kept {
+    /// Whether there is one finite number for each unknown and each parameter.
+    pub fn fits(&self, unknowns: usize, integrals: usize) -> bool {
+        let fits = |all: &[Vec<f64>], len: usize| {
+            let sound = |of: &Vec<f64>| of.len() == len && of.iter().all(|x| x.is_finite());
+            all.len() == self.parameters.len() && all.iter().all(sound)
+        };
+        fits(&self.s, unknowns)
+            && fits(&self.sp, unknowns)
+            && fits(&self.carried, integrals)
+            && self.figures.len() == self.parameters.len()
+    }
 }
 
 /// What must be known of the moment before a switch.
@@ -202,6 +229,31 @@ impl<'a> Forward<'a> {
             s: self.s.clone(),
             integrands: integrands(ida.dae_mut(), t, [y, yp]),
         })
+    }
+
+    /// What a checkpoint keeps; after [`Forward::leave`].
+    pub fn kept(&self) -> Kept {
+        Kept {
+            parameters: self.parameters.to_vec(),
+            s: self.s.clone(),
+            sp: self.sp.clone(),
+            carried: self.carried.clone(),
+            figures: self.figures.clone(),
+        }
+    }
+
+    /// Takes up what a checkpoint has kept at a state there; the left side of its stop.
+    pub fn take_up(&mut self, kept: &Kept, dae: &mut BeamDae, t: f64, [y, yp]: [&[f64]; 2]) -> Before {
+        self.s.clone_from(&kept.s);
+        self.sp.clone_from(&kept.sp);
+        self.carried.clone_from(&kept.carried);
+        self.figures.clone_from(&kept.figures);
+        Before {
+            state: y.to_vec(),
+            rates: yp.to_vec(),
+            s: self.s.clone(),
+            integrands: integrands(dae, t, [y, yp]),
+        }
     }
 
     /// Passes a switch, at the consistent state after it. Where the number moves the switching time t*, or the ends' signals at it,
