@@ -208,7 +208,11 @@ pub fn each_row(dir: &Path, mut take: impl FnMut(&Names, Source, &[f64])) -> Res
     }
     while let Some(row) = rows.next()? {
         if row.len() == names.len() && !row.is_empty() {
-            let source = if row[0] <= until { Source::Covered } else { Source::History };
+            let source = if row[0] <= until {
+                Source::Covered
+            } else {
+                Source::History
+            };
             take(&names, source, row);
         }
     }

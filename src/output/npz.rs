@@ -73,7 +73,8 @@ impl Npz {
                 )));
             }
             let name = entry.name()?.strip_suffix(".npy").map(String::from);
-            let name = name.filter(|name| !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_'));
+            let name =
+                name.filter(|name| !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_'));
             let Some(name) = name else {
                 return Err(damaged("an entry of it has not the name of an array".into()));
             };

@@ -64,7 +64,11 @@ pub struct Stretch {
 impl Stretch {
     /// Takes a row of the history; gives the stretch before, where it is the first of another.
     pub fn take(&mut self, number: Option<u64>, row: &[f64]) -> Option<Vec<f64>> {
-        let before = if number == Some(self.number) { None } else { self.close() };
+        let before = if number == Some(self.number) {
+            None
+        } else {
+            self.close()
+        };
         if let (Some(number), [t, values @ ..]) = (number, row) {
             if self.count == 0 {
                 *self = Self {

@@ -6,6 +6,8 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
+use slcbeam::run::record::{Control, Header, Progress, Recorder};
+use slcbeam::run::summary::Status;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
@@ -41,7 +43,10 @@ fn bounded(arguments: &[&str]) -> Output {
 fn answered(output: &Output, what: &str) -> i32 {
     let told = stderr(output);
     let code = output.status.code();
-    assert!(!told.contains("panicked") && code.is_some_and(|code| code < 100), "{what}: {code:?} {told}");
+    assert!(
+        !told.contains("panicked") && code.is_some_and(|code| code < 100),
+        "{what}: {code:?} {told}"
+    );
     code.unwrap_or_default()
 }
 
@@ -67,7 +72,7 @@ fn copied(from: &Path, to: &Path) {
 }
 
 /// An archive of arrays with any descriptions.
-fn archive(path: &Path, entries: &[(&str, &str, usize)]) {
+fn archive(path: &Path, entries: &[(&str, String, usize)]) {
     let mut npz = ZipWriter::new(fs::File::create(path).expect("a file"));
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
     for (name, description, numbers) in entries {
@@ -92,19 +97,58 @@ fn outputs_that_lie_about_their_size_are_refused() {
     let (sound, bad) = (folder.path().join("sound"), folder.path().join("bad"));
     assert!(run(&sound, &[]).status.success());
     let times = described("(11,)");
-    let nested = format!("{{'descr': {}, 'fortran_order': False, 'shape': (11,), }}", "(".repeat(60_000));
-    let lies: [(&str, Vec<(&str, &str, usize)>); 9] = [
-        ("24 GB of times", vec![("t_fields_s.npy", &described("(3000000000,)"), 11)]),
-        ("a product beyond 64 bits", vec![("t_fields_s.npy", &times, 11), ("u1_m.npy", &described("(4294967296, 4294967296)"), 11)]),
-        ("34 GB of places", vec![("t_fields_s.npy", &times, 11), ("u1_m.npy", &described("(11, 400000000)"), 11)]),
-        ("endless places of no instant", vec![("t_fields_s.npy", &described("(0,)"), 0), ("u1_m.npy", &described("(0, 9223372036854775807)"), 0)]),
-        ("fewer instants than times", vec![("t_fields_s.npy", &times, 11), ("theta_node_m.npy", &described("(5,)"), 5), ("u1_m.npy", &described("(2, 5)"), 10)]),
-        ("columns first", vec![("t_fields_s.npy", "{'descr': '<f8', 'fortran_order': True, 'shape': (11,), }", 11)]),
-        ("brackets in brackets", vec![("t_fields_s.npy", &nested, 11)]),
-        ("a name that leads elsewhere", vec![("t_fields_s.npy", &times, 11), ("../../u1_m.npy", &described("(11, 1)"), 11)]),
-        ("no arrays but times", vec![("t_fields_s.npy", &times, 11)]),
-    ]
-    .map(|(what, entries)| (what, entries));
+    let nested = format!(
+        "{{'descr': {}, 'fortran_order': False, 'shape': (11,), }}",
+        "(".repeat(60_000)
+    );
+    let lies: [(&str, Vec<(&str, String, usize)>); 9] = [
+        (
+            "24 GB of times",
+            vec![("t_fields_s.npy", described("(3000000000,)"), 11)],
+        ),
+        (
+            "a product beyond 64 bits",
+            vec![
+                ("t_fields_s.npy", times.clone(), 11),
+                ("u1_m.npy", described("(4294967296, 4294967296)"), 11),
+            ],
+        ),
+        (
+            "34 GB of places",
+            vec![
+                ("t_fields_s.npy", times.clone(), 11),
+                ("u1_m.npy", described("(11, 400000000)"), 11),
+            ],
+        ),
+        (
+            "endless places of no instant",
+            vec![
+                ("t_fields_s.npy", described("(0,)"), 0),
+                ("u1_m.npy", described("(0, 9223372036854775807)"), 0),
+            ],
+        ),
+        (
+            "fewer instants than times",
+            vec![
+                ("t_fields_s.npy", times.clone(), 11),
+                ("theta_node_m.npy", described("(5,)"), 5),
+                ("u1_m.npy", described("(2, 5)"), 10),
+            ],
+        ),
+        (
+            "columns first",
+            vec![("t_fields_s.npy", described("(11,)").replace("False", "True"), 11)],
+        ),
+        ("brackets in brackets", vec![("t_fields_s.npy", nested.clone(), 11)]),
+        (
+            "a name that leads elsewhere",
+            vec![
+                ("t_fields_s.npy", times.clone(), 11),
+                ("../../u1_m.npy", described("(11, 1)"), 11),
+            ],
+        ),
+        ("no arrays but times", vec![("t_fields_s.npy", times.clone(), 11)]),
+    ];
     for (what, entries) in &lies {
         copied(&sound, &bad);
         archive(&bad.join("fields.npz"), entries);
@@ -125,7 +169,7 @@ fn outputs_that_lie_over_each_other_are_refused() {
     copied(&sound, &bad);
     let path = bad.join("fields.npz");
     let count = 400;
-    archive(&path, &[("t_fields_s.npy", &described("(200000,)"), 200_000)]);
+    archive(&path, &[("t_fields_s.npy", described("(200000,)"), 200_000)]);
     // one entry, and a directory that names it many times
     let bytes = fs::read(&path).expect("a file");
     let start = bytes.windows(4).rposition(|w| w == b"PK\x01\x02").expect("a directory");
@@ -216,7 +260,12 @@ fn mutate(bytes: &mut Vec<u8>, dice: &mut Dice) {
             // in a description or in the directory
             let marks = [&b"shape"[..], b"NUMPY", b"PK\x01\x02", b"PK\x03\x04", b"PK\x05\x06"];
             let mark = marks[dice.roll(marks.len())];
-            let places: Vec<usize> = bytes.windows(mark.len()).enumerate().filter(|w| w.1 == mark).map(|w| w.0).collect();
+            let places: Vec<usize> = bytes
+                .windows(mark.len())
+                .enumerate()
+                .filter(|w| w.1 == mark)
+                .map(|w| w.0)
+                .collect();
             let begin = places.get(dice.roll(places.len())).copied().unwrap_or(at);
             let at = (begin + dice.roll(48)).min(bytes.len() - 1);
             bytes[at] = [0, 255, b'9', dice.roll(256) as u8][dice.roll(4)];
@@ -232,10 +281,21 @@ fn mutate(bytes: &mut Vec<u8>, dice: &mut Dice) {
 /// Damages one file a trial and reads the folder by all commands that read folders.
 fn fuzz(trials: u64) {
     let folder = tempfile::tempdir().expect("a place");
-    let (sound, modes, bad) = (folder.path().join("sound"), folder.path().join("modes"), folder.path().join("bad"));
+    let (sound, modes, bad) = (
+        folder.path().join("sound"),
+        folder.path().join("modes"),
+        folder.path().join("bad"),
+    );
     assert!(run(&sound, &[]).status.success());
     let found = slcbeam()
-        .args(["modes", crate::program::CASE, "--quiet", "--set", "/mesh/cells_per_segment=1", "--out"])
+        .args([
+            "modes",
+            crate::program::CASE,
+            "--quiet",
+            "--set",
+            "/mesh/cells_per_segment=1",
+            "--out",
+        ])
         .arg(&modes)
         .output()
         .expect("it starts");
@@ -245,9 +305,22 @@ fn fuzz(trials: u64) {
         let mut dice = Dice(trial);
         let of_modes = trial % 5 == 4;
         let (from, names): (_, &[&str]) = if of_modes {
-            (&modes, &["modes.npz", "modes.npz", "modes.json", "modes.csv", "case.json"])
+            (
+                &modes,
+                &["modes.npz", "modes.npz", "modes.json", "modes.csv", "case.json"],
+            )
         } else {
-            (&sound, &["fields.npz", "fields.npz", "fields.npz", "history.csv", "summary.json", "case.json"])
+            (
+                &sound,
+                &[
+                    "fields.npz",
+                    "fields.npz",
+                    "fields.npz",
+                    "history.csv",
+                    "summary.json",
+                    "case.json",
+                ],
+            )
         };
         copied(from, &bad);
         let path = bad.join(names[dice.roll(names.len())]);
@@ -281,34 +354,53 @@ fn a_thousand_damaged_outputs_are_refused_or_read() {
     fuzz(1000);
 }
 
-/// However many samples a step has, the clock and Ctrl-C are looked at.
+/// Takes its time for every row, and stops the run as soon as it is asked a second time within one step.
+#[derive(Default)]
+struct Slow {
+    steps: u64,
+    within: Option<f64>,
+    times: Vec<f64>,
+}
+
+impl Recorder for Slow {
+    fn begin(&mut self, _: &Header) -> slcbeam::error::Result<()> {
+        Ok(())
+    }
+    fn history(&mut self, row: &[f64]) -> slcbeam::error::Result<()> {
+        std::thread::sleep(Duration::from_micros(200));
+        self.times.push(row[0]);
+        Ok(())
+    }
+    fn fields(&mut self, _: f64, _: &[&[f64]]) -> slcbeam::error::Result<()> {
+        Ok(())
+    }
+    fn progress(&mut self, progress: &Progress) -> slcbeam::error::Result<Control> {
+        if progress.steps == self.steps && progress.steps > 0 {
+            self.within = Some(progress.t);
+            return Ok(Control::Stop("asked within a step".into()));
+        }
+        self.steps = progress.steps;
+        Ok(Control::Continue)
+    }
+}
+
+/// However many samples a step has, whoever records it is asked in between whether to go on; what was taken until then stands.
 #[test]
-fn outputs_within_one_step_end_in_time() {
-    let folder = tempfile::tempdir().expect("a place");
-    let out = folder.path().join("x");
-    let begin = Instant::now();
-    // nothing moves: steps are as long as they may be, with a million rows each
-    let output = run(
-        &out,
-        &[
-            "--set",
-            "/time/checkpoint_interval_s=null",
-            "--set",
-            "/time/output_interval_s=5e-9",
-            "--set",
-            "/loads=[]",
-            "--max-wall",
-            "1",
-        ],
-    );
-    let took = begin.elapsed();
-    assert!(output.status.success(), "{}", stderr(&output));
-    assert!(took < Duration::from_secs(8), "{took:?}");
-    let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
-    assert!(
-        summary.contains("\"stopped\"") && summary.contains("the wall time allowed is used up"),
-        "{summary}"
-    );
+fn outputs_within_one_step_can_be_stopped() {
+    let sets = [
+        "/time/end_s=0.05",
+        "/time/window_s=0.02",
+        "/time/output_interval_s=1e-7",
+        "/solver/rtol=1e-3",
+    ];
+    let case = slcbeam::case::load(Path::new(crate::program::CASE), &sets.map(String::from));
+    let mut slow = Slow::default();
+    let outcome = slcbeam::run::dynamics::run(&case.expect("a case").case, &mut slow).expect("a run");
+    assert_eq!(outcome.summary.status, Status::Stopped);
+    assert_eq!(outcome.summary.reason.as_deref(), Some("asked within a step"));
+    let last = slow.times.last().copied();
+    assert_eq!(last, slow.within, "asked where the last row was taken");
+    assert_eq!(Some(outcome.summary.time_s), last, "the summary says how far it came");
 }
 
 /// The search for the start's equilibrium looks at the clock, too.
@@ -318,11 +410,19 @@ fn outputs_of_a_search_that_is_stopped_say_so() {
     let out = folder.path().join("x");
     let output = run(
         &out,
-        &["--set", "/start={\"equilibrium\": {\"loads_at_s\": 0.05}}", "--max-wall", "1e-6"],
+        &[
+            "--set",
+            "/start={\"equilibrium\": {\"loads_at_s\": 0.05}}",
+            "--max-wall",
+            "1e-6",
+        ],
     );
     assert!(output.status.success(), "{}", stderr(&output));
     let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
-    assert!(summary.contains("in search of the equilibrium to start from"), "{summary}");
+    assert!(
+        summary.contains("in search of the equilibrium to start from"),
+        "{summary}"
+    );
 }
 
 /// A differentiated run that was killed goes on with its derivatives.
@@ -330,21 +430,35 @@ fn outputs_of_a_search_that_is_stopped_say_so() {
 fn outputs_of_derivatives_go_on() {
     let folder = tempfile::tempdir().expect("a place");
     let (whole, out) = (folder.path().join("whole"), folder.path().join("x"));
-    let steep = r#"/loads=[{"force_x_n_m": {"signal": {"ramp": {"from": 0, "to": 1, "start_s": 0.02, "end_s": 0.035}}}}]"#;
-    let asked = ["--set", steep, "--sensitivity", "/fluid/viscosity_pa_s", "--sensitivity", "/beam/young_modulus_pa"];
+    let steep =
+        r#"/loads=[{"force_x_n_m": {"signal": {"ramp": {"from": 0, "to": 1, "start_s": 0.02, "end_s": 0.035}}}}]"#;
+    let asked = [
+        "--set",
+        steep,
+        "--sensitivity",
+        "/fluid/viscosity_pa_s",
+        "--sensitivity",
+        "/beam/young_modulus_pa",
+    ];
     let output = run(&whole, &asked);
     assert!(output.status.success(), "{}", stderr(&output));
     for limit in ["0.012", "0.02", "0.033", "0.041"] {
         stopped_after(&out, &asked, limit.parse().expect("a number"));
         let before = contents(&out);
-        let refused = run(&out, &["--set", steep, "--resume", "--sensitivity", "/beam/density_kg_m3"]);
+        let refused = run(
+            &out,
+            &["--set", steep, "--resume", "--sensitivity", "/beam/density_kg_m3"],
+        );
         assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
         unchanged(&out, &before, "refused");
         let output = run(&out, &["--set", steep, "--resume"]);
         assert!(output.status.success(), "{}", stderr(&output));
         same(&whole, &out).expect("the same end");
         let rows = |dir: &Path| fs::read(dir.join("sensitivities.csv")).expect("derivatives");
-        assert!(rows(&whole) == rows(&out), "stopped after {limit} s: derivatives differ");
+        assert!(
+            rows(&whole) == rows(&out),
+            "stopped after {limit} s: derivatives differ"
+        );
         fs::remove_dir_all(&out).expect("it goes");
     }
 }
@@ -363,7 +477,10 @@ fn stopped_after(out: &Path, more: &[&str], t: f64) {
     let checkpoint = (t / 0.01).floor() * 0.01;
     let there = || {
         let text = fs::read_to_string(out.join("checkpoint.json")).unwrap_or_default();
-        let at = text.split("\"t\":").nth(1).and_then(|rest| rest.split(',').next()?.parse::<f64>().ok());
+        let at = text
+            .split("\"t\":")
+            .nth(1)
+            .and_then(|rest| rest.split(',').next()?.parse::<f64>().ok());
         at.is_some_and(|at| at > checkpoint - 1e-9)
     };
     while !there() && child.try_wait().expect("its state").is_none() {
@@ -387,7 +504,8 @@ fn outputs_before_the_window_are_left_to_their_envelope() {
     let table = |path: std::path::PathBuf| -> Vec<Vec<f64>> {
         let text = fs::read_to_string(&path).expect("a table");
         let rows = text.lines().skip(1);
-        rows.map(|row| row.split(',').map(|x| x.parse().expect("a number")).collect()).collect()
+        rows.map(|row| row.split(',').map(|x| x.parse().expect("a number")).collect())
+            .collect()
     };
     let whole = table(all.join("history.csv"));
     for (thinned, every) in THINNED.into_iter().zip([usize::MAX, 7]) {
@@ -407,7 +525,10 @@ fn outputs_before_the_window_are_left_to_their_envelope() {
         assert_eq!(envelope.iter().map(|row| row[2]).sum::<f64>(), outside.len() as f64);
         let mut seen = 0;
         for stretch in &envelope {
-            let rows: Vec<_> = outside.iter().filter(|row| (stretch[0]..=stretch[1]).contains(&row[0])).collect();
+            let rows: Vec<_> = outside
+                .iter()
+                .filter(|row| (stretch[0]..=stretch[1]).contains(&row[0]))
+                .collect();
             assert_eq!(rows.len() as f64, stretch[2]);
             for k in 1..whole[0].len() {
                 let values = rows.iter().map(|row| row[k]);
@@ -415,7 +536,11 @@ fn outputs_before_the_window_are_left_to_their_envelope() {
                 assert_eq!(of[0], values.clone().fold(f64::INFINITY, f64::min));
                 assert_eq!(of[1], values.clone().fold(f64::NEG_INFINITY, f64::max));
                 let mean = values.sum::<f64>() / rows.len() as f64;
-                assert!((of[2] - mean).abs() <= 1e-12 * of[0].abs().max(of[1].abs()), "{} {mean}", of[2]);
+                assert!(
+                    (of[2] - mean).abs() <= 1e-12 * of[0].abs().max(of[1].abs()),
+                    "{} {mean}",
+                    of[2]
+                );
             }
             seen += rows.len();
         }

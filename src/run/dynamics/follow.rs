@@ -155,7 +155,10 @@ impl Run<'_> {
         while let Some(Due { t, output }) = self.outputs.due(until) {
             if asked.elapsed() >= PATIENCE {
                 asked = Instant::now();
-                if let Control::Stop(reason) = recorder.progress(&Progress { t: within, ..self.latest })? {
+                if let Control::Stop(reason) = recorder.progress(&Progress {
+                    t: within,
+                    ..self.latest
+                })? {
                     self.summary.time_s = within;
                     self.output_wall += begin.elapsed().as_secs_f64();
                     return Ok(Some(End::Stopped(reason)));
