@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::observe::Observed;
-use super::sensitivity::forward::Kept;
+use super::sensitivity::kept::Kept;
 use super::summary::Counters;
 use crate::case::Case;
 use crate::case::parameter::Parameter;

@@ -158,7 +158,7 @@ pub fn at_start_watched(
 ) -> Result<Vec<f64>, SolverFault> {
     let statics = growing(case, dae.system().model.at_rest(case), at_s);
     let mut from = BeamDae::new(statics.clone());
-    let path = path::to_last(case, statics, &Options::at(at_s), &mut |_| ask());
+    let path = path::follow_of(case, statics, &Options::at(at_s), false, &mut |_| ask());
     if let Some(fault) = path.fault {
         return Err(SolverFault {
             time_s: 0.0,

@@ -38,17 +38,8 @@ pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> C
     follow_of(case, system(case, options.at_s), options, true, watch)
 }
 
-/// The same of another static system of the case, of which the last state is wanted: whether those on the way hold is not judged.
-pub(super) fn to_last(
-    case: &Case,
-    system: System,
-    options: &Options,
-    watch: &mut dyn FnMut(&State) -> Control,
-) -> Path {
-    follow_of(case, system, options, false, watch)
-}
-
-fn follow_of(
+/// The same of another static system of the case; whether its states hold is judged where that is wanted.
+pub(super) fn follow_of(
     case: &Case,
     system: System,
     options: &Options,

@@ -5,9 +5,8 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
-
 use super::figures::{Figures, Sensitivity};
+use super::kept::Kept;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, Neighbours};
@@ -38,31 +37,6 @@ pub struct Forward<'a> {
     carried: Vec<Vec<f64>>,
     figures: Vec<Figures>,
     row: Vec<f64>,
-}
-
-/// What a checkpoint keeps of sensitivities, from which they go on.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Kept {
-    /// The numbers by which is differentiated.
-    pub parameters: Vec<Parameter>,
-    s: Vec<Vec<f64>>,
-    sp: Vec<Vec<f64>>,
-    carried: Vec<Vec<f64>>,
-    figures: Vec<Figures>,
-}
-
-impl Kept {
-    /// Whether there is one finite number for each unknown and each parameter.
-    pub fn fits(&self, unknowns: usize, integrals: usize) -> bool {
-        let fits = |all: &[Vec<f64>], len: usize| {
-            let sound = |of: &Vec<f64>| of.len() == len && of.iter().all(|x| x.is_finite());
-            all.len() == self.parameters.len() && all.iter().all(sound)
-        };
-        fits(&self.s, unknowns)
-            && fits(&self.sp, unknowns)
-            && fits(&self.carried, integrals)
-            && self.figures.len() == self.parameters.len()
-    }
 }
 
 /// What must be known of the moment before a switch.
