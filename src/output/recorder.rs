@@ -95,8 +95,10 @@ impl FolderRecorder {
         let aside = if began { None } else { self.folder.set_aside()? };
         let mut drawn = vec![];
         // the pictures are drawn from the envelope, too
-        let besides = [self.envelope.take(), self.sensitivities.take()].into_iter().flatten();
-        let besides = besides.fold(Ok(()), |so_far, mut rows| so_far.and(rows.secure().map(|_| ())));
+        let mut besides = Ok(());
+        for mut rows in [self.envelope.take(), self.sensitivities.take()].into_iter().flatten() {
+            besides = besides.and(rows.secure().map(|_| ()));
+        }
         let completed = match self.open.take() {
             Some((history, arrays)) => self.complete(history, arrays, &mut drawn),
             None => Ok(()),

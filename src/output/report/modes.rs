@@ -41,8 +41,8 @@ pub fn data(place: &Place) -> Result<Map<String, Value>> {
         "status",
         json!({"word": if stable { "stable" } else { "unstable" }, "tone": if stable { "good" } else { "bad" }, "reason": null}),
     );
-    let warnings = found.get("warnings").cloned().filter(Value::is_array);
-    let mut warnings = warnings.unwrap_or_else(|| json!([]));
+    let warnings = found.get("warnings").and_then(Value::as_array);
+    let mut warnings = warnings.cloned().unwrap_or_default();
     put(
         "answer",
         format!(
@@ -63,13 +63,11 @@ pub fn data(place: &Place) -> Result<Map<String, Value>> {
     put("table", sheet::read(&place.path(CSV), |name| COLUMNS.contains(&name)));
     put("modes", found.get("modes").cloned().unwrap_or_default());
     let shapes = shapes(&place.path(ARRAYS));
-    if let Err(e) = &shapes
-        && e.kind() != io::ErrorKind::NotFound
-    {
+    if let Some(e) = shapes.as_ref().err().filter(|e| e.kind() != io::ErrorKind::NotFound) {
         let told = format!("{ARRAYS} cannot be read ({e}), so no shapes are shown.");
-        warnings.as_array_mut().map(|all| all.push(told.into()));
+        warnings.push(told.into());
     }
-    put("warnings", warnings);
+    put("warnings", warnings.into());
     put("shapes", shapes.unwrap_or_default());
     put("picture", json!(place.picture(PICTURE)));
     put(

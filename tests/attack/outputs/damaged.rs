@@ -12,8 +12,11 @@ use zip::{CompressionMethod, ZipWriter};
 use super::{answered, bounded, copied, read_by_all};
 use crate::program::{CASE, run, slcbeam, stderr};
 
+/// Name, description and count of the numbers of an array.
+type Told = (&'static str, String, usize);
+
 /// An archive of arrays with any descriptions.
-fn archive(path: &Path, entries: &[(&str, String, usize)]) {
+fn archive(path: &Path, entries: &[Told]) {
     let mut npz = ZipWriter::new(fs::File::create(path).expect("a file"));
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
     for (name, description, numbers) in entries {
@@ -42,7 +45,7 @@ fn outputs_that_lie_about_their_size_are_refused() {
         "{{'descr': {}, 'fortran_order': False, 'shape': (11,), }}",
         "(".repeat(60_000)
     );
-    let lies: [(&str, Vec<(&str, String, usize)>); 9] = [
+    let lies: [(&str, Vec<Told>); 9] = [
         (
             "24 GB of times",
             vec![("t_fields_s.npy", described("(3000000000,)"), 11)],
