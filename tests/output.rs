@@ -55,6 +55,7 @@ fn header() -> Header {
         len,
     };
     Header {
+        envelope: vec![],
         columns: COLUMNS
             .map(|(name, unit)| Column {
                 name: name.into(),

@@ -1,5 +1,6 @@
 //! A number of a case by which results are differentiated.
 
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 use serde_json::Value;
@@ -15,7 +16,7 @@ const PARTS: [&str; 8] = [
 ];
 
 /// A number of a case, found by its JSON pointer; defaults that are not written count too.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     /// Where it stands.
     pub pointer: String,

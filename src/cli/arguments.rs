@@ -111,7 +111,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "REL", conflicts_with = "resume")]
     pub accuracy: Option<f64>,
     /// Give derivatives with respect to this number of the case too, repeatable: a JSON pointer, such as /fluid/viscosity_pa_s
-    #[arg(long = "sensitivity", value_name = "POINTER", conflicts_with_all = ["resume", "accuracy"])]
+    #[arg(long = "sensitivity", value_name = "POINTER", conflicts_with = "accuracy")]
     pub sensitivities: Vec<String>,
     /// Go on from the last checkpoint in the result folder (needs /time/checkpoint_interval_s in the case)
     #[arg(long, conflicts_with = "force")]

@@ -19,8 +19,8 @@ const CHANGES: usize = 8;
 
 /// Reads both folders, compares, draws when asked, prints.
 pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
-    let a = reading::read(&asked.a)?;
-    let b = reading::read(&asked.b)?;
+    let a = reading::read(&asked.a)?.without_gaps();
+    let b = reading::read(&asked.b)?.without_gaps();
     let found = differences(&a, &b);
     if let Some(path) = &asked.out {
         let text = comparison::picture(&a, &b, &found)

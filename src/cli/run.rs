@@ -1,7 +1,6 @@
 //! `slcbeam run`.
 
 use std::cell::RefCell;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
@@ -18,7 +17,7 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::model::characteristic;
 use crate::output::checkpoint;
-use crate::output::folder::{CASE, HISTORY, ResultFolder, fault};
+use crate::output::folder::{CASE, HISTORY, ResultFolder, text_of};
 use crate::output::kind::Kind;
 use crate::output::recorder::{Finished, FolderRecorder, Hook, Labels};
 use crate::output::report;
@@ -51,7 +50,7 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
         aside,
     } = match (accuracy, asked.resume) {
         (Some(accuracy), _) => reach(case, accuracy, asked.place.claim(&loaded, Kind::Run)?, &hook)?,
-        (None, true) => resume(case, &out, &hook)?,
+        (None, true) => resume(case, &parameters(case, &asked.sensitivities)?, &out, &hook)?,
         (None, false) => {
             let parameters = parameters(case, &asked.sensitivities)?;
             record(case, &parameters, asked.place.claim(&loaded, Kind::Run)?, &hook)?
@@ -178,11 +177,11 @@ fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, hook: &SharedHook
 }
 
 /// Goes on from the newest checkpoint. What does not fit is told before anything is touched; a run that has ended is left as it is.
-fn resume(case: &Case, out: &Path, hook: &SharedHook) -> Result<Recorded> {
+fn resume(case: &Case, asked: &[Parameter], out: &Path, hook: &SharedHook) -> Result<Recorded> {
     let folder = ResultFolder::again(out)?;
     let Some((saved, damage)) = checkpoint::read(out)? else {
         return Ok(Recorded {
-            outcome: ended(case, &folder)?,
+            outcome: ended(case, asked, &folder)?,
             finished: None,
             aside: None,
         });
@@ -191,6 +190,10 @@ fn resume(case: &Case, out: &Path, hook: &SharedHook) -> Result<Recorded> {
         return Err(another_case(&saved.run.case, case, "the checkpoint"));
     }
     saved.run.fits(case)?;
+    let kept = saved.run.forward.as_ref().map_or(&[][..], |kept| &kept.parameters);
+    if !asked.is_empty() && asked != kept {
+        return Err(other_derivatives(kept));
+    }
     if let Some(damage) = damage {
         terminal::tell(&format!("slcbeam: {damage}; going on from the one before"));
     }
@@ -200,7 +203,7 @@ fn resume(case: &Case, out: &Path, hook: &SharedHook) -> Result<Recorded> {
 }
 
 /// A run without a checkpoint that has ended: its outcome as it was told; leftovers of its raw arrays go.
-fn ended(case: &Case, folder: &ResultFolder) -> Result<Outcome> {
+fn ended(case: &Case, asked: &[Parameter], folder: &ResultFolder) -> Result<Outcome> {
     let summary = summary::read(folder.dir())
         .ok()
         .filter(|s| s.status == Status::Finished);
@@ -210,13 +213,30 @@ fn ended(case: &Case, folder: &ResultFolder) -> Result<Outcome> {
             "{dir} holds no checkpoint to resume from; a case writes some with /time/checkpoint_interval_s"
         ))
     })?;
-    let there = fs::read_to_string(folder.path(CASE)).map_err(|e| fault("read", &folder.path(CASE), e))?;
+    let there = text_of(&folder.path(CASE))?;
     if there != case.resolved_json() {
         return Err(another_case(&there, case, "the result"));
+    }
+    if !asked.iter().all(|p| summary.sensitivities.contains_key(&p.pointer)) {
+        return Err(Error::Usage(
+            "--sensitivity: the run had ended without these derivatives; run it again without --resume".into(),
+        ));
     }
     folder.remove_raw()?;
     terminal::tell("slcbeam: the run had ended; nothing to resume");
     Ok(Outcome { summary, fault: None })
+}
+
+/// Says by what numbers the run that is gone on with is differentiated.
+fn other_derivatives(kept: &[Parameter]) -> Error {
+    let kept: Vec<&str> = kept.iter().map(|p| p.pointer.as_str()).collect();
+    let kept = match kept.is_empty() {
+        true => "no number".into(),
+        false => kept.join(", "),
+    };
+    Error::Usage(format!(
+        "--sensitivity: the run in the folder is differentiated by {kept}, which goes on without naming it again; nothing was changed"
+    ))
 }
 
 /// Says where two cases differ.

@@ -11,19 +11,25 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 
 use super::arrays::Marks;
-use super::folder::{CHECKPOINT, CHECKPOINT_BEFORE, ResultFolder, fault};
+use super::folder::{CHECKPOINT, CHECKPOINT_BEFORE, ResultFolder, fault, open};
 use super::stream::Mark;
 use crate::error::Result;
 use crate::run::checkpoint::Checkpoint;
 
 /// Number of the format.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// A checkpoint on disk.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
     /// What of `history.csv` belongs to it.
     pub history: Mark,
+    /// What of `envelope.csv` does, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub envelope: Option<Mark>,
+    /// What of `sensitivities.csv` does, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensitivities: Option<Mark>,
     /// What of each raw file of fields does.
     pub fields: Marks,
     /// The run.
@@ -80,11 +86,12 @@ pub fn read(dir: &Path) -> Result<Option<(Saved, Option<String>)>> {
 }
 
 fn one(path: &Path) -> Result<Option<Saved>> {
-    let text = match fs::read(path) {
+    let mut text = vec![];
+    match open(path).and_then(|mut file| file.read_to_end(&mut text)) {
         Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(e) => return Err(fault("read", path, e)),
-        Ok(text) => text,
-    };
+        Ok(_) => {}
+    }
     let damaged = |why: &str| {
         Err(fault(
             "go on from",

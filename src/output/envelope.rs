@@ -1,10 +1,11 @@
 //! A history of any length, read back in one pass into bounded memory: least and largest value of each column in each
 //! of at most so many stretches of time.
 
+use std::fs::File;
 use std::io;
 use std::path::Path;
 
-use super::folder::fault;
+use super::folder::{ENVELOPE, HISTORY, fault, open};
 use crate::error::Result;
 
 /// Least and largest value of a stretch, each with its time.
@@ -62,24 +63,18 @@ impl Envelope {
         }
     }
 
-    /// Reads `history.csv`. A last line cut short, as a killed run leaves it, is passed over.
-    pub fn read(path: &Path, most: usize) -> Result<Self> {
-        let failed = |e: csv::Error| fault("read", path, io::Error::from(e));
-        let mut reader = csv::ReaderBuilder::new()
-            .flexible(true)
-            .from_path(path)
-            .map_err(failed)?;
-        let names = reader.headers().map_err(failed)?.iter().map(split_name).collect();
-        let mut envelope = Self::new(names, most);
-        let mut record = csv::StringRecord::new();
-        let mut row = Vec::new();
-        while reader.read_record(&mut record).map_err(failed)? {
-            row.clear();
-            row.extend(record.iter().map_while(|x| x.trim().parse::<f64>().ok()));
-            if row.len() == envelope.names.len() {
-                envelope.push(&row);
+    /// Reads the history of a folder, and before the window what is left of it, where not all was written. A last line cut short, as
+    /// a killed run leaves it, is passed over.
+    pub fn read(dir: &Path, most: usize) -> Result<Self> {
+        let mut envelope = Self::new(vec![], most);
+        each_row(dir, |names, source, row| {
+            if envelope.names.is_empty() {
+                envelope.names = names.to_vec();
             }
-        }
+            if source != Source::Covered {
+                envelope.push(row);
+            }
+        })?;
         Ok(envelope)
     }
 
@@ -169,6 +164,94 @@ impl Envelope {
         }
         columns
     }
+}
+
+/// Where a row of a curve comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A row of the history that is drawn.
+    History,
+    /// A row of the history before the window, where the envelope tells more.
+    Covered,
+    /// The envelope.
+    Rest,
+}
+
+/// Names and units of the columns of a history.
+pub type Names = [(String, String)];
+
+/// All rows of a folder in order of time, with the names of their columns: those of the envelope, least values where a stretch begins
+/// and greatest ones where it ends, then those of the history. Rows of the history that the envelope covers come where they stand.
+pub fn each_row(dir: &Path, mut take: impl FnMut(&Names, Source, &[f64])) -> Result<()> {
+    let path = dir.join(HISTORY);
+    let (names, mut rows) = table(&path)?;
+    let covered = dir.join(ENVELOPE);
+    let mut until = f64::NEG_INFINITY;
+    if covered.is_file() {
+        let (own, mut stretches) = table(&covered)?;
+        let mut both = [vec![], vec![]];
+        while let Some(row) = stretches.next()? {
+            if own.len() != 3 * names.len() || row.len() != own.len() || row[1] < row[0] || row[0] < until {
+                continue;
+            }
+            until = row[1];
+            for (k, values) in both.iter_mut().enumerate() {
+                values.clear();
+                values.push(row[k]);
+                values.extend(row[3..].chunks_exact(3).map(|of| of[k]));
+            }
+            take(&names, Source::Rest, &both[0]);
+            if row[1] > row[0] {
+                take(&names, Source::Rest, &both[1]);
+            }
+        }
+    }
+    while let Some(row) = rows.next()? {
+        if row.len() == names.len() && !row.is_empty() {
+            let source = if row[0] <= until {
+                Source::Covered
+            } else {
+                Source::History
+            };
+            take(&names, source, row);
+        }
+    }
+    Ok(())
+}
+
+/// Rows of a table of numbers, each as far as it is one.
+struct Rows<'a> {
+    path: &'a Path,
+    reader: csv::Reader<File>,
+    record: csv::StringRecord,
+    row: Vec<f64>,
+}
+
+impl Rows<'_> {
+    fn next(&mut self) -> Result<Option<&[f64]>> {
+        let read = self.reader.read_record(&mut self.record);
+        if !read.map_err(|e| fault("read", self.path, io::Error::from(e)))? {
+            return Ok(None);
+        }
+        self.row.clear();
+        let numbers = self.record.iter().map_while(|x| x.trim().parse::<f64>().ok());
+        self.row.extend(numbers);
+        Ok(Some(&self.row))
+    }
+}
+
+fn table(path: &Path) -> Result<(Vec<(String, String)>, Rows<'_>)> {
+    let failed = |e: csv::Error| fault("read", path, io::Error::from(e));
+    let file = open(path).map_err(|e| fault("read", path, e))?;
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(file);
+    let names = reader.headers().map_err(failed)?.iter().map(split_name).collect();
+    let rows = Rows {
+        path,
+        reader,
+        record: csv::StringRecord::new(),
+        row: vec![],
+    };
+    Ok((names, rows))
 }
 
 /// `tip_u1 [m]` into name and unit.

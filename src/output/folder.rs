@@ -18,6 +18,8 @@ pub const CASE: &str = "case.json";
 pub const SUMMARY: &str = "summary.json";
 /// One row an output time.
 pub const HISTORY: &str = "history.csv";
+/// What is left of output times that the history leaves out.
+pub const ENVELOPE: &str = "envelope.csv";
 /// Derivatives of the history's columns, one row an output time.
 pub const SENSITIVITIES: &str = "sensitivities.csv";
 /// Arrays over time and space.
@@ -39,12 +41,13 @@ pub const PICTURES: [&str; 4] = ["deflection.svg", "pressure.svg", "history.svg"
 /// How the names of folders begin in which candidates are recorded.
 const CANDIDATE: &str = ".next-";
 /// Files of a run; the summary goes first: without it the rest does not pass for a finished run.
-pub const RUN_FILES: [&str; 10] = [
+pub const RUN_FILES: [&str; 11] = [
     SUMMARY,
     CHECKPOINT,
     CHECKPOINT_BEFORE,
     FIELDS,
     HISTORY,
+    ENVELOPE,
     SENSITIVITIES,
     PICTURES[0],
     PICTURES[1],
@@ -324,6 +327,34 @@ fn part_of(target: &Path) -> PathBuf {
     target.with_file_name(format!(".{name}.{}.part", std::process::id()))
 }
 
+/// Largest text of a result that is read whole [byte]; tables and arrays are read piece by piece.
+const LARGEST: u64 = 64 << 20;
+
+/// Opens a file of a result to read it: a pipe or a device, which may never end, is none.
+pub(crate) fn open(path: &Path) -> io::Result<File> {
+    if fs::metadata(path)?.is_file() {
+        return File::open(path);
+    }
+    let why = "it is no file with an end";
+    Err(io::Error::new(io::ErrorKind::InvalidInput, why))
+}
+
+/// The text of a file of a result.
+pub(crate) fn text_of(path: &Path) -> Result<String> {
+    let read = || -> io::Result<String> {
+        let mut file = open(path)?;
+        let there = file.metadata()?.len();
+        if there > LARGEST {
+            let why = format!("it has {there} bytes; no such file of a result has more than {LARGEST}");
+            return Err(io::Error::new(io::ErrorKind::InvalidData, why));
+        }
+        let mut text = String::new();
+        file.read_to_string(&mut text)?;
+        Ok(text)
+    };
+    read().map_err(|e| fault("read", path, e))
+}
+
 /// An output error with its place.
 pub(crate) fn fault(action: &'static str, path: &Path, source: io::Error) -> Error {
     Error::Output {
@@ -361,7 +392,7 @@ fn foreign(dir: &Path, kind: Kind) -> Result<Option<String>> {
         let own = history_begins_with_time(&dir.join(HISTORY));
         return Ok((!own).then(|| format!("its {HISTORY} is none of slcbeam's")));
     }
-    let text = fs::read_to_string(&sign).ok();
+    let text = text_of(&sign).ok();
     let own = text.and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok());
     let own = own.is_some_and(|v| v.get("case").is_some());
     Ok((!own).then(|| format!("its {} is none of slcbeam's", kind.sign())))

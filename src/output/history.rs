@@ -55,6 +55,16 @@ impl HistoryWriter {
         })
     }
 
+    /// The same of a file whose columns are as many as its first line has.
+    pub fn reopen_named(path: &Path, mark: Mark) -> Result<Self> {
+        let columns = || -> csv::Result<usize> {
+            let mut reader = csv::Reader::from_path(path)?;
+            Ok(reader.headers()?.len())
+        };
+        let columns = columns().map_err(|e| fault("read", path, io::Error::from(e)))?;
+        Self::reopen(path, columns, mark)
+    }
+
     /// All rows so far, safe on disk.
     pub fn secure(&mut self) -> Result<Mark> {
         self.flush()?;

@@ -7,6 +7,7 @@
 //! history   history.csv, row by row
 //! envelope  a history of any length, read back in bounded memory
 //! arrays    fields.npz, streamed through raw files
+//! npz       arrays back from such a file, checked against it
 //! checkpoint  where an interrupted run goes on
 //! recorder  the Recorder that ties them together
 //! summary   summary.json, there and back
@@ -41,6 +42,7 @@ pub mod history;
 pub mod kind;
 pub mod machine;
 pub mod modes;
+pub mod npz;
 pub mod numbers;
 pub mod periodic;
 pub mod pictures;

@@ -1,15 +1,13 @@
 //! A result folder back into memory, to be compared with another.
 
-use std::fs::{self, File};
-use std::io::{self, BufReader};
+use std::io;
 use std::path::Path;
 
-use npyz::NpyFile;
 use serde_json::Value;
-use zip::ZipArchive;
 
 use super::arrays::TIMES;
-use super::folder::{CASE, FIELDS, HISTORY, fault};
+use super::folder::{CASE, FIELDS, HISTORY, fault, open, text_of};
+use super::npz::{Npz, damaged};
 use super::summary;
 use crate::error::Result;
 use crate::study::compare::{Array, Recording, Series};
@@ -17,7 +15,7 @@ use crate::study::compare::{Array, Recording, Series};
 /// Reads all files of a result.
 pub fn read(dir: &Path) -> Result<Recording> {
     let path = dir.join(CASE);
-    let text = fs::read_to_string(&path).map_err(|e| fault("read", &path, e))?;
+    let text = text_of(&path)?;
     let case: Value = serde_json::from_str(&text).map_err(|e| fault("read", &path, io::Error::from(e)))?;
     let summary = summary::read(dir)?;
     let path = dir.join(HISTORY);
@@ -27,6 +25,10 @@ pub fn read(dir: &Path) -> Result<Recording> {
         return Err(fault("read", &path, why));
     }
     let times = columns.remove(0).values;
+    if let Err(k) = ascending(&times) {
+        let why = damaged(format!("its times are not in order at row {k}"));
+        return Err(fault("read", &path, why));
+    }
     let mut out = Recording {
         label: dir.display().to_string(),
         case,
@@ -44,7 +46,7 @@ pub fn read(dir: &Path) -> Result<Recording> {
 
 /// Columns `name [unit]`. A last row that an interruption cut short is left out.
 fn history(path: &Path) -> io::Result<Vec<Series>> {
-    let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(path)?;
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(open(path)?);
     let mut columns: Vec<Series> = reader
         .headers()?
         .iter()
@@ -70,26 +72,36 @@ fn history(path: &Path) -> io::Result<Vec<Series>> {
     Ok(columns)
 }
 
+/// Arrays over time have as many instants as there are times.
 fn arrays(path: &Path, out: &mut Recording) -> io::Result<()> {
-    let mut npz = ZipArchive::new(BufReader::new(File::open(path)?))?;
-    for k in 0..npz.len() {
-        let entry = npz.by_index(k)?;
-        let Some(name) = entry.name()?.strip_suffix(".npy").map(String::from) else {
-            continue;
-        };
-        let array = NpyFile::new(entry)?;
-        let shape = array.shape().to_vec();
-        let values: Vec<f64> = array.into_vec()?;
-        match shape.as_slice() {
-            [_] if name == TIMES => out.field_times = values,
-            [_] => out.axes.push((name, values)),
-            [_, len] => out.fields.push(Array {
-                name,
-                len: *len as usize,
+    let mut npz = Npz::open(path)?;
+    for entry in npz.entries().to_vec() {
+        let values = npz.read(&entry.name)?;
+        match entry.shape.as_slice() {
+            [_] if entry.name == TIMES => out.field_times = values,
+            [_] => out.axes.push((entry.name, values)),
+            _ => out.fields.push(Array {
+                len: entry.width(),
+                name: entry.name,
                 values,
             }),
-            _ => {}
         }
     }
-    Ok(())
+    let instants = out.field_times.len();
+    for field in &out.fields {
+        if field.len == 0 || field.values.len() != instants * field.len {
+            let rows = field.values.len().checked_div(field.len).unwrap_or(0);
+            return Err(damaged(format!(
+                "{} has {rows} instants of {} places, {TIMES} has {instants}",
+                field.name, field.len
+            )));
+        }
+    }
+    ascending(&out.field_times).map_err(|k| damaged(format!("{TIMES} is not in order at its number {k}")))
+}
+
+/// Whether numbers do not fall, all finite; else which does.
+fn ascending(numbers: &[f64]) -> std::result::Result<(), usize> {
+    let follows = |k: &usize| numbers[*k].is_finite() && (*k == 0 || numbers[*k] >= numbers[*k - 1]);
+    (0..numbers.len()).find(|k| !follows(k)).map_or(Ok(()), Err)
 }

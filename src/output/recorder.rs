@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use super::arrays::ArraysWriter;
 use super::checkpoint::{self, Saved};
 use super::envelope::Envelope;
-use super::folder::{CHECKPOINT, CHECKPOINT_BEFORE, FIELDS, HISTORY, RAW_FIELDS, ResultFolder, SENSITIVITIES, SUMMARY};
+use super::folder::{
+    CHECKPOINT, CHECKPOINT_BEFORE, ENVELOPE, FIELDS, HISTORY, RAW_FIELDS, ResultFolder, SENSITIVITIES, SUMMARY,
+};
 use super::history::HistoryWriter;
 use super::pictures::{self, STRETCHES};
 use super::stream::Stream;
@@ -39,6 +41,7 @@ pub struct FolderRecorder {
     labels: Labels,
     hook: Hook,
     open: Option<(HistoryWriter, ArraysWriter)>,
+    envelope: Option<HistoryWriter>,
     sensitivities: Option<HistoryWriter>,
 }
 
@@ -50,6 +53,7 @@ impl FolderRecorder {
             labels,
             hook,
             open: None,
+            envelope: None,
             sensitivities: None,
         }
     }
@@ -64,11 +68,21 @@ impl FolderRecorder {
         let (history, raw) = (folder.path(HISTORY), folder.path(RAW_FIELDS));
         Stream::verify(&history, saved.history)?;
         ArraysWriter::verify(&raw, header, &saved.fields)?;
+        let besides = [(ENVELOPE, saved.envelope), (SENSITIVITIES, saved.sensitivities)];
+        for (name, mark) in besides {
+            mark.map_or(Ok(()), |mark| Stream::verify(&folder.path(name), mark))?;
+        }
         folder.remove(SUMMARY)?;
         let history = HistoryWriter::reopen(&history, header.columns.len(), saved.history)?;
         let arrays = ArraysWriter::reopen(&raw, header, &saved.fields)?;
+        let [envelope, sensitivities] = besides.map(|(name, mark)| {
+            let path = folder.path(name);
+            mark.map(|mark| HistoryWriter::reopen_named(&path, mark)).transpose()
+        });
         Ok(Self {
             open: Some((history, arrays)),
+            envelope: envelope?,
+            sensitivities: sensitivities?,
             ..Self::new(folder, labels, hook)
         })
     }
@@ -81,16 +95,19 @@ impl FolderRecorder {
         let began = self.open.is_some();
         let aside = if began { None } else { self.folder.set_aside()? };
         let mut drawn = vec![];
+        // the pictures are drawn from the envelope, too
+        let mut besides = Ok(());
+        for mut rows in [self.envelope.take(), self.sensitivities.take()].into_iter().flatten() {
+            besides = besides.and(rows.secure().map(|_| ()));
+        }
         let completed = match self.open.take() {
             Some((history, arrays)) => self.complete(history, arrays, &mut drawn),
             None => Ok(()),
         };
-        let derivatives = self.sensitivities.take();
-        let derived = derivatives.map_or(Ok(()), |mut rows| rows.secure().map(|_| ()));
         // The summary matters most: it is tried whatever could not be written before.
         let cased = self.folder.write_case(&self.labels.case);
         let told = summary::write(&self.folder, summary);
-        completed.and(derived).and(cased).and(told.map(|_| ()))?;
+        completed.and(besides).and(cased).and(told.map(|_| ()))?;
         self.folder.secure()?;
         for (name, text) in drawn {
             self.folder.write(name, text.as_bytes())?;
@@ -110,9 +127,8 @@ impl FolderRecorder {
     ) -> Result<()> {
         history.secure()?;
         drop(history);
-        let path = self.folder.path(HISTORY);
         let case = &self.labels.case_name;
-        *drawn = pictures::over_time(case, &Envelope::read(&path, STRETCHES)?);
+        *drawn = pictures::over_time(case, &Envelope::read(self.folder.dir(), STRETCHES)?);
         drawn.extend(pictures::over_space(case, self.labels.frequency_hz, &mut arrays)?);
         arrays.finish(&self.folder.path(FIELDS))
     }
@@ -153,6 +169,10 @@ impl Recorder for FolderRecorder {
         let history = HistoryWriter::create(&self.folder.path(HISTORY), &header.columns)?;
         let arrays = ArraysWriter::create(&self.folder.path(RAW_FIELDS), header)?;
         self.folder.write_case(&self.labels.case)?;
+        if !header.envelope.is_empty() {
+            let path = self.folder.path(ENVELOPE);
+            self.envelope = Some(HistoryWriter::with_names(&path, header.envelope.clone())?);
+        }
         if !header.sensitivities.is_empty() {
             let path = self.folder.path(SENSITIVITIES);
             self.sensitivities = Some(HistoryWriter::with_names(&path, header.sensitivities.clone())?);
@@ -163,6 +183,10 @@ impl Recorder for FolderRecorder {
 
     fn history(&mut self, row: &[f64]) -> Result<()> {
         self.open.as_mut().map_or(Ok(()), |(history, _)| history.row(row))
+    }
+
+    fn envelope(&mut self, row: &[f64]) -> Result<()> {
+        self.envelope.as_mut().map_or(Ok(()), |rows| rows.row(row))
     }
 
     fn sensitivities(&mut self, row: &[f64]) -> Result<()> {
@@ -183,8 +207,11 @@ impl Recorder for FolderRecorder {
         let Some((history, arrays)) = self.open.as_mut() else {
             return Ok(());
         };
+        let secured = |rows: &mut Option<HistoryWriter>| rows.as_mut().map(HistoryWriter::secure).transpose();
         let saved = Saved {
             history: history.secure()?,
+            envelope: secured(&mut self.envelope)?,
+            sensitivities: secured(&mut self.sensitivities)?,
             fields: arrays.secure()?,
             run: checkpoint.clone(),
         };

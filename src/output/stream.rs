@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::folder::fault;
+use super::folder::{fault, open};
 use crate::error::Result;
 
 /// Bytes read at once.
@@ -50,7 +50,7 @@ impl Stream {
     pub fn verify(path: &Path, mark: Mark) -> Result<()> {
         let verify = || -> io::Result<()> {
             let damaged = |why: String| Err(io::Error::new(io::ErrorKind::InvalidData, why));
-            let file = File::open(path)?;
+            let file = open(path)?;
             let there = file.metadata()?.len();
             if there < mark.bytes {
                 return damaged(format!(

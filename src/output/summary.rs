@@ -1,12 +1,11 @@
 //! `summary.json`, there and back. What is not finite is written as null, or left out of maps.
 
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
 
-use super::folder::{ResultFolder, SUMMARY, fault};
+use super::folder::{ResultFolder, SUMMARY, fault, text_of};
 use crate::error::Result;
 use crate::run::summary::{Quantity, Summary};
 
@@ -44,7 +43,7 @@ pub fn write(folder: &ResultFolder, summary: &Summary) -> Result<PathBuf> {
 /// Reads the summary of a result folder; nulls come back as NaN.
 pub fn read(dir: &Path) -> Result<Summary> {
     let path = dir.join(SUMMARY);
-    let text = fs::read_to_string(&path).map_err(|e| fault("read", &path, e))?;
+    let text = text_of(&path)?;
     from_json(&text).map_err(|e| fault("read", &path, io::Error::from(e)))
 }
 

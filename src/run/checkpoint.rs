@@ -6,8 +6,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::observe::Observed;
+use super::sensitivity::kept::Kept;
 use super::summary::Counters;
 use crate::case::Case;
+use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Error, Result};
 
@@ -34,6 +36,9 @@ pub struct Checkpoint {
     pub counters: Counters,
     /// What the observer has seen.
     pub observed: Observed,
+    /// Sensitivities, where there are some.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub forward: Option<Kept>,
 }
 
 impl Checkpoint {
@@ -60,6 +65,16 @@ impl Checkpoint {
             || !self.t.is_finite()
         {
             return fault("has numbers that are not finite");
+        }
+        if let Some(kept) = &self.forward {
+            if !kept.fits(unknowns, self.integrals.len()) {
+                return fault("has derivatives of another number of unknowns than the case");
+            }
+            for kept in &kept.parameters {
+                if Parameter::find(case, &kept.pointer)? != *kept {
+                    return fault("has derivatives by a number that is another in the case");
+                }
+            }
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! One run in time: from a case to samples and a summary.
 
+mod begin;
 mod faults;
 mod finish;
 mod follow;
@@ -12,7 +13,6 @@ use faults::{fault, inconsistent, stalled, too_many_steps};
 use pace::Pace;
 
 use super::checkpoint::Checkpoint;
-use super::equilibrium;
 use super::growth::Linear;
 use super::known;
 use super::method::{self, Integrator, Options};
@@ -24,7 +24,7 @@ use super::strides::Strides;
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
 use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
-use crate::dae::{BeamDae, Dae};
+use crate::dae::BeamDae;
 use crate::discrete::{System, start};
 use crate::error::{Result, SolverFault};
 use crate::model::{audit, characteristic};
@@ -73,7 +73,8 @@ pub fn header(case: &Case) -> Header {
 /// Goes on from a checkpoint of the same case; the recorder holds what was recorded before it.
 pub fn resume(case: &Case, checkpoint: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
     checkpoint.fits(case)?;
-    let (run, dae) = Run::new(case, &[])?;
+    let parameters = checkpoint.forward.as_ref().map_or(&[][..], |kept| &kept.parameters);
+    let (run, dae) = Run::new(case, parameters)?;
     run.go(dae, Some(checkpoint), recorder)
 }
 
@@ -95,6 +96,8 @@ struct Run<'a> {
     forward: Option<Forward<'a>>,
     held: Option<String>,
     begin: Instant,
+    /// Where the last step ended.
+    latest: Progress,
     output_wall: f64,
     state: Vec<f64>,
     rates: Vec<f64>,
@@ -200,6 +203,13 @@ impl<'a> Run<'a> {
             forward: None,
             held: None,
             begin,
+            latest: Progress {
+                t: 0.0,
+                end: case.time.end_s,
+                steps: 0,
+                step: 0.0,
+                order: 0,
+            },
             output_wall: 0.0,
             state: vec![],
             rates: vec![],
@@ -225,9 +235,9 @@ impl Run<'_> {
                 let (system, now) = dae.instant(0.0);
                 self.state = start::state(system, self.case, now);
                 if let Some(start) = &self.case.start.equilibrium {
-                    match equilibrium::at_start(self.case, start.loads_at_s, &mut dae, &self.state) {
+                    match self.seek(start.loads_at_s, &mut dae, recorder)? {
                         Ok(state) => self.state = state,
-                        Err(fault) => return Ok(self.finish(End::Failed(fault))),
+                        Err(end) => return Ok(self.finish(end)),
                     }
                 }
                 (0.0, 0)
@@ -245,6 +255,7 @@ impl Run<'_> {
             }
             _ => dae.look_within(ahead),
         }
+        let before = from.and_then(|c| self.before(&mut dae, c));
         let consistent = match from.map(|c| self.stops[c.stop].switches) {
             Some(true) => self.switch(&mut dae, t, ahead),
             Some(false) => None,
@@ -252,37 +263,16 @@ impl Run<'_> {
                 .map_err(|failure| inconsistent(t, &failure))
                 .err(),
         };
-        let consistent = consistent.or_else(|| self.begin_forward(&mut dae).err());
+        let consistent = consistent.or_else(|| match from {
+            None => self.begin_forward(&mut dae).err(),
+            Some(checkpoint) => self.go_on_forward(&mut dae, checkpoint, before).err(),
+        });
         let header = from.is_none().then(|| self.header(dae.system()));
         let end = match consistent {
             Some(fault) => End::Failed(fault),
             None => self.solve(dae, t, first_stop, header, recorder)?,
         };
         Ok(self.finish(end))
-    }
-
-    fn header(&self, system: &System) -> Header {
-        let mut header = Observer::header(self.case, system);
-        if let Some(forward) = &self.forward {
-            header.sensitivities = forward.names(&header.columns);
-        }
-        header
-    }
-
-    fn begin_forward(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverFault> {
-        let Some(forward) = &mut self.forward else {
-            return Ok(());
-        };
-        forward.begin(dae)?;
-        forward.complete(dae, 0.0, [&self.state, &self.rates])
-    }
-
-    /// Room for the values of a system.
-    fn prepare(&mut self, dae: &BeamDae) {
-        self.state = vec![0.0; dae.len()];
-        self.rates = vec![0.0; dae.len()];
-        self.integrals = vec![0.0; dae.integrals()];
-        self.carried = vec![0.0; dae.integrals()];
     }
 
     /// From the present state, which is consistent, to the end.
@@ -304,19 +294,11 @@ impl Run<'_> {
                 }
                 header.map_or(Ok(()), |header| recorder.begin(&header))?;
                 let end = self.integrate(&mut solver, first_stop, recorder)?;
+                self.observer.close(recorder)?;
                 self.count(&solver);
                 Ok(end)
             }
         }
-    }
-
-    fn take_up(&mut self, checkpoint: &Checkpoint) {
-        self.state.clone_from(&checkpoint.y);
-        self.rates.clone_from(&checkpoint.yp);
-        self.carried.clone_from(&checkpoint.integrals);
-        self.earlier.clone_from(&checkpoint.counters);
-        self.observer.seen.clone_from(&checkpoint.observed);
-        self.outputs.go_on(checkpoint.next_output, checkpoint.t);
     }
 
     fn integrate(
@@ -348,17 +330,18 @@ impl Run<'_> {
                     .estimate
                     .step(method, &step, [solver.y(), solver.yp()]);
                 self.observer.seen.estimate.erred(step.size, solver.local_errors());
-                if let Some(end) = self.follow(solver, from, recorder)? {
-                    return Ok(end);
-                }
                 let steps = solver.steps();
                 let progress = Progress {
                     t: step.time,
-                    end: self.case.time.end_s,
                     steps: self.earlier.steps + steps,
                     step: step.size,
                     order: step.order,
+                    ..self.latest
                 };
+                self.latest = progress;
+                if let Some(end) = self.follow(solver, from, recorder)? {
+                    return Ok(end);
+                }
                 if let Control::Stop(reason) = recorder.progress(&progress)? {
                     return Ok(End::Stopped(reason));
                 }

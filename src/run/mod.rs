@@ -25,5 +25,6 @@ pub mod record;
 pub mod residuals;
 pub mod schedule;
 pub mod sensitivity;
+pub mod stretch;
 pub mod strides;
 pub mod summary;

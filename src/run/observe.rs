@@ -1,6 +1,6 @@
 //! What a run looks at on its way: at every accepted step whatever may invalidate it, at output times what is recorded.
 
-use crate::case::schema::Case;
+use crate::case::schema::{Case, Thinning};
 use crate::dae::BeamDae;
 use crate::discrete::glance::{Glance, Watched};
 use crate::discrete::ledger::{self, Invariants};
@@ -19,6 +19,7 @@ use super::growth::Growth;
 use super::range::{Limits, Range};
 use super::record::{Axis, Column, Field, Header, Recorder};
 use super::residuals::Residuals;
+use super::stretch::{self, Stretch, Stretches};
 
 /// What may turn between two steps.
 const TURNING: [Watched; Watched::COUNT] = [
@@ -60,6 +61,9 @@ pub struct Observed {
     pub integrals: Vec<f64>,
     /// Stored energies at the last sample.
     pub stored: ledger::Energies,
+    /// Outputs before the window that are not written one by one.
+    #[serde(default)]
+    stretch: Stretch,
 }
 
 /// Watches a run, samples it for its recorder and keeps what the summary needs.
@@ -67,6 +71,8 @@ pub struct Observer {
     half_height: f64,
     cell_order: Vec<usize>,
     fields_every: u64,
+    thinning: Thinning,
+    stretches: Stretches,
     row: Vec<f64>,
     limits: Limits,
     /// The end of the last step, or the start of the first after a switch.
@@ -90,6 +96,8 @@ impl Observer {
             half_height: 0.5 * case.beam.height_m,
             cell_order,
             fields_every,
+            thinning: case.time.history,
+            stretches: Stretches::new(case),
             row: Vec::new(),
             limits: Limits::new(case, system),
             before: None,
@@ -150,7 +158,7 @@ impl Observer {
                 fluid.cells,
             ));
         }
-        let columns = sample::columns(system)
+        let columns: Vec<Column> = sample::columns(system)
             .into_iter()
             .map(|(name, unit, about)| Column {
                 name: name.into(),
@@ -158,8 +166,13 @@ impl Observer {
                 about: about.into(),
             })
             .collect();
+        let envelope = match case.time.history {
+            Thinning::All => vec![],
+            _ => stretch::names(&columns),
+        };
         Header {
             columns,
+            envelope,
             axes,
             fields,
             sensitivities: vec![],
@@ -272,7 +285,8 @@ impl Observer {
         self.turning.dedup_by(|next, kept| *next - *kept < APART * h);
     }
 
-    /// Takes a scaled state into the figures, in order of time, and records it as the output of a number, if it is one.
+    /// Takes a scaled state into the figures, in order of time, and records it as the output of a number, if it is one. Whether it
+    /// was written.
     #[allow(clippy::too_many_arguments)]
     pub fn sample(
         &mut self,
@@ -283,7 +297,7 @@ impl Observer {
         yp: &[f64],
         integrals: &[f64],
         recorder: &mut dyn Recorder,
-    ) -> Result<()> {
+    ) -> Result<bool> {
         let half_height = self.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
         let glance = Glance::new(system, now, t, half_height, w);
@@ -300,8 +314,17 @@ impl Observer {
         self.seen.integrals.copy_from_slice(integrals);
         self.seen.stored = balance.stored;
         let Some(number) = output else {
-            return Ok(());
+            return Ok(false);
         };
+        if self.thinning != Thinning::All {
+            let stretch = self.stretches.of(t);
+            if let Some(row) = self.seen.stretch.take(stretch, &self.row) {
+                recorder.envelope(&row)?;
+            }
+            if stretch.is_some() && !self.thinning.keeps(number) {
+                return Ok(false);
+            }
+        }
         recorder.history(&self.row)?;
         if number.is_multiple_of(self.fields_every) {
             let along = |values: &[f64]| -> Vec<f64> { self.cell_order.iter().map(|&c| values[c]).collect() };
@@ -312,7 +335,15 @@ impl Observer {
             }
             recorder.fields(t, &arrays)?;
         }
-        Ok(())
+        Ok(true)
+    }
+
+    /// Records what a run that ends has not yet.
+    pub fn close(&mut self, recorder: &mut dyn Recorder) -> Result<()> {
+        match self.seen.stretch.close() {
+            Some(row) => recorder.envelope(&row),
+            None => Ok(()),
+        }
     }
 
     /// The last row of the history.

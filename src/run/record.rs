@@ -51,6 +51,8 @@ pub struct Header {
     pub axes: Vec<Axis>,
     /// Fields.
     pub fields: Vec<Field>,
+    /// Columns of what is left of output times that are not written, names with units; empty when all are written.
+    pub envelope: Vec<String>,
     /// Columns of derivatives, names with units, the first `t [s]`; empty when none were asked for.
     pub sensitivities: Vec<String>,
 }
@@ -89,9 +91,13 @@ pub trait Recorder {
     fn sensitivities(&mut self, _: &[f64]) -> Result<()> {
         Ok(())
     }
+    /// One stretch of output times; length of `header.envelope`.
+    fn envelope(&mut self, _: &[f64]) -> Result<()> {
+        Ok(())
+    }
     /// One instant of all fields, in the order of `header.fields`.
     fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()>;
-    /// Called after every accepted step; cheap.
+    /// Called after every accepted step, and now and then where much is done within one; cheap.
     fn progress(&mut self, progress: &Progress) -> Result<Control>;
     /// Called at every checkpoint time; everything before it must be safe when this returns.
     fn checkpoint(&mut self, _: &Checkpoint) -> Result<()> {

@@ -6,6 +6,7 @@ mod flips;
 mod folders;
 mod fuzz;
 mod inputs;
+mod outputs;
 mod pipes;
 mod power;
 mod program;

@@ -66,6 +66,39 @@ pub struct Time {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub checkpoint_interval_s: Option<f64>,
+    /// Which output times before the window are written; absent: all. Where not all are, `envelope.csv` has the least, the greatest
+    /// and the mean value of each column over each cycle of the drive, or over each thousandth of the run.
+    #[serde(default, skip_serializing_if = "Thinning::is_none")]
+    pub history: Thinning,
+}
+
+/// Which output times before the window are written to history and fields, besides the first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Thinning {
+    /// All.
+    #[default]
+    All,
+    /// None.
+    Window,
+    /// Every so manyth.
+    Every(#[schemars(range(min = 1))] u64),
+}
+
+impl Thinning {
+    /// Whether all are.
+    pub fn is_none(&self) -> bool {
+        *self == Self::All
+    }
+
+    /// Whether the output of a number before the window is.
+    pub fn keeps(self, number: u64) -> bool {
+        match self {
+            Self::All => true,
+            Self::Window => number == 0,
+            Self::Every(count) => number.is_multiple_of(count.max(1)),
+        }
+    }
 }
 
 impl Time {

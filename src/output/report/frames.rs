@@ -1,15 +1,13 @@
 //! Fields of a run at chosen instants and places: as many as a page can hold.
 
-use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io;
 use std::path::Path;
 
-use npyz::NpyFile;
 use serde_json::{Value, json};
-use zip::ZipArchive;
 
 use super::pack;
 use crate::output::arrays::TIMES;
+use crate::output::npz::{Npz, damaged};
 use crate::output::plot;
 
 /// Numbers of all frames together; four bytes each, a third more as text.
@@ -23,28 +21,22 @@ const MOST_PRESSURES: usize = 400;
 /// Curves of the last cycle.
 const CURVES: usize = 24;
 
-/// One-dimensional arrays, and the shapes of the others.
+/// One-dimensional arrays.
 struct Contents {
     axes: Vec<(String, Vec<f64>)>,
-    lengths: Vec<(String, usize)>,
 }
 
 impl Contents {
-    fn read(npz: &mut ZipArchive<BufReader<File>>) -> io::Result<Self> {
-        let (mut axes, mut lengths) = (vec![], vec![]);
-        for k in 0..npz.len() {
-            let entry = npz.by_index(k)?;
-            let Some(name) = entry.name()?.strip_suffix(".npy").map(String::from) else {
-                continue;
-            };
-            let array = NpyFile::new(entry)?;
-            match array.shape().to_vec().as_slice() {
-                [_] => axes.push((name, array.into_vec()?)),
-                [_, len] => lengths.push((name, *len as usize)),
-                _ => {}
-            }
-        }
-        Ok(Self { axes, lengths })
+    fn read(npz: &mut Npz) -> io::Result<Self> {
+        let names = npz.entries().iter().filter(|e| e.shape.len() == 1);
+        let names: Vec<String> = names.map(|e| e.name.clone()).collect();
+        let axes = names.into_iter().map(|name| {
+            let values = npz.read(&name)?;
+            Ok((name, values))
+        });
+        Ok(Self {
+            axes: axes.collect::<io::Result<_>>()?,
+        })
     }
 
     fn axis(&self, name: &str) -> &[f64] {
@@ -59,7 +51,7 @@ impl Contents {
 ///
 /// The file cannot be read as arrays.
 pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
-    let mut npz = ZipArchive::new(BufReader::new(File::open(path)?))?;
+    let mut npz = Npz::open(path)?;
     let contents = Contents::read(&mut npz)?;
     let times = contents.axis(TIMES);
     let theta = contents.axis("theta_node_m");
@@ -74,11 +66,14 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
     let kept: Vec<f64> = chosen.iter().map(|&k| times[k]).collect();
     let alone: Vec<Vec<usize>> = nodes.iter().map(|&k| vec![k]).collect();
     let mut field = |name: &str, groups: &[Vec<usize>]| -> io::Result<Value> {
-        let Some(len) = contents.lengths.iter().find(|l| l.0 == name).map(|l| l.1) else {
+        let Some(entry) = npz.entry(name) else {
             return Ok(Value::Null);
         };
-        let entry = npz.by_name(&format!("{name}.npy")).map_err(io::Error::from)?;
-        Ok(pack::numbers(rows(entry, len, &chosen, groups)?))
+        if entry.rows() != times.len() {
+            let why = format!("{name} has {} instants, {TIMES} has {}", entry.rows(), times.len());
+            return Err(damaged(why));
+        }
+        Ok(pack::numbers(rows(&mut npz, name, &chosen, groups)?))
     };
     let (span, cycle) = plot::instants(&kept, frequency, CURVES);
     let first = |name: &str| pack::numbers(groups.iter().map(|g| mean(g, contents.axis(name))));
@@ -131,22 +126,21 @@ fn mean(group: &[usize], values: &[f64]) -> f64 {
     sum / group.len() as f64
 }
 
-/// Means over groups of places at chosen instants. Reads row by row: a file may be larger than memory.
-fn rows(entry: impl Read, len: usize, chosen: &[usize], groups: &[Vec<usize>]) -> io::Result<Vec<f64>> {
-    let mut values = NpyFile::new(entry)?.data::<f64>().map_err(io::Error::other)?;
+/// Means over groups of places at chosen instants.
+fn rows(npz: &mut Npz, name: &str, chosen: &[usize], groups: &[Vec<usize>]) -> io::Result<Vec<f64>> {
+    let mut rows = npz.rows(name)?;
     let mut out = Vec::with_capacity(chosen.len() * groups.len());
-    let mut row = vec![0.0; len];
+    let mut row = vec![];
     let mut at = 0;
     for &instant in chosen {
-        for _ in 0..(instant - at) * len {
-            values.next().transpose()?;
+        for _ in at..instant {
+            rows.pass()?;
         }
-        for x in &mut row {
-            *x = values.next().transpose()?.unwrap_or(f64::NAN);
-        }
+        rows.next(&mut row)?;
         at = instant + 1;
         out.extend(groups.iter().map(|g| mean(g, &row)));
     }
+    rows.finish()?;
     Ok(out)
 }
 

@@ -1,6 +1,5 @@
 //! `history.csv`, thinned to what a screen can show; no peak is lost.
 
-use std::io;
 use std::path::Path;
 
 use serde_json::{Map, Value, json};
@@ -9,8 +8,8 @@ use super::pack;
 use crate::case::Case;
 use crate::discrete::System;
 use crate::error::Result;
-use crate::output::envelope::Envelope;
-use crate::output::folder::{HISTORY, fault};
+use crate::output::envelope::{Envelope, Source, each_row};
+use crate::output::folder::{ENVELOPE, HISTORY};
 use crate::output::numbers::count;
 use crate::run::observe::Observer;
 
@@ -26,6 +25,8 @@ pub struct History {
     first: Vec<f64>,
     last: Vec<f64>,
     rows: u64,
+    /// Ends of stretches of which least and greatest values alone were written.
+    stretches: u64,
 }
 
 impl History {
@@ -35,31 +36,26 @@ impl History {
         if !path.is_file() {
             return Ok(Self::default());
         }
-        Self::of(&path).map_err(|e| fault("read", &path, io::Error::from(e)))
-    }
-
-    fn of(path: &Path) -> csv::Result<Self> {
-        let mut reader = csv::ReaderBuilder::new().flexible(true).from_path(path)?;
-        let names: Vec<(String, String)> = reader.headers()?.iter().map(split).collect();
-        let mut envelope = Envelope::new(names.clone(), STRETCHES);
-        let mut found = Self {
-            names,
-            ..Self::default()
-        };
-        let mut record = csv::StringRecord::new();
-        while reader.read_record(&mut record)? {
-            let row: Vec<f64> = record.iter().map_while(|x| x.trim().parse().ok()).collect();
-            // A last line may be cut short where a run was killed.
-            if row.len() != found.names.len() {
-                continue;
+        let mut found = Self::default();
+        let mut envelope = Envelope::default();
+        each_row(dir, |names, source, row| {
+            if found.names.is_empty() {
+                found.names = names.to_vec();
+                envelope = Envelope::new(found.names.clone(), STRETCHES);
             }
-            envelope.push(&row);
+            if source != Source::Covered {
+                envelope.push(row);
+            }
+            if source == Source::Rest {
+                found.stretches += 1;
+                return;
+            }
             if found.rows == 0 {
-                found.first.clone_from(&row);
+                found.first = row.to_vec();
             }
-            found.last = row;
+            found.last = row.to_vec();
             found.rows += 1;
-        }
+        })?;
         found.columns = envelope.columns();
         Ok(found)
     }
@@ -96,12 +92,21 @@ impl History {
             Value::Object(all)
         });
         let shown = self.columns.first().map_or(0, Vec::len) as u64;
-        let note = (shown < self.rows).then(|| {
+        let note = (shown < self.rows && self.stretches == 0).then(|| {
             format!(
                 "{} output times were written; of every stretch of {} the smallest and the largest value are shown.",
                 count(self.rows),
                 count(self.rows.div_ceil(shown.div_ceil(2).max(1)))
             )
+        });
+        let note = note.or_else(|| {
+            (self.stretches > 0).then(|| {
+                format!(
+                    "{} output times were written, most of them in the window at the end; before it the smallest and the largest value \
+                     of every stretch of {ENVELOPE} are shown.",
+                    count(self.rows)
+                )
+            })
         });
         json!({"columns": columns.collect::<Vec<_>>(), "note": note, "rows": self.rows})
     }
@@ -116,13 +121,5 @@ fn group(name: &str, unit: &str) -> &'static str {
         ("energy_residual", _) => "Unexplained",
         (_, "J") => "Work done and lost",
         _ => "More",
-    }
-}
-
-/// `tip_u1 [m]` into name and unit.
-fn split(heading: &str) -> (String, String) {
-    match heading.trim().strip_suffix(']').and_then(|h| h.rsplit_once(" [")) {
-        Some((name, unit)) => (name.to_string(), unit.to_string()),
-        None => (heading.trim().to_string(), "1".to_string()),
     }
 }

@@ -39,11 +39,12 @@ mod studies;
 mod warnings;
 
 use std::fs;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
-use super::folder::{CASE, REPORT, ResultFolder, replace};
+use super::folder::{CASE, REPORT, ResultFolder, open, replace, text_of};
 use super::kind::Kind;
 use crate::case::{self, Case};
 use crate::error::Result;
@@ -123,7 +124,7 @@ impl<'a> Place<'a> {
             dir,
             // A case of an older or newer program may no longer be one; the page then goes without what needs it.
             case: case::load(&path, &[]).ok().map(|loaded| loaded.case),
-            case_text: fs::read_to_string(path).ok(),
+            case_text: text_of(&path).ok(),
         }
     }
 
@@ -134,15 +135,18 @@ impl<'a> Place<'a> {
     /// A JSON file of the folder.
     fn json(&self, name: &str) -> Result<Value> {
         let path = self.path(name);
-        let text = fs::read_to_string(&path).map_err(|e| super::folder::fault("read", &path, e))?;
+        let text = text_of(&path)?;
         serde_json::from_str(&text).map_err(|e| super::folder::fault("read", &path, e.into()))
     }
 
     /// A picture of the folder as data of an image.
     fn picture(&self, name: &str) -> Option<String> {
-        let bytes = fs::read(self.path(name))
-            .ok()
-            .filter(|bytes| bytes.len() < LARGEST_TEXT)?;
+        let mut bytes = vec![];
+        let file = open(&self.path(name)).ok()?;
+        file.take(LARGEST_TEXT as u64).read_to_end(&mut bytes).ok()?;
+        if bytes.len() == LARGEST_TEXT {
+            return None;
+        }
         Some(pack::image("image/svg+xml", &bytes))
     }
 

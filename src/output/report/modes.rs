@@ -1,17 +1,15 @@
 //! The page of `modes`: frequencies, damping and moving shapes.
 
-use std::fs::File;
-use std::io::{self, BufReader};
+use std::io;
 use std::path::Path;
 
-use npyz::NpyFile;
 use serde_json::{Map, Value, json};
-use zip::ZipArchive;
 
 use super::{Kind, Place, pack, sheet};
 use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::modes::{ARRAYS, CSV, JSON, PICTURE};
+use crate::output::npz::Npz;
 use crate::output::numbers::count;
 
 /// Columns of the table that a reader needs; the file has the rest.
@@ -43,7 +41,8 @@ pub fn data(place: &Place) -> Result<Map<String, Value>> {
         "status",
         json!({"word": if stable { "stable" } else { "unstable" }, "tone": if stable { "good" } else { "bad" }, "reason": null}),
     );
-    put("warnings", found.get("warnings").cloned().unwrap_or_default());
+    let warnings = found.get("warnings").and_then(Value::as_array);
+    let mut warnings = warnings.cloned().unwrap_or_default();
     put(
         "answer",
         format!(
@@ -63,7 +62,13 @@ pub fn data(place: &Place) -> Result<Map<String, Value>> {
     );
     put("table", sheet::read(&place.path(CSV), |name| COLUMNS.contains(&name)));
     put("modes", found.get("modes").cloned().unwrap_or_default());
-    put("shapes", shapes(&place.path(ARRAYS)).unwrap_or_default());
+    let shapes = shapes(&place.path(ARRAYS));
+    if let Some(e) = shapes.as_ref().err().filter(|e| e.kind() != io::ErrorKind::NotFound) {
+        let told = format!("{ARRAYS} cannot be read ({e}), so no shapes are shown.");
+        warnings.push(told.into());
+    }
+    put("warnings", warnings.into());
+    put("shapes", shapes.unwrap_or_default());
     put("picture", json!(place.picture(PICTURE)));
     put(
         "passivity",
@@ -92,12 +97,11 @@ pub fn data(place: &Place) -> Result<Map<String, Value>> {
 
 /// Amplitudes and phases, mode after mode; of many modes on a fine mesh the first ones.
 fn shapes(path: &Path) -> io::Result<Value> {
-    let mut npz = ZipArchive::new(BufReader::new(File::open(path)?))?;
+    let mut npz = Npz::open(path)?;
     let mut read = |name: &str| -> io::Result<(Vec<usize>, Vec<f64>)> {
-        let entry = npz.by_name(&format!("{name}.npy")).map_err(io::Error::from)?;
-        let array = NpyFile::new(entry)?;
-        let shape = array.shape().iter().map(|&n| n as usize).collect();
-        Ok((shape, array.into_vec()?))
+        let values = npz.read(name)?;
+        let shape = npz.entry(name).map(|e| e.shape.clone()).unwrap_or_default();
+        Ok((shape, values))
     };
     let mut all = Map::new();
     let (nodes, theta) = read("theta_m")?;

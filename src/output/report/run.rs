@@ -1,6 +1,5 @@
 //! The page of a run, or of a cycle of `periodic`.
 
-use std::fs;
 use std::io;
 
 use serde_json::{Map, Value, json};
@@ -9,7 +8,7 @@ use super::history::History;
 use super::{Kind, Place, books, cycles, facts, frames};
 use crate::error::Result;
 use crate::model::characteristic;
-use crate::output::folder::{CASE, FIELDS, SUMMARY};
+use crate::output::folder::{CASE, FIELDS, SUMMARY, text_of};
 use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
 use crate::output::periodic::CYCLE;
 use crate::output::summary;
@@ -51,7 +50,7 @@ pub fn data(place: &Place) -> Result<Map<String, Value>> {
     };
     put("motion", motion);
     put("history", history.json(place.case.as_ref()));
-    let cycle = fs::read_to_string(place.path(CYCLE)).ok();
+    let cycle = text_of(&place.path(CYCLE)).ok();
     let cycle = cycle.and_then(|text| serde_json::from_str::<Value>(&text).ok());
     match &summary {
         Some(summary) => fill(&mut all, summary, &history, &notes),

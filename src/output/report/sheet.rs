@@ -5,12 +5,14 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::MOST_ROWS;
+use crate::output::folder::open;
 
 /// Headings and rows of chosen columns, numbers as numbers; null when there is no such file.
 pub fn read(path: &Path, wanted: impl Fn(&str) -> bool) -> Value {
-    let Ok(mut reader) = csv::ReaderBuilder::new().flexible(true).from_path(path) else {
+    let Ok(file) = open(path) else {
         return Value::Null;
     };
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(file);
     let Ok(headings) = reader.headers().cloned() else {
         return Value::Null;
     };

@@ -1,14 +1,17 @@
 //! Follows the accepted steps of a run: reads states within them, takes samples, finds where the model was left.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::faults::beyond;
 use super::{End, Run};
 use crate::dae::BeamDae;
 use crate::error::Result;
 use crate::run::method::Integrator;
-use crate::run::record::Recorder;
+use crate::run::record::{Control, Progress, Recorder};
 use crate::run::schedule::Due;
+
+/// Wall time after which a recorder is asked whether to go on, however many samples a step has.
+const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Halvings of a step in search of the time at which the model was left.
 const HALVINGS: u32 = 30;
@@ -138,6 +141,7 @@ impl Run<'_> {
     }
 
     /// Takes every sample that is due, the ends of the window among them, up to a time `until` [s] within the last step, which began at `from` [s].
+    /// Of very many the recorder is asked in between whether to go on.
     pub(super) fn sample(
         &mut self,
         solver: &mut Integrator<BeamDae>,
@@ -145,10 +149,22 @@ impl Run<'_> {
         until: f64,
         recorder: &mut dyn Recorder,
     ) -> Result<Option<End>> {
-        let mut begin = None;
+        let (begin, mut asked) = (Instant::now(), Instant::now());
         let mut within = from;
+        let mut taken = false;
         while let Some(Due { t, output }) = self.outputs.due(until) {
-            begin.get_or_insert_with(Instant::now);
+            if asked.elapsed() >= PATIENCE {
+                asked = Instant::now();
+                if let Control::Stop(reason) = recorder.progress(&Progress {
+                    t: within,
+                    ..self.latest
+                })? {
+                    self.summary.time_s = within;
+                    self.output_wall += begin.elapsed().as_secs_f64();
+                    return Ok(Some(End::Stopped(reason)));
+                }
+            }
+            taken = true;
             if let Err(end) = self.read(solver, t.max(from)) {
                 return Ok(Some(end));
             }
@@ -165,7 +181,7 @@ impl Run<'_> {
             }
             within = t;
         }
-        if let Some(begin) = begin {
+        if taken {
             self.output_wall += begin.elapsed().as_secs_f64();
         }
         Ok(None)
@@ -179,7 +195,7 @@ impl Run<'_> {
         t: f64,
         recorder: &mut dyn Recorder,
     ) -> Result<Option<End>> {
-        self.observer.sample(
+        let written = self.observer.sample(
             solver.dae_mut(),
             output,
             t,
@@ -190,7 +206,7 @@ impl Run<'_> {
         )?;
         if let (Some(forward), Some(ida)) = (&mut self.forward, solver.ida_mut()) {
             match forward.sample(ida, t, [&self.state, &self.rates], self.observer.row()) {
-                Ok(row) if output.is_some() => recorder.sensitivities(row)?,
+                Ok(row) if written => recorder.sensitivities(row)?,
                 Ok(_) => {}
                 Err(failure) => {
                     return Ok(Some(End::Stopped(format!(

@@ -8,6 +8,7 @@ use crate::run::checkpoint::{Checkpoint, VERSION};
 use crate::run::method::Integrator;
 use crate::run::record::Recorder;
 use crate::run::schedule::Stop;
+use crate::run::sensitivity::forward::Forward;
 use crate::run::summary::Counters;
 use crate::sundials::{StartOptions, consistent_start};
 
@@ -45,6 +46,13 @@ impl Run<'_> {
         for (carried, more) in self.carried.iter_mut().zip(&self.integrals) {
             *carried += more;
         }
+        let before = match (&mut self.forward, solver.ida_mut()) {
+            (Some(forward), Some(ida)) => match forward.leave(ida, t, [&self.state, &self.rates]) {
+                Ok(before) => Some(before),
+                Err(failure) => return Ok(Some(fault(&failure))),
+            },
+            _ => None,
+        };
         if checkpoint {
             self.count(solver);
             recorder.checkpoint(&Checkpoint {
@@ -61,15 +69,9 @@ impl Run<'_> {
                     ..self.summary.solver.clone()
                 },
                 observed: self.observer.seen.clone(),
+                forward: self.forward.as_ref().map(Forward::kept),
             })?;
         }
-        let before = match (&mut self.forward, solver.ida_mut()) {
-            (Some(forward), Some(ida)) => match forward.leave(ida, t, [&self.state, &self.rates]) {
-                Ok(before) => Some(before),
-                Err(failure) => return Ok(Some(fault(&failure))),
-            },
-            _ => None,
-        };
         let dae = solver.dae_mut();
         let ahead = 0.5 * (t + next);
         if !switches {

@@ -142,9 +142,23 @@ fn growing(case: &Case, mut model: Model, at_s: f64) -> System {
 /// # Errors
 /// There is no equilibrium, or no way to it from rest.
 pub fn at_start(case: &Case, at_s: f64, dae: &mut BeamDae, y: &[f64]) -> Result<Vec<f64>, SolverFault> {
+    at_start_watched(case, at_s, dae, y, &mut || Control::Continue)
+}
+
+/// The same; `ask` is asked at every point of the path whether to go on.
+///
+/// # Errors
+/// As [`at_start`], or it was told to stop.
+pub fn at_start_watched(
+    case: &Case,
+    at_s: f64,
+    dae: &mut BeamDae,
+    y: &[f64],
+    ask: &mut dyn FnMut() -> Control,
+) -> Result<Vec<f64>, SolverFault> {
     let statics = growing(case, dae.system().model.at_rest(case), at_s);
     let mut from = BeamDae::new(statics.clone());
-    let path = path::follow_of(case, statics, &Options::at(at_s), &mut |_| Control::Continue);
+    let path = path::follow_of(case, statics, &Options::at(at_s), false, &mut |_| ask());
     if let Some(fault) = path.fault {
         return Err(SolverFault {
             time_s: 0.0,

@@ -35,14 +35,15 @@ const FURTHEST: f64 = 100.0;
 
 /// Follows the equilibria of a case from rest to a share of its loads. `watch` sees every state and may end the path.
 pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> Control) -> Path {
-    follow_of(case, system(case, options.at_s), options, watch)
+    follow_of(case, system(case, options.at_s), options, true, watch)
 }
 
-/// The same of another static system of the case.
+/// The same of another static system of the case; whether its states hold is judged where that is wanted.
 pub(super) fn follow_of(
     case: &Case,
     system: System,
     options: &Options,
+    judged: bool,
     watch: &mut dyn FnMut(&State) -> Control,
 ) -> Path {
     let (statics, y) = rest(case, system);
@@ -84,7 +85,9 @@ pub(super) fn follow_of(
                 watch,
             };
             let ended = follower.go(x);
-            follower.judge();
+            if judged {
+                follower.judge();
+            }
             path.fault = ended.err().map(|End(fault)| fault);
         }
     }

@@ -28,5 +28,6 @@ pub fn one_period(case: &Case, period: f64) -> Case {
     case.time.fields_interval_s = Some(period / OUTPUTS);
     case.time.window_s = Some(period);
     case.time.checkpoint_interval_s = None;
+    case.time.history = Default::default();
     case
 }

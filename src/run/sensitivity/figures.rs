@@ -17,7 +17,7 @@ pub struct Sensitivity {
 }
 
 /// Derivatives of the figures of one number: of a largest value, its own at the instant when it is reached.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Track {
     last: [f64; 2],
     first: Option<[f64; 2]>,
@@ -108,11 +108,11 @@ const SPENT: [(&str, f64); 6] = [
 const SPENT_NAME: &str = "spent";
 
 /// Follows a history and its derivatives; the quantities are those of [`crate::run::figures::Figures`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     window_start: f64,
     turbines: bool,
-    tracks: BTreeMap<&'static str, Track>,
+    tracks: BTreeMap<String, Track>,
 }
 
 impl Figures {
@@ -128,7 +128,10 @@ impl Figures {
     /// Takes one instant: `at` gives a column's value and its derivative, `None` where there is no such column.
     pub fn take(&mut self, t: f64, at: impl Fn(&str) -> Option<[f64; 2]>) {
         let in_window = t >= self.window_start;
-        let mut track = |name, now: [f64; 2]| self.tracks.entry(name).or_default().take(t, now, in_window);
+        let mut track = |name: &str, now: [f64; 2]| match self.tracks.get_mut(name) {
+            Some(track) => track.take(t, now, in_window),
+            None => self.tracks.entry(name.into()).or_default().take(t, now, in_window),
+        };
         for (column, name) in PLAIN {
             if let Some(now) = at(column) {
                 track(name, now);
@@ -154,11 +157,11 @@ impl Figures {
     /// The derivatives by quantity, per unit of the number.
     pub fn quantities(&self) -> BTreeMap<String, Quantity> {
         let mut all = BTreeMap::new();
-        for (&name, track) in self.tracks.iter().filter(|(name, _)| **name != SPENT_NAME) {
+        for (name, track) in self.tracks.iter().filter(|(name, _)| *name != SPENT_NAME) {
             let energy = name.ends_with("_j");
-            all.insert(name.to_owned(), if energy { track.energy() } else { track.sizes() });
+            all.insert(name.clone(), if energy { track.energy() } else { track.sizes() });
         }
-        let track = |name| self.tracks.get(name);
+        let track = |name: &str| self.tracks.get(name);
         if let (Some(harvested), Some(input), Some(spent)) =
             (track("harvested_energy_j"), track("input_energy_j"), track(SPENT_NAME))
         {

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::figures::{Figures, Sensitivity};
+use super::kept::Kept;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, Neighbours};
@@ -202,6 +203,31 @@ impl<'a> Forward<'a> {
             s: self.s.clone(),
             integrands: integrands(ida.dae_mut(), t, [y, yp]),
         })
+    }
+
+    /// What a checkpoint keeps; after [`Forward::leave`].
+    pub fn kept(&self) -> Kept {
+        Kept {
+            parameters: self.parameters.to_vec(),
+            s: self.s.clone(),
+            sp: self.sp.clone(),
+            carried: self.carried.clone(),
+            figures: self.figures.clone(),
+        }
+    }
+
+    /// Takes up what a checkpoint has kept at a state there; the left side of its stop.
+    pub fn take_up(&mut self, kept: &Kept, dae: &mut BeamDae, t: f64, [y, yp]: [&[f64]; 2]) -> Before {
+        self.s.clone_from(&kept.s);
+        self.sp.clone_from(&kept.sp);
+        self.carried.clone_from(&kept.carried);
+        self.figures.clone_from(&kept.figures);
+        Before {
+            state: y.to_vec(),
+            rates: yp.to_vec(),
+            s: self.s.clone(),
+            integrands: integrands(dae, t, [y, yp]),
+        }
     }
 
     /// Passes a switch, at the consistent state after it. Where the number moves the switching time t*, or the ends' signals at it,

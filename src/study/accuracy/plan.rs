@@ -37,6 +37,7 @@ impl Setting {
         let mut case = refined(case, self.cells, self.rtol);
         self.scheme.apply(&mut case.solver);
         case.time.checkpoint_interval_s = None;
+        case.time.history = Default::default();
         case
     }
 }

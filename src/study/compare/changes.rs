@@ -15,13 +15,14 @@ pub struct Change {
 }
 
 /// How a case is computed and not what it is.
-const NUMERICS: [&str; 6] = [
+const NUMERICS: [&str; 7] = [
     "/mesh",
     "/solver",
     "/time/output_interval_s",
     "/time/fields_interval_s",
     "/time/window_s",
     "/time/checkpoint_interval_s",
+    "/time/history",
 ];
 
 /// Names and words.

@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::run::schedule::SAME;
 use crate::run::summary::Summary;
 
 /// One column of a history.
@@ -55,6 +56,28 @@ pub struct Recording {
 }
 
 impl Recording {
+    /// The window alone, where not all output times before it were written: nothing is interpolated over what is not there.
+    pub fn without_gaps(mut self) -> Self {
+        let time = |key: &str| self.case["time"][key].as_f64().unwrap_or(0.0);
+        let kept = &self.case["time"]["history"];
+        if kept.is_null() || kept == "all" {
+            return self;
+        }
+        let begin = time("end_s") - time("window_s") * (1.0 + SAME);
+        let before = |times: &[f64]| times.partition_point(|t| *t < begin);
+        let rows = before(&self.times);
+        self.times.drain(..rows);
+        for column in &mut self.columns {
+            column.values.drain(..rows);
+        }
+        let instants = before(&self.field_times);
+        self.field_times.drain(..instants);
+        for field in &mut self.fields {
+            field.values.drain(..instants * field.len);
+        }
+        self
+    }
+
     /// A column by name.
     pub fn column(&self, name: &str) -> Option<&Series> {
         self.columns.iter().find(|c| c.name == name)

@@ -125,6 +125,7 @@ impl<'a> Search<'a> {
         });
         let mut case = case.clone();
         case.time.checkpoint_interval_s = None;
+        case.time.history = Default::default();
         let summary = dynamics::run(&case, &mut watch)?.summary;
         self.pilots.push(pilot(self.with(way), at, &summary));
         Ok((summary, stopped))

@@ -20,15 +20,18 @@ mod surface;
 mod tubes;
 
 use std::fs;
+use std::io;
 use std::path::Path;
 
 use super::Written;
 use super::staged::Staged;
 use crate::case::Case;
+use crate::discrete::System;
 use crate::error::Result;
 use crate::model::Model;
-use crate::output::folder::{VTK, fault};
+use crate::output::folder::{CASE, FIELDS, VTK, fault};
 use crate::output::numbers::shortest;
+use crate::run::observe::Observer;
 use crate::study::compare::Recording;
 use curve::Curve;
 use hollow::Hollow;
@@ -37,8 +40,12 @@ use surface::Surface;
 /// What is drawn, each a file an instant.
 const PARTS: [&str; 3] = ["beam", "bladders", "tubes"];
 
+/// Share of an axis by which two are the same, written by programs that round differently.
+const SAME: f64 = 1e-9;
+
 /// Writes `dir/vtk`; older files of the same kind there go first. Returns the path of the `.pvd`.
 pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> Result<Written> {
+    fits(case, from)?;
     let staged = Staged::new(dir, VTK)?;
     let scene = Scene::new(case, from);
     let digits = from.field_times.len().to_string().len();
@@ -64,6 +71,31 @@ pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> R
     // films of another choice of instants would mix with this one
     staged.place(|name| name.ends_with(".vtp") && PARTS.iter().any(|part| name.starts_with(&format!("{part}-"))))?;
     Ok(written)
+}
+
+/// That the arrays are those of the case: what is drawn is looked up in both.
+fn fits(case: &Case, from: &Recording) -> Result<()> {
+    let header = Observer::header(case, &System::new(case));
+    let path = Path::new(&from.label).join(FIELDS);
+    let other = |why: String| Err(fault("read", &path, io::Error::new(io::ErrorKind::InvalidData, why)));
+    for expected in &header.axes {
+        let there = from.axis(expected.name).unwrap_or_default();
+        let size = expected.values.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME * size;
+        if there.len() != expected.values.len() || !there.iter().zip(&expected.values).all(near) {
+            return other(format!("its {} is not that of {CASE}", expected.name));
+        }
+    }
+    for expected in &header.fields {
+        let there = from.field(expected.name).map_or(0, |f| f.len);
+        if there != expected.len {
+            return other(format!(
+                "its {} has {there} places, {CASE} makes {}",
+                expected.name, expected.len
+            ));
+        }
+    }
+    Ok(())
 }
 
 fn put(path: &Path, bytes: &[u8]) -> Result<u64> {

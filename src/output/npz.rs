@@ -1,0 +1,218 @@
+//! Arrays back from a `.npz`: what the file says of itself is held against its real size before anything is allocated, and what was
+//! read against its checksum.
+//!
+//! Read is what this program writes ([`super::arrays`]): entries that are stored, not deflated, of little-endian doubles, row by row.
+//! Anything else was written by something else, or is damaged.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read};
+use std::path::Path;
+
+use zip::ZipArchive;
+use zip::read::ZipFile;
+
+use super::folder::open;
+
+/// Longest description of an array [byte]; this program's have 118.
+const LONGEST: usize = 4096;
+/// Arrays at most; a result has some twenty.
+const MOST: usize = 1000;
+
+/// What an entry is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Name of the array.
+    pub name: String,
+    /// Lengths, one or two.
+    pub shape: Vec<usize>,
+}
+
+impl Entry {
+    /// Numbers that stand in a row: all of one axis, those of one instant of a field.
+    pub fn width(&self) -> usize {
+        self.shape[self.shape.len() - 1]
+    }
+
+    /// Rows; an axis is one.
+    pub fn rows(&self) -> usize {
+        if self.shape.len() == 1 { 1 } else { self.shape[0] }
+    }
+}
+
+/// A file of arrays, each of which fits into it.
+pub struct Npz {
+    zip: ZipArchive<BufReader<File>>,
+    entries: Vec<Entry>,
+}
+
+impl Npz {
+    /// Opens the file and looks at the description of every array.
+    ///
+    /// # Errors
+    ///
+    /// It is no such file; an array is said to be larger than its entry, or all entries together than the file, as where they lie over
+    /// each other; a name is none of an array.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        let file = open(path)?;
+        let there = file.metadata()?.len();
+        let mut zip = ZipArchive::new(BufReader::new(file))?;
+        if zip.len() > MOST {
+            return Err(damaged(format!(
+                "it says that it holds {} arrays; no result has more than {MOST}",
+                zip.len()
+            )));
+        }
+        let (mut entries, mut total) = (vec![], 0_u64);
+        for k in 0..zip.len() {
+            let mut entry = zip.by_index(k)?;
+            let size = entry.size();
+            total = total.saturating_add(size);
+            if total > there || entry.compressed_size() != size {
+                return Err(damaged(format!(
+                    "its arrays would have {total} bytes or more, the file has {there}"
+                )));
+            }
+            let name = entry.name()?.strip_suffix(".npy").map(String::from);
+            let name =
+                name.filter(|name| !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_'));
+            let Some(name) = name else {
+                return Err(damaged("an entry of it has not the name of an array".into()));
+            };
+            let shape = describe(&mut entry, size).map_err(|e| damaged(format!("{name}: {e}")))?;
+            entries.push(Entry { name, shape });
+        }
+        Ok(Self { zip, entries })
+    }
+
+    /// All arrays, in the order of the file.
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// An array by name.
+    pub fn entry(&self, name: &str) -> Option<&Entry> {
+        self.entries.iter().find(|e| e.name == name)
+    }
+
+    /// All numbers of an array.
+    ///
+    /// # Errors
+    ///
+    /// There is none of that name, it is cut short, or its checksum differs.
+    pub fn read(&mut self, name: &str) -> io::Result<Vec<f64>> {
+        let mut rows = self.rows(name)?;
+        let mut all = Vec::with_capacity(rows.left * rows.width);
+        let mut row = vec![];
+        while rows.next(&mut row)? {
+            all.extend_from_slice(&row);
+        }
+        rows.finish()?;
+        Ok(all)
+    }
+
+    /// An array row by row: a file may be larger than memory.
+    ///
+    /// # Errors
+    ///
+    /// There is none of that name.
+    pub fn rows(&mut self, name: &str) -> io::Result<Rows<'_>> {
+        let found = self.entries.iter().position(|e| e.name == name);
+        let k = found.ok_or_else(|| damaged(format!("{name} is missing")))?;
+        let (width, left) = (self.entries[k].width(), self.entries[k].rows());
+        let mut entry = self.zip.by_index(k)?;
+        let size = entry.size();
+        describe(&mut entry, size).map_err(|e| damaged(format!("{name}: {e}")))?;
+        Ok(Rows {
+            entry,
+            width,
+            left,
+            bytes: vec![0; 8 * width],
+        })
+    }
+}
+
+/// Rows of an array still to be read.
+pub struct Rows<'a> {
+    entry: ZipFile<'a, BufReader<File>>,
+    width: usize,
+    left: usize,
+    bytes: Vec<u8>,
+}
+
+impl Rows<'_> {
+    /// The next row, if there is one.
+    pub fn next(&mut self, row: &mut Vec<f64>) -> io::Result<bool> {
+        if !self.pass()? {
+            return Ok(false);
+        }
+        let double = |b: &[u8]| b.iter().rev().fold(0_u64, |bits, &b| bits << 8 | u64::from(b));
+        row.clear();
+        row.extend(self.bytes.chunks_exact(8).map(|b| f64::from_bits(double(b))));
+        Ok(true)
+    }
+
+    /// Passes a row over; whether there was one.
+    pub fn pass(&mut self) -> io::Result<bool> {
+        if self.left == 0 {
+            return Ok(false);
+        }
+        self.left -= 1;
+        self.entry.read_exact(&mut self.bytes)?;
+        Ok(true)
+    }
+
+    /// Passes all that is left over; the checksum is that of the whole.
+    pub fn finish(mut self) -> io::Result<()> {
+        io::copy(&mut self.entry, &mut io::sink()).map(|_| ())
+    }
+}
+
+/// Reads the description of an array in front of its numbers: the lengths, which are those of an entry of `size` bytes.
+fn describe(entry: &mut impl Read, size: u64) -> io::Result<Vec<usize>> {
+    let mut head = [0; 10];
+    entry.read_exact(&mut head)?;
+    if head[..8] != *b"\x93NUMPY\x01\x00" {
+        return Err(damaged("it does not begin as an array does".into()));
+    }
+    let length = usize::from(u16::from_le_bytes([head[8], head[9]]));
+    if length > LONGEST {
+        return Err(damaged(format!("its description would have {length} bytes")));
+    }
+    let mut text = vec![0; length];
+    entry.read_exact(&mut text)?;
+    let shape = std::str::from_utf8(&text).ok().and_then(shape);
+    let Some(shape) = shape.filter(|shape| (1..=2).contains(&shape.len())) else {
+        return Err(damaged(
+            "its description is none of doubles in one or two dimensions, row by row".into(),
+        ));
+    };
+    let product = |product: u64, n: &u64| product.checked_mul(*n);
+    let bytes = shape.iter().try_fold(8, product);
+    if bytes.and_then(|bytes| bytes.checked_add(10 + length as u64)) != Some(size) {
+        return Err(damaged(format!(
+            "it is said to have {shape:?} numbers, which are not as many as its {size} bytes hold"
+        )));
+    }
+    // each is at most the file's size but for empty arrays, whose other length is then of no meaning
+    let lengths = shape.iter().map(|&n| usize::try_from(n).ok().filter(|_| n <= size));
+    let lengths: Option<Vec<usize>> = lengths.collect();
+    lengths.ok_or_else(|| damaged("it is empty, but of an impossible length".into()))
+}
+
+/// The lengths in `{'descr': '<f8', 'fortran_order': False, 'shape': (11, 3), }`.
+fn shape(text: &str) -> Option<Vec<u64>> {
+    let plain: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+    let has = |part: &str| plain.contains(part);
+    if !has("'descr':'<f8'") || !has("'fortran_order':False") {
+        return None;
+    }
+    let (_, rest) = plain.split_once("'shape':(")?;
+    let (inside, _) = rest.split_once(')')?;
+    let lengths = inside.trim_end_matches(',').split(',');
+    lengths.map(|n| n.parse().ok()).collect()
+}
+
+/// What is wrong with a file.
+pub fn damaged(why: String) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, why)
+}

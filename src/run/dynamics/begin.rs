@@ -1,0 +1,88 @@
+//! The beginning of a run: its state and sensitivities, from the start of the case or from a checkpoint.
+
+use super::{End, Run};
+use crate::dae::{BeamDae, Dae};
+use crate::discrete::System;
+use crate::error::{Result, SolverFault};
+use crate::run::checkpoint::Checkpoint;
+use crate::run::equilibrium;
+use crate::run::observe::Observer;
+use crate::run::record::{Control, Header, Recorder};
+use crate::run::sensitivity::forward::Before;
+
+impl Run<'_> {
+    /// The equilibrium under the loads of an instant [s]; the recorder is asked at every point of the way to it.
+    pub(super) fn seek(
+        &self,
+        loads_at_s: f64,
+        dae: &mut BeamDae,
+        recorder: &mut dyn Recorder,
+    ) -> Result<std::result::Result<Vec<f64>, End>> {
+        let mut asked = Ok(Control::Continue);
+        let found = equilibrium::at_start_watched(self.case, loads_at_s, dae, &self.state, &mut || {
+            asked = recorder.progress(&self.latest);
+            asked.as_ref().map_or(Control::Stop(String::new()), Control::clone)
+        });
+        let stopped = |reason: String| End::Stopped(format!("{reason}, in search of the equilibrium to start from"));
+        Ok(match asked? {
+            Control::Stop(reason) => Err(stopped(reason)),
+            Control::Continue => found.map_err(End::Failed),
+        })
+    }
+
+    pub(super) fn header(&self, system: &System) -> Header {
+        let mut header = Observer::header(self.case, system);
+        if let Some(forward) = &self.forward {
+            header.sensitivities = forward.names(&header.columns);
+        }
+        header
+    }
+
+    /// Sensitivities as a checkpoint has kept them, on the left side of its stop.
+    pub(super) fn before(&mut self, dae: &mut BeamDae, from: &Checkpoint) -> Option<Before> {
+        let (forward, kept) = (self.forward.as_mut()?, from.forward.as_ref()?);
+        Some(forward.take_up(kept, dae, from.t, [&self.state, &self.rates]))
+    }
+
+    /// Sensitivities on the right side of a checkpoint's stop.
+    pub(super) fn go_on_forward(
+        &mut self,
+        dae: &mut BeamDae,
+        from: &Checkpoint,
+        before: Option<Before>,
+    ) -> std::result::Result<(), SolverFault> {
+        let (Some(forward), Some(before)) = (&mut self.forward, before) else {
+            return Ok(());
+        };
+        if self.stops[from.stop].switches {
+            return forward.pass(dae, from.stop, from.t, &before, [&self.state, &self.rates]);
+        }
+        forward.go_on(dae, from.stop);
+        Ok(())
+    }
+
+    pub(super) fn begin_forward(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverFault> {
+        let Some(forward) = &mut self.forward else {
+            return Ok(());
+        };
+        forward.begin(dae)?;
+        forward.complete(dae, 0.0, [&self.state, &self.rates])
+    }
+
+    /// Room for the values of a system.
+    pub(super) fn prepare(&mut self, dae: &BeamDae) {
+        self.state = vec![0.0; dae.len()];
+        self.rates = vec![0.0; dae.len()];
+        self.integrals = vec![0.0; dae.integrals()];
+        self.carried = vec![0.0; dae.integrals()];
+    }
+
+    pub(super) fn take_up(&mut self, checkpoint: &Checkpoint) {
+        self.state.clone_from(&checkpoint.y);
+        self.rates.clone_from(&checkpoint.yp);
+        self.carried.clone_from(&checkpoint.integrals);
+        self.earlier.clone_from(&checkpoint.counters);
+        self.observer.seen.clone_from(&checkpoint.observed);
+        self.outputs.go_on(checkpoint.next_output, checkpoint.t);
+    }
+}

@@ -1,0 +1,108 @@
+//! What is left of output times that are not written: least, greatest and mean value of each column over a stretch of time.
+
+use serde::{Deserialize, Serialize};
+
+use super::record::Column;
+use super::schedule::SAME;
+use crate::case::schema::Case;
+use crate::model::characteristic;
+
+/// Stretches of a run at most; beyond, each has several cycles.
+const MOST: f64 = 2000.0;
+/// Stretches of a run that is not driven at a frequency.
+const PARTS: f64 = 1000.0;
+/// Share of a stretch by which an output counts as one of the next.
+const EDGE: f64 = 1e-6;
+
+/// Columns before those of the history: first and last output time, and how many there are.
+const OWN: [&str; 3] = ["from [s]", "to [s]", "outputs [1]"];
+
+/// Names of the columns, units included; three a column of the history.
+pub fn names(columns: &[Column]) -> Vec<String> {
+    let of = |c: &Column| ["least", "greatest", "mean"].map(|what| format!("{} {what} [{}]", c.name, c.unit));
+    let own = OWN.map(String::from);
+    own.into_iter().chain(columns.iter().skip(1).flat_map(of)).collect()
+}
+
+/// What belongs to which stretch.
+#[derive(Clone, Copy, Debug)]
+pub struct Stretches {
+    length: f64,
+    /// Begin of the window [s], where they end.
+    end: f64,
+}
+
+impl Stretches {
+    /// Cycles of the drive, whole numbers of them in long runs; parts of a run without a drive.
+    pub fn new(case: &Case) -> Self {
+        let (end, window) = (case.time.end_s, case.time.window());
+        let cycle = characteristic::forcing_period(case).filter(|period| *period > 0.0 && *period < end);
+        let cycle = cycle.unwrap_or(end / PARTS);
+        Self {
+            length: cycle * (end / cycle / MOST).ceil().max(1.0),
+            end: end - window * (1.0 + SAME),
+        }
+    }
+
+    /// Number of the stretch in which an instant [s] lies, none in the window.
+    pub fn of(&self, t: f64) -> Option<u64> {
+        (t < self.end).then(|| (t / self.length + EDGE).floor() as u64)
+    }
+}
+
+/// The stretch that is under way.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Stretch {
+    number: u64,
+    count: u64,
+    times: [f64; 2],
+    least: Vec<f64>,
+    greatest: Vec<f64>,
+    sums: Vec<f64>,
+}
+
+impl Stretch {
+    /// Takes a row of the history; gives the stretch before, where it is the first of another.
+    pub fn take(&mut self, number: Option<u64>, row: &[f64]) -> Option<Vec<f64>> {
+        let before = if number == Some(self.number) {
+            None
+        } else {
+            self.close()
+        };
+        if let (Some(number), [t, values @ ..]) = (number, row) {
+            if self.count == 0 {
+                *self = Self {
+                    number,
+                    count: 1,
+                    times: [*t; 2],
+                    least: values.to_vec(),
+                    greatest: values.to_vec(),
+                    sums: values.to_vec(),
+                };
+            } else {
+                self.count += 1;
+                self.times[1] = *t;
+                for (k, x) in values.iter().enumerate() {
+                    self.least[k] = self.least[k].min(*x);
+                    self.greatest[k] = self.greatest[k].max(*x);
+                    self.sums[k] += x;
+                }
+            }
+        }
+        before
+    }
+
+    /// Its row, if it has any outputs; it is empty then.
+    pub fn close(&mut self) -> Option<Vec<f64>> {
+        if self.count == 0 {
+            return None;
+        }
+        let count = self.count as f64;
+        let mut row = vec![self.times[0], self.times[1], count];
+        for ((least, greatest), sum) in self.least.iter().zip(&self.greatest).zip(&self.sums) {
+            row.extend([*least, *greatest, sum / count]);
+        }
+        *self = Self::default();
+        Some(row)
+    }
+}
