@@ -449,7 +449,7 @@ fn a_wall_time_limit_stops_with_what_there_is() {
 
 /// The published law with a thousand times its slope has no unique state once bladders are under high pressure.
 #[test]
-fn a_run_that_cannot_start_leaves_the_older_result() {
+fn a_run_that_cannot_start_says_so_and_moves_the_older_result() {
     let dir = TempDir::new().unwrap();
     let folder = dir.path().join("result");
     let out = folder.to_str().unwrap();
@@ -475,8 +475,17 @@ fn a_run_that_cannot_start_leaves_the_older_result() {
         let said = say(&[&common[..], &impossible, more].concat());
         assert_eq!(said.code, 4, "{}", said.err);
         assert_eq!(said.err.matches("no consistent start").count(), 1, "{}", said.err);
-        assert_eq!(std::fs::read(folder.join("summary.json")).unwrap(), before);
-        assert_eq!(names(dir.path()), ["result"]);
+        let aside = dir.path().join("result.older");
+        assert!(said.err.contains("result.older"), "{}", said.err);
+        assert_eq!(std::fs::read(aside.join("summary.json")).unwrap(), before);
+        let told = std::fs::read_to_string(folder.join("summary.json")).unwrap();
+        assert!(
+            told.contains("\"failed\"") && !folder.join("history.csv").exists(),
+            "{told}"
+        );
+        assert_eq!(names(dir.path()), ["result", "result.older"]);
+        std::fs::remove_dir_all(&folder).unwrap();
+        std::fs::rename(&aside, &folder).unwrap();
     }
 }
 

@@ -1,7 +1,7 @@
 //! `slcbeam run`.
 
 use std::cell::RefCell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
@@ -39,7 +39,11 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let out = asked.place.folder(&case.name, Kind::Run);
     let hook = hook(asked);
-    let (outcome, finished) = match (accuracy, asked.resume) {
+    let Recorded {
+        outcome,
+        finished,
+        aside,
+    } = match (accuracy, asked.resume) {
         (Some(accuracy), _) => reach(case, accuracy, asked.place.claim(&loaded, Kind::Run)?, &hook)?,
         (None, true) => resume(case, &parameters(case, &asked.sensitivities)?, &out, &hook)?,
         (None, false) => {
@@ -55,12 +59,10 @@ pub fn run(asked: &RunArguments) -> Result<ExitCode> {
         super::print(&box_text)?;
     }
     page?;
-    if let Some(finished) = finished {
-        if let Some(aside) = &finished.aside {
-            terminal::tell(&format!("slcbeam: the older result is in {}", aside.display()));
-        }
-        finished.close()?;
+    if let Some(aside) = aside {
+        terminal::tell(&format!("slcbeam: the older result is in {}", aside.display()));
     }
+    finished.map_or(Ok(()), Finished::close)?;
     Ok(match outcome.fault {
         None => ExitCode::SUCCESS,
         Some(fault) => {
@@ -115,28 +117,44 @@ fn parameters(case: &Case, pointers: &[String]) -> Result<Vec<Parameter>> {
     Ok(all)
 }
 
-/// A run, and its folder unless it is complete already.
-type Recorded = (Outcome, Option<Finished>);
+/// A run that has ended.
+struct Recorded {
+    outcome: Outcome,
+    /// Its folder, unless it is complete already.
+    finished: Option<Finished>,
+    /// Where an older result went.
+    aside: Option<PathBuf>,
+}
 
 fn record(case: &Case, parameters: &[Parameter], folder: ResultFolder, hook: &SharedHook) -> Result<Recorded> {
     let mut recorder = FolderRecorder::new(folder, labels(case), own(hook));
     let outcome = dynamics::run_with(case, parameters, &mut recorder)?;
+    complete(recorder, outcome)
+}
+
+fn complete(recorder: FolderRecorder, outcome: Outcome) -> Result<Recorded> {
     let finished = recorder.finish(&outcome.summary)?;
-    Ok((outcome, Some(finished)))
+    Ok(Recorded {
+        outcome,
+        aside: finished.aside.clone(),
+        finished: Some(finished),
+    })
 }
 
 /// Candidates are recorded inside the folder and take the result's place when they finish, so that one that is stopped leaves the
-/// one before. The first may end early, as long as it began: then it is all there is.
+/// one before. The first may end early: then it is all there is.
 fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, hook: &SharedHook) -> Result<Recorded> {
     let ask = |progress: &Progress| hook.borrow_mut()(progress);
-    let mut placed = false;
+    let (mut placed, mut aside) = (false, None);
     let mut candidate = |case: &Case| -> Result<Outcome> {
         let inside = result.candidate()?;
         let folder = ResultFolder::claim(inside.path(), Kind::Run, false)?;
-        let (outcome, finished) = record(case, &[], folder, hook)?;
+        let Recorded { outcome, finished, .. } = record(case, &[], folder, hook)?;
         finished.map_or(Ok(()), Finished::close)?;
-        let begun = inside.path().join(HISTORY).exists() || !result.holds_older();
-        if outcome.summary.status == Status::Finished || !placed && begun {
+        if outcome.summary.status == Status::Finished || !placed {
+            if !inside.path().join(HISTORY).exists() {
+                aside = result.set_aside()?;
+            }
             result.replace(inside.path())?;
             placed = true;
         }
@@ -146,14 +164,22 @@ fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, hook: &SharedHook
     if placed {
         summary::write(&result, &outcome.summary)?;
     }
-    Ok((outcome, None))
+    Ok(Recorded {
+        outcome,
+        finished: None,
+        aside,
+    })
 }
 
 /// Goes on from the newest checkpoint. What does not fit is told before anything is touched; a run that has ended is left as it is.
 fn resume(case: &Case, asked: &[Parameter], out: &Path, hook: &SharedHook) -> Result<Recorded> {
     let folder = ResultFolder::again(out)?;
     let Some((saved, damage)) = checkpoint::read(out)? else {
-        return ended(case, asked, &folder).map(|outcome| (outcome, None));
+        return Ok(Recorded {
+            outcome: ended(case, asked, &folder)?,
+            finished: None,
+            aside: None,
+        });
     };
     if saved.run.case != case.resolved_json() {
         return Err(another_case(&saved.run.case, case, "the checkpoint"));
@@ -168,8 +194,7 @@ fn resume(case: &Case, asked: &[Parameter], out: &Path, hook: &SharedHook) -> Re
     }
     let mut recorder = FolderRecorder::resume(folder, labels(case), own(hook), &saved, &dynamics::header(case))?;
     let outcome = dynamics::resume(case, &saved.run, &mut recorder)?;
-    let finished = recorder.finish(&outcome.summary)?;
-    Ok((outcome, Some(finished)))
+    complete(recorder, outcome)
 }
 
 /// A run without a checkpoint that has ended: its outcome as it was told; leftovers of its raw arrays go.

@@ -36,6 +36,8 @@ pub const TABLES: &str = "csv";
 pub const VTK: &str = "vtk";
 /// Pictures.
 pub const PICTURES: [&str; 4] = ["deflection.svg", "pressure.svg", "history.svg", "energy.svg"];
+/// How the names of folders begin in which candidates are recorded.
+const CANDIDATE: &str = ".next-";
 /// Files of a run; the summary goes first: without it the rest does not pass for a finished run.
 pub const RUN_FILES: [&str; 11] = [
     SUMMARY,
@@ -57,7 +59,9 @@ pub struct ResultFolder {
     dir: PathBuf,
     kind: Kind,
     older: Option<Kind>,
-    _lock: Lock,
+    /// Whether it was made here; it goes again if nothing comes into it.
+    made: bool,
+    lock: Option<Lock>,
 }
 
 impl ResultFolder {
@@ -68,6 +72,7 @@ impl ResultFolder {
     ///
     /// It holds something else and `force` is not given, another process writes into it, or it cannot be made.
     pub fn claim(dir: &Path, kind: Kind, force: bool) -> Result<Self> {
+        let made = !dir.exists();
         fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
         let lock = Lock::take(dir)?;
         let older = Kind::within(dir);
@@ -85,12 +90,37 @@ impl ResultFolder {
                 return Err(fault("use", dir, io::Error::new(io::ErrorKind::AlreadyExists, why)));
             }
         }
-        Ok(Self {
+        let folder = Self {
             dir: dir.to_path_buf(),
             kind,
             older,
-            _lock: lock,
-        })
+            made,
+            lock: Some(lock),
+        };
+        folder.sweep();
+        Ok(folder)
+    }
+
+    /// Removes what a killed process had half written here, which is hidden; what cannot be removed does no harm.
+    fn sweep(&self) {
+        let own: Vec<&str> = self.kind.files().into_iter().chain([CASE]).collect();
+        for path in fs::read_dir(&self.dir)
+            .into_iter()
+            .flatten()
+            .flatten()
+            .map(|e| e.path())
+        {
+            let name = path
+                .file_name()
+                .map(|n| n.to_string_lossy().into_owned())
+                .unwrap_or_default();
+            let half = name.strip_prefix('.').and_then(|name| name.strip_suffix(".part"));
+            if half.is_some_and(|half| own.iter().any(|own| half.starts_with(&format!("{own}.")))) {
+                let _ = fs::remove_file(&path);
+            } else if name.starts_with(CANDIDATE) && path.is_dir() {
+                let _ = fs::remove_dir_all(&path);
+            }
+        }
     }
 
     /// Takes the folder of a run that was interrupted.
@@ -213,7 +243,7 @@ impl ResultFolder {
 
     /// A folder inside this one for a result that may take its place; removed when dropped.
     pub fn candidate(&self) -> Result<tempfile::TempDir> {
-        let inside = tempfile::Builder::new().prefix(".next-").tempdir_in(&self.dir);
+        let inside = tempfile::Builder::new().prefix(CANDIDATE).tempdir_in(&self.dir);
         inside.map_err(|e| fault("create", &self.dir, e))
     }
 
@@ -230,6 +260,16 @@ impl ResultFolder {
             fs::rename(with.join(&name), &target).map_err(|e| fault("write", &target, e))?;
         }
         self.secure()
+    }
+}
+
+impl Drop for ResultFolder {
+    fn drop(&mut self) {
+        self.lock.take();
+        if self.made {
+            // only an empty one can be removed so
+            let _ = fs::remove_dir(&self.dir);
+        }
     }
 }
 
@@ -349,10 +389,11 @@ fn foreign(dir: &Path, kind: Kind) -> Result<Option<String>> {
 }
 
 fn history_begins_with_time(path: &Path) -> bool {
-    let mut begin = [0; 5];
+    // one that was killed at once has nothing in it yet
+    let mut begin = vec![];
     File::open(path)
-        .and_then(|mut file| file.read_exact(&mut begin))
-        .is_ok_and(|()| begin == *b"t [s]")
+        .and_then(|file| file.take(5).read_to_end(&mut begin))
+        .is_ok_and(|_| begin.is_empty() || begin == b"t [s]")
 }
 
 /// Hidden files do not count: systems leave them everywhere.

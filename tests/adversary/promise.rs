@@ -69,10 +69,11 @@ fn kept(run: &Summary, asked: f64, reference: &Reference) -> (Verdict, Vec<f64>)
     for quantity in reference.sizes.keys() {
         let of = off.iter().filter(|one| one.quantity == *quantity);
         let largest = of.max_by(|a, b| a.error.total_cmp(&b.error));
-        if let (Some(largest), Some(estimate)) = (largest, estimate(quantity)) {
-            if accuracy.reached && largest.doubt <= KNOWN * largest.error.max(0.05 * asked) {
-                ratios.push(largest.error.max(0.01 * asked) / estimate.max(0.01 * asked));
-            }
+        if let (Some(largest), Some(estimate)) = (largest, estimate(quantity))
+            && accuracy.reached
+            && largest.doubt <= KNOWN * largest.error.max(0.05 * asked)
+        {
+            ratios.push(largest.error.max(0.01 * asked) / estimate.max(0.01 * asked));
         }
     }
     let word = match (worst.beyond(asked), accuracy.reached) {

@@ -134,21 +134,35 @@ fn an_accuracy_takes_no_folder_beside() {
     assert!(left.is_empty(), "{left:?}");
 }
 
-/// A run that cannot start says so in its folder; the older result is moved, whole.
+/// What a killed process had half written goes with the next run; what a user keeps hidden stays.
 #[test]
-fn a_failed_start_is_told_in_its_folder() {
+fn halves_are_swept() {
     let folder = tempfile::tempdir().expect("a place");
     let out = folder.path().join("x");
     assert!(run(&out, &[]).status.success());
-    let older = contents(&out);
-    // a beam whose start cannot be made consistent: buckled far beyond what is found from rest
-    let output = run(&out, &["--set", "/solver/max_steps=1"]);
-    if output.status.code() == Some(4) && folder.path().join("x.older").exists() {
-        let aside = contents(&folder.path().join("x.older"));
-        assert!(aside == older, "all of it");
+    for half in [".summary.json.123.part", ".fields.npz.99.part"] {
+        fs::write(out.join(half), "half").expect("a file");
     }
-    let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
-    assert!(summary.contains("\"failed\""), "{summary}");
+    fs::create_dir(out.join(".next-abc")).expect("a folder");
+    fs::write(out.join(".next-abc/history.csv"), "t [s]").expect("a file");
+    fs::write(out.join(".notes.part"), "mine").expect("a file");
+    assert!(run(&out, &[]).status.success());
+    let hidden: Vec<_> = contents(&out)
+        .into_iter()
+        .map(|f| f.0)
+        .filter(|n| n.starts_with('.'))
+        .collect();
+    assert_eq!(hidden, [".notes.part"]);
+}
+
+/// A run that was killed before its first row does not hold up the next.
+#[test]
+fn an_empty_history_is_no_obstacle() {
+    let folder = tempfile::tempdir().expect("a place");
+    let out = folder.path().join("x");
+    fs::create_dir(&out).expect("a folder");
+    fs::write(out.join("history.csv"), "").expect("a file");
+    assert!(run(&out, &[]).status.success());
 }
 
 /// A file in the way is a message, not a loss.

@@ -4,6 +4,9 @@
 mod finishing;
 mod flips;
 mod folders;
+mod fuzz;
 mod outputs;
+mod pipes;
+mod power;
 mod program;
 mod resuming;

@@ -45,7 +45,7 @@ pub fn slcbeam() -> Command {
 }
 
 /// What makes the run long enough to be killed in its middle.
-const LONG: [&str; 4] = ["--set", "/time/end_s=0.6", "--set", "/time/checkpoint_interval_s=0.05"];
+pub const LONG: [&str; 4] = ["--set", "/time/end_s=0.6", "--set", "/time/checkpoint_interval_s=0.05"];
 
 /// The longer run into a folder.
 pub fn run_long(out: &Path, more: &[&str]) -> Output {

@@ -16,8 +16,9 @@ pub struct Staged {
 }
 
 impl Staged {
-    /// For the folder `name` of a result.
+    /// For the folder `name` in another, which is made.
     pub fn new(result: &Path, name: &str) -> Result<Self> {
+        fs::create_dir_all(result).map_err(|e| fault("create", result, e))?;
         let inside = tempfile::Builder::new().prefix(".export-").tempdir_in(result);
         Ok(Self {
             inside: inside.map_err(|e| fault("create", result, e))?,
