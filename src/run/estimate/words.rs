@@ -51,6 +51,8 @@ pub struct Estimated {
 pub struct Row {
     /// The quantity.
     pub name: &'static str,
+    /// From which error on it is a warning; beside others one of [`LARGE`] is named.
+    pub enough: f64,
     /// Errors by steps and by the mesh, relative to its largest value.
     pub errors: [f64; 2],
     /// Part that is phase of one free vibration.
@@ -69,13 +71,6 @@ impl Row {
             phase: factor * self.phase,
             ..self
         }
-    }
-
-    /// Whether it is enough for a warning. What goes with curvatures is told three times as large as a displacement, the most that
-    /// was found, and mostly is off by much less: it warns alone from twice as much on, and is named beside others.
-    fn warns(&self) -> bool {
-        let curved = self.name.ends_with("_j") || self.name.ends_with("_pa");
-        self.total() > if curved { 2.0 * LARGE } else { LARGE }
     }
 
     /// By steps and by the mesh.
@@ -116,7 +111,9 @@ impl Estimated {
     pub fn warning(&self, rows: &[Row], cells: usize, rtol: f64) -> Option<String> {
         let mut large: Vec<&Row> = rows.iter().filter(|row| row.total() > LARGE).collect();
         large.sort_by(|a, b| b.total().total_cmp(&a.total()));
-        let worst = *large.first().filter(|_| rows.iter().any(Row::warns))?;
+        let worst = *large
+            .first()
+            .filter(|_| rows.iter().any(|row| row.total() > row.enough))?;
         let names: Vec<String> = large
             .iter()
             .map(|r| format!("{} {}", r.name, size(r.total())))

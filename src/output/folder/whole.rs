@@ -1,0 +1,80 @@
+//! Files that appear whole or not at all, and are read only where they have an end.
+
+use std::fs::{self, File};
+use std::io::{self, Read as _, Write as _};
+use std::path::{Path, PathBuf};
+
+use super::fault;
+use crate::error::Result;
+
+/// Writes a file that the user names, whole or not at all; one that is there keeps its permissions, and what a link points to is
+/// replaced.
+pub fn replace(path: &Path, text: &str) -> Result<()> {
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let old = match fs::OpenOptions::new()
+        .write(true)
+        .open(&target)
+        .and_then(|file| file.metadata())
+    {
+        Ok(there) if !there.is_file() => {
+            // a pipe or a device takes the text as it comes
+            return fs::write(&target, text).map_err(|e| fault("write", path, e));
+        }
+        Ok(there) => Some(there.permissions()),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => None,
+        Err(e) => return Err(fault("write", path, e)),
+    };
+    put_whole(&target, |file| {
+        file.write_all(text.as_bytes())?;
+        old.map_or(Ok(()), |permissions| file.set_permissions(permissions))
+    })
+}
+
+/// Fills a file under another name, brings it to the disk and renames it; what could not be filled is removed.
+pub(crate) fn put_whole(target: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
+    let part = part_of(target);
+    let put = || -> io::Result<()> {
+        let mut file = File::create(&part)?;
+        fill(&mut file)?;
+        file.sync_all()?;
+        fs::rename(&part, target)
+    };
+    put().map_err(|e| {
+        let _ = fs::remove_file(&part);
+        fault("write", target, e)
+    })
+}
+
+/// The name under which a file grows before it takes its own.
+fn part_of(target: &Path) -> PathBuf {
+    let name = target.file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
+    target.with_file_name(format!(".{name}.{}.part", std::process::id()))
+}
+
+/// Largest text of a result that is read whole [byte]; tables and arrays are read piece by piece.
+const LARGEST: u64 = 64 << 20;
+
+/// Opens a file of a result to read it: a pipe or a device, which may never end, is none.
+pub(crate) fn open(path: &Path) -> io::Result<File> {
+    if fs::metadata(path)?.is_file() {
+        return File::open(path);
+    }
+    let why = "it is no file with an end";
+    Err(io::Error::new(io::ErrorKind::InvalidInput, why))
+}
+
+/// The text of a file of a result.
+pub(crate) fn text_of(path: &Path) -> Result<String> {
+    let read = || -> io::Result<String> {
+        let mut file = open(path)?;
+        let there = file.metadata()?.len();
+        if there > LARGEST {
+            let why = format!("it has {there} bytes; no such file of a result has more than {LARGEST}");
+            return Err(io::Error::new(io::ErrorKind::InvalidData, why));
+        }
+        let mut text = String::new();
+        file.read_to_string(&mut text)?;
+        Ok(text)
+    };
+    read().map_err(|e| fault("read", path, e))
+}
