@@ -1,6 +1,7 @@
 //! Attacks on what is written and read: kills at every system call, full and failing disks, flipped bits, two programs at once,
 //! folders of others. Goal: nothing lost, nothing taken, nothing half said; `docs/reliability.md`.
 
+mod chains;
 mod finishing;
 mod flips;
 mod folders;

@@ -1,0 +1,73 @@
+//! Chains of kills: a run killed at any time, resumed, killed again, until it ends as the one that was left alone.
+
+use std::path::Path;
+use std::process::Stdio;
+use std::time::Duration;
+
+use crate::program::{LONG, arguments, run_long, same, slcbeam, stderr};
+
+/// Starts or resumes the longer run and kills it after a while, unless it ends before.
+fn strike(out: &Path, resume: bool, after: Duration) -> bool {
+    let mut child = slcbeam()
+        .args(arguments())
+        .args(LONG)
+        .args(resume.then_some("--resume"))
+        .arg("--out")
+        .arg(out)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("it starts");
+    std::thread::sleep(after);
+    let ended = child.try_wait().expect("its state");
+    child.kill().expect("it is killed");
+    child.wait().expect("it ends");
+    ended.is_some_and(|status| status.success())
+}
+
+/// Chains of up to six kills each, at times spread by the golden ratio over what a run takes.
+fn chains(count: u64) {
+    let folder = tempfile::tempdir().expect("a place");
+    let whole = folder.path().join("whole");
+    let begin = std::time::Instant::now();
+    assert!(run_long(&whole, &[]).status.success());
+    let length = begin.elapsed();
+    let mut kills = 0;
+    for chain in 0..count {
+        let out = folder.path().join(format!("chain-{chain}"));
+        for link in 0..6_u64 {
+            let part = (6 * chain + link + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
+            let after = length.mul_f64(1.2 * part as f64 / (1 << 24) as f64);
+            let resume = out.join("checkpoint.json").exists() || out.join("checkpoint-before.json").exists();
+            if strike(&out, resume, after) {
+                break;
+            }
+            kills += 1;
+        }
+        let resume = out.join("checkpoint.json").exists() || out.join("checkpoint-before.json").exists();
+        if resume {
+            let last = run_long(&out, &["--resume"]);
+            assert!(last.status.success(), "chain {chain}: {}", stderr(&last));
+        } else if same(&whole, &out).is_err() {
+            // killed before its first checkpoint each time: it begins afresh
+            let last = run_long(&out, &[]);
+            assert!(last.status.success(), "chain {chain}: {}", stderr(&last));
+        }
+        if let Err(why) = same(&whole, &out) {
+            panic!("chain {chain}: {why}");
+        }
+        std::fs::remove_dir_all(&out).expect("it is removed");
+    }
+    println!("{count} chains, {kills} kills, 0 lost");
+}
+
+#[test]
+fn chains_of_kills_lose_nothing() {
+    chains(8);
+}
+
+#[test]
+#[ignore = "half an hour"]
+fn a_thousand_chains_of_kills_lose_nothing() {
+    chains(1000);
+}
