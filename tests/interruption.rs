@@ -150,9 +150,15 @@ fn resume_without_checkpoint_is_a_usage_error() {
 fn wall_time_limit_stops_with_everything_written_and_can_be_resumed() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("limited");
-    let long = ["--set", "/time/end_s=200", "--set", "/time/checkpoint_interval_s=0.05"];
+    let long = [
+        ["--set", "/time/end_s=200"],
+        ["--set", "/time/checkpoint_interval_s=0.05"],
+        ["--set", "/time/output_interval_s=0.01"],
+        ["--set", "/time/fields_interval_s=0.01"],
+    ]
+    .concat();
     let status = program()
-        .args(long)
+        .args(&long)
         .args(["--max-wall", "1"])
         .arg("--out")
         .arg(&out)
@@ -164,7 +170,7 @@ fn wall_time_limit_stops_with_everything_written_and_can_be_resumed() {
     assert!(first["reason"].as_str().unwrap().contains("wall time"));
     assert!(out.join("fields.npz").exists() && out.join("checkpoint.json").exists());
     let status = program()
-        .args(long)
+        .args(&long)
         .args(["--max-wall", "1", "--resume"])
         .arg("--out")
         .arg(&out)
@@ -183,7 +189,8 @@ fn interrupt_stops_with_everything_written() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("interrupted");
     let mut child = program()
-        .args(["--set", "/time/end_s=1000"])
+        .args(["--set", "/time/end_s=1000", "--set", "/time/output_interval_s=0.1"])
+        .args(["--set", "/time/fields_interval_s=0.1"])
         .arg("--out")
         .arg(&out)
         .spawn()

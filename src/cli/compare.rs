@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::arguments::CompareArguments;
 use crate::error::{Error, Result};
-use crate::output::folder::replace;
+use crate::output::folder::replace_alike;
 use crate::output::numbers::{quantity, significant};
 use crate::output::{comparison, reading};
 use crate::study::compare::changes::Change;
@@ -25,7 +25,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     if let Some(path) = &asked.out {
         let text = comparison::picture(&a, &b, &found)
             .ok_or_else(|| Error::Usage("nothing to draw: the two have no quantity in common".into()))?;
-        replace(path, &text)?;
+        replace_alike(path, &text, &["<svg", "<?xml"])?;
     }
     if asked.json {
         super::print(&format!("{:#}\n", serde_json::to_value(&found).unwrap_or_default()))?;

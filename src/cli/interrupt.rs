@@ -14,6 +14,12 @@ pub fn flag() -> Arc<AtomicBool> {
     raised
 }
 
+/// A limit on the size of files is told as a fault of writing, by the name of the file, and does not end the program.
+pub fn outlive_limits() {
+    let told = Arc::new(AtomicBool::new(false));
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, told);
+}
+
 /// Whether the flag is up.
 pub fn raised(flag: &AtomicBool) -> bool {
     flag.load(Ordering::Relaxed)

@@ -55,6 +55,7 @@ pub fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
+    interrupt::outlive_limits();
     match act(&arguments.command) {
         Ok(code) => code,
         Err(error) => {

@@ -7,7 +7,7 @@ use clap::Args;
 
 use crate::case::LoadedCase;
 use crate::error::{Error, Result};
-use crate::output::folder::{CASE, REPORT, ResultFolder};
+use crate::output::folder::{CASE, RAW_FIELDS, REPORT, ResultFolder, TABLES, VTK};
 use crate::output::kind::Kind;
 
 /// A folder for results.
@@ -42,21 +42,31 @@ impl PlaceArguments {
     /// [`ResultFolder::claim`]; or the case itself would be written over.
     pub fn claim(&self, loaded: &LoadedCase, kind: Kind) -> Result<ResultFolder> {
         let dir = self.folder(&loaded.case.name, kind);
-        if let Some(name) = overwritten(&dir, &loaded.path, kind) {
+        if overwritten(&dir, loaded, kind) {
             return Err(Error::Usage(format!(
-                "--out {}: its {name} is the case itself, which would be written over; name another folder",
-                dir.display()
+                "--out {}: the case itself, {}, would be written over; name another folder",
+                dir.display(),
+                loaded.path.display()
             )));
         }
         ResultFolder::claim(&dir, kind, self.force)
     }
 }
 
-/// The name under which a command would write over its case. A result's own case, as resolved, is written as it is.
-fn overwritten(dir: &Path, case: &Path, kind: Kind) -> Option<String> {
-    let (dir, case) = (fs::canonicalize(dir).ok()?, fs::canonicalize(case).ok()?);
-    let name = case.file_name()?.to_str()?;
-    let written = kind.files().into_iter().chain([CASE, REPORT]).any(|file| file == name);
-    let own = name == CASE && Kind::within(&dir) == Some(kind);
-    (case.parent() == Some(&dir) && written && !own).then(|| name.to_string())
+/// Whether a command would write over its case, or take it away with what an older result left. A result's own case, as resolved, is
+/// written as it is.
+fn overwritten(dir: &Path, loaded: &LoadedCase, kind: Kind) -> bool {
+    let (Ok(dir), Ok(case)) = (fs::canonicalize(dir), fs::canonicalize(&loaded.path)) else {
+        return false;
+    };
+    if [RAW_FIELDS, TABLES, VTK]
+        .iter()
+        .any(|name| case.starts_with(dir.join(name)))
+    {
+        return true;
+    }
+    let name = case.file_name().unwrap_or_default();
+    let written = kind.files().into_iter().chain([CASE, REPORT]).any(|file| name == file);
+    let same = || fs::read_to_string(&case).is_ok_and(|text| text == loaded.case.written().json);
+    case.parent() == Some(&dir) && written && !(name == CASE && Kind::within(&dir) == Some(kind) && same())
 }

@@ -12,8 +12,8 @@ use super::kind::Kind;
 use crate::case::Written;
 use crate::error::{Error, Result};
 use lock::Lock;
-pub use whole::replace;
 pub(crate) use whole::{open, put_whole, text_of};
+pub use whole::{replace, replace_alike};
 
 /// The case as resolved.
 pub const CASE: &str = "case.json";
@@ -214,15 +214,22 @@ impl ResultFolder {
     /// Removes the files of an older result, by name; whatever else lies there stays.
     pub fn clear(&mut self) -> Result<()> {
         let Some(older) = self.older else { return Ok(()) };
-        for name in older.files().into_iter().chain([REPORT]) {
+        // A history stays until another run's is begun, which empties it: by it the folder is known for a run's, whenever this ends.
+        let stays = |name: &str| name == HISTORY && matches!(self.kind, Kind::Run | Kind::Cycle);
+        for name in older.files().into_iter().chain([REPORT]).filter(|name| !stays(name)) {
             self.remove(name)?;
         }
         self.remove_raw()?;
-        // What was exported from the older result would pass for the new one's.
+        self.remove_exports()?;
+        self.older = None;
+        Ok(())
+    }
+
+    /// Removes what was exported from an older or shorter result, which would pass for the new one's.
+    pub fn remove_exports(&self) -> Result<()> {
         for (name, endings) in [(TABLES, &["csv"][..]), (VTK, &["vtp", "pvd"])] {
             remove_folder_of(&self.path(name), endings)?;
         }
-        self.older = None;
         Ok(())
     }
 

@@ -73,6 +73,7 @@ impl FolderRecorder {
             mark.map_or(Ok(()), |mark| Stream::verify(&folder.path(name), mark))?;
         }
         folder.remove(SUMMARY)?;
+        folder.remove_exports()?;
         let history = HistoryWriter::reopen(&history, header.columns.len(), saved.history)?;
         let arrays = ArraysWriter::reopen(&raw, header, &saved.fields)?;
         let [envelope, sensitivities] = besides.map(|(name, mark)| {

@@ -84,7 +84,15 @@ fn two_runs_do_not_mix() {
     let folder = tempfile::tempdir().expect("a place");
     let out = folder.path().join("one");
     let mut first = slcbeam()
-        .args(["run", CASE, "--quiet", "--set", "/time/end_s=1000", "--out"])
+        .args(["run", CASE, "--quiet", "--set", "/time/end_s=1000"])
+        // few rows, so that they fit on any disk
+        .args([
+            "--set",
+            "/time/output_interval_s=0.1",
+            "--set",
+            "/time/fields_interval_s=0.1",
+            "--out",
+        ])
         .arg(&out)
         .stdout(Stdio::null())
         .spawn()
@@ -163,6 +171,61 @@ fn an_empty_history_is_no_obstacle() {
     fs::create_dir(&out).expect("a folder");
     fs::write(out.join("history.csv"), "").expect("a file");
     assert!(run(&out, &[]).status.success());
+}
+
+/// A page or picture takes the place of another, and of nothing else; a case that was changed by hand is not written over either, nor
+/// one that lies where an older result's files go.
+#[test]
+fn files_of_the_user_are_not_written_over() {
+    let folder = tempfile::tempdir().expect("a place");
+    let out = folder.path().join("x");
+    assert!(run(&out, &[]).status.success());
+    let before = contents(&out);
+    for file in ["case.json", "fields.npz", "history.csv", "summary.json"] {
+        for command in ["report", "compare"] {
+            let mut asked = slcbeam();
+            asked.arg(command).arg(&out);
+            if command == "compare" {
+                asked.arg(&out);
+            }
+            let output = asked.arg("--out").arg(out.join(file)).output().expect("it starts");
+            assert_eq!(output.status.code(), Some(5), "{command} {file}: {}", stderr(&output));
+        }
+    }
+    unchanged(&out, &before, "pages and pictures");
+    let page = folder.path().join("page.html");
+    for _ in 0..2 {
+        let output = slcbeam()
+            .arg("report")
+            .arg(&out)
+            .arg("--out")
+            .arg(&page)
+            .output()
+            .expect("it starts");
+        assert!(output.status.success(), "{}", stderr(&output));
+    }
+    let again = |case: &Path| {
+        slcbeam()
+            .arg("run")
+            .arg(case)
+            .args(["--quiet", "--force", "--out"])
+            .arg(&out)
+            .output()
+            .expect("it starts")
+    };
+    let case = out.join("case.json");
+    assert!(again(&case).status.success(), "a result's own case, as it is");
+    let text = fs::read_to_string(&case).expect("a case");
+    fs::write(&case, format!("\n{text}")).expect("it is changed");
+    let below = out.join("fields.part/c.json");
+    fs::create_dir_all(out.join("fields.part")).expect("a folder");
+    fs::copy(&case, &below).expect("a case");
+    for case in [&case, &below] {
+        let kept = fs::read(case).expect("a case");
+        let refused = again(case);
+        assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
+        assert_eq!(fs::read(case).expect("a case"), kept);
+    }
 }
 
 /// A file in the way is a message, not a loss.

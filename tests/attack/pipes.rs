@@ -47,6 +47,20 @@ fn streams_that_nobody_reads_stop_nothing() {
     assert_eq!(redirected(&format!("check {CASE}"), ">/dev/full 2>/dev/null"), Some(5));
 }
 
+/// A limit on the size of files is a fault of writing, with the file's name.
+#[test]
+fn a_limit_on_sizes_is_told() {
+    let folder = tempfile::tempdir().expect("a place");
+    let program = env!("CARGO_BIN_EXE_slcbeam");
+    let script = format!(
+        "ulimit -f 100; exec {program} run {CASE} --quiet --out {}",
+        folder.path().join("x").display()
+    );
+    let output = Command::new("bash").args(["-c", &script]).output().expect("it starts");
+    assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
+    assert!(stderr(&output).contains("cannot write"), "{}", stderr(&output));
+}
+
 #[test]
 fn a_wall_time_is_a_number() {
     let folder = tempfile::tempdir().expect("a place");

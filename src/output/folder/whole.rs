@@ -30,6 +30,25 @@ pub fn replace(path: &Path, text: &str) -> Result<()> {
     })
 }
 
+/// Writes a page or picture where the user wants it; in place of another of its kind, but of nothing else.
+///
+/// # Errors
+/// There is something that begins otherwise, or it cannot be written.
+pub fn replace_alike(path: &Path, text: &str, beginnings: &[&str]) -> Result<()> {
+    let mut begin = vec![];
+    let there = fs::metadata(path).is_ok_and(|there| there.is_file());
+    let read = !there
+        || open(path)
+            .and_then(|file| file.take(64).read_to_end(&mut begin))
+            .is_ok();
+    let begin = String::from_utf8_lossy(&begin).trim_start().to_lowercase();
+    if !read || !(begin.is_empty() || beginnings.iter().any(|b| begin.starts_with(b))) {
+        let why = "it holds something else, which would be lost; name another file with --out";
+        return Err(fault("write", path, io::Error::new(io::ErrorKind::AlreadyExists, why)));
+    }
+    replace(path, text)
+}
+
 /// Fills a file under another name, brings it to the disk and renames it; what could not be filled is removed.
 pub(crate) fn put_whole(target: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
     let part = part_of(target);

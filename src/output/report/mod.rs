@@ -44,7 +44,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
-use super::folder::{CASE, REPORT, ResultFolder, open, replace, text_of};
+use super::folder::{CASE, REPORT, ResultFolder, open, replace, replace_alike, text_of};
 use super::kind::Kind;
 use crate::case::{self, Case};
 use crate::error::Result;
@@ -103,7 +103,10 @@ fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
         data.insert("elsewhere".into(), true.into());
     }
     let text = page::assemble(&data);
-    replace(&path, &text)?;
+    match out {
+        Some(_) => replace_alike(&path, &text, &["<!doctype html"])?,
+        None => replace(&path, &text)?,
+    }
     Ok(Written {
         path,
         bytes: text.len(),
