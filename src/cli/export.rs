@@ -1,15 +1,17 @@
 //! `slcbeam export`: a result for spreadsheets, pandas, MATLAB and ParaView.
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use crate::case;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::export::{self, Written, instants, tables, vtk};
 use crate::output::folder::CASE;
+use crate::output::kind::Kind;
 use crate::output::numbers::{count, significant};
 
 /// `export`.
@@ -54,6 +56,13 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
     let from = export::read(&asked.dir)?;
     let chosen = instants::choose(&from.field_times, asked.times.as_deref(), asked.every as usize)?;
     let out = asked.out.as_deref().unwrap_or(&asked.dir);
+    if let (Some(kind), false) = (Kind::within(out), same(out, &asked.dir)) {
+        return Err(Error::Usage(format!(
+            "--out {}: it holds the result of `slcbeam {}`, beside which these files would pass for its own; name another folder",
+            out.display(),
+            kind.command()
+        )));
+    }
     let mut all: Vec<(&str, Written)> = vec![];
     if asked.format.contains(&Format::Csv) {
         all.push(("csv", tables::write(out, &from, &chosen)?));
@@ -90,4 +99,12 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
         super::print(&text)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Whether two paths lead to one folder.
+fn same(a: &Path, b: &Path) -> bool {
+    match (fs::canonicalize(a), fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    }
 }

@@ -173,6 +173,31 @@ fn an_empty_history_is_no_obstacle() {
     assert!(run(&out, &[]).status.success());
 }
 
+/// Tables and films of one result do not come to lie in another.
+#[test]
+fn exports_stay_out_of_other_results() {
+    let folder = tempfile::tempdir().expect("a place");
+    let (a, b) = (folder.path().join("a"), folder.path().join("b"));
+    assert!(run(&a, &[]).status.success() && run(&b, &[]).status.success());
+    let before = contents(&b);
+    let export = |out: &Path| {
+        slcbeam()
+            .arg("export")
+            .arg(&a)
+            .arg("--out")
+            .arg(out)
+            .output()
+            .expect("it starts")
+    };
+    let refused = export(&b);
+    assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
+    unchanged(&b, &before, "export");
+    for out in [&a, &folder.path().join("new")] {
+        let output = export(out);
+        assert!(output.status.success(), "{}", stderr(&output));
+    }
+}
+
 /// A page or picture takes the place of another, and of nothing else; a case that was changed by hand is not written over either, nor
 /// one that lies where an older result's files go.
 #[test]
