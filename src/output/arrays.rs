@@ -13,7 +13,7 @@ use npyz::WriterBuilder;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use super::folder::{fault, put_whole};
+use super::folder::{damaged, fault, put_whole};
 use super::history::FLUSH;
 use super::stream::{Mark, Stream};
 use crate::error::Result;
@@ -63,11 +63,7 @@ impl ArraysWriter {
                 Some(mark) if mark.bytes == 8 * len * instants => Stream::verify(&path, *mark)?,
                 _ => {
                     let why = "the checkpoint has another number of instants of it";
-                    return Err(fault(
-                        "go on with",
-                        &path,
-                        io::Error::new(io::ErrorKind::InvalidData, why),
-                    ));
+                    return Err(fault("go on with", &path, damaged(why)));
                 }
             }
         }

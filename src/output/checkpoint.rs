@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 
 use super::arrays::Marks;
-use super::folder::{CHECKPOINT, CHECKPOINT_BEFORE, ResultFolder, fault, open};
+use super::folder::{CHECKPOINT, CHECKPOINT_BEFORE, ResultFolder, damaged, fault, open};
 use super::stream::Mark;
 use crate::error::Result;
 use crate::run::checkpoint::Checkpoint;
@@ -54,7 +54,7 @@ pub fn write(folder: &ResultFolder, saved: &Saved) -> Result<()> {
     let heading = Heading {
         format: FORMAT,
         build: build(),
-        body: mark(&body),
+        body: Mark::of(&body[..]).map_err(|e| fault("write", &path, e))?,
     };
     let mut text = serde_json::to_vec(&heading).map_err(|e| fault("write", &path, e.into()))?;
     text.push(b'\n');
@@ -92,26 +92,20 @@ fn one(path: &Path) -> Result<Option<Saved>> {
         Err(e) => return Err(fault("read", path, e)),
         Ok(_) => {}
     }
-    let damaged = |why: &str| {
-        Err(fault(
-            "go on from",
-            path,
-            io::Error::new(io::ErrorKind::InvalidData, why),
-        ))
-    };
+    let refused = |why: &str| Err(fault("go on from", path, damaged(why)));
     let end = text.iter().position(|&b| b == b'\n').unwrap_or(text.len());
     let (heading, body) = (&text[..end], text.get(end + 1..).unwrap_or_default());
     let Ok(heading) = serde_json::from_slice::<Heading>(heading) else {
-        return damaged("its first line is not that of a checkpoint of this version of the program");
+        return refused("its first line is not that of a checkpoint of this version of the program");
     };
     if heading.format != FORMAT {
-        return damaged("it has the format of another version of the program");
+        return refused("it has the format of another version of the program");
     }
-    if heading.body != mark(body) {
-        return damaged("it is cut short or changed: its checksum differs");
+    if Mark::of(body).ok() != Some(heading.body) {
+        return refused("it is cut short or changed: its checksum differs");
     }
     if heading.build != build() {
-        return damaged(
+        return refused(
             "another build of the program wrote it, with which the run may differ from here on; go on with that one",
         );
     }
@@ -120,31 +114,12 @@ fn one(path: &Path) -> Result<Option<Saved>> {
         .map_err(|e| fault("go on from", path, e.into()))
 }
 
-fn mark(bytes: &[u8]) -> Mark {
-    Mark {
-        bytes: bytes.len() as u64,
-        crc32: crc32fast::hash(bytes),
-    }
-}
-
 /// What only this build of the program has: version, and length and checksum of the file that runs.
 pub fn build() -> String {
     static BUILD: OnceLock<String> = OnceLock::new();
-    let of = || -> io::Result<(u64, u32)> {
-        let mut file = File::open(std::env::current_exe()?)?;
-        let (mut sum, mut bytes, mut block) = (crc32fast::Hasher::new(), 0, vec![0; 1 << 20]);
-        loop {
-            match file.read(&mut block)? {
-                0 => return Ok((bytes, sum.finalize())),
-                n => {
-                    sum.update(&block[..n]);
-                    bytes += n as u64;
-                }
-            }
-        }
-    };
     let name = || {
-        let (bytes, sum) = of().unwrap_or_default();
+        let program = std::env::current_exe().and_then(File::open).and_then(Mark::of);
+        let (bytes, sum) = program.map_or((0, 0), |mark| (mark.bytes, mark.crc32));
         format!("{} {bytes} {sum:08x}", env!("CARGO_PKG_VERSION"))
     };
     BUILD.get_or_init(name).clone()

@@ -12,7 +12,7 @@ use super::kind::Kind;
 use crate::case::Written;
 use crate::error::{Error, Result};
 use lock::Lock;
-pub(crate) use whole::{open, put_whole, text_of};
+pub(crate) use whole::{damaged, open, put_whole, text_of};
 pub use whole::{replace, replace_alike};
 
 /// The case as resolved.

@@ -11,7 +11,7 @@ use std::path::Path;
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
-use super::folder::open;
+use super::folder::{damaged, open};
 
 /// Longest description of an array [byte]; this program's have 118.
 const LONGEST: usize = 4096;
@@ -76,7 +76,7 @@ impl Npz {
             let name =
                 name.filter(|name| !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_'));
             let Some(name) = name else {
-                return Err(damaged("an entry of it has not the name of an array".into()));
+                return Err(damaged("an entry of it has not the name of an array"));
             };
             let shape = describe(&mut entry, size).map_err(|e| damaged(format!("{name}: {e}")))?;
             entries.push(Entry { name, shape });
@@ -172,7 +172,7 @@ fn describe(entry: &mut impl Read, size: u64) -> io::Result<Vec<usize>> {
     let mut head = [0; 10];
     entry.read_exact(&mut head)?;
     if head[..8] != *b"\x93NUMPY\x01\x00" {
-        return Err(damaged("it does not begin as an array does".into()));
+        return Err(damaged("it does not begin as an array does"));
     }
     let length = usize::from(u16::from_le_bytes([head[8], head[9]]));
     if length > LONGEST {
@@ -183,7 +183,7 @@ fn describe(entry: &mut impl Read, size: u64) -> io::Result<Vec<usize>> {
     let shape = std::str::from_utf8(&text).ok().and_then(shape);
     let Some(shape) = shape.filter(|shape| (1..=2).contains(&shape.len())) else {
         return Err(damaged(
-            "its description is none of doubles in one or two dimensions, row by row".into(),
+            "its description is none of doubles in one or two dimensions, row by row",
         ));
     };
     let product = |product: u64, n: &u64| product.checked_mul(*n);
@@ -196,7 +196,7 @@ fn describe(entry: &mut impl Read, size: u64) -> io::Result<Vec<usize>> {
     // each is at most the file's size but for empty arrays, whose other length is then of no meaning
     let lengths = shape.iter().map(|&n| usize::try_from(n).ok().filter(|_| n <= size));
     let lengths: Option<Vec<usize>> = lengths.collect();
-    lengths.ok_or_else(|| damaged("it is empty, but of an impossible length".into()))
+    lengths.ok_or_else(|| damaged("it is empty, but of an impossible length"))
 }
 
 /// The lengths in `{'descr': '<f8', 'fortran_order': False, 'shape': (11, 3), }`.
@@ -210,9 +210,4 @@ fn shape(text: &str) -> Option<Vec<u64>> {
     let (inside, _) = rest.split_once(')')?;
     let lengths = inside.trim_end_matches(',').split(',');
     lengths.map(|n| n.parse().ok()).collect()
-}
-
-/// What is wrong with a file.
-pub fn damaged(why: String) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, why)
 }

@@ -6,8 +6,8 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::arrays::TIMES;
-use super::folder::{CASE, FIELDS, HISTORY, fault, open, text_of};
-use super::npz::{Npz, damaged};
+use super::folder::{CASE, FIELDS, HISTORY, damaged, fault, open, text_of};
+use super::npz::Npz;
 use super::summary;
 use crate::error::Result;
 use crate::study::compare::{Array, Recording, Series};
@@ -21,7 +21,7 @@ pub fn read(dir: &Path) -> Result<Recording> {
     let path = dir.join(HISTORY);
     let mut columns = history(&path).map_err(|e| fault("read", &path, e))?;
     if columns.is_empty() {
-        let why = io::Error::new(io::ErrorKind::InvalidData, "it has no columns");
+        let why = damaged("it has no columns");
         return Err(fault("read", &path, why));
     }
     let times = columns.remove(0).values;

@@ -1,12 +1,12 @@
 //! Files that grow with a run, and marks from which they are known again: so many bytes, with such a checksum.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read as _, Seek as _, SeekFrom, Write};
+use std::io::{self, Read, Seek as _, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::folder::{fault, open};
+use super::folder::{damaged, fault, open};
 use crate::error::Result;
 
 /// Bytes read at once.
@@ -30,6 +30,25 @@ pub struct Stream {
     sum: crc32fast::Hasher,
 }
 
+impl Mark {
+    /// Of all that a reader has.
+    pub fn of(mut from: impl Read) -> io::Result<Self> {
+        let (mut sum, mut bytes, mut block) = (crc32fast::Hasher::new(), 0, [0; BLOCK]);
+        loop {
+            match from.read(&mut block)? {
+                0 => {
+                    let crc32 = sum.finalize();
+                    return Ok(Self { bytes, crc32 });
+                }
+                n => {
+                    sum.update(&block[..n]);
+                    bytes += n as u64;
+                }
+            }
+        }
+    }
+}
+
 impl Stream {
     /// Makes the file, empty.
     pub fn create(path: &Path) -> Result<Self> {
@@ -49,28 +68,18 @@ impl Stream {
     /// It is not there, is shorter, or holds something else.
     pub fn verify(path: &Path, mark: Mark) -> Result<()> {
         let verify = || -> io::Result<()> {
-            let damaged = |why: String| Err(io::Error::new(io::ErrorKind::InvalidData, why));
             let file = open(path)?;
             let there = file.metadata()?.len();
             if there < mark.bytes {
-                return damaged(format!(
+                return Err(damaged(format!(
                     "{there} bytes are left of the {} that the checkpoint needs; what there is can be read, but no run goes on from it",
                     mark.bytes
+                )));
+            }
+            if Mark::of(file.take(mark.bytes))? != mark {
+                return Err(damaged(
+                    "it is not what was written up to the checkpoint (its checksum differs); no run goes on from it",
                 ));
-            }
-            let mut rest = BufReader::with_capacity(BLOCK, file).take(mark.bytes);
-            let (mut sum, mut block) = (crc32fast::Hasher::new(), [0; BLOCK]);
-            loop {
-                match rest.read(&mut block)? {
-                    0 => break,
-                    n => sum.update(&block[..n]),
-                }
-            }
-            if sum.finalize() != mark.crc32 {
-                return damaged(
-                    "it is not what was written up to the checkpoint (its checksum differs); no run goes on from it"
-                        .into(),
-                );
             }
             Ok(())
         };

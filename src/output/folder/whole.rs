@@ -82,6 +82,11 @@ pub(crate) fn open(path: &Path) -> io::Result<File> {
     Err(io::Error::new(io::ErrorKind::InvalidInput, why))
 }
 
+/// What is wrong with a file that was read.
+pub(crate) fn damaged(why: impl Into<String>) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, why.into())
+}
+
 /// The text of a file of a result.
 pub(crate) fn text_of(path: &Path) -> Result<String> {
     let read = || -> io::Result<String> {
@@ -89,7 +94,7 @@ pub(crate) fn text_of(path: &Path) -> Result<String> {
         let there = file.metadata()?.len();
         if there > LARGEST {
             let why = format!("it has {there} bytes; no such file of a result has more than {LARGEST}");
-            return Err(io::Error::new(io::ErrorKind::InvalidData, why));
+            return Err(damaged(why));
         }
         let mut text = String::new();
         file.read_to_string(&mut text)?;

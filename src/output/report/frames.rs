@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 
 use super::pack;
 use crate::output::arrays::TIMES;
-use crate::output::npz::{Npz, damaged};
+use crate::output::folder::damaged;
+use crate::output::npz::Npz;
 use crate::output::plot;
 
 /// Numbers of all frames together; four bytes each, a third more as text.

@@ -20,7 +20,6 @@ mod surface;
 mod tubes;
 
 use std::fs;
-use std::io;
 use std::path::Path;
 
 use super::Written;
@@ -29,7 +28,7 @@ use crate::case::Case;
 use crate::discrete::System;
 use crate::error::Result;
 use crate::model::Model;
-use crate::output::folder::{CASE, FIELDS, VTK, fault};
+use crate::output::folder::{CASE, FIELDS, VTK, damaged, fault};
 use crate::output::numbers::shortest;
 use crate::run::observe::Observer;
 use crate::study::compare::Recording;
@@ -77,7 +76,7 @@ pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> R
 fn fits(case: &Case, from: &Recording) -> Result<()> {
     let header = Observer::header(case, &System::new(case));
     let path = Path::new(&from.label).join(FIELDS);
-    let other = |why: String| Err(fault("read", &path, io::Error::new(io::ErrorKind::InvalidData, why)));
+    let other = |why: String| Err(fault("read", &path, damaged(why)));
     for expected in &header.axes {
         let there = from.axis(expected.name).unwrap_or_default();
         let size = expected.values.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
