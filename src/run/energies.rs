@@ -108,7 +108,8 @@ pub struct Energies {
     turbines: bool,
     columns: BTreeMap<String, usize>,
     last: Parts,
-    largest_stored: f64,
+    /// Of the outputs [J].
+    pub largest_stored: f64,
     /// Energies that are round-off [J].
     #[serde(default)]
     floor: f64,

@@ -7,6 +7,8 @@
 //! resonance  a drive that comes near one which the mesh misplaces
 //! coupled    what sealed fluid does to them
 //! tolerance  what steps make of their tolerance
+//! work       energies that were put in and harvested
+//! young      a wave that has only begun to run along the beam
 //! words      what is said of it
 //! ```
 //!
@@ -28,6 +30,8 @@ pub mod small;
 pub mod tolerance;
 pub mod vibration;
 pub mod words;
+mod work;
+pub mod young;
 
 use std::collections::BTreeMap;
 
@@ -54,10 +58,6 @@ const DRAWN: f64 = 0.5;
 /// How much more than its deflection a mesh changes a beam's work and the pressures in it: these go with curvatures, of which higher
 /// modes have more. Measured on random beams of 8 to 16 cells.
 const CURVED: f64 = 3.0;
-/// Below this part of the displacement along the beam one across it stores nothing that counts.
-const ALONG: f64 = 0.1;
-/// Slope of the tip in the first mode of a cantilever, over its deflection over the length.
-const SLOPED: f64 = 1.376;
 /// An energy is the square of a motion, and so is what a deflection draws in.
 const SQUARED: f64 = 2.0;
 /// Figures below this part of others are nothing to be accurate about.
@@ -70,14 +70,20 @@ pub struct Unstable {
     pub grown: f64,
     /// How many times as much as a part of Euler's load a deflection changes, at least 1.
     pub softened: f64,
+    /// `N l²/(EI)` of compressions under which short waves grow, 0 where there was none.
+    pub crushed: f64,
+    /// Largest energy stored [J]: what comes back of it is as wrong as what is left.
+    pub stored: f64,
 }
 
 impl Unstable {
     /// Of what was followed in a run of a beam of a length [m].
-    pub fn of(growth: &Growth, length: f64, linear: &Linear) -> Self {
+    pub fn of(growth: &Growth, length: f64, linear: &Linear, stored: f64) -> Self {
         Self {
             grown: growth.amplification(length, linear),
             softened: growth.softened(linear),
+            crushed: growth.crushed(),
+            stored,
         }
     }
 }
@@ -89,6 +95,12 @@ pub struct Estimator {
     axial: Vec<Vibration>,
     /// What the mesh makes of a deflection at rest, of a stretch at rest.
     at_rest: [f64; 2],
+    /// How many times as large the square of the wave number is, of what runs away from an end, as that of the first vibration.
+    #[serde(default)]
+    young: f64,
+    /// One over the square of the first wave number times length, that of bending.
+    #[serde(default)]
+    first: f64,
     tolerance: Tolerance,
     near: Option<Near>,
     /// Velocities across: first unknown, number, size [m/s]; largest acceleration seen [m/s^2].
@@ -173,6 +185,8 @@ impl Estimator {
             bending: follow(across, 0),
             axial: follow(along, 1),
             at_rest: first.map(|(mesh, _)| 2.0 * mesh * fine),
+            young: young::shorter(case, system, first[0].1),
+            first: if first[0].1 > 0.0 { first[0].1.recip() } else { 0.0 },
             tolerance: Tolerance::new(case.solver.rtol, &model.scales, layout),
             near: resonance::nearest(system),
             velocities: match layout.waves[0] {
@@ -216,7 +230,7 @@ impl Estimator {
         unstable: &Unstable,
     ) -> (Option<Estimated>, Option<String>) {
         let rows = self.rows(quantities, unstable);
-        let found = Estimated::of(&rows, unstable, self.near);
+        let found = Estimated::of(&rows, unstable, self.near, self.young);
         let (cells, rtol) = self.settings;
         let warning = found.as_ref().and_then(|found| found.warning(&rows, cells, rtol));
         (found, warning)
@@ -233,7 +247,8 @@ impl Estimator {
         let drawn = |place: Place, slope: f64| Off::of(&bending, place).times(DRAWN * slope.min(1.0));
         let anywhere = Off::of(&bending, Place::Anywhere);
         let [bent, stretched] = self.at_rest;
-        let bent = (bent * unstable.softened).min(1.0).max(bent);
+        let shorter = unstable.softened.max(self.young).max(unstable.crushed * self.first);
+        let bent = (bent * shorter).min(1.0).max(bent);
         let nearly = |size: f64, turned: bool| self.near.map_or(0.0, |near| near.of(size, turned, self.acceleration));
         let near = nearly(wide, false);
         let within = |which: usize, size: f64| self.tolerance.of(which, size);
@@ -283,49 +298,8 @@ impl Estimator {
             share[0] * (CURVED * bent + near + of_wide[2]) + share[1] * CURVED * stretched,
         ];
         row("max_pressure_pa", size, off, extra, 1.0);
-        self.energies(&mut rows, quantities, [wide, long, angle]);
+        self.energies(&mut rows, quantities, unstable, [wide, long, angle]);
         rows
-    }
-
-    /// Energies: of displacements across, or along where those are nothing beside them.
-    fn energies(&self, rows: &mut Vec<Row>, quantities: &BTreeMap<String, Quantity>, [wide, long, angle]: [f64; 3]) {
-        // ends that are driven along the beam move all of it, and store nothing
-        let (moved, which, size): (&[&str], usize, f64) = match wide >= ALONG * long {
-            true => (&["largest_u1_m", "tip_angle_rad"], 0, wide),
-            false => (&["largest_u3_m"], 1, long),
-        };
-        // a tip that hardly turns while the beam moves says nothing of it
-        let turned = (angle * self.floors.length / (SLOPED * wide)).min(1.0);
-        let moved = rows.iter().filter(|row| moved.contains(&row.name)).cloned();
-        let moved = moved.map(|row| match row.name {
-            "tip_angle_rad" => row.times(turned),
-            _ => row,
-        });
-        let Some(most) = moved.max_by(|a, b| a.total().total_cmp(&b.total())) else {
-            return;
-        };
-        let stored = self.stored[which] * size * size;
-        for name in ["input_energy_j", "harvested_energy_j"] {
-            let size = quantities.get(name).and_then(|q| q.last).map_or(0.0, f64::abs);
-            if !self.counts(name, size, quantities) {
-                continue;
-            }
-            // where fluid is pumped through a beam that hardly moves, its motion says nothing
-            let (errors, phase) = match stored > NOTHING * size {
-                true => (most.errors, most.phase),
-                false => ([self.tolerance.gathered(), 0.0], 0.0),
-            };
-            let [time, space] = errors.map(|x| SQUARED * x);
-            // nothing but loads and ends: mostly off by much less than it is told, three times as much as a displacement
-            let alone = !quantities.contains_key("harvested_energy_j");
-            rows.push(Row {
-                name,
-                enough: if alone { 2.0 * LARGE } else { LARGE },
-                errors: [time, space + (CURVED - SQUARED) * self.at_rest[which]],
-                phase: SQUARED * phase,
-                ..most
-            });
-        }
     }
 
     /// Whether a quantity of a size is more than round-off, of what the case does and beside others.

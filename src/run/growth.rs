@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::fit;
 use crate::discrete::Instant;
 use crate::discrete::ledger::Flow;
+use crate::model::Model;
 use crate::model::characteristic::Mathieu;
 
 /// Windows into which a run is divided.
@@ -14,6 +15,11 @@ const WINDOWS: usize = 16;
 const OUTGROWN: f64 = 2.0;
 /// Factor over the later part of a run from which on growth is worth a word.
 const GROWN: f64 = 3.0;
+
+/// Compression in `EI/l²` that is beyond what any column stands, `4 π²` with both ends clamped.
+const STOCKY: f64 = 40.0;
+/// Growth of the fastest waves under a compression from which on they count.
+const LASTED: f64 = 3.0;
 
 /// Squared correlation of its logarithm with time from which on a deflection grows exponentially.
 const STRAIGHT: f64 = 0.6;
@@ -46,6 +52,15 @@ pub struct Growth {
     windows: Vec<Window>,
     /// Largest compressive force seen [N].
     pub compression: f64,
+    /// `EI` [N m^2] and `EI/l²` [N], which tell what a beam stands, and mass per length [kg/m].
+    #[serde(default)]
+    column: [f64; 3],
+    /// Time and compression of the state before [s, N], and how long the compression has lasted, times its size [N s].
+    #[serde(default)]
+    before: [f64; 3],
+    /// The largest of that, and the largest compression in it [N s, N].
+    #[serde(default)]
+    pushed: [f64; 2],
 }
 
 /// What drives a growing response.
@@ -78,12 +93,18 @@ pub struct Linear {
 }
 
 impl Growth {
-    /// For a run until `end` [s].
-    pub fn new(end: f64) -> Self {
+    /// For a run of a model until `end` [s].
+    pub fn new(model: &Model, end: f64) -> Self {
+        let s = &model.section;
         Self {
             end,
             windows: vec![Window::default(); WINDOWS],
-            compression: 0.0,
+            column: [
+                s.bending_stiffness,
+                s.bending_stiffness / model.length.powi(2),
+                s.mass_per_length,
+            ],
+            ..Self::default()
         }
     }
 
@@ -99,6 +120,7 @@ impl Growth {
     ) {
         let k = ((t / self.end * WINDOWS as f64) as usize).min(WINDOWS - 1);
         self.compression = self.compression.max(-least_force);
+        self.push(t, -least_force);
         let Some(w) = self.windows.get_mut(k) else { return };
         w.deflection = w.deflection.max(deflection);
         w.bending_energy = w.bending_energy.max(bending);
@@ -116,6 +138,33 @@ impl Growth {
                 .iter()
                 .sum();
         }
+    }
+
+    /// Adds up the compression of one stretch of time in which every column buckles.
+    fn push(&mut self, t: f64, compression: f64) {
+        let [at, before, so_far] = self.before;
+        let [_, unit, _] = self.column;
+        if t < at {
+            return;
+        }
+        let both = 0.5 * (before + compression);
+        let lasted = if both > STOCKY * unit {
+            so_far + (t - at) * both
+        } else {
+            0.0
+        };
+        self.before = [t, compression, lasted];
+        if lasted > self.pushed[0] {
+            self.pushed = [lasted, self.pushed[1].max(before).max(compression)];
+        }
+    }
+
+    /// `N l²/(EI)` of a compression far beyond what the beam stands that lasted long enough for the waves that grow fastest under it to
+    /// become [`LASTED`] times as large, `σ = N/(2 √(m EI))`; 0: there was none.
+    pub fn crushed(&self) -> f64 {
+        let ([stiffness, unit, mass], [pushed, most]) = (self.column, self.pushed);
+        let exponent = pushed / (2.0 * (mass * stiffness).sqrt());
+        if exponent > LASTED.ln() { most / unit } else { 0.0 }
     }
 
     /// Whether the deflection grows, exponentially and to the end, and why. `length` [m] is the beam's.

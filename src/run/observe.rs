@@ -107,7 +107,7 @@ impl Observer {
                 figures: Figures::new(case, &columns),
                 energies: Energies::new(case, &columns, floors.energy),
                 estimate: Estimator::new(case, system, floors),
-                growth: Growth::new(case.time.end_s),
+                growth: Growth::new(&system.model, case.time.end_s),
                 integrals: vec![0.0; ledger::flow_count(system)],
                 ..Observed::default()
             },

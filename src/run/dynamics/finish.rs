@@ -63,7 +63,12 @@ impl Run<'_> {
         s.quantities = o.figures.quantities();
         o.energies.complete(&mut s.quantities);
         s.warnings.extend(o.energies.warning(&s.quantities));
-        let unstable = Unstable::of(&o.growth, self.case.beam.length_m, &self.linear);
+        let unstable = Unstable::of(
+            &o.growth,
+            self.case.beam.length_m,
+            &self.linear,
+            o.energies.largest_stored,
+        );
         let (estimate, warning) = o.estimate.judge(&s.quantities, &unstable);
         s.estimate = estimate;
         s.warnings.extend(warning);

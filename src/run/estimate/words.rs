@@ -1,6 +1,7 @@
 //! What the estimate says, and when it warns.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
@@ -39,6 +40,13 @@ pub struct Estimated {
     /// How many times as much as a part of Euler's load a deflection changes, where compression came near it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub softened: Option<f64>,
+    /// `N l²/(EI)` of a compression under which short waves grew; absent where there was none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crushed: Option<f64>,
+    /// How many times as large the square of the wave number is, of what an end has sent out by the end of the run, as that of the first
+    /// vibration; absent where the run is longer than that takes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub young: Option<f64>,
     /// A drive near a vibration that the mesh misplaces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub near: Option<Near>,
@@ -81,7 +89,7 @@ impl Row {
 
 impl Estimated {
     /// Of all quantities that say something; none where there is none.
-    pub fn of(rows: &[Row], unstable: &Unstable, near: Option<Near>) -> Option<Self> {
+    pub fn of(rows: &[Row], unstable: &Unstable, near: Option<Near>, young: f64) -> Option<Self> {
         let worst = rows.iter().max_by(|a, b| a.total().total_cmp(&b.total()))?;
         let one = |row: &Row| {
             let [time, space] = row.errors;
@@ -102,6 +110,8 @@ impl Estimated {
             shift_rad: worst.shift,
             growth: beyond_one(unstable.grown),
             softened: beyond_one(unstable.softened).filter(|x| *x > SOFT),
+            crushed: beyond_one(unstable.crushed),
+            young: beyond_one(young),
             near,
             quantities: rows.iter().map(one).collect(),
         })
@@ -119,7 +129,8 @@ impl Estimated {
             .map(|r| format!("{} {}", r.name, size(r.total())))
             .collect();
         let phase = |row: &Row| row.total() - row.phase <= LARGE && row.phase > 0.5 * row.total();
-        let only_phase = self.growth.is_none() && self.softened.is_none() && large.iter().all(|row| phase(row));
+        let by_phase = self.growth.or(self.softened).or(self.crushed).or(self.young).is_none();
+        let only_phase = by_phase && large.iter().all(|row| phase(row));
         let (figures, because) = match only_phase {
             true => (
                 "final values",
@@ -172,7 +183,16 @@ impl Estimated {
         let soft = self.softened.map(|factor| {
             format!("compression came so near Euler's load that what the mesh changes of that counts {factor:.0} times")
         });
-        let all: Vec<String> = near.into_iter().chain(growth).chain(soft).collect();
+        let crushed = self.crushed.map(|times| {
+            format!("compression reached {times:.0} EI/l^2 for long enough that waves of a length of {:.2} l grow, which the mesh must carry", TAU / times.sqrt())
+        });
+        let young = self.young.map(|times| {
+            format!(
+                "what an end has sent out is by the end of the run a wave {:.1} times as short as the first vibration",
+                times.sqrt()
+            )
+        });
+        let all: Vec<String> = [near, growth, soft, crushed, young].into_iter().flatten().collect();
         let why = match all.is_empty() {
             true => "the mesh is coarse, or the tolerance loose, for what the beam does".into(),
             false => all.join("; "),
