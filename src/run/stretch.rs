@@ -44,6 +44,11 @@ impl Stretches {
         }
     }
 
+    /// How many there are.
+    pub fn count(&self) -> f64 {
+        (self.end / self.length).max(0.0).ceil()
+    }
+
     /// Number of the stretch in which an instant [s] lies, none in the window.
     pub fn of(&self, t: f64) -> Option<u64> {
         (t < self.end).then(|| (t / self.length + EDGE).floor() as u64)

@@ -112,6 +112,18 @@ impl Time {
         self.fields_interval_s.unwrap_or(self.output_interval())
     }
 
+    /// Outputs at such intervals [s] that are written at most: all in the window, before it those that `history` keeps.
+    pub fn written(&self, interval: f64) -> f64 {
+        let window = self.window().min(self.end_s);
+        let before = self.end_s - window;
+        let kept = match self.history {
+            Thinning::All => before / interval,
+            Thinning::Window => 0.0,
+            Thinning::Every(count) => before / interval.max(self.output_interval() * count.max(1) as f64),
+        };
+        kept + window / interval
+    }
+
     /// Length of the window at the end of the run [s].
     pub fn window(&self) -> f64 {
         self.window_s.unwrap_or(self.end_s / 10.0)
