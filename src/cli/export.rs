@@ -1,7 +1,7 @@
 //! `slcbeam export`: a result for spreadsheets, pandas, MATLAB and ParaView.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
@@ -56,7 +56,8 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
     let from = export::read(&asked.dir)?;
     let chosen = instants::choose(&from.field_times, asked.times.as_deref(), asked.every as usize)?;
     let out = asked.out.as_deref().unwrap_or(&asked.dir);
-    if let (Some(kind), false) = (Kind::within(out), same(out, &asked.dir)) {
+    let elsewhere = fs::canonicalize(out).ok() != fs::canonicalize(&asked.dir).ok();
+    if let Some(kind) = Kind::within(out).filter(|_| elsewhere) {
         return Err(Error::Usage(format!(
             "--out {}: it holds the result of `slcbeam {}`, beside which these files would pass for its own; name another folder",
             out.display(),
@@ -99,12 +100,4 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
         super::print(&text)?;
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// Whether two paths lead to one folder.
-fn same(a: &Path, b: &Path) -> bool {
-    match (fs::canonicalize(a), fs::canonicalize(b)) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => false,
-    }
 }

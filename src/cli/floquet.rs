@@ -55,7 +55,7 @@ fn one(asked: &FloquetArguments, loaded: &LoadedCase) -> Result<ExitCode> {
         refine::meshes::judge(case, &refine::numbers::of_stability(&found), &mut of)
     });
     bar.finish_and_clear();
-    let mut warnings = known::without_outputs(case, &System::with(case, whole(case)));
+    let mut warnings = known::of_cycles(case);
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.and_then(refine::warning));
     let found = files::Found {
@@ -97,7 +97,7 @@ fn map(asked: &FloquetArguments, loaded: &LoadedCase, parameters: &str) -> Resul
     });
     bar.finish_and_clear();
     let found = found?;
-    let warnings = known::without_outputs(case, &System::with(case, whole(case)));
+    let warnings = known::of_cycles(case);
     files::write_map(&mut folder, &found, &warnings)?;
     report::complete(&folder, case)?;
     if asked.json {

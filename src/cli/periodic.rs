@@ -130,8 +130,7 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     let found = found?;
-    let of_case = |(_, case): &(f64, Case)| known::without_outputs(case, &System::with(case, whole(case)));
-    let warnings = cases.first().map(of_case).unwrap_or_default();
+    let warnings = known::of_cycles(&first);
     files::write(&mut folder, &found, &warnings)?;
     report::complete(&folder, &first)?;
     if asked.json {

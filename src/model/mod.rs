@@ -238,6 +238,16 @@ impl Model {
         }
     }
 
+    /// Visits every signal that takes part.
+    pub fn each_signal(&self, visit: impl FnMut(&Signal)) {
+        each_signal(
+            &self.ends,
+            &self.loads,
+            self.wet.as_ref().map(|wet| &wet.network),
+            visit,
+        );
+    }
+
     /// Whether forces of the published form act, which bending alone brings about.
     pub fn published(&self) -> bool {
         self.formulation == Formulation::Published && self.kinematics == Kinematics::FiniteRotation

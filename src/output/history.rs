@@ -46,23 +46,17 @@ impl HistoryWriter {
     }
 
     /// Opens the file of an interrupted run, verified, and drops what came after the mark.
-    pub fn reopen(path: &Path, columns: usize, mark: Mark) -> Result<Self> {
-        Ok(Self {
-            path: path.to_path_buf(),
-            out: csv::Writer::from_writer(Stream::reopen(path, mark)?),
-            columns,
-            flushed: Instant::now(),
-        })
-    }
-
-    /// The same of a file whose columns are as many as its first line has.
-    pub fn reopen_named(path: &Path, mark: Mark) -> Result<Self> {
+    pub fn reopen(path: &Path, mark: Mark) -> Result<Self> {
         let columns = || -> csv::Result<usize> {
             let mut reader = csv::Reader::from_path(path)?;
             Ok(reader.headers()?.len())
         };
-        let columns = columns().map_err(|e| fault("read", path, io::Error::from(e)))?;
-        Self::reopen(path, columns, mark)
+        Ok(Self {
+            path: path.to_path_buf(),
+            columns: columns().map_err(|e| fault("read", path, io::Error::from(e)))?,
+            out: csv::Writer::from_writer(Stream::reopen(path, mark)?),
+            flushed: Instant::now(),
+        })
     }
 
     /// All rows so far, safe on disk.

@@ -74,11 +74,11 @@ impl FolderRecorder {
         }
         folder.remove(SUMMARY)?;
         folder.remove_exports()?;
-        let history = HistoryWriter::reopen(&history, header.columns.len(), saved.history)?;
+        let history = HistoryWriter::reopen(&history, saved.history)?;
         let arrays = ArraysWriter::reopen(&raw, header, &saved.fields)?;
         let [envelope, sensitivities] = besides.map(|(name, mark)| {
             let path = folder.path(name);
-            mark.map(|mark| HistoryWriter::reopen_named(&path, mark)).transpose()
+            mark.map(|mark| HistoryWriter::reopen(&path, mark)).transpose()
         });
         Ok(Self {
             open: Some((history, arrays)),

@@ -3,7 +3,7 @@
 use crate::case::schema::Case;
 use crate::case::signals::{Signal, Sine};
 use crate::error::{Error, Result};
-use crate::model::{Model, each_signal};
+use crate::model::Model;
 
 /// Periods of two signals that fit into a common one this often are told apart.
 const MOST_CYCLES: u32 = 64;
@@ -28,7 +28,7 @@ pub struct Drive {
 pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
     let mut frequencies = vec![];
     let mut endless = None;
-    each_signal(&model.ends, &model.loads, model.wet.as_ref().map(|w| &w.network), |s| {
+    model.each_signal(|s| {
         let settled = settled(s);
         if !is_periodic(&settled) {
             endless.get_or_insert(settled);

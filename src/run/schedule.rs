@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use crate::case::schema::Case;
-use crate::model::{Model, each_signal};
+use crate::model::Model;
 
 /// A time at which the integrator stops and starts afresh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,9 +21,7 @@ pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
     let end = case.time.end_s;
     let closest = 1e-9 * end;
     let mut switches = Vec::new();
-    each_signal(&model.ends, &model.loads, model.wet.as_ref().map(|w| &w.network), |s| {
-        s.breaks(&mut switches)
-    });
+    model.each_signal(|s| s.breaks(&mut switches));
     let mut all: Vec<Stop> = switches
         .into_iter()
         .map(|t| Stop {
@@ -61,9 +59,7 @@ pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
 /// Whether any signal changes in time.
 pub fn changes(model: &Model) -> bool {
     let mut changes = false;
-    each_signal(&model.ends, &model.loads, model.wet.as_ref().map(|w| &w.network), |s| {
-        changes |= !s.is_constant()
-    });
+    model.each_signal(|s| changes |= !s.is_constant());
     changes
 }
 

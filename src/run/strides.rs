@@ -4,7 +4,7 @@ use super::schedule;
 use crate::case::bounds::{Stretch, merged};
 use crate::case::schema::Case;
 use crate::discrete::System;
-use crate::model::{Model, each_signal};
+use crate::model::Model;
 
 /// Stretches whose largest steps are nearer than this factor share the shorter.
 const NEAR: f64 = 4.0;
@@ -89,7 +89,7 @@ fn stretches(model: &Model, end: f64) -> Vec<Stretch> {
         to: end,
         scale: f64::INFINITY,
     }];
-    each_signal(&model.ends, &model.loads, model.wet.as_ref().map(|w| &w.network), |s| {
+    model.each_signal(|s| {
         all = merged(&all, &s.stretches(end), f64::min);
     });
     all

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use super::small::{self, SmallMode};
+use super::words::LARGE;
 use crate::case::{Rotation, Signal, Translation};
 use crate::discrete::System;
 use crate::model::loads::LoadKind;
@@ -13,8 +14,6 @@ use crate::model::loads::LoadKind;
 const MODES: usize = 16;
 /// How many times what it does at rest a vibration must answer to count beside others.
 const NEAR: f64 = 3.0;
-/// Change of the answer that is told.
-const LARGE: f64 = 0.05;
 
 /// A drive near a vibration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use super::Unstable;
 use super::resonance::Near;
+use crate::discrete::resolution;
 use crate::error::Code;
 use crate::run::summary::Estimate;
 
 /// Above this a figure is warned of.
-pub const LARGE: f64 = 0.05;
+pub const LARGE: f64 = resolution::LIMIT;
 /// From this factor on that compression softens a column it is told.
 const SOFT: f64 = 10.0;
 /// Finest mesh, in cells a segment, that is proposed.

@@ -9,6 +9,7 @@ use super::shape::alike;
 use super::{Fluid, Limit, Linearised, Mode, Modes, Plan, Tally, at_equilibrium, linearise, matched, search};
 use crate::case::Case;
 use crate::error::{Code, Result};
+use crate::run::estimate::words::LARGE;
 
 /// What meshes of second order leave of a difference: to half the cells, to twice the cells.
 const TO_HALF: f64 = 1.0 / 3.0;
@@ -132,8 +133,6 @@ fn real(modes: &[Mode], others: &[Mode], length: f64) -> Vec<(usize, usize, f64)
     pairs
 }
 
-/// Error of a frequency or rate that is told.
-const LARGE: f64 = 0.05;
 /// Modes told by name.
 const TOLD: usize = 4;
 

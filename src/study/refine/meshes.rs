@@ -15,9 +15,7 @@ use serde::Serialize;
 use super::{Numbers, SAFETY, has_cells_along_bladders};
 use crate::case::Case;
 use crate::error::{Code, Error, Result};
-
-/// Error that is told.
-const LARGE: f64 = 0.05;
+use crate::run::estimate::words::LARGE;
 
 /// What meshes do to one number, relative to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
