@@ -30,7 +30,7 @@ pub mod small;
 pub mod tolerance;
 pub mod vibration;
 pub mod words;
-mod work;
+pub mod work;
 pub mod young;
 
 use std::collections::BTreeMap;
@@ -51,7 +51,8 @@ use small::SmallMode;
 use tolerance::Tolerance;
 use vibration::{Known, Place, Vibration};
 pub use words::Estimated;
-use words::{LARGE, Row};
+use words::Row;
+pub use work::Work;
 
 /// How much a slope takes the tip along that turns with the deflection of the first mode, on average over phases of both.
 const DRAWN: f64 = 0.5;
@@ -72,18 +73,15 @@ pub struct Unstable {
     pub softened: f64,
     /// `N l²/(EI)` of compressions under which short waves grow, 0 where there was none.
     pub crushed: f64,
-    /// Largest energy stored [J]: what comes back of it is as wrong as what is left.
-    pub stored: f64,
 }
 
 impl Unstable {
     /// Of what was followed in a run of a beam of a length [m].
-    pub fn of(growth: &Growth, length: f64, linear: &Linear, stored: f64) -> Self {
+    pub fn of(growth: &Growth, length: f64, linear: &Linear) -> Self {
         Self {
             grown: growth.amplification(length, linear),
             softened: growth.softened(linear),
             crushed: growth.crushed(),
-            stored,
         }
     }
 }
@@ -228,15 +226,16 @@ impl Estimator {
         &self,
         quantities: &BTreeMap<String, Quantity>,
         unstable: &Unstable,
+        work: &Work,
     ) -> (Option<Estimated>, Option<String>) {
-        let rows = self.rows(quantities, unstable);
+        let rows = self.rows(quantities, unstable, work);
         let found = Estimated::of(&rows, unstable, self.near, self.young);
         let (cells, rtol) = self.settings;
         let warning = found.as_ref().and_then(|found| found.warning(&rows, cells, rtol));
         (found, warning)
     }
 
-    fn rows(&self, quantities: &BTreeMap<String, Quantity>, unstable: &Unstable) -> Vec<Row> {
+    fn rows(&self, quantities: &BTreeMap<String, Quantity>, unstable: &Unstable, work: &Work) -> Vec<Row> {
         let grown = unstable.grown;
         let largest = |name: &str| quantities.get(name).and_then(|q| q.max_abs).unwrap_or(0.0);
         let [wide, long, angle] = ["largest_u1_m", "largest_u3_m", "tip_angle_rad"].map(largest);
@@ -298,7 +297,7 @@ impl Estimator {
             share[0] * (CURVED * bent + near + of_wide[2]) + share[1] * CURVED * stretched,
         ];
         row("max_pressure_pa", size, off, extra, 1.0);
-        self.energies(&mut rows, quantities, unstable, [wide, long, angle]);
+        self.energies(&mut rows, quantities, work, [wide, long, angle]);
         rows
     }
 
@@ -324,7 +323,6 @@ impl Estimator {
         let more = self.more(errors[0] + errors[1], grown);
         Row {
             name,
-            enough: LARGE,
             errors: [errors[0], errors[1] + more],
             // less than a vibration in the window: its root mean square knows of the phase
             phase: match off.vibrations * self.window < 1.0 {

@@ -4,7 +4,7 @@ use super::{End, Outcome, Run};
 use crate::dae::BeamDae;
 use crate::discrete::ledger::FLOWS;
 use crate::error::Code;
-use crate::run::estimate::Unstable;
+use crate::run::estimate::{Unstable, Work};
 use crate::run::method::{Integrator, Options};
 use crate::run::order;
 use crate::run::sensitivity::forward::Forward;
@@ -63,13 +63,9 @@ impl Run<'_> {
         s.quantities = o.figures.quantities();
         o.energies.complete(&mut s.quantities);
         s.warnings.extend(o.energies.warning(&s.quantities));
-        let unstable = Unstable::of(
-            &o.growth,
-            self.case.beam.length_m,
-            &self.linear,
-            o.energies.largest_stored,
-        );
-        let (estimate, warning) = o.estimate.judge(&s.quantities, &unstable);
+        let unstable = Unstable::of(&o.growth, self.case.beam.length_m, &self.linear);
+        let work = Work::of(o.energies.largest_stored, &o.stored, &o.integrals);
+        let (estimate, warning) = o.estimate.judge(&s.quantities, &unstable, &work);
         s.estimate = estimate;
         s.warnings.extend(warning);
         s.sensitivities = self.forward.as_ref().map(Forward::summary).unwrap_or_default();

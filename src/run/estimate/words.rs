@@ -60,8 +60,6 @@ pub struct Estimated {
 pub struct Row {
     /// The quantity.
     pub name: &'static str,
-    /// From which error on it is a warning; beside others one of [`LARGE`] is named.
-    pub enough: f64,
     /// Errors by steps and by the mesh, relative to its largest value.
     pub errors: [f64; 2],
     /// Part that is phase of one free vibration.
@@ -122,9 +120,7 @@ impl Estimated {
     pub fn warning(&self, rows: &[Row], cells: usize, rtol: f64) -> Option<String> {
         let mut large: Vec<&Row> = rows.iter().filter(|row| row.total() > LARGE).collect();
         large.sort_by(|a, b| b.total().total_cmp(&a.total()));
-        let worst = *large
-            .first()
-            .filter(|_| rows.iter().any(|row| row.total() > row.enough))?;
+        let worst = *large.first()?;
         let names: Vec<String> = large
             .iter()
             .map(|r| format!("{} {}", r.name, size(r.total())))

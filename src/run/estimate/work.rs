@@ -2,20 +2,39 @@
 
 use std::collections::BTreeMap;
 
-use super::words::{LARGE, Row};
-use super::{CURVED, Estimator, NOTHING, SQUARED, Unstable};
+use super::words::Row;
+use super::{CURVED, Estimator, NOTHING, SQUARED};
+use crate::discrete::ledger::{Energies, Flow};
 use crate::run::summary::Quantity;
 
 /// Below this part of the displacement along the beam one across it stores nothing that counts.
 const ALONG: f64 = 0.1;
 /// Slope of the tip in the first mode of a cantilever, over its deflection over the length.
 const SLOPED: f64 = 1.376;
-/// How many times as large as others an error of loads' and ends' work may be told to be before it is warned of.
-const ALONE: f64 = 2.0;
-/// Part of what went in over the window that is most of it.
-const MOST: f64 = 0.5;
 /// How much more than what is left at the end may have been stored and come back.
 const MOST_BACK: f64 = 4.0;
+
+/// Energies of a run of which others are parts.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Work {
+    /// Largest energy stored [J]: what comes back of it is as wrong as what is left.
+    pub stored: f64,
+    /// What went through the motion of the beam [J]: works of loads and ends, what material and drag take, what is stored in it.
+    pub moved: f64,
+}
+
+impl Work {
+    /// Of the largest energy stored, of what is stored at the end, and of what went where.
+    pub fn of(largest: f64, stored: &Energies, integrals: &[f64]) -> Self {
+        let flow = |flow: Flow| integrals.get(flow as usize).map_or(0.0, |x| x.abs());
+        let through = [Flow::Loads, Flow::Ends, Flow::Damping].map(flow);
+        let within = [stored.kinetic, stored.rotary, stored.axial, stored.bending];
+        Self {
+            stored: largest,
+            moved: through.into_iter().chain(within).sum(),
+        }
+    }
+}
 
 impl Estimator {
     /// Energies: of displacements across, or along where those are nothing beside them.
@@ -23,7 +42,7 @@ impl Estimator {
         &self,
         rows: &mut Vec<Row>,
         quantities: &BTreeMap<String, Quantity>,
-        unstable: &Unstable,
+        work: &Work,
         [wide, long, angle]: [f64; 3],
     ) {
         // ends that are driven along the beam move all of it, and store nothing
@@ -48,28 +67,28 @@ impl Estimator {
                 continue;
             }
             // where fluid is pumped through a beam that hardly moves, its motion says nothing
-            let (errors, phase) = match stored > NOTHING * size {
-                true => (most.errors, most.phase),
-                false => ([self.tolerance.gathered(), 0.0], 0.0),
+            let moved = match stored > NOTHING * size {
+                true => (work.moved / size).min(1.0),
+                false => 0.0,
             };
+            let errors = [
+                moved * most.errors[0] + (1.0 - moved) * self.tolerance.gathered(),
+                moved * most.errors[1],
+            ];
+            let at_rest = moved * self.at_rest[which];
+            let phase = moved * most.phase;
             // what was stored and came back was as wrong as what is left; what is harvested does not come back
             let came_back = match name {
-                "input_energy_j" => (unstable.stored / size).clamp(1.0, MOST_BACK),
+                "input_energy_j" => (work.stored / size).clamp(1.0, MOST_BACK),
                 _ => 1.0,
             };
             // what follows its loads comes back as it went in
-            let follows = self.at_rest[which].min(errors[1]);
+            let follows = at_rest.min(errors[1]);
             let [time, space] =
                 [errors[0] * came_back, follows + (errors[1] - follows) * came_back].map(|x| SQUARED * x);
-            // nothing but loads and ends: mostly off by much less than it is told, three times as much as a displacement; unless what
-            // went in and out over the window is so near nothing that the error is most of it
-            let window = quantities.get(name).and_then(|q| q.window).map_or(0.0, f64::abs);
-            let all_of_it = (time + space) * size > MOST * window && window > NOTHING * size;
-            let alone = !quantities.contains_key("harvested_energy_j") && !all_of_it;
             rows.push(Row {
                 name,
-                enough: if alone { ALONE * LARGE } else { LARGE },
-                errors: [time, space + (CURVED - SQUARED) * self.at_rest[which]],
+                errors: [time, space + (CURVED - SQUARED) * at_rest],
                 phase: SQUARED * came_back * phase,
                 ..most
             });
