@@ -61,15 +61,18 @@ impl Estimator {
             return;
         };
         let stored = self.stored[which] * size * size;
+        let turbines = quantities.contains_key("harvested_energy_j");
         for name in ["input_energy_j", "harvested_energy_j"] {
             let size = quantities.get(name).and_then(|q| q.last).map_or(0.0, f64::abs);
             if !self.counts(name, size, quantities) {
                 continue;
             }
-            // where fluid is pumped through a beam that hardly moves, its motion says nothing
-            let moved = match stored > NOTHING * size {
-                true => (work.moved / size).min(1.0),
-                false => 0.0,
+            // where fluid is pumped through a beam that hardly moves, its motion says nothing; what turbines take may be a small part
+            // that follows the motion all the same
+            let moved = match (stored > NOTHING * size, turbines) {
+                (false, _) => 0.0,
+                (true, false) => (work.moved / size).min(1.0),
+                (true, true) => 1.0,
             };
             let errors = [
                 moved * most.errors[0] + (1.0 - moved) * self.tolerance.gathered(),
