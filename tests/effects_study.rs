@@ -6,13 +6,14 @@ use std::path::Path;
 
 use assert_cmd::Command;
 use serde_json::{Value, json};
+use slcbeam::case::schema::Effect;
 use slcbeam::case::{self, Case};
-use slcbeam::model::effects::{Effect, TABLE};
+use slcbeam::model::effects::about;
 use slcbeam::output::ResultFolder;
 use slcbeam::output::effects::{self as files, Shown};
 use slcbeam::output::kind::Kind;
 use slcbeam::study::effects::change::{Measure, Size, judge, largest};
-use slcbeam::study::effects::choices::{choosable, effects, on};
+use slcbeam::study::effects::choices::effects;
 use slcbeam::study::effects::{Ablation, Plan, Row, Verdict, ablate};
 use tempfile::TempDir;
 
@@ -59,7 +60,7 @@ fn ablated(text: &str, budget_s: f64) -> Ablation {
     ablate(&parsed(text), plan, None, &|_| {}).unwrap()
 }
 
-fn row<'a>(found: &'a Ablation, name: &str) -> &'a Row {
+fn row(found: &Ablation, name: Effect) -> &Row {
     found.rows.iter().find(|r| r.name == name).unwrap()
 }
 
@@ -67,13 +68,9 @@ fn row<'a>(found: &'a Ablation, name: &str) -> &'a Row {
 fn a_slender_beam_does_without_rotary_inertia_and_finite_rotations() {
     let found = ablated(SLENDER, 600.0);
     println!("{}\n{}", files::table(&found, &Shown::Largest), files::sentence(&found));
-    let names: Vec<&str> = found.rows.iter().map(|r| r.name).collect();
-    assert_eq!(
-        names,
-        TABLE.map(|e| e.name),
-        "every effect once, in the order of the table"
-    );
-    for name in ["rotary_inertia", "finite_rotation"] {
+    let names: Vec<Effect> = found.rows.iter().map(|r| r.name).collect();
+    assert_eq!(names, Effect::ALL, "every effect once, in the order of the table");
+    for name in [Effect::RotaryInertia, Effect::FiniteRotation] {
         let verdict = row(&found, name).verdict;
         assert!(
             matches!(verdict, Verdict::Harmless | Verdict::Saves),
@@ -81,25 +78,25 @@ fn a_slender_beam_does_without_rotary_inertia_and_finite_rotations() {
         );
     }
     // Only without finite rotations can the beam be inextensible; both models that are compared are without them.
-    let stretch = row(&found, "axial_stretch");
-    assert_eq!(stretch.without, ["finite_rotation"]);
-    assert_eq!(stretch.takes, ["axial_inertia"]);
+    let stretch = row(&found, Effect::AxialStretch);
+    assert_eq!(stretch.without, [Effect::FiniteRotation]);
+    assert_eq!(stretch.takes, [Effect::AxialInertia]);
     assert_eq!(stretch.verdict, Verdict::Saves);
     let compared = stretch.left_out.as_ref().unwrap();
     assert_eq!(compared.against, "without finite_rotation");
     assert_eq!(compared.unknowns, -(found.full.unknowns as i64) / 2, "u3 and v3");
-    let across = row(&found, "transverse_motion");
+    let across = row(&found, Effect::TransverseMotion);
     assert_eq!(across.verdict, Verdict::Kept);
     assert!(
         across.reason.as_ref().unwrap().contains("/loads/0"),
         "{:?}",
         across.reason
     );
-    assert_eq!(row(&found, "fluid").verdict, Verdict::Absent);
+    assert_eq!(row(&found, Effect::Fluid).verdict, Verdict::Absent);
 
     // What is recommended is what was run: fewer unknowns, changes below the tolerance.
     let recommended = found.recommendation.as_ref().unwrap();
-    assert!(recommended.off.contains(&"axial_stretch") && recommended.off.contains(&"finite_rotation"));
+    assert!(recommended.off.contains(&Effect::AxialStretch) && recommended.off.contains(&Effect::FiniteRotation));
     let run = recommended.run.as_ref().unwrap();
     assert!(run.unknowns < 0 && run.work < 0.95, "{} {}", run.unknowns, run.work);
     assert!(run.largest.as_ref().unwrap().1 < found.tolerance);
@@ -107,13 +104,16 @@ fn a_slender_beam_does_without_rotary_inertia_and_finite_rotations() {
     said["effects"] = recommended.effects.clone();
     let chosen = effects(&parsed(&said.to_string()));
     assert!(chosen.refusals.is_empty());
-    for name in choosable() {
+    for &name in Effect::CHOSEN {
         if recommended.off.contains(&name) {
-            assert!(!on(&chosen, name), "{name} is recommended off");
+            assert!(!chosen.has(name), "{name} is recommended off");
         } else if row(&found, name).verdict == Verdict::Needed || row(&found, name).auto {
-            let taken = recommended.off.iter().any(|off| row(&found, off).takes.contains(&name));
+            let taken = recommended
+                .off
+                .iter()
+                .any(|off| row(&found, *off).takes.contains(&name));
             let there = row(&found, name).verdict != Verdict::Absent;
-            assert!(on(&chosen, name) == (there && !taken), "{name} stays on");
+            assert!(chosen.has(name) == (there && !taken), "{name} stays on");
         }
     }
 }
@@ -124,21 +124,21 @@ fn unequal_slopes_are_needed_and_nothing_that_is_needed_is_recommended_off() {
     let shown = Shown::choose(&found, None);
     let table = files::table(&found, &shown);
     println!("{table}\n{}", files::sentence(&found));
-    let asymmetry = row(&found, "asymmetry");
+    let asymmetry = row(&found, Effect::Asymmetry);
     assert_eq!(asymmetry.verdict, Verdict::Needed);
     assert!(
         asymmetry.auto && asymmetry.number.contains("2.7e-1"),
         "{}",
         asymmetry.number
     );
-    let fluid = row(&found, "fluid");
-    assert!(fluid.takes.contains(&"flow") && fluid.takes.contains(&"asymmetry"));
+    let fluid = row(&found, Effect::Fluid);
+    assert!(fluid.takes.contains(&Effect::Flow) && fluid.takes.contains(&Effect::Asymmetry));
     let recommended = found.recommendation.as_ref().unwrap();
     for off in &recommended.off {
-        assert_ne!(row(&found, off).verdict, Verdict::Needed, "{off}");
+        assert_ne!(row(&found, *off).verdict, Verdict::Needed, "{off}");
     }
     // What makes no difference is left to the program.
-    assert_eq!(row(&found, "pressure_to_curvature").verdict, Verdict::Harmless);
+    assert_eq!(row(&found, Effect::PressureToCurvature).verdict, Verdict::Harmless);
     assert_eq!(recommended.effects, "auto");
     // Files: rows of equal length, everything in the picture, text that is JSON.
     let csv = files::csv(&found);
@@ -146,7 +146,7 @@ fn unequal_slopes_are_needed_and_nothing_that_is_needed_is_recommended_off() {
     let records: Vec<_> = reader.records().map(|r| r.unwrap()).collect();
     assert!(records.iter().filter(|r| &r[0] == "asymmetry").count() == found.measures.len());
     let json: Value = serde_json::from_str(&files::json(&found)).unwrap();
-    assert_eq!(json["rows"].as_array().unwrap().len(), TABLE.len());
+    assert_eq!(json["rows"].as_array().unwrap().len(), Effect::ALL.len());
     assert!(json["sentence"].as_str().unwrap().contains("\"effects\": "));
     let dir = TempDir::new().unwrap();
     let mut folder = ResultFolder::claim(dir.path(), Kind::Effects, false).unwrap();
@@ -154,7 +154,11 @@ fn unequal_slopes_are_needed_and_nothing_that_is_needed_is_recommended_off() {
     assert_eq!(written.len(), 3);
     let picture = fs::read_to_string(dir.path().join(files::PICTURE)).unwrap();
     for r in found.rows.iter().filter(|r| r.left_out.is_some()) {
-        assert!(picture.contains(r.name) && table.contains(r.name), "{}", r.name);
+        assert!(
+            picture.contains(r.name.name()) && table.contains(r.name.name()),
+            "{}",
+            r.name
+        );
     }
     assert!(picture.contains("recommended") && picture.contains("tolerance 1e-3"));
 }
@@ -170,12 +174,20 @@ fn what_is_kept_for_stability_is_not_recommended_off() {
         600.0,
     );
     println!("{}\n{}", files::table(&found, &Shown::Largest), files::sentence(&found));
-    let across = row(&found, "transverse_motion");
+    let across = row(&found, Effect::TransverseMotion);
     assert_eq!(across.verdict, Verdict::Saves);
     assert!(across.number.contains("buckling load"), "{}", across.number);
     let recommended = found.recommendation.as_ref().unwrap();
-    assert!(!recommended.off.contains(&"transverse_motion"), "{:?}", recommended.off);
-    let (_, why) = recommended.dropped.iter().find(|d| d.0 == "transverse_motion").unwrap();
+    assert!(
+        !recommended.off.contains(&Effect::TransverseMotion),
+        "{:?}",
+        recommended.off
+    );
+    let (_, why) = recommended
+        .dropped
+        .iter()
+        .find(|d| d.0 == Effect::TransverseMotion)
+        .unwrap();
     assert!(why.contains("buckling load"), "{why}");
 }
 
@@ -313,16 +325,14 @@ fn the_page_has_the_table_and_its_pictures() {
     let page = fs::read_to_string("docs/effects.md").unwrap();
     let section = page.split("\n## ").find(|s| s.starts_with("The table")).unwrap();
     let cell = |text: &str| text.replace('|', "\\|");
-    let row = |e: &Effect| {
+    let row = |effect: &Effect| {
+        let e = about(*effect);
         let cells = [e.adds, e.brings, e.number, e.cost].map(cell);
-        format!("| `{}` | {} |", e.name, cells.join(" | "))
+        format!("| `{effect}` | {} |", cells.join(" | "))
     };
-    let wanted: Vec<String> = TABLE.iter().map(row).collect();
+    let wanted: Vec<String> = Effect::ALL.iter().map(row).collect();
     let found: Vec<&str> = section.lines().filter(|l| l.starts_with("| `")).collect();
-    assert_eq!(
-        found, wanted,
-        "docs/effects.md and TABLE in src/model/effects/table.rs differ"
-    );
+    assert_eq!(found, wanted, "docs/effects.md and src/model/effects/table.rs differ");
     for part in page.split("](pictures/").skip(1) {
         let name = part.split(')').next().unwrap();
         assert!(Path::new("docs/pictures").join(name).exists(), "{name}");

@@ -42,8 +42,8 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
             .iter()
             .map(|d| {
                 (
-                    d.name.to_string(),
-                    json!({"value": if d.on { "on" } else { "off" }, "reason": d.reason}),
+                    d.effect.to_string(),
+                    json!({"value": if d.on { "on" } else { "off" }, "reason": d.cause.to_string()}),
                 )
             })
             .collect();
@@ -89,9 +89,9 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         let _ = writeln!(
             text,
             "  {:<30} {:<4} {}",
-            d.name,
+            d.effect.name(),
             if d.on { "on" } else { "off" },
-            d.reason
+            d.cause
         );
     }
     let _ = writeln!(

@@ -12,6 +12,7 @@
 //! `P·(v⁻ + v⁺)/2` at driven ends and nothing elsewhere, the angular momentum what the impulses turn, both exactly.
 
 use super::{Instant, System, Workspace};
+use crate::case::schema::Effect;
 use crate::model::Kinematics;
 
 /// Velocities or impulses of all nodes, x and z.
@@ -28,7 +29,7 @@ pub fn velocities(w: &Workspace<f64>) -> Nodal {
 /// the place of the beam.
 pub fn spread(system: &System, [before, after]: [&Instant; 2], w: &Workspace<f64>) -> Option<Nodal> {
     let l = &system.layout;
-    if !l.inertia || !system.model.effects.rotary_inertia || system.model.kinematics == Kinematics::Bar {
+    if !l.inertia || !system.model.effects.has(Effect::RotaryInertia) || system.model.kinematics == Kinematics::Bar {
         return None;
     }
     let last = system.mesh.nodes - 1;
@@ -66,7 +67,7 @@ pub fn impulses(system: &System, jumps: &[[f64; 2]], w: &Workspace<f64>) -> Noda
 /// `J/h n nᵀ` of a cell.
 fn coupling(system: &System, w: &Workspace<f64>, c: usize) -> Block {
     let section = &system.model.section;
-    if !system.model.effects.rotary_inertia || system.model.kinematics == Kinematics::Bar {
+    if !system.model.effects.has(Effect::RotaryInertia) || system.model.kinematics == Kinematics::Bar {
         return [[0.0; 2]; 2];
     }
     let mut inertia = section.mass_per_length * section.gyration_radius_squared / system.mesh.h;

@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use super::{FluidMesh, Mesh};
 use crate::case::Translation;
+use crate::case::schema::Effect;
 use crate::model::{Kinematics, Model, PoolKind, network};
 
 /// Blocks of unknowns, in this order.
@@ -77,13 +78,13 @@ impl Layout {
         } else {
             free(&root.transverse, &tip.transverse)
         };
-        let free_u3 = if model.effects.axial_stretch {
+        let free_u3 = if model.effects.has(Effect::AxialStretch) {
             free(&root.axial, &tip.axial)
         } else {
             0..0
         };
-        let inertia = model.effects.solid_inertia;
-        let waves = [inertia && !bar, inertia && model.effects.axial_inertia];
+        let inertia = model.effects.has(Effect::SolidInertia);
+        let waves = [inertia && !bar, inertia && model.effects.has(Effect::AxialInertia)];
         let damped = model.section.drag > 0.0 || model.section.axial_damping_time > 0.0;
         let bent = model.section.bending_damping_time > 0.0;
         let s = &model.scales;

@@ -9,6 +9,7 @@ pub use fluid::pressure_rate;
 pub use jump::{side, strokes, travel};
 pub use reactions::compared;
 
+use crate::case::schema::Effect;
 use serde::{Deserialize, Serialize};
 
 use super::{Instant, System, Workspace, recipe};
@@ -163,7 +164,7 @@ pub fn flows(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f64>,
 pub fn complete(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f64>) {
     recipe::complete(system, now, yp, w);
     fluid::complete(system, now, yp, w);
-    if !system.model.effects.axial_stretch {
+    if !system.model.effects.has(Effect::AxialStretch) {
         fluid::draw_in(system, w);
     }
 }

@@ -13,6 +13,7 @@ mod vibrations;
 
 use crate::case::profile::{Integrals, Profile};
 use crate::case::schema::Case;
+use crate::case::schema::Effect;
 use crate::case::signals::Signal;
 use crate::error::Code;
 use crate::model::network::bladder_index;
@@ -69,7 +70,7 @@ fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Findin
         all.push(finding(begun.pointer(), cells, along, on));
     }
     if let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid)
-        && system.model.effects.flow_along_bladders
+        && system.model.effects.has(Effect::FlowAlongBladders)
     {
         for port in ports::ports(case, wet) {
             let on = |cells| port.left_out(cells);
@@ -175,7 +176,7 @@ fn loads_along(case: &Case, model: &Model) -> Vec<Shape> {
             }
         }
     }
-    let across = !model.effects.transverse_motion;
+    let across = !model.effects.has(Effect::TransverseMotion);
     groups
         .into_iter()
         .map(|(_, shape)| shape)

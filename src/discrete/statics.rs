@@ -3,6 +3,7 @@
 use super::System;
 use super::instant::Frame;
 use crate::case::Translation;
+use crate::case::schema::Effect;
 use crate::case::signals::{Clock, Jet};
 use crate::model::loads::LoadKind;
 
@@ -39,7 +40,7 @@ pub struct Statics {
 impl Statics {
     /// Room for the forces of a system.
     pub fn new(system: &System) -> Self {
-        if system.model.effects.axial_stretch {
+        if system.model.effects.has(Effect::AxialStretch) {
             return Self::default();
         }
         let (cells, segments) = (system.mesh.cells, system.mesh.segments);
@@ -54,7 +55,7 @@ impl Statics {
 
     /// Evaluates them at `clock`, with the motion of the end that is held.
     pub fn update(&mut self, system: &System, frame: Option<Frame>, clock: Clock) {
-        if system.model.effects.axial_stretch {
+        if system.model.effects.has(Effect::AxialStretch) {
             return;
         }
         self.load(system, frame.map_or(Jet::default(), |frame| frame.at(0.0)), clock);

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Coupling, Model, Wet};
 use crate::case::inherited;
+use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
 use crate::error::{Code, Violation};
 
@@ -90,7 +91,7 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
         }
     }
     solvability(model, wet, ap, am, n.compression, &mut found);
-    if bladders.coupling == Choice::ReciprocalKinked && model.effects.asymmetry {
+    if bladders.coupling == Choice::ReciprocalKinked && model.effects.has(Effect::Asymmetry) {
         found.extend(convexity(model, bladders, wet));
     }
     found
@@ -199,7 +200,7 @@ pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
     let (Some(bladders), Some(wet)) = (&case.bladders, &model.wet) else {
         return vec![];
     };
-    if bladders.coupling != Choice::ReciprocalKinked || !model.effects.asymmetry {
+    if bladders.coupling != Choice::ReciprocalKinked || !model.effects.has(Effect::Asymmetry) {
         return vec![];
     }
     convexity(model, bladders, wet)

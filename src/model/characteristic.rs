@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, Matrix2};
 
 use super::network::{Network, Node};
 use super::{Load, Model, Wet, each_signal, tongue};
+use crate::case::schema::Effect;
 use crate::case::schema::{Case, ChainEnd};
 use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};
 
@@ -215,7 +216,7 @@ pub fn forcing_period(case: &Case) -> Option<f64> {
 
 /// Mathieu's parameters when a cantilever's root is shaken along its axis by a sine.
 pub fn mathieu(model: &Model) -> Option<Mathieu> {
-    if !is_cantilever(model) || !model.effects.solid_inertia {
+    if !is_cantilever(model) || !model.effects.has(Effect::SolidInertia) {
         return None;
     }
     let Translation::Displacement(Signal::Sine(sine)) = &model.ends[0].axial else {

@@ -1,6 +1,7 @@
 //! How strains follow from displacements.
 
 use super::EffectSet;
+use crate::case::schema::Effect;
 
 /// The kinematics of a model, from that of a bar to that of finite rotations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,9 +20,9 @@ impl Kinematics {
     /// The least that holds the effects.
     pub fn of(effects: &EffectSet) -> Self {
         match effects {
-            e if !e.transverse_motion => Self::Bar,
-            e if e.finite_rotation => Self::FiniteRotation,
-            e if e.axial_force_on_bending => Self::SmallRotation,
+            e if !e.has(Effect::TransverseMotion) => Self::Bar,
+            e if e.has(Effect::FiniteRotation) => Self::FiniteRotation,
+            e if e.has(Effect::AxialForceOnBending) => Self::SmallRotation,
             _ => Self::Linear,
         }
     }

@@ -19,6 +19,7 @@ pub mod scales;
 pub mod storage;
 pub mod tongue;
 
+use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Effects, Formulation};
 use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};
 
@@ -65,7 +66,7 @@ pub struct Wet {
 impl Wet {
     /// The whole coupling of a case's bladders.
     fn new(case: &Case, bladders: &Bladders, section: &Section, network: Network, effects: &EffectSet) -> Self {
-        let area = AreaLaw::new(case, bladders, section, effects.asymmetry);
+        let area = AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry));
         let (storage, pools) = storage::of_bladders(case, &network, effects);
         Self {
             per_row: bladders.per_row,
@@ -75,7 +76,7 @@ impl Wet {
             strains: area,
             coupling: Coupling::new(case, bladders),
             network,
-            flows: effects.flow,
+            flows: effects.has(Effect::Flow),
             storage,
             pools,
             takes_moments: true,
@@ -87,17 +88,22 @@ impl Wet {
     /// are kinked.
     fn reduce(&mut self, effects: &EffectSet) {
         let reciprocal = matches!(self.coupling, Coupling::Reciprocal { .. });
-        let bends = effects.pressure_to_curvature && reciprocal && self.strains.moment_half_difference > 0.0;
-        let stretches = effects.pressure_to_stretch && reciprocal && self.strains.force_half_difference > 0.0;
-        self.takes_moments = effects.moment_to_area || bends;
-        self.takes_forces = effects.axial_stretch && (effects.force_to_area || stretches);
-        self.area = self.area.without(!effects.moment_to_area, !effects.force_to_area);
-        self.strains = self
-            .strains
-            .without(!effects.pressure_to_curvature, !effects.pressure_to_stretch);
-        self.coupling = self
-            .coupling
-            .without(!effects.pressure_to_curvature, !effects.pressure_to_stretch);
+        let bends = effects.has(Effect::PressureToCurvature) && reciprocal && self.strains.moment_half_difference > 0.0;
+        let stretches =
+            effects.has(Effect::PressureToStretch) && reciprocal && self.strains.force_half_difference > 0.0;
+        self.takes_moments = effects.has(Effect::MomentToArea) || bends;
+        self.takes_forces = effects.has(Effect::AxialStretch) && (effects.has(Effect::ForceToArea) || stretches);
+        self.area = self
+            .area
+            .without(!effects.has(Effect::MomentToArea), !effects.has(Effect::ForceToArea));
+        self.strains = self.strains.without(
+            !effects.has(Effect::PressureToCurvature),
+            !effects.has(Effect::PressureToStretch),
+        );
+        self.coupling = self.coupling.without(
+            !effects.has(Effect::PressureToCurvature),
+            !effects.has(Effect::PressureToStretch),
+        );
     }
 }
 
@@ -170,7 +176,7 @@ impl Model {
             .bladders
             .as_ref()
             .zip(network)
-            .filter(|_| effects.fluid)
+            .filter(|_| effects.has(Effect::Fluid))
             .map(|(bladders, network)| Wet::new(case, bladders, &section, network, &effects));
         let loads = case
             .loads
@@ -231,7 +237,7 @@ impl Model {
 
     /// Finite volumes in each bladder: as the mesh says, or one.
     pub fn cells_per_bladder(&self, case: &Case) -> usize {
-        if self.effects.flow_along_bladders {
+        if self.effects.has(Effect::FlowAlongBladders) {
             case.mesh.cells_per_bladder
         } else {
             1

@@ -3,6 +3,7 @@
 use super::network::{LinkKind, Node, bladder_index};
 use super::{EffectSet, Network};
 use crate::case::schema::Case;
+use crate::case::schema::Effect;
 
 /// `[E23]` What is known of a bladder's area and pressure:
 ///
@@ -109,7 +110,7 @@ pub fn of_bladders(case: &Case, network: &Network, effects: &EffectSet) -> (Vec<
         .sealed()
         .enumerate()
         .map(|(bladder, sealed)| {
-            if !effects.flow || (sealed && !uneven(bladder)) {
+            if !effects.has(Effect::Flow) || (sealed && !uneven(bladder)) {
                 Storage::Kept
             } else {
                 Storage::Flowing
@@ -117,7 +118,7 @@ pub fn of_bladders(case: &Case, network: &Network, effects: &EffectSet) -> (Vec<
         })
         .collect();
     let mut pools = vec![];
-    if effects.flow && !effects.network_pressure_differences {
+    if effects.has(Effect::Flow) && !effects.has(Effect::NetworkPressureDifferences) {
         for pool in (0..network.components).filter_map(|c| Pool::new(network, c).ok()) {
             if pool.bladders.iter().any(|&b| storage[b] == Storage::Flowing) {
                 pool.bladders

@@ -165,10 +165,10 @@ impl<'a> Run<'a> {
                     .map(|d| {
                         let value = if d.on { "on" } else { "off" }.to_string();
                         (
-                            d.name.to_string(),
+                            d.effect.to_string(),
                             Chosen {
                                 value,
-                                reason: d.reason.clone(),
+                                reason: d.cause.to_string(),
                             },
                         )
                     })

@@ -18,6 +18,7 @@ use std::time::Instant;
 
 use super::accuracy::plan;
 use crate::case::Case;
+use crate::case::schema::Effect;
 use crate::discrete::System;
 use crate::error::{Code, Result};
 use crate::model::Model;
@@ -183,7 +184,7 @@ pub fn warning(found: &Accuracy) -> Option<String> {
 pub fn has_cells_along_bladders(case: &Case) -> bool {
     let system = System::with(case, Model::whole(case, true));
     let flows = system.fluid.as_ref().is_some_and(|fluid| !fluid.flowing.is_empty());
-    flows && system.model.effects.flow_along_bladders
+    flows && system.model.effects.has(Effect::FlowAlongBladders)
 }
 
 /// Errors by name, relative; none where they are not known.

@@ -2,29 +2,21 @@
 
 use std::path::Path;
 
-use slcbeam::case;
+use slcbeam::case::{self, schema::Effect};
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
-use slcbeam::model::{Model, effects::TABLE};
+use slcbeam::model::Model;
 
 use super::differences::worst_difference;
 use super::fuzz_case::{Random, text};
 
-/// Names that a case may choose: all but those that are there where they are given.
-fn choosable() -> Vec<&'static str> {
-    let given = ["damping", "valves", "turbines", "loads", "gravity"];
-    let names = TABLE.iter().map(|e| e.name);
-    names.filter(|name| !given.contains(name)).collect()
-}
-
 #[test]
 fn derivatives_are_exact_for_random_effects_of_random_cases() {
-    let names = choosable();
     let (mut refused, mut checked, mut worst) = (0, 0, 0.0_f64);
     for seed in 0..1000 {
         let mut r = Random(seed ^ 0xEFFE_C750);
         let mut sets = vec![r#"/effects={"rotary_inertia":"auto"}"#.to_string()];
-        sets.extend(names.iter().filter_map(|name| {
+        sets.extend(Effect::CHOSEN.iter().filter_map(|name| {
             let leave = r.one_in(4);
             leave.then(|| format!("/effects/{name}=\"off\""))
         }));

@@ -1,6 +1,8 @@
 //! What cannot be left out is refused, with its place, a reason and what to do; what has no meaning is off anyhow.
 
-use slcbeam::model::{EffectSet, Model, effects::TABLE};
+use slcbeam::case::schema::Effect;
+use slcbeam::model::effects::about;
+use slcbeam::model::{EffectSet, Model};
 
 use super::common::{EVERYTHING, written};
 
@@ -44,7 +46,7 @@ fn a_beam_that_is_moved_across_is_no_bar() {
     );
     refused(&with(r#"/start={"u1_rate_m_s":1}"#), at, "starts");
     let kept = effects(&with(r#"/start={"u1_rate_m_s":1}"#));
-    assert!(kept.transverse_motion, "kept until the case is mended");
+    assert!(kept.has(Effect::TransverseMotion), "kept until the case is mended");
 }
 
 #[test]
@@ -103,17 +105,21 @@ fn networks_with_turbines_valves_or_different_ports_have_pressure_differences() 
 
 #[test]
 fn the_table_and_the_decisions_name_the_same_effects() {
-    let decided: Vec<_> = effects(&[]).decisions.iter().map(|d| d.name).collect();
-    let listed: Vec<_> = TABLE.iter().map(|e| e.name).collect();
-    assert_eq!(decided, listed);
-    for effect in TABLE {
-        let texts = [effect.adds, effect.brings, effect.number, effect.cost];
-        assert!(texts.iter().all(|t| !t.is_empty()), "{}", effect.name);
+    let set = effects(&[]);
+    let decided: Vec<_> = set.decisions.iter().map(|d| d.effect).collect();
+    assert_eq!(decided, Effect::ALL);
+    for &effect in Effect::ALL {
+        assert_eq!(set.decision(effect).effect, effect);
+        let about = about(effect);
+        let texts = [about.adds, about.brings, about.number, about.cost];
+        assert!(texts.iter().all(|t| !t.is_empty()), "{effect}");
     }
 }
 
 #[test]
 fn what_has_no_meaning_is_off_whatever_is_asked() {
     let dry = effects(&["/effects={\"fluid\":\"off\",\"flow\":\"on\",\"moment_to_area\":\"on\"}"]);
-    assert!(!dry.fluid && !dry.flow && !dry.moment_to_area && dry.refusals.is_empty());
+    assert!(
+        !dry.has(Effect::Fluid) && !dry.has(Effect::Flow) && !dry.has(Effect::MomentToArea) && dry.refusals.is_empty()
+    );
 }

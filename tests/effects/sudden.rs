@@ -2,6 +2,7 @@
 //! lower bounds.
 
 use slcbeam::case::Case;
+use slcbeam::case::schema::Effect;
 use slcbeam::discrete::System;
 
 use super::common::{run, written};
@@ -36,14 +37,10 @@ const WET: &str = r#"{
   "time": {"end_s": 5, "output_interval_s": 0.01}
 }"#;
 
-fn keeps(case: &Case, effect: &str) -> (bool, String) {
+fn keeps(case: &Case, effect: Effect) -> (bool, String) {
     let effects = System::new(case).model.effects;
-    let decision = effects
-        .decisions
-        .iter()
-        .find(|d| d.name == effect)
-        .expect("a known effect");
-    (decision.on, decision.reason.clone())
+    let decision = effects.decision(effect);
+    (decision.on, decision.cause.to_string())
 }
 
 fn tip(signal: &str) -> String {
@@ -58,7 +55,7 @@ fn sudden_ramps_keep_inertia_at_any_time() {
             for shape in ["linear", "smooth"] {
                 let ramp =
                     format!(r#"{{"ramp":{{"to":1,"start_s":{start},"duration_s":{duration},"shape":"{shape}"}}}}"#);
-                let (on, why) = keeps(&written(BEAM, &[tip(&ramp)]), "solid_inertia");
+                let (on, why) = keeps(&written(BEAM, &[tip(&ramp)]), Effect::SolidInertia);
                 assert!(on, "{duration} s at {start} s: {why}");
             }
         }
@@ -73,7 +70,7 @@ fn runs_of_any_length_keep_inertia_of_a_sudden_ramp() {
             tip(r#"{"ramp":{"to":1,"start_s":0.5,"duration_s":1e-4}}"#),
             format!("/time/end_s={end}"),
         ];
-        let (on, why) = keeps(&written(BEAM, &sets), "solid_inertia");
+        let (on, why) = keeps(&written(BEAM, &sets), Effect::SolidInertia);
         assert!(on, "{end} s: {why}");
     }
 }
@@ -98,7 +95,7 @@ fn a_sudden_ramp_is_right_by_default() {
 #[test]
 fn slow_loads_go_without_inertia() {
     let ramp = tip(r#"{"ramp":{"to":0.1,"duration_s":60}}"#);
-    let (on, why) = keeps(&written(BEAM, &[ramp, "/time/end_s=100".into()]), "solid_inertia");
+    let (on, why) = keeps(&written(BEAM, &[ramp, "/time/end_s=100".into()]), Effect::SolidInertia);
     assert!(!on, "{why}");
 }
 
@@ -120,7 +117,7 @@ fn short_pulses_at_a_port_keep_inertia() {
         for pulse in pulses {
             let port = format!(r#"/network/chains/0/ends=[{{"pressure_pa":{pulse}}},"sealed"]"#);
             let case = written(WET, &[port]);
-            let (on, why) = keeps(&case, "solid_inertia");
+            let (on, why) = keeps(&case, Effect::SolidInertia);
             assert!(on, "{start} s: {why}");
             let scales = System::new(&case).model.scales;
             assert!(scales.pressure > 1.9e4, "{start} s: {}", scales.pressure);
@@ -161,7 +158,7 @@ fn compression_is_seen_between_samples() {
             format!("/time/end_s={end}"),
         ];
         let case = written(BEAM, &sets);
-        for effect in ["finite_rotation", "solid_inertia", "axial_stretch"] {
+        for effect in [Effect::FiniteRotation, Effect::SolidInertia, Effect::AxialStretch] {
             let (on, why) = keeps(&case, effect);
             assert!(on, "{end} s, {effect}: {why}");
         }
@@ -187,7 +184,7 @@ fn an_overestimated_deflection_does_not_drop_the_stretch() {
             ]
         };
         let auto = written(BEAM, &sets("auto"));
-        let (on, why) = keeps(&auto, "axial_stretch");
+        let (on, why) = keeps(&auto, Effect::AxialStretch);
         assert!(on, "{across} N, {along} N: {why}");
         let [auto, full] = [auto, written(BEAM, &sets("full"))].map(|case| run(&case).last("tip_u3"));
         println!("{across} N, {along} N: {auto}, full {full}");
@@ -207,7 +204,10 @@ fn a_resonant_ripple_on_a_slow_load_keeps_inertia() {
         ))
     };
     for f in [11.0, 13.0, 80.0] {
-        let (on, why) = keeps(&written(BEAM, &[ripple(f), "/time/end_s=100".into()]), "solid_inertia");
+        let (on, why) = keeps(
+            &written(BEAM, &[ripple(f), "/time/end_s=100".into()]),
+            Effect::SolidInertia,
+        );
         assert!(on, "{f} Hz: {why}");
     }
 }

@@ -89,7 +89,7 @@ fn judge(seed: u64) -> Fate {
     let out = system.model.effects.decisions.iter().zip(&whole.decisions);
     let out: Vec<String> = out
         .filter(|(auto, full)| full.on && !auto.on)
-        .map(|(auto, _)| format!("{} ({})", auto.name, auto.reason))
+        .map(|(auto, _)| format!("{} ({})", auto.effect, auto.cause))
         .collect();
     if out.is_empty() {
         return Fate::Whole;

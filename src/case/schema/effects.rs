@@ -15,63 +15,146 @@ pub enum Effects {
     Chosen(EffectChoices),
 }
 
-/// Named effects.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct EffectChoices {
-    /// Motion across the beam, with slopes and moments; off: a bar, which can only stretch. Needs that nothing moves or loads it
-    /// across.
-    #[serde(default)]
-    pub transverse_motion: Choice,
-    /// Rotations of any size; off: small ones, `u3' + u1'^2/2` the strain and `u1'` the angle. Needs the conservative
-    /// formulation.
-    #[serde(default)]
-    pub finite_rotation: Choice,
-    /// The normal force that acts on bending (geometric stiffness); off: the linear beam. Needs `finite_rotation` off.
-    #[serde(default)]
-    pub axial_force_on_bending: Choice,
-    /// Stretch along the beam; off: the beam draws in only as it bends, and the normal force follows from the loads. Needs
-    /// `finite_rotation` off, one end that holds or drives `u3`, and one that is free along.
-    #[serde(default)]
-    pub axial_stretch: Choice,
-    /// Inertia of the solid; off: quasi-static solid.
-    #[serde(default)]
-    pub solid_inertia: Choice,
-    /// Inertia along the beam, axial waves; off: the beam is carried along by its driven ends, with the force that this
-    /// takes. Needs an end that holds or drives `u3`.
-    #[serde(default)]
-    pub axial_inertia: Choice,
-    /// Inertia of the section's rotation, `m y11`.
-    #[serde(default)]
-    pub rotary_inertia: Choice,
-    /// The fluid in the bladders; off: a dry beam with the mass of the filled one.
-    #[serde(default)]
-    pub fluid: Choice,
-    /// Flow between bladders; off: every bladder keeps its volume.
-    #[serde(default)]
-    pub flow: Choice,
-    /// Pressure differences within each network; off: one pressure for all bladders that are joined. Not possible with
-    /// turbines, moving valves, or ports of different pressures.
-    #[serde(default)]
-    pub network_pressure_differences: Choice,
-    /// Pressure differences along each bladder; off: one finite volume a bladder, whatever `/mesh/cells_per_bladder` says.
-    #[serde(default)]
-    pub flow_along_bladders: Choice,
-    /// Pressure bends the beam, `alpha_p`.
-    #[serde(default)]
-    pub pressure_to_curvature: Choice,
-    /// Pressure stretches the beam, `lambda_p`.
-    #[serde(default)]
-    pub pressure_to_stretch: Choice,
-    /// Bending changes the area of bladders, `A_M`.
-    #[serde(default)]
-    pub moment_to_area: Choice,
-    /// Normal force changes the area of bladders, `A_N`.
-    #[serde(default)]
-    pub force_to_area: Choice,
-    /// Different opening and closing slopes of the bladder area.
-    #[serde(default)]
-    pub asymmetry: Choice,
+/// Makes [`Effect`] of all effects, and [`EffectChoices`] of those that a case chooses; the others are there where the case gives them.
+macro_rules! effects {
+    (
+        chosen { $($(#[doc = $about:literal])* $Chosen:ident $chosen:ident,)* }
+        given { $($(#[doc = $note:literal])* $Given:ident $given:ident,)* }
+    ) => {
+        /// A physical effect, in the order of the decisions.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Effect {
+            $($(#[doc = $about])* $Chosen,)*
+            $($(#[doc = $note])* $Given,)*
+        }
+
+        impl Effect {
+            /// All of them.
+            pub const ALL: &[Self] = &[$(Self::$Chosen,)* $(Self::$Given,)*];
+            /// Those that a case chooses.
+            pub const CHOSEN: &[Self] = &[$(Self::$Chosen,)*];
+
+            /// Its key in a case, and its name in every report.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$Chosen => stringify!($chosen),)*
+                    $(Self::$Given => stringify!($given),)*
+                }
+            }
+
+            /// What it is, as in the schema.
+            pub const fn note(self) -> &'static str {
+                match self {
+                    $(Self::$Chosen => concat!($($about),*),)*
+                    $(Self::$Given => concat!($($note),*),)*
+                }
+            }
+        }
+
+        /// Named effects.
+        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct EffectChoices {
+            $($(#[doc = $about])* #[serde(default)] pub $chosen: Choice,)*
+        }
+
+        impl EffectChoices {
+            /// Of an effect; of one that is no choice, `Auto`.
+            pub fn of(&self, effect: Effect) -> Choice {
+                match effect {
+                    $(Effect::$Chosen => self.$chosen,)*
+                    $(Effect::$Given => Choice::Auto,)*
+                }
+            }
+
+            /// Sets that of an effect; one that is no choice stays as it is.
+            pub fn set(&mut self, effect: Effect, choice: Choice) {
+                match effect {
+                    $(Effect::$Chosen => self.$chosen = choice,)*
+                    $(Effect::$Given => {})*
+                }
+            }
+        }
+    };
+}
+
+effects! {
+    chosen {
+        /// Motion across the beam, with slopes and moments; off: a bar, which can only stretch. Needs that nothing moves or loads it
+        /// across.
+        TransverseMotion transverse_motion,
+        /// Rotations of any size; off: small ones, `u3' + u1'^2/2` the strain and `u1'` the angle. Needs the conservative
+        /// formulation.
+        FiniteRotation finite_rotation,
+        /// The normal force that acts on bending (geometric stiffness); off: the linear beam. Needs `finite_rotation` off.
+        AxialForceOnBending axial_force_on_bending,
+        /// Stretch along the beam; off: the beam draws in only as it bends, and the normal force follows from the loads. Needs
+        /// `finite_rotation` off, one end that holds or drives `u3`, and one that is free along.
+        AxialStretch axial_stretch,
+        /// Inertia of the solid; off: quasi-static solid.
+        SolidInertia solid_inertia,
+        /// Inertia along the beam, axial waves; off: the beam is carried along by its driven ends, with the force that this
+        /// takes. Needs an end that holds or drives `u3`.
+        AxialInertia axial_inertia,
+        /// Inertia of the section's rotation, `m y11`.
+        RotaryInertia rotary_inertia,
+        /// The fluid in the bladders; off: a dry beam with the mass of the filled one.
+        Fluid fluid,
+        /// Flow between bladders; off: every bladder keeps its volume.
+        Flow flow,
+        /// Pressure differences within each network; off: one pressure for all bladders that are joined. Not possible with
+        /// turbines, moving valves, or ports of different pressures.
+        NetworkPressureDifferences network_pressure_differences,
+        /// Pressure differences along each bladder; off: one finite volume a bladder, whatever `/mesh/cells_per_bladder` says.
+        FlowAlongBladders flow_along_bladders,
+        /// Pressure bends the beam, `alpha_p`.
+        PressureToCurvature pressure_to_curvature,
+        /// Pressure stretches the beam, `lambda_p`.
+        PressureToStretch pressure_to_stretch,
+        /// Bending changes the area of bladders, `A_M`.
+        MomentToArea moment_to_area,
+        /// Normal force changes the area of bladders, `A_N`.
+        ForceToArea force_to_area,
+        /// Different opening and closing slopes of the bladder area.
+        Asymmetry asymmetry,
+    }
+    given {
+        /// Damping of the material, and drag.
+        Damping damping,
+        /// Valves that move.
+        Valves valves,
+        /// Turbines that harvest energy.
+        Turbines turbines,
+        /// Loads along the beam.
+        Loads loads,
+        /// Weight.
+        Gravity gravity,
+    }
+}
+
+impl std::fmt::Display for Effect {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl Effect {
+    /// Their names, so joined.
+    pub fn names(effects: &[Self], separator: &str) -> String {
+        let names: Vec<&str> = effects.iter().map(|effect| effect.name()).collect();
+        names.join(separator)
+    }
+}
+
+impl Effects {
+    /// What is named; nothing by `"auto"` and `"full"`.
+    pub fn choices(&self) -> EffectChoices {
+        match self {
+            Self::Auto | Self::Full => EffectChoices::default(),
+            Self::Chosen(choices) => choices.clone(),
+        }
+    }
 }
 
 /// On, off, or chosen by the program.

@@ -1,6 +1,7 @@
 //! The fluid's part of the balances.
 
 use super::{FLOWS, Flow, add};
+use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
 use crate::discrete::recipe::fluid::{bridge_drops, pressure_at};
 use crate::discrete::recipe::rows::{mean_force, mean_moment};
@@ -65,7 +66,7 @@ pub fn pressure_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usi
 /// Stretch by pressure of a beam that does not stretch otherwise, and with it the motion along, `[E28]`.
 pub fn draw_in(system: &System, w: &mut Workspace<f64>) {
     if let Some(wet) = &system.model.wet
-        && system.model.effects.pressure_to_stretch
+        && system.model.effects.has(Effect::PressureToStretch)
     {
         for j in 0..wet.per_row {
             let (upper, lower) = (w.mean_pressure[j], w.mean_pressure[wet.per_row + j]);

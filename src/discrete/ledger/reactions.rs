@@ -1,5 +1,6 @@
 //! Reactions of driven ends, told in two ways that a mesh makes differ.
 
+use crate::case::schema::Effect;
 use crate::discrete::{Instant, System, Workspace};
 use crate::model::Kinematics;
 
@@ -42,7 +43,7 @@ pub fn compared(system: &System, now: &Instant, w: &Workspace<f64>) -> [f64; 2] 
                 &mut squares,
             );
         }
-        if end.u3.is_some() && system.model.effects.axial_stretch {
+        if end.u3.is_some() && system.model.effects.has(Effect::AxialStretch) {
             compare(
                 &w.sz,
                 half_cell(w.a3[node], now.force_z[node], w.v3[node]),

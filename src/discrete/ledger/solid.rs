@@ -1,6 +1,7 @@
 //! The beam's part of the balances.
 
 use super::{Energies, Flow, add};
+use crate::case::schema::Effect;
 use crate::discrete::instant::Frame;
 use crate::discrete::recipe::rows::{end_force, published_force};
 use crate::discrete::recipe::solid::{couple, node_stretch};
@@ -35,7 +36,7 @@ pub fn flows(
             fz += cz;
         }
         if section.drag > 0.0 {
-            let along = if system.model.effects.axial_stretch {
+            let along = if system.model.effects.has(Effect::AxialStretch) {
                 w.v3[i]
             } else {
                 carried(system, frame, w, i)
@@ -146,7 +147,7 @@ fn cells(system: &System, now: &Instant, w: &Workspace<f64>, published: bool, ou
         if turned_across(system) {
             let turning = (w.v3[c + 1] - w.v3[c]) * turning_rate(system, w, c);
             add(out, Flow::AngularImpulse, rotary * turning);
-        } else if published && system.model.effects.rotary_inertia {
+        } else if published && system.model.effects.has(Effect::RotaryInertia) {
             let spurious = rotary * w.stretch[c] * w.stretch_rate[c] * w.angle_rate[c].powi(2);
             add(out, Flow::Formulation, -h * spurious);
         }
@@ -165,7 +166,7 @@ fn carried(system: &System, frame: Option<Frame>, w: &Workspace<f64>, node: usiz
 /// Whether sections turn finitely but have the rotary inertia of `[E27]`.
 fn turned_across(system: &System) -> bool {
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
-    finite && system.model.effects.rotary_inertia && !system.layout.waves[1]
+    finite && system.model.effects.has(Effect::RotaryInertia) && !system.layout.waves[1]
 }
 
 /// Rate of turning that rotary inertia resists: `φ_t`, without axial inertia `x'_t`.
@@ -191,10 +192,10 @@ pub fn energies(system: &System, now: &Instant, w: &Workspace<f64>) -> Energies 
         e.bending += 0.5 * length * w.moment[i] * w.moment[i] / section.bending_stiffness;
     }
     for c in 0..mesh.cells {
-        if system.model.effects.axial_stretch {
+        if system.model.effects.has(Effect::AxialStretch) {
             e.axial += 0.5 * mesh.h * w.force[c] * w.force[c] / section.axial_stiffness;
         }
-        if system.model.effects.rotary_inertia {
+        if system.model.effects.has(Effect::RotaryInertia) {
             e.rotary += 0.5 * mesh.h * spin(system, w, c) * turning_rate(system, w, c);
         }
     }
@@ -239,7 +240,7 @@ pub fn momenta(system: &System, now: &Instant, w: &Workspace<f64>) -> ([f64; 2],
         let ([x, z], _) = arms(system, w, i);
         angular += mass * (z * w.v1[i] - x * along);
     }
-    if system.model.effects.rotary_inertia {
+    if system.model.effects.has(Effect::RotaryInertia) {
         let arm = |c: usize| if turned_across(system) { w.d3z[c] } else { 1.0 };
         let cells = (0..mesh.cells).map(|c| mesh.h * arm(c) * spin(system, w, c));
         angular += cells.sum::<f64>();

@@ -1,5 +1,6 @@
 //! Pressures, what they do to the beam, and the flows they drive.
 
+use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
 use crate::discrete::{Instant, System, Workspace};
 use crate::model::{Scalar, Storage};
@@ -54,10 +55,10 @@ pub fn pressure_strains<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let effects = &system.model.effects;
     for j in 0..wet.per_row {
         let (upper, lower) = (w.mean_pressure[j], w.mean_pressure[wet.per_row + j]);
-        if effects.pressure_to_stretch && effects.axial_stretch {
+        if effects.has(Effect::PressureToStretch) && effects.has(Effect::AxialStretch) {
             w.pressure_stretch[j] = wet.coupling.stretch(&wet.strains, w.mean_force[j], upper, lower);
         }
-        if effects.pressure_to_curvature {
+        if effects.has(Effect::PressureToCurvature) {
             w.pressure_curvature[j] = wet.coupling.curvature(&wet.strains, w.mean_moment[j], upper, lower);
         }
     }

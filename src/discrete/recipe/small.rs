@@ -2,6 +2,7 @@
 
 use super::solid::{self, couple, curvature_rates, normal_force, total_moment_drop};
 use crate::case::Translation;
+use crate::case::schema::Effect;
 use crate::discrete::{Instant, System, Workspace};
 use crate::model::{Kinematics, Scalar};
 
@@ -17,7 +18,7 @@ use crate::model::{Kinematics, Scalar};
 pub fn kinematics<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
-    let stretches = system.model.effects.axial_stretch;
+    let stretches = system.model.effects.has(Effect::AxialStretch);
     for c in 0..system.mesh.cells {
         let angle = (w.u1[c + 1] - w.u1[c]) * inverse;
         w.d3x[c] = angle;
@@ -73,7 +74,7 @@ pub fn strain_rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace
 
 /// Normal forces: elastic, or where the beam does not stretch those of statics, `[E28]`.
 pub fn normal_forces<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
-    if system.model.effects.axial_stretch {
+    if system.model.effects.has(Effect::AxialStretch) {
         solid::normal_forces(system, w);
         return;
     }
@@ -88,7 +89,7 @@ pub fn draw_in(system: &System, stretch_rate: impl Fn(&Workspace<f64>, usize) ->
     let (h, k, last) = (system.mesh.h, system.mesh.cells_per_segment, system.mesh.cells);
     let tension = system.model.kinematics == Kinematics::SmallRotation;
     let root_held = matches!(system.model.ends[0].axial, Translation::Displacement(_));
-    let pressed = system.fluid.is_some() && system.model.effects.pressure_to_stretch;
+    let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
     let held = if root_held { 0 } else { last };
     let (mut u, mut v) = (w.u3[held], w.v3[held]);
     for step in 0..last {
@@ -127,7 +128,7 @@ pub fn section_forces<T: Scalar>(system: &System, now: &Instant, w: &mut Workspa
             let turning = couple(system, now, w, c);
             w.sx[c] += turning;
         }
-        if system.model.effects.rotary_inertia {
+        if system.model.effects.has(Effect::RotaryInertia) {
             let inertia = section.mass_per_length * section.gyration_radius_squared;
             w.sx[c] += (w.a1[c + 1] - w.a1[c]) * (inverse * inertia);
         }

@@ -1,5 +1,6 @@
 //! Kinematics, resultants and section forces of the beam.
 
+use crate::case::schema::Effect;
 use crate::discrete::{Instant, System, Workspace};
 use crate::model::{Kinematics, Scalar};
 
@@ -55,7 +56,7 @@ fn direction<T: Scalar>(angle: f64) -> (T, T) {
 
 /// Rates of stretch, angle and curvature, where something depends on them: `λ_t = e_t·d3_t`, `φ_t = d1·d3_t/λ²`.
 pub fn rates<T: Scalar>(system: &System, now: &Instant, w: &mut Workspace<T>) {
-    let turned = system.model.effects.rotary_inertia && system.layout.waves[1];
+    let turned = system.model.effects.has(Effect::RotaryInertia) && system.layout.waves[1];
     if !(turned || system.damped) {
         return;
     }
@@ -100,7 +101,7 @@ pub fn curvature_rates<T: Scalar>(system: &System, now: &Instant, w: &mut Worksp
 pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let section = &system.model.section;
     let ea = section.axial_stiffness;
-    let pressed = system.fluid.is_some() && system.model.effects.pressure_to_stretch;
+    let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
     let k = system.mesh.cells_per_segment;
     for c in 0..system.mesh.cells {
         let elastic = if pressed {
@@ -199,7 +200,7 @@ pub fn couple<T: Scalar>(system: &System, now: &Instant, w: &Workspace<T>, c: us
 /// `alpha_p` at a node: the mean of the segments on its two sides (the transpose of the mean moment's weights).
 #[inline]
 pub fn pressure_curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
-    if system.fluid.is_none() || !system.model.effects.pressure_to_curvature {
+    if system.fluid.is_none() || !system.model.effects.has(Effect::PressureToCurvature) {
         return T::zero();
     }
     let (left, right) = system.mesh.segments_of_node(node);
@@ -244,7 +245,7 @@ pub fn section_forces<T: Scalar>(system: &System, now: &Instant, w: &mut Workspa
             add_couple(couple, c, w);
         }
     }
-    if system.model.effects.rotary_inertia {
+    if system.model.effects.has(Effect::RotaryInertia) {
         let inertia = section.mass_per_length * section.gyration_radius_squared;
         let inverse = 1.0 / system.mesh.h;
         let published = system.model.published();

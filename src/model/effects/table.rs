@@ -1,10 +1,10 @@
 //! All effects that the program knows: what each adds, what it brings with it, what decides, what it costs.
 
+use crate::case::schema::Effect;
+
 /// An effect, in words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Effect {
-    /// Name in `effects` of a case and in every report.
-    pub name: &'static str,
+pub struct About {
     /// What it adds physically, as an equation.
     pub adds: &'static str,
     /// Unknowns and terms that come with it.
@@ -15,153 +15,134 @@ pub struct Effect {
     pub cost: &'static str,
 }
 
-/// Every effect once, in the order of the decisions.
-pub const TABLE: [Effect; 21] = [
-    Effect {
-        name: "transverse_motion",
-        adds: "x = u1, φ, κ, M = EI (κ - α_p), V = -M'/λ; without it a bar, N = EA (u3' - λ_p)",
-        brings: "u1, v1 of every node; mean moments; turning, curvature, moments, shear",
-        number: "0 where nothing moves or loads the beam across and p_u = p_d",
-        cost: "half the unknowns of the solid, most of its arithmetic",
-    },
-    Effect {
-        name: "finite_rotation",
-        adds: "x' = λ sin φ, z' = λ cos φ; without it e = u3' + u1'²/2, φ = u1'",
-        brings: "roots and arcs in every cell, neighbours of u3 in the rows of u1 and the other way round",
-        number: "φ², the square of the largest angle",
-        cost: "most of the arithmetic of the solid",
-    },
-    Effect {
-        name: "axial_force_on_bending",
-        adds: "N u1' in n_x, u1'²/2 in e",
-        brings: "geometric stiffness: buckling, tension, parametric excitation; without it bending and stretch are apart",
-        number: "N l_s²/(π² EI), and (u1/h_s)² where both ends hold u3",
-        cost: "entries that couple u1 and u3",
-    },
-    Effect {
-        name: "axial_stretch",
-        adds: "N = EA (e - λ_p); without it u3' = λ_p - g u1'²/2, N from statics",
-        brings: "u3 and v3 of every node; mean forces",
-        number: "N/EA: the stretch, and with inertia (f/f_axial)²",
-        cost: "half the unknowns of the solid; axial waves",
-    },
-    Effect {
-        name: "solid_inertia",
-        adds: "m a",
-        brings: "v1, v3 of every node",
-        number: "(ω/ω1)², ω1 the first bending frequency",
-        cost: "half the unknowns of the solid; the waves that limit steps and orders",
-    },
-    Effect {
-        name: "axial_inertia",
-        adds: "m u3_tt; without it m U'', U the motion of the driven ends",
-        brings: "v3 of every node; axial waves",
-        number: "(f/f_axial)², and (u1/l_s)² where the beam bends",
-        cost: "a quarter of the unknowns of the solid; its fastest waves where the mesh is coarse",
-    },
-    Effect {
-        name: "rotary_inertia",
-        adds: "r = m y11 φ_tt/λ² in n = N e_t + V e_n + r d1",
-        brings: "neighbouring accelerations coupled in every cell",
-        number: "y11 k²/2 (1 + ω T), k and ω of the second bending mode, T the run; kept where something acts suddenly",
-        cost: "arithmetic in every cell",
-    },
-    Effect {
-        name: "fluid",
-        adds: "da1/dt + dq/ds = 0, λ_p and α_p",
-        brings: "areas, junction pressures, mean moments and forces",
-        number: "2 EI φ_b l_b am²/a_p and 2 EA φ_b l_b an²/a_p: how much sealed bladders stiffen the beam",
-        cost: "the unknowns of the fluid and its times",
-    },
-    Effect {
-        name: "flow",
-        adds: "q = g (p_a - p_b) between bladders; without it a1 = const, p = (a0 - R A_M - A_N)/a_p",
-        brings: "an area for each cell of each bladder that is not sealed",
-        number: "1/(ω τ), τ the slowest time of the network; by itself only where next to nothing leaks in the whole run",
-        cost: "cells_per_bladder unknowns a bladder; the stiffness of the network",
-    },
-    Effect {
-        name: "network_pressure_differences",
-        adds: "p of its own in each bladder; without it one p for all that is joined, l_b Σ a1 = V",
-        brings: "areas, junction pressures; without it one pressure for each closed network, none where a port gives it",
-        number: "ω τ, τ the slowest time of the network",
-        cost: "the unknowns and the stiffness of the network",
-    },
-    Effect {
-        name: "flow_along_bladders",
-        adds: "q = -(q1b/μ) dp/ds inside a bladder",
-        brings: "cells_per_bladder areas in each bladder instead of one",
-        number: "ω a_p l_b² μ/(π² q1b)",
-        cost: "cells_per_bladder - 1 unknowns a bladder",
-    },
-    Effect {
-        name: "pressure_to_curvature",
-        adds: "α_p = φ_b l_b am (p_u - p_d), published φ_b ψ' (p_u - p_d)/E",
-        brings: "a term in every moment",
-        number: "α_p l_s over the slope without it",
-        cost: "entries of pressure in the rows of bending",
-    },
-    Effect {
-        name: "pressure_to_stretch",
-        adds: "λ_p = φ_b l_b A_N' (p_u + p_d), published φ_b ζ' (p_u + p_d)/E",
-        brings: "a term in every normal force",
-        number: "λ_p over the stretch without it",
-        cost: "entries of pressure in the rows of stretch",
-    },
-    Effect {
-        name: "moment_to_area",
-        adds: "R A_M(Mbar) in a1 = a_p p + R A_M + A_N",
-        brings: "a mean moment a segment",
-        number: "am Mbar/(a_p p)",
-        cost: "an unknown a segment, with K + 1 entries",
-    },
-    Effect {
-        name: "force_to_area",
-        adds: "A_N(Nbar) in a1 = a_p p + R A_M + A_N",
-        brings: "a mean force a segment",
-        number: "an Nbar/(a_p p)",
-        cost: "an unknown a segment, with K entries",
-    },
-    Effect {
-        name: "asymmetry",
-        adds: "-dm σ(M), -dn σ(N) in the areas",
-        brings: "kinks",
-        number: "dm/am, dn/an",
-        cost: "square roots a segment; steps at the kinks",
-    },
-    Effect {
-        name: "damping",
-        adds: "EA τ_a λ_t, EI τ_b κ_t, -c v",
-        brings: "rates of strain",
-        number: "the least damping ratio; present where given",
-        cost: "arithmetic in every cell; saves steps",
-    },
-    Effect {
-        name: "valves",
-        adds: "g = o/(o R_half + R), o(t) given",
-        brings: "conductances that change in time",
-        number: "present where given",
-        cost: "a signal a valve",
-    },
-    Effect {
-        name: "turbines",
-        adds: "q = G (p_a - p_b), and a bridge of check valves where given",
-        brings: "conductances; a pressure drop behind each real rectifier",
-        number: "present where given",
-        cost: "an unknown a real rectifier",
-    },
-    Effect {
-        name: "loads",
-        adds: "b, b1, end forces and moments",
-        brings: "terms of time and place",
-        number: "present where given",
-        cost: "signals",
-    },
-    Effect {
-        name: "gravity",
-        adds: "m g",
-        brings: "a constant load",
-        number: "m g l_s³/EI; present where given",
-        cost: "nothing",
-    },
-];
+/// What is to be known of an effect.
+pub const fn about(effect: Effect) -> About {
+    match effect {
+        Effect::TransverseMotion => About {
+            adds: "x = u1, φ, κ, M = EI (κ - α_p), V = -M'/λ; without it a bar, N = EA (u3' - λ_p)",
+            brings: "u1, v1 of every node; mean moments; turning, curvature, moments, shear",
+            number: "0 where nothing moves or loads the beam across and p_u = p_d",
+            cost: "half the unknowns of the solid, most of its arithmetic",
+        },
+        Effect::FiniteRotation => About {
+            adds: "x' = λ sin φ, z' = λ cos φ; without it e = u3' + u1'²/2, φ = u1'",
+            brings: "roots and arcs in every cell, neighbours of u3 in the rows of u1 and the other way round",
+            number: "φ², the square of the largest angle",
+            cost: "most of the arithmetic of the solid",
+        },
+        Effect::AxialForceOnBending => About {
+            adds: "N u1' in n_x, u1'²/2 in e",
+            brings: "geometric stiffness: buckling, tension, parametric excitation; without it bending and stretch are apart",
+            number: "N l_s²/(π² EI), and (u1/h_s)² where both ends hold u3",
+            cost: "entries that couple u1 and u3",
+        },
+        Effect::AxialStretch => About {
+            adds: "N = EA (e - λ_p); without it u3' = λ_p - g u1'²/2, N from statics",
+            brings: "u3 and v3 of every node; mean forces",
+            number: "N/EA: the stretch, and with inertia (f/f_axial)²",
+            cost: "half the unknowns of the solid; axial waves",
+        },
+        Effect::SolidInertia => About {
+            adds: "m a",
+            brings: "v1, v3 of every node",
+            number: "(ω/ω1)², ω1 the first bending frequency",
+            cost: "half the unknowns of the solid; the waves that limit steps and orders",
+        },
+        Effect::AxialInertia => About {
+            adds: "m u3_tt; without it m U'', U the motion of the driven ends",
+            brings: "v3 of every node; axial waves",
+            number: "(f/f_axial)², and (u1/l_s)² where the beam bends",
+            cost: "a quarter of the unknowns of the solid; its fastest waves where the mesh is coarse",
+        },
+        Effect::RotaryInertia => About {
+            adds: "r = m y11 φ_tt/λ² in n = N e_t + V e_n + r d1",
+            brings: "neighbouring accelerations coupled in every cell",
+            number: "y11 k²/2 (1 + ω T), k and ω of the second bending mode, T the run; kept where something acts suddenly",
+            cost: "arithmetic in every cell",
+        },
+        Effect::Fluid => About {
+            adds: "da1/dt + dq/ds = 0, λ_p and α_p",
+            brings: "areas, junction pressures, mean moments and forces",
+            number: "2 EI φ_b l_b am²/a_p and 2 EA φ_b l_b an²/a_p: how much sealed bladders stiffen the beam",
+            cost: "the unknowns of the fluid and its times",
+        },
+        Effect::Flow => About {
+            adds: "q = g (p_a - p_b) between bladders; without it a1 = const, p = (a0 - R A_M - A_N)/a_p",
+            brings: "an area for each cell of each bladder that is not sealed",
+            number: "1/(ω τ), τ the slowest time of the network; by itself only where next to nothing leaks in the whole run",
+            cost: "cells_per_bladder unknowns a bladder; the stiffness of the network",
+        },
+        Effect::NetworkPressureDifferences => About {
+            adds: "p of its own in each bladder; without it one p for all that is joined, l_b Σ a1 = V",
+            brings: "areas, junction pressures; without it one pressure for each closed network, none where a port gives it",
+            number: "ω τ, τ the slowest time of the network",
+            cost: "the unknowns and the stiffness of the network",
+        },
+        Effect::FlowAlongBladders => About {
+            adds: "q = -(q1b/μ) dp/ds inside a bladder",
+            brings: "cells_per_bladder areas in each bladder instead of one",
+            number: "ω a_p l_b² μ/(π² q1b)",
+            cost: "cells_per_bladder - 1 unknowns a bladder",
+        },
+        Effect::PressureToCurvature => About {
+            adds: "α_p = φ_b l_b am (p_u - p_d), published φ_b ψ' (p_u - p_d)/E",
+            brings: "a term in every moment",
+            number: "α_p l_s over the slope without it",
+            cost: "entries of pressure in the rows of bending",
+        },
+        Effect::PressureToStretch => About {
+            adds: "λ_p = φ_b l_b A_N' (p_u + p_d), published φ_b ζ' (p_u + p_d)/E",
+            brings: "a term in every normal force",
+            number: "λ_p over the stretch without it",
+            cost: "entries of pressure in the rows of stretch",
+        },
+        Effect::MomentToArea => About {
+            adds: "R A_M(Mbar) in a1 = a_p p + R A_M + A_N",
+            brings: "a mean moment a segment",
+            number: "am Mbar/(a_p p)",
+            cost: "an unknown a segment, with K + 1 entries",
+        },
+        Effect::ForceToArea => About {
+            adds: "A_N(Nbar) in a1 = a_p p + R A_M + A_N",
+            brings: "a mean force a segment",
+            number: "an Nbar/(a_p p)",
+            cost: "an unknown a segment, with K entries",
+        },
+        Effect::Asymmetry => About {
+            adds: "-dm σ(M), -dn σ(N) in the areas",
+            brings: "kinks",
+            number: "dm/am, dn/an",
+            cost: "square roots a segment; steps at the kinks",
+        },
+        Effect::Damping => About {
+            adds: "EA τ_a λ_t, EI τ_b κ_t, -c v",
+            brings: "rates of strain",
+            number: "the least damping ratio; present where given",
+            cost: "arithmetic in every cell; saves steps",
+        },
+        Effect::Valves => About {
+            adds: "g = o/(o R_half + R), o(t) given",
+            brings: "conductances that change in time",
+            number: "present where given",
+            cost: "a signal a valve",
+        },
+        Effect::Turbines => About {
+            adds: "q = G (p_a - p_b), and a bridge of check valves where given",
+            brings: "conductances; a pressure drop behind each real rectifier",
+            number: "present where given",
+            cost: "an unknown a real rectifier",
+        },
+        Effect::Loads => About {
+            adds: "b, b1, end forces and moments",
+            brings: "terms of time and place",
+            number: "present where given",
+            cost: "signals",
+        },
+        Effect::Gravity => About {
+            adds: "m g",
+            brings: "a constant load",
+            number: "m g l_s³/EI; present where given",
+            cost: "nothing",
+        },
+    }
+}

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use super::folder::ResultFolder;
 use super::plot::ablation::{self, AblationBars, Bar};
+use crate::case::schema::Effect;
 use crate::error::Result;
 use crate::study::effects::ablation::{Compared, LARGEST};
 use crate::study::effects::change::Measure;
@@ -93,7 +94,7 @@ fn bars(found: &Ablation, shown: &Shown) -> AblationBars {
     for row in &found.rows {
         let name = match row.without.as_slice() {
             [] => row.name.to_string(),
-            others => format!("{} (no {})", row.name, others.join(", ")),
+            others => format!("{} (no {})", row.name, Effect::names(others, ", ")),
         };
         bars.extend(row.left_out.as_ref().map(|c| bar(&name, c, Some(row.verdict))));
     }

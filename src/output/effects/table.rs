@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::Shown;
+use crate::case::schema::Effect;
 use crate::output::numbers::{percent, shortest, significant};
 use crate::run::summary::Judged;
 use crate::study::accuracy::trial::Ending;
@@ -54,18 +55,22 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
                 let why = row.reason.as_deref().unwrap_or("no reason given");
                 reasons.push(format!("{}: {}: {why}", row.name, said(row)));
             }
-            _ if !row.takes.is_empty() => reasons.push(format!("{} takes with it {}", row.name, row.takes.join(", "))),
+            _ if !row.takes.is_empty() => reasons.push(format!(
+                "{} takes with it {}",
+                row.name,
+                Effect::names(&row.takes, ", ")
+            )),
             _ => {}
         }
     }
-    let absent: Vec<&str> = found
+    let absent: Vec<Effect> = found
         .rows
         .iter()
         .filter(|r| r.verdict == Verdict::Absent)
         .map(|r| r.name)
         .collect();
     if !absent.is_empty() {
-        reasons.push(format!("not in the full model: {}", absent.join(", ")));
+        reasons.push(format!("not in the full model: {}", Effect::names(&absent, ", ")));
     }
     if !reasons.is_empty() {
         let _ = writeln!(text, "\n{}", reasons.join("\n"));
@@ -114,7 +119,7 @@ fn legend(found: &Ablation, shown: &Shown) -> String {
 fn name(row: &Row) -> String {
     match row.without.as_slice() {
         [] => row.name.to_string(),
-        others => format!("{} (both without {})", row.name, others.join(", ")),
+        others => format!("{} (both without {})", row.name, Effect::names(others, ", ")),
     }
 }
 
@@ -180,10 +185,10 @@ pub fn sentence(found: &Ablation) -> String {
         (off, Some(run)) => {
             let change = |(name, x): &(String, f64)| format!(" {name} changes most, by {x:.1e}.");
             let change = run.largest.as_ref().map_or(String::new(), change);
-            let (off, work) = (off.join(", "), percent(run.work));
+            let (off, work) = (Effect::names(off, ", "), percent(run.work));
             format!("Without {off} the model needs {work} of the work.{change}")
         }
-        (off, None) => format!("Leave out {}.", off.join(", ")),
+        (off, None) => format!("Leave out {}.", Effect::names(off, ", ")),
     };
     for (name, why) in &r.dropped {
         let _ = write!(text, " {name} saves, but stays: {why}.");
@@ -234,8 +239,8 @@ pub fn csv(found: &Ablation) -> String {
             quoted(row.reason.as_deref().unwrap_or("")),
             if row.auto { "on" } else { "off" },
             quoted(&row.number),
-            row.without.join(" "),
-            row.takes.join(" ")
+            Effect::names(&row.without, " "),
+            Effect::names(&row.takes, " ")
         );
         rows(first, row.left_out.as_ref());
     }

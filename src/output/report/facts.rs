@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use crate::case::{Case, schema_json};
+use crate::case::Case;
+use crate::case::schema::Effect;
 use crate::discrete::System;
 use crate::model::characteristic;
 use crate::output::numbers::{count, duration, pretty_unit, significant};
@@ -147,25 +148,19 @@ pub fn characteristic(numbers: &BTreeMap<String, f64>) -> Vec<Value> {
     numbers.iter().map(row).collect()
 }
 
-/// Effects that are no choice of the case.
-const OTHERS: [(&str, &str); 8] = [
-    ("damping", "Damping of the material, and drag."),
-    ("valves", "Valves that move."),
-    ("turbines", "Turbines that harvest energy."),
-    ("loads", "Loads along the beam."),
-    ("gravity", "Weight."),
+/// What else is chosen.
+const OTHERS: [(&str, &str); 2] = [
     ("max_order", "Highest order of the time integration."),
     ("method", "Method of the time integration."),
-    ("quasi_static", "Motion without inertia."),
 ];
 
 /// Rows: name, choice, reason, what it is.
 pub fn effects(summary: &Summary) -> Vec<Value> {
-    let schema = schema_json();
     let described = |name: &str| {
-        let text = schema.pointer(&format!("/$defs/EffectChoices/properties/{name}/description"));
-        let own = OTHERS.iter().find(|o| o.0 == name).map(|o| o.1);
-        text.and_then(Value::as_str).or(own).unwrap_or("").replace('`', "")
+        let effect = Effect::ALL.iter().find(|effect| effect.name() == name);
+        let other = OTHERS.iter().find(|other| other.0 == name).map(|other| other.1);
+        let text = effect.map(|effect| effect.note().trim()).or(other);
+        text.unwrap_or_default().replace('`', "")
     };
     let row = |(name, chosen): (&String, &crate::run::summary::Chosen)| json!({"name": name, "value": chosen.value, "reason": chosen.reason, "about": described(name)});
     summary.effects.iter().map(row).collect()

@@ -8,6 +8,7 @@ use nalgebra::Complex;
 use super::shape::alike;
 use super::{Fluid, Limit, Linearised, Mode, Modes, Plan, Tally, at_equilibrium, linearise, matched, search};
 use crate::case::Case;
+use crate::case::schema::Effect;
 use crate::error::{Code, Result};
 use crate::run::estimate::words::LARGE;
 
@@ -38,7 +39,7 @@ pub fn compare_meshes(case: &Case, at_rest_under: Option<f64>, plan: &Plan, foun
     if let Some(coarse) = halved(case) {
         along_the_beam(about(&coarse), plan, found);
     }
-    let flows = found.about.flows() && found.about.system().model.effects.flow_along_bladders;
+    let flows = found.about.flows() && found.about.system().model.effects.has(Effect::FlowAlongBladders);
     found.bladders_compared = flows;
     if flows {
         let mut fine = case.clone();

@@ -3,11 +3,11 @@
 use serde::Serialize;
 
 use super::change::{Changes, Measure, Reference, Size, judge, largest};
-use super::choices::{Out, candidates, effects, guards, on, reason, with, without};
+use super::choices::{Out, candidates, effects, guards, with, without};
 use super::recommend::{Recommendation, recommend};
 use super::trial::{Plan, Runs, Trial, Watch};
 use crate::case::Case;
-use crate::case::schema::Effects;
+use crate::case::schema::{Effect, Effects};
 use crate::error::{Error, Result};
 use crate::run::summary::Judged;
 use crate::study::counted::Floors;
@@ -65,8 +65,8 @@ pub struct Compared {
 /// An effect of the table.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// Its name.
-    pub name: &'static str,
+    /// The effect.
+    pub name: Effect,
     /// What became of it.
     pub verdict: Verdict,
     /// Why it was not run, or did not finish.
@@ -76,9 +76,9 @@ pub struct Row {
     /// The number by which `"auto"` decides.
     pub number: String,
     /// Effects that are left out of both models that are compared.
-    pub without: Vec<&'static str>,
+    pub without: Vec<Effect>,
     /// Effects that have no meaning without it.
-    pub takes: Vec<&'static str>,
+    pub takes: Vec<Effect>,
     /// The model without it.
     pub left_out: Option<Compared>,
 }
@@ -195,12 +195,12 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
     let full_case = with(case, Effects::Full);
     let full = runs.run("full", full_case.clone());
     found.full = runs.trial(full).clone();
-    let row = |name: &'static str, out: &Out| Row {
+    let row = |name: Effect, out: &Out| Row {
         name,
         verdict: Verdict::Failed,
         reason: None,
-        auto: on(&decided, name),
-        number: reason(&decided, name),
+        auto: decided.has(name),
+        number: decided.decision(name).cause.to_string(),
         without: out.without.clone(),
         takes: out.takes.clone(),
         left_out: None,
@@ -219,12 +219,15 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
         let pair = candidate.out.as_ref().ok().map(|out| {
             let base = match out.without.as_slice() {
                 [] => full,
-                others => runs.run(&format!("without {}", others.join(", ")), without(case, others)),
+                others => runs.run(
+                    &format!("without {}", Effect::names(others, ", ")),
+                    without(case, others),
+                ),
             };
-            let off = [out.without.as_slice(), &[candidate.name]].concat();
+            let off = [out.without.as_slice(), &[candidate.effect]].concat();
             (
                 base,
-                runs.run(&format!("without {}", off.join(", ")), without(case, &off)),
+                runs.run(&format!("without {}", Effect::names(&off, ", ")), without(case, &off)),
             )
         });
         pairs.push(pair);
@@ -252,7 +255,7 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
                     verdict: verdict.unwrap_or(Verdict::Failed),
                     reason: failed,
                     left_out,
-                    ..row(candidate.name, out)
+                    ..row(candidate.effect, out)
                 }
             }
             (out, _) => {
@@ -261,7 +264,7 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
                 Row {
                     verdict: if there { Verdict::Kept } else { Verdict::Absent },
                     reason: kept.map(|k| k.why.clone()),
-                    ..row(candidate.name, &Out::default())
+                    ..row(candidate.effect, &Out::default())
                 }
             }
         });

@@ -1,18 +1,16 @@
 //! Which effects can be left out of a case, and which others that takes.
 
-use serde_json::{Map, Value};
-
 use crate::case::Case;
-use crate::case::schema::{Choice, EffectChoices, Effects};
+use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
 use crate::error::Violation;
-use crate::model::effects::{Decision, EffectSet, Scene, TABLE};
+use crate::model::effects::{Cause, EffectSet, Scene};
 use crate::model::{Model, audit};
 
-/// An effect of the table, and what leaving it out takes.
+/// An effect, and what leaving it out takes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// Its name.
-    pub name: &'static str,
+    /// The effect.
+    pub effect: Effect,
     /// How it is left out, or why it is not.
     pub out: Result<Out, Kept>,
 }
@@ -21,9 +19,9 @@ pub struct Candidate {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Out {
     /// Effects that must be left out first; what is compared is with and without it, both without these.
-    pub without: Vec<&'static str>,
+    pub without: Vec<Effect>,
     /// Effects that have no meaning without it.
-    pub takes: Vec<&'static str>,
+    pub takes: Vec<Effect>,
 }
 
 /// Why an effect is not left out.
@@ -35,25 +33,6 @@ pub struct Kept {
     pub why: String,
 }
 
-/// Names that a case can choose by.
-pub fn choosable() -> Vec<&'static str> {
-    let fields = serde_json::to_value(EffectChoices::default()).unwrap_or_default();
-    TABLE
-        .iter()
-        .map(|e| e.name)
-        .filter(|name| fields.get(name).is_some())
-        .collect()
-}
-
-/// The case with choices by name; others are automatic.
-pub fn with_choices(case: &Case, choices: &[(&'static str, Choice)]) -> Case {
-    let named = choices
-        .iter()
-        .filter_map(|(name, choice)| Some((name.to_string(), serde_json::to_value(choice).ok()?)));
-    let named = Value::Object(named.collect::<Map<_, _>>());
-    with(case, Effects::Chosen(serde_json::from_value(named).unwrap_or_default()))
-}
-
 /// The case with other effects.
 pub fn with(case: &Case, effects: Effects) -> Case {
     Case {
@@ -63,10 +42,13 @@ pub fn with(case: &Case, effects: Effects) -> Case {
 }
 
 /// The full model without some effects.
-pub fn without(case: &Case, off: &[&'static str]) -> Case {
-    let choice = |name| if off.contains(&name) { Choice::Off } else { Choice::On };
-    let named: Vec<_> = choosable().into_iter().map(|name| (name, choice(name))).collect();
-    with_choices(case, &named)
+pub fn without(case: &Case, off: &[Effect]) -> Case {
+    let mut choices = EffectChoices::default();
+    for &effect in Effect::CHOSEN {
+        let choice = if off.contains(&effect) { Choice::Off } else { Choice::On };
+        choices.set(effect, choice);
+    }
+    with(case, Effects::Chosen(choices))
 }
 
 /// The effects of a case's model.
@@ -82,87 +64,77 @@ pub fn refusals(case: &Case) -> Vec<Violation> {
     all
 }
 
-/// Whether an effect is simulated.
-pub fn on(effects: &EffectSet, name: &str) -> bool {
-    effects.decisions.iter().any(|d| d.name == name && d.on)
-}
-
 /// Whether the program keeps an effect, whatever its number, since without it an instability might not show. A run need not
 /// show it either: what is not disturbed stays straight.
 pub fn guards(case: &Case, auto: &EffectSet) -> Option<Guard> {
     let full = with(case, Effects::Full);
     let model = Model::new(&full);
     let why = Scene::new(&full, &model.section, model.wet.as_ref()).unstable()?;
-    let kept = |d: &&Decision| d.on && d.reason == format!("kept: {why}");
-    let effects = auto.decisions.iter().filter(kept).map(|d| d.name).collect();
-    Some(Guard { effects, why })
+    let guarded = auto.decisions.iter().filter(|d| matches!(d.cause, Cause::Unstable(_)));
+    Some(Guard {
+        effects: guarded.map(|d| d.effect).collect(),
+        why,
+    })
 }
 
 /// What must not be left out, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guard {
-    /// Names of effects.
-    pub effects: Vec<&'static str>,
+    /// The effects.
+    pub effects: Vec<Effect>,
     /// One clause.
     pub why: String,
 }
 
-/// Why an effect is simulated or not.
-pub fn reason(effects: &EffectSet, name: &str) -> String {
-    let decision = effects.decisions.iter().find(|d| d.name == name);
-    decision.map(|d| d.reason.clone()).unwrap_or_default()
-}
-
-/// Every effect of the table.
+/// Every effect.
 pub fn candidates(case: &Case) -> Vec<Candidate> {
     let full = effects(&with(case, Effects::Full));
-    let choosable = choosable();
-    let candidate = |name: &'static str| {
-        let there = on(&full, name);
+    let candidate = |effect: Effect| {
+        let there = full.has(effect);
         let kept = |why: String| Err(Kept { there, why });
         let out = if !there {
-            kept(reason(&full, name))
-        } else if !choosable.contains(&name) {
+            kept(full.decision(effect).cause.to_string())
+        } else if !Effect::CHOSEN.contains(&effect) {
             kept("given by the case, and left out by not giving it".into())
         } else {
-            leave_out(case, name, &choosable, &full).map_err(|why| Kept { there, why })
+            leave_out(case, effect, &full).or_else(kept)
         };
-        Candidate { name, out }
+        Candidate { effect, out }
     };
-    TABLE.iter().map(|e| candidate(e.name)).collect()
+    Effect::ALL.iter().copied().map(candidate).collect()
 }
 
 /// Alone where that is possible, else together with one other without which it can be compared.
-fn leave_out(case: &Case, name: &'static str, choosable: &[&'static str], full: &EffectSet) -> Result<Out, String> {
-    let alone = effects(&without(case, &[name]));
+fn leave_out(case: &Case, effect: Effect, full: &EffectSet) -> Result<Out, String> {
+    let alone = effects(&without(case, &[effect]));
     if alone.refusals.is_empty() {
         return Ok(Out {
             without: vec![],
-            takes: taken(full, &alone, name, choosable),
+            takes: taken(full, &alone, effect),
         });
     }
-    for &other in choosable.iter().filter(|other| **other != name && on(full, other)) {
+    for &other in Effect::CHOSEN
+        .iter()
+        .filter(|other| **other != effect && full.has(**other))
+    {
         let base = effects(&without(case, &[other]));
-        let both = effects(&without(case, &[other, name]));
-        if base.refusals.is_empty() && on(&base, name) && both.refusals.is_empty() && !on(&both, name) {
+        let both = effects(&without(case, &[other, effect]));
+        if base.refusals.is_empty() && base.has(effect) && both.refusals.is_empty() && !both.has(effect) {
             return Ok(Out {
                 without: vec![other],
-                takes: taken(&base, &both, name, choosable),
+                takes: taken(&base, &both, effect),
             });
         }
     }
-    let prefix = format!("{name} cannot be left out: ");
-    let why = |what: &str| what.strip_prefix(&prefix).unwrap_or(what).to_string();
-    Err(alone
-        .refusals
-        .iter()
-        .map(|r| why(&r.what))
-        .collect::<Vec<_>>()
-        .join("; "))
+    let refused = alone.decisions.iter().filter_map(|d| match &d.cause {
+        Cause::Refused(obstacle) => Some(obstacle.what.clone()),
+        _ => None,
+    });
+    Err(refused.collect::<Vec<_>>().join("; "))
 }
 
 /// What goes with an effect.
-fn taken(with: &EffectSet, without: &EffectSet, name: &str, choosable: &[&'static str]) -> Vec<&'static str> {
-    let gone = |other: &&str| *other != name && on(with, other) && !on(without, other);
-    choosable.iter().copied().filter(gone).collect()
+fn taken(with: &EffectSet, without: &EffectSet, effect: Effect) -> Vec<Effect> {
+    let gone = |other: &Effect| *other != effect && with.has(*other) && !without.has(*other);
+    Effect::CHOSEN.iter().copied().filter(gone).collect()
 }

@@ -1,9 +1,9 @@
 //! Which effects a case leaves out by itself, and the cases that have more of them.
 
 use crate::case::Case;
-use crate::case::schema::{Choice, EffectChoices, Effects};
+use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
 use crate::model::effects::EffectSet;
-use crate::study::effects::choices::{choosable, effects, on, refusals, with_choices};
+use crate::study::effects::choices::{effects, refusals, with};
 
 /// Decades by which the tolerance of effects is tightened, each a candidate.
 const TIGHTER: i32 = 3;
@@ -14,7 +14,7 @@ pub struct Full {
     /// The case.
     pub case: Case,
     /// What it has more.
-    pub left_out: Vec<&'static str>,
+    pub left_out: Vec<Effect>,
 }
 
 /// The case with everything that it leaves to the program. What it names off stays off; motion across stays out where nothing
@@ -22,20 +22,20 @@ pub struct Full {
 pub fn full(case: &Case) -> Option<Full> {
     let auto = effects(case);
     let mut choices = named(case, &auto);
-    let open: Vec<&'static str> = choices
+    let open: Vec<Effect> = Effect::CHOSEN
         .iter()
-        .filter(|(name, choice)| *choice == Choice::Auto && !straight(&auto, name))
-        .map(|(name, _)| *name)
+        .copied()
+        .filter(|effect| choices.of(*effect) == Choice::Auto && !straight(&auto, *effect))
         .collect();
-    for name in open {
+    for effect in open {
         let mut more = choices.clone();
-        more.iter_mut().filter(|c| c.0 == name).for_each(|c| c.1 = Choice::On);
-        let with = with_choices(case, &more);
-        if on(&effects(&with), name) && refusals(&with).is_empty() {
+        more.set(effect, Choice::On);
+        let case = with(case, Effects::Chosen(more.clone()));
+        if effects(&case).has(effect) && refusals(&case).is_empty() {
             choices = more;
         }
     }
-    let case = with_choices(case, &choices);
+    let case = with(case, Effects::Chosen(choices));
     let left_out = more(&auto, &effects(&case));
     (!left_out.is_empty()).then_some(Full { case, left_out })
 }
@@ -60,31 +60,26 @@ pub fn tighter(case: &Case, full: &Full) -> Vec<Case> {
 }
 
 /// Effects of one set that another has not.
-pub fn more(few: &EffectSet, many: &EffectSet) -> Vec<&'static str> {
-    let names = many.decisions.iter().filter(|d| d.on).map(|d| d.name);
-    names.filter(|name| !on(few, name)).collect()
+pub fn more(few: &EffectSet, many: &EffectSet) -> Vec<Effect> {
+    let more = |effect: &Effect| many.has(*effect) && !few.has(*effect);
+    Effect::ALL.iter().copied().filter(more).collect()
 }
 
 /// What the case names, and what is there anyway.
-fn named(case: &Case, auto: &EffectSet) -> Vec<(&'static str, Choice)> {
-    let given = match &case.effects {
-        Effects::Auto | Effects::Full => EffectChoices::default(),
-        Effects::Chosen(choices) => choices.clone(),
-    };
-    let given = serde_json::to_value(given).unwrap_or_default();
-    let choice = |name: &'static str| {
-        let given = given.get(name).and_then(|c| serde_json::from_value(c.clone()).ok());
-        match given.unwrap_or_default() {
-            Choice::Auto if case.effects == Effects::Full || on(auto, name) => (name, Choice::On),
-            choice => (name, choice),
+fn named(case: &Case, auto: &EffectSet) -> EffectChoices {
+    let mut choices = case.effects.choices();
+    for &effect in Effect::CHOSEN {
+        let there = case.effects == Effects::Full || auto.has(effect);
+        if choices.of(effect) == Choice::Auto && there {
+            choices.set(effect, Choice::On);
         }
-    };
-    choosable().into_iter().map(choice).collect()
+    }
+    choices
 }
 
 /// Whether an effect is motion across a beam that nothing makes leave its line, or follows from it.
-fn straight(auto: &EffectSet, name: &str) -> bool {
-    name == "transverse_motion" && !on(auto, name)
+fn straight(auto: &EffectSet, effect: Effect) -> bool {
+    effect == Effect::TransverseMotion && !auto.has(effect)
 }
 
 #[cfg(test)]
@@ -109,12 +104,12 @@ mod tests {
     #[test]
     fn the_full_case_has_what_was_left_to_the_program() {
         let found = full(&case("")).expect("something left out");
-        assert!(found.left_out.contains(&"solid_inertia"), "{:?}", found.left_out);
-        assert!(found.left_out.contains(&"finite_rotation"), "{:?}", found.left_out);
+        assert!(found.left_out.contains(&Effect::SolidInertia), "{:?}", found.left_out);
+        assert!(found.left_out.contains(&Effect::FiniteRotation), "{:?}", found.left_out);
         assert!(refusals(&found.case).is_empty());
         assert!(full(&found.case).is_none());
         let off = full(&case(r#", "effects": {"solid_inertia": "off"}"#)).expect("something left out");
-        assert!(!off.left_out.contains(&"solid_inertia"), "{:?}", off.left_out);
+        assert!(!off.left_out.contains(&Effect::SolidInertia), "{:?}", off.left_out);
         assert!(full(&case(r#", "effects": "full""#)).is_none());
         for tighter in tighter(&case(""), &found) {
             assert!(!more(&effects(&case("")), &effects(&tighter)).is_empty());

@@ -6,6 +6,7 @@ use super::Hook;
 use super::estimates::{At, EXPECTED_RATIO, Runs, UNSEEN, Way};
 use super::models::{self, Full};
 use crate::case::Case;
+use crate::case::schema::Effect;
 use crate::case::schema::Method;
 use crate::error::Result;
 use crate::run::dynamics;
@@ -36,7 +37,7 @@ pub struct Search<'a> {
     /// The case with the effects that candidates leave out, where they leave out any.
     pub full: Option<Full>,
     /// Effects that candidates had left out, and no longer do.
-    pub taken_in: Vec<&'static str>,
+    pub taken_in: Vec<Effect>,
     /// Runs beside candidates that did not finish, and why.
     pub failed: BTreeMap<(Way, At), String>,
 }

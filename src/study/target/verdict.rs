@@ -2,6 +2,7 @@
 
 use super::estimates::{At, Way, worst};
 use super::search::Search;
+use crate::case::schema::Effect;
 use crate::error::Code;
 use crate::run::summary::{Accuracy, Estimate, Summary};
 use crate::study::accuracy::plan;
@@ -79,7 +80,7 @@ impl Search<'_> {
         };
         let mut all = vec![];
         if !present {
-            let taken = self.taken_in.join(", ");
+            let taken = Effect::names(&self.taken_in, ", ");
             all.push(format!(
                 "the result leaves out effects that change it by more than may be: {taken}"
             ));
@@ -99,15 +100,15 @@ impl Search<'_> {
     fn effects_in_words(&self, at: At) -> String {
         let taken = match self.taken_in.as_slice() {
             [] => String::new(),
-            all => format!("taken in, for what they change: {}; ", all.join(", ")),
+            all => format!("taken in, for what they change: {}; ", Effect::names(all, ", ")),
         };
         let left = match (&self.full, self.runs.effects(at)) {
             (None, _) => "none left out that is not exact".into(),
             (Some(full), Some((cells, decades))) => format!(
                 "left out: {}; judged by a run with them, {cells} cells a segment, rtol 1e-{decades}",
-                full.left_out.join(", ")
+                Effect::names(&full.left_out, ", ")
             ),
-            (Some(full), None) => format!("left out: {}; not judged", full.left_out.join(", ")),
+            (Some(full), None) => format!("left out: {}; not judged", Effect::names(&full.left_out, ", ")),
         };
         format!("{taken}{left}")
     }

@@ -1,0 +1,187 @@
+//! Why an effect is simulated or not; words stand in `Display` alone.
+
+use std::fmt::{self, Display, Formatter};
+
+use super::obstacles::Obstacle;
+use crate::case::schema::Effect;
+
+/// What decided on an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cause {
+    /// The full model was asked for.
+    Full,
+    /// It was asked for by name.
+    Asked,
+    /// It was left out by name.
+    LeftOut,
+    /// It was to be left out, and cannot be.
+    Refused(Obstacle),
+    /// The case gives it, or not.
+    Given(bool),
+    /// The case gives bladders and fluid, or not.
+    Filled(bool),
+    /// It has no meaning without another.
+    Needs(Effect),
+    /// The reciprocal coupling has no kinks.
+    NoKinks,
+    /// Something in the case has a meaning only with it.
+    Obstacle(Obstacle),
+    /// Without it an instability might not show.
+    Unstable(String),
+    /// It is kept whatever its number.
+    Kept(Keeps),
+    /// Its number beside the tolerance.
+    Weighed(Weighed),
+    /// Nothing acts across: part of the buckling load that compression reaches.
+    Straight(f64),
+    /// All bladders, so many, are sealed.
+    Sealed(usize),
+    /// Some of all bladders are sealed, and the others are weighed.
+    PartlySealed {
+        /// Of all.
+        sealed: usize,
+        /// All.
+        all: usize,
+        /// What the others leak.
+        leaks: Weighed,
+    },
+}
+
+/// A number that decides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weighed {
+    /// What it is.
+    pub what: Number,
+    /// Its value.
+    pub value: f64,
+    /// Below this the effect may be left out.
+    pub tolerance: f64,
+}
+
+impl Weighed {
+    /// Whether the effect stays; what is unknown does.
+    pub fn on(&self) -> bool {
+        self.value.is_nan() || self.value >= self.tolerance
+    }
+}
+
+/// Numbers that decide.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Number {
+    /// Square of the largest angle.
+    Rotation,
+    /// How much bending draws in over the stretch.
+    DrawnIn,
+    /// Normal force over the buckling load.
+    NormalForce,
+    /// Stretch over how much bending draws in.
+    Stretch,
+    /// Inertia of bending over its stiffness.
+    BendingInertia,
+    /// Axial waves over the stretch without them.
+    AxialWaves,
+    /// Phase of the second bending mode in the whole run.
+    RotaryInertia,
+    /// What leaks in the whole run.
+    Leakage,
+    /// A bladder's own time against that of the motion.
+    LagAlongBladders,
+    /// What pressure does over what loads do.
+    PressureStrain,
+    /// Larger of dm/am, dn/an.
+    Asymmetry,
+}
+
+/// What keeps an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keeps {
+    /// The rows of bladders differ.
+    RowsDiffer,
+    /// Something acts near or above the first bending frequency.
+    Resonance,
+    /// Driven ends act by inertia.
+    DrivenEnds,
+    /// The ends do not hold the beam.
+    NotHeld,
+    /// Something acts suddenly.
+    Sudden,
+    /// Ports or turbines take fluid.
+    Fed,
+    /// It is all that the fluid dissipates.
+    Dissipation,
+    /// The start has differences along a bladder.
+    UnevenStart,
+    /// It makes pressure.
+    MakesPressure,
+}
+
+impl Display for Cause {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        match self {
+            Self::Full => f.write_str("full model asked for"),
+            Self::Asked => f.write_str("asked for"),
+            Self::LeftOut => f.write_str("left out as asked"),
+            Self::Refused(obstacle) => write!(f, "cannot be left out: {}", obstacle.what),
+            Self::Given(true) => f.write_str("given"),
+            Self::Given(false) => f.write_str("not given"),
+            Self::Filled(true) => f.write_str("bladders and fluid are given"),
+            Self::Filled(false) => f.write_str("no bladders, no fluid"),
+            Self::Needs(Effect::NetworkPressureDifferences) => f.write_str("each network has one pressure"),
+            Self::Needs(effect) => write!(f, "no {}", effect.name().replace('_', " ")),
+            Self::NoKinks => {
+                f.write_str("the reciprocal coupling takes mean slopes: the kinked potential is not convex")
+            }
+            Self::Obstacle(obstacle) => write!(f, "kept: {}", obstacle.what),
+            Self::Unstable(why) => write!(f, "kept: {why}"),
+            Self::Kept(keeps) => write!(f, "kept: {keeps}"),
+            Self::Weighed(weighed) => weighed.fmt(f),
+            Self::Straight(pressed) => write!(
+                f,
+                "nothing acts across, the rows mirror each other, {pressed:.1e} of the buckling load"
+            ),
+            Self::Sealed(all) => write!(f, "all {all} bladders are sealed: exact without unknowns"),
+            Self::PartlySealed { sealed, all, leaks } => write!(f, "{sealed} of {all} bladders are sealed; {leaks}"),
+        }
+    }
+}
+
+impl Display for Weighed {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let sign = if self.on() { ">=" } else { "<" };
+        write!(f, "{}: {:.1e} {sign} {:.0e}", self.what, self.value, self.tolerance)
+    }
+}
+
+impl Display for Number {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Rotation => "square of the largest angle",
+            Self::DrawnIn => "how much bending draws in over the stretch",
+            Self::NormalForce => "normal force over the buckling load",
+            Self::Stretch => "stretch over how much bending draws in",
+            Self::BendingInertia => "inertia of bending over its stiffness",
+            Self::AxialWaves => "axial waves over the stretch without them",
+            Self::RotaryInertia => "phase of the second bending mode in the whole run",
+            Self::Leakage => "what leaks in the whole run",
+            Self::LagAlongBladders => "a bladder's own time against that of the motion",
+            Self::PressureStrain => "what pressure does over what loads do",
+            Self::Asymmetry => "larger of dm/am, dn/an",
+        })
+    }
+}
+
+impl Display for Keeps {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::RowsDiffer => "the rows of bladders are not each other's mirror image",
+            Self::Resonance => "something acts near or above the first bending frequency",
+            Self::DrivenEnds => "driven ends act by inertia",
+            Self::NotHeld => "the ends do not hold the beam without it",
+            Self::Sudden => "something acts suddenly and excites waves of every length",
+            Self::Fed => "ports or turbines take fluid through the network",
+            Self::Dissipation => "all that the fluid dissipates goes with them",
+            Self::UnevenStart => "the start has differences along a bladder",
+            Self::MakesPressure => "it is what makes pressure",
+        })
+    }
+}

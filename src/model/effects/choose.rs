@@ -1,0 +1,211 @@
+//! One decision after the other, each from those before it.
+
+use super::cause::{Cause, Keeps, Number, Weighed};
+use super::obstacles::{self, Obstacle};
+use super::{Decision, EffectSet, Scene};
+use crate::case::schema::{Case, Choice, Coupling, Effect, EffectChoices, Effects, Load};
+use crate::error::{Code, Violation};
+use crate::model::Network;
+
+/// What decisions are made from.
+pub(super) struct Chooser<'a> {
+    pub case: &'a Case,
+    /// That of the bladders.
+    pub network: Option<&'a Network>,
+    /// What automatic choices look at; without it everything is kept.
+    pub scene: Option<&'a Scene<'a>>,
+    choices: EffectChoices,
+    tolerance: f64,
+    /// What is decided so far.
+    set: EffectSet,
+}
+
+/// Other effects without which one has no meaning.
+const fn needs(effect: Effect) -> &'static [Effect] {
+    use Effect::*;
+    match effect {
+        TransverseMotion | AxialStretch | SolidInertia | Fluid | Damping | Loads | Gravity => &[],
+        FiniteRotation | AxialForceOnBending => &[TransverseMotion],
+        AxialInertia => &[SolidInertia, AxialStretch],
+        RotaryInertia => &[SolidInertia, TransverseMotion],
+        Flow | PressureToStretch | ForceToArea | Asymmetry | Valves | Turbines => &[Fluid],
+        NetworkPressureDifferences => &[Fluid, Flow],
+        FlowAlongBladders => &[Fluid, Flow, NetworkPressureDifferences],
+        PressureToCurvature | MomentToArea => &[Fluid, TransverseMotion],
+    }
+}
+
+impl<'a> Chooser<'a> {
+    pub fn new(case: &'a Case, network: Option<&'a Network>, scene: Option<&'a Scene>) -> Self {
+        Self {
+            case,
+            network,
+            scene: scene.filter(|_| case.effects != Effects::Full),
+            choices: case.effects.choices(),
+            tolerance: case.effects_tolerance(),
+            set: EffectSet::default(),
+        }
+    }
+
+    pub fn all(mut self) -> EffectSet {
+        for &effect in Effect::ALL {
+            let (on, cause) = match self.given(effect) {
+                Some(given) => (given, Cause::Given(given)),
+                None => self.decide(effect),
+            };
+            self.set.push(Decision { effect, on, cause });
+        }
+        self.set
+    }
+
+    /// Of an effect that is there where the case gives it, and only there: whether it does.
+    fn given(&self, effect: Effect) -> Option<bool> {
+        let damping = &self.case.beam.damping;
+        let gravity = |load: &Load| matches!(load, Load::Gravity { .. });
+        let network = self.network.filter(|_| self.set.has(Effect::Fluid));
+        let given = match effect {
+            Effect::Damping => damping.axial_time_s > 0.0 || damping.bending_time_s > 0.0 || damping.drag_n_s_m2 > 0.0,
+            Effect::Valves => network.is_some_and(|n| n.links.iter().any(|l| l.opening.is_some())),
+            Effect::Turbines => network.is_some_and(|n| !n.turbines.is_empty()),
+            Effect::Loads => self.case.loads.iter().any(|load| !gravity(load)),
+            Effect::Gravity => self.case.loads.iter().any(gravity),
+            _ => return None,
+        };
+        Some(given)
+    }
+
+    /// Where an effect has no meaning it is off, whatever was asked; where something stands against leaving it out it stays, and the
+    /// case is refused if that was asked for.
+    fn decide(&mut self, effect: Effect) -> (bool, Cause) {
+        if let Err(why) = self.possible(effect) {
+            return (false, why);
+        }
+        match self.choices.of(effect) {
+            Choice::On => (true, Cause::Asked),
+            Choice::Off => match self.obstacle(effect) {
+                None => (false, Cause::LeftOut),
+                Some(obstacle) => {
+                    let what = format!("{effect} cannot be left out: {}", obstacle.what);
+                    let refusal = Violation::new(Code::Effect, format!("/effects/{effect}"), what);
+                    self.set.refusals.push(refusal.hint(obstacle.hint.clone()));
+                    (true, Cause::Refused(obstacle))
+                }
+            },
+            Choice::Auto => match self.scene {
+                None => (true, Cause::Full),
+                Some(scene) => match self.obstacle(effect) {
+                    Some(obstacle) => (true, Cause::Obstacle(obstacle)),
+                    None => self.automatic(effect, scene),
+                },
+            },
+        }
+    }
+
+    /// Whether an effect has a meaning.
+    fn possible(&self, effect: Effect) -> Result<(), Cause> {
+        if let Some(missing) = needs(effect).iter().find(|needed| !self.set.has(**needed)) {
+            return Err(Cause::Needs(*missing));
+        }
+        let bladders = self.case.bladders.as_ref();
+        match effect {
+            Effect::Fluid if self.case.fluid.is_none() || bladders.is_none() => Err(Cause::Filled(false)),
+            Effect::Asymmetry if bladders.is_some_and(|b| b.coupling == Coupling::Reciprocal) => Err(Cause::NoKinks),
+            _ => Ok(()),
+        }
+    }
+
+    /// What stands against leaving an effect out.
+    fn obstacle(&self, effect: Effect) -> Option<Obstacle> {
+        let (case, network) = (self.case, self.network);
+        let [across, turning] = [Effect::TransverseMotion, Effect::FiniteRotation].map(|e| self.set.has(e));
+        match effect {
+            Effect::TransverseMotion => obstacles::transverse_motion(case),
+            Effect::FiniteRotation => obstacles::finite_rotation(case),
+            Effect::AxialForceOnBending => obstacles::axial_force_on_bending(turning),
+            Effect::AxialStretch => obstacles::axial_stretch(case, across, turning),
+            Effect::AxialInertia => obstacles::axial_inertia(case),
+            Effect::Flow => network.and_then(obstacles::flow),
+            Effect::NetworkPressureDifferences => network.and_then(obstacles::network_pressure_differences),
+            _ => None,
+        }
+    }
+
+    /// What the program chooses by itself.
+    fn automatic(&self, effect: Effect, scene: &Scene) -> (bool, Cause) {
+        let kept = |keeps: Keeps| (true, Cause::Kept(keeps));
+        let unstable = |why: String| (true, Cause::Unstable(why));
+        let weighed = |what: Number, value: f64| Weighed {
+            what,
+            value,
+            tolerance: self.tolerance,
+        };
+        let weigh = |what: Number, value: f64| {
+            let weighed = weighed(what, value);
+            (weighed.on(), Cause::Weighed(weighed))
+        };
+        // what bends is not left out where that might hide an instability or a resonance
+        let bending = |choice: (bool, Cause)| match scene.unstable() {
+            _ if choice.0 => choice,
+            Some(why) => unstable(why),
+            None if scene.resonant() => kept(Keeps::Resonance),
+            None => choice,
+        };
+        match effect {
+            Effect::TransverseMotion => match scene.unstable() {
+                _ if !scene.mirrored() => kept(Keeps::RowsDiffer),
+                Some(why) => unstable(why),
+                None => (false, Cause::Straight(scene.compression())),
+            },
+            Effect::FiniteRotation => bending(weigh(Number::Rotation, scene.rotation())),
+            Effect::AxialForceOnBending => {
+                let (force, drawn_in) = (scene.normal_force(), scene.drawn_in());
+                bending(match drawn_in.is_nan() || drawn_in > force {
+                    true => weigh(Number::DrawnIn, drawn_in),
+                    false => weigh(Number::NormalForce, force),
+                })
+            }
+            Effect::AxialStretch => weigh(Number::Stretch, scene.stretch()),
+            Effect::SolidInertia => match scene.unstable() {
+                _ if scene.driven() => kept(Keeps::DrivenEnds),
+                _ if !scene.held() => kept(Keeps::NotHeld),
+                Some(why) => unstable(why),
+                None => weigh(Number::BendingInertia, scene.bending_inertia()),
+            },
+            Effect::AxialInertia => {
+                let across = self.set.has(Effect::TransverseMotion);
+                let shortening = if across { scene.shortening() } else { 0.0 };
+                weigh(Number::AxialWaves, scene.axial_waves().max(shortening))
+            }
+            Effect::RotaryInertia if scene.sudden(self.tolerance) => kept(Keeps::Sudden),
+            Effect::RotaryInertia => weigh(Number::RotaryInertia, scene.rotary()),
+            Effect::Flow => {
+                let count = |n: &Network| (n.sealed().filter(|s| *s).count(), n.component_of_bladder.len());
+                match self.network.map_or((0, 0), count) {
+                    _ if scene.fed() => kept(Keeps::Fed),
+                    (sealed, all) if sealed == all => (true, Cause::Sealed(all)),
+                    (sealed, all) => {
+                        let leaks = weighed(Number::Leakage, scene.leakage());
+                        (leaks.on(), Cause::PartlySealed { sealed, all, leaks })
+                    }
+                }
+            }
+            Effect::NetworkPressureDifferences => kept(Keeps::Dissipation),
+            Effect::FlowAlongBladders => match self.network.and_then(obstacles::network_pressure_differences) {
+                Some(through) => (true, Cause::Obstacle(through)),
+                None if scene.uneven_start() => kept(Keeps::UnevenStart),
+                None => weigh(Number::LagAlongBladders, scene.lag_along_bladders(self.tolerance)),
+            },
+            Effect::PressureToCurvature => weigh(Number::PressureStrain, scene.strains_of_pressure()[0]),
+            Effect::PressureToStretch => weigh(Number::PressureStrain, scene.strains_of_pressure()[1]),
+            Effect::MomentToArea | Effect::ForceToArea => kept(Keeps::MakesPressure),
+            Effect::Asymmetry => {
+                let [m, n] = scene.asymmetries();
+                weigh(Number::Asymmetry, m.max(n))
+            }
+            Effect::Fluid => (true, Cause::Filled(true)),
+            Effect::Damping | Effect::Valves | Effect::Turbines | Effect::Loads | Effect::Gravity => {
+                (true, Cause::Given(true))
+            }
+        }
+    }
+}
