@@ -73,13 +73,32 @@ pub struct CaseFault {
     pub violations: Vec<Violation>,
 }
 
+/// Where something could not go on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum At {
+    /// A simulated time [s].
+    Time(f64),
+    /// A load factor: the share of the loads of an equilibrium.
+    LoadFactor(f64),
+}
+
+impl At {
+    /// The simulated time [s], if it is one.
+    pub fn time_s(self) -> Option<f64> {
+        match self {
+            Self::Time(time) => Some(time),
+            Self::LoadFactor(_) => None,
+        }
+    }
+}
+
 /// A run that could not go on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverFault {
     /// Its number.
     pub code: Code,
-    /// Simulated time [s] up to which results stand.
-    pub time_s: f64,
+    /// Up to where results stand.
+    pub at: At,
     /// What happened, in words.
     pub what: String,
     /// Unknown that is worst, by name and place, when known.

@@ -5,7 +5,7 @@ use std::io::{IsTerminal as _, Write as _};
 use serde_json::{Value, json};
 
 use crate::case::{self, Places};
-use crate::error::{Code, Error, SolverFault, Violation, visible};
+use crate::error::{At, Code, Error, SolverFault, Violation, visible};
 
 /// Whether standard output wants colour: a terminal, and `NO_COLOR` not set.
 pub fn colour_out() -> bool {
@@ -55,7 +55,10 @@ pub fn json(error: &Error) -> Value {
             told["faults"] = fault.violations.iter().map(|v| violation(&mut places, v)).collect();
         }
         Error::Solver(fault) => {
-            told["time_s"] = fault.time_s.into();
+            match fault.at {
+                At::Time(time) => told["time_s"] = time.into(),
+                At::LoadFactor(factor) => told["load_factor"] = factor.into(),
+            }
             told["unknown"] = fault.unknown.clone().into();
             told["cause"] = fault.cause.clone().into();
             told["hint"] = fault.hint.clone().into();
@@ -90,10 +93,11 @@ pub fn answer(answer: &clap::Error) {
 /// A failed run in words.
 pub fn diagnosis(fault: &SolverFault) -> String {
     // modes and equilibria belong to an instant and do not run
-    let failed = match fault.code {
-        Code::NoModes | Code::NoEquilibrium => String::new(),
-        Code::NoCycle => format!("no cycle, t = {:.6e} s of its period: ", fault.time_s),
-        _ => format!("the run failed at t = {:.6e} s: ", fault.time_s),
+    let failed = match (fault.code, fault.at) {
+        (Code::NoModes | Code::NoEquilibrium, _) => String::new(),
+        (Code::NoCycle, At::Time(t)) => format!("no cycle, t = {t:.6e} s of its period: "),
+        (_, At::Time(t)) => format!("the run failed at t = {t:.6e} s: "),
+        (_, At::LoadFactor(factor)) => format!("failed at {factor:.6} of the loads: "),
     };
     let mut lines = vec![format!(
         "slcbeam: {failed}{} (slcbeam explain {})",
@@ -122,7 +126,7 @@ mod tests {
         let words = |code| {
             diagnosis(&SolverFault {
                 code,
-                time_s: 0.25,
+                at: At::Time(0.25),
                 what: "no such thing".into(),
                 unknown: None,
                 cause: None,

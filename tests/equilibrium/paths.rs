@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use serde_json::json;
+use slcbeam::error::At;
 use slcbeam::run::equilibrium::{self, Kind, Options};
 
 use crate::common::{parse, path_of, solved, unit};
@@ -100,5 +101,7 @@ fn beam_that_nothing_holds_is_refused() {
     let path = path_of(&parse(&free), &Options::at(1.0));
     let fault = path.fault.expect("no equilibrium");
     assert!(fault.what.contains("no equilibrium"), "{}", fault.what);
+    // an equilibrium has no time of its own, and what it has is not told as one
+    assert_eq!((fault.at, fault.at.time_s()), (At::LoadFactor(0.0), None));
     assert!(fault.cause.is_some_and(|c| c.contains("nothing holds")));
 }

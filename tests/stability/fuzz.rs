@@ -98,7 +98,12 @@ fn run(text: &str, told: &mut String) -> Verdict {
         Status::OutOfRange if reason.contains("t = ") && reason.contains("reached") => Verdict::Good("out of range"),
         Status::OutOfRange | Status::Stopped => Verdict::Bad(format!("stopped without time and cause: {reason}")),
         Status::Failed => match &outcome.fault {
-            Some(f) if f.time_s.is_finite() && !f.what.is_empty() && f.cause.is_some() && f.hint.is_some() => {
+            Some(f)
+                if f.at.time_s().is_some_and(f64::is_finite)
+                    && !f.what.is_empty()
+                    && f.cause.is_some()
+                    && f.hint.is_some() =>
+            {
                 if f.what.contains("no consistent start") {
                     Verdict::Good("failed with a diagnosis: start")
                 } else {

@@ -58,7 +58,7 @@ fn a_crushed_beam_is_diagnosed() {
             Status::Failed => {
                 let fault = ran.fault.expect("a failure has a fault");
                 assert!(
-                    fault.time_s > 0.0 && fault.cause.is_some() && fault.hint.is_some(),
+                    fault.at.time_s().is_some_and(|t| t > 0.0) && fault.cause.is_some() && fault.hint.is_some(),
                     "{name}: {fault:?}"
                 );
             }

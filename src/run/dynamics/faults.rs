@@ -1,13 +1,13 @@
 //! Why a run cannot go on, in words.
 
 use super::pace::STALL_STEPS;
-use crate::error::{Code, SolverFault};
+use crate::error::{At, Code, SolverFault};
 use crate::sundials::{IdaFailure, StartFailure};
 
 pub(super) fn fault(failure: &IdaFailure) -> SolverFault {
     SolverFault {
         code: if failure.singular.is_some() { Code::Singular } else { Code::Integrator },
-        time_s: failure.time,
+        at: At::Time(failure.time),
         what: failure.to_string(),
         unknown: failure.worst.as_ref().map(|w| w.name.clone()).or_else(|| failure.singular.clone()),
         cause: Some(
@@ -26,7 +26,7 @@ pub(super) fn fault(failure: &IdaFailure) -> SolverFault {
 pub(super) fn beyond(t: f64, what: String) -> SolverFault {
     SolverFault {
         code: Code::OutOfRange,
-        time_s: t,
+        at: At::Time(t),
         what,
         unknown: None,
         cause: Some(
@@ -41,7 +41,7 @@ pub(super) fn beyond(t: f64, what: String) -> SolverFault {
 pub(super) fn too_many_steps(t: f64, step: f64) -> SolverFault {
     SolverFault {
         code: Code::Steps,
-        time_s: t,
+        at: At::Time(t),
         what: format!("the number of steps allowed is used up at t = {t:.6} s, with steps of {step:.2e} s"),
         unknown: None,
         cause: Some("fast waves that the tolerance asks to follow".into()),
@@ -65,7 +65,7 @@ pub(super) fn inconsistent(t: f64, failure: &StartFailure) -> SolverFault {
     };
     SolverFault {
         code: Code::NoStart,
-        time_s: t,
+        at: At::Time(t),
         what: format!("{what}: {}", failure.what),
         unknown: failure.worst.as_ref().map(|(_, name)| name.clone()),
         cause: Some(cause.into()),
@@ -76,7 +76,7 @@ pub(super) fn inconsistent(t: f64, failure: &StartFailure) -> SolverFault {
 pub(super) fn stalled(t: f64, step: f64) -> SolverFault {
     SolverFault {
         code: Code::Stalled,
-        time_s: t,
+        at: At::Time(t),
         what: format!(
             "no progress: {STALL_STEPS} steps have hardly moved the time on from t = {t:.9} s (step {step:.2e} s)"
         ),

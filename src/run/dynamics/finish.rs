@@ -50,12 +50,12 @@ impl Run<'_> {
             End::Left(fault) => {
                 s.status = Status::OutOfRange;
                 s.reason = Some(fault.what.clone());
-                s.time_s = fault.time_s;
+                s.time_s = fault.at.time_s().unwrap_or(s.time_s);
                 Some(fault)
             }
             End::Failed(fault) => {
                 s.reason = Some(fault.what.clone());
-                s.time_s = fault.time_s;
+                s.time_s = fault.at.time_s().unwrap_or(s.time_s);
                 Some(fault)
             }
         };

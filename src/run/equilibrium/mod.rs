@@ -26,7 +26,7 @@ use crate::case::signals::Polynomial;
 use crate::case::{Clock, Signal};
 use crate::dae::{BeamDae, StaticBeam};
 use crate::discrete::{Instant, System, start};
-use crate::error::SolverFault;
+use crate::error::{At, SolverFault};
 use crate::model::{Model, Storage};
 use crate::run::record::Control;
 use crate::sundials::Solution;
@@ -161,7 +161,7 @@ pub fn at_start_watched(
     let path = path::follow_of(case, statics, &Options::at(at_s), false, &mut |_| ask());
     if let Some(fault) = path.fault {
         return Err(SolverFault {
-            time_s: 0.0,
+            at: At::Time(0.0),
             what: format!("no equilibrium to start from: {}", fault.what),
             ..fault
         });

@@ -7,7 +7,7 @@ use super::state::{Stability, State};
 use super::{Event, Kind, Options, Path, rest, system};
 use crate::case::schema::Case;
 use crate::discrete::System;
-use crate::error::{Code, SolverFault};
+use crate::error::{At, Code, SolverFault};
 use crate::run::record::Control;
 use crate::sundials::{Kinsol, KinsolFailure, KinsolOptions, Solution};
 
@@ -364,7 +364,7 @@ impl Follower<'_> {
 fn fault(share: f64, what: &str) -> SolverFault {
     SolverFault {
         code: Code::NoEquilibrium,
-        time_s: share,
+        at: At::LoadFactor(share),
         what: what.into(),
         unknown: None,
         cause: Some(if share == 0.0 {

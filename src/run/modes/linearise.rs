@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::case::signals::Clock;
 use crate::dae::{BeamDae, Dae as _, Fault, Seeds};
 use crate::discrete::{System, start};
-use crate::error::{Code, Error, Result, SolverFault};
+use crate::error::{At, Code, Error, Result, SolverFault};
 use crate::model::Model;
 use crate::run::equilibrium;
 use crate::spectral::Pencil;
@@ -69,7 +69,7 @@ pub fn at_equilibrium(case: &Case, at: f64) -> Result<Linearised> {
     let mut dae = held(case, at);
     let at_rest = vec![0.0; dae.len()];
     let y = equilibrium::at_start(case, at, &mut dae, &at_rest).map_err(|mut fault| {
-        fault.time_s = at;
+        fault.at = At::Time(at);
         Error::Solver(Box::new(fault))
     })?;
     about(dae, at, y)
@@ -95,7 +95,7 @@ fn about(mut dae: BeamDae, at: f64, mut y: Vec<f64>) -> Result<Linearised> {
     let fault = |what: String, unknown| {
         Error::Solver(Box::new(SolverFault {
             code: Code::NoStart,
-            time_s: at,
+            at: At::Time(at),
             what,
             unknown,
             cause: None,

@@ -17,7 +17,7 @@ pub mod shape;
 use nalgebra::Complex;
 
 use crate::case::Case;
-use crate::error::{Code, Error, Result, SolverFault};
+use crate::error::{At, Code, Error, Result, SolverFault};
 use crate::spectral::{self, Failure, Options, Pair, Pencil};
 
 pub use kind::Kind;
@@ -320,7 +320,7 @@ fn failed(about: &Linearised, failure: &Failure) -> Error {
     };
     Error::Solver(Box::new(SolverFault {
         code: Code::NoModes,
-        time_s: about.at,
+        at: At::Time(about.at),
         what: format!("no modes: {failure}"),
         unknown,
         cause: None,

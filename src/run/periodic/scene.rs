@@ -4,7 +4,7 @@ use crate::case::Translation;
 use crate::case::schema::{Case, Choice, Effects};
 use crate::dae::BeamDae;
 use crate::discrete::{System, start};
-use crate::error::{Code, Error, Result, SolverFault};
+use crate::error::{At, Code, Error, Result, SolverFault};
 use crate::model::Model;
 use crate::onestep::march::Impasse;
 use crate::onestep::{March, Method, OneStep, OneStepOptions};
@@ -181,7 +181,7 @@ pub fn whole(case: &Case) -> Model {
 pub fn fault(impasse: Impasse) -> Error {
     Error::Solver(Box::new(SolverFault {
         code: Code::NoCycle,
-        time_s: impasse.time,
+        at: At::Time(impasse.time),
         what: impasse.what,
         unknown: None,
         cause: Some("the motion could not be followed over a period".into()),

@@ -11,7 +11,7 @@ use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, Neighbours};
 use crate::discrete::{ledger, sample, start};
-use crate::error::{Code, Error, Result, SolverFault};
+use crate::error::{At, Code, Error, Result, SolverFault};
 use crate::run::equilibrium;
 use crate::run::record::Column;
 use crate::run::schedule::{self, Stop};
@@ -153,7 +153,7 @@ impl<'a> Forward<'a> {
     pub fn complete(&mut self, dae: &mut BeamDae, t: f64, state: [&[f64]; 2]) -> std::result::Result<(), SolverFault> {
         consistent_sensitivities(dae, t, state, &mut self.s, &mut self.sp).map_err(|what| SolverFault {
             code: Code::Singular,
-            time_s: t,
+            at: At::Time(t),
             what: format!("no consistent sensitivities at t = {t:.6} s: {what}"),
             unknown: None,
             cause: Some("a state that is not unique: buckled, or with a coupling that is not convex".into()),
