@@ -145,6 +145,24 @@ impl Signal {
             .sum()
     }
 
+    /// Sizes of its terms until `end` [s], summed; and the same, each times how long it lasts in units of `time` [s], where that is
+    /// less than 1: of a pulse `∫ |s| dt` over its largest value.
+    pub fn lasting(&self, end: f64, time: f64) -> [f64; 2] {
+        let of = |tone: tones::Tone| {
+            let gain = tone.gain.abs();
+            let (size, amount) = match tone.envelope.0.as_slice() {
+                [] => (1.0, end),
+                _ => (
+                    Variation::of(&tone.envelope, end).size[0],
+                    Variation::amount(&tone.envelope, end),
+                ),
+            };
+            [gain * size, (gain * amount / time).min(gain * size)]
+        };
+        let all = tones::Tone::all(self).into_iter().map(of);
+        all.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]])
+    }
+
     /// Where its value is first found beyond the limits until `end` [s]; none where it is certain, or after long search likely, that
     /// it stays within.
     pub fn leaves(&self, low: f64, high: f64, end: f64) -> Option<Excess> {

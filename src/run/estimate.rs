@@ -98,6 +98,9 @@ pub struct Estimator {
     /// How many times as large the square of the wave number is, of what runs away from an end, as that of the first vibration.
     #[serde(default)]
     young: f64,
+    /// The same of pulses.
+    #[serde(default)]
+    pulses: f64,
     /// One over the square of the first wave number times length, that of bending.
     #[serde(default)]
     first: f64,
@@ -186,6 +189,7 @@ impl Estimator {
             axial: follow(along, 1),
             at_rest: first.map(|(mesh, _)| 2.0 * mesh * fine),
             young: young::shorter(case, system, first[0].1),
+            pulses: young::pulses(case, system, first[0].1),
             first: if first[0].1 > 0.0 { first[0].1.recip() } else { 0.0 },
             tolerance: Tolerance::new(case.solver.rtol, &model.scales, layout),
             near: resonance::nearest(system),
@@ -231,7 +235,7 @@ impl Estimator {
         work: &Work,
     ) -> (Option<Estimated>, Option<String>) {
         let rows = self.rows(quantities, unstable, work);
-        let found = Estimated::of(&rows, unstable, self.near, self.young);
+        let found = Estimated::of(&rows, unstable, self.near, self.young.max(self.pulses));
         let (cells, rtol) = self.settings;
         let warning = found.as_ref().and_then(|found| found.warning(&rows, cells, rtol));
         (found, warning)
@@ -248,7 +252,8 @@ impl Estimator {
         let drawn = |place: Place, slope: f64| Off::of(&bending, place).times(DRAWN * slope.min(1.0));
         let anywhere = Off::of(&bending, Place::Anywhere);
         let [bent, stretched] = self.at_rest;
-        let shorter = unstable.softened.max(self.young).max(unstable.crushed * self.first);
+        let young = self.young.max(self.pulses);
+        let shorter = unstable.softened.max(young).max(unstable.crushed * self.first);
         let bent = (bent * shorter).min(1.0).max(bent);
         let nearly = |size: f64, turned: bool| self.near.map_or(0.0, |near| near.of(size, turned, self.acceleration));
         let near = nearly(wide, false);

@@ -181,13 +181,14 @@ impl Estimated {
             format!("compression came so near Euler's load that what the mesh changes of that counts {factor:.0} times")
         });
         let crushed = self.crushed.map(|times| {
-            format!("compression reached {times:.0} EI/l^2 for long enough that waves of a length of {:.2} l grow, which the mesh must carry", TAU / times.sqrt())
+            let wave = TAU / times.sqrt();
+            format!(
+                "compression reached {times:.0} times EI/l^2, for long enough that waves of {wave:.2} l grow, which the mesh must carry"
+            )
         });
         let young = self.young.map(|times| {
-            format!(
-                "what an end has sent out is by the end of the run a wave {:.1} times as short as the first vibration",
-                times.sqrt()
-            )
+            let shorter = times.sqrt();
+            format!("what an end sends out is still a wave when the run ends, {shorter:.1} times as short as the first vibration")
         });
         let all: Vec<String> = [near, growth, soft, crushed, young].into_iter().flatten().collect();
         let why = match all.is_empty() {

@@ -37,6 +37,37 @@ pub fn shorter(case: &Case, system: &System, first: f64) -> f64 {
     begins.map_or(1.0, |begins| (POWER / ((end - begins) * unit * first)).max(1.0))
 }
 
+/// The same of pulses, by ends and by ports, that are over long before the beam has followed them: what such a one sends out has the
+/// wave number of `n = 1` at its end, and does to the beam what its time over that of the first vibration is of what it would at rest.
+/// Between drives of one kind that is weighed.
+pub fn pulses(case: &Case, system: &System, first: f64) -> f64 {
+    let (model, end) = (&system.model, case.time.end_s);
+    if first <= 0.0 || !system.layout.waves[0] {
+        return 1.0;
+    }
+    let s = &model.section;
+    let unit = (s.bending_stiffness / s.mass_per_length).sqrt() / (model.length * model.length);
+    let mut kinds: [Vec<&Signal>; 5] = Default::default();
+    for at in &model.ends {
+        match &at.transverse {
+            Translation::Displacement(signal) => kinds[0].push(signal),
+            Translation::Force(signal) => kinds[1].push(signal),
+        }
+        match &at.rotation {
+            Rotation::Slope(signal) => kinds[2].push(signal),
+            Rotation::Moment(signal) => kinds[3].push(signal),
+        }
+    }
+    let ports = model.wet.iter().flat_map(|wet| &wet.network.ports);
+    kinds[4].extend(ports.map(|port| &port.pressure));
+    let shorter = |signals: &Vec<&Signal>| {
+        let all = signals.iter().map(|signal| signal.lasting(end, 1.0 / (unit * first)));
+        let [sizes, done] = all.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
+        if done > 0.0 { sizes / done } else { 1.0 }
+    };
+    kinds.iter().map(shorter).fold(1.0, f64::max)
+}
+
 /// When a signal begins to be another one than at the start, or than nothing [s]; none that never does.
 fn begins(signal: &Signal, held: bool, end: f64) -> Option<f64> {
     let at_start = if held { signal.value(0.0) } else { 0.0 };

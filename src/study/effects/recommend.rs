@@ -23,7 +23,8 @@ pub struct Recommendation {
     pub run: Option<Compared>,
 }
 
-/// Never leaves out what the program keeps for the sake of stability. Else leaves out everything that saves, and what is harmless where the program leaves it out by itself, then takes back what changes most until the rest together changes nothing.
+/// Never leaves out what the program keeps for the sake of stability. Else leaves out everything that saves, and what is harmless where the
+/// program leaves it out by itself, then takes back what changes most until the rest together changes nothing.
 pub fn recommend(case: &Case, rows: &[Row], guard: Option<&Guard>, judge: &Judge, runs: &mut Runs) -> Recommendation {
     let row = |name: Effect| rows.iter().find(|r| r.name == name);
     let guarded = |name: Effect| guard.is_some_and(|g| g.effects.contains(&name));
