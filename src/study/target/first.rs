@@ -8,6 +8,8 @@ use crate::study::accuracy::plan;
 /// bladder as well.
 const LEAST: usize = 2;
 const LEAST_WET: usize = 4;
+/// Cells of the whole beam: two meshes of fewer may agree by chance about what neither has.
+const LEAST_IN_ALL: usize = 8;
 /// And where much does.
 const MOST: usize = 32;
 
@@ -15,9 +17,11 @@ const MOST: usize = 32;
 /// every mesh; what they do between nodes is not, and two meshes that both leave that out agree about it.
 pub fn least_cells(case: &Case) -> usize {
     let coarse = plan::refined(case, LEAST, case.solver.rtol);
-    let cells = resolution::cells_that_resolve(&coarse, &System::new(&coarse));
+    let system = System::new(&coarse);
+    let cells = resolution::cells_that_resolve(&coarse, &system);
     let least = if case.bladders.is_some() { LEAST_WET } else { LEAST };
-    cells.next_power_of_two().clamp(least, MOST)
+    let least = least.max(LEAST_IN_ALL.div_ceil(system.mesh.segments));
+    cells.next_power_of_two().clamp(least.next_power_of_two(), MOST)
 }
 
 #[cfg(test)]
