@@ -6,11 +6,15 @@ use std::time::Duration;
 
 use crate::program::{LONG, arguments, run_long, same, slcbeam, stderr};
 
-/// Starts or resumes the longer run and kills it after a while, unless it ends before.
-fn strike(out: &Path, resume: bool, after: Duration) -> bool {
+/// Chains take turns at them.
+const METHODS: [&str; 5] = ["ida", "trbdf2", "esdirk34", "esdirk46", "esdirk57"];
+
+/// Starts or resumes the longer run with more arguments and kills it after a while, unless it ends before.
+fn strike(out: &Path, more: &[&str], resume: bool, after: Duration) -> bool {
     let mut child = slcbeam()
         .args(arguments())
         .args(LONG)
+        .args(more)
         .args(resume.then_some("--resume"))
         .arg("--out")
         .arg(out)
@@ -28,32 +32,40 @@ fn strike(out: &Path, resume: bool, after: Duration) -> bool {
 /// Chains of up to six kills each, at times spread by the golden ratio over what a run takes.
 fn chains(count: u64) {
     let folder = tempfile::tempdir().expect("a place");
-    let whole = folder.path().join("whole");
-    let begin = std::time::Instant::now();
-    assert!(run_long(&whole, &[]).status.success());
-    let length = begin.elapsed();
+    let sets = METHODS.map(|method| format!("/solver/method=\"{method}\""));
+    let alone: Vec<_> = sets
+        .iter()
+        .zip(METHODS)
+        .map(|(set, method)| {
+            let out = folder.path().join(method);
+            let begin = std::time::Instant::now();
+            assert!(run_long(&out, &["--set", set]).status.success(), "{method}");
+            (out, begin.elapsed(), ["--set", set.as_str()])
+        })
+        .collect();
     let mut kills = 0;
     for chain in 0..count {
+        let (whole, length, set) = &alone[chain as usize % alone.len()];
         let out = folder.path().join(format!("chain-{chain}"));
         for link in 0..6_u64 {
             let part = (6 * chain + link + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
-            let after = length.mul_f64(1.2 * part as f64 / (1 << 24) as f64);
+            let after = length.mul_f64(0.7 * part as f64 / (1 << 24) as f64);
             let resume = out.join("checkpoint.json").exists() || out.join("checkpoint-before.json").exists();
-            if strike(&out, resume, after) {
+            if strike(&out, set, resume, after) {
                 break;
             }
             kills += 1;
         }
         let resume = out.join("checkpoint.json").exists() || out.join("checkpoint-before.json").exists();
         if resume {
-            let last = run_long(&out, &["--resume"]);
+            let last = run_long(&out, &[&set[..], &["--resume"]].concat());
             assert!(last.status.success(), "chain {chain}: {}", stderr(&last));
-        } else if same(&whole, &out).is_err() {
+        } else if same(whole, &out).is_err() {
             // killed before its first checkpoint each time: it begins afresh
-            let last = run_long(&out, &[]);
+            let last = run_long(&out, set);
             assert!(last.status.success(), "chain {chain}: {}", stderr(&last));
         }
-        if let Err(why) = same(&whole, &out) {
+        if let Err(why) = same(whole, &out) {
             panic!("chain {chain}: {why}");
         }
         std::fs::remove_dir_all(&out).expect("it is removed");
