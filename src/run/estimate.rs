@@ -293,11 +293,12 @@ impl Estimator {
             ("largest_u3_m", Place::Anywhere, 2.0 * wide / length),
         ] {
             let size = largest(name);
-            let share = SQUARED * (slope.max(angle).powi(2) * length / size).min(1.0);
+            let turned = slope.max(angle).max(2.0 * wide / length);
+            let share = SQUARED * (turned.powi(2) * length / size).min(1.0);
             let off = Off::of(&axial, place).and(drawn(place, slope));
             let extra = [
                 within(1, size) + share * of_wide[0],
-                bent.max(stretched) + share * (near + of_wide[2]),
+                bent.max(stretched).max(share * bent) + share * (near + of_wide[2]),
             ];
             row(name, size, off, extra, 1.0);
         }
