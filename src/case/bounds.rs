@@ -145,22 +145,18 @@ impl Signal {
             .sum()
     }
 
-    /// Sizes of its terms until `end` [s], summed; and the same, each times how long it lasts in units of `time` [s], where that is
-    /// less than 1: of a pulse `∫ |s| dt` over its largest value.
+    /// Its largest magnitude until `end` [s], and that times how long it lasts in units of `time` [s], `∫ |s| dt`, where that is less: of a
+    /// pulse. Between breaks the integral is a sum over a few places.
     pub fn lasting(&self, end: f64, time: f64) -> [f64; 2] {
-        let of = |tone: tones::Tone| {
-            let gain = tone.gain.abs();
-            let (size, amount) = match tone.envelope.0.as_slice() {
-                [] => (1.0, end),
-                _ => (
-                    Variation::of(&tone.envelope, end).size[0],
-                    Variation::amount(&tone.envelope, end),
-                ),
-            };
-            [gain * size, (gain * amount / time).min(gain * size)]
+        const PLACES: usize = 8;
+        let size = self.largest(end).value;
+        let over = |(from, to): (f64, f64)| {
+            let at = |k: usize| from + (to - from) * (k as f64 + 0.5) / PLACES as f64;
+            let sum: f64 = (0..PLACES).map(|k| self.value(at(k)).abs()).sum();
+            sum * (to - from) / PLACES as f64
         };
-        let all = tones::Tone::all(self).into_iter().map(of);
-        all.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]])
+        let amount: f64 = self.smooth_intervals(end).into_iter().map(over).sum();
+        [size, size.min(amount / time)]
     }
 
     /// Where its value is first found beyond the limits until `end` [s]; none where it is certain, or after long search likely, that

@@ -100,7 +100,7 @@ pub struct Estimator {
     young: f64,
     /// The same of pulses.
     #[serde(default)]
-    pulses: f64,
+    pulses: [f64; 2],
     /// One over the square of the first wave number times length, that of bending.
     #[serde(default)]
     first: f64,
@@ -189,7 +189,7 @@ impl Estimator {
             axial: follow(along, 1),
             at_rest: first.map(|(mesh, _)| 2.0 * mesh * fine),
             young: young::shorter(case, system, first[0].1),
-            pulses: young::pulses(case, system, first[0].1),
+            pulses: young::pulses(case, system, first.map(|(_, frequency)| frequency)),
             first: if first[0].1 > 0.0 { first[0].1.recip() } else { 0.0 },
             tolerance: Tolerance::new(case.solver.rtol, &model.scales, layout),
             near: resonance::nearest(system),
@@ -235,7 +235,12 @@ impl Estimator {
         work: &Work,
     ) -> (Option<Estimated>, Option<String>) {
         let rows = self.rows(quantities, unstable, work);
-        let found = Estimated::of(&rows, unstable, self.near, self.young.max(self.pulses));
+        let found = Estimated::of(
+            &rows,
+            unstable,
+            self.near,
+            self.young.max(self.pulses[0]).max(self.pulses[1]),
+        );
         let (cells, rtol) = self.settings;
         let warning = found.as_ref().and_then(|found| found.warning(&rows, cells, rtol));
         (found, warning)
@@ -252,9 +257,10 @@ impl Estimator {
         let drawn = |place: Place, slope: f64| Off::of(&bending, place).times(DRAWN * slope.min(1.0));
         let anywhere = Off::of(&bending, Place::Anywhere);
         let [bent, stretched] = self.at_rest;
-        let young = self.young.max(self.pulses);
+        let young = self.young.max(self.pulses[0]);
         let shorter = unstable.softened.max(young).max(unstable.crushed * self.first);
         let bent = (bent * shorter).min(1.0).max(bent);
+        let stretched = (stretched * self.pulses[1]).min(1.0).max(stretched);
         let nearly = |size: f64, turned: bool| self.near.map_or(0.0, |near| near.of(size, turned, self.acceleration));
         let near = nearly(wide, false);
         let within = |which: usize, size: f64| self.tolerance.of(which, size);

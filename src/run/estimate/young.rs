@@ -37,17 +37,16 @@ pub fn shorter(case: &Case, system: &System, first: f64) -> f64 {
     begins.map_or(1.0, |begins| (POWER / ((end - begins) * unit * first)).max(1.0))
 }
 
-/// The same of pulses, by ends and by ports, that are over long before the beam has followed them: what such a one sends out has the
-/// wave number of `n = 1` at its end, and does to the beam what its time over that of the first vibration is of what it would at rest.
-/// Between drives of one kind that is weighed.
-pub fn pulses(case: &Case, system: &System, first: f64) -> f64 {
+/// The same of pulses, by ends and by ports, that are over long before the beam has followed them, across and along: what such a one sends
+/// out has the wave number of `n = 1` at its end, `|β|² ~ 1/ω` of bending and `1/ω²` of stretch, and does to the beam what its time over
+/// that of the first vibration is of what it would at rest. Between drives of one kind that is weighed. `first`: frequencies of the first
+/// vibrations over `√(EI/m)/l²` and `√(EA/m)/l`.
+pub fn pulses(case: &Case, system: &System, first: [f64; 2]) -> [f64; 2] {
     let (model, end) = (&system.model, case.time.end_s);
-    if first <= 0.0 || !system.layout.waves[0] {
-        return 1.0;
-    }
     let s = &model.section;
-    let unit = (s.bending_stiffness / s.mass_per_length).sqrt() / (model.length * model.length);
-    let mut kinds: [Vec<&Signal>; 5] = Default::default();
+    let across = (s.bending_stiffness / s.mass_per_length).sqrt() / (model.length * model.length);
+    let along = (s.axial_stiffness / s.mass_per_length).sqrt() / model.length;
+    let mut kinds: [Vec<&Signal>; 7] = Default::default();
     for at in &model.ends {
         match &at.transverse {
             Translation::Displacement(signal) => kinds[0].push(signal),
@@ -57,15 +56,34 @@ pub fn pulses(case: &Case, system: &System, first: f64) -> f64 {
             Rotation::Slope(signal) => kinds[2].push(signal),
             Rotation::Moment(signal) => kinds[3].push(signal),
         }
+        match &at.axial {
+            Translation::Displacement(signal) => kinds[5].push(signal),
+            Translation::Force(signal) => kinds[6].push(signal),
+        }
     }
     let ports = model.wet.iter().flat_map(|wet| &wet.network.ports);
     kinds[4].extend(ports.map(|port| &port.pressure));
-    let shorter = |signals: &Vec<&Signal>| {
-        let all = signals.iter().map(|signal| signal.lasting(end, 1.0 / (unit * first)));
-        let [sizes, done] = all.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
-        if done > 0.0 { sizes / done } else { 1.0 }
+    let shorter = |kinds: &[Vec<&Signal>], omega: f64| {
+        let of = |signals: &Vec<&Signal>| {
+            let all = signals.iter().map(|signal| signal.lasting(end, 1.0 / omega));
+            let [sizes, done] = all.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
+            if done > 0.0 { sizes / done } else { 1.0 }
+        };
+        kinds.iter().map(of).fold(1.0, f64::max)
     };
-    kinds.iter().map(shorter).fold(1.0, f64::max)
+    let [bends, stretches] = [0, 1].map(|k| first[k] > 0.0 && system.layout.waves[k]);
+    [
+        if bends {
+            shorter(&kinds[..5], across * first[0])
+        } else {
+            1.0
+        },
+        if stretches {
+            shorter(&kinds[4..], along * first[1]).powi(2)
+        } else {
+            1.0
+        },
+    ]
 }
 
 /// When a signal begins to be another one than at the start, or than nothing [s]; none that never does.
