@@ -26,46 +26,30 @@ pub(super) fn check(case: &Case, faults: &mut Faults) {
             refuse(key, what, format!("at most {} s", time.end_s));
         }
     }
-    let written = |interval: f64| time.written(interval);
-    let all = |interval: f64| time.end_s / interval;
-    let counted: [(_, _, &dyn Fn(f64) -> f64, _, _); 3] = [
-        (
-            "output_interval_s",
-            Some(time.output_interval()),
-            &written,
-            MOST_ROWS,
-            "rows",
-        ),
-        (
-            "fields_interval_s",
-            time.fields_interval_s,
-            &written,
-            MOST_ROWS,
-            "instants",
-        ),
+    let output = time.output_interval();
+    let written = |interval: f64| (interval, time.written(interval));
+    let all = |interval: f64| (interval, time.end_s / interval);
+    let (fields, checkpoints) = (time.fields_interval_s, time.checkpoint_interval_s);
+    let counted = [
+        ("output_interval_s", Some(written(output)), MOST_ROWS, "rows"),
+        ("fields_interval_s", fields.map(written), MOST_ROWS, "instants"),
         (
             "checkpoint_interval_s",
-            time.checkpoint_interval_s,
-            &all,
+            checkpoints.map(all),
             MOST_CHECKPOINTS,
             "checkpoints",
         ),
     ];
-    for (key, interval, of, most, what) in counted {
-        let Some(interval) = interval else { continue };
-        let count = of(interval);
-        if count > most * (1.0 + 1e-9) {
+    for (key, counted, most, what) in counted {
+        if let Some((interval, count)) = counted.filter(|(_, count)| *count > most * (1.0 + 1e-9)) {
+            let least = interval * count / most;
             refuse(
                 key,
                 format!("{interval:e} s makes {count:.1e} {what} in a run of {} s", time.end_s),
-                format!(
-                    "at least {:e} s, which makes {most:.0} of them",
-                    interval * count / most
-                ),
+                format!("at least {least:e} s, which makes {most:.0} of them"),
             );
         }
     }
-    let output = time.output_interval();
     if let Some(fields) = time.fields_interval_s {
         let ratio = fields / output;
         if ratio < 1.0 - 1e-6 || (ratio - ratio.round()).abs() > 1e-6 * ratio {
