@@ -1,27 +1,17 @@
 //! Chains of kills: a run killed at any time, resumed, killed again, until it ends as the one that was left alone.
 
 use std::path::Path;
-use std::process::Stdio;
 use std::time::Duration;
 
-use crate::program::{LONG, arguments, run_long, same, slcbeam, stderr};
+use crate::program::{LONG, run_long, same, start, stderr};
 
 /// Chains take turns at them.
 const METHODS: [&str; 5] = ["ida", "trbdf2", "esdirk34", "esdirk46", "esdirk57"];
 
 /// Starts or resumes the longer run with more arguments and kills it after a while, unless it ends before.
 fn strike(out: &Path, more: &[&str], resume: bool, after: Duration) -> bool {
-    let mut child = slcbeam()
-        .args(arguments())
-        .args(LONG)
-        .args(more)
-        .args(resume.then_some("--resume"))
-        .arg("--out")
-        .arg(out)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("it starts");
+    let resume: &[&str] = if resume { &["--resume"] } else { &[] };
+    let mut child = start(out, &[&LONG, more, resume].concat());
     std::thread::sleep(after);
     let ended = child.try_wait().expect("its state");
     child.kill().expect("it is killed");

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use crate::program::{LONG, arguments, run_long, same, slcbeam, stderr};
+use crate::program::{LONG, run_long, same, start, stderr};
 
 /// An ext4 file system in a file, in use until dropped.
 struct Disk {
@@ -79,14 +79,7 @@ fn what_was_told_survives_a_power_cut() {
     for trial in 0..3 {
         let name = format!("under-way-{trial}");
         let out = disk.place.join(&name);
-        let mut child = slcbeam()
-            .args(arguments())
-            .args(LONG)
-            .arg("--out")
-            .arg(&out)
-            .stdout(Stdio::null())
-            .spawn()
-            .expect("it starts");
+        let mut child = start(&out, &LONG);
         while !out.join("checkpoint-before.json").exists() && child.try_wait().expect("its state").is_none() {
             std::thread::sleep(Duration::from_millis(1));
         }

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
 use serde_json::Value;
@@ -47,6 +47,19 @@ pub fn slcbeam() -> Command {
 /// What makes the run long enough to be killed in its middle.
 pub const LONG: [&str; 4] = ["--set", "/time/end_s=0.6", "--set", "/time/checkpoint_interval_s=0.05"];
 
+/// The short run, begun and left alone, silent.
+pub fn start(out: &Path, more: &[&str]) -> Child {
+    slcbeam()
+        .args(arguments())
+        .args(more)
+        .arg("--out")
+        .arg(out)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("it starts")
+}
+
 /// The longer run into a folder.
 pub fn run_long(out: &Path, more: &[&str]) -> Output {
     run(out, &[&LONG, more].concat())
@@ -56,15 +69,7 @@ pub fn run_long(out: &Path, more: &[&str]) -> Output {
 pub fn killed(out: &Path) {
     for _ in 0..20 {
         let _ = fs::remove_dir_all(out);
-        let mut child = slcbeam()
-            .args(arguments())
-            .args(LONG)
-            .arg("--out")
-            .arg(out)
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("it starts");
+        let mut child = start(out, &LONG);
         while !out.join("checkpoint-before.json").exists() && child.try_wait().expect("its state").is_none() {
             std::thread::sleep(Duration::from_millis(1));
         }

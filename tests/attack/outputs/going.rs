@@ -2,14 +2,13 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Stdio;
 use std::time::Duration;
 
 use slcbeam::run::record::{Control, Header, Progress, Recorder};
 use slcbeam::run::summary::Status;
 
 use super::{answered, bounded};
-use crate::program::{CASE, arguments, contents, run, same, slcbeam, stderr, unchanged};
+use crate::program::{CASE, contents, run, same, slcbeam, start, stderr, unchanged};
 
 /// Takes its time for every row, and stops the run as soon as it is asked between two rows of one step.
 #[derive(Default)]
@@ -121,15 +120,7 @@ fn outputs_of_derivatives_go_on() {
 
 /// A run that is killed once its history has come to a time [s].
 fn stopped_after(out: &Path, more: &[&str], t: f64) {
-    let mut child = slcbeam()
-        .args(arguments())
-        .args(more)
-        .arg("--out")
-        .arg(out)
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("it starts");
+    let mut child = start(out, more);
     let checkpoint = (t / 0.01).floor() * 0.01;
     let there = || {
         let text = fs::read_to_string(out.join("checkpoint.json")).unwrap_or_default();
