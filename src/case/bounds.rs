@@ -146,7 +146,7 @@ impl Signal {
     }
 
     /// Its largest magnitude until `end` [s], and that times how long it lasts in units of `time` [s], `∫ |s| dt`, where that is less: of a
-    /// pulse. Between breaks the integral is a sum over a few places.
+    /// pulse. Between breaks the integral is a sum over a few places, an estimate; [`Self::impulse`], a bound, counts what terms cancel.
     pub fn lasting(&self, end: f64, time: f64) -> [f64; 2] {
         const PLACES: usize = 8;
         let size = self.largest(end).value;

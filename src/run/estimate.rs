@@ -95,14 +95,9 @@ pub struct Estimator {
     axial: Vec<Vibration>,
     /// What the mesh makes of a deflection at rest, of a stretch at rest.
     at_rest: [f64; 2],
-    /// How many times as large the square of the wave number is, of what runs away from an end, as that of the first vibration.
-    #[serde(default)]
-    young: f64,
-    /// The same of pulses.
-    #[serde(default)]
-    pulses: [f64; 2],
+    /// How many times as large the square of the wave number is, of what ends and pulses send out, as that of the first vibration.
+    young: [f64; 2],
     /// One over the square of the first wave number times length, that of bending.
-    #[serde(default)]
     first: f64,
     tolerance: Tolerance,
     near: Option<Near>,
@@ -126,6 +121,11 @@ impl Estimator {
         let (model, layout) = (&system.model, &system.layout);
         let s = &model.section;
         let length = model.length;
+        // of angular frequencies of bending and of stretch [1/s]
+        let units = [
+            (s.bending_stiffness / s.mass_per_length).sqrt() / (length * length),
+            (s.axial_stiffness / s.mass_per_length).sqrt() / length,
+        ];
         let fine = (system.mesh.h / length).powi(2);
         let stiffer = coupled::sealed(system);
         let pressed = coupled::pressed(system);
@@ -142,18 +142,12 @@ impl Estimator {
         };
         let first = [&across, &along].map(|modes| modes.first().map_or((0.0, 0.0), |m| (m.mesh.abs(), m.frequency)));
         let one = |mode: SmallMode, which: usize| {
-            let (free, first, unit) = match which {
-                0 => {
-                    let unit = (s.bending_stiffness / s.mass_per_length).sqrt() / (length * length);
-                    (&layout.free_u1, [layout.u1, layout.v1], unit)
-                }
-                _ => {
-                    let unit = (s.axial_stiffness / s.mass_per_length).sqrt() / length;
-                    (&layout.free_u3, [layout.u3, layout.v3], unit)
-                }
+            let (free, first) = match which {
+                0 => (&layout.free_u1, [layout.u1, layout.v1]),
+                _ => (&layout.free_u3, [layout.u3, layout.v3]),
             };
             let [size, rate] = first.map(|k| layout.scales[k]);
-            let frequency = mode.frequency * unit;
+            let frequency = mode.frequency * units[which];
             let frequencies = [frequency, frequency * stiffer[which]];
             let material = [s.bending_damping_time, s.axial_damping_time][which];
             let weight = |node: usize| {
@@ -188,8 +182,7 @@ impl Estimator {
             bending: follow(across, 0),
             axial: follow(along, 1),
             at_rest: first.map(|(mesh, _)| 2.0 * mesh * fine),
-            young: young::shorter(case, system, first[0].1),
-            pulses: young::pulses(case, system, first.map(|(_, frequency)| frequency)),
+            young: young::shorter(case, system, [0, 1].map(|k| units[k] * first[k].1)),
             first: if first[0].1 > 0.0 { first[0].1.recip() } else { 0.0 },
             tolerance: Tolerance::new(case.solver.rtol, &model.scales, layout),
             near: resonance::nearest(system),
@@ -235,12 +228,7 @@ impl Estimator {
         work: &Work,
     ) -> (Option<Estimated>, Option<String>) {
         let rows = self.rows(quantities, unstable, work);
-        let found = Estimated::of(
-            &rows,
-            unstable,
-            self.near,
-            self.young.max(self.pulses[0]).max(self.pulses[1]),
-        );
+        let found = Estimated::of(&rows, unstable, self.near, self.young[0].max(self.young[1]));
         let (cells, rtol) = self.settings;
         let warning = found.as_ref().and_then(|found| found.warning(&rows, cells, rtol));
         (found, warning)
@@ -257,10 +245,9 @@ impl Estimator {
         let drawn = |place: Place, slope: f64| Off::of(&bending, place).times(DRAWN * slope.min(1.0));
         let anywhere = Off::of(&bending, Place::Anywhere);
         let [bent, stretched] = self.at_rest;
-        let young = self.young.max(self.pulses[0]);
-        let shorter = unstable.softened.max(young).max(unstable.crushed * self.first);
+        let shorter = unstable.softened.max(self.young[0]).max(unstable.crushed * self.first);
         let bent = (bent * shorter).min(1.0).max(bent);
-        let stretched = (stretched * self.pulses[1]).min(1.0).max(stretched);
+        let stretched = (stretched * self.young[1]).min(1.0).max(stretched);
         let nearly = |size: f64, turned: bool| self.near.map_or(0.0, |near| near.of(size, turned, self.acceleration));
         let near = nearly(wide, false);
         let within = |which: usize, size: f64| self.tolerance.of(which, size);

@@ -52,14 +52,11 @@ pub struct Growth {
     windows: Vec<Window>,
     /// Largest compressive force seen [N].
     pub compression: f64,
-    /// `EI` [N m^2] and `EI/l²` [N], which tell what a beam stands, and mass per length [kg/m].
-    #[serde(default)]
-    column: [f64; 3],
+    /// What a beam stands: `EI/l²` [N], and `2 √(m EI)` [N s], by which waves under compression grow.
+    column: [f64; 2],
     /// Time and compression of the state before [s, N], and how long the compression has lasted, times its size [N s].
-    #[serde(default)]
     before: [f64; 3],
     /// The largest of that, and the largest compression in it [N s, N].
-    #[serde(default)]
     pushed: [f64; 2],
 }
 
@@ -100,9 +97,8 @@ impl Growth {
             end,
             windows: vec![Window::default(); WINDOWS],
             column: [
-                s.bending_stiffness,
                 s.bending_stiffness / model.length.powi(2),
-                s.mass_per_length,
+                2.0 * (s.mass_per_length * s.bending_stiffness).sqrt(),
             ],
             ..Self::default()
         }
@@ -143,7 +139,7 @@ impl Growth {
     /// Adds up the compression of one stretch of time in which every column buckles.
     fn push(&mut self, t: f64, compression: f64) {
         let [at, before, so_far] = self.before;
-        let [_, unit, _] = self.column;
+        let [unit, _] = self.column;
         if t < at {
             return;
         }
@@ -162,9 +158,12 @@ impl Growth {
     /// `N l²/(EI)` of a compression far beyond what the beam stands that lasted long enough for the waves that grow fastest under it to
     /// become [`LASTED`] times as large, `σ = N/(2 √(m EI))`; 0: there was none.
     pub fn crushed(&self) -> f64 {
-        let ([stiffness, unit, mass], [pushed, most]) = (self.column, self.pushed);
-        let exponent = pushed / (2.0 * (mass * stiffness).sqrt());
-        if exponent > LASTED.ln() { most / unit } else { 0.0 }
+        let ([unit, slowness], [pushed, most]) = (self.column, self.pushed);
+        if pushed > LASTED.ln() * slowness {
+            most / unit
+        } else {
+            0.0
+        }
     }
 
     /// Whether the deflection grows, exponentially and to the end, and why. `length` [m] is the beam's.
