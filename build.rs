@@ -1,19 +1,49 @@
-//! Finds SUNDIALS 6 and KLU and declares to Rust what `sundials-sys` does not: KLU's functions and the version query.
+//! Finds SUNDIALS 6 and KLU, declares to Rust what `sundials-sys` does not: KLU's functions and the version query; and tells the
+//! commit of the sources.
 
 use std::env;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// What brings everything the build needs.
 const HELP: &str = "run scripts/test, or apt-get install libsundials-dev libsuitesparse-dev libclang-dev pkg-config";
 
+/// What the program is made of.
+const SOURCES: [&str; 4] = ["src", "build.rs", "Cargo.toml", "Cargo.lock"];
+
 fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
+    for source in SOURCES {
+        println!("cargo::rerun-if-changed={source}");
+    }
+    if let Some(commit) = commit() {
+        println!("cargo::rustc-env=SLCBEAM_COMMIT={commit}");
+    }
     for name in ["SUNDIALS_INCLUDE_DIR", "KLU_INCLUDE_DIR", "KLU_LIBRARY_DIR"] {
         println!("cargo::rerun-if-env-changed={name}");
     }
     if let Err(what) = declare() {
         println!("cargo::error={what} ({HELP})");
     }
+}
+
+/// Commit at which the sources were taken, `+` behind it where they had been changed; none outside a checkout of their own.
+fn commit() -> Option<String> {
+    let git = |arguments: &[&str]| {
+        let told = Command::new("git")
+            .arg("--no-optional-locks")
+            .args(arguments)
+            .output()
+            .ok()?;
+        let text = String::from_utf8_lossy(&told.stdout).trim().to_owned();
+        told.status.success().then_some(text)
+    };
+    // Sources that were unpacked within the checkout of something else have no commit.
+    if !git(&["rev-parse", "--show-prefix"])?.is_empty() {
+        return None;
+    }
+    let commit = git(&["rev-parse", "--short=12", "HEAD"])?;
+    let changed = git(&[&["status", "--porcelain", "--"], &SOURCES[..]].concat())?;
+    Some(if changed.is_empty() { commit } else { commit + "+" })
 }
 
 /// Checks the headers, links KLU and writes `bindings.rs`; the error is one line.
@@ -115,7 +145,7 @@ fn write(folders: &[PathBuf]) -> Result<(), String> {
             "klu_(l_(defaults|analyze|refactor|rgrowth|rcond|condest|free_symbolic)|z?l_(factor|solve|free_numeric)|zl_tsolve)",
         )
         .allowlist_function("SUNDIALSGetVersionNumber")
-        .allowlist_var("KLU_(OK|SINGULAR|OUT_OF_MEMORY|INVALID|TOO_LARGE)")
+        .allowlist_var("KLU_(OK|SINGULAR|OUT_OF_MEMORY|INVALID|TOO_LARGE)|SUITESPARSE_(MAIN|SUB|SUBSUB)_VERSION")
         .generate_comments(false)
         .layout_tests(false);
     std::panic::set_hook(Box::new(|_| {}));

@@ -20,6 +20,7 @@
 //! | [`spectral`] | eigenvalues of sparse pencils nearest a shift, with bounds of their errors |
 //! | [`run`] | a run in time, equilibria, modes, cycles: samples, balances, range checks. Emits what happens, prints nothing |
 //! | [`study`] | many runs to answer one question: exact results, accuracy against cost, effects, comparison |
+//! | [`results`] | results as files hold them: one type a kind, for writers and readers alike |
 //! | [`output`] | result folders: history, arrays, summary, pictures, the page |
 //! | [`cli`] | one file a subcommand; the only place that prints |
 //!
@@ -30,9 +31,9 @@
 //! ```no_run
 //! use slcbeam::{case, run::{dynamics, record::Memory}};
 //! # fn main() -> slcbeam::error::Result<()> {
-//! let loaded = case::load("cases/wiring-2.json".as_ref(), &["/time/end_s=0.1".to_string()])?;
+//! let case = case::load("cases/wiring-2.json".as_ref(), &["/time/end_s=0.1".to_string()])?;
 //! let mut record = Memory::default();
-//! let outcome = dynamics::run(&loaded.case, &mut record)?;
+//! let outcome = dynamics::run(&case, &mut record)?;
 //! println!("{:?} at t = {} s", outcome.summary.status, outcome.summary.time_s);
 //! let tip = record.column("tip_u1").unwrap_or_default();
 //! # let _ = tip;
@@ -50,6 +51,7 @@ pub mod error;
 pub mod model;
 pub mod onestep;
 pub mod output;
+pub mod results;
 pub mod run;
 pub mod spectral;
 pub mod study;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use slcbeam::case::schema::{Case, MaxOrder};
-use slcbeam::case::{self, LoadedCase, Rotation, Translation};
+use slcbeam::case::{self, Rotation, Translation};
 use slcbeam::error::Error;
 
 fn shipped() -> Vec<PathBuf> {
@@ -15,10 +15,10 @@ fn shipped() -> Vec<PathBuf> {
     paths
 }
 
-fn load(path: &Path, sets: &[&str]) -> LoadedCase {
+fn load(path: &Path, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
     match case::load(path, &sets) {
-        Ok(loaded) => loaded,
+        Ok(case) => case,
         Err(Error::Case(fault)) => panic!("{}", case::render(&fault, false, 100)),
         Err(error) => panic!("{error}"),
     }
@@ -27,7 +27,7 @@ fn load(path: &Path, sets: &[&str]) -> LoadedCase {
 #[test]
 fn every_shipped_case_is_valid_and_named_as_its_file() {
     for path in shipped() {
-        let case = load(&path, &[]).case;
+        let case = load(&path, &[]);
         assert_eq!(
             Some(case.name.as_str()),
             path.file_stem().and_then(|stem| stem.to_str())
@@ -46,7 +46,7 @@ fn every_shipped_case_fits_the_schema() {
         if let Err(error) = validator.validate(&value) {
             panic!("{}: {error} at {}", path.display(), error.instance_path());
         }
-        let resolved = serde_json::from_str(&load(&path, &[]).case.resolved_json()).unwrap();
+        let resolved = serde_json::from_str(&load(&path, &[]).resolved_json()).unwrap();
         assert!(validator.is_valid(&resolved), "{} as resolved", path.display());
     }
 }
@@ -73,16 +73,16 @@ fn the_readme_of_the_cases_names_each() {
 #[test]
 fn a_resolved_case_reads_back_as_itself_and_needs_no_other_file() {
     for path in shipped() {
-        let resolved = load(&path, &[]).case.resolved();
+        let resolved = load(&path, &[]).resolved();
         let text = resolved.resolved_json();
         let again = case::parse(&text, Path::new("case.json"), Path::new("/nowhere"), &[]).unwrap();
-        assert_eq!(again.case, resolved);
+        assert_eq!(again, resolved);
     }
 }
 
 #[test]
 fn defaults_are_filled_in() {
-    let case = load(Path::new("cases/two-bladders.json"), &[]).case.resolved();
+    let case = load(Path::new("cases/two-bladders.json"), &[]).resolved();
     assert_eq!(case.solver.max_order, MaxOrder::Auto);
     assert_eq!(case.mesh.segments, Some(1));
     assert_eq!(case.time.window_s, Some(2e-4));
@@ -109,7 +109,7 @@ fn values_from_the_command_line_win() {
         "/loads/-={\"gravity\": {\"x_m_s2\": 9.81}}",
         "/time/window_s=null",
     ];
-    let case = load(path, &sets).case;
+    let case = load(path, &sets);
     assert_eq!(case.solver.rtol, 1e-7);
     assert_eq!(case.network.unwrap().permeability_factor, 0.5);
     assert_eq!(case.loads.len(), 1);
@@ -172,11 +172,11 @@ fn names_of_ends_stand_for_their_conditions() {
     assert!(serde_json::from_str::<slcbeam::case::schema::End>("{\"clamped\": {\"force_x_n\": 1}}").is_err());
 }
 
-/// The paper's beam as `model.md` section 7 gives it, in every case of a figure.
+/// The paper's beam as `docs/exact-results.md` section 4 gives it, in every case of a figure.
 #[test]
 fn the_cases_of_the_figures_share_the_papers_beam() {
     let of_figure = |case: &&Case| case.about.starts_with("Fig.");
-    let cases: Vec<Case> = shipped().iter().map(|path| load(path, &[]).case).collect();
+    let cases: Vec<Case> = shipped().iter().map(|path| load(path, &[])).collect();
     assert_eq!(cases.iter().filter(of_figure).count(), 15);
     for case in cases.iter().filter(of_figure) {
         let beam = &case.beam;

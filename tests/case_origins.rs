@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use slcbeam::case::{self, Case};
+use slcbeam::discrete::System;
 use slcbeam::model::{Model, audit, characteristic};
 
 const LITTLE: &str = r#"{
@@ -12,7 +13,7 @@ const LITTLE: &str = r#"{
 }"#;
 
 fn parsed(text: &str, base: &Path, sets: &[String]) -> slcbeam::error::Result<Case> {
-    case::parse(text, Path::new("mine.json"), base, sets).map(|loaded| loaded.case)
+    case::parse(text, Path::new("mine.json"), base, sets)
 }
 
 fn little(sets: &[&str]) -> Case {
@@ -21,7 +22,7 @@ fn little(sets: &[&str]) -> Case {
 }
 
 fn warnings(case: &Case) -> Vec<String> {
-    let model = Model::new(case);
+    let model = Model::new(case).unwrap();
     let mut all = audit::warnings(case, &model, &characteristic::numbers(case, &model));
     all.retain(|w| w.starts_with("W017"));
     all
@@ -255,7 +256,8 @@ fn derivatives_by_sizes_agree_with_set() {
             .map(|p| slcbeam::case::parameter::Parameter::find(&case, p).expect("a number"))
             .collect();
         let mut memory = slcbeam::run::record::Memory::default();
-        let outcome = slcbeam::run::dynamics::run_with(&case, &parameters, &mut memory).expect("a run");
+        let outcome = slcbeam::run::dynamics::run_with(&case, System::new(&case).unwrap(), &parameters, &mut memory)
+            .expect("a run");
         outcome.summary
     };
     for (pointer, value) in [("/bladders/width_m", 0.0078), ("/tubes/radius_m", 0.001)] {

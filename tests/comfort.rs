@@ -4,16 +4,19 @@
 //! the schema that editors use; every message can be looked up.
 
 use std::fs;
+use std::io::Read as _;
 use std::path::Path;
 
 use assert_cmd::Command;
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{Winsize, tcsetwinsize};
 use serde_json::{Value, json};
 use slcbeam::case::{self, Case, schema_json};
 use slcbeam::error::{CaseFault, Error};
 
 fn parsed(text: &str, sets: &[&str]) -> Result<Case, Error> {
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    case::parse(text, Path::new("mine.json"), Path::new(""), &sets).map(|loaded| loaded.case)
+    case::parse(text, Path::new("mine.json"), Path::new(""), &sets)
 }
 
 fn faults(text: &str) -> CaseFault {
@@ -298,4 +301,50 @@ fn shells_and_typing_errors() {
     assert!(code == 2 && err.contains("'equilibrium'"), "{err}");
     let (code, _, err) = slcbeam(here, &["new", "harvestr"]);
     assert!(code == 2 && err.contains("'harvester'"), "{err}");
+}
+
+/// The box of a run on a terminal of so many columns, with `COLUMNS` set or not.
+fn boxed(columns: u16, set: Option<&str>) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+    grantpt(&master).unwrap();
+    unlockpt(&master).unwrap();
+    let name = ptsname(&master, vec![]).unwrap().into_string().unwrap();
+    let terminal = fs::File::options().read(true).write(true).open(name).unwrap();
+    let size = Winsize {
+        ws_row: 40,
+        ws_col: columns,
+        ws_xpixel: 0,
+        ws_ypixel: 0,
+    };
+    tcsetwinsize(&terminal, size).unwrap();
+    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/two-bladders.json");
+    let mut command = std::process::Command::new(assert_cmd::cargo::cargo_bin!("slcbeam"));
+    command.args(["run", case, "--quiet", "--out", "out"]);
+    command.current_dir(&folder).env("NO_COLOR", "1");
+    command
+        .env_remove("COLUMNS")
+        .envs(set.map(|columns| ("COLUMNS", columns)));
+    let status = command.stdout(terminal.try_clone().unwrap()).status().unwrap();
+    assert!(status.success());
+    let (mut text, mut buffer) = (vec![], [0; 4096]);
+    let mut master = fs::File::from(master);
+    while !text.ends_with("╯\r\n".as_bytes()) {
+        let read = master.read(&mut buffer).unwrap();
+        text.extend(&buffer[..read]);
+    }
+    String::from_utf8(text).unwrap().lines().map(String::from).collect()
+}
+
+/// Goal: the box is as wide as the terminal, which shells do not tell in `COLUMNS`; where that is set it is believed.
+#[test]
+fn the_box_fits_the_terminal() {
+    for (columns, set, width) in [(70, None, 70), (70, Some("90"), 90), (300, None, 100)] {
+        let lines = boxed(columns, set);
+        assert!(lines.len() > 5 && lines[0].starts_with('╭'), "{lines:#?}");
+        assert!(
+            lines.iter().all(|line| line.chars().count() == width),
+            "{width}: {lines:#?}"
+        );
+    }
 }

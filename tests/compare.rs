@@ -39,9 +39,7 @@ const WET: &str = r#"{
 
 fn parsed(text: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-    case::parse(text, Path::new("case.json"), Path::new("."), &sets)
-        .unwrap()
-        .case
+    case::parse(text, Path::new("case.json"), Path::new("."), &sets).unwrap()
 }
 
 /// Runs into a folder.

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use assert_cmd::Command;
 use serde_json::Value;
+use slcbeam::output::floquet::map_csv;
+use slcbeam::study::stability::tongue::{Map, Point, Sheet};
 use tempfile::TempDir;
 
 const COARSE: [&str; 2] = ["--set", "/mesh/cells_per_segment=1"];
@@ -101,12 +103,46 @@ fn a_map_has_a_row_a_point_and_a_panel_a_permeability() {
     assert_eq!(table.lines().count(), 1 + 2 * 2 * 2);
     let picture = std::fs::read_to_string(dir.path().join("map.svg")).unwrap();
     assert!(
-        picture.contains("permeabilities × 1\n") && picture.contains("permeabilities × 0.01"),
+        picture.contains(">permeabilities × 1<") && picture.contains("permeabilities × 0.01"),
         "panels"
     );
     assert_eq!(
         json(&dir.path().join("map.json"))["sheets"].as_array().unwrap().len(),
         2
+    );
+}
+
+/// Words with quotes and commas come back from a table as they were written.
+#[test]
+fn words_in_a_table_read_back_as_they_are() {
+    let words = "no cycle: a \"tooth\" jumps, twice";
+    let point = Point {
+        growth_per_s: None,
+        multiplier: Some((0.5, -0.25)),
+        stability: None,
+        words: words.into(),
+    };
+    let map = Map {
+        case: "case".into(),
+        own: (1.0, 1.0),
+        frequencies_hz: vec![2.0],
+        amplitudes_m: vec![1e-3],
+        sheets: vec![Sheet {
+            permeability_factor: None,
+            points: vec![vec![point]],
+        }],
+        mathieu: None,
+        warnings: vec![],
+    };
+    let text = map_csv(&map);
+    let row = csv::Reader::from_reader(text.as_bytes())
+        .records()
+        .next()
+        .unwrap()
+        .unwrap();
+    assert_eq!(
+        row.iter().collect::<Vec<_>>(),
+        ["", "2", "0.001", "", "0.5", "-0.25", words]
     );
 }
 

@@ -50,9 +50,7 @@ const KINKED: &str = r#"{
 "#;
 
 fn parsed(text: &str) -> Case {
-    case::parse(text, Path::new("case.json"), Path::new("."), &[])
-        .unwrap()
-        .case
+    case::parse(text, Path::new("case.json"), Path::new("."), &[]).unwrap()
 }
 
 fn ablated(text: &str, budget_s: f64) -> Ablation {
@@ -102,7 +100,7 @@ fn a_slender_beam_does_without_rotary_inertia_and_finite_rotations() {
     assert!(run.largest.as_ref().unwrap().1 < found.tolerance);
     let mut said: Value = serde_json::from_str(SLENDER).unwrap();
     said["effects"] = recommended.effects.clone();
-    let chosen = effects(&parsed(&said.to_string()));
+    let chosen = effects(&parsed(&said.to_string())).unwrap();
     assert!(chosen.refusals.is_empty());
     for &name in Effect::CHOSEN {
         if recommended.off.contains(&name) {

@@ -9,9 +9,7 @@ use slcbeam::run::summary::{Status, Summary};
 
 fn shipped(name: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-    case::load(Path::new(&format!("cases/{name}.json")), &sets)
-        .unwrap()
-        .case
+    case::load(Path::new(&format!("cases/{name}.json")), &sets).unwrap()
 }
 
 fn run(case: &Case) -> Summary {
@@ -29,9 +27,7 @@ fn cantilever(load: &str, segments: usize, end: f64, rtol: f64) -> Case {
             "mesh": {{"segments": {segments}}}, "time": {{"end_s": {end}, "output_interval_s": {}}}, "solver": {{"rtol": {rtol}}}}}"#,
         end / 100.0
     );
-    case::parse(&text, Path::new("cantilever.json"), Path::new("."), &[])
-        .unwrap()
-        .case
+    case::parse(&text, Path::new("cantilever.json"), Path::new("."), &[]).unwrap()
 }
 
 fn warned(summary: &Summary, code: &str) -> bool {
@@ -227,9 +223,7 @@ fn a_drive_near_a_misplaced_vibration_is_told() {
                 {{"sine": {{"amplitude": 0.001, "frequency_hz": 110, "ramp_cycles": 10}}}}}}}}, "tip": "free"}},
                 "mesh": {{"segments": 10, "cells_per_segment": {cells}}}, "time": {{"end_s": 0.4}}}}"#
         );
-        run(&case::parse(&text, Path::new("near.json"), Path::new("."), &[])
-            .unwrap()
-            .case)
+        run(&case::parse(&text, Path::new("near.json"), Path::new("."), &[]).unwrap())
     };
     let (coarse, fine) = (on(4), on(16));
     let most = |s: &Summary| s.quantities["tip_u1_m"].max_abs.unwrap();
@@ -260,9 +254,7 @@ fn a_port_faster_than_the_cells_behind_it_is_told() {
                 "frequency_hz": 3, "ramp_cycles": 1}}}}}}, "sealed"]}}]}},
                 "mesh": {{"cells_per_segment": 2, "cells_per_bladder": {cells}}}, "time": {{"end_s": 0.7}}}}"#
         );
-        run(&case::parse(&text, Path::new("port.json"), Path::new("."), &[])
-            .unwrap()
-            .case)
+        run(&case::parse(&text, Path::new("port.json"), Path::new("."), &[]).unwrap())
     };
     let most = |s: &Summary| s.quantities["max_pressure_pa"].max_abs.unwrap();
     let (coarse, fine) = (on(2, 1.0), on(32, 1.0));
@@ -274,9 +266,7 @@ fn a_port_faster_than_the_cells_behind_it_is_told() {
 /// The scene on a mesh of so many cells a segment.
 fn on(scene: &str, cells: usize) -> Summary {
     let sets = [format!("/mesh/cells_per_segment={cells}")];
-    run(&case::parse(scene, Path::new("scene.json"), Path::new("."), &sets)
-        .unwrap()
-        .case)
+    run(&case::parse(scene, Path::new("scene.json"), Path::new("."), &sets).unwrap())
 }
 
 /// Largest values on two meshes, apart, relative to those on the finer one.
@@ -335,9 +325,7 @@ fn work_that_came_back_is_told() {
         "time": {"end_s": 0.171}}"#;
     let tight = |rtol: &str| {
         let sets = [format!("/solver/rtol={rtol}"), "/mesh/cells_per_segment=4".into()];
-        run(&case::parse(scene, Path::new("back.json"), Path::new("."), &sets)
-            .unwrap()
-            .case)
+        run(&case::parse(scene, Path::new("back.json"), Path::new("."), &sets).unwrap())
     };
     let (usual, exact) = (tight("1e-5"), tight("1e-8"));
     let window = |s: &Summary| s.quantities["input_energy_j"].window.unwrap();

@@ -28,9 +28,7 @@ fn slender(rest: &str) -> Case {
     let text = format!(
         r#"{{"name": "slender", "beam": {{"length_m": 1, "height_m": 0.01, "width_m": 0.05, "young_modulus_pa": 2e9, "density_kg_m3": 1200}}, {rest}}}"#
     );
-    case::parse(&text, Path::new("slender.json"), Path::new("."), &[])
-        .unwrap()
-        .case
+    case::parse(&text, Path::new("slender.json"), Path::new("."), &[]).unwrap()
 }
 
 /// The warning of the estimate; there is one at most.
@@ -50,7 +48,7 @@ fn errors_grow_with_a_deflection_that_grows_by_itself() {
             format!("/mesh/cells_per_segment={cells}"),
             "/time/output_interval_s=0.001".to_string(),
         ];
-        run(&case::load(Path::new("cases/valves-open.json"), &sets).unwrap().case)
+        run(&case::load(Path::new("cases/valves-open.json"), &sets).unwrap())
     };
     let (coarse, fine) = (on("2"), on("6"));
     let estimate = coarse.estimate.as_ref().unwrap();

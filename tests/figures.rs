@@ -197,8 +197,8 @@ fn plot_draws_wet_and_dry_results_and_says_what_it_misses() {
 #[test]
 fn the_page_of_data_names_everything() {
     let page = fs::read_to_string("docs/data.md").unwrap();
-    let loaded = case::load(Path::new("cases/wiring-3.json"), &[]).unwrap();
-    let header = Observer::header(&loaded.case, &System::new(&loaded.case));
+    let case = case::load(Path::new("cases/wiring-3.json"), &[]).unwrap();
+    let header = Observer::header(&case, &System::new(&case).unwrap());
     let columns = header.columns.iter().map(|c| format!("`{} [{}]`", c.name, c.unit));
     let axes = header.axes.iter().map(|a| format!("`{}`", a.name));
     let fields = header.fields.iter().map(|f| format!("`{}`", f.name));

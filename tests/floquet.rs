@@ -13,14 +13,12 @@ use slcbeam::run::modes;
 use slcbeam::run::periodic::{Scene, shoot};
 
 fn case_of(value: &Value) -> Case {
-    case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), &[])
-        .unwrap()
-        .case
+    case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), &[]).unwrap()
 }
 
 fn shipped(name: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-    case::load(format!("cases/{name}.json").as_ref(), &sets).unwrap().case
+    case::load(format!("cases/{name}.json").as_ref(), &sets).unwrap()
 }
 
 fn stability(case: &Case, period: Option<f64>, count: usize) -> (Scene, Floquet) {
@@ -87,7 +85,7 @@ fn carried_disturbances_are_differences_of_the_period_map() {
     go(&d, 0.0);
     let mut difference: Vec<f64> = ahead.iter().zip(&behind).map(|(a, b)| (a - b) / 2e-5).collect();
     scene.admit(&mut difference);
-    march.carry(&mut d);
+    march.propagate(&mut d);
     scene.admit(&mut d);
     let largest = d.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     for k in 0..n {
@@ -115,7 +113,7 @@ fn conserved_volumes_are_multipliers_of_one() {
     let dot = |a: &[f64]| a.iter().zip(w).map(|(a, w)| a * w).sum::<f64>();
     let mut d: Vec<f64> = (0..y.len()).map(|k| (2.0 + 1.3 * k as f64).cos()).collect();
     let before = dot(&d);
-    march.carry(&mut d);
+    march.propagate(&mut d);
     // round-off of some hundred solves
     assert!((dot(&d) - before).abs() < 1e-9 * before.abs(), "{} {before}", dot(&d));
     assert!((dot(&y) - dot(&scene.guess)).abs() < 1e-10);

@@ -9,6 +9,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use slcbeam::case;
+use slcbeam::discrete::System;
 use slcbeam::run::{dynamics, record::Memory};
 
 const CASE: &str = "cases/wiring-2.json";
@@ -46,13 +47,13 @@ fn without_wall(mut summary: serde_json::Value) -> serde_json::Value {
 #[test]
 fn resumed_run_repeats_the_uninterrupted_one_in_memory() {
     let sets: Vec<String> = SETS.iter().map(|s| s.to_string()).collect();
-    let case = case::load(Path::new(CASE), &sets).unwrap().case;
+    let case = case::load(Path::new(CASE), &sets).unwrap();
     let mut whole = Memory::default();
     let whole_outcome = dynamics::run(&case, &mut whole).unwrap();
     assert_eq!(whole.checkpoints.len(), 4);
     for checkpoint in &whole.checkpoints {
         let mut rest = Memory::default();
-        let outcome = dynamics::resume(&case, checkpoint, &mut rest).unwrap();
+        let outcome = dynamics::resume(&case, System::new(&case).unwrap(), checkpoint, &mut rest).unwrap();
         let from = checkpoint.next_output as usize;
         assert_eq!(whole.rows[from..], rest.rows[..], "from t = {}", checkpoint.t);
         assert_eq!(whole_outcome.summary.balances, outcome.summary.balances);
@@ -71,12 +72,12 @@ fn resumed_run_knows_where_its_window_begins() {
         steep,
     ];
     let sets: Vec<String> = SETS.iter().chain(&more).map(|s| s.to_string()).collect();
-    let case = case::load(Path::new(CASE), &sets).unwrap().case;
+    let case = case::load(Path::new(CASE), &sets).unwrap();
     let mut whole = Memory::default();
     let quantities = dynamics::run(&case, &mut whole).unwrap().summary.quantities;
     assert!(whole.checkpoints.iter().any(|c| c.t > 0.15 - 0.0437));
     for checkpoint in &whole.checkpoints {
-        let outcome = dynamics::resume(&case, checkpoint, &mut Memory::default()).unwrap();
+        let outcome = dynamics::resume(&case, System::new(&case).unwrap(), checkpoint, &mut Memory::default()).unwrap();
         assert_eq!(quantities, outcome.summary.quantities, "from t = {}", checkpoint.t);
     }
 }
@@ -84,12 +85,17 @@ fn resumed_run_knows_where_its_window_begins() {
 #[test]
 fn checkpoint_of_another_case_is_refused() {
     let sets: Vec<String> = SETS.iter().map(|s| s.to_string()).collect();
-    let case = case::load(Path::new(CASE), &sets).unwrap().case;
+    let case = case::load(Path::new(CASE), &sets).unwrap();
     let mut recorded = Memory::default();
     dynamics::run(&case, &mut recorded).unwrap();
     let mut other = case.clone();
     other.beam.young_modulus_pa *= 1.01;
-    let refused = dynamics::resume(&other, &recorded.checkpoints[0], &mut Memory::default());
+    let refused = dynamics::resume(
+        &other,
+        System::new(&other).unwrap(),
+        &recorded.checkpoints[0],
+        &mut Memory::default(),
+    );
     assert_eq!(refused.unwrap_err().exit_code(), 2);
 }
 
@@ -243,7 +249,7 @@ fn too_many_steps_end_the_run_with_a_diagnosis() {
         .map(|s| s.to_string())
         .chain(["/solver/max_steps=500".to_string()])
         .collect();
-    let case = case::load(Path::new(CASE), &sets).unwrap().case;
+    let case = case::load(Path::new(CASE), &sets).unwrap();
     let mut recorded = Memory::default();
     let outcome = dynamics::run(&case, &mut recorded).unwrap();
     let fault = outcome.fault.expect("the run cannot finish in 500 steps");

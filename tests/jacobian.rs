@@ -2,6 +2,8 @@
 //!
 //! Goal: the exact derivatives used by Newton's method belong to the residual that is solved.
 
+#[path = "common/chance.rs"]
+mod chance;
 mod differences;
 
 use differences::worst_difference;
@@ -25,8 +27,8 @@ fn jacobian_agrees_with_coloured_differences_on_every_case() {
             vec!["/formulation=\"conservative\"".to_string()],
             vec!["/formulation=\"published\"".to_string()],
         ] {
-            let loaded = case::load(&path, &sets).unwrap();
-            let mut dae = BeamDae::new(System::new(&loaded.case));
+            let case = case::load(&path, &sets).unwrap();
+            let mut dae = BeamDae::new(System::new(&case).unwrap());
             for (seed, size) in [(1, 1.0), (2, 0.3), (3, 0.03)] {
                 let worst = worst_difference(&mut dae, seed, size);
                 println!("{} {sets:?} {size}: {worst:.1e}", path.display());

@@ -20,7 +20,7 @@ const COLUMNS: [(&str, &str); 13] = [
     ("max_pressure", "Pa"),
     ("min_pressure", "Pa"),
     ("kinetic_energy", "J"),
-    ("elastic_energy", "J"),
+    ("bending_energy", "J"),
     ("work_ends", "J"),
     ("dissipated_bladders", "J"),
     ("dissipated_tubes", "J"),

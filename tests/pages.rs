@@ -1,12 +1,14 @@
 //! The pages: every command on them runs, every link leads somewhere.
 //!
-//! Source: README.md, docs, cases/README.md. Goal: what a reader types works. Commands run in the order of their page, in an empty
+//! Source: README.md, CHANGELOG.md, CONTRIBUTING.md, docs, cases/README.md. Goal: what a reader types works. Commands run in the order of their page, in an empty
 //! folder with the cases beside it; those that measure for minutes get seconds, maps four points, sweeps three.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use slcbeam::discrete::quantities::{Field, Interest, Observable};
 
 fn pages() -> Vec<PathBuf> {
     let markdown = |folder: &str| {
@@ -16,7 +18,9 @@ fn pages() -> Vec<PathBuf> {
             .filter(|path| path.extension().is_some_and(|e| e == "md"))
             .collect::<Vec<_>>()
     };
-    let mut all = vec![PathBuf::from("README.md"), PathBuf::from("cases/README.md")];
+    let mut all = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "cases/README.md"]
+        .map(PathBuf::from)
+        .to_vec();
     for folder in ["docs", "docs/figures"] {
         all.extend(markdown(folder));
     }
@@ -257,4 +261,128 @@ fn every_link_leads_somewhere() {
 fn slug(heading: &str) -> String {
     let kept = heading.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
     kept.collect::<String>().to_lowercase().replace(' ', "-")
+}
+
+/// Goal: what histories, arrays and summaries hold is told by name, and columns by unit.
+#[test]
+fn every_quantity_is_told() {
+    let page = fs::read_to_string("docs/data.md").unwrap();
+    let columns = Observable::ALL
+        .iter()
+        .map(|one| format!("`{} [{}]`", one.name(), one.unit()));
+    let names = Field::ALL.into_iter().map(Field::name);
+    let names = names.chain(Interest::ALL.iter().map(|one| one.name()));
+    let all = columns.chain(names.map(|name| format!("`{name}`")));
+    let missing: Vec<String> = all.filter(|told| !page.contains(told)).collect();
+    assert!(missing.is_empty(), "not in docs/data.md: {}", missing.join(", "));
+}
+
+/// Everything that may cite a page.
+fn texts() -> Vec<PathBuf> {
+    let mut all = vec![];
+    let mut todo = ["src", "tests", "docs", "cases", "scripts", "benches/peers/src"]
+        .map(PathBuf::from)
+        .to_vec();
+    while let Some(dir) = todo.pop() {
+        for path in fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.is_dir() {
+                todo.push(path);
+            } else {
+                all.push(path);
+            }
+        }
+    }
+    all.extend(pages().into_iter().filter(|page| page.parent() == Some(Path::new(""))));
+    all.sort();
+    all
+}
+
+/// A text without what marks its comments, in one line.
+fn unbroken(text: &str) -> String {
+    let words = |line: &str| line.trim_start().trim_start_matches(['/', '!', '#']).trim().to_owned();
+    text.lines().map(words).collect::<Vec<_>>().join(" ")
+}
+
+/// Numbers of sections at the beginning of a text: `4, 5 and 7`.
+fn numbers(mut text: &str) -> Vec<String> {
+    let mut all = vec![];
+    loop {
+        let number: String = text.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
+        let after = &text[number.len()..];
+        // a section of 0.1 m is no section
+        if !number.starts_with(|c: char| ('1'..='9').contains(&c)) || after.starts_with(|c: char| c.is_alphanumeric()) {
+            return all;
+        }
+        all.push(number.trim_end_matches('.').to_owned());
+        match [", ", " and "].iter().find_map(|between| after.strip_prefix(between)) {
+            Some(rest) => text = rest,
+            None => return all,
+        }
+    }
+}
+
+/// Pages that a text names, each with the sections named behind it: `docs/model.md` section 4. What stands behind `section` alone is
+/// of no page.
+fn citations(text: &str) -> Vec<(Option<String>, Vec<String>)> {
+    let mut all = vec![];
+    for (at, _) in text.match_indices(".md") {
+        let rest = &text[at + 3..];
+        let begin = text[..at]
+            .rfind(|c: char| !(c.is_alphanumeric() || "_-/.".contains(c)))
+            .map_or(0, |k| k + 1);
+        if begin == at || rest.starts_with(|c: char| c.is_alphanumeric()) {
+            continue;
+        }
+        let behind = rest.trim_start_matches(['`', ')', ',', ' ']);
+        let section = behind.strip_prefix("sections ").or(behind.strip_prefix("section "));
+        all.push((
+            Some(text[begin..at + 3].trim_start_matches('/').to_owned()),
+            numbers(section.unwrap_or(behind)),
+        ));
+    }
+    for (at, word) in text.match_indices("ection ") {
+        let before = text[..at].trim_end_matches(['s', 'S', '`', ')', ',', ' ', '[']);
+        if !before.ends_with(".md") && !before.ends_with("paper (") {
+            all.push((None, numbers(&text[at + word.len()..])));
+        }
+    }
+    all
+}
+
+/// Pages that source, tests and pages name are there, with the sections named.
+#[test]
+fn cited_pages_and_sections_exist() {
+    let mut missing = vec![];
+    let mut found = 0;
+    for path in texts() {
+        let Ok(text) = fs::read_to_string(&path) else { continue };
+        for (page, sections) in citations(&unbroken(&text)) {
+            let own = path.extension().is_some_and(|e| e == "md").then(|| path.clone());
+            let at = match &page {
+                Some(page) => [Path::new(""), Path::new("docs"), path.parent().unwrap()]
+                    .map(|folder| folder.join(page))
+                    .into_iter()
+                    .find(|there| there.is_file()),
+                None => own,
+            };
+            let text = at.as_ref().map(|at| fs::read_to_string(at).unwrap());
+            let there = |section: &String| {
+                text.iter()
+                    .flat_map(|t| t.lines())
+                    .any(|l| l.trim_start_matches('#').starts_with(&format!(" {section}. ")) && l.starts_with('#'))
+            };
+            let name = page.unwrap_or_else(|| "this page".into());
+            if at.is_none() && name != "this page" {
+                missing.push(format!("{}: {name}", path.display()));
+            }
+            for section in &sections {
+                found += 1;
+                if !there(section) {
+                    missing.push(format!("{}: {name} section {section}", path.display()));
+                }
+            }
+        }
+    }
+    assert!(found > 20, "{found} sections");
+    assert!(missing.is_empty(), "{missing:#?}");
 }

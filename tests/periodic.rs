@@ -9,7 +9,7 @@ use slcbeam::run::summary::Status;
 
 fn shipped(name: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-    case::load(format!("cases/{name}.json").as_ref(), &sets).unwrap().case
+    case::load(format!("cases/{name}.json").as_ref(), &sets).unwrap()
 }
 
 /// Source: a run into which the shaking grows over 40 of its 44 cycles. Nothing but the fluid damps the first mode, at 0.003 1/s:

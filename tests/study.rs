@@ -41,9 +41,7 @@ const WET: &str = r#"{
 
 fn parsed(text: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-    case::parse(text, Path::new("case.json"), Path::new("."), &sets)
-        .unwrap()
-        .case
+    case::parse(text, Path::new("case.json"), Path::new("."), &sets).unwrap()
 }
 
 fn plan(rtols: &[f64], cells: &[usize], orders: &[u8], budget: Budget) -> Plan {
@@ -296,11 +294,14 @@ fn the_front_holds_what_no_other_beats() {
 #[test]
 fn the_foot_and_the_balance_of_a_line() {
     let cost = [3.0, 1.0, 2.0, 4.0];
-    let foot = front::foot(&[0, 1, 2, 3], &cost, &[30.0, 10.0, 20.0, 40.0]).unwrap();
+    let foot = front::cost_minimum(&[0, 1, 2, 3], &cost, &[30.0, 10.0, 20.0, 40.0]).unwrap();
     assert_eq!((foot.cheapest, foot.looser, foot.factor), (1, 0, 3.0));
     // A clock that had an accident is no foot.
-    assert_eq!(front::foot(&[0, 1, 2, 3], &cost, &[10.0, 10.0, 20.0, 40.0]), None);
-    assert_eq!(front::foot(&[0, 1], &[1.0, 2.0], &[1.0, 2.0]), None);
+    assert_eq!(
+        front::cost_minimum(&[0, 1, 2, 3], &cost, &[10.0, 10.0, 20.0, 40.0]),
+        None
+    );
+    assert_eq!(front::cost_minimum(&[0, 1], &[1.0, 2.0], &[1.0, 2.0]), None);
     // Temporal error 1e-1, 1e-2, 1e-4 against 1e-3 in space: halfway between the last two in logarithms.
     let line = [
         (1e-2, 1e-1, 1e-1, 1.0),
@@ -333,7 +334,7 @@ fn the_sentence_says_what_an_accuracy_costs() {
         answer(1e-3, Some(fine)),
         answer(1e-4, None),
     ];
-    found.feet = vec![front::Foot {
+    found.feet = vec![front::CostMinimum {
         cheapest: coarse,
         looser: at(&found, 2, 1e-2),
         factor: 3.0,

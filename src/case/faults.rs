@@ -1,11 +1,12 @@
 //! Faults as they are collected: by pointer first, placed in the text at the end.
 
 use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
 use super::locate::{Node, Place, tokens};
-use crate::error::{Code, Violation};
+use crate::error::{CaseFault, Code, Error, Violation};
 
 /// What a fault points at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,19 +156,50 @@ pub struct SetValue {
     pub node: Option<Node>,
 }
 
-/// Where the parts of a case were written: in the file or on the command line.
+/// Where the parts of a case were written: in the file or on the command line. No part of what a case is: two cases with the
+/// same numbers are equal wherever they were written.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
-    /// The file.
+    /// Where the text came from.
+    pub path: PathBuf,
+    /// The text.
+    pub text: String,
+    /// The text with places.
     pub file: Option<Node>,
     /// The `--set` arguments in order.
     pub sets: Vec<SetValue>,
 }
 
+impl PartialEq for Source {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
 impl Source {
-    /// Fills in the place of a fault from its pointer.
-    pub fn locate(&self, fault: Violation) -> Violation {
-        self.place(fault, Mark::Value)
+    /// A text of which nothing is known yet.
+    pub fn of(path: &Path, text: &str) -> Self {
+        Self {
+            path: path.to_owned(),
+            text: text.to_owned(),
+            ..Self::default()
+        }
+    }
+
+    /// The error that reports faults which have their places.
+    pub fn error(&self, violations: Vec<Violation>) -> Error {
+        Error::Case(Box::new(CaseFault {
+            path: self.path.clone(),
+            text: self.text.clone(),
+            violations,
+        }))
+    }
+
+    /// The error that reports faults found after reading, each placed by its pointer.
+    pub fn fault(&self, faults: Vec<Violation>) -> Error {
+        let mut violations: Vec<_> = faults.into_iter().map(|fault| self.place(fault, Mark::Value)).collect();
+        sort(&mut violations);
+        self.error(violations)
     }
 
     fn has_preset(&self) -> bool {

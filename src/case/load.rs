@@ -2,6 +2,7 @@
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde_json::Value;
 
@@ -10,7 +11,7 @@ use super::origins::Origins;
 use super::schema::Case;
 use super::wording::nearest;
 use super::{check, counts, parse as json, presets, schema_json, sets, tables, validate};
-use crate::error::{CaseFault, Code, Error, Result, Violation};
+use crate::error::{Code, Error, Result, Violation};
 
 /// Largest case file that is read.
 const LARGEST: u64 = 64 << 20;
@@ -25,23 +26,11 @@ fn bounded(from: impl Read) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A checked case with the text it came from.
-#[derive(Clone, Debug)]
-pub struct LoadedCase {
-    /// The case.
-    pub case: Case,
-    /// The text.
-    pub text: String,
-    /// The file.
-    pub path: PathBuf,
-    source: Source,
-}
-
 /// Reads and checks a case file; `sets` are `POINTER=JSON` arguments.
 ///
 /// # Errors
 /// [`Error::Usage`] when the file cannot be read or an argument makes no sense, [`Error::Case`] with all faults.
-pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase> {
+pub fn load(path: &Path, sets: &[String]) -> Result<Case> {
     let unreadable = |e| {
         let meant = nearest_file(path).map_or_else(String::new, |name| format!("; did you mean {}?", name.display()));
         Error::Usage(format!("cannot read the case {}: {e}{meant}", path.display()))
@@ -58,11 +47,8 @@ pub fn load(path: &Path, sets: &[String]) -> Result<LoadedCase> {
     };
     if bytes.len() as u64 > LARGEST {
         let what = "the case is larger than 64 MB";
-        return Err(fault(
-            path,
-            "",
-            vec![Violation::new(Code::Text, "", what).allowed("case files of up to 64 MB")],
-        ));
+        let fault = Violation::new(Code::Text, "", what).allowed("case files of up to 64 MB");
+        return Err(Source::of(path, "").error(vec![fault]));
     }
     let text = match String::from_utf8(bytes) {
         Ok(text) => text,
@@ -90,15 +76,17 @@ fn nearest_file(path: &Path) -> Option<PathBuf> {
 ///
 /// # Errors
 /// As [`load`].
-pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<LoadedCase> {
+pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Case> {
+    let source = Source::of(path, text);
     let (file, mut violations) = json::parse(text);
     let Some(file) = file else {
-        return Err(fault(path, text, violations));
+        return Err(source.error(violations));
     };
     let mut value = file.to_value();
     let source = Source {
         sets: sets::apply(&mut value, sets)?,
         file: Some(file),
+        ..source
     };
     let own = value.clone();
     presets::apply(&mut value, &source.sets);
@@ -126,15 +114,13 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Lo
     });
     violations.extend(faults.placed(&source));
     match case {
-        Some(case) if violations.is_empty() => Ok(LoadedCase {
-            case,
-            text: text.to_owned(),
-            path: path.to_owned(),
-            source,
+        Some(case) if violations.is_empty() => Ok(Case {
+            source: Arc::new(source),
+            ..case
         }),
         _ => {
             sort(&mut violations);
-            Err(fault(path, text, violations))
+            Err(source.error(violations))
         }
     }
 }
@@ -196,28 +182,6 @@ fn readable_part(value: &Value) -> Option<(Case, Vec<String>)> {
     ))
 }
 
-impl LoadedCase {
-    /// A fault found later, placed in the text.
-    pub fn violation(&self, violation: Violation) -> Violation {
-        self.source.locate(violation)
-    }
-
-    /// The error that reports such faults.
-    pub fn fault(&self, violations: Vec<Violation>) -> Error {
-        let mut violations: Vec<_> = violations.into_iter().map(|v| self.violation(v)).collect();
-        sort(&mut violations);
-        fault(&self.path, &self.text, violations)
-    }
-}
-
-fn fault(path: &Path, text: &str, violations: Vec<Violation>) -> Error {
-    Error::Case(Box::new(CaseFault {
-        path: path.to_owned(),
-        text: text.to_owned(),
-        violations,
-    }))
-}
-
 fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> Error {
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(valid + 200)]).into_owned();
     let end = text[valid..].chars().next().map_or(valid, |c| valid + c.len_utf8());
@@ -230,5 +194,5 @@ fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> Error {
         span: Some(valid..end),
         ..Violation::new(Code::Text, "", what).hint(hint)
     };
-    fault(path, &text, vec![violation])
+    Source::of(path, &text).error(vec![violation])
 }

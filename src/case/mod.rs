@@ -1,7 +1,7 @@
 //! What the user wrote: read, checked as a whole, every fault with its place.
 //!
 //! text -> [`parse`](mod@parse) -> JSON with places -> `--set` -> [`presets`] -> [`validate`] against the schema -> CSV tables ->
-//! [`schema::Case`] -> [`check`]
+//! [`schema::Case`] -> [`check`], which finds what the network names: [`wiring`]
 
 pub mod bounds;
 mod check;
@@ -32,12 +32,14 @@ mod sets;
 pub mod signals;
 mod tables;
 mod validate;
+pub mod wiring;
 mod wording;
 mod written;
 
 pub use curve::{Curve, Interpolation};
 pub use ends::{Follower, ResolvedEnd, Rotation, Translation};
-pub use load::{LoadedCase, load, parse};
+pub use faults::Source;
+pub use load::{load, parse};
 pub use meanings::{Meaning, meanings};
 pub use origins::{Origin, Origins};
 pub use places::Places;

@@ -71,7 +71,7 @@ impl Parameter {
             *number = value.into();
         }
         let name = format!("{} with {} = {value}", case.name, self.pointer);
-        Ok(parse(&resolved.to_string(), Path::new(&name), Path::new(""), &[])?.case)
+        parse(&resolved.to_string(), Path::new(&name), Path::new(""), &[])
     }
 }
 

@@ -3,6 +3,8 @@
 use std::fmt::Write;
 use std::ops::Range;
 
+use textwrap::{Options, WordSplitter};
+
 use super::places::{Places, floor};
 use crate::error::{CaseFault, Violation, is_hidden, visible};
 
@@ -115,13 +117,14 @@ fn one(fault: &CaseFault, violation: &Violation, places: &mut Places, paint: &Pa
     for (label, note) in notes {
         let Some(note) = note else { continue };
         let head = format!("{:margin$} = {label}: ", "");
-        for (i, line) in wrapped(&visible(note), width.saturating_sub(head.len()))
-            .iter()
-            .enumerate()
-        {
-            let start = if i == 0 { head.clone() } else { " ".repeat(head.len()) };
-            let _ = writeln!(out, "{start}{line}");
-        }
+        let below = " ".repeat(head.len());
+        let lines = Options::new(width)
+            .initial_indent(&head)
+            .subsequent_indent(&below)
+            .break_words(false)
+            .word_splitter(WordSplitter::NoHyphenation);
+        let words: Vec<_> = note.split_whitespace().collect();
+        let _ = writeln!(out, "{}", textwrap::fill(&visible(&words.join(" ")), lines));
     }
     out.push('\n');
 }
@@ -134,24 +137,6 @@ fn clipped(pointer: &str, width: usize) -> String {
     }
     let end: String = pointer.chars().skip(count - width / 2).collect();
     format!("...{end}")
-}
-
-/// Words in lines of at most `width` characters.
-fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        let last = lines.len() - 1;
-        let used = lines[last].chars().count();
-        if used == 0 {
-            lines[last].push_str(word);
-        } else if used + 1 + word.chars().count() <= width {
-            lines[last].push(' ');
-            lines[last].push_str(word);
-        } else {
-            lines.push(word.to_owned());
-        }
-    }
-    lines
 }
 
 /// Part of a line with the columns to mark.

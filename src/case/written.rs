@@ -1,7 +1,6 @@
 //! The case as a result folder has it: every default filled in, long tables in files of their own.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 use serde_json::{Map, Value};
 
@@ -97,9 +96,11 @@ fn name_file(table: &mut Map<String, Value>, tables: &mut BTreeMap<String, Point
 
 /// Every number in its shortest form that reads back as the same.
 fn csv((times, values): &Points) -> String {
-    let mut text = String::from("t [s],value\n");
+    let mut out = csv::Writer::from_writer(vec![]);
+    // memory takes everything
+    let _ = out.write_record(["t [s]", "value"]);
     for (time, value) in times.iter().zip(values) {
-        let _ = writeln!(text, "{time:?},{value:?}");
+        let _ = out.write_record([format!("{time:?}"), format!("{value:?}")]);
     }
-    text
+    String::from_utf8(out.into_inner().unwrap_or_default()).unwrap_or_default()
 }

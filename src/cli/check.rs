@@ -11,6 +11,7 @@ use super::size;
 use crate::discrete::System;
 use crate::error::Result;
 use crate::model::{audit, characteristic};
+use crate::output::columns::aligned;
 use crate::output::machine;
 use crate::output::numbers::{duration, significant};
 use crate::run::needs::Needs;
@@ -18,10 +19,8 @@ use crate::run::{known, method};
 
 /// Prints characteristic numbers, coupling audit, chosen effects and warnings.
 pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
-    let loaded = size::load(&asked.case)?;
-    let case = &loaded.case;
-    let system = System::new(case);
-    super::refuse(&loaded, &system)?;
+    let case = &size::load(&asked.case)?;
+    let system = System::new(case)?;
     let numbers = characteristic::numbers(case, &system.model);
     let findings = audit::coupling(case, &system.model);
     let warnings = known::warnings(case, &system);
@@ -64,36 +63,27 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         let _ = write!(text, "\n{}", case.about);
     }
     text += "\n\ncharacteristic numbers\n";
-    for (name, value) in &numbers {
-        let _ = writeln!(text, "  {name:<38} {}", significant(*value, 6));
-    }
+    text += &listed(
+        numbers
+            .iter()
+            .map(|(name, value)| [name.to_string(), significant(*value, 6)]),
+    );
     if !findings.is_empty() {
         text += "\ncoupling\n";
-        for f in &findings {
+        text += &listed(findings.iter().map(|f| {
             let verdict = if f.good { "good" } else { "BAD" };
-            let _ = writeln!(
-                text,
-                "  {:<38} {:<12} wanted {}: {verdict}",
-                f.name,
-                significant(f.value, 5),
-                f.wanted
-            );
-        }
+            let wanted = format!("wanted {}: {verdict}", f.wanted);
+            [f.name.to_string(), significant(f.value, 5), wanted]
+        }));
     }
     text += "\ncoefficients\n";
-    for (pointer, origin) in case.origins.words() {
-        let _ = writeln!(text, "  {pointer:<52} {origin}");
-    }
+    let origins = case.origins.words().into_iter();
+    text += &listed(origins.map(|(pointer, origin)| [pointer.to_string(), origin.to_string()]));
     text += "\neffects\n";
-    for d in &system.model.effects.decisions {
-        let _ = writeln!(
-            text,
-            "  {:<30} {:<4} {}",
-            d.effect.name(),
-            if d.on { "on" } else { "off" },
-            d.cause
-        );
-    }
+    text += &listed(system.model.effects.decisions.iter().map(|d| {
+        let on = if d.on { "on" } else { "off" };
+        [d.effect.to_string(), on.into(), d.cause.to_string()]
+    }));
     let _ = writeln!(
         text,
         "\nunknowns {}, method {} ({}), highest order {order} ({why})",
@@ -121,4 +111,10 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     }
     super::print(&text)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Lines under a heading, indented.
+fn listed<const N: usize>(lines: impl Iterator<Item = [String; N]>) -> String {
+    let lines: Vec<_> = lines.map(|line| [&[String::new()], &line[..]].concat()).collect();
+    aligned(&lines, &[1, 2, 3])
 }

@@ -7,9 +7,11 @@ use serde_json::Value;
 
 use super::arguments::CompareArguments;
 use crate::error::{Error, Result};
+use crate::output::columns::aligned;
 use crate::output::folder::replace_alike;
 use crate::output::numbers::{quantity, significant};
 use crate::output::{comparison, reading};
+use crate::results;
 use crate::study::compare::changes::Change;
 use crate::study::compare::difference::Difference;
 use crate::study::compare::{Comparison, compare as differences};
@@ -28,7 +30,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
         replace_alike(path, &text, &["<svg", "<?xml"])?;
     }
     if asked.json {
-        super::print(&format!("{:#}\n", serde_json::to_value(&found).unwrap_or_default()))?;
+        super::print(&results::text(&found))?;
     } else {
         super::print(&table(&found))?;
     }
@@ -51,37 +53,28 @@ fn table(found: &Comparison) -> String {
         text += "computed differently\n";
         changes(&mut text, &found.numerics);
     }
-    text += "                       relative to the larger           largest at              interpolation\n\
-             quantity                     L2       max           time [s]   place        adds at most\n";
-    for d in found.histories.iter().chain(&found.fields) {
-        line(&mut text, d);
-    }
-    text += "\nfigure                                        A             B       relative\n";
-    for f in &found.figures {
-        let _ = writeln!(
-            text,
-            "{:<36} {:>12}  {:>12}  {:>10.1e}",
-            f.name,
-            significant(f.a, 6),
-            significant(f.b, 6),
-            f.relative
-        );
-    }
-    text += "\ncost                                          A             B          B / A\n";
-    for c in &found.costs {
+    let histories = found.histories.iter().chain(&found.fields).map(line);
+    let headings = [
+        ["", "relative to", "the larger", "largest at", "", "interpolation"],
+        ["quantity", "L2", "max", "time [s]", "place", "adds at most"],
+    ];
+    let headings = headings.map(|line| line.map(String::from)).into_iter();
+    text += &aligned(&headings.chain(histories).collect::<Vec<_>>(), &[0]);
+    let figures = found
+        .figures
+        .iter()
+        .map(|f| [significant(f.a, 6), significant(f.b, 6), format!("{:.1e}", f.relative)]);
+    let names = found.figures.iter().map(|f| &f.name);
+    text += &beside(["figure", "A", "B", "relative"], names, figures);
+    let costs = found.costs.iter().map(|c| {
         let ratio = if c.a > 0.0 {
             significant(c.b / c.a, 3)
         } else {
             "-".into()
         };
-        let _ = writeln!(
-            text,
-            "{:<36} {:>12}  {:>12}  {ratio:>10}",
-            c.name,
-            number(c.a),
-            number(c.b)
-        );
-    }
+        [number(c.a), number(c.b), ratio]
+    });
+    text += &beside(["cost", "A", "B", "B / A"], found.costs.iter().map(|c| &c.name), costs);
     if !found.left_out.is_empty() {
         let _ = writeln!(text, "\nnot compared\n  {}", found.left_out.join("\n  "));
     }
@@ -96,21 +89,32 @@ fn number(x: f64) -> String {
     }
 }
 
-fn line(text: &mut String, d: &Difference) {
-    let place = d.place.map_or_else(|| "-".into(), |x| format!("{x:.3}"));
-    let _ = writeln!(
-        text,
-        "{:<22} {:>9.1e} {:>9.1e}   {:>16}   {place:>5}  {:>18}",
-        d.name,
-        d.relative.l2,
-        d.relative.max,
+/// Numbers of both, a name a line.
+fn beside<'a>(
+    headings: [&str; 4],
+    names: impl Iterator<Item = &'a String>,
+    numbers: impl Iterator<Item = [String; 3]>,
+) -> String {
+    let lines = names
+        .zip(numbers)
+        .map(|(name, [a, b, both])| [name.clone(), a, b, both]);
+    let lines: Vec<_> = [headings.map(String::from)].into_iter().chain(lines).collect();
+    format!("\n{}", aligned(&lines, &[0]))
+}
+
+fn line(d: &Difference) -> [String; 6] {
+    [
+        d.name.clone(),
+        format!("{:.1e}", d.relative.l2),
+        format!("{:.1e}", d.relative.max),
         significant(d.at_s, 6),
+        d.place.map_or_else(|| "-".into(), |x| format!("{x:.3}")),
         if d.interpolation > 0.0 {
             format!("{:.1e}", d.interpolation)
         } else {
             "nothing".into()
-        }
-    );
+        },
+    ]
 }
 
 fn changes(text: &mut String, changes: &[Change]) {
@@ -119,9 +123,15 @@ fn changes(text: &mut String, changes: &[Change]) {
         Value::Object(_) | Value::Array(_) => "...".to_string(),
         other => other.to_string(),
     };
-    for c in changes.iter().take(CHANGES) {
-        let _ = writeln!(text, "  {:<34} {} | {}", c.pointer, short(&c.a), short(&c.b));
-    }
+    let line = |c: &Change| {
+        [
+            String::new(),
+            c.pointer.clone(),
+            format!("{} | {}", short(&c.a), short(&c.b)),
+        ]
+    };
+    let lines: Vec<_> = changes.iter().take(CHANGES).map(line).collect();
+    *text += &aligned(&lines, &[1, 2]);
     if changes.len() > CHANGES {
         let _ = writeln!(text, "  and {} more", changes.len() - CHANGES);
     }

@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::arguments::EffectsArguments;
 use super::{size, terminal};
 use crate::case::schema::Effects;
-use crate::case::{self, LoadedCase};
+use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::effects as files;
@@ -16,34 +16,27 @@ use crate::output::folder::replace;
 use crate::output::kind::Kind;
 use crate::output::numbers::duration;
 use crate::output::report;
+use crate::study::effects::choices::with;
 use crate::study::effects::{Ablation, Event, Plan, ablate};
 
 /// Runs the models, writes the folder, prints the table and the recommendation, writes that into the case when asked.
 pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
-    let loaded = size::load(&asked.case)?;
-    super::refuse(&loaded, &System::new(&loaded.case))?;
-    let mut full = loaded.clone();
-    full.case.effects = Effects::Full;
-    super::refuse(&full, &System::new(&full.case))?;
+    let case = size::load(&asked.case)?;
+    System::new(&case)?;
+    System::new(&with(&case, Effects::Full))?;
     let plan = Plan {
         repeats: asked.repeats,
         budget_s: super::study::seconds(&asked.budget)?,
     };
-    let mut folder = asked.place.claim(&loaded, Kind::Effects)?;
+    let mut folder = asked.place.claim(&case, Kind::Effects)?;
     let progress = Progress::new(asked.quiet);
-    let found = ablate(&loaded.case, plan, asked.measure.as_deref(), &|event| {
-        progress.show(event)
-    });
+    let found = ablate(&case, plan, asked.measure.as_deref(), &|event| progress.show(event));
     progress.done();
     let found = found?;
     let shown = files::Shown::choose(&found, asked.measure.as_deref());
     files::write(&mut folder, &found, &shown)?;
-    report::complete(&folder, &loaded.case)?;
-    let written = if asked.write {
-        Some(write(&loaded, &found)?)
-    } else {
-        None
-    };
+    report::complete(&folder, &case)?;
+    let written = if asked.write { Some(write(&case, &found)?) } else { None };
     if asked.json {
         super::print(&files::json(&found))?;
     } else {
@@ -62,24 +55,24 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
 }
 
 /// Writes what is recommended into the case file, which must still be read as a case with just that choice; says what was done.
-fn write(loaded: &LoadedCase, found: &Ablation) -> Result<String> {
-    let path = &loaded.path;
+fn write(case: &Case, found: &Ablation) -> Result<String> {
+    let path = &case.source.path;
     let Some(recommended) = &found.recommendation else {
         return Ok(format!("{} stays as it is", path.display()));
     };
     let wanted: Effects = serde_json::from_value(recommended.effects.clone()).unwrap_or_default();
-    if loaded.case.effects == wanted {
+    if case.effects == wanted {
         return Ok(format!("{} says so already", path.display()));
     }
     let now = std::fs::read_to_string(path).unwrap_or_default();
-    if now != loaded.text {
+    if now != case.source.text {
         let what = "changed while its effects were looked for; nothing is written";
         return Err(Error::Usage(format!("{} {what}", path.display())));
     }
-    let text = case::rewrite(&loaded.text, "effects", &recommended.effects)
+    let text = case::rewrite(&case.source.text, "effects", &recommended.effects)
         .ok_or_else(|| Error::Usage(format!("{} is no JSON object", path.display())))?;
     let again = case::parse(&text, path, path.parent().unwrap_or(path), &[])?;
-    super::refuse(&again, &System::new(&again.case))?;
+    System::new(&again)?;
     replace(path, &text)?;
     Ok(format!("written into {}", path.display()))
 }

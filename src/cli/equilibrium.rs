@@ -18,18 +18,16 @@ use crate::study::refine::{self, meshes::Meshes};
 
 /// Follows the path, writes the folder, prints the table.
 pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
-    let loaded = size::load(&asked.case)?;
-    let case = &loaded.case;
+    let case = &size::load(&asked.case)?;
     let at_s = asked.at.unwrap_or(case.time.end_s);
-    let system = equilibrium::system(case, at_s);
-    super::refuse(&loaded, &system)?;
+    let system = equilibrium::system(case, at_s)?;
     let options = options(asked, at_s)?;
     let parameters: Vec<Parameter> = asked
         .sensitivity
         .iter()
         .map(|pointer| Parameter::find(case, pointer))
         .collect::<Result<_>>()?;
-    let mut folder = asked.place.claim(&loaded, Kind::Equilibrium)?;
+    let mut folder = asked.place.claim(case, Kind::Equilibrium)?;
     let begin = Instant::now();
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let mut of = |case: &Case| refine::numbers::of_equilibrium(case, &options);
@@ -48,13 +46,15 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         } else {
             Control::Continue
         }
-    });
+    })?;
     bar.finish_and_clear();
     let columns = equilibrium::columns(&system);
-    let meshes = (path.fault.is_none() && accuracy.is_none()).then(|| {
-        let here = refine::numbers::of_path(case, &columns, &path);
-        refine::meshes::judge(case, &here, &mut of)
-    });
+    let meshes = if path.fault.is_none() && accuracy.is_none() {
+        let here = refine::numbers::of_path(case, &columns, &path)?;
+        Some(refine::meshes::judge(case, &here, &mut of)?)
+    } else {
+        None
+    };
     let mut warnings = known::without_outputs(case, &system);
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.and_then(refine::warning));

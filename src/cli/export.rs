@@ -69,8 +69,8 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
         all.push(("csv", tables::write(out, &from, &chosen)?));
     }
     if asked.format.contains(&Format::Vtk) {
-        let loaded = case::load(&asked.dir.join(CASE), &[])?;
-        all.push(("vtk", vtk::write(out, &loaded.case, &from, &chosen)?));
+        let case = case::load(&asked.dir.join(CASE), &[])?;
+        all.push(("vtk", vtk::write(out, &case, &from, &chosen)?));
     }
     let times: Vec<f64> = chosen.iter().map(|&k| from.field_times[k]).collect();
     let (first, last) = (times[0], times[times.len() - 1]);

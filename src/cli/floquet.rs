@@ -4,15 +4,16 @@ use std::process::ExitCode;
 
 use super::arguments::FloquetArguments;
 use super::{line, size};
-use crate::case::{Case, LoadedCase};
-use crate::discrete::System;
+use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::output::floquet as files;
 use crate::output::kind::Kind;
 use crate::output::report;
+use crate::results;
+use crate::results::cycles::Cycle;
 use crate::run::floquet;
 use crate::run::known;
-use crate::run::periodic::scene::{fault, whole};
+use crate::run::periodic::scene::{self, fault};
 use crate::run::periodic::{Scene, shoot};
 use crate::study::refine::{self, meshes::Meshes};
 use crate::study::stability::tongue::{self, Plan};
@@ -22,25 +23,25 @@ const MOST_POINTS: usize = 100_000;
 
 /// Finds cycle and multipliers, or the map; writes the folder, prints the words.
 pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
-    let loaded = size::load(&asked.case)?;
-    super::refuse(&loaded, &System::with(&loaded.case, whole(&loaded.case)))?;
+    let case = &size::load(&asked.case)?;
+    scene::system(case)?;
     match &asked.map.map {
-        Some(parameters) => map(asked, &loaded, parameters),
-        None => one(asked, &loaded),
+        Some(parameters) => map(asked, case, parameters),
+        None => one(asked, case),
     }
 }
 
-fn one(asked: &FloquetArguments, loaded: &LoadedCase) -> Result<ExitCode> {
+fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     if asked.count == 0 {
         return Err(Error::Usage("--count 0: at least one multiplier".into()));
     }
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
-    let mut folder = asked.place.claim(loaded, Kind::Floquet)?;
+    let mut folder = asked.place.claim(case, Kind::Floquet)?;
     let mut of = |case: &Case| refine::numbers::of_multipliers(case, asked.period, asked.count);
     let refined = accuracy
-        .map(|accuracy| refine::refine(&loaded.case, accuracy, true, &mut of))
+        .map(|accuracy| refine::refine(case, accuracy, true, &mut of))
         .transpose()?;
-    let case = refined.as_ref().map_or(&loaded.case, |(chosen, _)| chosen);
+    let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
     let scene = Scene::new(case, asked.period)?;
     scene.held(&case.name)?;
     let bar = line::line(asked.quiet);
@@ -49,28 +50,29 @@ fn one(asked: &FloquetArguments, loaded: &LoadedCase) -> Result<ExitCode> {
     bar.set_message("carrying disturbances over the period");
     let found = floquet::multipliers(&scene, &mut cycle, asked.count);
     bar.set_message("the same on other meshes");
-    let accuracy = refined.as_ref().map(|(_, accuracy)| accuracy);
-    let meshes = accuracy.is_none().then(|| {
+    let accuracy = refined.as_ref().map(|(_, accuracy)| accuracy.clone());
+    let judge = || {
         let mut of = |case: &Case| refine::numbers::of_growth(case, asked.period, asked.count);
         refine::meshes::judge(case, &refine::numbers::of_stability(&found), &mut of)
-    });
+    };
+    let meshes = accuracy.is_none().then(judge).transpose()?;
     bar.finish_and_clear();
-    let mut warnings = known::of_cycles(case);
+    let mut warnings = known::without_outputs(case, &scene::system(case)?);
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
-    warnings.extend(accuracy.and_then(refine::warning));
-    let found = files::Found {
-        case: &case.name,
-        search: &cycle.search,
-        floquet: &found,
-        accuracy,
+    warnings.extend(accuracy.as_ref().and_then(refine::warning));
+    let found = Cycle {
+        case: case.name.clone(),
+        cycle: cycle.search,
+        floquet: found,
+        warnings,
         refined: None,
-        meshes: meshes.as_ref(),
-        warnings: &warnings,
+        accuracy,
+        meshes,
     };
     files::write(&mut folder, &found)?;
     report::complete(&folder, case)?;
     if asked.json {
-        super::print(&files::json(&found))?;
+        super::print(&results::text(&found))?;
     } else {
         super::print(&format!(
             "{}\nfiles in {}\n",
@@ -81,15 +83,14 @@ fn one(asked: &FloquetArguments, loaded: &LoadedCase) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn map(asked: &FloquetArguments, loaded: &LoadedCase, parameters: &str) -> Result<ExitCode> {
+fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCode> {
     if parameters != "frequency,amplitude" {
         return Err(Error::Usage(format!(
             "--map {parameters}: a map is drawn over frequency,amplitude"
         )));
     }
-    let case = &loaded.case;
     let plan = plan(asked, tongue::shaking(case)?)?;
-    let mut folder = asked.place.claim(loaded, Kind::Map)?;
+    let mut folder = asked.place.claim(case, Kind::Map)?;
     let bar = line::line(asked.quiet);
     let found = tongue::map(case, &plan, &|done, count| {
         bar.set_message(format!("{done} of {count} columns"));
@@ -97,13 +98,12 @@ fn map(asked: &FloquetArguments, loaded: &LoadedCase, parameters: &str) -> Resul
     });
     bar.finish_and_clear();
     let found = found?;
-    let warnings = known::of_cycles(case);
-    files::write_map(&mut folder, &found, &warnings)?;
+    files::write_map(&mut folder, &found)?;
     report::complete(&folder, case)?;
     if asked.json {
-        super::print(&files::map_json(&found, &warnings))?;
+        super::print(&results::text(&found))?;
     } else {
-        let told = line::warnings(&warnings);
+        let told = line::warnings(&found.warnings);
         super::print(&format!(
             "{}{told}\nfiles in {}\n",
             files::map_words(&found),

@@ -12,12 +12,12 @@ use crate::run::observe::network_coordinate;
 
 /// Prints one or both tables as CSV, six significant digits.
 pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
-    let loaded = size::load(&asked.case)?;
-    let model = Model::new(&loaded.case);
+    let case = size::load(&asked.case)?;
+    let model = Model::new(&case)?;
     let Some(wet) = &model.wet else {
         return Err(Error::Usage("the case has no bladders: there is nothing to map".into()));
     };
-    let map = network_coordinate(&loaded.case, wet);
+    let map = network_coordinate(&case, wet);
     if asked.json {
         let rows = |rows: Vec<(f64, f64, i64)>, names: [&str; 2]| -> Value {
             rows.iter()

@@ -30,11 +30,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::case::LoadedCase;
-use crate::discrete::System;
 use crate::error::{Error, Result, visible};
-use crate::model::audit;
-use crate::run::order;
 use arguments::{Arguments, Command};
 
 /// Reads the arguments, does what they ask, reports what went wrong, and gives the exit code.
@@ -88,17 +84,6 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::New(asked) => new::new(asked),
         Command::Completions(asked) => completions::completions(asked),
     }
-}
-
-/// Faults of a valid case that only its model shows, with their places.
-fn refuse(loaded: &LoadedCase, system: &System) -> Result<()> {
-    let mut violations: Vec<_> = order::refusal(&loaded.case, system).into_iter().collect();
-    violations.extend(audit::refusals(&loaded.case, &system.model));
-    violations.extend(system.model.effects.refusals.iter().cloned());
-    if violations.is_empty() {
-        return Ok(());
-    }
-    Err(loaded.fault(violations.into_iter().map(|v| loaded.violation(v)).collect()))
 }
 
 /// Writes to standard output, with what a terminal would obey written out; a closed pipe ends the output, not the program.

@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::output::kind::Kind;
 use crate::output::modes::{self as files, Report};
 use crate::output::report;
+use crate::results::modes::About;
 use crate::run::known;
 use crate::run::modes::{self, Plan};
 use crate::study::refine;
@@ -30,24 +31,24 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         });
     }
     let plan = plan(asked)?;
-    let loaded = size::load(&asked.case)?;
-    super::refuse(&loaded, &System::new(&loaded.case))?;
-    let mut folder = asked.place.claim(&loaded, Kind::Modes)?;
+    let case = size::load(&asked.case)?;
+    let system = System::new(&case)?;
+    let mut folder = asked.place.claim(&case, Kind::Modes)?;
     if !asked.quiet {
-        terminal::tell(&format!("modes of {}", loaded.case.name));
+        terminal::tell(&format!("modes of {}", case.name));
     }
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let mut of = |case: &Case| refine::numbers::of_modes(case, asked.at, &plan);
     let refined = accuracy
-        .map(|accuracy| refine::refine(&loaded.case, accuracy, false, &mut of))
+        .map(|accuracy| refine::refine(&case, accuracy, false, &mut of))
         .transpose()?;
-    let case = refined.as_ref().map_or(&loaded.case, |(chosen, _)| chosen);
-    let (about, words) = match asked.at {
-        Some(at) => (
-            modes::at_equilibrium(case, at)?,
-            format!("the equilibrium under the loads at t = {at} s"),
-        ),
-        None => (modes::linearise(case, 0.0, None)?, "the start".into()),
+    let (case, system) = match &refined {
+        Some((chosen, _)) => (chosen, System::new(chosen)?),
+        None => (&case, system),
+    };
+    let (about, state) = match asked.at {
+        Some(at) => (modes::at_equilibrium(case, at)?, About::Equilibrium),
+        None => (modes::linearise(case, 0.0, None)?, About::Start),
     };
     let parameters: Vec<Parameter> = asked
         .sensitivity
@@ -58,13 +59,13 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     modes::compare_meshes(case, asked.at, &plan, &mut found);
     let sensitivities = modes::differentiate(case, asked.at, &found.about, &found.modes, &parameters)?;
     let report = Report {
-        case: &loaded.case.name,
+        case: &case.name,
         plan: &plan,
         found: &found,
-        about: &words,
+        state,
         sensitivities: &sensitivities,
         accuracy: refined.as_ref().map(|(_, accuracy)| accuracy),
-        known: &known::without_outputs(case, &System::new(case)),
+        known: &known::without_outputs(case, &system),
     };
     files::write(&mut folder, &report)?;
     report::complete(&folder, case)?;

@@ -4,17 +4,17 @@ use std::process::ExitCode;
 
 use super::arguments::PeriodicArguments;
 use super::{line, size, terminal};
-use crate::case::{Case, LoadedCase};
-use crate::discrete::System;
+use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::output::floquet as stability;
 use crate::output::kind::Kind;
 use crate::output::periodic as files;
 use crate::output::recorder::{FolderRecorder, Labels};
 use crate::output::report;
+use crate::results;
+use crate::results::cycles::Cycle;
 use crate::run::floquet;
-use crate::run::known;
-use crate::run::periodic::scene::whole;
+use crate::run::periodic::scene;
 use crate::run::periodic::{Settled, record, settle};
 use crate::run::record::Control;
 use crate::run::summary::Status;
@@ -34,24 +34,24 @@ pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
     }
 }
 
-fn load(asked: &PeriodicArguments, more: Option<String>) -> Result<LoadedCase> {
+fn load(asked: &PeriodicArguments, more: Option<String>) -> Result<Case> {
     let sets: Vec<String> = asked.case.sets.iter().cloned().chain(more).collect();
-    let loaded = size::load_with(&asked.case.case, &sets, 0)?;
-    super::refuse(&loaded, &System::with(&loaded.case, whole(&loaded.case)))?;
-    Ok(loaded)
+    let case = size::load_with(&asked.case.case, &sets, 0)?;
+    scene::system(&case)?;
+    Ok(case)
 }
 
 fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
-    let loaded = load(asked, None)?;
-    let result = asked.place.claim(&loaded, Kind::Cycle)?;
+    let case = load(asked, None)?;
+    let result = asked.place.claim(&case, Kind::Cycle)?;
     let out = result.dir().to_path_buf();
     let bar = line::line(asked.quiet);
     bar.set_message("looking for the cycle");
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let asked_for = accuracy
-        .map(|accuracy| refine::refine(&loaded.case, accuracy, true, &mut refine::numbers::of_cycle))
+        .map(|accuracy| refine::refine(&case, accuracy, true, &mut refine::numbers::of_cycle))
         .transpose()?;
-    let case = asked_for.as_ref().map_or(&loaded.case, |(chosen, _)| chosen);
+    let case = asked_for.as_ref().map_or(&case, |(chosen, _)| chosen);
     let (scene, cycle) = refine::numbers::cycle(case, None)?;
     let Settled {
         case,
@@ -70,36 +70,37 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     outcome.summary.accuracy = asked_for.map(|(_, accuracy)| accuracy);
     let short = outcome.summary.accuracy.as_ref().and_then(refine::warning);
     let ended = outcome.summary.status == Status::Finished;
-    let meshes = (outcome.summary.accuracy.is_none() && ended).then(|| {
+    let meshes = if outcome.summary.accuracy.is_none() && ended {
         bar.set_message("the same on other meshes");
-        let mut here = refine::numbers::of_summary(&case, &outcome.summary);
+        let mut here = refine::numbers::of_summary(&case, &outcome.summary)?;
         here.extend(refine::numbers::of_stability(&found));
         let mut of = |case: &Case| refine::numbers::of_cycle_and_multipliers(case, COUNT);
-        refine::meshes::judge(&case, &here, &mut of)
-    });
+        Some(refine::meshes::judge(&case, &here, &mut of)?)
+    } else {
+        None
+    };
     bar.finish_and_clear();
     let by_mesh = meshes.as_ref().and_then(Meshes::warning);
     outcome.summary.warnings.extend(by_mesh.into_iter().chain(short));
     let finished = recorder.finish(&outcome.summary)?;
-    let told = stability::Found {
-        case: &case.name,
-        search: &cycle.search,
-        floquet: &found,
-        accuracy: outcome.summary.accuracy.as_ref(),
-        refined: refined.as_ref(),
-        meshes: meshes.as_ref(),
-        warnings: &outcome.summary.warnings,
+    let told = Cycle {
+        case: case.name.clone(),
+        cycle: cycle.search,
+        floquet: found,
+        warnings: outcome.summary.warnings.clone(),
+        refined,
+        accuracy: outcome.summary.accuracy.clone(),
+        meshes,
     };
-    finished
-        .folder()
-        .write(files::CYCLE, stability::json(&told).as_bytes())?;
+    let text = results::text(&told);
+    finished.folder().write(files::CYCLE, text.as_bytes())?;
     report::write(&out, None)?;
     finished.close()?;
     if asked.json {
-        super::print(&stability::json(&told))?;
+        super::print(&text)?;
     } else {
         let figures = files::figures(&outcome.summary);
-        let (search, words) = (files::search(&cycle.search), stability::words(&told));
+        let (search, words) = (files::search(&told.cycle), stability::words(&told));
         super::print(&format!("{words}\n{figures}{search}\nfiles in {}\n", out.display()))?;
     }
     Ok(match outcome.fault {
@@ -121,8 +122,7 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
         return Err(Error::Usage(format!("--sweep {text}: no values")));
     };
     let mut folder = asked.place.claim(first, Kind::Sweep)?;
-    let first = first.case.clone();
-    let cases: Vec<_> = cases.into_iter().map(|(value, loaded)| (value, loaded.case)).collect();
+    let first = first.clone();
     let bar = line::line(asked.quiet);
     let found = along(&pointer, logarithmic, &cases, &|done| {
         bar.set_message(format!("{done} of {} cycles", cases.len()));
@@ -130,13 +130,12 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     let found = found?;
-    let warnings = known::of_cycles(&first);
-    files::write(&mut folder, &found, &warnings)?;
+    files::write(&mut folder, &found)?;
     report::complete(&folder, &first)?;
     if asked.json {
-        super::print(&files::json(&found, &warnings))?;
+        super::print(&results::text(&found))?;
     } else {
-        let told = line::warnings(&warnings);
+        let told = line::warnings(&found.warnings);
         super::print(&format!(
             "{}{told}\nfiles in {}\n",
             files::words(&found),

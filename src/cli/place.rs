@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::case::LoadedCase;
+use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::output::folder::{CASE, RAW_FIELDS, REPORT, ResultFolder, TABLES, VTK};
 use crate::output::kind::Kind;
@@ -40,13 +40,13 @@ impl PlaceArguments {
     /// # Errors
     ///
     /// [`ResultFolder::claim`]; or the case itself would be written over.
-    pub fn claim(&self, loaded: &LoadedCase, kind: Kind) -> Result<ResultFolder> {
-        let dir = self.folder(&loaded.case.name, kind);
-        if overwritten(&dir, loaded, kind) {
+    pub fn claim(&self, case: &Case, kind: Kind) -> Result<ResultFolder> {
+        let dir = self.folder(&case.name, kind);
+        if overwritten(&dir, case, kind) {
             return Err(Error::Usage(format!(
                 "--out {}: the case itself, {}, would be written over; name another folder",
                 dir.display(),
-                loaded.path.display()
+                case.source.path.display()
             )));
         }
         ResultFolder::claim(&dir, kind, self.force)
@@ -55,18 +55,18 @@ impl PlaceArguments {
 
 /// Whether a command would write over its case, or take it away with what an older result left. A result's own case, as resolved, is
 /// written as it is.
-fn overwritten(dir: &Path, loaded: &LoadedCase, kind: Kind) -> bool {
-    let (Ok(dir), Ok(case)) = (fs::canonicalize(dir), fs::canonicalize(&loaded.path)) else {
+fn overwritten(dir: &Path, case: &Case, kind: Kind) -> bool {
+    let (Ok(dir), Ok(path)) = (fs::canonicalize(dir), fs::canonicalize(&case.source.path)) else {
         return false;
     };
     if [RAW_FIELDS, TABLES, VTK]
         .iter()
-        .any(|name| case.starts_with(dir.join(name)))
+        .any(|name| path.starts_with(dir.join(name)))
     {
         return true;
     }
-    let name = case.file_name().unwrap_or_default();
+    let name = path.file_name().unwrap_or_default();
     let written = kind.files().into_iter().chain([CASE, REPORT]).any(|file| name == file);
-    let same = || fs::read_to_string(&case).is_ok_and(|text| text == loaded.case.written().json);
-    case.parent() == Some(&dir) && written && !(name == CASE && Kind::within(&dir) == Some(kind) && same())
+    let same = || fs::read_to_string(&path).is_ok_and(|text| text == case.written().json);
+    path.parent() == Some(&dir) && written && !(name == CASE && Kind::within(&dir) == Some(kind) && same())
 }

@@ -23,6 +23,7 @@ use crate::output::recorder::{Finished, FolderRecorder, Hook, Labels};
 use crate::output::report;
 use crate::output::summary;
 use crate::run::dynamics::{self, Outcome};
+use crate::run::observe::Observer;
 use crate::run::record::{Control, Progress};
 use crate::run::summary::Status;
 use crate::study::compare::changes::changes;
@@ -33,27 +34,27 @@ const DIFFERENCES: usize = 4;
 
 /// Runs a case into a result folder.
 pub fn run(asked: &RunArguments) -> Result<ExitCode> {
-    let loaded = size::load_with(&asked.case.case, &asked.case.sets, asked.sensitivities.len())?;
-    let case = &loaded.case;
-    let system = System::new(case);
-    super::refuse(&loaded, &system)?;
+    let case = &size::load_with(&asked.case.case, &asked.case.sets, asked.sensitivities.len())?;
+    let system = System::new(case)?;
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let out = asked.place.folder(&case.name, Kind::Run);
     if !asked.resume {
-        size::run_fits(&loaded, &system, asked.sensitivities.len(), &out)?;
+        size::run_fits(case, &system, asked.sensitivities.len(), &out)?;
     }
-    drop(system);
     let hook = hook(asked);
     let Recorded {
         outcome,
         finished,
         aside,
     } = match (accuracy, asked.resume) {
-        (Some(accuracy), _) => reach(case, accuracy, asked.place.claim(&loaded, Kind::Run)?, &hook)?,
-        (None, true) => resume(case, &parameters(case, &asked.sensitivities)?, &out, &hook)?,
+        (Some(accuracy), _) => {
+            drop(system);
+            reach(case, accuracy, asked.place.claim(case, Kind::Run)?, &hook)?
+        }
+        (None, true) => resume(case, system, &parameters(case, &asked.sensitivities)?, &out, &hook)?,
         (None, false) => {
             let parameters = parameters(case, &asked.sensitivities)?;
-            record(case, &parameters, asked.place.claim(&loaded, Kind::Run)?, &hook)?
+            record(case, system, &parameters, asked.place.claim(case, Kind::Run)?, &hook)?
         }
     };
     let page = report::write(&out, None);
@@ -131,9 +132,9 @@ struct Recorded {
     aside: Option<PathBuf>,
 }
 
-fn record(case: &Case, parameters: &[Parameter], folder: ResultFolder, hook: &SharedHook) -> Result<Recorded> {
+fn record(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, hook: &SharedHook) -> Result<Recorded> {
     let mut recorder = FolderRecorder::new(folder, labels(case), own(hook));
-    let outcome = dynamics::run_with(case, parameters, &mut recorder)?;
+    let outcome = dynamics::run_with(case, system, by, &mut recorder)?;
     complete(recorder, outcome)
 }
 
@@ -154,7 +155,7 @@ fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, hook: &SharedHook
     let mut candidate = |case: &Case| -> Result<Outcome> {
         let inside = result.candidate()?;
         let folder = ResultFolder::claim(inside.path(), Kind::Run, false)?;
-        let Recorded { outcome, finished, .. } = record(case, &[], folder, hook)?;
+        let Recorded { outcome, finished, .. } = record(case, System::new(case)?, &[], folder, hook)?;
         finished.map_or(Ok(()), Finished::close)?;
         if outcome.summary.status == Status::Finished || !placed {
             if !inside.path().join(HISTORY).exists() {
@@ -177,7 +178,7 @@ fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, hook: &SharedHook
 }
 
 /// Goes on from the newest checkpoint. What does not fit is told before anything is touched; a run that has ended is left as it is.
-fn resume(case: &Case, asked: &[Parameter], out: &Path, hook: &SharedHook) -> Result<Recorded> {
+fn resume(case: &Case, system: System, asked: &[Parameter], out: &Path, hook: &SharedHook) -> Result<Recorded> {
     let folder = ResultFolder::again(out)?;
     let Some((saved, damage)) = checkpoint::read(out)? else {
         return Ok(Recorded {
@@ -189,7 +190,7 @@ fn resume(case: &Case, asked: &[Parameter], out: &Path, hook: &SharedHook) -> Re
     if saved.run.case != case.resolved_json() {
         return Err(another_case(&saved.run.case, case, "the checkpoint"));
     }
-    saved.run.fits(case)?;
+    saved.run.fits(case, &system)?;
     let kept = saved.run.forward.as_ref().map_or(&[][..], |kept| &kept.parameters);
     if !asked.is_empty() && asked != kept {
         return Err(other_derivatives(kept));
@@ -197,8 +198,9 @@ fn resume(case: &Case, asked: &[Parameter], out: &Path, hook: &SharedHook) -> Re
     if let Some(damage) = damage {
         terminal::tell(&format!("slcbeam: {damage}; going on from the one before"));
     }
-    let mut recorder = FolderRecorder::resume(folder, labels(case), own(hook), &saved, &dynamics::header(case))?;
-    let outcome = dynamics::resume(case, &saved.run, &mut recorder)?;
+    let header = Observer::header(case, &system);
+    let mut recorder = FolderRecorder::resume(folder, labels(case), own(hook), &saved, &header)?;
+    let outcome = dynamics::resume(case, system, &saved.run, &mut recorder)?;
     complete(recorder, outcome)
 }
 

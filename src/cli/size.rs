@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::arguments::CaseArguments;
 use super::terminal;
-use crate::case::{self, Case, LoadedCase};
+use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Code, Result, Violation};
 use crate::output::disk::Disk;
@@ -20,14 +20,14 @@ const LONG_S: f64 = 10.0;
 ///
 /// # Errors
 /// As [`case::load`]; E006 with the numbers where the memory is not there.
-pub fn load(asked: &CaseArguments) -> Result<LoadedCase> {
+pub fn load(asked: &CaseArguments) -> Result<Case> {
     load_with(&asked.case, &asked.sets, 0)
 }
 
 /// The same with derivatives by so many numbers.
-pub fn load_with(path: &Path, sets: &[String], parameters: usize) -> Result<LoadedCase> {
-    let loaded = case::load(path, sets)?;
-    let needs = Needs::of(&loaded.case, parameters);
+pub fn load_with(path: &Path, sets: &[String], parameters: usize) -> Result<Case> {
+    let case = case::load(path, sets)?;
+    let needs = Needs::of(&case, parameters);
     if let Some(there) = machine::memory().filter(|there| needs.memory > *there) {
         let what = format!(
             "some {:.3e} unknowns need about {} of memory; {} are there",
@@ -35,10 +35,11 @@ pub fn load_with(path: &Path, sets: &[String], parameters: usize) -> Result<Load
             bytes(needs.memory),
             bytes(there)
         );
-        let fault = Violation::new(Code::Range, "/mesh", what);
-        return Err(loaded.fault(vec![fault.hint("fewer cells per segment, per bladder, or segments")]));
+        let hint = "fewer cells per segment, per bladder, or segments";
+        let fault = Violation::new(Code::Range, "/mesh", what).hint(hint);
+        return Err(case.source.fault(vec![fault]));
     }
-    Ok(loaded)
+    Ok(case)
 }
 
 /// What a run's files will take.
@@ -50,8 +51,8 @@ pub fn disk(case: &Case, system: &System, parameters: usize) -> Disk {
 ///
 /// # Errors
 /// E006 with the numbers.
-pub fn run_fits(loaded: &LoadedCase, system: &System, parameters: usize, out: &Path) -> Result<()> {
-    let disk = disk(&loaded.case, system, parameters);
+pub fn run_fits(case: &Case, system: &System, parameters: usize, out: &Path) -> Result<()> {
+    let disk = disk(case, system, parameters);
     if let Some(free) = machine::free(out).filter(|free| disk.all() > *free) {
         let key = if disk.history > disk.fields { "output" } else { "fields" };
         let what = format!(
@@ -60,9 +61,10 @@ pub fn run_fits(loaded: &LoadedCase, system: &System, parameters: usize, out: &P
             bytes(free)
         );
         let fault = Violation::new(Code::Range, format!("/time/{key}_interval_s"), what);
-        return Err(loaded.fault(vec![fault.hint("a longer interval, or another folder with --out")]));
+        let fault = fault.hint("a longer interval, or another folder with --out");
+        return Err(case.source.fault(vec![fault]));
     }
-    let needs = Needs::of(&loaded.case, parameters);
+    let needs = Needs::of(case, parameters);
     if needs.set_up_s > LONG_S {
         terminal::tell(&format!(
             "slcbeam: {} unknowns take some {} to set up; neither Ctrl-C nor --max-wall is looked at before (a second Ctrl-C \

@@ -20,9 +20,8 @@ use crate::study::accuracy::{Budget, Event, Plan, Scheme, study as run_study};
 
 /// Runs the settings, writes the folder, prints the table and the sentence.
 pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
-    let loaded = size::load(&asked.case)?;
-    let case = &loaded.case;
-    super::refuse(&loaded, &System::new(case))?;
+    let case = &size::load(&asked.case)?;
+    System::new(case)?;
     let plan = Plan {
         rtols: asked.rtol.clone(),
         cells: asked.cells.clone(),
@@ -32,7 +31,7 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
         parallel: asked.parallel,
     }
     .checked()?;
-    let mut folder = asked.place.claim(&loaded, Kind::Study)?;
+    let mut folder = asked.place.claim(case, Kind::Study)?;
     let progress = Progress::new(asked.quiet);
     let found = run_study(case, plan, asked.measure.as_deref(), &|event| progress.show(event))?;
     progress.done();

@@ -16,12 +16,11 @@ fn wants_colour() -> bool {
     std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty()) && std::env::var_os("TERM").is_none_or(|t| t != "dumb")
 }
 
-/// Columns of the terminal.
+/// Columns: those of `COLUMNS`, or of the terminal, or where there is none 100.
 pub fn width() -> usize {
-    std::env::var("COLUMNS")
-        .ok()
-        .and_then(|c| c.parse().ok())
-        .unwrap_or(100)
+    let set = std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok());
+    let own = || terminal_size::terminal_size().map(|(width, _)| width.0.into());
+    set.or_else(own).unwrap_or(100)
 }
 
 /// Writes a line to standard error, with what a terminal would obey written out; where nobody takes it, the work goes on.

@@ -5,26 +5,15 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::arguments::VerifyArguments;
 use crate::error::Result;
+use crate::output::columns::aligned;
 use crate::output::numbers::significant;
-use crate::study::verify::{self, Figure, Measure, Row};
-
-/// A row with what came of it.
-struct Verdict {
-    row: Row,
-    figures: Result<Vec<Figure>>,
-}
-
-impl Verdict {
-    fn passed(&self) -> bool {
-        self.figures
-            .as_ref()
-            .is_ok_and(|figures| !figures.is_empty() && figures.iter().all(Figure::passed))
-    }
-}
+use crate::results;
+use crate::results::verify::{Figure, Row};
+use crate::study::verify::{self, Measure};
 
 /// Computes all rows, or those whose name contains the name asked for, and prints them as a table.
 pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
@@ -33,27 +22,26 @@ pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
         None => verify::rows(),
     };
     let bar = bar(rows.len());
-    let verdicts: Vec<Verdict> = rows
-        .into_iter()
+    let rows: Vec<Row> = rows
+        .iter()
         .map(|row| {
             bar.set_message(row.name.clone());
-            let figures = row.figures();
+            let found = Row::of(row, &row.figures());
             bar.inc(1);
-            Verdict { row, figures }
+            found
         })
         .collect();
     bar.finish_and_clear();
-    let text = if asked.json {
-        json_text(&verdicts)
+    super::print(&if asked.json {
+        format!("{:#}\n", rows.iter().map(results::value).collect::<Value>())
     } else {
-        table(&verdicts)
-    };
-    super::print(&text)?;
-    Ok(ExitCode::from(exit_code(&verdicts)))
+        table(&rows)
+    })?;
+    Ok(ExitCode::from(exit_code(&rows)))
 }
 
-fn exit_code(verdicts: &[Verdict]) -> u8 {
-    if verdicts.iter().all(Verdict::passed) { 0 } else { 4 }
+fn exit_code(rows: &[Row]) -> u8 {
+    if rows.iter().all(|row| row.passed) { 0 } else { 4 }
 }
 
 /// On a terminal alone.
@@ -72,46 +60,6 @@ fn bar(rows: usize) -> ProgressBar {
     bar
 }
 
-fn json_text(verdicts: &[Verdict]) -> String {
-    let rows: Vec<Value> = verdicts
-        .iter()
-        .map(|verdict| {
-            let Row {
-                name,
-                source,
-                goal,
-                reason,
-                ..
-            } = &verdict.row;
-            let mut row = json!({
-                "name": name, "source": source, "goal": goal, "tolerance_reason": reason, "passed": verdict.passed()
-            });
-            match &verdict.figures {
-                Ok(figures) => row["figures"] = figures.iter().map(figure_json).collect(),
-                Err(error) => row["failure"] = error.to_string().into(),
-            }
-            row
-        })
-        .collect();
-    format!("{:#}\n", Value::from(rows))
-}
-
-fn figure_json(figure: &Figure) -> Value {
-    json!({
-        "quantity": figure.quantity, "computed": figure.computed, "exact": figure.exact,
-        "error": figure.error(), "error_is": measure(figure), "tolerance": figure.tolerance, "order": figure.order,
-        "limit_error": figure.limit.map(|l| l.0), "limit_tolerance": figure.limit.map(|l| l.1),
-        "passed": figure.passed()
-    })
-}
-
-fn measure(figure: &Figure) -> &'static str {
-    match figure.measure {
-        Measure::Relative => "relative",
-        Measure::Absolute => "absolute",
-    }
-}
-
 const HEADINGS: [&str; 9] = [
     "name",
     "quantity",
@@ -124,59 +72,49 @@ const HEADINGS: [&str; 9] = [
     "verdict",
 ];
 
-fn table(verdicts: &[Verdict]) -> String {
+fn table(rows: &[Row]) -> String {
     let mut lines = vec![HEADINGS.map(String::from)];
-    for verdict in verdicts {
-        match &verdict.figures {
-            Ok(figures) => lines.extend(figures.iter().map(|figure| line(&verdict.row, figure))),
-            Err(error) => {
-                let mut failed = [const { String::new() }; 9];
-                failed[0].clone_from(&verdict.row.name);
-                failed[1] = error.to_string();
-                failed[8] = "FAIL".into();
-                lines.push(failed);
-            }
+    for row in rows {
+        lines.extend(row.figures.iter().flatten().map(|figure| line(row, figure)));
+        if let Some(failure) = &row.failure {
+            let mut failed = [const { String::new() }; 9];
+            failed[0].clone_from(&row.name);
+            failed[1].clone_from(failure);
+            failed[8] = "FAIL".into();
+            lines.push(failed);
         }
     }
-    let widths: [usize; 9] =
-        std::array::from_fn(|k| lines.iter().map(|line| line[k].chars().count()).max().unwrap_or(0));
-    let mut text = String::new();
-    for line in &lines {
-        let cells: Vec<String> = line
-            .iter()
-            .zip(widths)
-            .map(|(cell, width)| format!("{cell:<width$}"))
-            .collect();
-        let _ = writeln!(text, "{}", cells.join("  ").trim_end());
-    }
+    let mut text = aligned(&lines, &[0, 1, 2, 3, 4, 5, 6, 7, 8]);
     text += "\nerror: r relative, a absolute; order: observed in the mesh size between the two finest of three meshes;\n\
              limit: error of the limit to which they point (Richardson)\n\nsources\n";
-    for verdict in verdicts {
+    for row in rows {
         let _ = writeln!(
             text,
             "  {}: {}\n    tolerance: {}",
-            verdict.row.name, verdict.row.source, verdict.row.reason
+            row.name, row.source, row.tolerance_reason
         );
     }
-    let passed = verdicts.iter().filter(|verdict| verdict.passed()).count();
-    let _ = writeln!(text, "\n{passed} of {} exact results reproduced", verdicts.len());
+    let passed = rows.iter().filter(|row| row.passed).count();
+    let _ = writeln!(text, "\n{passed} of {} exact results reproduced", rows.len());
     text
 }
 
 fn line(row: &Row, figure: &Figure) -> [String; 9] {
-    let sign = &measure(figure)[..1];
+    let sign = match figure.error_is {
+        Measure::Relative => 'r',
+        Measure::Absolute => 'a',
+    };
+    let or_nothing = |x: Option<f64>, shown: fn(f64) -> String| x.map_or_else(String::new, shown);
     [
         row.name.clone(),
         figure.quantity.clone(),
         significant(figure.computed, 9),
         significant(figure.exact, 9),
-        format!("{:.1e} {sign}", figure.error()),
+        format!("{:.1e} {sign}", figure.error),
         format!("{:.1e}", figure.tolerance),
-        figure.order.map_or_else(String::new, |order| format!("{order:.2}")),
-        figure
-            .limit
-            .map_or_else(String::new, |(error, _)| format!("{error:.1e}")),
-        if figure.passed() { "pass" } else { "FAIL" }.into(),
+        or_nothing(figure.order, |order| format!("{order:.2}")),
+        or_nothing(figure.limit_error, |error| format!("{error:.1e}")),
+        if figure.passed { "pass" } else { "FAIL" }.into(),
     ]
 }
 
@@ -184,25 +122,24 @@ fn line(row: &Row, figure: &Figure) -> [String; 9] {
 mod tests {
     use super::*;
     use crate::error::Error;
+    use crate::study::verify::Figure;
 
-    fn verdict(figures: Result<Vec<Figure>>) -> Verdict {
-        Verdict {
-            row: Row::new("row", ["source", "goal", "reason"], || Ok(vec![])),
-            figures,
-        }
+    fn row(figures: Result<Vec<Figure>>) -> Row {
+        let row = verify::Row::new("row", ["source", "goal", "reason"], || Ok(vec![]));
+        Row::of(&row, &figures)
     }
 
     /// Goal: rows that miss, fail to run or compute nothing end the command with 4, and the table says which.
     #[test]
     fn what_fails_is_told() {
-        let good = || verdict(Ok(vec![Figure::relative("x", 1.0, 1.0, 1e-9)]));
+        let good = || row(Ok(vec![Figure::relative("x", 1.0, 1.0, 1e-9)]));
         assert_eq!(exit_code(&[good()]), 0);
-        let missed = verdict(Ok(vec![Figure::relative("x", 1.1, 1.0, 1e-9)]));
-        let failed = verdict(Err(Error::Usage("it broke".into())));
-        for bad in [missed, failed, verdict(Ok(vec![]))] {
+        let missed = row(Ok(vec![Figure::relative("x", 1.1, 1.0, 1e-9)]));
+        let failed = row(Err(Error::Usage("it broke".into())));
+        for bad in [missed, failed, row(Ok(vec![]))] {
             assert_eq!(exit_code(&[good(), bad]), 4);
         }
-        let text = table(&[good(), verdict(Err(Error::Usage("it broke".into())))]);
+        let text = table(&[good(), row(Err(Error::Usage("it broke".into())))]);
         assert!(
             text.contains("it broke") && text.contains("FAIL") && text.contains("1 of 2 exact"),
             "{text}"

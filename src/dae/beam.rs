@@ -1,9 +1,9 @@
 //! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
 
 use super::dual::Dual;
-use super::{Dae, Fault, Neighbours, Pattern, Seeds, colour, trace};
+use super::{Dae, Fault, Pattern, PerturbedSystems, Seeds, colour, trace};
 use crate::case::signals::Clock;
-use crate::discrete::{Instant, System, Workspace, kick, ledger, recipe, start};
+use crate::discrete::{System, TimeData, Workspace, kick, ledger, residual, start};
 
 /// Directions differentiated in one sweep.
 const LANES: usize = 8;
@@ -13,12 +13,12 @@ const LANES: usize = 8;
 pub struct BeamDae {
     system: System,
     within: f64,
-    now: Instant,
+    now: TimeData,
     pattern: Pattern,
     sweeps: Vec<Vec<(usize, usize)>>,
     plain: Buffers<f64>,
     dual: Buffers<Dual<LANES>>,
-    neighbours: Vec<Neighbours>,
+    perturbed: Vec<PerturbedSystems>,
     /// Time at which the workspace holds everything about a state, its integrands included.
     held: Option<f64>,
 }
@@ -45,12 +45,12 @@ impl<T: crate::model::Scalar> Buffers<T> {
 
 impl Buffers<f64> {
     /// Evaluates a scaled state whose rates do not matter: its place and its velocities.
-    fn take_up(&mut self, system: &System, now: &Instant, state: &[f64]) {
+    fn take_up(&mut self, system: &System, now: &TimeData, state: &[f64]) {
         for ((y, state), scale) in self.y.iter_mut().zip(state).zip(&system.layout.scales) {
             *y = state * scale;
         }
         self.yp.fill(0.0);
-        recipe::evaluate(system, now, &self.y, &self.yp, &mut self.workspace);
+        residual::evaluate(system, now, &self.y, &self.yp, &mut self.workspace);
     }
 }
 
@@ -72,7 +72,7 @@ impl Buffers<Dual<LANES>> {
 impl BeamDae {
     /// The system as a DAE; finds the Jacobian's pattern and colours it.
     pub fn new(system: System) -> Self {
-        let mut now = Instant::new(&system);
+        let mut now = TimeData::new(&system);
         now.update(&system, Clock { t: 0.0, within: 0.0 });
         let pattern = trace::pattern(&system, &now);
         let (colour, count) = colour::colours(&pattern);
@@ -89,7 +89,7 @@ impl BeamDae {
             sweeps,
             plain,
             dual,
-            neighbours: vec![],
+            perturbed: vec![],
             held: None,
         }
     }
@@ -98,8 +98,8 @@ impl BeamDae {
     pub(super) fn of(&self, system: System) -> Self {
         Self {
             plain: Buffers::new(&system),
-            now: Instant::new(&system),
-            neighbours: vec![],
+            now: TimeData::new(&system),
+            perturbed: vec![],
             held: None,
             system,
             ..self.clone()
@@ -107,13 +107,13 @@ impl BeamDae {
     }
 
     /// Carries along the systems of changed parameters: the sensitivities to these can be computed then.
-    pub fn with_neighbours(self, neighbours: Vec<Neighbours>) -> Self {
-        Self { neighbours, ..self }
+    pub fn with_perturbed(self, perturbed: Vec<PerturbedSystems>) -> Self {
+        Self { perturbed, ..self }
     }
 
     /// The systems of changed parameters.
-    pub fn neighbours_mut(&mut self) -> &mut [Neighbours] {
-        &mut self.neighbours
+    pub fn perturbed_mut(&mut self) -> &mut [PerturbedSystems] {
+        &mut self.perturbed
     }
 
     /// The system that is solved.
@@ -122,7 +122,7 @@ impl BeamDae {
     }
 
     /// Chooses the smooth interval in which signals are looked at, by an instant inside it [s].
-    pub fn look_within(&mut self, t: f64) {
+    pub fn enter_smooth_interval(&mut self, t: f64) {
         self.within = t;
     }
 
@@ -131,7 +131,7 @@ impl BeamDae {
     /// to sections that turn, [`kick`].
     pub fn switch(&mut self, t: f64, within: f64, y: &mut [f64]) {
         let before = self.instant(t).1.clone();
-        self.look_within(within);
+        self.enter_smooth_interval(within);
         let after = self.instant(t).1.clone();
         let (system, b) = (&self.system, &mut self.plain);
         start::change_frame(system, &before, &after, y);
@@ -150,9 +150,9 @@ impl BeamDae {
     /// instant [s], to one in the present smooth interval. See [`ledger::side`] and [`ledger::strokes`].
     pub fn jump(&mut self, t: f64, (before, within): (&[f64], f64), after: &[f64], integrals: &mut [f64]) {
         let ahead = self.within;
-        self.look_within(within);
+        self.enter_smooth_interval(within);
         let from = self.instant(t).1.clone();
-        self.look_within(ahead);
+        self.enter_smooth_interval(ahead);
         let to = self.instant(t).1.clone();
         let (system, b) = (&self.system, &mut self.plain);
         let l = &system.layout;
@@ -174,7 +174,7 @@ impl BeamDae {
                     b.yp[v + k] = 0.0;
                 }
             }
-            recipe::evaluate(system, &now, &b.y, &b.yp, &mut b.workspace);
+            residual::evaluate(system, &now, &b.y, &b.yp, &mut b.workspace);
             ledger::side(system, &now, &b.yp, &mut b.workspace, &mut part);
             for (total, part) in integrals.iter_mut().zip(&part) {
                 *total += 0.5 * part;
@@ -188,24 +188,24 @@ impl BeamDae {
     }
 
     /// The system, and the values of time alone at an instant.
-    pub fn instant(&mut self, t: f64) -> (&System, &Instant) {
+    pub fn instant(&mut self, t: f64) -> (&System, &TimeData) {
         self.held = None;
         self.now.update(&self.system, Clock { t, within: self.within });
         (&self.system, &self.now)
     }
 
     /// Evaluates the model at a scaled state and hands out time's values and the workspace, for balances and samples.
-    pub fn evaluate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &Instant, &mut Workspace<f64>) {
+    pub fn evaluate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, &mut Workspace<f64>) {
         self.unscale(t, y, yp);
         let b = &mut self.plain;
-        recipe::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
+        residual::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
         ledger::complete(&self.system, &self.now, &b.yp, &mut b.workspace);
         (&self.system, &self.now, &mut b.workspace)
     }
 
     /// As [`BeamDae::evaluate`], of a state that the integrator has just accepted at `t` [s]: its integrands were the last thing
     /// that was evaluated, if it was not another time, and the workspace holds them still.
-    pub fn accepted(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &Instant, &mut Workspace<f64>) {
+    pub fn accepted(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, &mut Workspace<f64>) {
         if self.held != Some(t) {
             return self.evaluate(t, y, yp);
         }
@@ -218,11 +218,11 @@ impl BeamDae {
         t: f64,
         y: &[f64],
         yp: &[f64],
-        read: impl FnOnce(&System, &Instant, &[f64], &mut Workspace<f64>) -> R,
+        read: impl FnOnce(&System, &TimeData, &[f64], &mut Workspace<f64>) -> R,
     ) -> R {
         self.unscale(t, y, yp);
         let b = &mut self.plain;
-        recipe::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
+        residual::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
         read(&self.system, &self.now, &b.yp, &mut b.workspace)
     }
 
@@ -253,7 +253,7 @@ impl Dae for BeamDae {
     fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
         self.unscale(t, y, yp);
         let b = &mut self.plain;
-        recipe::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
+        residual::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
         for (k, row) in self.system.layout.row_scales.iter().enumerate() {
             residual[k] = b.residual[k] / row;
         }
@@ -275,7 +275,7 @@ impl Dae for BeamDae {
                 b.y[column].derivative[lane] = of_y * scales[column];
                 b.yp[column].derivative[lane] = of_yp * scales[column];
             }
-            recipe::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
+            residual::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
             for &(column, lane) in sweep {
                 for entry in self.pattern.column(column) {
                     let row = self.pattern.rows[entry] as usize;
@@ -309,7 +309,7 @@ impl Dae for BeamDae {
                     b.yp[k].derivative[lane] = dyp[first + lane][k] * scale;
                 }
             }
-            recipe::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
+            residual::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
             for (lane, out) in out.iter_mut().enumerate() {
                 for (k, row) in rows.iter().enumerate() {
                     out[k] = b.residual[k].derivative[lane] / row;
@@ -320,11 +320,11 @@ impl Dae for BeamDae {
     }
 
     fn parameters(&self) -> usize {
-        self.neighbours.len()
+        self.perturbed.len()
     }
 
     fn slope(&mut self, k: usize, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Fault> {
-        self.neighbours[k].slope(out, |_, beam, out| beam.residual(t, y, yp, out))
+        self.perturbed[k].slope(out, |_, beam, out| beam.residual(t, y, yp, out))
     }
 
     fn integrand_slope(
@@ -346,7 +346,7 @@ impl Dae for BeamDae {
     fn integrands(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Fault> {
         self.unscale(t, y, yp);
         let b = &mut self.plain;
-        recipe::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
+        residual::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
         ledger::flows(&self.system, &self.now, &b.yp, &mut b.workspace, out);
         self.held = Some(t);
         Ok(())

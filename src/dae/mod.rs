@@ -3,14 +3,14 @@
 pub mod beam;
 pub mod colour;
 pub mod dual;
-pub mod neighbours;
 pub mod pattern;
+pub mod perturbed;
 pub mod statics;
 pub mod trace;
 
 pub use beam::BeamDae;
-pub use neighbours::Neighbours;
 pub use pattern::Pattern;
+pub use perturbed::PerturbedSystems;
 pub use statics::StaticBeam;
 
 /// Why an evaluation could not be done.

@@ -4,7 +4,7 @@ use super::{BeamDae, Dae, Fault, Pattern, Seeds};
 use crate::discrete::System;
 use crate::discrete::fluid_mesh::{FluidMesh, Place};
 
-/// `[E29]` The equations of a [`System`] without inertia and without rates, where `t` is the share of the loads that acts:
+/// `[E29]` The equations of a [`System`] without inertia and without rates, where `t` is the load factor that acts:
 ///
 /// ```text
 /// F(t, y, 0) = 0,        and for each set of joined cells that no prescribed pressure reaches

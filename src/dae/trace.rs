@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::Pattern;
-use crate::discrete::{Instant, System, Workspace, recipe};
+use crate::discrete::{System, TimeData, Workspace, residual};
 use crate::model::Scalar;
 
 /// A number known only by the unknowns it depends on: an index into the thread's table of sorted sets.
@@ -50,7 +50,7 @@ impl Trace {
 }
 
 /// Stored entries of the Jacobian of a system's residual with respect to unknowns and their rates.
-pub fn pattern(system: &System, now: &Instant) -> Pattern {
+pub fn pattern(system: &System, now: &TimeData) -> Pattern {
     let n = system.layout.len;
     SETS.with_borrow_mut(|sets| {
         sets.clear();
@@ -64,7 +64,7 @@ pub fn pattern(system: &System, now: &Instant) -> Pattern {
         .collect();
     let mut residual = vec![NOTHING; n];
     let mut workspace = Workspace::new(system);
-    recipe::residual(system, now, &y, &yp, &mut workspace, &mut residual);
+    residual::residual(system, now, &y, &yp, &mut workspace, &mut residual);
     let mut columns = vec![Vec::new(); n];
     SETS.with_borrow_mut(|sets| {
         for (row, trace) in residual.iter().enumerate() {

@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Instant, System, Workspace, ledger, sample};
-use crate::discrete::recipe::solid::node_stretch;
+use super::quantities::look;
+use super::{System, TimeData, Workspace, ledger};
+use crate::discrete::residual::solid::node_stretch;
 use crate::model::Kinematics;
 
 /// A value and its rate in time.
@@ -69,7 +70,7 @@ impl Glance {
     }
 
     /// Looks at the state in the workspace.
-    pub fn new(system: &System, now: &Instant, t: f64, half_height: f64, w: &Workspace<f64>) -> Self {
+    pub fn new(system: &System, now: &TimeData, t: f64, half_height: f64, w: &Workspace<f64>) -> Self {
         let mut g = Self { t, ..Self::default() };
         let last = system.mesh.nodes - 1;
         let mut set = |which: Watched, moving: Moving| g.moving[which as usize] = moving;
@@ -77,21 +78,21 @@ impl Glance {
         set(Watched::Tip3, [w.u3[last], w.v3[last]]);
         set(
             Watched::Angle,
-            [sample::tip_angle(system, w), tip_angle_rate(system, now, w)],
+            [look::tip_angle(system, w), tip_angle_rate(system, now, w)],
         );
         let (a, b) = (last / 2, last.div_ceil(2));
         set(Watched::Middle1, [0.5 * (w.u1[a] + w.u1[b]), 0.5 * (w.v1[a] + w.v1[b])]);
         set(Watched::Largest1, largest(&w.u1, &w.v1));
         set(Watched::Largest3, largest(&w.u3, &w.v3));
         (g.deflection, g.moved) = moved(w);
-        let (strain, node) = sample::largest_strain(system, half_height, w);
+        let (strain, node) = look::largest_strain(system, half_height, w);
         g.strained = node;
         g.moving[Watched::Strain as usize] = [strain, strain_rate(node, last, half_height, w)];
         g.fluid(system, now, w);
         g
     }
 
-    fn fluid(&mut self, system: &System, now: &Instant, w: &Workspace<f64>) {
+    fn fluid(&mut self, system: &System, now: &TimeData, w: &Workspace<f64>) {
         let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
             self.moving[Watched::Opening as usize] = [1.0, 0.0];
             return;
@@ -121,7 +122,7 @@ impl Glance {
             };
             set(Watched::Pressed, [sum, mean(j) + mean(wet.per_row + j)]);
         }
-        if let Some((flow, flow_rate, tube)) = sample::largest_flow(system, now, w) {
+        if let Some((flow, flow_rate, tube)) = look::largest_flow(system, now, w) {
             set(Watched::Flow, [flow, flow_rate]);
             self.tube = tube;
         }
@@ -165,7 +166,7 @@ fn moved(w: &Workspace<f64>) -> (f64, f64) {
 }
 
 /// Rate of the tip's angle [rad/s]: that of its last cell and half a cell of the end's curvature.
-fn tip_angle_rate(system: &System, now: &Instant, w: &Workspace<f64>) -> f64 {
+fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
     let last = system.mesh.nodes - 1;
     if system.model.kinematics == Kinematics::Bar {
         return 0.0;

@@ -11,7 +11,7 @@
 //! Along a straight beam it is `Δv = Δv_0 exp(-θ/√y11)` on fine meshes, and the end takes `m √y11` along. The energy gains
 //! `P·(v⁻ + v⁺)/2` at driven ends and nothing elsewhere, the angular momentum what the impulses turn, both exactly.
 
-use super::{Instant, System, Workspace};
+use super::{System, TimeData, Workspace};
 use crate::case::schema::Effect;
 use crate::model::Kinematics;
 
@@ -27,7 +27,7 @@ pub fn velocities(w: &Workspace<f64>) -> Nodal {
 
 /// Jumps of velocity of all nodes [m/s] that follow from those of driven ends; none where no sections turn. The workspace holds
 /// the place of the beam.
-pub fn spread(system: &System, [before, after]: [&Instant; 2], w: &Workspace<f64>) -> Option<Nodal> {
+pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f64>) -> Option<Nodal> {
     let l = &system.layout;
     if !l.inertia || !system.model.effects.has(Effect::RotaryInertia) || system.model.kinematics == Kinematics::Bar {
         return None;

@@ -8,7 +8,8 @@ use std::ops::Range;
 use super::{FluidMesh, Mesh};
 use crate::case::Translation;
 use crate::case::schema::Effect;
-use crate::model::{Kinematics, Model, PoolKind, network};
+use crate::case::wiring::bladder_label;
+use crate::model::{Kinematics, Model, PoolKind};
 
 /// Blocks of unknowns, in this order.
 #[derive(Clone, Debug, PartialEq)]
@@ -191,7 +192,7 @@ impl Layout {
 
     /// Name of an unknown with unit and place.
     pub fn name(&self, unknown: usize) -> String {
-        let bladder = |b: usize| network::bladder_label(b, self.per_row);
+        let bladder = |b: usize| bladder_label(b, self.per_row);
         match self.names[unknown] {
             Name::Node(what, node) => format!("{what} of node {node}"),
             Name::Segment(what, segment) => format!("{what} of segment {}", segment + 1),

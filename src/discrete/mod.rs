@@ -2,28 +2,31 @@
 
 pub mod fluid_mesh;
 pub mod glance;
-pub mod instant;
 pub mod kick;
 pub mod layout;
 pub mod ledger;
 pub mod mesh;
-pub mod recipe;
+pub mod quantities;
+pub mod residual;
 pub mod resolution;
-pub mod sample;
 pub mod shapes;
 pub mod start;
 pub mod statics;
+pub mod straight;
+pub mod time_data;
+pub mod waves;
 pub mod workspace;
 
 use crate::case::schema::Case;
+use crate::error::Result;
 use crate::model::loads::LoadKind;
-use crate::model::{Model, Storage};
+use crate::model::{Model, Storage, audit};
 
 pub use fluid_mesh::FluidMesh;
-pub use instant::{Instant, SampledLoad};
 pub use layout::Layout;
 pub use mesh::Mesh;
 pub use statics::Statics;
+pub use time_data::{SampledLoad, TimeData};
 pub use workspace::Workspace;
 
 /// A model on a mesh: everything the residual needs besides time and state.
@@ -46,37 +49,53 @@ pub struct System {
 }
 
 impl System {
-    /// Discretises a checked case. Bladders that keep their volume keep what the same system with areas as unknowns
-    /// starts with.
-    pub fn new(case: &Case) -> Self {
-        Self::starting(case, Model::new(case), Model::clone)
+    /// Discretises a checked case with the effects that it chooses. Bladders that keep their volume keep what the same system
+    /// with areas as unknowns starts with.
+    ///
+    /// # Errors
+    /// [`Error::Case`](crate::error::Error::Case) with every fault that only the model shows: [`System::accepted`].
+    pub fn new(case: &Case) -> Result<Self> {
+        Self::starting(case, Model::new(case)?, |model| Ok(model.clone()))?.accepted(case)
     }
 
     /// Discretises another model of a checked case; bladders keep the volume that they have at the start of the case.
-    pub fn with(case: &Case, model: Model) -> Self {
+    pub fn with(case: &Case, model: Model) -> Result<Self> {
         Self::starting(case, model, |_| Model::new(case))
     }
 
     /// Discretises a changed case with the effects of this system and its scales of unknowns and equations; `None` when the
     /// unknowns are then others.
-    pub fn like(&self, case: &Case) -> Option<Self> {
-        let mut system = Self::starting(case, self.model.like(case), Model::clone);
+    pub fn like(&self, case: &Case) -> Result<Option<Self>> {
+        let mut system = Self::starting(case, self.model.like(case)?, |model| Ok(model.clone()))?;
         let same = system.layout.differential == self.layout.differential && system.layout.waves == self.layout.waves;
-        same.then(|| {
-            system.layout = self.layout.clone();
-            system
-        })
+        system.layout = self.layout.clone();
+        Ok(same.then_some(system))
+    }
+
+    /// The system of a case that can be simulated.
+    ///
+    /// # Errors
+    /// [`Error::Case`](crate::error::Error::Case) for an order of the integrator that its waves make unstable, a coupling that
+    /// loses convexity, effects that were to be left out and cannot be; all at once, each with its place.
+    pub fn accepted(self, case: &Case) -> Result<Self> {
+        let mut faults: Vec<_> = waves::refusal(case, &self).into_iter().collect();
+        faults.extend(audit::refusals(case, &self.model));
+        faults.extend(self.model.effects.refusals.iter().cloned());
+        match faults.is_empty() {
+            true => Ok(self),
+            false => Err(case.source.fault(faults)),
+        }
     }
 
     /// `start` gives the model with which the case starts; it is asked only where something of the start is kept.
-    fn starting(case: &Case, model: Model, start: impl FnOnce(&Model) -> Model) -> Self {
+    fn starting(case: &Case, model: Model, start: impl FnOnce(&Model) -> Result<Model>) -> Result<Self> {
         let mut system = Self::of(case, model);
         if let (Some(wet), Some(fluid)) = (&system.model.wet, &mut system.fluid)
             && wet.storage.iter().any(|s| *s != Storage::Flowing)
         {
-            fluid.keep(&Self::areas_at_start(case, start(&system.model)), wet);
+            fluid.keep(&Self::areas_at_start(case, start(&system.model)?), wet);
         }
-        system
+        Ok(system)
     }
 
     /// Area change of every cell at the start [m^2].
@@ -90,13 +109,7 @@ impl System {
     }
 
     fn of(case: &Case, model: Model) -> Self {
-        let segments = case
-            .bladders
-            .as_ref()
-            .map(|b| b.per_row)
-            .or(case.mesh.segments)
-            .unwrap_or(10);
-        let mesh = Mesh::new(model.length, segments, case.mesh.cells_per_segment);
+        let mesh = Mesh::new(model.length, case.segments(), case.mesh.cells_per_segment);
         let fluid = model
             .wet
             .as_ref()

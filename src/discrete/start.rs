@@ -1,15 +1,15 @@
 //! The state at t = 0 (A.55-A.58, A.70).
 
-use super::{Instant, System, Workspace, recipe, shapes};
+use super::{System, TimeData, Workspace, residual, shapes};
 use crate::case::profile::Profile;
 use crate::case::schema::Case;
 use crate::case::signals::Clock;
-use crate::model::network::bladder_index;
+use crate::case::wiring::bladder_index;
 
 /// Scaled unknowns at the start: displacements of nodes as given, velocities nearest to those given, areas from the means of the given
 /// pressures over each cell, so that momentum and volume are those of the start on every mesh.
 /// Rates and whatever is algebraic are only guessed; a consistent start follows from these.
-pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
+pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
     let l = &system.layout;
     let mut y = vec![0.0; l.len];
     let length = system.model.length;
@@ -58,7 +58,7 @@ pub fn state(system: &System, case: &Case, now: &Instant) -> Vec<f64> {
 
 /// Area change of every cell at the start [m^2], of a system in which all of them are unknowns.
 pub fn areas(system: &System, case: &Case) -> Vec<f64> {
-    let mut now = Instant::new(system);
+    let mut now = TimeData::new(system);
     now.update(system, Clock { t: 0.0, within: 0.0 });
     let (l, y) = (&system.layout, state(system, case, &now));
     (l.area..l.junction).map(|k| y[k] * l.scales[k]).collect()
@@ -66,7 +66,7 @@ pub fn areas(system: &System, case: &Case) -> Vec<f64> {
 
 /// Areas that give the prescribed pressures, with the means that follow from them: a fixed point, exact after one
 /// round unless the coupling depends on the means.
-fn fill_bladders(system: &System, case: &Case, now: &Instant, y: &mut [f64]) {
+fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
@@ -75,8 +75,8 @@ fn fill_bladders(system: &System, case: &Case, now: &Instant, y: &mut [f64]) {
     let mut pressure = vec![0.0; fluid.cells];
     for start in &case.start.pressures {
         let means = shapes::in_cells(&start.pressure_pa, k);
-        for &signed in &start.bladders {
-            pressure[fluid.cells_of(bladder_index(signed, wet.per_row))].copy_from_slice(&means);
+        for bladder in start.bladders.iter().filter_map(|b| bladder_index(*b, wet.per_row)) {
+            pressure[fluid.cells_of(bladder)].copy_from_slice(&means);
         }
     }
     for (k, pool) in wet.pools.iter().enumerate() {
@@ -109,7 +109,7 @@ fn fill_bladders(system: &System, case: &Case, now: &Instant, y: &mut [f64]) {
                 }
             }
         }
-        recipe::residual(system, now, y, &yp, &mut w, &mut residual);
+        residual::residual(system, now, y, &yp, &mut w, &mut residual);
         // The residual of a mean is what it lacks.
         let means = l.mean_moment..l.area;
         let worst = means
@@ -140,7 +140,7 @@ pub fn speed_up(system: &System, jumps: &[[f64; 2]], y: &mut [f64]) {
 }
 
 /// Keeps displacements and velocities what they are while the ends' signals pass from one smooth branch to the next.
-pub fn change_frame(system: &System, before: &Instant, after: &Instant, y: &mut [f64]) {
+pub fn change_frame(system: &System, before: &TimeData, after: &TimeData, y: &mut [f64]) {
     let l = &system.layout;
     let last = (system.mesh.nodes - 1) as f64;
     let lines = [

@@ -1,7 +1,7 @@
 //! Normal forces of a beam that does not stretch: statics, from the free end on.
 
 use super::System;
-use super::instant::Frame;
+use super::time_data::Frame;
 use crate::case::Translation;
 use crate::case::schema::Effect;
 use crate::case::signals::{Clock, Jet};

@@ -89,9 +89,9 @@ pub struct Workspace<T> {
     /// Net inflow of each junction [m^3/s].
     pub junction_inflow: Vec<T>,
     /// Inflow of each component of the network that is not stored: what Newton's iteration leaves over [m^3/s].
-    pub surplus: Vec<T>,
+    pub volume_defect: Vec<T>,
     /// Conductance of each component's links to pressure ports, together [m^3/(s Pa)].
-    pub gates: Vec<T>,
+    pub port_conductance: Vec<T>,
 }
 
 impl<T: Scalar> Workspace<T> {
@@ -151,8 +151,8 @@ impl<T: Scalar> Workspace<T> {
             bridge: zeros(bridges),
             inflow: zeros(cells),
             junction_inflow: zeros(junctions),
-            surplus: zeros(components),
-            gates: zeros(components),
+            volume_defect: zeros(components),
+            port_conductance: zeros(components),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Audit of the coupling and of the range in which the model holds, when a case is read (model section 4.2).
+//! Audit of the coupling and of the range in which the model holds, when a case is read (`docs/model.md` section 4).
 
 use std::collections::BTreeMap;
 

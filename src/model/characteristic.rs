@@ -1,4 +1,4 @@
-//! Characteristic numbers of a case, printed before anything is run (model section 4.1).
+//! Characteristic numbers of a case, printed before anything is run (`docs/model.md` section 11).
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;

@@ -1,6 +1,8 @@
 //! The paper's coordinate of the network, `X_f`, and its maps to and from the beam (A.59-A.61, tables A.1 and A.2).
 
-use super::network::{Network, bladder_label};
+use super::Wet;
+use super::network::Network;
+use crate::case::wiring::bladder_label;
 
 /// The paper's tables use a tube of 0.0184 m where its text says 0.020 m.
 pub const TABLE_TUBE_RATIO: f64 = 0.92;
@@ -24,6 +26,12 @@ pub struct NetworkCoordinate {
 }
 
 impl NetworkCoordinate {
+    /// As the paper's tables have it, of tubes of a length [m].
+    pub fn of(wet: &Wet, tube_length: f64) -> Self {
+        let tube = TABLE_TUBE_RATIO * tube_length;
+        Self::new(&wet.network, wet.per_row, wet.bladder_length, tube)
+    }
+
     /// Coordinate of a network whose tubes have length `tube_length` [m] in the tables.
     pub fn new(network: &Network, per_row: usize, bladder_length: f64, tube_length: f64) -> Self {
         let n = 2 * per_row;

@@ -22,6 +22,7 @@ pub mod tongue;
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Effects, Formulation};
 use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};
+use crate::error::Result;
 
 pub use beam::Section;
 pub use bladder::AreaLaw;
@@ -132,43 +133,41 @@ pub struct Model {
 
 impl Model {
     /// The model of a checked case: effects chosen as it asks.
-    pub fn new(case: &Case) -> Self {
+    ///
+    /// # Errors
+    /// Of [`Network::of`], as of everything that makes a model: something named in the network is not there.
+    pub fn new(case: &Case) -> Result<Self> {
         let section = Section::new(case);
-        let filled = case.fluid.as_ref().zip(case.bladders.as_ref());
-        let network = filled.map(|(fluid, bladders)| Network::new(case, fluid, bladders));
+        let network = Network::of(case)?;
         let mut effects = EffectSet::whole(case, network.as_ref());
         if case.effects != Effects::Full {
-            let whole = filled.zip(network.clone());
-            let whole = whole.map(|((_, bladders), network)| Wet::new(case, bladders, &section, network, &effects));
+            let whole = case.bladders.as_ref().zip(network.clone());
+            let whole = whole.map(|(bladders, network)| Wet::new(case, bladders, &section, network, &effects));
             effects = EffectSet::choose(case, network.as_ref(), &Scene::new(case, &section, whole.as_ref()));
         }
-        Self::of(case, section, network, effects)
+        Ok(Self::of(case, section, network, effects))
     }
 
     /// Everything that a checked case describes and does not leave out by name; with or without inertia of the solid.
-    pub fn whole(case: &Case, inertia: bool) -> Self {
-        let filled = case.fluid.as_ref().zip(case.bladders.as_ref());
-        let network = filled.map(|(fluid, bladders)| Network::new(case, fluid, bladders));
+    pub fn whole(case: &Case, inertia: bool) -> Result<Self> {
+        let network = Network::of(case)?;
         let effects = EffectSet::whole(case, network.as_ref());
         let effects = if inertia { effects } else { effects.at_rest() };
-        Self::of(case, Section::new(case), network, effects)
+        Ok(Self::of(case, Section::new(case), network, effects))
     }
 
     /// The model of a changed case with the effects and scales of this one.
-    pub fn like(&self, case: &Case) -> Self {
-        let filled = case.fluid.as_ref().zip(case.bladders.as_ref());
-        let network = filled.map(|(fluid, bladders)| Network::new(case, fluid, bladders));
-        Self {
+    pub fn like(&self, case: &Case) -> Result<Self> {
+        Ok(Self {
             scales: self.scales,
-            ..Self::of(case, Section::new(case), network, self.effects.clone())
-        }
+            ..Self::of(case, Section::new(case), Network::of(case)?, self.effects.clone())
+        })
     }
 
     /// The same model of a case without inertia of the solid.
-    pub fn at_rest(&self, case: &Case) -> Self {
-        let filled = case.fluid.as_ref().zip(case.bladders.as_ref());
-        let network = filled.map(|(fluid, bladders)| Network::new(case, fluid, bladders));
-        Self::of(case, self.section, network, self.effects.clone().at_rest())
+    pub fn at_rest(&self, case: &Case) -> Result<Self> {
+        let effects = self.effects.clone().at_rest();
+        Ok(Self::of(case, self.section, Network::of(case)?, effects))
     }
 
     fn of(case: &Case, section: Section, network: Option<Network>, effects: EffectSet) -> Self {

@@ -1,9 +1,10 @@
 //! How each bladder stores fluid: what of it is unknown.
 
-use super::network::{LinkKind, Node, bladder_index};
+use super::network::{LinkKind, Node};
 use super::{EffectSet, Network};
 use crate::case::schema::Case;
 use crate::case::schema::Effect;
+use crate::case::wiring::bladder_index;
 
 /// `[E23]` What is known of a bladder's area and pressure:
 ///
@@ -102,8 +103,8 @@ pub fn of_bladders(case: &Case, network: &Network, effects: &EffectSet) -> (Vec<
     let per_row = network.component_of_bladder.len() / 2;
     let uneven = |bladder: usize| {
         case.start.pressures.iter().any(|start| {
-            let here = start.bladders.iter().any(|&b| bladder_index(b, per_row) == bladder);
-            here && !start.pressure_pa.is_uniform()
+            let here = |b: &i64| bladder_index(*b, per_row) == Some(bladder);
+            start.bladders.iter().any(here) && !start.pressure_pa.is_uniform()
         })
     };
     let mut storage: Vec<Storage> = network

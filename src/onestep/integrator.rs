@@ -59,6 +59,7 @@ impl<D: Dae> OneStep<D> {
             counters: Counters {
                 steps_by_order: vec![0; order.into()],
                 max_order: order,
+                method: Some(options.method.into()),
                 ..Counters::default()
             },
             newton_iterations: 0,

@@ -13,7 +13,7 @@
 //! | [`tableau`] | the methods: coefficients, orders |
 //! | [`options`] | what can be asked |
 //! | [`integrator`] | one accepted step at a time |
-//! | [`march`] | a march over a fixed grid and its exact derivative |
+//! | [`step_map`] | a march over a fixed grid and its exact derivative |
 //! | `stages` | Newton's iteration from stage to stage, and the estimate of the error |
 //! | `matrix` | Newton's matrix, its factors, and when they are too old |
 //! | `control` | the size of the next step |
@@ -28,14 +28,14 @@ mod control;
 mod dense;
 mod equations;
 pub mod integrator;
-pub mod march;
 mod matrix;
 pub mod options;
 mod polynomial;
 mod stages;
+pub mod step_map;
 pub mod tableau;
 
 pub use integrator::OneStep;
-pub use march::March;
 pub use options::OneStepOptions;
+pub use step_map::StepMap;
 pub use tableau::{Method, Tableau};

@@ -1,6 +1,7 @@
 //! What can be asked of a one-step method.
 
 use super::tableau::Method;
+use crate::case::schema;
 use crate::sundials::Absolute;
 
 /// Settings of [`super::OneStep`]. Weights of the error norm are IDA's, `1 / (relative |yᵢ| + absoluteᵢ)`.
@@ -35,6 +36,18 @@ impl Default for OneStepOptions {
             initial_step: None,
             max_step: None,
             max_failures: 30,
+        }
+    }
+}
+
+/// As a case names it.
+impl From<Method> for schema::Method {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::TrBdf2 => Self::Trbdf2,
+            Method::Esdirk34 => Self::Esdirk34,
+            Method::Esdirk46 => Self::Esdirk46,
+            Method::Esdirk57 => Self::Esdirk57,
         }
     }
 }

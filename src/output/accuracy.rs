@@ -1,10 +1,7 @@
 //! An accuracy that was asked for, in words.
 
-use serde_json::Value;
-
 use super::numbers::{count, significant};
 use crate::run::summary::Accuracy;
-use crate::study::refine::meshes::Meshes;
 
 /// Estimates told.
 const TOLD: usize = 4;
@@ -37,28 +34,4 @@ pub fn words(found: &Accuracy) -> String {
         significant(found.rtol, 1),
         count(found.pilots.len() as u64)
     )
-}
-
-/// A JSON object with what to know of the case.
-pub(super) fn with_warnings(mut value: Value, warnings: &[String]) -> Value {
-    if let Some(object) = value.as_object_mut() {
-        object.insert("warnings".into(), serde_json::to_value(warnings).unwrap_or_default());
-    }
-    value
-}
-
-/// A JSON object with what meshes do under its key, where they were compared.
-pub(super) fn with_meshes(mut value: Value, found: Option<&Meshes>) -> Value {
-    if let (Some(object), Some(found)) = (value.as_object_mut(), found) {
-        object.insert("meshes".into(), serde_json::to_value(found).unwrap_or_default());
-    }
-    value
-}
-
-/// A JSON object with the accuracy under its key, where one was asked for.
-pub(super) fn with_accuracy(mut value: Value, found: Option<&Accuracy>) -> Value {
-    if let (Some(object), Some(found)) = (value.as_object_mut(), found) {
-        object.insert("accuracy".into(), serde_json::to_value(found).unwrap_or_default());
-    }
-    value
 }

@@ -16,8 +16,8 @@ use super::stream::Mark;
 use crate::error::Result;
 use crate::run::checkpoint::Checkpoint;
 
-/// Number of the format.
-const FORMAT: u32 = 3;
+/// Number of the format: another one whenever a key of the file, or what it means, is another (tests/formats.rs).
+const FORMAT: u32 = 5;
 
 /// A checkpoint on disk.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -93,13 +93,16 @@ fn one(path: &Path) -> Result<Option<Saved>> {
         Ok(_) => {}
     }
     let refused = |why: &str| Err(fault("go on from", path, damaged(why)));
+    let other = |format: u32| {
+        format!("it has format {format} of another version of the program; this one goes on from {FORMAT}")
+    };
     let end = text.iter().position(|&b| b == b'\n').unwrap_or(text.len());
     let (heading, body) = (&text[..end], text.get(end + 1..).unwrap_or_default());
     let Ok(heading) = serde_json::from_slice::<Heading>(heading) else {
         return refused("its first line is not that of a checkpoint of this version of the program");
     };
     if heading.format != FORMAT {
-        return refused("it has the format of another version of the program");
+        return refused(&other(heading.format));
     }
     if Mark::of(body).ok() != Some(heading.body) {
         return refused("it is cut short or changed: its checksum differs");

@@ -2,19 +2,19 @@
 
 use super::plot::Curve;
 use super::plot::overlay::{self, Overlay, Pair};
+use crate::discrete::quantities::{Observable, Role};
 use crate::study::compare::interpolate::cubic;
 use crate::study::compare::{Comparison, Recording};
 
-/// Quantities drawn, if they are there.
-const DRAWN: [&str; 3] = ["tip_u1", "tip_u3", "max_pressure"];
 /// Rows drawn of a history, at most.
 const ROWS: usize = 1500;
 
 /// The text of the picture; `None` when no quantity is in both.
 pub fn picture(a: &Recording, b: &Recording, comparison: &Comparison) -> Option<String> {
-    let pairs = DRAWN.iter().filter_map(|name| {
-        comparison.histories.iter().find(|d| d.name == *name)?;
-        pair(a, b, name)
+    let headlines = Observable::ALL.iter().filter(|one| one.role() == Role::Headline);
+    let pairs = headlines.filter_map(|one| {
+        comparison.histories.iter().find(|d| d.name == one.name())?;
+        pair(a, b, one.name())
     });
     overlay::draw(&Overlay {
         names: [a.label.clone(), b.label.clone()],

@@ -1,10 +1,9 @@
 //! What kind of result a folder holds, by the files in it.
 
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::folder::{HISTORY, RUN_FILES, SUMMARY, fault};
+use super::folder::{HISTORY, RUN_FILES, SUMMARY, entries, fault, name_of};
 use crate::error::Result;
 
 /// Which command filled a folder.
@@ -141,9 +140,8 @@ impl Kind {
 /// A result in the folder, or else the one beside it whose name is most like it.
 fn near(dir: &Path) -> Option<String> {
     let results = |of: &Path| -> Vec<PathBuf> {
-        let entries = fs::read_dir(of).into_iter().flatten().flatten().map(|e| e.path());
-        let mut all: Vec<_> = entries.filter(|p| Kind::within(p).is_some()).collect();
-        all.sort();
+        let mut all = entries(of).unwrap_or_default();
+        all.retain(|p| Kind::within(p).is_some());
         all
     };
     if let Some(inside) = results(dir).first() {
@@ -154,10 +152,7 @@ fn near(dir: &Path) -> Option<String> {
         .parent()
         .filter(|p| !p.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
-    let likeness = |path: &Path| {
-        let other = path.file_name().map(|n| n.to_string_lossy().into_owned());
-        strsim::jaro_winkler(&name, &other.unwrap_or_default())
-    };
+    let likeness = |path: &Path| strsim::jaro_winkler(&name, &name_of(path));
     let beside = results(parent).into_iter().map(|p| (likeness(&p), p));
     let (alike, path) = beside.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (alike > 0.7).then(|| path.display().to_string())

@@ -24,12 +24,15 @@
 //! pictures  from recorded files to the data of each picture
 //! plot      one picture a file, from plain data to SVG text
 //! numbers   numbers as people read them
+//! records   rows as the text of a CSV file
+//! columns   rows as a table for people
 //! accuracy  an accuracy that was asked for, in words
 //! ```
 
 pub mod accuracy;
 pub mod arrays;
 pub mod checkpoint;
+pub mod columns;
 pub mod comparison;
 pub mod disk;
 pub mod effects;
@@ -49,6 +52,7 @@ pub mod pictures;
 pub mod plot;
 pub mod reading;
 pub mod recorder;
+pub mod records;
 pub mod report;
 pub mod stream;
 pub mod study;

@@ -3,6 +3,7 @@
 use super::arrays::ArraysWriter;
 use super::envelope::Envelope;
 use super::plot::{self, Curve, Deflection, Energy, History, Pressure};
+use crate::discrete::quantities::{Axis, Field, Observable};
 use crate::error::Result;
 
 /// Curves in a picture over space.
@@ -24,15 +25,16 @@ pub fn over_time(case: &str, history: &Envelope) -> Vec<Picture> {
         ..Energy::default()
     };
     for (k, (name, unit)) in history.names().iter().enumerate() {
+        let Some(one) = Observable::named(name) else { continue };
         let curve = || Curve {
             name: name.clone(),
             unit: unit.clone(),
             points: history.points(k),
         };
-        if plot::history::belongs(name) {
+        if plot::history::belongs(one) {
             shown.curves.push(curve());
         }
-        if plot::energy::belongs(name, unit) {
+        if plot::energy::belongs(one) {
             ledger.curves.push(curve());
         }
     }
@@ -48,24 +50,24 @@ pub fn over_space(case: &str, frequency_hz: Option<f64>, arrays: &mut ArraysWrit
     let all = arrays.times()?;
     let (span, instants) = plot::instants(&all, frequency_hz, CURVES);
     let times: Vec<f64> = instants.iter().map(|&i| all[i]).collect();
-    let axis = |arrays: &ArraysWriter, name: &str| arrays.axis(name).map(<[f64]>::to_vec).unwrap_or_default();
+    let axis = |arrays: &ArraysWriter, axis: Axis| arrays.axis(axis.name()).map(<[f64]>::to_vec).unwrap_or_default();
     let integers = |x: Vec<f64>| x.into_iter().map(|x| x.round() as i64).collect();
     let deflection = Deflection {
         case: case.to_string(),
         span,
         times: times.clone(),
-        theta: axis(arrays, "theta_node_m"),
-        u1: arrays.read("u1_m", &instants)?.unwrap_or_default(),
-        u3: arrays.read("u3_m", &instants)?.unwrap_or_default(),
+        theta: axis(arrays, Axis::Nodes),
+        u1: arrays.read(Field::U1.name(), &instants)?.unwrap_or_default(),
+        u3: arrays.read(Field::U3.name(), &instants)?.unwrap_or_default(),
     };
     let pressure = Pressure {
         case: case.to_string(),
         span,
         times,
-        x_f: axis(arrays, "x_f"),
-        bladder: integers(axis(arrays, "bladder")),
-        network: integers(axis(arrays, "array")),
-        pressure: arrays.read("pressure_pa", &instants)?.unwrap_or_default(),
+        x_f: axis(arrays, Axis::Network),
+        bladder: integers(axis(arrays, Axis::Bladder)),
+        network: integers(axis(arrays, Axis::Array)),
+        pressure: arrays.read(Field::Pressure.name(), &instants)?.unwrap_or_default(),
     };
     Ok(present([
         ("deflection.svg", plot::deflection::draw(&deflection)),

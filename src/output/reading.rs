@@ -3,20 +3,23 @@
 use std::io;
 use std::path::Path;
 
-use serde_json::Value;
-
 use super::arrays::TIMES;
 use super::folder::{CASE, FIELDS, HISTORY, damaged, fault, open, text_of};
 use super::npz::Npz;
 use super::summary;
 use crate::error::Result;
+use crate::results;
 use crate::study::compare::{Array, Recording, Series};
 
 /// Reads all files of a result.
 pub fn read(dir: &Path) -> Result<Recording> {
     let path = dir.join(CASE);
     let text = text_of(&path)?;
-    let case: Value = serde_json::from_str(&text).map_err(|e| fault("read", &path, io::Error::from(e)))?;
+    let wrong = |e| fault("read", &path, e);
+    let (case, known) = (
+        results::parse(&text).map_err(wrong)?,
+        results::parse(&text).map_err(wrong)?,
+    );
     let summary = summary::read(dir)?;
     let path = dir.join(HISTORY);
     let mut columns = history(&path).map_err(|e| fault("read", &path, e))?;
@@ -32,6 +35,7 @@ pub fn read(dir: &Path) -> Result<Recording> {
     let mut out = Recording {
         label: dir.display().to_string(),
         case,
+        known,
         summary,
         times,
         columns,

@@ -1,13 +1,11 @@
 //! `summary.json`, there and back. What is not finite is written as null, or left out of maps.
 
-use std::io;
 use std::path::{Path, PathBuf};
 
-use serde_json::{Map, Value};
-
-use super::folder::{ResultFolder, SUMMARY, fault, text_of};
+use super::folder::{ResultFolder, SUMMARY};
 use crate::error::Result;
-use crate::run::summary::{Quantity, Summary};
+use crate::results::run::{Quantity, Summary};
+use crate::results::{self, Found};
 
 /// The text of `summary.json`.
 pub fn to_json(summary: &Summary) -> String {
@@ -30,9 +28,7 @@ pub fn to_json(summary: &Summary) -> String {
             window_error: finite(q.window_error),
         };
     }
-    let mut text = serde_json::to_string_pretty(&summary).unwrap_or_default();
-    text.push('\n');
-    text
+    results::text(&summary)
 }
 
 /// Writes `summary.json` and returns its path.
@@ -42,43 +38,14 @@ pub fn write(folder: &ResultFolder, summary: &Summary) -> Result<PathBuf> {
 
 /// Reads the summary of a result folder; nulls come back as NaN.
 pub fn read(dir: &Path) -> Result<Summary> {
-    let path = dir.join(SUMMARY);
-    let text = text_of(&path)?;
-    from_json(&text).map_err(|e| fault("read", &path, io::Error::from(e)))
+    Ok(found(dir)?.result)
 }
 
-fn from_json(text: &str) -> serde_json::Result<Summary> {
-    let mut value: Value = serde_json::from_str(text)?;
-    let mut nulls = Vec::new();
-    if let Some(Value::Object(balances)) = value.get_mut("balances") {
-        nulls = zero_nulls(balances);
-    }
-    let mut summary: Summary = serde_json::from_value(value)?;
-    let balances = &mut summary.balances;
-    for key in nulls {
-        match key.as_str() {
-            "energy_residual_relative" => balances.energy_residual_relative = f64::NAN,
-            "volume_residual_relative" => balances.volume_residual_relative = f64::NAN,
-            "port_flow_residual_relative" => balances.port_flow_residual_relative = f64::NAN,
-            "reaction_difference_relative" => balances.reaction_difference_relative = f64::NAN,
-            "momentum_residual_relative" => balances.momentum_residual_relative = f64::NAN,
-            "angular_momentum_residual_relative" => balances.angular_momentum_residual_relative = f64::NAN,
-            _ => {}
-        }
-    }
-    Ok(summary)
+/// The same with what it says of itself.
+pub fn found(dir: &Path) -> Result<Found<Summary>> {
+    super::folder::result(&dir.join(SUMMARY))
 }
 
 fn finite(x: Option<f64>) -> Option<f64> {
     x.filter(|x| x.is_finite())
-}
-
-/// Puts zeros for nulls and tells where they were.
-fn zero_nulls(map: &mut Map<String, Value>) -> Vec<String> {
-    let mut keys = Vec::new();
-    for (key, value) in map.iter_mut().filter(|(_, v)| v.is_null()) {
-        *value = Value::from(0.0);
-        keys.push(key.clone());
-    }
-    keys
 }

@@ -47,12 +47,12 @@ impl Checkpoint {
     /// # Errors
     ///
     /// Another case or version of the program wrote it, or its numbers are not as many as the case has.
-    pub fn fits(&self, case: &Case) -> Result<()> {
+    pub fn fits(&self, case: &Case, system: &System) -> Result<()> {
         let fault = |why: &str| Err(Error::Usage(format!("the checkpoint {why}; nothing was changed")));
         if self.case != case.resolved_json() || self.version != VERSION {
             return fault("belongs to another case or another version of the program");
         }
-        let unknowns = System::new(case).layout.len;
+        let unknowns = system.layout.len;
         if self.y.len() != unknowns || self.yp.len() != unknowns {
             return fault("has another number of unknowns than the case");
         }

@@ -20,33 +20,15 @@ use serde::{Deserialize, Serialize};
 use super::schedule::SAME;
 use super::summary::Quantity;
 use crate::case::schema::Case;
+use crate::discrete::quantities::{Group, Interest, Row};
 use crate::error::Code;
 
 /// Open by more than this part of a figure: it is warned of.
 const OPEN: f64 = 0.1;
 /// Figures of energy below this part of the largest energy stored are what remains of larger ones that cancel.
-const REMAINDER: f64 = 3e-3;
+pub const REMAINDER: f64 = 3e-3;
 /// An efficiency is above one, or below zero, when it is so by more than its round-off.
 const ROUND_OFF: f64 = 1e-6;
-
-/// Columns of the history that add up to each part.
-const INPUT: &[&str] = &["work_loads", "work_ends", "work_ports"];
-const HARVESTED: &[&str] = &["harvested"];
-const DISSIPATED: &[&str] = &[
-    "dissipated_bladders",
-    "dissipated_tubes",
-    "dissipated_rectifiers",
-    "dissipated_damping",
-];
-const ADDED: &[&str] = &["work_formulation", "work_reciprocity"];
-const STORED: &[&str] = &[
-    "kinetic_energy",
-    "rotary_energy",
-    "axial_energy",
-    "bending_energy",
-    "bladder_energy",
-];
-const RESIDUAL: &[&str] = &["energy_residual"];
 
 /// Energies at an instant, or gains over a time [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -106,10 +88,12 @@ impl Since {
 pub struct Energies {
     window_start: f64,
     turbines: bool,
-    columns: BTreeMap<String, usize>,
     last: Parts,
     /// Of the outputs [J].
     pub largest_stored: f64,
+    /// Likewise of what was put in [J].
+    #[serde(default)]
+    pub largest_input: f64,
     /// Energies that are round-off [J].
     #[serde(default)]
     floor: f64,
@@ -118,33 +102,32 @@ pub struct Energies {
 }
 
 impl Energies {
-    /// For a case whose history has the given columns, and where energies below a floor [J] are round-off.
-    pub fn new(case: &Case, columns: &[&'static str], floor: f64) -> Self {
+    /// For a case in which energies below a floor [J] are round-off.
+    pub fn new(case: &Case, floor: f64) -> Self {
         Self {
             floor,
             window_start: case.time.end_s - case.time.window() * (1.0 + SAME),
             turbines: case.network.as_ref().is_some_and(|n| !n.turbines.is_empty()),
-            columns: columns.iter().enumerate().map(|(k, c)| (c.to_string(), k)).collect(),
             ..Self::default()
         }
     }
 
     /// Takes one row, as of the history.
-    pub fn take(&mut self, row: &[f64]) {
-        let sum = |names: &[&str]| -> f64 { names.iter().filter_map(|n| self.columns.get(*n)).map(|k| row[*k]).sum() };
+    pub fn take(&mut self, row: &Row) {
         let now = Parts {
-            input: sum(INPUT),
-            harvested: sum(HARVESTED),
-            dissipated: sum(DISSIPATED),
-            added: sum(ADDED),
-            stored: sum(STORED),
+            input: row.sum(Group::PutIn),
+            harvested: row.sum(Group::Harvested),
+            dissipated: row.sum(Group::Lost),
+            added: row.sum(Group::Added),
+            stored: row.sum(Group::Stored),
         };
-        let residual = sum(RESIDUAL);
+        let residual = row.sum(Group::Open);
         self.last = now;
         self.largest_stored = self.largest_stored.max(now.stored.abs());
-        self.see(row[0], residual);
+        self.largest_input = self.largest_input.max(now.input.abs());
+        self.see(row.t(), residual);
         self.run.start.get_or_insert((now, residual));
-        if row[0] >= self.window_start {
+        if row.t() >= self.window_start {
             self.window.start.get_or_insert((now, residual));
         }
     }
@@ -163,15 +146,15 @@ impl Energies {
         let (opened, open) = (self.run.open(), self.window.open());
         let relative = |open: f64, size: f64| finite(open / size.abs());
         for (name, run, window) in [
-            ("input_energy_j", run.input, window.input),
-            ("harvested_energy_j", run.harvested, window.harvested),
+            (Interest::InputEnergy, run.input, window.input),
+            (Interest::HarvestedEnergy, run.harvested, window.harvested),
         ] {
-            if let Some(q) = quantities.get_mut(name) {
+            if let Some(q) = quantities.get_mut(name.name()) {
                 q.final_error = relative(opened, run);
                 q.window_error = relative(open, window);
             }
         }
-        if let Some(q) = quantities.get_mut("efficiency") {
+        if let Some(q) = quantities.get_mut(Interest::Efficiency.name()) {
             q.window = finite(window.harvested / window.spent());
             q.final_error = q.last.and_then(|_| relative(opened, run.input));
             q.window_error = q.window.and_then(|_| relative(open, window.spent()));
@@ -182,11 +165,8 @@ impl Energies {
     pub fn warning(&self, quantities: &BTreeMap<String, Quantity>) -> Option<String> {
         let mut all = vec![];
         let times = [("over the run", self.run), ("in the window", self.window)];
-        for (name, words) in [
-            ("input_energy_j", "energy put in"),
-            ("harvested_energy_j", "energy harvested"),
-        ] {
-            let Some(q) = quantities.get(name) else { continue };
+        for of in [Interest::InputEnergy, Interest::HarvestedEnergy] {
+            let Some(q) = quantities.get(of.name()) else { continue };
             let figures = [(q.last, q.final_error), (q.window, q.window_error)];
             for ((value, error), (when, _)) in figures.into_iter().zip(times) {
                 if let (Some(value), Some(error)) = (value, error)
@@ -194,13 +174,14 @@ impl Energies {
                     && value.abs() > (REMAINDER * self.largest_stored).max(self.floor)
                 {
                     all.push(format!(
-                        "the {words} {when}, {value:.3e} J, is open by {:.0} % of it",
+                        "the {} {when}, {value:.3e} J, is open by {:.0} % of it",
+                        of.words(),
                         100.0 * error
                     ));
                 }
             }
         }
-        if let Some(q) = quantities.get("efficiency").filter(|_| self.turbines) {
+        if let Some(q) = quantities.get(Interest::Efficiency.name()).filter(|_| self.turbines) {
             let figures = [(q.last, q.final_error), (q.window, q.window_error)];
             for ((value, error), (when, since)) in figures.into_iter().zip(times) {
                 let (Some(value), Some(error)) = (value, error) else {
@@ -227,14 +208,13 @@ impl Energies {
 /// Largest error over the window of an efficiency and of energies, but of those that remain of much larger ones, the largest of
 /// which is given [J].
 pub fn open_over_window(quantities: &BTreeMap<String, Quantity>, largest: f64) -> Option<f64> {
-    let counts = |name: &str, value: f64| name == "efficiency" || value.abs() > REMAINDER * largest;
-    let figures = ["input_energy_j", "harvested_energy_j", "efficiency"]
-        .into_iter()
-        .filter_map(|name| {
-            let q = quantities.get(name)?;
-            q.window_error
-                .filter(|_| q.window.is_some_and(|value| counts(name, value)))
-        });
+    let all = [Interest::InputEnergy, Interest::HarvestedEnergy, Interest::Efficiency];
+    let counts = |of: Interest, value: f64| of == Interest::Efficiency || value.abs() > REMAINDER * largest;
+    let figures = all.into_iter().filter_map(|of| {
+        let q = quantities.get(of.name())?;
+        q.window_error
+            .filter(|_| q.window.is_some_and(|value| counts(of, value)))
+    });
     figures.reduce(f64::max)
 }
 
@@ -265,26 +245,32 @@ fn finite(x: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::discrete::quantities::Observable;
 
-    const COLUMNS: [&str; 8] = [
-        "t",
-        "kinetic_energy",
-        "work_loads",
-        "harvested",
-        "dissipated_tubes",
-        "work_reciprocity",
-        "work_formulation",
-        "energy_residual",
+    const COLUMNS: [Observable; 8] = [
+        Observable::Time,
+        Observable::KineticEnergy,
+        Observable::WorkLoads,
+        Observable::Harvested,
+        Observable::DissipatedTubes,
+        Observable::WorkReciprocity,
+        Observable::WorkFormulation,
+        Observable::EnergyResidual,
     ];
 
     fn followed(rows: &[[f64; 8]]) -> (Energies, BTreeMap<String, Quantity>) {
         let mut energies = Energies {
             window_start: 1.0,
             turbines: true,
-            columns: COLUMNS.iter().enumerate().map(|(k, c)| (c.to_string(), k)).collect(),
             ..Energies::default()
         };
-        rows.iter().for_each(|row| energies.take(row));
+        let mut row = Row::new(COLUMNS.to_vec());
+        for values in rows {
+            for (column, value) in COLUMNS.into_iter().zip(values) {
+                row.set(column, *value);
+            }
+            energies.take(&row);
+        }
         let (first, last) = (&rows[1], &rows[rows.len() - 1]);
         let energy = |k: usize| Quantity {
             last: Some(last[k]),

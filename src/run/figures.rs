@@ -12,23 +12,15 @@ use super::cubic::{self, Cubic};
 use super::schedule::SAME;
 use super::summary::Quantity;
 use crate::case::schema::Case;
+use crate::discrete::System;
 use crate::discrete::glance::{Glance, Watched};
+use crate::discrete::quantities::{Interest, Row, Source};
 
 /// Excess over the largest value seen for which the state at a turning point between two steps is looked at; below it the cubic
 /// through values and rates at the step's ends is as good.
 const WORTH: f64 = 1e-3;
 /// Share of the characteristic size below which nothing is a motion.
 const FLOOR: f64 = 1e-9;
-
-/// Quantities that swing: their names, and what they are.
-const SWINGING: [(&str, Watched); 6] = [
-    ("tip_u1_m", Watched::Tip1),
-    ("tip_u3_m", Watched::Tip3),
-    ("tip_angle_rad", Watched::Angle),
-    ("midspan_u1_m", Watched::Middle1),
-    ("largest_u1_m", Watched::Largest1),
-    ("largest_u3_m", Watched::Largest3),
-];
 
 /// Largest and last value of one number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -74,58 +66,51 @@ pub struct Figures {
     window_start: f64,
     /// Time in the window over which squares have been integrated [s].
     window_time: f64,
-    columns: BTreeMap<String, usize>,
-    swinging: [Track; SWINGING.len()],
-    pressure: Option<Track>,
-    input: Track,
-    harvested: Option<Track>,
+    /// Of the quantities that the run has, in the order of [`Interest::ALL`].
+    tracks: Vec<Track>,
+    /// Whether there is fluid, whether there are turbines.
+    has: [bool; 2],
     /// Length of the beam [m] and Young's modulus [Pa]: sizes against which motion is nothing.
     sizes: [f64; 2],
 }
 
 impl Figures {
-    /// For a case whose history has the given columns.
-    pub fn new(case: &Case, columns: &[&'static str]) -> Self {
-        let window = case.time.window();
-        let wet = columns.contains(&"max_pressure");
+    /// Of a case and its system.
+    pub fn new(case: &Case, system: &System) -> Self {
         let turbines = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
+        let has = [system.fluid.is_some(), turbines];
         Self {
-            window_start: case.time.end_s - window * (1.0 + SAME),
+            window_start: case.time.end_s - case.time.window() * (1.0 + SAME),
             window_time: 0.0,
-            columns: columns.iter().enumerate().map(|(k, c)| (c.to_string(), k)).collect(),
-            swinging: [Track::default(); SWINGING.len()],
-            pressure: wet.then(Track::default),
-            input: Track::default(),
-            harvested: turbines.then(Track::default),
+            tracks: Interest::of(has).map(|_| Track::default()).collect(),
+            has,
             sizes: [case.beam.length_m, case.beam.young_modulus_pa],
         }
     }
 
+    fn each(&mut self) -> impl Iterator<Item = (Interest, &mut Track)> {
+        Interest::of(self.has).zip(&mut self.tracks)
+    }
+
     /// Takes one row, as of the history, with the look at the same state.
-    pub fn take(&mut self, row: &[f64], glance: &Glance) {
-        let at = |name: &str| row[self.columns[name]];
-        let in_window = row[0] >= self.window_start;
-        for (track, (_, which)) in self.swinging.iter_mut().zip(SWINGING) {
-            track.take(value(glance, which), in_window);
-        }
-        if let Some(track) = &mut self.pressure {
-            track.take(pressure(glance), in_window);
-        }
-        self.input
-            .take(at("work_loads") + at("work_ends") + at("work_ports"), in_window);
-        if let Some(track) = &mut self.harvested {
-            track.take(at("harvested"), in_window);
+    pub fn take(&mut self, row: &Row, glance: &Glance) {
+        let in_window = row.t() >= self.window_start;
+        for (one, track) in self.each() {
+            match one.source() {
+                Source::Motion(watched) => track.take(value(glance, watched), in_window),
+                Source::Energy(group) => track.take(row.sum(group), in_window),
+                Source::Efficiency => {}
+            }
         }
     }
 
     /// Takes a state at any time.
     pub fn see(&mut self, glance: &Glance) {
         let in_window = glance.t >= self.window_start;
-        for (track, (_, which)) in self.swinging.iter_mut().zip(SWINGING) {
-            track.see(value(glance, which).abs(), in_window);
-        }
-        if let Some(track) = &mut self.pressure {
-            track.see(pressure(glance), in_window);
+        for (one, track) in self.each() {
+            if let Source::Motion(watched) = one.source() {
+                track.see(value(glance, watched).abs(), in_window);
+            }
         }
     }
 
@@ -137,14 +122,21 @@ impl Figures {
         }
         let from = ((self.window_start - before.t) / h).max(0.0);
         self.window_time += h * (1.0 - from);
-        let between = |which| Cubic::new(sized(before, which), sized(now, which), h);
-        for (track, (_, which)) in self.swinging.iter_mut().zip(SWINGING) {
-            let cubic = between(which);
-            track.window_squares += h * cubic::integral(from, |x| cubic.at(x).powi(2));
-        }
-        if let Some(track) = &mut self.pressure {
-            let (high, low) = (between(Watched::High), between(Watched::Low));
-            track.window_squares += h * cubic::integral(from, |x| high.at(x).abs().max(low.at(x).abs()).powi(2));
+        let between = |which: &Watched| Cubic::new(sized(before, *which), sized(now, *which), h);
+        for (one, track) in self.each() {
+            let squares = match one.source() {
+                Source::Motion([which]) => {
+                    let cubic = between(which);
+                    cubic::integral(from, |x| cubic.at(x).powi(2))
+                }
+                Source::Motion(watched) => {
+                    let cubics: Vec<Cubic> = watched.iter().map(between).collect();
+                    let largest = |x| cubics.iter().fold(0.0, |most: f64, cubic| most.max(cubic.at(x).abs()));
+                    cubic::integral(from, |x| largest(x).powi(2))
+                }
+                Source::Energy(_) | Source::Efficiency => continue,
+            };
+            track.window_squares += h * squares;
         }
     }
 
@@ -153,17 +145,18 @@ impl Figures {
     pub fn turn(&mut self, which: Watched, size: f64, t: f64) -> bool {
         let in_window = t >= self.window_start;
         let [length, modulus] = self.sizes;
-        let (track, floor) = match which {
-            Watched::High | Watched::Low => (self.pressure.as_mut(), FLOOR * modulus),
-            _ => {
-                let place = SWINGING.iter().position(|(_, of)| *of == which);
-                let floor = if which == Watched::Angle { FLOOR } else { FLOOR * length };
-                (place.map(|k| &mut self.swinging[k]), floor)
-            }
-        };
-        let Some(track) = track.filter(|_| size > floor) else {
+        let follows = |one: Interest| matches!(one.source(), Source::Motion(watched) if watched.contains(&which));
+        let Some((one, track)) = self.each().find(|(one, _)| follows(*one)) else {
             return false;
         };
+        let floor = match one.unit() {
+            "m" => FLOOR * length,
+            "Pa" => FLOOR * modulus,
+            _ => FLOOR,
+        };
+        if size <= floor {
+            return false;
+        }
         let worth = track.worth(size, in_window);
         if !worth {
             track.see(size, in_window);
@@ -171,53 +164,53 @@ impl Figures {
         worth
     }
 
-    /// Whether the motion has come to the window: before, there is nothing to tell of it.
-    fn in_window(&self) -> bool {
-        self.window_time > 0.0 || self.input.window_start.is_some()
+    fn track(&self, of: Interest) -> Option<&Track> {
+        let place = Interest::of(self.has).position(|one| one == of)?;
+        self.tracks.get(place)
     }
 
     /// The quantities by name.
     pub fn quantities(&self) -> BTreeMap<String, Quantity> {
-        let mut all = BTreeMap::new();
-        let reached = self.in_window();
-        let size = |t: &Track| Quantity {
-            last: Some(t.last),
-            max_abs: Some(t.max_abs),
-            window_max_abs: reached.then_some(t.window_max_abs),
-            window_rms: (self.window_time > 0.0).then(|| (t.window_squares / self.window_time).sqrt()),
-            ..Quantity::default()
+        let [input, harvested] = [Interest::InputEnergy, Interest::HarvestedEnergy].map(|of| self.track(of));
+        // before the motion has come to the window there is nothing to tell of it
+        let reached = self.window_time > 0.0 || input.is_some_and(|input| input.window_start.is_some());
+        let ratio = |of: fn(&Track) -> f64| {
+            let ratio = of(harvested?) / of(input?);
+            ratio.is_finite().then_some(ratio)
         };
-        for (track, (name, _)) in self.swinging.iter().zip(SWINGING) {
-            all.insert(name.into(), size(track));
-        }
-        if let Some(p) = &self.pressure {
-            all.insert("max_pressure_pa".into(), size(p));
-        }
-        let energy = |t: &Track| Quantity {
-            last: Some(t.last),
-            window: reached.then(|| t.increment()),
-            ..Quantity::default()
+        let quantity = |one: Interest, t: &Track| match one.source() {
+            Source::Motion(_) => Quantity {
+                last: Some(t.last),
+                max_abs: Some(t.max_abs),
+                window_max_abs: reached.then_some(t.window_max_abs),
+                window_rms: (self.window_time > 0.0).then(|| (t.window_squares / self.window_time).sqrt()),
+                ..Quantity::default()
+            },
+            Source::Energy(_) => Quantity {
+                last: Some(t.last),
+                window: reached.then(|| t.increment()),
+                ..Quantity::default()
+            },
+            Source::Efficiency => Quantity {
+                last: ratio(|t| t.last),
+                window: ratio(Track::increment).filter(|_| reached),
+                ..Quantity::default()
+            },
         };
-        all.insert("input_energy_j".into(), energy(&self.input));
-        if let Some(h) = &self.harvested {
-            all.insert("harvested_energy_j".into(), energy(h));
-            let ratio = |a: f64, b: f64| (b != 0.0 && (a / b).is_finite()).then_some(a / b);
-            all.insert(
-                "efficiency".into(),
-                Quantity {
-                    last: ratio(h.last, self.input.last),
-                    window: ratio(h.increment(), self.input.increment()).filter(|_| reached),
-                    ..Quantity::default()
-                },
-            );
-        }
-        all
+        let all = Interest::of(self.has).zip(&self.tracks);
+        all.map(|(one, track)| (one.name().into(), quantity(one, track)))
+            .collect()
     }
 }
 
-/// A value as its quantity has it: sizes where the place may be any.
-fn value(glance: &Glance, which: Watched) -> f64 {
-    sized(glance, which)[0]
+/// A value as its quantity has it: of several the larger in size.
+fn value(glance: &Glance, watched: &[Watched]) -> f64 {
+    match watched {
+        [which] => sized(glance, *which)[0],
+        _ => watched
+            .iter()
+            .fold(0.0, |most: f64, which| most.max(glance.of(*which)[0].abs())),
+    }
 }
 
 /// A value with its rate; of what is largest anywhere, the size.
@@ -227,8 +220,4 @@ pub fn sized(glance: &Glance, which: Watched) -> [f64; 2] {
         Watched::Largest1 | Watched::Largest3 if value < 0.0 => [-value, -rate],
         _ => [value, rate],
     }
-}
-
-fn pressure(glance: &Glance) -> f64 {
-    glance.of(Watched::High)[0].abs().max(glance.of(Watched::Low)[0].abs())
 }

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
+use crate::discrete::quantities::Interest;
+use crate::error::Result;
 use crate::model::Model;
 
 /// Quantities whose size is below this part of others of their unit, or of what the case is expected to do, are round-off.
@@ -38,8 +40,8 @@ pub struct Floors {
 
 impl Floors {
     /// Of a case.
-    pub fn of(case: &Case) -> Self {
-        Self::of_model(case, &Model::new(case))
+    pub fn of(case: &Case) -> Result<Self> {
+        Ok(Self::of_model(case, &Model::new(case)?))
     }
 
     /// Of a case and its model.
@@ -66,15 +68,15 @@ impl Floors {
     pub fn of_unit(&self, unit: &str, energy: f64) -> f64 {
         match unit {
             "m" => self.displacement,
-            "pa" => self.pressure,
-            "j" => (NOTHING * energy).max(self.energy),
+            "Pa" => self.pressure,
+            "J" => (NOTHING * energy).max(self.energy),
             _ => 0.0,
         }
     }
 
     /// Unit and size in which a quantity of a name and size is compared with others: an angle as the displacement that it makes.
-    pub fn weighed<'a>(&self, name: &'a str, size: f64) -> (&'a str, f64) {
-        match name.rsplit('_').next().unwrap_or_default() {
+    pub fn weighed(&self, name: &str, size: f64) -> (&'static str, f64) {
+        match Interest::named(name).map_or("1", Interest::unit) {
             "rad" => ("m", size * self.length),
             unit => (unit, size),
         }

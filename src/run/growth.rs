@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::fit;
-use crate::discrete::Instant;
+use crate::discrete::TimeData;
 use crate::discrete::ledger::Flow;
 use crate::model::Model;
 use crate::model::characteristic::Mathieu;
@@ -108,7 +108,7 @@ impl Growth {
     /// force [N].
     pub fn take(
         &mut self,
-        now: &Instant,
+        now: &TimeData,
         t: f64,
         [deflection, bending, least_force]: [f64; 3],
         integrals: &[f64],
@@ -332,7 +332,7 @@ impl Growth {
 }
 
 /// Sizes of what drives the beam at an instant, by kind.
-fn drives(now: &Instant) -> [f64; KINDS] {
+fn drives(now: &TimeData) -> [f64; KINDS] {
     let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
     let end = |f: &dyn Fn(usize) -> f64| f(0).abs().max(f(1).abs());
     let ends = &now.ends;

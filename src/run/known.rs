@@ -4,7 +4,6 @@ use crate::case::schema::Case;
 use crate::discrete::{System, resolution};
 use crate::error::Code;
 use crate::model::{audit, characteristic};
-use crate::run::periodic::scene::whole;
 
 /// What stays true whatever a run finds: of the case and its mesh.
 pub fn lasting(case: &Case, system: &System) -> Vec<String> {
@@ -23,11 +22,6 @@ pub fn without_outputs(case: &Case, system: &System) -> Vec<String> {
     let mut all = warnings(case, system);
     all.retain(|warning| !warning.starts_with(Code::FewOutputs.id()));
     all
-}
-
-/// The same of what repeats itself, which is computed with the whole model.
-pub fn of_cycles(case: &Case) -> Vec<String> {
-    without_outputs(case, &System::with(case, whole(case)))
 }
 
 fn with_the_mesh(mut all: Vec<String>, case: &Case, system: &System) -> Vec<String> {

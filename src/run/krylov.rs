@@ -1,8 +1,8 @@
 //! Krylov spaces of a map known only by what it does: the solution of `(1 - M) x = b`, and the largest eigenvalues of M.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::Complex;
+use slcbeam_dense::eigen;
 
-use crate::spectral::schur;
 use crate::sundials::kernels::dot;
 
 /// A vector in which later ones have no part any more counts as none.
@@ -60,10 +60,17 @@ impl Space {
         open
     }
 
-    /// The map in the basis, square.
-    fn square(&self) -> DMatrix<f64> {
-        let k = self.columns.len();
-        DMatrix::from_fn(k, k, |i, j| self.columns[j].get(i).copied().unwrap_or(0.0))
+    /// Eigenvalues of largest modulus of the map in the basis with unit vectors, and a place for residuals; complex pairs once.
+    fn pairs(&self, count: usize) -> Vec<(Complex<f64>, Vec<Complex<f64>>, f64)> {
+        let entry = |i: usize, j: usize| self.columns[j].get(i).copied().unwrap_or(0.0).into();
+        let found = eigen(self.columns.len(), &entry).unwrap_or_default();
+        // of a pair that round-off has parted from the real axis both halves count as real
+        let upper = found.into_iter().filter(|(value, _)| value.im >= -REAL * value.norm());
+        let pairs = upper.take(count).map(|(value, vector)| {
+            let real = value.im.abs() <= REAL * value.norm();
+            (if real { value.re.into() } else { value }, vector, 0.0)
+        });
+        pairs.collect()
     }
 }
 
@@ -157,9 +164,8 @@ pub fn largest(
             continue;
         }
         next = k + (k / 4).max(8);
-        let square = space.square();
         let left = space.columns[k - 1][k];
-        let mut found = pairs(&square, count);
+        let mut found = space.pairs(count);
         for (_, vector, residual) in &mut found {
             *residual = left * vector[k - 1].norm();
         }
@@ -183,27 +189,6 @@ pub fn largest(
     }
 }
 
-/// Eigenvalues of largest modulus of a dense matrix with unit vectors, and a place for residuals; complex pairs once.
-fn pairs(matrix: &DMatrix<f64>, count: usize) -> Vec<(Complex<f64>, DVector<Complex<f64>>, f64)> {
-    let Some((q, t)) = schur::ordered(matrix.map(|x| Complex::new(x, 0.0))) else {
-        return vec![];
-    };
-    let n = matrix.nrows();
-    // of a pair that round-off has parted from the real axis both halves count as real
-    let upper = |k: &usize| t[(*k, *k)].im >= -REAL * t[(*k, *k)].norm();
-    let chosen = (0..n).filter(upper).take(count);
-    chosen
-        .map(|k| {
-            let mut y = schur::vector(&t, k);
-            y.resize(n, Complex::default());
-            let v = (&q * DVector::from_vec(y)).normalize();
-            let value = t[(k, k)];
-            let real = value.im.abs() <= REAL * value.norm();
-            (if real { Complex::new(value.re, 0.0) } else { value }, v, 0.0)
-        })
-        .collect()
-}
-
 /// A vector of which every eigenvector has a part, the same every time.
 pub fn everything(len: usize) -> Vec<f64> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -212,6 +197,8 @@ pub fn everything(len: usize) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{DMatrix, DVector};
+
     use super::*;
 
     fn matrix() -> DMatrix<f64> {

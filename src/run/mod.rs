@@ -17,6 +17,7 @@ pub mod krylov;
 pub mod method;
 pub mod modes;
 pub mod needs;
+pub mod null;
 pub mod observe;
 pub mod order;
 pub mod periodic;

@@ -1,12 +1,15 @@
 //! What a run looks at on its way: at every accepted step whatever may invalidate it, at output times what is recorded.
 
+use std::borrow::Cow;
+
 use crate::case::schema::{Case, Thinning};
 use crate::dae::BeamDae;
 use crate::discrete::glance::{Glance, Watched};
-use crate::discrete::ledger::{self, Invariants};
-use crate::discrete::{Instant, System, Workspace, sample};
+use crate::discrete::ledger::{self, EnergyBalance, Invariants};
+use crate::discrete::quantities::{self, Extremes, Look, Observable, Row};
+use crate::discrete::{System, TimeData, Workspace};
 use crate::error::Result;
-use crate::model::mapping::{NetworkCoordinate, TABLE_TUBE_RATIO};
+use crate::model::mapping::NetworkCoordinate;
 
 use serde::{Deserialize, Serialize};
 
@@ -57,10 +60,9 @@ pub struct Observed {
     pub estimate: Estimator,
     /// Growth of the response.
     pub growth: Growth,
-    /// Integrals at the last sample.
-    pub integrals: Vec<f64>,
-    /// Stored energies at the last sample.
-    pub stored: ledger::Energies,
+    /// The last sample.
+    #[serde(default)]
+    pub row: Row,
     /// Outputs before the window that are not written one by one.
     #[serde(default)]
     stretch: Stretch,
@@ -73,7 +75,6 @@ pub struct Observer {
     fields_every: u64,
     thinning: Thinning,
     stretches: Stretches,
-    row: Vec<f64>,
     limits: Limits,
     /// The end of the last step, or the start of the first after a switch.
     before: Option<Glance>,
@@ -85,30 +86,24 @@ pub struct Observer {
 impl Observer {
     /// Observer of a case; `interval` is the output interval [s].
     pub fn new(case: &Case, system: &System, interval: f64) -> Self {
-        let cell_order = system.model.wet.as_ref().map_or(vec![], |wet| {
-            let map = network_coordinate(case, wet);
-            sample::cell_order(system, &map)
-        });
         let fields_every = (case.time.fields_interval() / interval).round().max(1.0) as u64;
-        let columns: Vec<&str> = sample::columns(system).iter().map(|c| c.0).collect();
         let floors = Floors::of_model(case, &system.model);
         Self {
             half_height: 0.5 * case.beam.height_m,
-            cell_order,
+            cell_order: quantities::fields::cell_order(system, tube_length(case)),
             fields_every,
             thinning: case.time.history,
             stretches: Stretches::new(case),
-            row: Vec::new(),
             limits: Limits::new(case, system),
             before: None,
             turning: vec![],
             seen: Observed {
                 residuals: Residuals::new(system, case.solver.rtol, floors),
-                figures: Figures::new(case, &columns),
-                energies: Energies::new(case, &columns, floors.energy),
+                figures: Figures::new(case, system),
+                energies: Energies::new(case, floors.energy),
                 estimate: Estimator::new(case, system, floors),
                 growth: Growth::new(&system.model, case.time.end_s),
-                integrals: vec![0.0; ledger::flow_count(system)],
+                row: Row::of(system),
                 ..Observed::default()
             },
         }
@@ -116,56 +111,20 @@ impl Observer {
 
     /// What will be recorded.
     pub fn header(case: &Case, system: &System) -> Header {
-        let tube = case.tubes.as_ref().map_or(0.0, |t| t.length_m);
-        let axes: Vec<Axis> = sample::axes(system, tube)
-            .into_iter()
-            .map(|(name, unit, about, values)| Axis {
-                name,
-                unit,
-                about,
-                values,
-            })
-            .collect();
-        let (nodes, cells) = (system.mesh.nodes, system.mesh.cells);
-        let mut fields = vec![
-            field("u1_m", "m", "theta_node_m", "transverse displacement", nodes),
-            field("u3_m", "m", "theta_node_m", "axial displacement", nodes),
-            field("v1_m_s", "m/s", "theta_node_m", "transverse velocity", nodes),
-            field("v3_m_s", "m/s", "theta_node_m", "axial velocity", nodes),
-            field(
-                "curvature_1_m",
-                "1/m",
-                "theta_node_m",
-                "curvature, positive with the +x fibre in tension",
-                nodes,
-            ),
-            field("moment_n_m", "N m", "theta_node_m", "bending moment", nodes),
-            field("normal_force_n", "N", "theta_cell_m", "normal force", cells),
-        ];
-        if let Some(fluid) = &system.fluid {
-            fields.push(field(
-                "pressure_pa",
-                "Pa",
-                "x_f",
-                "pressure of the bladder cells",
-                fluid.cells,
-            ));
-            fields.push(field(
-                "area_change_m2",
-                "m^2",
-                "x_f",
-                "area change of the bladder cells",
-                fluid.cells,
-            ));
-        }
-        let columns: Vec<Column> = sample::columns(system)
-            .into_iter()
-            .map(|(name, unit, about)| Column {
-                name: name.into(),
-                unit,
-                about: about.into(),
-            })
-            .collect();
+        let axis = |axis: quantities::Axis| Axis {
+            name: axis.name(),
+            unit: axis.unit(),
+            about: axis.about(),
+            values: axis.values(system, tube_length(case)),
+        };
+        let field = |field: quantities::Field| Field {
+            name: field.name(),
+            unit: field.unit(),
+            axis: field.axis().name(),
+            about: field.about(),
+            len: field.len(system),
+        };
+        let columns: Vec<Column> = Observable::of(system).into_iter().map(Column::from).collect();
         let envelope = match case.time.history {
             Thinning::All => vec![],
             _ => stretch::names(&columns),
@@ -173,8 +132,8 @@ impl Observer {
         Header {
             columns,
             envelope,
-            axes,
-            fields,
+            axes: quantities::Axis::of(system).map(axis).collect(),
+            fields: quantities::Field::of(system).map(field).collect(),
             sensitivities: vec![],
         }
     }
@@ -241,18 +200,18 @@ impl Observer {
     fn watch(
         &mut self,
         system: &System,
-        now: &Instant,
+        now: &TimeData,
         w: &Workspace<f64>,
         glance: &Glance,
         integrals: &[f64],
-    ) -> sample::EnergyBalance {
+    ) -> EnergyBalance {
         let stored = ledger::energies(system, now, w);
         let invariants = ledger::invariants(system, now, w);
         let (at_start, first) = self
             .seen
             .start
             .get_or_insert_with(|| (stored.total(), invariants.clone()));
-        let balance = sample::energy_balance(stored, *at_start, integrals);
+        let balance = ledger::balance(stored, *at_start, integrals);
         let residuals = &mut self.seen.residuals;
         residuals.take(system, w, &balance, [first, &invariants], integrals);
         let least_force = w.force.iter().copied().fold(f64::INFINITY, f64::min);
@@ -308,31 +267,39 @@ impl Observer {
         if let Some(before) = before {
             self.seen.figures.span(&before, &glance);
         }
-        sample::row(system, now, t, w, &balance, integrals, &mut self.row);
-        self.seen.figures.take(&self.row, &glance);
-        self.seen.energies.take(&self.row);
-        self.seen.integrals.copy_from_slice(integrals);
-        self.seen.stored = balance.stored;
+        let look = Look {
+            system,
+            now,
+            w,
+            stored: balance.stored,
+            at: Extremes::of(system, w),
+        };
+        self.seen.row.take(t, &look, integrals, balance.residual);
+        let seen = &mut self.seen;
+        seen.figures.take(&seen.row, &glance);
+        seen.energies.take(&seen.row);
         let Some(number) = output else {
             return Ok(false);
         };
         if self.thinning != Thinning::All {
             let stretch = self.stretches.of(t);
-            if let Some(row) = self.seen.stretch.take(stretch, &self.row) {
+            if let Some(row) = self.seen.stretch.take(stretch, self.seen.row.values()) {
                 recorder.envelope(&row)?;
             }
             if stretch.is_some() && !self.thinning.keeps(number) {
                 return Ok(false);
             }
         }
-        recorder.history(&self.row)?;
+        recorder.history(self.seen.row.values())?;
         if number.is_multiple_of(self.fields_every) {
             let along = |values: &[f64]| -> Vec<f64> { self.cell_order.iter().map(|&c| values[c]).collect() };
-            let (pressure, area) = (along(&w.pressure), along(&w.area));
-            let mut arrays: Vec<&[f64]> = vec![&w.u1, &w.u3, &w.v1, &w.v3, &w.kappa, &w.moment, &w.force];
-            if system.fluid.is_some() {
-                arrays.extend([pressure.as_slice(), area.as_slice()]);
-            }
+            let ordered: Vec<Cow<[f64]>> = quantities::Field::of(system)
+                .map(|field| match field.axis() {
+                    quantities::Axis::Network => Cow::Owned(along(field.values(w))),
+                    _ => Cow::Borrowed(field.values(w)),
+                })
+                .collect();
+            let arrays: Vec<&[f64]> = ordered.iter().map(AsRef::as_ref).collect();
             recorder.fields(t, &arrays)?;
         }
         Ok(true)
@@ -347,8 +314,8 @@ impl Observer {
     }
 
     /// The last row of the history.
-    pub fn row(&self) -> &[f64] {
-        &self.row
+    pub fn row(&self) -> &Row {
+        &self.seen.row
     }
 
     /// Balances that stay open, and limits of the model's range that were passed.
@@ -359,18 +326,11 @@ impl Observer {
     }
 }
 
-fn field(name: &'static str, unit: &'static str, axis: &'static str, about: &'static str, len: usize) -> Field {
-    Field {
-        name,
-        unit,
-        axis,
-        about,
-        len,
-    }
+fn tube_length(case: &Case) -> f64 {
+    case.tubes.as_ref().map_or(0.0, |t| t.length_m)
 }
 
 /// The network's coordinate as the paper's tables have it.
 pub fn network_coordinate(case: &Case, wet: &crate::model::Wet) -> NetworkCoordinate {
-    let tube = case.tubes.as_ref().map_or(0.0, |t| t.length_m);
-    NetworkCoordinate::new(&wet.network, wet.per_row, wet.bladder_length, TABLE_TUBE_RATIO * tube)
+    NetworkCoordinate::of(wet, tube_length(case))
 }

@@ -1,6 +1,7 @@
 //! What a run hands to whoever records it. The run itself prints nothing and writes nothing.
 
 use super::checkpoint::Checkpoint;
+use crate::discrete::quantities::Observable;
 use crate::error::Result;
 
 /// A column of the history: one number an output time.
@@ -12,6 +13,16 @@ pub struct Column {
     pub unit: &'static str,
     /// One sentence.
     pub about: String,
+}
+
+impl From<Observable> for Column {
+    fn from(one: Observable) -> Self {
+        Self {
+            name: one.name().into(),
+            unit: one.unit(),
+            about: one.about().into(),
+        }
+    }
 }
 
 /// A fixed coordinate along which a field is sampled.

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::floors::Floors;
+use crate::discrete::ledger::EnergyBalance;
 use crate::discrete::ledger::{self, Flow, Invariants};
-use crate::discrete::sample::EnergyBalance;
-use crate::discrete::{Instant, System, Workspace};
+use crate::discrete::{System, TimeData, Workspace};
 use crate::error::Code;
 
 /// Above this the run warns that a balance does not close.
@@ -111,7 +111,7 @@ impl Residuals {
     }
 
     /// Takes the reactions over a step of `dt` [s] that ends in the workspace's state.
-    pub fn follow(&mut self, system: &System, now: &Instant, w: &Workspace<f64>, dt: f64) {
+    pub fn follow(&mut self, system: &System, now: &TimeData, w: &Workspace<f64>, dt: f64) {
         for (sum, square) in self.reactions.iter_mut().zip(ledger::compared(system, now, w)) {
             *sum += dt * square;
         }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::estimate::Estimated;
 use super::growth::Growing;
+use super::null;
 use super::sensitivity::figures::Sensitivity;
 pub use crate::sundials::Counters;
 
@@ -50,6 +51,11 @@ pub struct Quantity {
 }
 
 impl Quantity {
+    /// Its largest figure, without sign.
+    pub fn size(&self) -> f64 {
+        self.figures().fold(0.0, |s, (_, x)| s.max(x.abs()))
+    }
+
     /// What is known of it, by the names in `summary.json`.
     pub fn figures(&self) -> impl Iterator<Item = (&'static str, f64)> + use<> {
         let all = [
@@ -73,23 +79,27 @@ impl Quantity {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balances {
     /// Largest residual of the energy balance over the largest energy seen.
+    #[serde(deserialize_with = "null::number")]
     pub energy_residual_relative: f64,
     /// Largest residual of any network's volume balance over the largest volume displaced in it or passed through its
     /// ports.
+    #[serde(deserialize_with = "null::number")]
     pub volume_residual_relative: f64,
     /// The same for networks without ports alone: these close to round-off at any tolerance.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "null::number")]
     pub closed_volume_residual_relative: f64,
     /// Largest difference between what left a network by the law of its ports and by what it stores, over the volume passed.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "null::number")]
     pub port_flow_residual_relative: f64,
     /// Root mean square of the difference between reactions of driven ends told by the momentum of half a cell and by the section's
     /// force at the end, over that of the reactions: the mesh's error.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "null::number")]
     pub reaction_difference_relative: f64,
     /// Largest residual of the momentum balance over the largest momentum or impulse seen.
+    #[serde(deserialize_with = "null::number")]
     pub momentum_residual_relative: f64,
     /// Largest residual of the angular momentum balance, likewise.
+    #[serde(deserialize_with = "null::number")]
     pub angular_momentum_residual_relative: f64,
     /// Energies and works at the end [J].
     pub energy_j: BTreeMap<String, f64>,
@@ -233,4 +243,11 @@ pub struct Summary {
     pub sensitivities: BTreeMap<String, Sensitivity>,
     /// Everything the user should know before trusting the result.
     pub warnings: Vec<String>,
+}
+
+impl Summary {
+    /// A quantity, by name and unit.
+    pub fn quantity(&self, name: &str) -> Option<&Quantity> {
+        self.quantities.get(name)
+    }
 }

@@ -138,9 +138,7 @@ impl Space {
         };
         let mut w: Vec<C> = (0..n).map(|_| C::new(next(), next())).collect();
         self.orthogonalise(&mut w);
-        let size = norm(&w);
-        w.iter_mut().for_each(|w| *w /= size);
-        w
+        unit(w)
     }
 
     /// Keeps the first `kept` Schur vectors; goes on from the last vector of the basis, or `anew` from a random one.
@@ -185,17 +183,22 @@ impl Space {
 }
 
 /// `Σ cᵢ uᵢ` of unit length, over as many vectors as there are coefficients.
-pub(super) fn combined(u: &[Vec<C>], c: &[C]) -> Vec<C> {
+fn combined(u: &[Vec<C>], c: &[C]) -> Vec<C> {
     let mut sum = vec![C::default(); u[0].len()];
     for (u, c) in u.iter().zip(c) {
         sum.iter_mut().zip(u).for_each(|(sum, u)| *sum += u * c);
     }
-    let size = norm(&sum);
-    sum.iter_mut().for_each(|x| *x /= size);
-    sum
+    unit(sum)
+}
+
+/// The vector of unit length.
+pub(super) fn unit(mut x: Vec<C>) -> Vec<C> {
+    let size = norm(&x);
+    x.iter_mut().for_each(|x| *x /= size);
+    x
 }
 
 /// Euclidean length.
-pub(super) fn norm(x: &[C]) -> f64 {
+fn norm(x: &[C]) -> f64 {
     x.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt()
 }

@@ -3,11 +3,11 @@
 //! | file | what stands there |
 //! |---|---|
 //! | [`pencil`] | the pencil, its products and its factors at a shift |
-//! | [`schur`] | Schur form of a small matrix, its order and its vectors |
+//! | `schur` | Schur form of a small matrix, its order and its vectors |
 //! | `exchange` | rows exchanged so that KLU finds its pivots on the diagonal |
 //! | `dense` | all finite eigenvalues of a small pencil |
 //! | `krylov` | those nearest a shift, of a large one |
-//! | `softest` | lowest eigenvalues of a static tangent |
+//! | `lowest` | lowest eigenvalues of a static tangent |
 //! | `refine` | each pair improved by itself, with the bound of its error |
 //!
 //! `[E32]` The finite eigenvalues nearest a shift σ are the largest of an operator on the unknowns d whose columns of B are
@@ -17,24 +17,25 @@
 //! K = P (A + σ B)⁻¹ B Pᵀ        K x_d = θ x_d        s = σ - 1/θ        x = (A + σ B)⁻¹ B x/θ
 //! ```
 //!
-//! A large K is only applied: one solve with KLU's factors a step, Krylov-Schur (Stewart 2002) above; small Schur forms are
-//! nalgebra's. The parts of faer that are needed took 143 s of one core to build for the same, and Debian's ARPACK brings
-//! Fortran, BLAS and LAPACK and keeps no copies of repeated eigenvalues apart.
+//! All eigenvalues of a small K are faer's (`crates/dense`). A large K is only applied: one solve with KLU's factors a step, Krylov-Schur (Stewart
+//! 2002) above. faer's own, `partial_eigen`, does not fit: it stops at an absolute residual, where θ of one beam range over ten powers
+//! of ten, and wants an operator that threads share, where each solve writes into KLU's work space. Debian's ARPACK brings Fortran,
+//! BLAS and LAPACK and keeps no copies of repeated eigenvalues apart.
 
 mod dense;
 mod exchange;
 mod krylov;
+mod lowest;
 pub mod pencil;
 mod refine;
-pub mod schur;
-mod softest;
+mod schur;
 
 use std::fmt;
 
 use nalgebra::Complex;
 
+pub use lowest::lowest;
 pub use pencil::Pencil;
-pub use softest::softest;
 
 /// Differential unknowns up to which all eigenvalues are computed at once.
 pub const DENSE: usize = 120;

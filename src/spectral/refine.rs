@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use super::krylov::norm;
+use super::krylov::unit;
 use super::pencil::Shifted;
 use super::{Failure, Pair};
 
@@ -61,10 +61,4 @@ fn assess(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, Failure> {
         residual: length(&residual) / length(&magnitude).max(f64::MIN_POSITIVE),
         error: if error.is_finite() { error } else { f64::INFINITY },
     })
-}
-
-fn unit(mut x: Vec<C>) -> Vec<C> {
-    let size = norm(&x);
-    x.iter_mut().for_each(|x| *x /= size);
-    x
 }

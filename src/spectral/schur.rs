@@ -2,7 +2,7 @@
 //!
 //! The single-shift QR iteration of LAPACK's `zlahqr` (Wilkinson's shifts, exceptional ones every ten sweeps), on the Hessenberg form
 //! that the library makes. The library's own Schur form has no exceptional shifts and goes round in circles where eigenvalues are
-//! repeated, as those of many closed networks are.
+//! repeated, as those of many closed networks are; that of faer, which has them, cannot be called from outside (0.24).
 
 use nalgebra::{Complex, DMatrix, Hessenberg};
 
@@ -12,7 +12,7 @@ type C = Complex<f64>;
 const SWEEPS: usize = 60;
 
 /// `Q` and `T`, the largest eigenvalues first; None when the iteration does not converge.
-pub fn ordered(h: DMatrix<C>) -> Option<(DMatrix<C>, DMatrix<C>)> {
+pub(super) fn ordered(h: DMatrix<C>) -> Option<(DMatrix<C>, DMatrix<C>)> {
     let (mut q, mut t) = match h.nrows() {
         0 | 1 => (DMatrix::identity(h.nrows(), h.nrows()), h),
         _ => Hessenberg::new(h).unpack(),
@@ -148,7 +148,7 @@ fn swap(q: &mut DMatrix<C>, t: &mut DMatrix<C>, k: usize) {
 }
 
 /// Eigenvector of the `k`-th eigenvalue of T, by substitution; `k + 1` entries, the last of them 1.
-pub fn vector(t: &DMatrix<C>, k: usize) -> Vec<C> {
+pub(super) fn vector(t: &DMatrix<C>, k: usize) -> Vec<C> {
     let mut y = vec![C::default(); k + 1];
     y[k] = C::new(1.0, 0.0);
     let least = f64::EPSILON * t[(0, 0)].norm().max(f64::MIN_POSITIVE);

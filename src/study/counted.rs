@@ -2,14 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use crate::discrete::quantities::Interest;
 pub use crate::run::floors::Floors;
 use crate::run::floors::NOTHING;
 use crate::run::summary::{Quantity, Summary};
-
-/// Largest figure of a quantity, without its sign.
-pub fn size(quantity: &Quantity) -> f64 {
-    quantity.figures().fold(0.0, |s, (_, x)| s.max(x.abs()))
-}
 
 /// The quantities that are more than round-off, by name: beside others of their unit, an angle beside displacements over the
 /// beam's length; beside what the case is expected to do; energies beside the largest one stored or passed. A ratio of
@@ -27,20 +23,21 @@ fn among<'a>(
     floors: &'a Floors,
 ) -> impl Iterator<Item = (&'a String, &'a Quantity)> {
     let counts = move |name: &str, q: &Quantity| {
-        let (unit, own) = floors.weighed(name, size(q));
+        let (unit, own) = floors.weighed(name, q.size());
         let alike = all
             .iter()
-            .map(|(other, q)| floors.weighed(other, size(q)))
+            .map(|(other, q)| floors.weighed(other, q.size()))
             .filter(|(u, _)| *u == unit);
         let largest = NOTHING * alike.map(|(_, size)| size).fold(0.0, f64::max);
         own > largest.max(floors.of_unit(unit, energy)) || q.figures().any(|(_, x)| !x.is_finite())
     };
     all.iter().filter(move |(name, q)| {
-        let parts: &[&str] = match name.as_str() {
-            "efficiency" => &["input_energy_j", "harvested_energy_j"],
+        let parts: &[Interest] = match Interest::named(name) {
+            Some(Interest::Efficiency) => &[Interest::InputEnergy, Interest::HarvestedEnergy],
             _ => &[],
         };
-        counts(name, q) && parts.iter().all(|part| all.get(*part).is_none_or(|q| counts(part, q)))
+        let part_counts = |part: &Interest| all.get(part.name()).is_none_or(|q| counts(part.name(), q));
+        counts(name, q) && parts.iter().all(part_counts)
     })
 }
 

@@ -6,16 +6,22 @@ use std::ptr;
 
 use sundials_sys::{SUNContext, SUNContext_Create, SUNContext_Free};
 
+/// Version of the SUNDIALS that is loaded.
+pub(super) fn loaded() -> [c_int; 3] {
+    let (mut major, mut minor, mut patch) = (0, 0, 0);
+    let mut label = [0 as c_char; 32];
+    // SAFETY: the pointers are valid for writing and the label's length is passed.
+    unsafe { super::c::SUNDIALSGetVersionNumber(&mut major, &mut minor, &mut patch, label.as_mut_ptr(), 32) };
+    [major, minor, patch]
+}
+
 /// Owner of a context; every SUNDIALS object belongs to one. One per integrator, bound to its thread.
 pub(super) struct Context(SUNContext);
 
 impl Context {
     /// A new context; fails when the library at run time is not the one of the headers, or without memory.
     pub fn new() -> Result<Self, String> {
-        let (mut major, mut minor, mut patch) = (0, 0, 0);
-        let mut label = [0 as c_char; 32];
-        // SAFETY: the pointers are valid for writing and the label's length is passed.
-        unsafe { super::c::SUNDIALSGetVersionNumber(&mut major, &mut minor, &mut patch, label.as_mut_ptr(), 32) };
+        let [major, minor, patch] = loaded();
         let built = (
             sundials_sys::SUNDIALS_VERSION_MAJOR,
             sundials_sys::SUNDIALS_VERSION_MINOR,

@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use crate::case::schema::Method;
+
 /// Work done since the integrator was created, over all restarts.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
@@ -31,6 +33,9 @@ pub struct Counters {
     pub steps_by_order: Vec<u64>,
     /// Highest order allowed.
     pub max_order: u8,
+    /// Whose order that is; nothing where nothing was integrated, and in results of before it was told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub method: Option<Method>,
 }
 
 impl Counters {

@@ -15,6 +15,7 @@ use super::request;
 use super::sensitivities::Carried;
 use super::shared::Shared;
 use super::vector::Vector;
+use crate::case::schema::Method;
 use crate::dae::Dae;
 
 /// An accepted step.
@@ -122,6 +123,7 @@ impl<D: Dae> Ida<D> {
         let base = Counters {
             steps_by_order: vec![0; options.max_order.into()],
             max_order: options.max_order,
+            method: Some(Method::Ida),
             ..Counters::default()
         };
         Ok(Self {

@@ -53,6 +53,21 @@ pub use options::{Absolute, IdaOptions};
 pub use sensitivity_start::consistent_sensitivities;
 pub use start::{Start, StartFailure, StartOptions, consistent_start};
 
+/// Version of SUNDIALS as it is loaded.
+pub fn sundials_version() -> String {
+    context::loaded().map(|number| number.to_string()).join(".")
+}
+
+/// Version of SuiteSparse, whose KLU it is, as its headers say.
+pub fn suitesparse_version() -> String {
+    let all = [
+        c::SUITESPARSE_MAIN_VERSION,
+        c::SUITESPARSE_SUB_VERSION,
+        c::SUITESPARSE_SUBSUB_VERSION,
+    ];
+    all.map(|number| number.to_string()).join(".")
+}
+
 /// Declarations written by `build.rs`.
 mod c {
     #![allow(

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 use slcbeam::case::{self, Case};
+use slcbeam::discrete::System;
 use slcbeam::error::{Code, Error};
 use slcbeam::run::summary::Summary;
 
@@ -66,14 +67,16 @@ const WORK: [f64; 2] = [2e6, 1.5e7];
 
 /// Reads a scene.
 pub fn read(scene: &Value) -> Result<Case, String> {
-    match case::parse(&scene.to_string(), Path::new("scene.json"), Path::new("."), &[]) {
-        Ok(loaded) => Ok(loaded.case),
-        Err(Error::Case(fault)) => Err(fault
-            .violations
-            .first()
-            .map_or(String::new(), |v| format!("{}: {}", v.pointer, v.what))),
-        Err(other) => Err(other.to_string()),
-    }
+    let words = |error| match error {
+        Error::Case(fault) => {
+            let first = fault.violations.first();
+            first.map_or(String::new(), |v| format!("{}: {}", v.pointer, v.what))
+        }
+        other => other.to_string(),
+    };
+    let case = case::parse(&scene.to_string(), Path::new("scene.json"), Path::new("."), &[]).map_err(words)?;
+    System::new(&case).map_err(words)?;
+    Ok(case)
 }
 
 /// The two verdicts on a scene.
@@ -169,7 +172,7 @@ pub fn should_end(run: &Summary, why: &str) -> Verdict {
 
 /// Number of unknowns with everything that may be chosen.
 pub fn guess(case: &Case) -> f64 {
-    slcbeam::discrete::System::new(case).layout.len as f64
+    System::new(case).unwrap().layout.len as f64
 }
 
 fn compare(case: &Case, run: &Summary, reference: &Reference) -> Verdict {

@@ -10,11 +10,13 @@
 //! SLCBEAM_ADVERSARY_SEED=17 cargo test --release --test adversary -- --ignored --nocapture shrink_one
 //! ```
 
+#[path = "../common/chance.rs"]
+mod chance;
+mod digits;
 mod judge;
 mod network;
 mod profiles;
 mod promise;
-mod random;
 mod reference;
 mod run;
 mod scene;

@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::random::{Random, short};
+use crate::chance::Random;
+use crate::digits::short;
 use crate::scene::Beam;
 use crate::signals;
 

@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::random::{Random, short};
+use crate::chance::Random;
+use crate::digits::short;
 
 /// A shape of a load of about unit mean: narrow ones are as much higher as they are narrower.
 pub fn profile(r: &mut Random, sane: bool) -> Value {

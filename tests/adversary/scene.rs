@@ -4,9 +4,10 @@ use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 
+use crate::chance::Random;
+use crate::digits::short;
 use crate::network;
 use crate::profiles;
-use crate::random::{Random, short};
 use crate::signals::{self, Times};
 
 /// Sizes of the beam that the rest of the scene is drawn in proportion to.

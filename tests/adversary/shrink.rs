@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::random::digits;
+use crate::digits::digits;
 
 /// The smallest scene found that still fails, within so many tries.
 pub fn shrink(scene: &Value, tries: usize, fails: impl Fn(&Value) -> bool) -> Value {

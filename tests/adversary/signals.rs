@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::random::{Random, short};
+use crate::chance::Random;
+use crate::digits::short;
 
 /// Times that signals of a scene are drawn by.
 #[derive(Clone, Copy)]

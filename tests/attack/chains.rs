@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use crate::program::{LONG, run_long, same, start, stderr};
+use crate::program::{LONG, kill, run_long, same, start, stderr};
 
 /// Chains take turns at them.
 const METHODS: [&str; 5] = ["ida", "trbdf2", "esdirk34", "esdirk46", "esdirk57"];
@@ -14,8 +14,7 @@ fn strike(out: &Path, more: &[&str], resume: bool, after: Duration) -> bool {
     let mut child = start(out, &[&LONG, more, resume].concat());
     std::thread::sleep(after);
     let ended = child.try_wait().expect("its state");
-    child.kill().expect("it is killed");
-    child.wait().expect("it ends");
+    kill(&mut child);
     ended.is_some_and(|status| status.success())
 }
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::program::{killed, run_long, same, stderr};
+use crate::program::{copy, killed, run_long, same, stderr};
 
 /// Files that a resume reads.
 fn read_back(out: &Path) -> Vec<PathBuf> {
@@ -12,21 +12,6 @@ fn read_back(out: &Path) -> Vec<PathBuf> {
     all.extend(raw.map(|e| e.expect("a file").path()));
     all.sort();
     all
-}
-
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).expect("a folder");
-    for entry in fs::read_dir(from)
-        .expect("a folder")
-        .map(|e| e.expect("an entry").path())
-    {
-        let target = to.join(entry.file_name().expect("a name"));
-        if entry.is_dir() {
-            copy(&entry, &target);
-        } else {
-            fs::copy(&entry, &target).expect("a copy");
-        }
-    }
 }
 
 /// Flips `count` bits, one a trial, spread over all files, and resumes: refused, or the same end.

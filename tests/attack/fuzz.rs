@@ -2,38 +2,14 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-/// Longest that a trial may take, and what it may have of address space [KiB].
-const SECONDS: u64 = 20;
-const MEMORY: u64 = 4 << 20;
+use crate::chance::Random;
+use crate::program::{MEMORY, PATIENCE, answer, bounded};
 
 /// Exit codes that a command has.
 const CODES: [i32; 5] = [0, 2, 3, 4, 5];
-
-/// SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n.max(1) as u64) as usize
-    }
-
-    fn one_of<'a, T: ?Sized>(&mut self, of: &[&'a T]) -> &'a T {
-        of[self.below(of.len())]
-    }
-}
 
 /// A trial: the case's text, the arguments, and whether the case has a key that none has.
 struct Trial {
@@ -102,7 +78,7 @@ fn odd(r: &mut Random) -> Value {
         "1e-9",
         "1e9",
     ];
-    serde_json::from_str(r.one_of(&texts)).expect("JSON")
+    serde_json::from_str(r.of::<&str>(&texts)).expect("JSON")
 }
 
 fn trial(seed: u64, cases: &[PathBuf]) -> Trial {
@@ -151,7 +127,7 @@ fn trial(seed: u64, cases: &[PathBuf]) -> Trial {
             let k = r.below(text.len());
             match r.below(3) {
                 0 => text.truncate(k.max(1)),
-                1 => text[k] = r.next() as u8,
+                1 => text[k] = r.bits() as u8,
                 _ => text.insert(k, b"{}[],:\"\\\x00\x1b-e9"[r.below(13)]),
             }
         }
@@ -170,7 +146,7 @@ fn trial(seed: u64, cases: &[PathBuf]) -> Trial {
         &["effects", "--quiet", "--budget", "1s", "--repeats", "0"],
         &["study", "--quiet", "--budget", "1s"],
     ];
-    let mut arguments: Vec<String> = r.one_of(&commands).iter().map(ToString::to_string).collect();
+    let mut arguments: Vec<String> = r.of(&commands).iter().map(ToString::to_string).collect();
     let flags: [&[&str]; 9] = [
         &[],
         &[],
@@ -182,7 +158,7 @@ fn trial(seed: u64, cases: &[PathBuf]) -> Trial {
         &["--set", "x"],
         &["--no-such-flag"],
     ];
-    arguments.extend(r.one_of(&flags).iter().map(ToString::to_string));
+    arguments.extend(r.of(&flags).iter().map(ToString::to_string));
     Trial {
         text,
         arguments,
@@ -196,45 +172,20 @@ fn judge(trial: &Trial, dir: &Path) -> Option<String> {
     fs::write(&case, &trial.text).expect("a case");
     let out = dir.join("out");
     let writes = !["check", "mapping"].contains(&trial.arguments[0].as_str());
-    let mut command = Command::new("bash");
-    let script = format!("ulimit -v {MEMORY}; exec \"$@\"");
-    command.args([
-        "-c",
-        &script,
-        "bash",
-        env!("CARGO_BIN_EXE_slcbeam"),
-        &trial.arguments[0],
-    ]);
-    command.arg(&case).args(&trial.arguments[1..]);
+    let mut command = bounded(MEMORY);
+    command.arg(&trial.arguments[0]).arg(&case).args(&trial.arguments[1..]);
     if writes {
         command.arg("--out").arg(&out);
     }
-    let files = ["stdout", "stderr"].map(|name| dir.join(name));
-    let [stdout, stderr] = files.each_ref().map(|path| fs::File::create(path).expect("a file"));
-    let mut child = command
-        .stdin(Stdio::null())
-        .stdout(stdout)
-        .stderr(stderr)
-        .spawn()
-        .expect("it starts");
-    let begin = Instant::now();
-    let status = loop {
-        if let Some(status) = child.try_wait().expect("its state") {
-            break status;
-        }
-        if begin.elapsed() > Duration::from_secs(SECONDS) {
-            child.kill().expect("it is killed");
-            child.wait().expect("it ends");
-            return Some(format!("no answer in {SECONDS} s"));
-        }
-        std::thread::sleep(Duration::from_millis(1));
+    let Some(answer) = answer(&mut command, PATIENCE) else {
+        return Some(format!("no answer in {PATIENCE:?}"));
     };
-    let [told, err] = files.map(|path| String::from_utf8_lossy(&fs::read(path).expect("a file")).into_owned());
-    let code = status.code();
+    let [told, err] = [&answer.stdout, &answer.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+    let code = answer.status.code();
     let wrong = if err.contains("panicked at") || err.contains("memory allocation of") {
         Some("it panics".to_string())
     } else if !code.is_some_and(|code| CODES.contains(&code)) {
-        Some(format!("it ends with {status}"))
+        Some(format!("it ends with {}", answer.status))
     } else if code != Some(0) && err.trim().is_empty() && told.trim().is_empty() {
         Some("it fails without a word".into())
     } else if code == Some(0) && trial.foreign {

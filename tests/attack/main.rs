@@ -2,6 +2,8 @@
 //! folders of others. Goal: nothing lost, nothing taken, nothing half said; `docs/reliability.md`.
 
 mod chains;
+#[path = "../common/chance.rs"]
+mod chance;
 mod finishing;
 mod flips;
 mod folders;

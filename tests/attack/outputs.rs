@@ -3,46 +3,23 @@
 mod damaged;
 mod going;
 
-use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
-use std::time::{Duration, Instant};
+use std::process::Output;
 
-use crate::program::{contents, stderr};
-
-/// Address space of a program under attack [KiB].
-const MOST_MEMORY: u64 = 4 << 20;
-/// Time that it has to answer.
-const PATIENCE: Duration = Duration::from_secs(20);
+use crate::program::{MEMORY, PATIENCE, answer, bounded, stderr};
 
 /// The program with bounded memory and time.
-fn bounded(arguments: &[&str]) -> Output {
-    let mut child = Command::new("sh")
-        .args(["-c", &format!("ulimit -v {MOST_MEMORY}; exec \"$0\" \"$@\"")])
-        .arg(env!("CARGO_BIN_EXE_slcbeam"))
-        .args(arguments)
-        .stdout(std::process::Stdio::null())
-        .stderr(std::process::Stdio::piped())
-        .spawn()
-        .expect("it starts");
-    let begin = Instant::now();
-    while child.try_wait().expect("its state").is_none() {
-        if begin.elapsed() > PATIENCE {
-            child.kill().expect("it is killed");
-            panic!("no answer within {PATIENCE:?}: {arguments:?}");
-        }
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    child.wait_with_output().expect("its end")
+fn told(arguments: &[&str]) -> Output {
+    answer(bounded(MEMORY).args(arguments), PATIENCE).unwrap_or_else(|| panic!("no answer: {arguments:?}"))
 }
 
 /// That it neither panicked nor was aborted; its exit code.
 fn answered(output: &Output, what: &str) -> i32 {
-    let told = stderr(output);
+    let error = stderr(output);
     let code = output.status.code();
     assert!(
-        !told.contains("panicked") && code.is_some_and(|code| code < 100),
-        "{what}: {code:?} {told}"
+        !error.contains("panicked") && code.is_some_and(|code| code < 100),
+        "{what}: {code:?} {error}"
     );
     code.unwrap_or_default()
 }
@@ -57,13 +34,5 @@ fn read_by_all(dir: &Path, sound: &Path, what: &str) -> [i32; 3] {
         &["report", &dir],
         &["compare", &dir, &sound],
     ];
-    commands.map(|command| answered(&bounded(command), what))
-}
-
-fn copied(from: &Path, to: &Path) {
-    let _ = fs::remove_dir_all(to);
-    fs::create_dir_all(to).expect("a folder");
-    for (name, bytes) in contents(from) {
-        fs::write(to.join(name), bytes).expect("a copy");
-    }
+    commands.map(|command| answered(&told(command), what))
 }

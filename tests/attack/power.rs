@@ -3,9 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::Duration;
 
-use crate::program::{LONG, run_long, same, start, stderr};
+use crate::program::{LONG, run_long, same, start, stderr, wait};
 
 /// An ext4 file system in a file, in use until dropped.
 struct Disk {
@@ -80,9 +79,7 @@ fn what_was_told_survives_a_power_cut() {
         let name = format!("under-way-{trial}");
         let out = disk.place.join(&name);
         let mut child = start(&out, &LONG);
-        while !out.join("checkpoint-before.json").exists() && child.try_wait().expect("its state").is_none() {
-            std::thread::sleep(Duration::from_millis(1));
-        }
+        wait(&mut child, || out.join("checkpoint-before.json").exists());
         let found = disk.copy(&format!("{name}.img")).expect("a copy");
         child.wait().expect("it ends");
         let found = found.place.join(&name);

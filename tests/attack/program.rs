@@ -1,9 +1,10 @@
 //! The program under attack, with a short run that writes checkpoints.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::{Read as _, Seek as _};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
@@ -44,6 +45,61 @@ pub fn slcbeam() -> Command {
     Command::new(env!("CARGO_BIN_EXE_slcbeam"))
 }
 
+/// Address space of a program under attack [KiB].
+pub const MEMORY: u64 = 4 << 20;
+/// Time that it has to answer.
+pub const PATIENCE: Duration = Duration::from_secs(20);
+
+/// The program in so much address space [KiB].
+pub fn bounded(memory: u64) -> Command {
+    let mut command = Command::new("sh");
+    command.args(["-c", &format!("ulimit -v {memory}; exec \"$0\" \"$@\"")]);
+    command.arg(env!("CARGO_BIN_EXE_slcbeam"));
+    command
+}
+
+/// What a command answers within a time; `None` where it does not, and is killed.
+pub fn answer(command: &mut Command, patience: Duration) -> Option<Output> {
+    let [mut stdout, mut stderr] = [(); 2].map(|()| tempfile::tempfile().expect("a file"));
+    let into = |file: &File| file.try_clone().expect("a file");
+    let mut child = command
+        .stdin(Stdio::null())
+        .stdout(into(&stdout))
+        .stderr(into(&stderr))
+        .spawn()
+        .expect("it starts");
+    let begin = Instant::now();
+    wait(&mut child, || begin.elapsed() > patience);
+    let Some(status) = child.try_wait().expect("its state") else {
+        kill(&mut child);
+        return None;
+    };
+    let told = |file: &mut File| {
+        let mut bytes = vec![];
+        file.rewind()
+            .and_then(|()| file.read_to_end(&mut bytes))
+            .expect("what it told");
+        bytes
+    };
+    Some(Output {
+        status,
+        stdout: told(&mut stdout),
+        stderr: told(&mut stderr),
+    })
+}
+
+/// Waits until something is there or the program has ended.
+pub fn wait(child: &mut Child, there: impl Fn() -> bool) {
+    while !there() && child.try_wait().expect("its state").is_none() {
+        std::thread::sleep(Duration::from_micros(200));
+    }
+}
+
+pub fn kill(child: &mut Child) {
+    child.kill().expect("it is killed");
+    child.wait().expect("it ends");
+}
+
 /// What makes the run long enough to be killed in its middle.
 pub const LONG: [&str; 4] = ["--set", "/time/end_s=0.6", "--set", "/time/checkpoint_interval_s=0.05"];
 
@@ -70,12 +126,14 @@ pub fn killed(out: &Path) {
     for _ in 0..20 {
         let _ = fs::remove_dir_all(out);
         let mut child = start(out, &LONG);
-        while !out.join("checkpoint-before.json").exists() && child.try_wait().expect("its state").is_none() {
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        child.kill().expect("it is killed");
-        child.wait().expect("it ends");
-        if out.join("checkpoint-before.json").exists() && out.join("checkpoint.json").exists() {
+        let both = || {
+            ["checkpoint-before.json", "checkpoint.json"]
+                .iter()
+                .all(|name| out.join(name).exists())
+        };
+        wait(&mut child, both);
+        kill(&mut child);
+        if both() {
             return;
         }
         // the run was faster than the kill, or struck while it changed checkpoints
@@ -123,6 +181,23 @@ pub fn contents(dir: &Path) -> Vec<(String, Vec<u8>)> {
     }
     all.sort();
     all
+}
+
+/// Copies a folder in place of another.
+pub fn copy(from: &Path, to: &Path) {
+    let _ = fs::remove_dir_all(to);
+    fs::create_dir_all(to).expect("a folder");
+    for entry in fs::read_dir(from)
+        .expect("a folder")
+        .map(|e| e.expect("an entry").path())
+    {
+        let target = to.join(entry.file_name().expect("a name"));
+        if entry.is_dir() {
+            copy(&entry, &target);
+        } else {
+            fs::copy(&entry, &target).expect("a copy");
+        }
+    }
 }
 
 /// That a folder is as it was.

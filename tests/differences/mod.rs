@@ -2,18 +2,7 @@
 
 use slcbeam::dae::{BeamDae, Dae, Seeds, colour};
 
-/// A small reproducible generator (SplitMix64) of numbers in (-1, 1).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
+use crate::chance::Random;
 
 /// Largest difference between exact and differenced entries, relative to the largest entry of the same row and column.
 pub fn worst_difference(dae: &mut BeamDae, seed: u64, size: f64) -> f64 {
@@ -29,8 +18,8 @@ pub fn worst_difference(dae: &mut BeamDae, seed: u64, size: f64) -> f64 {
             1.0
         }
     };
-    let y: Vec<f64> = (0..n).map(|i| size * reach(i) * random.next()).collect();
-    let yp: Vec<f64> = (0..n).map(|_| size * random.next()).collect();
+    let y: Vec<f64> = (0..n).map(|i| size * reach(i) * random.between(-1.0, 1.0)).collect();
+    let yp: Vec<f64> = (0..n).map(|_| size * random.between(-1.0, 1.0)).collect();
     let (t, cj) = (0.013, 37.0);
     let pattern = dae.pattern().clone();
     let mut exact = vec![0.0; pattern.entries()];

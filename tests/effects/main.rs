@@ -2,6 +2,8 @@
 //!
 //! Every test prints what it measures; `cargo test --release --test effects -- --nocapture` reprints the numbers.
 
+#[path = "../common/chance.rs"]
+mod chance;
 #[allow(dead_code)] // shared with the tests of physics
 #[path = "../physics/common.rs"]
 mod common;

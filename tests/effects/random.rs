@@ -8,7 +8,8 @@ use slcbeam::discrete::System;
 use slcbeam::model::Model;
 
 use super::differences::worst_difference;
-use super::fuzz_case::{Random, text};
+use super::fuzz_case::text;
+use crate::chance::Random;
 
 #[test]
 fn derivatives_are_exact_for_random_effects_of_random_cases() {
@@ -20,14 +21,15 @@ fn derivatives_are_exact_for_random_effects_of_random_cases() {
             let leave = r.one_in(4);
             leave.then(|| format!("/effects/{name}=\"off\""))
         }));
-        let Ok(loaded) = case::parse(&text(seed), Path::new("random.json"), Path::new("."), &sets) else {
+        let Ok(case) = case::parse(&text(seed), Path::new("random.json"), Path::new("."), &sets) else {
             continue;
         };
-        if !Model::new(&loaded.case).effects.refusals.is_empty() {
+        let model = Model::new(&case).unwrap();
+        if !model.effects.refusals.is_empty() {
             refused += 1;
             continue;
         }
-        let mut dae = BeamDae::new(System::new(&loaded.case));
+        let mut dae = BeamDae::new(System::with(&case, model).unwrap());
         if dae.is_empty() {
             continue;
         }

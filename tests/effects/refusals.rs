@@ -7,7 +7,7 @@ use slcbeam::model::{EffectSet, Model};
 use super::common::{EVERYTHING, written};
 
 fn effects(sets: &[&str]) -> EffectSet {
-    Model::new(&written(EVERYTHING, sets)).effects
+    Model::new(&written(EVERYTHING, sets)).unwrap().effects
 }
 
 fn refused(sets: &[&str], pointer: &str, what: &str) {

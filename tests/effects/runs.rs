@@ -1,5 +1,6 @@
 //! Runs of reduced models: they go on from checkpoints bit for bit, and every output is there.
 
+use slcbeam::discrete::System;
 use slcbeam::run::{dynamics, record::Memory};
 
 use super::common::shipped;
@@ -30,7 +31,7 @@ fn resumed_runs_of_reduced_models_repeat_uninterrupted_ones() {
         assert_eq!(whole.checkpoints.len(), 1, "{effects}: {:?}", outcome.summary.reason);
         let checkpoint = &whole.checkpoints[0];
         let mut rest = Memory::default();
-        let resumed = dynamics::resume(&case, checkpoint, &mut rest).unwrap();
+        let resumed = dynamics::resume(&case, System::new(&case).unwrap(), checkpoint, &mut rest).unwrap();
         assert_eq!(
             whole.rows[checkpoint.next_output as usize..],
             rest.rows[..],

@@ -125,7 +125,7 @@ fn count(cells: i64, segments: i64, volumes: i64, effects: &str) -> (i64, i64) {
         r#"/bladders/coupling="reciprocal""#.into(),
         r#"/formulation="conservative""#.into(),
     ];
-    let dae = BeamDae::new(System::new(&shipped("wiring-2", &sets)));
+    let dae = BeamDae::new(System::new(&shipped("wiring-2", &sets)).unwrap());
     (dae.len() as i64, dae.pattern().entries() as i64)
 }
 

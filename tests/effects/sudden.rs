@@ -38,7 +38,7 @@ const WET: &str = r#"{
 }"#;
 
 fn keeps(case: &Case, effect: Effect) -> (bool, String) {
-    let effects = System::new(case).model.effects;
+    let effects = System::new(case).unwrap().model.effects;
     let decision = effects.decision(effect);
     (decision.on, decision.cause.to_string())
 }
@@ -119,7 +119,7 @@ fn short_pulses_at_a_port_keep_inertia() {
             let case = written(WET, &[port]);
             let (on, why) = keeps(&case, Effect::SolidInertia);
             assert!(on, "{start} s: {why}");
-            let scales = System::new(&case).model.scales;
+            let scales = System::new(&case).unwrap().model.scales;
             assert!(scales.pressure > 1.9e4, "{start} s: {}", scales.pressure);
         }
     }
@@ -217,7 +217,7 @@ fn a_resonant_ripple_on_a_slow_load_keeps_inertia() {
 fn largest_steps_see_what_no_break_marks() {
     let largest = |signal: &str, end: f64| {
         let case = written(BEAM, &[tip(signal), format!("/time/end_s={end}")]);
-        slcbeam::run::dynamics::max_step(&case, &System::new(&case))
+        slcbeam::run::strides::Strides::new(&case, &System::new(&case).unwrap()).least()
     };
     let mut coefficients = vec!["0"; 60];
     coefficients.push("1");

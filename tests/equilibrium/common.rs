@@ -8,15 +8,13 @@ use slcbeam::run::equilibrium::{self, Options, columns, follow, system};
 use slcbeam::run::record::Control;
 
 pub fn parse(value: &Value) -> Case {
-    case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), &[])
-        .expect("a valid case")
-        .case
+    case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), &[]).expect("a valid case")
 }
 
 pub fn shipped(name: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
     let path = format!("{}/cases/{name}.json", env!("CARGO_MANIFEST_DIR"));
-    case::load(path.as_ref(), &sets).expect("a valid case").case
+    case::load(path.as_ref(), &sets).expect("a valid case")
 }
 
 /// Unit beam of `EA L²/EI = 1.2e5 factor` with conditions at its tip.
@@ -30,7 +28,7 @@ pub fn unit(cells: usize, factor: f64, tip: Value) -> Value {
 }
 
 pub fn path_of(case: &Case, options: &Options) -> equilibrium::Path {
-    follow(case, options, &mut |_| Control::Continue)
+    follow(case, options, &mut |_| Control::Continue).unwrap()
 }
 
 /// A path that arrives, and a reader of its last state.
@@ -38,7 +36,7 @@ pub fn solved(case: &Case) -> (equilibrium::Path, impl Fn(&str) -> f64 + use<>) 
     let at = case.time.end_s;
     let path = path_of(case, &Options::at(at));
     assert!(path.fault.is_none(), "{:?}", path.fault);
-    let (names, row) = (columns(&system(case, at)), path.last().row.clone());
+    let (names, row) = (columns(&system(case, at).unwrap()), path.last().row.clone());
     (path, move |name: &str| {
         row[names.iter().position(|c| c.name == name).expect("a column")]
     })

@@ -37,7 +37,7 @@ fn sensitivities_are_those_of_differences() {
     for (case, pointers) in columns_and_case {
         let options = Options::at(case.time.end_s);
         let base = path_of(&case, &options);
-        let names = columns(&system(&case, options.at_s));
+        let names = columns(&system(&case, options.at_s).unwrap());
         let parameters: Vec<Parameter> = pointers
             .iter()
             .map(|p| Parameter::find(&case, p).expect("a number"))

@@ -22,7 +22,7 @@ fn static_jacobian_is_that_of_differences() {
         "ring-network",
     ] {
         let case = shipped(name, &[]);
-        let of = system(&case, case.time.end_s);
+        let of = system(&case, case.time.end_s).unwrap();
         let mut beam = slcbeam::dae::BeamDae::new(of.clone());
         let (inside, now) = beam.instant(0.0);
         let rest = start::state(inside, &case, now);

@@ -11,7 +11,6 @@ pub fn checked(case: &Value) -> Case {
     case::parse(&case.to_string(), Path::new("test.json"), Path::new(""), &[])
         .map_err(|e| format!("{e:?}"))
         .unwrap()
-        .case
 }
 
 /// Its slowest modes, with the fluid held and freed too.

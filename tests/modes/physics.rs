@@ -176,8 +176,7 @@ fn the_buckled_column_swings() {
             "/start={}".into(),
         ],
     )
-    .unwrap()
-    .case;
+    .unwrap();
     let first = |share: f64| {
         let found = modes::of(modes::at_equilibrium(&case, share / 5.0).unwrap(), &plan(3)).unwrap();
         assert!(!found.about.moving(), "{:e}", found.about.rate);
@@ -217,8 +216,8 @@ fn shapes_are_alike_or_orthogonal() {
 #[test]
 fn passive_as_the_audit_has_it() {
     let mut case = wet(10, 8.68e-4, 5e-6);
-    let of = |case: &Value| passivity::of(&Model::whole(&checked(case), true)).unwrap();
-    let section = Model::whole(&checked(&case), true).section;
+    let of = |case: &Value| passivity::of(&Model::whole(&checked(case), true).unwrap()).unwrap();
+    let section = Model::whole(&checked(&case), true).unwrap().section;
     let r = 100.0 * 0.046;
     let least = |am: f64| 1.0 - (2.0 * section.bending_stiffness * r * am * am / 1.75e-10).sqrt();
     let found = of(&case);

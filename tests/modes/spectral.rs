@@ -9,6 +9,7 @@ use nalgebra::Complex;
 use slcbeam::dae::Pattern;
 use slcbeam::run::modes::linearise;
 use slcbeam::spectral::{self, Failure, Found, Options, Pencil};
+use slcbeam_dense::eigen;
 
 use crate::common::{chains, checked};
 
@@ -66,11 +67,30 @@ fn a_negative_eigenvalue_tells_an_unstable_tangent() {
         let entry = pattern.column(j).find(|&e| pattern.rows[e] as usize == j).unwrap();
         k[entry] -= by;
     }
-    let found = spectral::softest(&pattern, &k, &[1.0; 300]).unwrap();
+    let found = spectral::lowest(&pattern, &k, &[1.0; 300]).unwrap();
     assert_eq!(found.iter().filter(|mu| mu.re < 0.0).count(), 2);
     // Far inside what the last four steps must not have moved.
     let least = found.iter().map(|mu| mu.re).fold(f64::INFINITY, f64::min);
     assert!((least / (exact[0] - by) - 1.0).abs() < 1e-8);
+}
+
+/// Forty times the turn of three axes into each other: each cube root of 1, forty times. Copies keep no iteration going round in
+/// circles. Tolerance: round-off of a hundred rotations.
+#[test]
+fn copies_come_at_once() {
+    let turn = |i: usize, j: usize| i / 3 == j / 3 && i % 3 == (j + 1) % 3;
+    let found = eigen(120, &|i, j| f64::from(u8::from(turn(i, j))).into()).unwrap();
+    assert_eq!(found.len(), 120);
+    for (s, x) in &found {
+        assert!((s * s * s - 1.0).norm() < 1e-13, "{s}");
+        for block in x.chunks(3) {
+            // the axis i goes to the axis i + 1
+            let left = (0..3)
+                .map(|i| (block[(i + 2) % 3] - s * block[i]).norm())
+                .fold(0.0, f64::max);
+            assert!(left < 1e-13, "{left:e}");
+        }
+    }
 }
 
 /// Largest distance of an eigenvalue of one to the nearest of the other.

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use slcbeam::case::{self, Case};
+use slcbeam::discrete::System;
 use slcbeam::run::{dynamics, record::Memory, summary::Status};
 
 fn load(name: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
     let path = format!("cases/{name}.json");
-    case::load(Path::new(&path), &sets).unwrap().case
+    case::load(Path::new(&path), &sets).unwrap()
 }
 
 fn run(case: &Case) -> (Memory, dynamics::Outcome) {
@@ -71,7 +72,7 @@ fn resumed_runs_repeat_uninterrupted_ones() {
         assert_eq!(whole.checkpoints.len(), 3);
         for checkpoint in &whole.checkpoints {
             let mut rest = Memory::default();
-            let resumed = dynamics::resume(&case, checkpoint, &mut rest).unwrap();
+            let resumed = dynamics::resume(&case, System::new(&case).unwrap(), checkpoint, &mut rest).unwrap();
             assert_eq!(whole.rows[checkpoint.next_output as usize..], rest.rows[..]);
             assert_eq!(outcome.summary.balances, resumed.summary.balances);
             assert_eq!(outcome.summary.solver, resumed.summary.solver);

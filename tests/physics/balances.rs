@@ -1,4 +1,4 @@
-//! Source: `model.md` section 6, `derivations.md` E: the balances are exact in the semi-discrete system.
+//! Source: `docs/model.md` section 8: the balances are exact in the semi-discrete system.
 //! Goal: what does not close is the integrator's error: it shrinks with the tolerance, for every shipped case, both
 //! formulations and both couplings, their named defects included.
 //! Tolerances: 1e-3 of the largest energy at rtol 1e-6, likewise of momentum and angular momentum; volumes of closed

@@ -80,9 +80,7 @@ pub struct Run {
 pub fn shipped<S: AsRef<str>>(name: &str, sets: &[S]) -> Case {
     let path = format!("cases/{name}.json");
     let sets: Vec<String> = sets.iter().map(|s| s.as_ref().to_string()).collect();
-    case::load(Path::new(&path), &sets)
-        .unwrap_or_else(|e| panic!("{name} with {sets:?}: {}", told(&e)))
-        .case
+    case::load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{name} with {sets:?}: {}", told(&e)))
 }
 
 /// A case from its text, with changes.
@@ -90,7 +88,6 @@ pub fn written<S: AsRef<str>>(text: &str, sets: &[S]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| s.as_ref().to_string()).collect();
     case::parse(text, Path::new("test.json"), Path::new("cases"), &sets)
         .unwrap_or_else(|e| panic!("{}\nwith {sets:?}: {}", text, told(&e)))
-        .case
 }
 
 fn told(error: &slcbeam::error::Error) -> String {

@@ -1,4 +1,4 @@
-//! Source: `model.md` section 5 (second order in space in all end combinations), BDF of order 2 in time.
+//! Source: `docs/model.md` section 7 (second order in space in all end combinations), BDF of order 2 in time.
 //! Goal: observed orders 2 for tip deflection and pressure, in space and in time, on problems whose solution is smooth:
 //! motions that start with a ramp, mean slopes instead of kinks.
 //! Tolerance: 0.1 on an observed order. In space all meshes take the same steps, so that the error in time is the same

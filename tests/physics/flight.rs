@@ -1,4 +1,4 @@
-//! Source: mechanics of a free body; `model.md` section 2: the published form conserves neither momentum nor energy.
+//! Source: mechanics of a free body; `docs/model.md` section 2: the published form conserves neither momentum nor energy.
 //! Goal: a beam thrown with nothing to hold it keeps its momentum and angular momentum in the conservative form,
 //! whatever the bladders do, and loses them by the published form's named defect.
 //! Tolerances: momentum is a linear invariant, which BDF keeps up to Newton's residual, so no digits of the step's error
@@ -52,7 +52,7 @@ fn a_thrown_beam_keeps_its_momentum() {
         let mut angular = vec![];
         for rtol in ["1e-4", "1e-6"] {
             let case = written(THROWN, &[CONSERVATIVE, coupling, &format!("/solver/rtol={rtol}")]);
-            let mass = Model::new(&case).section.mass_per_length;
+            let mass = Model::new(&case).unwrap().section.mass_per_length;
             let run = run(&case);
             let (drift, b) = (drift(&run, mass), &run.summary.balances);
             println!(
@@ -75,7 +75,7 @@ fn a_thrown_beam_keeps_its_momentum() {
 #[test]
 fn the_published_form_loses_momentum_and_says_so() {
     let case = written(THROWN, &[AS_PUBLISHED, RECIPROCAL, "/solver/rtol=1e-6"]);
-    let mass = Model::new(&case).section.mass_per_length;
+    let mass = Model::new(&case).unwrap().section.mass_per_length;
     let run = run(&case);
     let (drift, b) = (drift(&run, mass), &run.summary.balances);
     println!(

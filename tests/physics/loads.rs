@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use proptest::prelude::*;
 use slcbeam::case::profile::{Integrals, Profile};
 use slcbeam::case::{Case, Clock};
-use slcbeam::discrete::{Instant, System, shapes, start};
+use slcbeam::discrete::{System, TimeData, shapes, start};
 
 use super::common::{EI, run, shipped, within};
 
@@ -72,7 +72,7 @@ fn a_narrow_pad_is_right_on_every_mesh() {
 
 /// Force and its moment about the root, as the mesh has them.
 fn resultants(case: &Case) -> (f64, f64) {
-    let system = System::new(case);
+    let system = System::new(case).unwrap();
     let shape = &system.loads[0].shape;
     (0..system.mesh.nodes).fold((0.0, 0.0), |(force, moment), i| {
         let at_node = shape[i] * system.mesh.node_length(i);
@@ -246,8 +246,8 @@ fn a_start_has_its_momentum_on_every_mesh() {
     for cells in [1, 2, 4, 8] {
         let cells = format!("/mesh/cells_per_segment={cells}");
         let case = shipped("dry-cantilever", &[velocity.as_str(), &cells]);
-        let system = System::new(&case);
-        let mut now = Instant::new(&system);
+        let system = System::new(&case).unwrap();
+        let mut now = TimeData::new(&system);
         now.update(&system, Clock { t: 0.0, within: 0.0 });
         let y = start::state(&system, &case, &now);
         let l = &system.layout;
@@ -266,7 +266,7 @@ fn a_start_has_its_volume_on_any_number_of_cells() {
         let pressure = format!(r#"/start/pressures=[{{"bladders":[1,-3],"pressure_pa":{pressure}}}]"#);
         let cells = format!("/mesh/cells_per_bladder={cells}");
         let case = shipped("wiring-2", &[pressure.as_str(), r#"/effects="full""#, &cells]);
-        start::areas(&System::new(&case), &case)
+        start::areas(&System::new(&case).unwrap(), &case)
     };
     let mean = 500.0 * (TAU * 0.3).sin() / (TAU * 0.3);
     let uniform = areas(&format!("{mean}"), 1);

@@ -1,4 +1,4 @@
-//! Physics: what the model must do, against closed forms, conserved quantities, and the numbers of `model.md`.
+//! Physics: what the model must do, against closed forms, conserved quantities, and the numbers of `docs/exact-results.md`.
 //!
 //! Every test prints what it measures; `cargo test --release --test physics -- --nocapture` reprints the numbers.
 

@@ -38,7 +38,7 @@ fn agree(rows: &[(f64, f64, i64)], printed: &str) {
 fn the_six_printed_tables_come_out_to_every_digit() {
     for (wiring, case) in WIRINGS {
         let case = shipped::<&str>(case, &[]);
-        let model = Model::new(&case);
+        let model = Model::new(&case).unwrap();
         let map = network_coordinate(&case, model.wet.as_ref().unwrap());
         agree(&map.theta_to_xf(), &printed("theta-to-xf", wiring));
         agree(&map.xf_to_theta(), &printed("xf-to-theta", wiring));

@@ -1,4 +1,4 @@
-//! Source: heat equation on chains and rings, Kirchhoff's laws (`verification.md`, "Fluid network").
+//! Source: heat equation on chains and rings, Kirchhoff's laws (`docs/exact-results.md` section 3).
 //! Goal: exact decay rates of networks of equal bladders C and tubes R; steady networks against a dense solve.
 //! The bladders' area depends on pressure alone here, so that the beam stays at rest; one cell a bladder makes C and R
 //! exact: C = a_p l_b, R = one tube and two half bladders. What is left is the error in time: at rtol 1e-9, 1e-6.
@@ -250,6 +250,29 @@ fn a_steady_network_obeys_kirchhoff() {
         "work of the ports [W]",
         run.gained("work_ports", window) / window,
         power.iter().sum(),
+        1e-6,
+    );
+}
+
+/// Goal: what a pump lets into a network that has no other port is what its bladders hold: the flow's integral, to the error of the
+/// integration; and so it is in the history.
+#[test]
+fn what_ports_let_in_is_told_and_stored() {
+    let network = r#"{"chains":[{"bladders":[1,2,3],"ends":["connected","sealed"]}],"ports":[{"at":{"bladder":1,"end":"inlet"},
+        "flow_m3_s":{"sine":{"amplitude":3e-6,"frequency_hz":2,"phase_rad":1.5707963267948966}}}]}"#;
+    let run = run(&still(3, network, &[], 0.33));
+    let held: Vec<f64> = run
+        .field("area_change_m2")
+        .iter()
+        .map(|a| 0.046 * a.iter().sum::<f64>())
+        .collect();
+    let pumped = 3e-6 * (4.0 * PI * 0.33).sin() / (4.0 * PI);
+    within("held [m^3]", *held.last().unwrap(), pumped, 1e-6);
+    within("let in [m^3]", run.last("injected_volume"), pumped, 1e-6);
+    within(
+        "flow [m^3/s]",
+        run.last("port_flow"),
+        3e-6 * (4.0 * PI * 0.33).cos(),
         1e-6,
     );
 }

@@ -1,4 +1,4 @@
-//! Source: `model.md` sections 4 and 7, derived there from the paper's data and printed to the digits used here.
+//! Source: `docs/exact-results.md` section 4, derived from the paper's data and printed there to the digits used here.
 //! Goal: every characteristic number that a user sees before a run.
 //! Tolerance: half a unit of the last printed digit.
 
@@ -14,7 +14,7 @@ use super::common::shipped;
 
 fn of(case: &str, sets: &[&str]) -> BTreeMap<String, f64> {
     let case = shipped(case, sets);
-    numbers(&case, &Model::new(&case))
+    numbers(&case, &Model::new(&case).unwrap())
 }
 
 /// Half a unit of the last digit of a printed number.
@@ -67,6 +67,7 @@ fn times_of_the_fluid_for_every_figure() {
         as_printed(&format!("{case} {key}"), of(case, &[])[key], printed);
     }
     let turbine = &Model::new(&shipped::<&str>("harvester-parallel-wave", &[]))
+        .unwrap()
         .wet
         .unwrap()
         .network
@@ -144,7 +145,7 @@ fn the_bound_of_the_tongue_begins_before_the_beam_grows() {
 /// Slowest relaxation of the closed chain of ten, each bladder divided into `cells`: eigenvalues of the graph's
 /// Laplacian over the cells' compliance.
 fn slowest_time(cells: usize) -> f64 {
-    let system = System::new(&shipped("valves-open", &[&format!("/mesh/cells_per_bladder={cells}")]));
+    let system = System::new(&shipped("valves-open", &[&format!("/mesh/cells_per_bladder={cells}")])).unwrap();
     let (fluid, wet) = (system.fluid.as_ref().unwrap(), system.model.wet.as_ref().unwrap());
     // The upper row comes first.
     let n = 10 * cells;
@@ -190,7 +191,7 @@ fn the_slowest_mode_of_a_closed_chain() {
 #[test]
 fn the_audit_of_the_published_coupling() {
     let case = shipped::<&str>("valves-open", &[]);
-    let model = Model::new(&case);
+    let model = Model::new(&case).unwrap();
     let found = audit::coupling(&case, &model);
     let value = |start: &str| {
         found
@@ -205,7 +206,7 @@ fn the_audit_of_the_published_coupling() {
     as_printed("dn/an", value("dn/an"), "0.268");
     as_printed("solvable in bending", value("1 - 2 EI"), "0.9994");
     as_printed("solvable in stretch", value("1 - 2 EA"), "0.587");
-    // a_p needs 4.2e-11 and 1.3e-11 (derivations D).
+    // a_p needs 4.2e-11 and 1.3e-11 (`docs/exact-results.md` section 4).
     as_printed("a_p for axial passivity", 1.75e-10 / value("a_p/(2 EA"), "4.2e-11");
     as_printed("a_p for bending passivity", 1.75e-10 / value("a_p/(EI"), "1.3e-11");
     let warnings = audit::warnings(&case, &model, &numbers(&case, &model)).join("\n");

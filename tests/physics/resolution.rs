@@ -53,7 +53,7 @@ fn what_is_wrong_is_told() {
 }
 
 fn left_out(case: &Case) -> Vec<f64> {
-    let found = resolution::findings(case, &System::new(case));
+    let found = resolution::findings(case, &System::new(case).unwrap());
     found.iter().map(|f| f.left_out).collect()
 }
 
@@ -78,7 +78,7 @@ fn what_the_mesh_leaves_out_is_told() {
         100.0 / (k * k) * 0.005 / EI,
         1e-3,
     );
-    assert!(resolution::unresolved(&wave, &System::new(&wave)).is_empty());
+    assert!(resolution::unresolved(&wave, &System::new(&wave).unwrap()).is_empty());
     // A narrow pad is a force, but for one close to what holds the beam.
     for cells in [1, 2, 4] {
         for middle in [0.3, 0.5, 0.5125, 0.99] {
@@ -91,7 +91,7 @@ fn what_the_mesh_leaves_out_is_told() {
         }
     }
     let near = pressed(&pad(0.03, 50.0), 1, &[]);
-    let found = resolution::unresolved(&near, &System::new(&near));
+    let found = resolution::unresolved(&near, &System::new(&near).unwrap());
     println!("{found:?}");
     let (coarse, wanted) = (run(&near).last("tip_u1"), found[0].wanted.unwrap());
     let finer = |cells| run(&pressed(&pad(0.03, 50.0), cells, &[])).last("tip_u1");
@@ -153,13 +153,13 @@ fn waves_that_a_mesh_slows_down_are_told() {
     let (coarse, fine) = (largest(4), largest(32));
     println!("largest displacement in the window {coarse:.3e} m, on 32 cells a segment {fine:.3e} m");
     assert!(coarse < 0.8 * fine);
-    let found = resolution::unresolved(&case(4), &System::new(&case(4)));
+    let found = resolution::unresolved(&case(4), &System::new(&case(4)).unwrap());
     println!("{found:?}");
     assert_eq!(found.len(), 1);
     assert!(found[0].left_out > 1.0 - coarse / fine && found[0].wanted.is_some_and(|cells| cells > 16));
     // Ten times slower, as it is with another modulus or so much earlier: nothing has lost its phase yet.
     let early = begun("u3_m", &triangle(0.5, 0.1, 1e-4), r#""free""#, 16, 1e-5);
-    assert!(resolution::unresolved(&early, &System::new(&early)).is_empty());
+    assert!(resolution::unresolved(&early, &System::new(&early).unwrap()).is_empty());
     // The first vibration loses its phase in the long run, which is told by the run itself.
     let first = begun(
         "u3_m",
@@ -168,7 +168,7 @@ fn waves_that_a_mesh_slows_down_are_told() {
         2,
         1.0,
     );
-    assert!(resolution::unresolved(&first, &System::new(&first)).is_empty());
+    assert!(resolution::unresolved(&first, &System::new(&first).unwrap()).is_empty());
 }
 
 /// A narrow velocity keeps its energy by chance on some meshes: what lies between the lines is judged, not the sum.
@@ -185,7 +185,7 @@ fn velocities_between_nodes_are_told_on_every_coarse_mesh() {
         assert!(left_out(&case)[0] > resolution::LIMIT, "{cells}: {:?}", left_out(&case));
     }
     let fine = begun("u1_rate_m_s", &triangle(0.52, 0.02, 3.0), r#"{"guided":{}}"#, 32, 0.3);
-    assert!(resolution::unresolved(&fine, &System::new(&fine)).is_empty());
+    assert!(resolution::unresolved(&fine, &System::new(&fine).unwrap()).is_empty());
 }
 
 /// Random triangles, at rest or moving, across or along: energy at the beginning against that of a mesh eight times finer.
@@ -212,7 +212,7 @@ fn energy_that_is_wrong_at_the_start_is_told() {
         let on = |cells| begun(key, &triangle(middle, half, height), r#""free""#, cells, 1e-7);
         let (coarse, fine) = (energy(&on(cells)), energy(&on(8 * cells)));
         let error = ((coarse / fine).sqrt() - 1.0).abs();
-        let found = !resolution::unresolved(&on(cells), &System::new(&on(cells))).is_empty();
+        let found = !resolution::unresolved(&on(cells), &System::new(&on(cells)).unwrap()).is_empty();
         (told, wrong) = (told + usize::from(found), wrong + usize::from(error > 0.05));
         assert!(
             found || error < 0.06,
@@ -236,7 +236,7 @@ fn pressures_that_fall_along_a_cell_are_told() {
         written::<&str>(&text, &[])
     };
     let two = case("[1,2]", 2);
-    let found = resolution::unresolved(&two, &System::new(&two));
+    let found = resolution::unresolved(&two, &System::new(&two).unwrap());
     let largest = run(&two).summary.quantities["max_pressure_pa"].max_abs.unwrap();
     println!("largest pressure {largest:.0} Pa of 5000: {found:?}");
     // exact at rest; a start and what bends with it add a fiftieth
@@ -247,7 +247,7 @@ fn pressures_that_fall_along_a_cell_are_told() {
         case("[1,2]", found[0].wanted.unwrap()),
         case("[1,2,3,4,5,6,7,8,9,10]", 2),
     ] {
-        assert!(resolution::unresolved(&fine, &System::new(&fine)).is_empty());
+        assert!(resolution::unresolved(&fine, &System::new(&fine).unwrap()).is_empty());
     }
 }
 
@@ -264,7 +264,7 @@ fn flows_through_few_bladders_are_told() {
         written::<&str>(&text, &[])
     };
     let coarse = case("[1,2,3]", 2);
-    let found = resolution::unresolved(&coarse, &System::new(&coarse));
+    let found = resolution::unresolved(&coarse, &System::new(&coarse).unwrap());
     let largest = |case: &Case| run(case).summary.quantities["max_pressure_pa"].max_abs.unwrap();
     let off = 1.0 - largest(&coarse) / largest(&case("[1,2,3]", 32));
     println!("off by {off:.3}: {found:?}");
@@ -272,7 +272,7 @@ fn flows_through_few_bladders_are_told() {
     let told = found[0].left_out;
     assert!(told > off && told < 1.3 * off, "{told} for {off}");
     let fine = case("[1,2,3]", found[0].wanted.unwrap());
-    assert!(resolution::unresolved(&fine, &System::new(&fine)).is_empty());
+    assert!(resolution::unresolved(&fine, &System::new(&fine).unwrap()).is_empty());
 }
 
 #[test]
@@ -285,7 +285,7 @@ fn no_shipped_case_is_warned() {
             };
             let path = format!("{}{stem}", if folder == "cases" { "" } else { "hard/" });
             let case = shipped::<&str>(&path, &[]);
-            let told = resolution::warnings(&case, &System::new(&case));
+            let told = resolution::warnings(&case, &System::new(&case).unwrap());
             assert!(told.is_empty(), "{path}: {told:?}");
         }
     }

@@ -5,14 +5,13 @@ use std::path::Path;
 use serde_json::{Value, json};
 use slcbeam::case::parameter::Parameter;
 use slcbeam::case::{self, Case};
+use slcbeam::discrete::System;
 use slcbeam::run::dynamics;
 use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Status, Summary};
 
 pub fn parse(value: &Value, sets: &[String]) -> Case {
-    case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), sets)
-        .unwrap_or_else(|e| panic!("{e:?}"))
-        .case
+    case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), sets).unwrap_or_else(|e| panic!("{e:?}"))
 }
 
 /// A short beam of two segments with some waves in it, or none; tolerances at which differences of runs keep five digits.
@@ -51,7 +50,7 @@ pub fn wet(end_s: f64) -> Value {
 
 pub fn finished(case: &Case, parameters: &[Parameter]) -> (Memory, Summary) {
     let mut memory = Memory::default();
-    let outcome = dynamics::run_with(case, parameters, &mut memory).expect("a run");
+    let outcome = dynamics::run_with(case, System::new(case).unwrap(), parameters, &mut memory).expect("a run");
     assert_eq!(outcome.summary.status, Status::Finished, "{:?}", outcome.fault);
     (memory, outcome.summary)
 }

@@ -2,7 +2,7 @@
 
 use slcbeam::case::Case;
 use slcbeam::case::parameter::{CHANGE, Parameter, STEPS};
-use slcbeam::dae::{BeamDae, Dae, Fault, Neighbours, Pattern, Seeds};
+use slcbeam::dae::{BeamDae, Dae, Fault, Pattern, PerturbedSystems, Seeds};
 use slcbeam::discrete::{System, start};
 use slcbeam::sundials::{Absolute, Ida, IdaOptions, StartOptions, consistent_sensitivities, consistent_start};
 
@@ -10,16 +10,16 @@ use super::common::{beam, parse, wet};
 
 /// The systems of a case with one number changed beside its own.
 fn with_parameter(case: &Case, pointer: &str) -> BeamDae {
-    let dae = BeamDae::new(System::new(case));
+    let dae = BeamDae::new(System::new(case).unwrap());
     let parameter = Parameter::find(case, pointer).unwrap();
     let systems = STEPS.map(|(step, _)| {
         let changed = parameter
             .changed(case, parameter.value * (1.0 + step * CHANGE))
             .unwrap();
-        dae.system().like(&changed).expect("the same unknowns")
+        dae.system().like(&changed).unwrap().expect("the same unknowns")
     });
-    let neighbours = Neighbours::new(&dae, systems);
-    dae.with_neighbours(vec![neighbours])
+    let perturbed = PerturbedSystems::new(&dae, systems);
+    dae.with_perturbed(vec![perturbed])
 }
 
 /// The volume of a closed network is kept whatever the viscosity: the sum of its areas' sensitivities stays zero, to the round-off
@@ -84,7 +84,7 @@ impl Dae for Plain {
 /// both, so to round-off of a sum (1e-12 of its largest term or so).
 #[test]
 fn tangent_is_the_jacobian_applied() {
-    let dae = BeamDae::new(System::new(&parse(&wet(0.01), &[])));
+    let dae = BeamDae::new(System::new(&parse(&wet(0.01), &[])).unwrap());
     let n = dae.len();
     let wave = |k: usize| -> Vec<f64> { (0..n).map(|i| ((i * (k + 2)) as f64).sin()).collect() };
     let (y, yp): (Vec<f64>, Vec<f64>) = (wave(50).iter().map(|y| 0.1 * y).collect(), wave(51));
@@ -114,7 +114,7 @@ fn difference_formula_is_of_fourth_order() {
     let mut dae = with_parameter(&case, "/beam/density_kg_m3");
     let slope = |dae: &mut BeamDae, f: fn(f64) -> f64| {
         let mut out = [0.0];
-        let done = dae.neighbours_mut()[0].slope(&mut out, |j, _, out| {
+        let done = dae.perturbed_mut()[0].slope(&mut out, |j, _, out| {
             out[0] = f(1.0 + CHANGE * STEPS[j].0);
             Ok::<(), ()>(())
         });
@@ -129,7 +129,7 @@ fn difference_formula_is_of_fourth_order() {
     let case = parse(&beam(0.01), &[]);
     let mut dae = with_parameter(&case, "/beam/young_modulus_pa");
     let double = parse(&beam(0.01), &["/beam/young_modulus_pa=4e6".into()]);
-    let mut twice = BeamDae::new(dae.system().like(&double).unwrap());
+    let mut twice = BeamDae::new(dae.system().like(&double).unwrap().unwrap());
     let n = dae.len();
     let y: Vec<f64> = (0..n).map(|i| 0.1 * (i as f64).sin()).collect();
     let yp: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();

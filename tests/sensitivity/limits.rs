@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 use slcbeam::case::parameter::Parameter;
+use slcbeam::discrete::System;
 use slcbeam::error::Error;
 use slcbeam::run::dynamics;
 use slcbeam::run::record::Memory;
@@ -54,7 +55,7 @@ fn switching_times_stay_in_order() {
         json!({"free": {"force_x_n": {"ramp": {"from": 0.0, "to": 0.05, "start_s": 0.00999, "duration_s": 0.0}}}});
     let case = parse(&value, &[]);
     let parameter = Parameter::find(&case, "/ends/tip/free/force_x_n/ramp/start_s").unwrap();
-    match dynamics::run_with(&case, &[parameter], &mut Memory::default()) {
+    match dynamics::run_with(&case, System::new(&case).unwrap(), &[parameter], &mut Memory::default()) {
         Err(Error::Usage(what)) => assert!(what.contains("switching times"), "{what}"),
         other => panic!("{other:?}"),
     }

@@ -25,11 +25,8 @@ fn load(mut case: Value, effects: &str, rtol: f64) -> Option<Case> {
     case["effects_tolerance"] = json!(TOLERANCE);
     case["solver"] = json!({"rtol": rtol});
     let text = case.to_string();
-    Some(
-        case::parse(&text, Path::new("fuzz.json"), Path::new("."), &[])
-            .ok()?
-            .case,
-    )
+    let case = case::parse(&text, Path::new("fuzz.json"), Path::new("."), &[]).ok()?;
+    System::new(&case).is_ok().then_some(case)
 }
 
 fn run(case: &Case) -> Option<Summary> {
@@ -84,8 +81,8 @@ fn judge(seed: u64) -> Fate {
     let (Some(full), Some(auto)) = (load(text.clone(), "full", 1e-5), load(text.clone(), "auto", 1e-5)) else {
         return Fate::Unusable;
     };
-    let system = System::new(&auto);
-    let whole = System::new(&full).model.effects;
+    let system = System::new(&auto).unwrap();
+    let whole = System::new(&full).unwrap().model.effects;
     let out = system.model.effects.decisions.iter().zip(&whole.decisions);
     let out: Vec<String> = out
         .filter(|(auto, full)| full.on && !auto.on)

@@ -4,7 +4,7 @@ use slcbeam::run::summary::Status;
 
 use crate::harness::{COMBINATIONS, ENERGY_PER_RTOL, Ran, STIFF_VOLUME, VOLUME, distance, off, run};
 
-/// Source: model.md 3, 5.3. Goal: permeability from 10^-6 to 10^6 of the paper's, in every formulation and coupling:
+/// Source: `docs/model.md` sections 3 and 7. Goal: permeability from 10^-6 to 10^6 of the paper's, in every formulation and coupling:
 /// balances close, work stays in one band, and both ends are limits (sealed bladders, one pressure).
 /// Tolerance 1 %: at the ends the fluid's time differs from its limit by 10^-4 and less; what is left is two runs' rtol,
 /// a thousandfold amplified by the waves that follow the start.
@@ -32,7 +32,7 @@ fn permeability_over_twelve_decades() {
     }
 }
 
-/// Source: model.md 4.1. Goal: viscosity over eight decades, so that `t_s/t_f` is far above and far below one.
+/// Source: `docs/model.md` section 11. Goal: viscosity over eight decades, so that `t_s/t_f` is far above and far below one.
 /// Tolerance as above; the ends are a decade apart and nearer to the middle, hence 2 %.
 #[test]
 fn viscosity_over_eight_decades() {
@@ -62,7 +62,7 @@ fn viscosity_over_eight_decades() {
     }
 }
 
-/// Source: model.md 3 (valves). Goal: valves that close in 1 ms and in 1 us, exactly zero in between; one millisecond
+/// Source: `docs/model.md` section 5 (valves). Goal: valves that close in 1 ms and in 1 us, exactly zero in between; one millisecond
 /// more or less of closing changes the deflection by the flow of that millisecond, 1 %.
 /// Seen before: with 1 us the largest step was a 16th of a microsecond for the whole run, 1.9 million steps.
 #[test]
@@ -164,7 +164,7 @@ fn islands_and_sealed_bladders() {
     }
 }
 
-/// Source: model.md 4.1 (closure). Goal: the run ends where bladders collapse, with time and cause. Both rows are sucked
+/// Source: `docs/model.md` section 12. Goal: the run ends where bladders collapse, with time and cause. Both rows are sucked
 /// alike, so M = N = 0 in the mean and `p = -h_b w_b/a_p` when `r(s) = h_b w_b/(a_p 5e5 Pa)`, `t = 0.5 s`; tolerance the
 /// output interval and the time of the network, 1 ms and 4 ms.
 #[test]
@@ -191,7 +191,7 @@ fn a_bladder_driven_to_closure() {
 }
 
 /// Goal: published against reciprocal kinks from blunt to a millionth, crossed twice a period in every segment. Work grows
-/// slowly with sharpness, deflections change by less than 1 % below a width of 1e-4 (model.md 5.4).
+/// slowly with sharpness, deflections change by less than 1 % below a width of 1e-4 (`docs/model.md` section 3).
 #[test]
 fn kinks_crossed_every_half_cycle() {
     for formulation in [r#"/formulation="conservative""#, r#"/formulation="published""#] {

@@ -45,8 +45,8 @@ fn judge(seed: u64) -> (Verdict, String) {
 }
 
 fn run(text: &str, told: &mut String) -> Verdict {
-    let loaded = match case::parse(text, Path::new("fuzz.json"), Path::new("."), &[]) {
-        Ok(loaded) => loaded,
+    let case = match case::parse(text, Path::new("fuzz.json"), Path::new("."), &[]) {
+        Ok(case) => case,
         Err(slcbeam::error::Error::Case(fault)) if fault.violations.iter().all(|v| !v.what.is_empty()) => {
             *told = format!("refused: {}", fault.violations[0].what);
             return Verdict::Good("refused by the case check");
@@ -54,8 +54,11 @@ fn run(text: &str, told: &mut String) -> Verdict {
         Err(other) => return Verdict::Bad(format!("read: {other}")),
     };
     let mut recorder = Budget::new(STEPS, SECONDS);
-    let outcome = match dynamics::run(&loaded.case, &mut recorder) {
+    let outcome = match dynamics::run(&case, &mut recorder) {
         Ok(outcome) => outcome,
+        Err(slcbeam::error::Error::Case(fault)) if !fault.violations.is_empty() => {
+            return Verdict::Good("refused by the model");
+        }
         Err(error) => return Verdict::Bad(format!("recorder: {error}")),
     };
     let s = &outcome.summary;
@@ -66,7 +69,7 @@ fn run(text: &str, told: &mut String) -> Verdict {
     *told = format!(
         "{:?} at {:.3} of the run, {} steps, {} newton failures, {} rejected, energy {:.1e}, closed volume {:.1e}: {reason}",
         s.status,
-        s.time_s / loaded.case.time.end_s,
+        s.time_s / case.time.end_s,
         s.solver.steps,
         s.solver.newton_failures,
         s.solver.error_test_failures,
@@ -89,7 +92,7 @@ fn run(text: &str, told: &mut String) -> Verdict {
                     b.energy_residual_relative
                 ));
             }
-            confirm(loaded.case, &recorder.memory)
+            confirm(case, &recorder.memory)
         }
         Status::Stopped if reason == BUDGET => Verdict::Good("budget used up"),
         Status::OutOfRange if reason.contains("t = ") && reason.contains("closed") => {

@@ -5,7 +5,7 @@ use std::path::Path;
 use slcbeam::case;
 use slcbeam::error::Error;
 
-use crate::fuzz_case::Random;
+use crate::chance::Random;
 
 /// Letters of text that looks like JSON.
 const ALPHABET: &[u8] = b"{}[]:,\"\\0123456789.eE+-truefalsn \n";

@@ -61,7 +61,7 @@ fn beck(p: f64, w: Complex<f64>) -> Complex<f64> {
     w * w * 2.0 * (a.cosh() * b.cos() + 1.0) + w * p * a.sinh() * b.sin() + p * p
 }
 
-/// Source: Beck 1952; flutter at `P l^2/EI = 20.0510` with `w = 11.0156` (verification.md). Goal: a follower load 8 % below
+/// Source: Beck 1952; flutter at `P l^2/EI = 20.0510` with `w = 11.0156` (`docs/exact-results.md` section 1). Goal: a follower load 8 % below
 /// swings for ever, 10 % above flutters with the rate of the exact characteristic equation. Tolerance 5 %: the
 /// rate goes with the root of the distance to 20.05, which 40 cells shift by 0.2 %, a twentieth of it.
 #[test]

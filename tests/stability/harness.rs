@@ -100,7 +100,7 @@ pub fn case(file: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
     let path = format!("cases/hard/{file}.json");
     match case::load(Path::new(&path), &sets) {
-        Ok(loaded) => loaded.case,
+        Ok(case) => case,
         Err(slcbeam::error::Error::Case(fault)) => panic!("{}", case::render(&fault, false, 100)),
         Err(other) => panic!("{path}: {other}"),
     }

@@ -9,6 +9,8 @@
 //!
 //! Work is held within bands of steps, never of wall time.
 
+#[path = "../common/chance.rs"]
+mod chance;
 mod chooser;
 mod fluid;
 mod fuzz;

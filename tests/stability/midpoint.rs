@@ -1,4 +1,4 @@
-//! Why force and moment are averaged over a segment and not sampled at its midpoint (model.md 5.2, derivations G).
+//! Why force and moment are averaged over a segment and not sampled at its midpoint (`docs/model.md` section 7).
 //!
 //! A linear axial model of the paper's beam, written here only: 10 segments of K cells, both rows joined in chains alike
 //! (wiring I), one volume a bladder, the published coupling with the slope `aN+`.
@@ -86,9 +86,9 @@ fn growth(k: usize, sample: Sample) -> (f64, f64) {
     (worst.re, worst.im.abs())
 }
 
-/// Source: derivations G (another program's eigenvalues: 1620, 1063, 1787, 1968 1/s at K = 3, 4, 8, 16). Goal: midpoint
+/// Source: `docs/exact-results.md` section 5 (another program's eigenvalues: 1620, 1063, 1787, 1968 1/s at K = 3, 4, 8, 16). Goal: midpoint
 /// sampling grows at every mesh from K = 3 on and refinement does not help; the mean never grows. Tolerance 2 %: the
-/// figures of G are for a mass rounded to three digits. Zero means round-off: 1e-16 times the largest eigenvalue, 2e5 at
+/// figures there are for a mass rounded to three digits. Zero means round-off: 1e-16 times the largest eigenvalue, 2e5 at
 /// K = 16, times the condition of the modes, together below 1e-5 of the growth at the midpoint.
 #[test]
 fn midpoint_sampling_grows_and_means_do_not() {

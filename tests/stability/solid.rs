@@ -32,7 +32,7 @@ fn elastica(load: f64) -> (f64, f64, f64) {
     (2.0 * low.asin(), 2.0 * low / first, 2.0 * second / first - 1.0)
 }
 
-/// Source: Euler's elastica by its two published points (verification.md). Goal: the reference itself.
+/// Source: Euler's elastica by its two published points (`docs/exact-results.md` section 1). Goal: the reference itself.
 #[test]
 fn the_elastica_reference() {
     let (angle, y, x) = elastica(1.151_719_62);
@@ -40,7 +40,7 @@ fn the_elastica_reference() {
     assert!((elastica(1.015_396_866).0 - PI / 9.0).abs() < 1e-6);
 }
 
-/// Source: uniform dead load, `q L^3/EI = 4` (verification.md). Goal: length over height from 5 to 5000; axial against
+/// Source: uniform dead load, `q L^3/EI = 4` (`docs/exact-results.md` section 1). Goal: length over height from 5 to 5000; axial against
 /// bending stiffness changes by 10^6. Tolerance 2e-3: 40 cells, second order (h/l)^2 = 6e-4 times about 1; for l/h = 5
 /// the stretch `q l/EA = 1.3 %`, which the reference leaves out.
 #[test]
@@ -155,7 +155,7 @@ fn a_load_at_once() {
     }
 }
 
-/// Source: model.md 4.6. Goal: the shock of an impulsive start is reflected, not amplified: pressures and stored energy of
+/// Source: `docs/model.md` section 10. Goal: the shock of an impulsive start is reflected, not amplified: pressures and stored energy of
 /// the second half stay below those of the first (plus 10 % for waves that happen to meet).
 #[test]
 fn an_impulsive_start() {
@@ -177,7 +177,7 @@ fn an_impulsive_start() {
     }
 }
 
-/// Source: derivations E. Goal: thrown and spinning, linear momentum is exact (round-off), angular momentum and energy to
+/// Source: `docs/model.md` section 8. Goal: thrown and spinning, linear momentum is exact (round-off), angular momentum and energy to
 /// the integrator's error. The published forms need not conserve; their ledger must still close.
 #[test]
 fn free_flight() {

@@ -10,7 +10,7 @@ fn small() -> Pattern {
 
 /// Pivots that were good for one matrix are useless for the next.
 ///
-/// Source: solver-notes, found with SUNDIALS' own KLU interface. Goal: without the guard x = (0, 2) and no complaint;
+/// Source: found with SUNDIALS' own KLU interface. Goal: without the guard x = (0, 2) and no complaint;
 /// with it x = (1, 2) and one refresh counted. Tolerance: rounding of a well-conditioned 2 by 2.
 #[test]
 fn guard_sees_stale_pivots() {

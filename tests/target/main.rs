@@ -1,5 +1,7 @@
 //! An accuracy asked for: chosen meshes and tolerances hold it, estimates are honest.
 
+#[path = "../common/chance.rs"]
+mod chance;
 mod scenes;
 
 use std::path::Path;
@@ -16,7 +18,7 @@ use slcbeam::study::target;
 fn load(name: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
     match case::load(Path::new(&format!("cases/{name}.json")), &sets) {
-        Ok(loaded) => loaded.case,
+        Ok(case) => case,
         Err(error) => panic!("{error}: {error:?}"),
     }
 }
@@ -307,8 +309,8 @@ fn effects_left_out_are_judged() {
         "ends": {"root": "clamped", "tip": {"free": {"force_x_n": {"ramp": {"to": 1, "start_s": 0.61, "duration_s": 1e-4}}}}},
         "time": {"end_s": 2}}"#;
     let path = Path::new("sudden.json");
-    let loaded = case::parse(text, path, path, &[]);
-    let case = loaded.unwrap_or_else(|error| panic!("{error}: {error:?}")).case;
+    let case = case::parse(text, path, path, &[]);
+    let case = case.unwrap_or_else(|error| panic!("{error}: {error:?}"));
     let until = Instant::now() + Duration::from_secs(100);
     let run = target::reach(&case, 0.01, &|_: &Progress| stop_after(until), &mut |case| {
         Ok(record(case, until))

@@ -6,31 +6,10 @@ use std::path::Path;
 use serde_json::{Value, json};
 use slcbeam::case::{self, Case};
 
+use crate::chance::Random;
+
 /// Kinds of scenes, each once in as many.
 pub const KINDS: [&str; 8] = ["smooth", "sudden", "pulse", "narrow", "waves", "driven", "held", "wet"];
-
-/// A small reproducible generator (SplitMix64).
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform in [low, high).
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Uniform in the logarithm.
-    fn log(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-}
 
 /// The scene of a number, and its kind.
 pub fn scene(number: u64) -> (&'static str, Case) {
@@ -38,7 +17,7 @@ pub fn scene(number: u64) -> (&'static str, Case) {
     let text = text(&mut Random(number), kind).to_string();
     let path = Path::new("scene.json");
     match case::parse(&text, path, path, &[]) {
-        Ok(loaded) => (kind, loaded.case),
+        Ok(case) => (kind, case),
         Err(error) => panic!("{error}: {error:?}\n{text}"),
     }
 }

@@ -24,7 +24,7 @@ pub const HALF: f64 = 0.0108;
 pub fn written(text: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_string()).collect();
     match case::parse(text, Path::new("test.json"), Path::new("cases"), &sets) {
-        Ok(loaded) => loaded.case,
+        Ok(case) => case,
         Err(slcbeam::error::Error::Case(fault)) => panic!("{}", case::render(&fault, false, 100)),
         Err(other) => panic!("{other}"),
     }
@@ -34,7 +34,7 @@ pub fn written(text: &str, sets: &[&str]) -> Case {
 pub fn shipped(name: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_string()).collect();
     match case::load(Path::new(&format!("cases/{name}.json")), &sets) {
-        Ok(loaded) => loaded.case,
+        Ok(case) => case,
         Err(slcbeam::error::Error::Case(fault)) => panic!("{}", case::render(&fault, false, 100)),
         Err(other) => panic!("{other}"),
     }

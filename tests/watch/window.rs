@@ -1,6 +1,7 @@
 //! What happens in the window is told from its very beginning to its very end, whatever the output times.
 
 use crate::common::{BEAM, finished, shipped, warning, written};
+use slcbeam::discrete::System;
 
 /// Goal: increments, largest values, means and last values of a window that begins and ends between two output times, with no output
 /// in it at all, are those with a thousand. Tolerance: 1e-3, that within which turning points are sought.
@@ -59,7 +60,8 @@ fn derivatives_in_a_window_without_outputs_are_warned_of() {
     let with = |interval: &str| {
         let case = case(interval);
         let parameters = [Parameter::find(&case, "/beam/young_modulus_pa").expect("a number")];
-        let outcome = dynamics::run_with(&case, &parameters, &mut Memory::default()).expect("a recorder in memory");
+        let outcome = dynamics::run_with(&case, System::new(&case).unwrap(), &parameters, &mut Memory::default())
+            .expect("a recorder in memory");
         outcome.summary
     };
     let (often, rarely) = (with("1e-3"), with("0.3"));

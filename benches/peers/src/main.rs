@@ -40,11 +40,11 @@ impl Dae for Bare {
         self.0.pattern()
     }
     fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Result<(), Fault> {
-        self.0.look_within(t);
+        self.0.enter_smooth_interval(t);
         self.0.residual(t, y, yp, r)
     }
     fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
-        self.0.look_within(t);
+        self.0.enter_smooth_interval(t);
         self.0.jacobian(t, y, yp, seeds, values)
     }
     fn name(&self, unknown: usize) -> String {
@@ -65,11 +65,11 @@ struct Scene {
 impl Scene {
     fn new(path: &str) -> Self {
         let set = r#"/effects={"rotary_inertia":"off"}"#.to_owned();
-        let case = case::load(path.as_ref(), &[set]).expect("a case").case;
-        let system = System::new(&case);
+        let case = case::load(path.as_ref(), &[set]).expect("a case");
+        let system = System::new(&case).unwrap();
         let tip = system.layout.u1 + system.layout.free_u1.len() - 1;
         let mut dae = BeamDae::new(system);
-        dae.look_within(0.0);
+        dae.enter_smooth_interval(0.0);
         let (system, now) = dae.instant(0.0);
         let mut y = start::state(system, &case, now);
         let mut yp = vec![0.0; y.len()];
@@ -78,7 +78,7 @@ impl Scene {
         let times = (1..=(end / interval).round() as usize)
             .map(|k| k as f64 * interval)
             .collect();
-        let largest_step = slcbeam::run::dynamics::max_step(&case, dae.system());
+        let largest_step = slcbeam::run::strides::Strides::new(&case, dae.system()).least();
         Self {
             case,
             y,
@@ -90,7 +90,7 @@ impl Scene {
     }
 
     fn dae(&self) -> Bare {
-        Bare(BeamDae::new(System::new(&self.case)))
+        Bare(BeamDae::new(System::new(&self.case).unwrap()))
     }
 
     fn one_step(&self, method: Method, rtol: f64) -> (Vec<f64>, usize) {

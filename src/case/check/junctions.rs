@@ -3,10 +3,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::network::Point;
+use super::network::Joined;
 use crate::case::faults::Faults;
-use crate::case::schema::{BladderEnd, Case, Endpoint, Network};
+use crate::case::schema::Case;
 use crate::case::signals::Signal;
+use crate::case::wiring::Point;
 use crate::error::{Code, Violation};
 
 /// An opening below this is closed.
@@ -14,23 +15,12 @@ const CLOSED: f64 = 1e-9;
 /// Instants at which the branches are looked at when a valve moves.
 const INSTANTS: usize = 200;
 
-/// A tube or turbine between two points.
-struct Branch<'a> {
-    points: [Point; 2],
-    opening: Option<&'a Signal>,
-}
-
-pub(super) fn check(case: &Case, network: &Network, attached: &BTreeMap<Point, Vec<String>>, faults: &mut Faults) {
-    let branches = branches(network);
-    let held: BTreeSet<Point> = network
-        .ports
-        .iter()
-        .filter(|port| port.pressure_pa.is_some())
-        .filter_map(|port| point(&port.at))
-        .collect();
-    let names: BTreeSet<&String> = network.junctions.iter().collect();
-    let used = |name: &str| attached.contains_key(&Point::Junction(name.to_owned()));
-    for (i, name) in network.junctions.iter().enumerate().filter(|(_, name)| !used(name)) {
+pub(super) fn check(case: &Case, joined: &Joined, faults: &mut Faults) {
+    let names = case.network.as_ref().map_or(&[][..], |network| &network.junctions);
+    // a name that is declared twice is the first of them
+    let first = |name: &String| names.iter().position(|other| other == name).map(Point::Junction);
+    let used = |name: &String| first(name).is_some_and(|point| joined.attached.contains_key(&point));
+    for (i, name) in names.iter().enumerate().filter(|(_, name)| !used(name)) {
         let fault = Violation::new(
             Code::Junction,
             format!("/network/junctions/{i}"),
@@ -38,20 +28,20 @@ pub(super) fn check(case: &Case, network: &Network, attached: &BTreeMap<Point, V
         );
         faults.push(fault.hint("attach tubes to it or remove it"));
     }
-    let mut dead: BTreeMap<&String, f64> = BTreeMap::new();
-    for t in instants(&branches, case.time.end_s) {
-        let reached = reached(&branches, &held, t);
-        for name in names
-            .iter()
-            .copied()
-            .filter(|name| used(name) && !reached.contains(&Point::Junction((*name).clone())))
-        {
-            dead.entry(name).or_insert(t);
+    let mut dead: BTreeMap<usize, f64> = BTreeMap::new();
+    for t in instants(joined, case.time.end_s) {
+        let reached = reached(joined, t);
+        for point in joined.attached.keys().filter(|point| !reached.contains(point)) {
+            if let Point::Junction(i) = point {
+                dead.entry(*i).or_insert(t);
+            }
         }
     }
-    for (name, t) in dead {
-        let i = network.junctions.iter().position(|n| n == name).unwrap_or_default();
-        let what = format!("junction \"{name}\" reaches neither a bladder nor a pressure port at {t} s");
+    for (i, t) in dead {
+        let what = format!(
+            "junction \"{}\" reaches neither a bladder nor a pressure port at {t} s",
+            names[i]
+        );
         let fault = Violation::new(Code::Junction, format!("/network/junctions/{i}"), what);
         faults.push(
             fault.hint("open a branch or attach a bladder: a junction stores nothing, so its pressure is undefined"),
@@ -59,39 +49,10 @@ pub(super) fn check(case: &Case, network: &Network, attached: &BTreeMap<Point, V
     }
 }
 
-fn branches(network: &Network) -> Vec<Branch<'_>> {
-    let tubes = network
-        .tubes
-        .iter()
-        .map(|tube| (&tube.from, &tube.to, Some(&tube.opening)));
-    let turbines = network
-        .turbines
-        .iter()
-        .map(|turbine| (&turbine.from, &turbine.to, None));
-    let branch = |(from, to, opening)| {
-        Some(Branch {
-            points: [point(from)?, point(to)?],
-            opening,
-        })
-    };
-    tubes.chain(turbines).filter_map(branch).collect()
-}
-
-fn point(endpoint: &Endpoint) -> Option<Point> {
-    match (endpoint.bladder, &endpoint.junction) {
-        (Some(index), None) => Some(Point::Bladder(index, endpoint.end.unwrap_or(BladderEnd::Inlet))),
-        (None, Some(name)) => Some(Point::Junction(name.clone())),
-        _ => None,
-    }
-}
-
-fn instants(branches: &[Branch], end: f64) -> Vec<f64> {
+fn instants(joined: &Joined, end: f64) -> Vec<f64> {
     let mut instants = vec![0.0];
-    let moving: Vec<&Signal> = branches
-        .iter()
-        .filter_map(|b| b.opening)
-        .filter(|o| !o.is_constant())
-        .collect();
+    let openings = joined.branches.iter().filter_map(|(_, opening)| *opening);
+    let moving: Vec<&Signal> = openings.filter(|o| !o.is_constant()).collect();
     if !moving.is_empty() {
         instants.extend((1..=INSTANTS).map(|i| end * i as f64 / INSTANTS as f64));
         for opening in moving {
@@ -108,19 +69,20 @@ fn instants(branches: &[Branch], end: f64) -> Vec<f64> {
 }
 
 /// Points joined by open branches to a bladder or a pressure port.
-fn reached(branches: &[Branch], held: &BTreeSet<Point>, t: f64) -> BTreeSet<Point> {
-    let mut reached = held.clone();
-    let ends = branches.iter().flat_map(|branch| &branch.points);
-    reached.extend(ends.filter(|point| matches!(point, Point::Bladder(..))).cloned());
-    let open: Vec<_> = branches
+fn reached(joined: &Joined, t: f64) -> BTreeSet<Point> {
+    let mut reached = joined.held.clone();
+    let ends = joined.branches.iter().flat_map(|(points, _)| points);
+    reached.extend(ends.filter(|point| matches!(point, Point::Bladder(..))));
+    let open: Vec<_> = joined
+        .branches
         .iter()
-        .filter(|b| b.opening.is_none_or(|o| o.value(t) > CLOSED))
+        .filter(|(_, opening)| opening.is_none_or(|o| o.value(t) > CLOSED))
         .collect();
     loop {
         let before = reached.len();
-        for branch in &open {
-            if branch.points.iter().any(|point| reached.contains(point)) {
-                reached.extend(branch.points.iter().cloned());
+        for (points, _) in &open {
+            if points.iter().any(|point| reached.contains(point)) {
+                reached.extend(points);
             }
         }
         if reached.len() == before {

@@ -5,7 +5,7 @@ mod coefficients;
 mod ends;
 mod functions;
 mod junctions;
-mod network;
+pub mod network;
 mod plausible;
 mod size;
 mod start;

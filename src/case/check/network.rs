@@ -1,81 +1,120 @@
 //! The network: every name and index leads somewhere, nothing is joined twice, ends are what they say.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::bladders::two_permeabilities;
 use super::junctions;
 use crate::case::faults::Faults;
-use crate::case::schema::{BladderEnd, Case, ChainEnd, Endpoint, Network};
+use crate::case::schema::{self, BladderEnd, Case, ChainEnd, Endpoint, Network, TubeDefaults};
+use crate::case::signals::Signal;
+use crate::case::wiring::{Bore, Given, Point, Port, Tube, Wiring, bladder_index, bladder_label};
 use crate::case::wording::nearest;
 use crate::error::{Code, Violation};
 
-/// A point of the network.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(super) enum Point {
-    Bladder(i64, BladderEnd),
-    Junction(String),
-}
-
-impl std::fmt::Display for Point {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        match self {
-            Self::Bladder(index, BladderEnd::Inlet) => write!(f, "the inlet of bladder {index}"),
-            Self::Bladder(index, BladderEnd::Outlet) => write!(f, "the outlet of bladder {index}"),
-            Self::Junction(name) => write!(f, "junction \"{name}\""),
-        }
+pub(super) fn check(case: &Case, faults: &mut Faults) {
+    let (_, joined) = resolve(case, faults);
+    if !joined.lost {
+        junctions::check(case, &joined, faults);
     }
 }
 
-pub(super) fn check(case: &Case, faults: &mut Faults) {
-    let (Some(bladders), Some(network)) = (&case.bladders, &case.network) else {
-        return;
+/// What is attached where.
+#[derive(Default)]
+pub struct Joined<'a> {
+    /// To each point: pointers of tubes, ports and turbines.
+    pub attached: BTreeMap<Point, Vec<String>>,
+    /// Single tubes with their valves, and turbines.
+    pub branches: Vec<([Point; 2], Option<&'a Signal>)>,
+    /// Points of ports with a pressure.
+    pub held: BTreeSet<Point>,
+    /// Some end leads nowhere: what is not attached may have been meant by it.
+    lost: bool,
+}
+
+/// The network, but for what is a fault.
+pub fn resolve<'a>(case: &'a Case, faults: &mut Faults) -> (Wiring<'a>, Joined<'a>) {
+    let Some((bladders, network)) = case.bladders.as_ref().zip(case.network.as_ref()) else {
+        return Default::default();
     };
+    let per_row = bladders.per_row;
     let mut rules = Rules {
         network,
-        per_row: bladders.per_row,
-        attached: BTreeMap::new(),
-        lost: false,
+        usual: case.tubes.as_ref(),
+        per_row,
+        joined: Joined::default(),
         faults,
     };
     rules.junction_names();
-    rules.tubes(case);
-    rules.ports();
-    rules.turbines();
-    rules.chains(case);
-    if !rules.lost {
-        junctions::check(case, network, &rules.attached, rules.faults);
-    }
+    let mut wiring = Wiring {
+        per_row,
+        junctions: &network.junctions,
+        tubes: rules.tubes(),
+        ports: rules.ports(),
+        turbines: rules.turbines(),
+        ..Wiring::default()
+    };
+    rules.chains(&mut wiring);
+    (wiring, rules.joined)
 }
 
-/// Whether there is a bladder of that index; a fault if not.
-pub(super) fn exists(index: i64, per_row: usize, pointer: &str, faults: &mut Faults) -> bool {
-    let exists = index != 0 && index.unsigned_abs() <= per_row as u64;
-    if !exists {
-        let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {index}"));
+/// The index of a bladder; a fault if there is none.
+pub(super) fn bladder(number: i64, per_row: usize, pointer: &str, faults: &mut Faults) -> Option<usize> {
+    let index = bladder_index(number, per_row);
+    if index.is_none() {
+        let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {number}"));
         let allowed = format!("1 to {per_row} (upper row) and -1 to -{per_row} (lower row)");
         faults.push(fault.allowed(allowed));
     }
-    exists
+    index
 }
 
-struct Rules<'a> {
+/// Number of the bladder at the first (0) or second (1) end of a chain, and which of its ends.
+fn chain_end(chain: &schema::Chain, k: usize) -> Option<(i64, BladderEnd)> {
+    match k {
+        0 => Some((*chain.bladders.first()?, BladderEnd::Inlet)),
+        _ => Some((*chain.bladders.last()?, BladderEnd::Outlet)),
+    }
+}
+
+/// Length [m] and bore of a tube, its own or the usual ones.
+fn size<'a>(tube: &'a schema::Tube, usual: Option<&TubeDefaults>) -> Option<(f64, Bore<'a>)> {
+    let own = tube.permeability_m4.map(Bore::Permeability);
+    let bore = own
+        .or_else(|| tube.cross_section.as_ref().map(Bore::CrossSection))
+        .or_else(|| usual.map(Bore::usual))?;
+    Some((tube.length_m.or_else(|| usual.map(|tubes| tubes.length_m))?, bore))
+}
+
+struct Rules<'a, 'f> {
     network: &'a Network,
+    usual: Option<&'a TubeDefaults>,
     per_row: usize,
-    /// What is attached to each point: pointers of tubes, ports and turbines.
-    attached: BTreeMap<Point, Vec<String>>,
-    /// Some end leads nowhere: what is not attached may have been meant by it.
-    lost: bool,
-    faults: &'a mut Faults,
+    joined: Joined<'a>,
+    faults: &'f mut Faults,
 }
 
-impl Rules<'_> {
+impl<'a> Rules<'a, '_> {
+    fn fault(&mut self, pointer: impl Into<String>, what: impl Into<String>) {
+        self.faults.push(Violation::new(Code::Wiring, pointer, what));
+    }
+
+    fn words(&self, point: Point) -> String {
+        match point {
+            Point::Bladder(index, end) => format!("the {end} of bladder {}", bladder_label(index, self.per_row)),
+            Point::Junction(j) => format!("junction \"{}\"", self.network.junctions[j]),
+        }
+    }
+
+    fn end_of(&self, number: i64, end: BladderEnd) -> Option<Point> {
+        bladder_index(number, self.per_row).map(|index| Point::Bladder(index, end))
+    }
+
     fn junction_names(&mut self) {
         let mut known = HashMap::new();
         for (i, name) in self.network.junctions.iter().enumerate() {
             if let Some(first) = known.insert(name, i) {
                 let what = format!("junction \"{name}\" is declared twice, first at /network/junctions/{first}");
-                self.faults
-                    .push(Violation::new(Code::Wiring, format!("/network/junctions/{i}"), what));
+                self.fault(format!("/network/junctions/{i}"), what);
             }
         }
     }
@@ -83,26 +122,25 @@ impl Rules<'_> {
     /// The point an end of a tube, port or turbine names, and a note of who is attached there.
     fn point(&mut self, endpoint: &Endpoint, pointer: &str, owner: &str) -> Option<Point> {
         let point = self.named(endpoint, pointer);
-        match &point {
-            Some(point) => self.attached.entry(point.clone()).or_default().push(owner.to_owned()),
-            None => self.lost = true,
+        match point {
+            Some(point) => self.joined.attached.entry(point).or_default().push(owner.to_owned()),
+            None => self.joined.lost = true,
         }
         point
     }
 
     fn named(&mut self, endpoint: &Endpoint, pointer: &str) -> Option<Point> {
         let what = match (endpoint.bladder, endpoint.end, &endpoint.junction) {
-            (Some(index), Some(end), None) => {
-                let pointer = format!("{pointer}/bladder");
-                let exists = exists(index, self.per_row, &pointer, self.faults);
-                return exists.then_some(Point::Bladder(index, end));
-            }
-            (None, None, Some(name)) if self.network.junctions.contains(name) => {
-                return Some(Point::Junction(name.clone()));
+            (Some(number), Some(end), None) => {
+                let index = bladder(number, self.per_row, &format!("{pointer}/bladder"), self.faults);
+                return index.map(|index| Point::Bladder(index, end));
             }
             (None, None, Some(name)) => {
-                self.undeclared(name, pointer);
-                return None;
+                let place = self.network.junctions.iter().position(|known| known == name);
+                if place.is_none() {
+                    self.undeclared(name, pointer);
+                }
+                return place.map(Point::Junction);
             }
             (_, _, Some(_)) => "a bladder end and a junction at once",
             (Some(_), None, None) => "a bladder without saying which end",
@@ -127,133 +165,178 @@ impl Rules<'_> {
     }
 
     /// The points of a tube or turbine, which must differ.
-    fn two_points(&mut self, from: &Endpoint, to: &Endpoint, pointer: &str, what: &str) {
+    fn branch(
+        &mut self,
+        [from, to]: [&Endpoint; 2],
+        opening: Option<&'a Signal>,
+        pointer: &str,
+        what: &str,
+    ) -> Option<[Point; 2]> {
         let from = self.point(from, &format!("{pointer}/from"), pointer);
         let to = self.point(to, &format!("{pointer}/to"), pointer);
-        if let (Some(from), true) = (&from, from == to) {
-            self.faults.push(Violation::new(
-                Code::Wiring,
-                format!("{pointer}/to"),
-                format!("a {what} from {from} to itself"),
-            ));
+        let points = [from?, to?];
+        if points[0] == points[1] {
+            let what = format!("a {what} from {} to itself", self.words(points[0]));
+            self.fault(format!("{pointer}/to"), what);
         }
+        self.joined.branches.push((points, opening));
+        Some(points)
     }
 
-    fn tubes(&mut self, case: &Case) {
+    fn tubes(&mut self) -> Vec<Tube<'a>> {
+        let mut found = vec![];
         for (i, tube) in self.network.tubes.iter().enumerate() {
             let pointer = format!("/network/tubes/{i}");
-            self.two_points(&tube.from, &tube.to, &pointer, "tube");
+            let points = self.branch([&tube.from, &tube.to], Some(&tube.opening), &pointer, "tube");
             if tube.permeability_m4.is_some() && tube.cross_section.is_some() {
                 two_permeabilities(&pointer, self.faults);
             }
-            let permeable = tube.permeability_m4.is_some() || tube.cross_section.is_some();
-            if case.tubes.is_none() && !(permeable && tube.length_m.is_some()) {
+            let Some((length_m, bore)) = size(tube, self.usual) else {
+                let permeable = tube.permeability_m4.is_some() || tube.cross_section.is_some();
                 let missing = if permeable { "length" } else { "permeability" };
-                let fault = Violation::new(
-                    Code::TubeSize,
-                    pointer,
-                    format!("a tube without {missing}, and no /tubes to take it from"),
-                );
+                let what = format!("a tube without {missing}, and no /tubes to take it from");
+                let hint = "add \"tubes\" to the case, or \"length_m\" and \"permeability_m4\" to the tube";
                 self.faults
-                    .push(fault.hint("add \"tubes\" to the case, or \"length_m\" and \"permeability_m4\" to the tube"));
-            }
+                    .push(Violation::new(Code::TubeSize, pointer, what).hint(hint));
+                continue;
+            };
+            found.extend(points.map(|points| Tube {
+                points,
+                length_m,
+                bore,
+                opening: &tube.opening,
+            }));
         }
+        found
     }
 
-    fn ports(&mut self) {
+    fn ports(&mut self) -> Vec<Port<'a>> {
         let mut known: HashMap<Point, String> = HashMap::new();
         for (i, chain) in self.network.chains.iter().enumerate() {
             for (k, end) in chain.ends.iter().enumerate() {
-                if matches!(end, ChainEnd::PressurePa(_) | ChainEnd::FlowM3S(_)) {
-                    known.extend(end_point(&chain.bladders, k).map(|p| (p, format!("/network/chains/{i}/ends/{k}"))));
-                }
+                let point = chain_end(chain, k).and_then(|(number, end)| self.end_of(number, end));
+                let gives = matches!(end, ChainEnd::PressurePa(_) | ChainEnd::FlowM3S(_));
+                known.extend(
+                    point
+                        .filter(|_| gives)
+                        .map(|point| (point, format!("/network/chains/{i}/ends/{k}"))),
+                );
             }
         }
+        let mut found = vec![];
         for (i, port) in self.network.ports.iter().enumerate() {
             let pointer = format!("/network/ports/{i}");
-            let what = match (&port.pressure_pa, &port.flow_m3_s) {
-                (Some(_), Some(_)) => Some("a port with pressure and flow"),
-                (None, None) => Some("a port with neither pressure nor flow"),
-                _ => None,
+            let given = match (&port.pressure_pa, &port.flow_m3_s) {
+                (Some(pressure), None) => Ok(Given::Pressure(pressure)),
+                (None, Some(flow)) => Ok(Given::Flow(flow)),
+                (Some(_), Some(_)) => Err("a port with pressure and flow"),
+                (None, None) => Err("a port with neither pressure nor flow"),
             };
-            if let Some(what) = what {
+            if let Err(what) = given {
                 let fault = Violation::new(Code::Wiring, pointer.clone(), what);
                 self.faults
                     .push(fault.allowed("exactly one of pressure_pa and flow_m3_s"));
             }
-            let Some(point) = self.point(&port.at, &format!("{pointer}/at"), &pointer) else {
+            let Some(at) = self.point(&port.at, &format!("{pointer}/at"), &pointer) else {
                 continue;
             };
-            if let Some(first) = known.get(&point) {
-                let what = format!("a second port at {point}, the first is {first}");
-                self.faults
-                    .push(Violation::new(Code::Wiring, format!("{pointer}/at"), what));
+            if let Some(first) = known.get(&at) {
+                let what = format!("a second port at {}, the first is {first}", self.words(at));
+                self.fault(format!("{pointer}/at"), what);
             }
-            known.entry(point).or_insert(pointer);
+            known.entry(at).or_insert(pointer);
+            if port.pressure_pa.is_some() {
+                self.joined.held.insert(at);
+            }
+            let name = port.name.as_deref();
+            found.extend(given.map(|given| Port { at, name, given }));
         }
+        found
     }
 
-    fn turbines(&mut self) {
+    fn turbines(&mut self) -> Vec<([Point; 2], &'a schema::Turbine)> {
+        let mut found = vec![];
         for (i, turbine) in self.network.turbines.iter().enumerate() {
-            self.two_points(&turbine.from, &turbine.to, &format!("/network/turbines/{i}"), "turbine");
+            let pointer = format!("/network/turbines/{i}");
+            let points = self.branch([&turbine.from, &turbine.to], None, &pointer, "turbine");
+            found.extend(points.map(|points| (points, turbine)));
         }
+        found
     }
 
-    fn chains(&mut self, case: &Case) {
-        let mut used: HashMap<i64, String> = HashMap::new();
+    fn chains(&mut self, wiring: &mut Wiring<'a>) {
+        let mut used: HashMap<usize, String> = HashMap::new();
         for (i, chain) in self.network.chains.iter().enumerate() {
-            for (k, &index) in chain.bladders.iter().enumerate() {
+            let mut row = vec![];
+            for (k, &number) in chain.bladders.iter().enumerate() {
                 let pointer = format!("/network/chains/{i}/bladders/{k}");
-                if !exists(index, self.per_row, &pointer, self.faults) {
+                let Some(index) = bladder(number, self.per_row, &pointer, self.faults) else {
                     continue;
-                }
+                };
+                row.push(index);
                 if let Some(first) = used.get(&index) {
-                    let what = format!("bladder {index} is used twice, first at {first}");
-                    self.faults.push(
-                        Violation::new(Code::Wiring, pointer, what).allowed("every bladder in one chain at most"),
-                    );
+                    let what = format!("bladder {number} is used twice, first at {first}");
+                    let fault = Violation::new(Code::Wiring, pointer, what);
+                    self.faults.push(fault.allowed("every bladder in one chain at most"));
                 } else {
                     used.insert(index, pointer);
                 }
             }
-            if case.tubes.is_none() && chain.bladders.len() > 1 {
-                let fault = Violation::new(
-                    Code::TubeSize,
-                    format!("/network/chains/{i}"),
-                    "a chain without tubes to join its bladders",
-                );
-                self.faults
-                    .push(fault.hint("add \"tubes\" with length and radius to the case"));
-            }
-            for (k, end) in chain.ends.iter().enumerate() {
-                let Some(point) = end_point(&chain.bladders, k) else {
-                    continue;
-                };
-                let pointer = format!("/network/chains/{i}/ends/{k}");
-                match (end, self.attached.get(&point)) {
-                    (ChainEnd::Sealed, Some(owners)) => {
-                        let what = format!("{point} is sealed, but {} is attached there", owners[0]);
-                        self.faults.push(
-                            Violation::new(Code::Wiring, pointer, what)
-                                .hint("write \"connected\" instead of \"sealed\""),
-                        );
-                    }
-                    (ChainEnd::Connected, None) if !self.lost => {
-                        let what = format!("nothing is connected to {point}");
-                        let hint = "add a tube, port or turbine there, or write \"sealed\"";
-                        self.faults.push(Violation::new(Code::Wiring, pointer, what).hint(hint));
-                    }
-                    _ => {}
+            match self.usual {
+                Some(usual) => wiring.chain_tubes.extend(row.windows(2).map(|pair| Tube {
+                    points: [
+                        Point::Bladder(pair[0], BladderEnd::Outlet),
+                        Point::Bladder(pair[1], BladderEnd::Inlet),
+                    ],
+                    length_m: usual.length_m,
+                    bore: Bore::usual(usual),
+                    opening: &chain.opening,
+                })),
+                None if chain.bladders.len() > 1 => {
+                    let what = "a chain without tubes to join its bladders";
+                    let fault = Violation::new(Code::TubeSize, format!("/network/chains/{i}"), what);
+                    self.faults
+                        .push(fault.hint("add \"tubes\" with length and radius to the case"));
                 }
+                None => {}
+            }
+            wiring.chains.push(row);
+            for k in 0..chain.ends.len() {
+                wiring.chain_ports.extend(self.end(i, chain, k));
             }
         }
     }
-}
 
-/// The point at the first (0) or second (1) end of a chain.
-pub(super) fn end_point(bladders: &[i64], end: usize) -> Option<Point> {
-    match end {
-        0 => bladders.first().map(|index| Point::Bladder(*index, BladderEnd::Inlet)),
-        _ => bladders.last().map(|index| Point::Bladder(*index, BladderEnd::Outlet)),
+    /// What one end of a chain prescribes, if it does; faults where it is not what it says.
+    fn end(&mut self, i: usize, chain: &'a schema::Chain, k: usize) -> Option<Port<'a>> {
+        let (number, end) = chain_end(chain, k)?;
+        let at = self.end_of(number, end);
+        let owners = at.and_then(|at| self.joined.attached.get(&at));
+        let fault = |what| Violation::new(Code::Wiring, format!("/network/chains/{i}/ends/{k}"), what);
+        let given = match (&chain.ends[k], owners) {
+            (ChainEnd::Sealed, Some(owners)) => {
+                let what = format!(
+                    "the {end} of bladder {number} is sealed, but {} is attached there",
+                    owners[0]
+                );
+                self.faults
+                    .push(fault(what).hint("write \"connected\" instead of \"sealed\""));
+                return None;
+            }
+            (ChainEnd::Connected, None) if !self.joined.lost => {
+                let what = format!("nothing is connected to the {end} of bladder {number}");
+                let hint = "add a tube, port or turbine there, or write \"sealed\"";
+                self.faults.push(fault(what).hint(hint));
+                return None;
+            }
+            (ChainEnd::Sealed | ChainEnd::Connected, _) => return None,
+            (ChainEnd::PressurePa(pressure), _) => Given::Pressure(pressure),
+            (ChainEnd::FlowM3S(flow), _) => Given::Flow(flow),
+        };
+        Some(Port {
+            at: at?,
+            name: None,
+            given,
+        })
     }
 }

@@ -25,7 +25,7 @@ fn pressures(case: &Case, faults: &mut Faults) {
     for (i, some) in case.start.pressures.iter().enumerate() {
         for (k, &index) in some.bladders.iter().enumerate() {
             let pointer = format!("/start/pressures/{i}/bladders/{k}");
-            if super::network::exists(index, bladders.per_row, &pointer, faults)
+            if super::network::bladder(index, bladders.per_row, &pointer, faults).is_some()
                 && let Some(first) = known.insert(index, pointer.clone())
             {
                 let what = format!("the pressure of bladder {index} is given twice, first at {first}");

@@ -22,7 +22,7 @@ macro_rules! effects {
         given { $($(#[doc = $note:literal])* $Given:ident $given:ident,)* }
     ) => {
         /// A physical effect, in the order of the decisions.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
         pub enum Effect {
             $($(#[doc = $about])* $Chosen,)*

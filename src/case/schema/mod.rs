@@ -3,9 +3,12 @@
 //! generated from these files, doc comments included; `case.json` of a result folder is this structure
 //! written back with every default filled in.
 
+use std::sync::Arc;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::case::faults::Source;
 use crate::case::origins::Origins;
 use crate::case::presets::Preset;
 use crate::case::signals::{Clock, Signal};
@@ -87,6 +90,10 @@ pub struct Case {
     #[serde(skip)]
     #[schemars(skip)]
     pub origins: Origins,
+    /// The text it was read from, where faults have their places; not part of the text, and not compared.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub source: Arc<Source>,
 }
 
 impl Case {

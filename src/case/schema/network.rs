@@ -47,19 +47,6 @@ pub struct Network {
     pub turbines: Vec<Turbine>,
 }
 
-impl Default for Network {
-    fn default() -> Self {
-        Self {
-            permeability_factor: 1.0,
-            chains: vec![],
-            junctions: vec![],
-            tubes: vec![],
-            ports: vec![],
-            turbines: vec![],
-        }
-    }
-}
-
 /// Bladders joined outlet to inlet in the order given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -113,6 +100,15 @@ pub enum BladderEnd {
     Inlet,
     /// s = l_b.
     Outlet,
+}
+
+impl std::fmt::Display for BladderEnd {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Inlet => "inlet",
+            Self::Outlet => "outlet",
+        })
+    }
 }
 
 /// A tube between two points, `q = (q1c/(mu l_c)) (p_from - p_to)`.

@@ -3,16 +3,16 @@
 use super::{FLOWS, Flow, add};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
-use crate::discrete::recipe::fluid::{bridge_drops, pressure_at};
-use crate::discrete::recipe::rows::{mean_force, mean_moment};
-use crate::discrete::recipe::small;
-use crate::discrete::{FluidMesh, Instant, System, Workspace};
+use crate::discrete::residual::fluid::{bridge_drops, pressure_at};
+use crate::discrete::residual::rows::{mean_force, mean_moment};
+use crate::discrete::residual::small;
+use crate::discrete::{FluidMesh, System, TimeData, Workspace};
 use crate::model::bladder::{kink_curvature, kink_slope};
 use crate::model::network::{LinkKind, Node};
 use crate::model::{AreaLaw, Coupling, Pool, PoolKind, Storage, Wet};
 
 /// What no equation needs but the balances: means, rates of pools' pressures and of their bladders' areas.
-pub fn complete(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f64>) {
+pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
@@ -64,7 +64,7 @@ pub fn pressure_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usi
 }
 
 /// Stretch by pressure of a beam that does not stretch otherwise, and with it the motion along, `[E28]`.
-pub fn draw_in(system: &System, w: &mut Workspace<f64>) {
+pub fn foreshorten(system: &System, w: &mut Workspace<f64>) {
     if let Some(wet) = &system.model.wet
         && system.model.effects.has(Effect::PressureToStretch)
     {
@@ -80,7 +80,7 @@ pub fn draw_in(system: &System, w: &mut Workspace<f64>) {
                 .0
         })
     };
-    small::draw_in(system, stretch_rate, w);
+    small::foreshorten(system, stretch_rate, w);
 }
 
 /// Power that a coupling without reciprocity adds, and the rate of `alpha_p` at a node (for ends with given moment).
@@ -183,7 +183,7 @@ impl SegmentRates {
 /// Flow through a pressure port is `g (p_port - p)`: where g is large, the last digits of p make it noise. So what a
 /// component takes in through its pressure ports is told from what it stores, exactly; `g (p_port - p)` only says how
 /// the ports share it.
-pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [f64]) {
+pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
@@ -243,7 +243,7 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
             },
             rest,
         );
-        let share = |c: usize| w.surplus[c] * conductance / w.gates[c].max(f64::MIN_POSITIVE);
+        let share = |c: usize| w.volume_defect[c] * conductance / w.port_conductance[c].max(f64::MIN_POSITIVE);
         let surplus = match (component(link.from), component(link.to)) {
             (None, Some(c)) => share(c),
             (Some(c), None) => -share(c),
@@ -278,7 +278,7 @@ pub fn flows(system: &System, now: &Instant, w: &mut Workspace<f64>, out: &mut [
 }
 
 /// Power and outflow of a pool through its ports, and volume that passes them.
-fn pool_ports(fluid: &FluidMesh, now: &Instant, w: &Workspace<f64>, k: usize, pool: &Pool) -> (f64, f64) {
+fn pool_ports(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>, k: usize, pool: &Pool) -> (f64, f64) {
     let gain = match &pool.kind {
         PoolKind::Closed => 0.0,
         PoolKind::Fed(sources) => sources.iter().map(|&s| now.source_flow[s]).sum(),
@@ -291,7 +291,7 @@ fn pool_ports(fluid: &FluidMesh, now: &Instant, w: &Workspace<f64>, k: usize, po
 }
 
 /// Power and outflow of pools with given pressure, whose areas jump where their pressure or the beam does.
-pub fn pools_jump(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut [f64]) {
+pub fn pools_jump(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
@@ -311,7 +311,7 @@ pub fn pools_jump(system: &System, now: &Instant, w: &Workspace<f64>, out: &mut 
 }
 
 /// Sums over the components of the network what flows in and is not stored, and the conductances to pressure ports.
-fn surplus(system: &System, now: &Instant, w: &mut Workspace<f64>) {
+fn surplus(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
@@ -319,16 +319,16 @@ fn surplus(system: &System, now: &Instant, w: &mut Workspace<f64>) {
     if network.ports.is_empty() {
         return;
     }
-    w.surplus.fill(0.0);
-    w.gates.fill(0.0);
+    w.volume_defect.fill(0.0);
+    w.port_conductance.fill(0.0);
     for (bladder, &component) in network.component_of_bladder.iter().enumerate() {
         let cells = fluid.cells_of(bladder);
         let inflow: f64 = w.inflow[cells.clone()].iter().sum();
         let stored: f64 = w.area_rate[cells].iter().sum();
-        w.surplus[component] += inflow - stored * fluid.ds;
+        w.volume_defect[component] += inflow - stored * fluid.ds;
     }
     for (inflow, &junction) in w.junction_inflow.iter().zip(&fluid.junctions) {
-        w.surplus[network.component_of_junction[junction]] += inflow;
+        w.volume_defect[network.component_of_junction[junction]] += inflow;
     }
     for (link, conductance) in fluid.links.iter().zip(&now.conductance) {
         let link = &network.links[link.number];
@@ -337,7 +337,7 @@ fn surplus(system: &System, now: &Instant, w: &mut Workspace<f64>) {
             _ => None,
         };
         if let Some(component) = inside {
-            w.gates[component] += conductance;
+            w.port_conductance[component] += conductance;
         }
     }
 }

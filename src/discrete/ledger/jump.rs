@@ -3,11 +3,11 @@
 use super::{Flow, add, complete, fluid, solid};
 use crate::case::signals::Jet;
 use crate::discrete::kick::{self, Nodal};
-use crate::discrete::{Instant, System, Workspace};
+use crate::discrete::{System, TimeData, Workspace};
 use crate::model::Kinematics;
 
 /// Gives the values of time the differences over a jump as rates: the jump takes one unit of a time that nobody counts.
-pub fn travel(now: &mut Instant, [before, after]: [&Instant; 2]) {
+pub fn travel(now: &mut TimeData, [before, after]: [&TimeData; 2]) {
     let step = |jet: &mut Jet, from: &Jet, to: &Jet| jet.rate = to.value - from.value;
     let option = |jet: &mut Option<Jet>, from: &Option<Jet>, to: &Option<Jet>| {
         if let (Some(jet), Some(from), Some(to)) = (jet, from, to) {
@@ -35,7 +35,7 @@ pub fn travel(now: &mut Instant, [before, after]: [&Instant; 2]) {
 ///
 /// `now` and `yp` hold differences as rates, velocities in the workspace are displacements; the mean of both sides is the
 /// trapezoid rule along the straight way, exact where the response is linear.
-pub fn side(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
+pub fn side(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
     complete(system, now, yp, w);
     let rates = fluid::rates(system, w, out);
@@ -50,7 +50,7 @@ pub fn side(system: &System, now: &Instant, yp: &[f64], w: &mut Workspace<f64>, 
 /// the sections around. The workspace holds the state, `velocities` are those of nodes on both sides of the jump.
 pub fn strokes(
     system: &System,
-    [before, after]: [&Instant; 2],
+    [before, after]: [&TimeData; 2],
     [was, is]: &[Nodal; 2],
     w: &Workspace<f64>,
     out: &mut [f64],
@@ -91,7 +91,7 @@ pub fn strokes(
 }
 
 /// Impulse and work of a node that goes along with the frame.
-fn carried(system: &System, sides: [&Instant; 2], node: usize) -> (f64, f64) {
+fn carried(system: &System, sides: [&TimeData; 2], node: usize) -> (f64, f64) {
     let mass = system.model.section.mass_per_length * system.mesh.node_length(node);
     let share = node as f64 / (system.mesh.nodes - 1) as f64;
     match sides.map(|now| now.frame_3().map(|frame| frame.at(share).rate)) {

@@ -1,7 +1,7 @@
 //! Reactions of driven ends, told in two ways that a mesh makes differ.
 
 use crate::case::schema::Effect;
-use crate::discrete::{Instant, System, Workspace};
+use crate::discrete::{System, TimeData, Workspace};
 use crate::model::Kinematics;
 
 /// Squares of reactions and of what they differ by [N^2], added over driven ends and directions; with the reactions stand the end's
@@ -9,7 +9,7 @@ use crate::model::Kinematics;
 ///
 /// One is what the momentum of the end's half cell leaves over, which closes the balance of momentum whatever the mesh; the
 /// other the force of the section at the end, extrapolated from the two nearest cells.
-pub fn compared(system: &System, now: &Instant, w: &Workspace<f64>) -> [f64; 2] {
+pub fn compared(system: &System, now: &TimeData, w: &Workspace<f64>) -> [f64; 2] {
     let (mesh, section, l) = (&system.mesh, &system.model.section, &system.layout);
     let mut squares = [0.0; 2];
     if mesh.cells < 2 {

@@ -2,16 +2,16 @@
 
 use super::{Energies, Flow, add};
 use crate::case::schema::Effect;
-use crate::discrete::instant::Frame;
-use crate::discrete::recipe::rows::{end_force, published_force};
-use crate::discrete::recipe::solid::{couple, node_stretch};
-use crate::discrete::{Instant, System, Workspace};
+use crate::discrete::residual::rows::{end_force, published_force};
+use crate::discrete::residual::solid::{couple, node_stretch};
+use crate::discrete::time_data::Frame;
+use crate::discrete::{System, TimeData, Workspace};
 use crate::model::Kinematics;
 
 /// Powers and impulses of loads, ends, damping, and of the published form.
 pub fn flows(
     system: &System,
-    now: &Instant,
+    now: &TimeData,
     curvature_rate: impl Fn(&Workspace<f64>, usize) -> f64,
     w: &Workspace<f64>,
     out: &mut [f64],
@@ -86,7 +86,7 @@ pub fn flows(
 /// End moments, viscous moments, and the published curvature measure, at one node.
 fn bending(
     system: &System,
-    now: &Instant,
+    now: &TimeData,
     curvature_rate: &impl Fn(&Workspace<f64>, usize) -> f64,
     w: &Workspace<f64>,
     i: usize,
@@ -134,7 +134,7 @@ fn bending(
 }
 
 /// Distributed moments, viscous forces, and the published rotary term, over the cells.
-fn cells(system: &System, now: &Instant, w: &Workspace<f64>, published: bool, out: &mut [f64]) {
+fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, out: &mut [f64]) {
     let (h, section) = (system.mesh.h, &system.model.section);
     let rotary = section.mass_per_length * section.gyration_radius_squared;
     for c in 0..system.mesh.cells {
@@ -179,7 +179,7 @@ fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
 }
 
 /// Kinetic and elastic energy.
-pub fn energies(system: &System, now: &Instant, w: &Workspace<f64>) -> Energies {
+pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies {
     let (mesh, section) = (&system.mesh, &system.model.section);
     let mut e = Energies::default();
     let frame = now.frame_3();
@@ -225,7 +225,7 @@ pub fn arms(system: &System, w: &Workspace<f64>, i: usize) -> ([f64; 2], [f64; 2
 }
 
 /// Momentum (x, z) and angular momentum about the origin.
-pub fn momenta(system: &System, now: &Instant, w: &Workspace<f64>) -> ([f64; 2], f64) {
+pub fn momenta(system: &System, now: &TimeData, w: &Workspace<f64>) -> ([f64; 2], f64) {
     let (mesh, section) = (&system.mesh, &system.model.section);
     let (mut momentum, mut angular) = ([0.0; 2], 0.0);
     if !system.layout.inertia {

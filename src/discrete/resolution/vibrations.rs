@@ -1,12 +1,10 @@
 //! Of how many short waves a shape consists, and what a mesh does to them while they swing.
 
-use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
-
-use nalgebra::Matrix4;
+use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use crate::case::profile::Profile;
-use crate::case::{Rotation, Translation};
 use crate::discrete::shapes;
+use crate::discrete::straight::{self, Mode};
 use crate::model::Model;
 
 /// Vibrations into which a shape is taken apart.
@@ -17,8 +15,6 @@ const FOLLOWED: usize = 4;
 const CELLS: usize = 8 * MODES;
 /// Part of a shape below which a vibration in it is round-off.
 const NOTHING: f64 = 1e-9;
-/// Below this exponent a wave that dies away from an end is gone.
-const GONE: f64 = -40.0;
 
 /// What a shape excites in a straight beam without bladders, and for how long it swings.
 pub(super) struct Vibrations {
@@ -50,10 +46,14 @@ impl Vibrations {
                 s.axial_damping_time,
             )
         };
-        let modes = if bends { bending(model) } else { axial(model) };
+        let modes = if bends {
+            straight::bending(&model.ends, MODES)
+        } else {
+            straight::axial(&model.ends, MODES)
+        };
         let mut given = shapes::at_nodes(profile, CELLS);
         let largest = given.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        for rigid in rigid(model, bends) {
+        for rigid in straight::rigid(&model.ends, bends) {
             let [part, square] = products(&given, rigid);
             let removed = part / square;
             let values = given.iter_mut().enumerate();
@@ -122,28 +122,6 @@ impl Vibrations {
     }
 }
 
-/// `a cos βx + b sin βx + c e^{-βx} + d e^{-β(1-x)}`, the length being 1.
-struct Mode {
-    beta: f64,
-    factors: [f64; 4],
-}
-
-impl Mode {
-    fn at(&self, x: f64) -> f64 {
-        let [a, b, c, d] = self.factors;
-        let (sin, cos) = (self.beta * x).sin_cos();
-        let dying = |factor: f64, distance: f64| {
-            let exponent = -self.beta * distance;
-            if factor == 0.0 || exponent < GONE {
-                0.0
-            } else {
-                factor * exponent.exp()
-            }
-        };
-        a * cos + b * sin + dying(c, x) + dying(d, 1.0 - x)
-    }
-}
-
 /// `Σ f g` and `Σ g²` over nodes, half at the ends.
 fn products(f: &[f64], g: impl Fn(f64) -> f64) -> [f64; 2] {
     let mut sums = [0.0; 2];
@@ -154,132 +132,4 @@ fn products(f: &[f64], g: impl Fn(f64) -> f64) -> [f64; 2] {
         sums[1] += share * shape * shape;
     }
     sums
-}
-
-/// Motions of the beam as a whole that its ends let it do, across each other.
-fn rigid(model: &Model, bends: bool) -> Vec<fn(f64) -> f64> {
-    let [root, tip] = [0, 1].map(|end| {
-        let end = &model.ends[end];
-        let motion = if bends { &end.transverse } else { &end.axial };
-        matches!(motion, Translation::Displacement(_))
-    });
-    let turns = bends && !model.ends.iter().any(|end| matches!(end.rotation, Rotation::Slope(_)));
-    match (root, tip) {
-        (false, false) if turns => vec![|_| 1.0, |x| x - 0.5],
-        (false, false) => vec![|_| 1.0],
-        (true, false) if turns => vec![|x| x],
-        (false, true) if turns => vec![|x| 1.0 - x],
-        _ => vec![],
-    }
-}
-
-fn axial(model: &Model) -> Vec<Mode> {
-    let held = [0, 1].map(|end| matches!(model.ends[end].axial, Translation::Displacement(_)));
-    let shift = if held[0] == held[1] { 0.0 } else { FRAC_PI_2 };
-    let one = |k: usize| Mode {
-        beta: k as f64 * PI - shift,
-        factors: if held[0] {
-            [0.0, 1.0, 0.0, 0.0]
-        } else {
-            [1.0, 0.0, 0.0, 0.0]
-        },
-    };
-    (1..=MODES).map(one).collect()
-}
-
-/// Those of Euler's beam between its ends; rigid motions left out. Wave numbers are π apart but for the first.
-fn bending(model: &Model) -> Vec<Mode> {
-    let held = [0, 1].map(|end| {
-        let end = &model.ends[end];
-        [
-            matches!(end.transverse, Translation::Displacement(_)),
-            matches!(end.rotation, Rotation::Slope(_)),
-        ]
-    });
-    let value = |beta: f64| conditions(&held, beta).determinant();
-    const FIRST: f64 = 1.0;
-    const STEP: f64 = 0.4;
-    const HALVINGS: usize = 40;
-    let mut modes = vec![];
-    let mut from = FIRST;
-    let mut before = value(from);
-    while modes.len() < MODES && from < PI * (MODES + 2) as f64 {
-        let to = from + STEP;
-        let after = value(to);
-        if (before > 0.0) != (after > 0.0) {
-            let (mut low, mut high) = (from, to);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                if (value(middle) > 0.0) == (before > 0.0) {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
-            }
-            let beta = 0.5 * (low + high);
-            if let Some(vectors) = conditions(&held, beta).svd(false, true).v_t {
-                let factors = std::array::from_fn(|k| vectors[(3, k)]);
-                modes.push(Mode { beta, factors });
-            }
-        }
-        (from, before) = (to, after);
-    }
-    modes
-}
-
-/// `u = 0` or `u''' = 0`, `u' = 0` or `u'' = 0` at both ends, over powers of β.
-fn conditions(held: &[[bool; 2]; 2], beta: f64) -> Matrix4<f64> {
-    let rows = [0, 1].map(|end| {
-        let (sin, cos) = (beta * end as f64).sin_cos();
-        let far = (-beta).exp();
-        let (first, last) = if end == 0 { (1.0, far) } else { (far, 1.0) };
-        let [held, turned] = held[end];
-        let across = if held {
-            [cos, sin, first, last]
-        } else {
-            [sin, -cos, -first, last]
-        };
-        let turning = if turned {
-            [-sin, cos, -first, last]
-        } else {
-            [-cos, -sin, first, last]
-        };
-        [across, turning]
-    });
-    Matrix4::from_fn(|row, column| rows[row / 2][row % 2][column])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::case::schema::Case;
-
-    fn model(root: &str, tip: &str) -> Model {
-        let text = format!(
-            r#"{{"name": "x", "beam": {{"length_m": 1, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1e9,
-                "density_kg_m3": 1e3}}, "ends": {{"root": "{root}", "tip": "{tip}"}}, "time": {{"end_s": 1}}}}"#
-        );
-        let case: Case = serde_json::from_str(&text).unwrap();
-        Model::whole(&case, true)
-    }
-
-    /// Source: roots of `cos β cosh β = -1`, `= 1`, of `tan β = tanh β` and of `sin β`. Goal: every vibration is found, none twice, to
-    /// what forty halvings leave.
-    #[test]
-    fn wave_numbers_are_those_of_the_books() {
-        for (root, tip, first, last) in [
-            ("clamped", "free", [1.875104069, 4.694091133], 95.5),
-            ("clamped", "clamped", [4.730040745, 7.853204624], 96.5),
-            ("free", "free", [4.730040745, 7.853204624], 96.5),
-            ("clamped", "pinned", [3.926602312, 7.068582746], 96.25),
-            ("pinned", "pinned", [PI, 2.0 * PI], 96.0),
-        ] {
-            let found = bending(&model(root, tip));
-            assert_eq!(found.len(), MODES);
-            let betas = [found[0].beta, found[1].beta, found[MODES - 1].beta];
-            for (beta, exact) in betas.iter().zip([first[0], first[1], last * PI]) {
-                assert!((beta / exact - 1.0).abs() < 1e-8, "{root} {tip}: {beta} {exact}");
-            }
-        }
-    }
 }

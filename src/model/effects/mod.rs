@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A new effect needs: its physics in a module of its own, a line of the list in [`crate::case::schema`], and its place in
-//! [`crate::discrete::recipe::evaluate`]; the compiler then names the rest: [`about`], and what it needs and what decides in `choose`.
+//! [`crate::discrete::residual::evaluate`]; the compiler then names the rest: [`about`], and what it needs and what decides in `choose`.
 
 mod cause;
 mod choose;

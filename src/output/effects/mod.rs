@@ -7,7 +7,9 @@ use std::path::PathBuf;
 use super::folder::ResultFolder;
 use super::plot::ablation::{self, AblationBars, Bar};
 use crate::case::schema::Effect;
+use crate::discrete::quantities::Interest;
 use crate::error::Result;
+use crate::results;
 use crate::study::effects::ablation::{Compared, LARGEST};
 use crate::study::effects::change::Measure;
 use crate::study::effects::{Ablation, Verdict};
@@ -34,7 +36,12 @@ impl Shown {
     /// What was asked for; by default the deflection of the tip, else how far it moves along.
     pub fn choose(found: &Ablation, asked: Option<&str>) -> Self {
         let known = |name: &&str| found.measures.iter().any(|m| m.name == *name);
-        let first = || ["tip_u1_m", "tip_u3_m"].into_iter().find(known);
+        let first = || {
+            [Interest::TipU1, Interest::TipU3]
+                .map(Interest::name)
+                .into_iter()
+                .find(known)
+        };
         match asked.or_else(first) {
             Some(LARGEST) | None => Self::Largest,
             Some(name) => Self::Quantity(name.into()),
@@ -69,9 +76,7 @@ impl Shown {
 
 /// The text of `effects.json`; what is not finite is null.
 pub fn json(found: &Ablation) -> String {
-    let mut value = serde_json::to_value(found).unwrap_or_default();
-    value["sentence"] = sentence(found).into();
-    format!("{value:#}\n")
+    results::told(found, Some(&sentence(found)))
 }
 
 /// Writes the files into a folder; others in it stay.

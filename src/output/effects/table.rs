@@ -4,7 +4,9 @@ use std::fmt::Write as _;
 
 use super::Shown;
 use crate::case::schema::Effect;
-use crate::output::numbers::{percent, shortest, significant};
+use crate::output::columns::aligned;
+use crate::output::numbers::{percent, significant};
+use crate::output::records::{self, number};
 use crate::run::summary::Judged;
 use crate::study::accuracy::trial::Ending;
 use crate::study::effects::ablation::Compared;
@@ -38,15 +40,8 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
             lines.push(line(found, shown, &name(row), said(row), compared, number));
         }
     }
-    let recommended = found.recommendation.as_ref().and_then(|r| r.run.as_ref());
-    for (name, compared) in [
-        ("as the case says", found.given.as_ref()),
-        ("auto", found.auto.as_ref()),
-        ("recommended", recommended),
-    ] {
-        lines.extend(compared.map(|c| line(found, shown, name, "", c, String::new())));
-    }
-    text += &aligned(&lines);
+    lines.extend(beside(found).map(|(name, c)| line(found, shown, name, "", c, String::new())));
+    text += &aligned(&lines, &[0, 1, 4, 9]);
     text += &legend(found, shown);
     let mut reasons = vec![];
     for row in &found.rows {
@@ -78,17 +73,15 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
     text
 }
 
-fn aligned(lines: &[[String; 10]]) -> String {
-    let widths: [usize; 10] = std::array::from_fn(|k| lines.iter().map(|l| l[k].chars().count()).max().unwrap_or(0));
-    let mut text = String::new();
-    for line in lines {
-        let cells = line.iter().zip(widths).enumerate().map(|(k, (cell, width))| match k {
-            0 | 1 | 4 | 9 => format!("{cell:<width$}"),
-            _ => format!("{cell:>width$}"),
-        });
-        let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ").trim_end());
-    }
-    text
+/// What stands beside the effects: the case's own choice, the program's and what is recommended, as far as they were run.
+fn beside(found: &Ablation) -> impl Iterator<Item = (&'static str, &Compared)> {
+    let recommended = found.recommendation.as_ref().and_then(|r| r.run.as_ref());
+    let all = [
+        ("as the case says", found.given.as_ref()),
+        ("auto", found.auto.as_ref()),
+        ("recommended", recommended),
+    ];
+    all.into_iter().filter_map(|(name, compared)| Some((name, compared?)))
 }
 
 fn legend(found: &Ablation, shown: &Shown) -> String {
@@ -199,66 +192,60 @@ pub fn sentence(found: &Ablation) -> String {
 
 /// `effects.csv`: one row an effect and quantity; one without changes for an effect that was not run or did not finish.
 pub fn csv(found: &Ablation) -> String {
-    let mut text = String::from(
-        "left_out,verdict,reason,auto,number,without,takes,unknowns,steps,residual_evaluations,jacobian_evaluations,factorizations,\
-         wall_min [s],repeats,work_ratio,wall_ratio,quantity,size,change,own_error\n",
-    );
-    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "'"));
-    let mut rows = |first: String, compared: Option<&Compared>| {
-        let Some(c) = compared else {
-            let _ = writeln!(text, "{first}{}", ",".repeat(13));
-            return;
-        };
-        let n = &c.trial.counters;
-        let first = format!(
-            "{first},{},{},{},{},{},{},{},{},{}",
-            c.trial.unknowns,
-            n.steps,
-            n.residual_evaluations,
-            n.jacobian_evaluations,
-            n.factorizations,
-            number(Some(c.trial.wall_s())),
-            c.trial.repeats,
-            number(Some(c.work)),
-            number(Some(c.wall))
-        );
-        if c.changes.is_empty() {
-            let _ = writeln!(text, "{first}{}", ",".repeat(4));
-        }
-        for m in found.measures.iter().filter(|_| !c.changes.is_empty()) {
-            let change = c.changes.get(&m.name).copied();
-            let [size, change, own] = [Some(m.size), change, m.own].map(number);
-            let _ = writeln!(text, "{first},{},{size},{change},{own}", m.name);
-        }
-    };
-    for row in &found.rows {
-        let first = format!(
-            "{},{},{},{},{},{},{}",
-            row.name,
-            said(row),
-            quoted(row.reason.as_deref().unwrap_or("")),
-            if row.auto { "on" } else { "off" },
-            quoted(&row.number),
+    let headings = "left_out,verdict,reason,auto,number,without,takes,unknowns,steps,residual_evaluations,jacobian_evaluations,\
+                    factorizations,wall_min [s],repeats,work_ratio,wall_ratio,quantity,size,change,own_error";
+    let effects = found.rows.iter().map(|row| {
+        let first = [
+            row.name.to_string(),
+            said(row).into(),
+            row.reason.clone().unwrap_or_default(),
+            if row.auto { "on" } else { "off" }.into(),
+            row.number.clone(),
             Effect::names(&row.without, " "),
-            Effect::names(&row.takes, " ")
-        );
-        rows(first, row.left_out.as_ref());
-    }
-    let recommended = found.recommendation.as_ref().and_then(|r| r.run.as_ref());
-    for (name, compared) in [
-        ("as the case says", found.given.as_ref()),
-        ("auto", found.auto.as_ref()),
-        ("recommended", recommended),
-    ] {
-        if let Some(c) = compared {
-            let why = quoted(c.trial.reason.as_deref().unwrap_or(""));
-            rows(format!("{name},,{why},,,,"), Some(c));
-        }
-    }
-    text
+            Effect::names(&row.takes, " "),
+        ];
+        (first, row.left_out.as_ref())
+    });
+    let beside = beside(found).map(|(name, compared)| {
+        let mut first: [String; 7] = Default::default();
+        first[0] = name.into();
+        first[2] = compared.trial.reason.clone().unwrap_or_default();
+        (first, Some(compared))
+    });
+    let rows = effects.chain(beside).flat_map(|(first, compared)| {
+        let rest = compared.map_or_else(|| vec![[const { String::new() }; 13]], |c| cells(found, c));
+        rest.into_iter().map(move |rest| [&first[..], &rest].concat())
+    });
+    records::text(headings.split(','), rows)
 }
 
-/// Empty when unknown or not finite.
-fn number(x: Option<f64>) -> String {
-    x.filter(|x| x.is_finite()).map_or_else(String::new, shortest)
+/// What a comparison took and found, one row a quantity; one without where there is none.
+fn cells(found: &Ablation, c: &Compared) -> Vec<[String; 13]> {
+    let n = &c.trial.counters;
+    let row = |name: &str, numbers: [Option<f64>; 3]| {
+        let [size, change, own] = numbers.map(number);
+        [
+            c.trial.unknowns.to_string(),
+            n.steps.to_string(),
+            n.residual_evaluations.to_string(),
+            n.jacobian_evaluations.to_string(),
+            n.factorizations.to_string(),
+            number(Some(c.trial.wall_s())),
+            c.trial.repeats.to_string(),
+            number(Some(c.work)),
+            number(Some(c.wall)),
+            name.into(),
+            size,
+            change,
+            own,
+        ]
+    };
+    if c.changes.is_empty() {
+        return vec![row("", [None; 3])];
+    }
+    let change = |name| c.changes.get(name).copied();
+    let measures = found.measures.iter();
+    measures
+        .map(|m| row(&m.name, [Some(m.size), change(&m.name), m.own]))
+        .collect()
 }

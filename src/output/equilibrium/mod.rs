@@ -4,16 +4,18 @@ mod words;
 
 use std::path::PathBuf;
 
-use serde_json::{Map, Value, json};
-
-use super::accuracy::{with_accuracy, with_meshes};
 use super::folder::{CASE, ResultFolder};
 use super::numbers::shortest;
 use super::plot::Curve;
 use super::plot::loadpath::{self, LoadPath};
+use super::records;
 use crate::case::schema::Case;
+use crate::discrete::quantities::{Observable, Role};
 use crate::error::Result;
-use crate::run::equilibrium::{Kind, Options, Path, Sensitivity, State};
+use crate::results;
+use crate::results::equilibrium::{self as kept, Equilibrium, Numbers};
+use crate::results::run::Status;
+use crate::run::equilibrium::{Event, Kind, Options, Path, Sensitivity, Stability, State};
 use crate::run::record::Column;
 use crate::run::summary::Accuracy;
 use crate::study::refine::meshes::Meshes;
@@ -56,38 +58,48 @@ pub struct Found<'a> {
 
 /// The text of `equilibrium.json`.
 pub fn json(found: &Found) -> String {
-    let Found { case, path, .. } = found;
-    let finite = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
-    let keyed = |values: &[f64]| -> Map<String, Value> {
+    let path = found.path;
+    let keyed = |values: &[f64]| -> Numbers {
         let pairs = found.columns.iter().zip(values).skip(1);
-        pairs.map(|(column, value)| (key(column), finite(*value))).collect()
+        pairs.map(|(column, value)| (key(column), Some(*value))).collect()
     };
     let last = path.states.last();
-    let value = json!({
-        "case": case.name,
-        "status": if path.fault.is_none() { "finished" } else { "failed" },
-        "reason": path.fault.as_ref().map(|f| f.what.clone()),
-        "loads_at_s": found.options.at_s,
-        "load_factor": last.map(|s| s.share),
-        "states": path.states.len(),
-        "quantities": last.map(|s| keyed(&s.row)),
-        "stability": last.and_then(|s| s.stability.as_ref()).map(|s| json!({
-            "stable": s.unstable == 0, "unstable_modes": s.unstable, "softest_1_s2": s.softest,
-        })),
-        "events": path.events.iter().map(|e| json!({"load_factor": e.share, "what": e.words()})).collect::<Vec<_>>(),
-        "sensitivities": found.sensitivities.iter().map(|s| {
-            (s.parameter.pointer.clone(), json!({"value": s.parameter.value, "derivatives": keyed(&s.row)}))
-        }).collect::<Map<_, _>>(),
-        "solver": {
-            "newton_iterations": path.work.iterations, "residual_evaluations": path.work.residual_evaluations,
-            "factorizations": path.work.factorizations, "rejected_steps": path.rejected,
-            "largest_correction_left": finite(path.work.correction),
+    let stability = |s: &Stability| kept::Stability {
+        stable: s.unstable == 0,
+        unstable_modes: s.unstable,
+        softest_1_s2: s.softest,
+    };
+    let event = |e: &Event| kept::Event {
+        load_factor: e.share,
+        what: e.words().into(),
+    };
+    let derivatives = |s: &Sensitivity| {
+        let (value, derivatives) = (s.parameter.value, keyed(&s.row));
+        (s.parameter.pointer.clone(), kept::Derivatives { value, derivatives })
+    };
+    results::text(&Equilibrium {
+        case: found.case.name.clone(),
+        status: path.fault.as_ref().map_or(Status::Finished, |_| Status::Failed),
+        reason: path.fault.as_ref().map(|f| f.what.clone()),
+        loads_at_s: found.options.at_s,
+        load_factor: last.map(|s| s.share),
+        states: path.states.len(),
+        quantities: last.map(|s| keyed(&s.row)),
+        stability: last.and_then(|s| s.stability.as_ref()).map(stability),
+        events: path.events.iter().map(event).collect(),
+        sensitivities: found.sensitivities.iter().map(derivatives).collect(),
+        solver: kept::Work {
+            newton_iterations: path.work.iterations,
+            residual_evaluations: path.work.residual_evaluations,
+            factorizations: path.work.factorizations,
+            rejected_steps: path.rejected,
+            largest_correction_left: path.work.correction,
         },
-        "wall_s": {"total": found.wall_s},
-        "warnings": found.warnings,
-    });
-    let value = with_meshes(with_accuracy(value, found.accuracy), found.meshes);
-    format!("{value:#}\n")
+        wall_s: kept::Wall { total: found.wall_s },
+        warnings: found.warnings.to_vec(),
+        accuracy: found.accuracy.cloned(),
+        meshes: found.meshes.cloned(),
+    })
 }
 
 /// Key of a quantity, unit included as in `summary.json`.
@@ -117,53 +129,35 @@ pub fn write(folder: &mut ResultFolder, found: &Found) -> Result<Vec<PathBuf>> {
 
 /// One row a state.
 fn table(found: &Found) -> String {
-    let mut text: String = found
-        .columns
-        .iter()
-        .map(|c| format!("{} [{}],", c.name, c.unit))
-        .collect();
-    text.push_str("unstable_modes [1]\n");
-    for state in &found.path.states {
+    let columns = found.columns.iter().map(|c| format!("{} [{}]", c.name, c.unit));
+    let rows = found.path.states.iter().map(|state| {
         let unstable = state.stability.as_ref().map_or(f64::NAN, |s| s.unstable as f64);
-        let row: Vec<String> = state.row.iter().chain([&unstable]).map(|&x| shortest(x)).collect();
-        text.push_str(&row.join(","));
-        text.push('\n');
-    }
-    text
+        state.row.iter().chain([&unstable]).map(|&x| shortest(x)).collect()
+    });
+    records::text(columns.chain(["unstable_modes [1]".into()]), rows)
 }
 
 /// One row a node: `theta [m]`, then x and z of every state.
 fn shapes(found: &Found) -> String {
     let states = &found.path.states;
     let length = found.case.beam.length_m;
-    let mut text = String::from("theta [m]");
-    for state in states {
-        let share = shortest(state.share);
-        text.push_str(&format!(",x at {share} [m],z at {share} [m]"));
-    }
-    text.push('\n');
+    let shares = states.iter().map(|state| shortest(state.share));
+    let columns = shares.flat_map(|share| [format!("x at {share} [m]"), format!("z at {share} [m]")]);
     let nodes = states.first().map_or(0, |s| s.u1.len());
-    for i in 0..nodes {
+    let rows = (0..nodes).map(|i| {
         let theta = length * i as f64 / (nodes - 1) as f64;
-        text.push_str(&shortest(theta));
-        for state in states {
-            text.push_str(&format!(",{},{}", shortest(state.u1[i]), shortest(theta + state.u3[i])));
-        }
-        text.push('\n');
-    }
-    text
+        let places = states.iter().flat_map(|state| [state.u1[i], theta + state.u3[i]]);
+        [theta].into_iter().chain(places).map(shortest).collect()
+    });
+    records::text(["theta [m]".into()].into_iter().chain(columns), rows)
 }
 
 /// The picture's data.
 fn drawn(found: &Found) -> LoadPath {
     let states = &found.path.states;
     let stable = |s: &State| s.stability.as_ref().is_none_or(|s| s.unstable == 0);
-    let shown = ["tip_u1", "tip_u3", "max_pressure"];
-    let curves = found
-        .columns
-        .iter()
-        .enumerate()
-        .filter(|(_, c)| shown.contains(&c.name.as_str()));
+    let shown = |name: &str| Observable::named(name).is_some_and(|one| one.role() == Role::Headline);
+    let curves = found.columns.iter().enumerate().filter(|(_, c)| shown(&c.name));
     let nearest = |share: f64| {
         let far = |k: &usize| (states[*k].share - share).abs();
         (0..states.len()).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0)

@@ -1,7 +1,10 @@
 //! A load path in words.
 
 use super::Found;
+use crate::discrete::quantities::{Group, Observable};
+use crate::output::columns::aligned;
 use crate::output::numbers::{count, quantity, significant};
+use crate::run::equilibrium::State;
 use crate::study::refine::meshes::Meshes;
 
 /// Rows of the table at most.
@@ -49,17 +52,15 @@ pub fn words(found: &Found) -> String {
             s.parameter.pointer,
             significant(s.parameter.value, 6)
         ));
-        for (column, derivative) in found.columns.iter().zip(&s.row).skip(1) {
-            let relative = s.parameter.value * derivative;
-            text.push_str(&format!(
-                "  {:<16} {:>14} {} per unit, {} {} per 1 %\n",
-                column.name,
-                significant(*derivative, 6),
-                column.unit,
-                significant(0.01 * relative, 4),
-                column.unit,
-            ));
-        }
+        let derivatives = found.columns.iter().zip(&s.row).skip(1);
+        let lines: Vec<_> = derivatives
+            .map(|(column, derivative)| {
+                let by_share = significant(0.01 * s.parameter.value * derivative, 4);
+                let words = format!("{0} per unit, {by_share} {0} per 1 %", column.unit);
+                [String::new(), column.name.clone(), significant(*derivative, 6), words]
+            })
+            .collect();
+        text.push_str(&aligned(&lines, &[1, 3]));
     }
     if let Some(accuracy) = found.accuracy {
         text.push('\n');
@@ -74,37 +75,22 @@ fn table(found: &Found) -> String {
         .columns
         .iter()
         .enumerate()
-        .filter(|(_, c)| {
-            [
-                "load_factor",
-                "tip_u1",
-                "tip_u3",
-                "tip_angle",
-                "max_pressure",
-                "min_pressure",
-            ]
-            .contains(&c.name.as_str())
+        .filter(|(k, c)| {
+            let group = Observable::named(&c.name).map(Observable::group);
+            *k == 0 || matches!(group, Some(Group::Tip | Group::Pressure))
         })
         .map(|(k, c)| (k, format!("{} [{}]", c.name, c.unit)))
         .collect();
     let states = &found.path.states;
-    let mut text = String::new();
-    for (_, name) in &columns {
-        text.push_str(&format!("{name:>18}"));
-    }
-    text.push_str(&format!("{:>10}\n", "unstable"));
     let every = states.len().div_ceil(ROWS).max(1);
-    let mut shown: Vec<usize> = (0..states.len()).rev().step_by(every).collect();
+    let mut shown: Vec<&State> = states.iter().rev().step_by(every).collect();
     shown.reverse();
-    for k in shown {
-        for (column, _) in &columns {
-            text.push_str(&format!("{:>18}", significant(states[k].row[*column], 6)));
-        }
-        let unstable = states[k]
-            .stability
-            .as_ref()
-            .map_or("–".into(), |s| s.unstable.to_string());
-        text.push_str(&format!("{unstable:>10}\n"));
-    }
-    text
+    let headings = columns.iter().map(|(_, name)| name.clone());
+    let mut lines = vec![headings.chain(["unstable".into()]).collect::<Vec<_>>()];
+    lines.extend(shown.iter().map(|state| {
+        let unstable = state.stability.as_ref().map_or("–".into(), |s| s.unstable.to_string());
+        let numbers = columns.iter().map(|(k, _)| significant(state.row[*k], 6));
+        numbers.chain([unstable]).collect()
+    }));
+    aligned(&lines, &[])
 }

@@ -1,13 +1,12 @@
 //! A folder of files that appear when all are written.
 
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
 use crate::error::Result;
-use crate::output::folder::fault;
+use crate::output::folder::{entries, fault, name_of};
 
 /// Files on their way into a folder; what is dropped before [`Staged::place`] leaves nothing.
 pub struct Staged {
@@ -38,23 +37,13 @@ impl Staged {
 
     /// Puts the files into their folder, in place of `older` ones by name; others there stay.
     pub fn place(self, older: impl Fn(&str) -> bool) -> Result<()> {
-        let names = |dir: &Path| -> Result<Vec<String>> {
-            let list = || -> io::Result<Vec<String>> {
-                let entries = fs::read_dir(dir)?;
-                entries
-                    .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
-                    .collect()
-            };
-            list().map_err(|e| fault("read", dir, e))
-        };
         fs::create_dir_all(&self.target).map_err(|e| fault("create", &self.target, e))?;
-        for name in names(&self.target)?.iter().filter(|name| older(name)) {
-            let path = self.target.join(name);
-            fs::remove_file(&path).map_err(|e| fault("remove", &path, e))?;
+        for path in entries(&self.target)?.iter().filter(|path| older(&name_of(path))) {
+            fs::remove_file(path).map_err(|e| fault("remove", path, e))?;
         }
-        for name in names(self.inside.path())? {
-            let path = self.target.join(&name);
-            fs::rename(self.path(&name), &path).map_err(|e| fault("write", &path, e))?;
+        for from in entries(self.inside.path())? {
+            let to = self.target.join(name_of(&from));
+            fs::rename(&from, &to).map_err(|e| fault("write", &to, e))?;
         }
         Ok(())
     }

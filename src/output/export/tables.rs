@@ -54,12 +54,8 @@ fn places(from: &Recording, field: &Array) -> Vec<String> {
 }
 
 fn in_bladders(from: &Recording, bladders: &[f64]) -> Vec<String> {
-    let length = from
-        .case
-        .pointer("/bladders/length_m")
-        .and_then(serde_json::Value::as_f64);
     let first = bladders.iter().take_while(|b| **b == bladders[0]).count().max(1);
-    let ds = length.unwrap_or(1.0) / first as f64;
+    let ds = from.bladder_length().unwrap_or(1.0) / first as f64;
     let name = |(k, b): (usize, &f64)| format!("bladder={b} s={} m", shortest(((k % first) as f64 + 0.5) * ds));
     bladders.iter().enumerate().map(name).collect()
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use super::{CASE, ResultFolder, fault, remove};
+use super::{CASE, ResultFolder, entries, name_of, remove};
 use crate::case::{Written, is_table};
 use crate::error::Result;
 
@@ -34,8 +34,8 @@ impl ResultFolder {
 
     /// The tables of cases in the folder.
     pub(super) fn tables(&self) -> Result<Vec<PathBuf>> {
-        let entries = fs::read_dir(&self.dir).map_err(|e| fault("read", &self.dir, e))?;
-        let names = entries.flatten().filter(|e| is_table(&e.file_name().to_string_lossy()));
-        Ok(names.map(|e| e.path()).collect())
+        let mut all = entries(&self.dir)?;
+        all.retain(|path| is_table(&name_of(path)));
+        Ok(all)
     }
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::fault;
 use crate::error::Result;
+use crate::results::{self, Found, Kept};
 
 /// Writes a file that the user names, whole or not at all; one that is there keeps its permissions, and what a link points to is
 /// replaced.
@@ -64,6 +65,21 @@ pub(crate) fn put_whole(target: &Path, fill: impl FnOnce(&mut File) -> io::Resul
     })
 }
 
+/// Paths of all that lies in a folder, sorted.
+pub(crate) fn entries(dir: &Path) -> Result<Vec<PathBuf>> {
+    let list = || -> io::Result<Vec<PathBuf>> { fs::read_dir(dir)?.map(|entry| Ok(entry?.path())).collect() };
+    let mut all = list().map_err(|e| fault("read", dir, e))?;
+    all.sort();
+    Ok(all)
+}
+
+/// Last part of a path.
+pub(crate) fn name_of(path: &Path) -> String {
+    path.file_name()
+        .map(|n| n.to_string_lossy().into_owned())
+        .unwrap_or_default()
+}
+
 /// The name under which a file grows before it takes its own.
 fn part_of(target: &Path) -> PathBuf {
     let name = target.file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
@@ -85,6 +101,11 @@ pub(crate) fn open(path: &Path) -> io::Result<File> {
 /// What is wrong with a file that was read.
 pub(crate) fn damaged(why: impl Into<String>) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, why.into())
+}
+
+/// The result in a file.
+pub(crate) fn result<T: Kept>(path: &Path) -> Result<Found<T>> {
+    results::read(&text_of(path)?).map_err(|e| fault("read", path, e))
 }
 
 /// The text of a file of a result.

@@ -6,17 +6,18 @@ use std::io;
 use std::path::PathBuf;
 
 use nalgebra::Complex;
-use serde_json::{Value, json};
 use zip::ZipWriter;
 
-use super::accuracy::{self, with_accuracy};
+use super::accuracy;
 use super::arrays::write_array;
 use super::folder::{ResultFolder, fault};
 use super::numbers::significant;
 use super::plot::modes::{self as picture, ModeShapes, Shown};
 use crate::error::{Code, Result};
 use crate::model::passivity::{self, Passivity};
-use crate::run::modes::{Kind, Limit, Mode, Modes, Plan, Sensitivity, meshes};
+use crate::results;
+use crate::results::modes::{self as kept, About};
+use crate::run::modes::{Kind, Mode, Modes, Plan, Sensitivity, meshes};
 use crate::run::summary::Accuracy;
 use crate::study::refine;
 
@@ -39,8 +40,8 @@ pub struct Report<'a> {
     pub plan: &'a Plan,
     /// What was found.
     pub found: &'a Modes,
-    /// State about which, in words: `the start`.
-    pub about: &'a str,
+    /// State about which.
+    pub state: About,
     /// Derivatives by numbers of the case.
     pub sensitivities: &'a [Sensitivity],
     /// Estimated errors, when an accuracy was asked for.
@@ -50,6 +51,14 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
+    /// State about which, in words: `the start`.
+    pub fn about(&self) -> String {
+        match self.state {
+            About::Start => "the start".into(),
+            About::Equilibrium => format!("the equilibrium under the loads at t = {} s", self.found.about.at),
+        }
+    }
+
     /// Whether the state is stable, in one sentence.
     pub fn verdict(&self) -> String {
         let growing: Vec<String> = self
@@ -81,7 +90,7 @@ impl Report<'_> {
             Code::NotAtRest.warning(format!(
                 "{} is no equilibrium under the loads at t = {} s: unknowns would change at up to {:.2e} of their size a second; \
                  the modes are those of the state held where it is",
-                self.about, about.at, about.rate
+                self.about(), about.at, about.rate
             ))
         });
         let still = self.found.modes.is_empty().then(|| {
@@ -139,44 +148,68 @@ impl Report<'_> {
 /// The text of `modes.json`; what is not finite is null.
 pub fn json(report: &Report) -> String {
     let found = report.found;
-    let modes: Vec<Value> = found.modes.iter().map(mode).collect();
-    let coupling = report.passivity().map(|(p, words)| {
-        json!({
-            "passive": p.passive(), "least_eigenvalue": p.least, "reciprocity_defect": p.defect,
-            "direction": {"moment_n_m": p.direction[0], "force_n": p.direction[1],
-                          "upper_pressure_pa": p.direction[2], "lower_pressure_pa": p.direction[3]},
-            "words": words
-        })
-    });
-    let value = json!({
-        "case": report.case, "about": report.about, "at_s": report.found.about.at, "near_hz": report.plan.near_hz,
-        "unknowns": found.about.y.len(), "finite_eigenvalues": found.finite,
-        "stable": !found.modes.iter().any(|m| m.kind.grows()), "verdict": report.verdict(),
-        "modes": modes, "coupling": coupling,
-        "sensitivities": report.sensitivities.iter().map(|s| (s.parameter.pointer.clone(), json!({
-            "value": s.parameter.value,
-            "growth_rate_1_s": s.s.iter().map(|ds| ds.re).collect::<Vec<_>>(),
-            "frequency_hz": s.s.iter().map(|ds| ds.im / std::f64::consts::TAU).collect::<Vec<_>>(),
-        }))).collect::<serde_json::Map<_, _>>(),
-        "solver": {"factorizations": found.factorizations, "solves": found.solves, "all_at_once": found.dense},
-        "warnings": report.warnings()
-    });
-    let value = with_accuracy(value, report.accuracy);
-    format!("{value:#}\n")
+    let coupling = |(p, words): (Passivity, String)| kept::Coupling {
+        passive: p.passive(),
+        least_eigenvalue: p.least,
+        reciprocity_defect: p.defect,
+        direction: kept::Direction {
+            moment_n_m: p.direction[0],
+            force_n: p.direction[1],
+            upper_pressure_pa: p.direction[2],
+            lower_pressure_pa: p.direction[3],
+        },
+        words,
+    };
+    let derivatives = |s: &Sensitivity| {
+        let derivatives = kept::Derivatives {
+            value: s.parameter.value,
+            growth_rate_1_s: s.s.iter().map(|ds| Some(ds.re)).collect(),
+            frequency_hz: s.s.iter().map(|ds| Some(ds.im / std::f64::consts::TAU)).collect(),
+        };
+        (s.parameter.pointer.clone(), derivatives)
+    };
+    results::text(&kept::Modes {
+        case: report.case.into(),
+        about: report.about(),
+        state: Some(report.state),
+        at_s: found.about.at,
+        near_hz: report.plan.near_hz,
+        unknowns: found.about.y.len(),
+        finite_eigenvalues: found.finite,
+        stable: !found.modes.iter().any(|m| m.kind.grows()),
+        verdict: report.verdict(),
+        modes: found.modes.iter().map(mode).collect(),
+        coupling: report.passivity().map(coupling),
+        sensitivities: report.sensitivities.iter().map(derivatives).collect(),
+        solver: kept::Work {
+            factorizations: found.factorizations,
+            solves: found.solves,
+            all_at_once: found.dense,
+        },
+        warnings: report.warnings(),
+        accuracy: report.accuracy.cloned(),
+    })
 }
 
-fn mode(mode: &Mode) -> Value {
-    let limit = |limit: &Option<Limit>| limit.map(|l| json!({"frequency_hz": l.frequency_hz, "likeness": l.likeness}));
-    json!({
-        "kind": mode.kind, "frequency_hz": mode.frequency_hz(), "damping_ratio": mode.damping_ratio(),
-        "growth_per_s": mode.s.re, "time_s": mode.time_s(),
-        "angular_frequency_per_s": mode.s.im, "error_per_s": mode.error, "residual": mode.residual,
-        "transverse_share": mode.shape.transverse(),
-        "undrained": limit(&mode.undrained), "drained": limit(&mode.drained),
-        "on_half_the_cells": limit(&mode.coarse), "extrapolated_frequency_hz": mode.extrapolated_hz(),
-        "extrapolated_growth_per_s": mode.extrapolated().map(|s| s.re),
-        "mesh_error": mode.mesh_error(), "rate_mesh_error": mode.rate_error()
-    })
+fn mode(mode: &Mode) -> kept::Mode {
+    kept::Mode {
+        kind: mode.kind,
+        frequency_hz: mode.frequency_hz(),
+        damping_ratio: mode.damping_ratio(),
+        growth_per_s: mode.s.re,
+        time_s: mode.time_s(),
+        angular_frequency_per_s: mode.s.im,
+        error_per_s: Some(mode.error),
+        residual: Some(mode.residual),
+        transverse_share: Some(mode.shape.transverse()),
+        undrained: mode.undrained,
+        drained: mode.drained,
+        on_half_the_cells: mode.coarse,
+        extrapolated_frequency_hz: mode.extrapolated_hz(),
+        extrapolated_growth_per_s: mode.extrapolated().map(|s| s.re),
+        mesh_error: mode.mesh_error(),
+        rate_mesh_error: mode.rate_error(),
+    }
 }
 
 /// Writes the files into a folder; others in it stay.
@@ -243,7 +276,7 @@ fn shapes(report: &Report) -> ModeShapes {
     });
     ModeShapes {
         case: report.case.into(),
-        about: report.about.into(),
+        about: report.about(),
         theta: (0..system.mesh.nodes).map(|i| system.mesh.node_coordinate(i)).collect(),
         per_row,
         modes: modes.collect(),

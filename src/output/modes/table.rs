@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use super::{Report, moves};
-use crate::output::numbers::{percent, quantity, shortest, significant};
+use crate::output::columns::aligned;
+use crate::output::numbers::{percent, quantity, significant};
+use crate::output::records::{self, number};
 use crate::run::modes::{Limit, Mode};
 
 /// Digits shown at most.
@@ -29,7 +31,7 @@ pub fn table(report: &Report) -> String {
     let mut text = format!(
         "{}: small motions about {}, signals held as at t = {} s\n{} unknowns, {} finite eigenvalues, {}; {} factorisations, {} solves\n\n",
         report.case,
-        report.about,
+        report.about(),
         found.about.at,
         found.about.y.len(),
         found.finite,
@@ -43,17 +45,16 @@ pub fn table(report: &Report) -> String {
     );
     let mut lines = vec![HEADINGS.map(String::from)];
     lines.extend(found.modes.iter().enumerate().map(|(k, mode)| line(k + 1, mode)));
-    let widths: [usize; 11] = std::array::from_fn(|k| lines.iter().map(|l| l[k].chars().count()).max().unwrap_or(0));
     // a column of which no mode has anything says nothing
-    let shown: [bool; 11] = std::array::from_fn(|k| k == 0 || lines[1..].iter().any(|l| !l[k].is_empty()));
-    for line in &lines {
-        let cells = line.iter().zip(widths).enumerate().map(|(k, (cell, width))| match k {
-            1 | 2 => format!("{cell:<width$}"),
-            _ => format!("{cell:>width$}"),
-        });
-        let cells = cells.zip(shown).filter(|(_, shown)| *shown).map(|(cell, _)| cell);
-        let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ").trim_end());
-    }
+    let shown: Vec<usize> = (0..HEADINGS.len())
+        .filter(|&k| k == 0 || lines[1..].iter().any(|l| !l[k].is_empty()))
+        .collect();
+    let lines: Vec<Vec<String>> = lines
+        .iter()
+        .map(|l| shown.iter().map(|&k| l[k].clone()).collect())
+        .collect();
+    let words: Vec<usize> = (0..shown.len()).filter(|&k| matches!(shown[k], 1 | 2)).collect();
+    text += &aligned(&lines, &words);
     if found
         .modes
         .iter()
@@ -127,15 +128,11 @@ pub fn words(mode: &Mode) -> String {
 
 /// The text of `modes.csv`: one row a mode, empty where there is no such number.
 pub fn csv(report: &Report) -> String {
-    let mut text = String::from(
-        "mode [1],kind,frequency [Hz],damping ratio [1],growth rate [1/s],time constant [s],error bound [1/s],residual [1],\
-         transverse share [1],undrained frequency [Hz],undrained likeness [1],drained frequency [Hz],drained likeness [1],\
-         frequency on half the cells [Hz],extrapolated frequency [Hz],extrapolated growth rate [1/s]\n",
-    );
-    let number = |value: Option<f64>| value.filter(|v| v.is_finite()).map_or(String::new(), shortest);
-    for (k, mode) in report.found.modes.iter().enumerate() {
-        let limit = |limit: &Option<Limit>| [number(limit.map(|l| l.frequency_hz)), number(limit.map(|l| l.likeness))];
-        let mut cells = vec![(k + 1).to_string(), mode.kind.word().into()];
+    let headings = "mode [1],kind,frequency [Hz],damping ratio [1],growth rate [1/s],time constant [s],error bound [1/s],residual [1],\
+                    transverse share [1],undrained frequency [Hz],undrained likeness [1],drained frequency [Hz],drained likeness [1],\
+                    frequency on half the cells [Hz],extrapolated frequency [Hz],extrapolated growth rate [1/s]";
+    let rows = report.found.modes.iter().enumerate().map(|(k, mode)| {
+        let [undrained, drained] = [&mode.undrained, &mode.drained].map(Option::as_ref);
         let numbers = [
             mode.frequency_hz(),
             mode.damping_ratio(),
@@ -144,14 +141,17 @@ pub fn csv(report: &Report) -> String {
             Some(mode.error),
             Some(mode.residual),
             Some(mode.shape.transverse()),
+            undrained.map(|l| l.frequency_hz),
+            undrained.map(|l| l.likeness),
+            drained.map(|l| l.frequency_hz),
+            drained.map(|l| l.likeness),
+            mode.coarse.map(|l| l.frequency_hz),
+            mode.extrapolated_hz(),
+            mode.extrapolated().map(|s| s.re),
         ];
-        cells.extend(numbers.map(number));
-        cells.extend(limit(&mode.undrained));
-        cells.extend(limit(&mode.drained));
-        cells.push(number(mode.coarse.map(|l| l.frequency_hz)));
-        cells.push(number(mode.extrapolated_hz()));
-        cells.push(number(mode.extrapolated().map(|s| s.re)));
-        let _ = writeln!(text, "{}", cells.join(","));
-    }
-    text
+        let mut row = vec![(k + 1).to_string(), mode.kind.word().into()];
+        row.extend(numbers.map(number));
+        row
+    });
+    records::text(headings.split(','), rows)
 }

@@ -3,71 +3,79 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use super::accuracy::with_warnings;
+use super::columns::aligned;
 use super::folder::ResultFolder;
 use super::numbers::{count, percent, quantity, shortest, significant};
 use super::plot::cycles::{self, Cycles, Quantity};
+use super::records;
+use crate::discrete::quantities::Interest;
 use crate::error::Result;
-use crate::run::floquet::Stability;
-use crate::run::periodic::Search;
-use crate::run::summary::Summary;
-use crate::study::stability::{Along, Member};
+use crate::results;
+use crate::results::cycles::{Along, Search, Stability};
+use crate::results::run::Summary;
+use crate::study::stability::Member;
 
 /// Stability and search of a cycle, in its result folder.
 pub const CYCLE: &str = "cycle.json";
 
-/// Figures over the period that table and picture show: name, unit.
-const SHOWN: [(&str, &str); 3] = [("tip_u1_m", "m"), ("tip_u3_m", "m"), ("max_pressure_pa", "Pa")];
+/// Quantities over the period that table and picture show.
+pub const SHOWN: [Interest; 3] = [Interest::TipU1, Interest::TipU3, Interest::MaxPressure];
 
-fn largest(member: &Member, name: &str) -> Option<f64> {
-    member.quantities.get(name).and_then(|q| q.window_max_abs)
+/// The largest value over the period of a quantity.
+pub fn largest(member: &Member, one: Interest) -> Option<f64> {
+    member.quantities.get(one.name()).and_then(|q| q.window_max_abs)
 }
 
-/// The text of `sweep.json`, with what to know of the first case.
-pub fn json(found: &Along, warnings: &[String]) -> String {
-    let value = with_warnings(serde_json::to_value(found).unwrap_or_default(), warnings);
-    format!("{value:#}\n")
+/// The quantity over time whose largest value it is, by name.
+fn short(one: Interest) -> &'static str {
+    one.columns().first().map_or(one.name(), |column| column.name())
 }
 
 /// The text of `sweep.csv`: one row a cycle.
 pub fn csv(found: &Along) -> String {
-    let mut text = format!(
-        "{} [as in the case],largest |tip_u1| [m],largest |tip_u3| [m],largest pressure [Pa],growth rate [1/s],multiplier real part \
-         [1],multiplier imaginary part [1],steps [1],unknowns [1],wall time [s],verdict\n",
-        found.pointer
-    );
-    for m in &found.members {
+    let parameter = format!("{} [as in the case]", found.pointer);
+    let headings = "largest |tip_u1| [m],largest |tip_u3| [m],largest pressure [Pa],growth rate [1/s],multiplier real part [1],\
+                    multiplier imaginary part [1],steps [1],unknowns [1],wall time [s],verdict";
+    let rows = found.members.iter().map(|m| {
         let first = m.floquet.multipliers.first();
         let number = |x: Option<f64>| x.map_or(String::new(), shortest);
         let mut row = vec![shortest(m.value)];
-        row.extend(SHOWN.map(|(name, _)| number(largest(m, name))));
-        row.extend([number(first.map(|f| f.growth_per_s)), number(first.map(|f| f.re))]);
-        row.extend([number(first.map(|f| f.im)), m.search.work.steps.to_string()]);
-        row.extend([m.unknowns.to_string(), shortest(m.wall_s)]);
-        let _ = writeln!(text, "{},\"{}\"", row.join(","), m.floquet.verdict.words);
-    }
-    text
+        row.extend(SHOWN.map(|one| number(largest(m, one))));
+        row.extend([first.map(|f| f.growth_per_s), first.map(|f| f.re), first.map(|f| f.im)].map(number));
+        row.extend([
+            m.search.work.steps.to_string(),
+            m.unknowns.to_string(),
+            shortest(m.wall_s),
+        ]);
+        row.push(m.floquet.verdict.words.clone());
+        row
+    });
+    records::text([parameter.as_str()].into_iter().chain(headings.split(',')), rows)
 }
 
 /// The table, and what it took.
 pub fn words(found: &Along) -> String {
-    let mut text = format!(
-        "  {:<12} largest |u1| [m]   largest pressure [Pa]   verdict\n",
-        found.pointer
-    );
-    for m in &found.members {
-        let number = |name| largest(m, name).map_or("–".into(), |x| significant(x, 4));
-        let _ = writeln!(
-            text,
-            "  {:<12} {:>16} {:>23}   {}",
+    let headings = [
+        "",
+        &found.pointer,
+        "largest |u1| [m]",
+        "largest pressure [Pa]",
+        "verdict",
+    ];
+    let mut lines = vec![headings.map(String::from).to_vec()];
+    lines.extend(found.members.iter().map(|m| {
+        let number = |one| largest(m, one).map_or("–".into(), |x| significant(x, 4));
+        let numbers = [
             significant(m.value, 4),
-            number("tip_u1_m"),
-            number("max_pressure_pa"),
-            m.floquet.verdict.words
-        );
-    }
+            number(Interest::TipU1),
+            number(Interest::MaxPressure),
+        ];
+        let words = m.floquet.verdict.words.clone();
+        [String::new()].into_iter().chain(numbers).chain([words]).collect()
+    }));
+    let mut text = aligned(&lines, &[1, 4]);
     for (value, why) in &found.missing {
-        let _ = writeln!(text, "  {:<12} {why}", significant(*value, 4));
+        let _ = writeln!(text, "  {}: {why}", significant(*value, 4));
     }
     let steps: u64 = found.members.iter().map(|m| m.search.work.steps).sum();
     let solves: u64 = found.members.iter().map(|m| m.search.work.linear_solves).sum();
@@ -84,13 +92,12 @@ pub fn words(found: &Along) -> String {
 }
 
 /// Writes the files of a sweep into a folder, which is made.
-pub fn write(folder: &mut ResultFolder, found: &Along, warnings: &[String]) -> Result<Vec<PathBuf>> {
-    let quantities = SHOWN.iter().filter_map(|(name, unit)| {
-        let values: Option<Vec<f64>> = found.members.iter().map(|m| largest(m, name)).collect();
-        let short = name.trim_end_matches(&format!("_{}", unit.to_lowercase())).to_string();
+pub fn write(folder: &mut ResultFolder, found: &Along) -> Result<Vec<PathBuf>> {
+    let quantities = SHOWN.iter().filter_map(|one| {
+        let values: Option<Vec<f64>> = found.members.iter().map(|m| largest(m, *one)).collect();
         Some(Quantity {
-            name: format!("largest {short}"),
-            unit: (*unit).into(),
+            name: format!("largest {}", short(*one)),
+            unit: one.unit().into(),
             values: values?,
         })
     });
@@ -113,7 +120,7 @@ pub fn write(folder: &mut ResultFolder, found: &Along, warnings: &[String]) -> R
             }])
             .collect(),
     });
-    let mut files = vec![("sweep.csv", csv(found)), ("sweep.json", json(found, warnings))];
+    let mut files = vec![("sweep.csv", csv(found)), ("sweep.json", results::text(found))];
     files.extend(picture.map(|text| ("sweep.svg", text)));
     folder.fill(files)
 }
@@ -121,22 +128,21 @@ pub fn write(folder: &mut ResultFolder, found: &Along, warnings: &[String]) -> R
 /// Largest values and energies over the period, in words; energies with how far their balance is open beside them.
 pub fn figures(summary: &Summary) -> String {
     let quantities = &summary.quantities;
-    let mut text = String::new();
-    for (name, unit) in SHOWN {
-        if let Some(value) = quantities.get(name).and_then(|q| q.window_max_abs) {
-            let short = name.trim_end_matches(&format!("_{}", unit.to_lowercase()));
-            let _ = writeln!(text, "largest {short:<14} {}", quantity(value, unit, 4));
+    let mut lines = vec![];
+    for one in SHOWN {
+        if let Some(value) = quantities.get(one.name()).and_then(|q| q.window_max_abs) {
+            lines.push([format!("largest {}", short(one)), quantity(value, one.unit(), 4)]);
         }
     }
-    for (name, words) in [
-        ("input_energy_j", "put in over the cycle"),
-        ("harvested_energy_j", "harvested"),
-        ("efficiency", "efficiency"),
+    for (one, words) in [
+        (Interest::InputEnergy, "put in over the cycle"),
+        (Interest::HarvestedEnergy, "harvested"),
+        (Interest::Efficiency, "efficiency"),
     ] {
-        let Some((value, q)) = quantities.get(name).and_then(|q| Some((q.window?, q))) else {
+        let Some((value, q)) = quantities.get(one.name()).and_then(|q| Some((q.window?, q))) else {
             continue;
         };
-        let shown = if name == "efficiency" {
+        let shown = if one == Interest::Efficiency {
             percent(value)
         } else {
             quantity(value, "J", 4)
@@ -144,9 +150,9 @@ pub fn figures(summary: &Summary) -> String {
         let open = q
             .window_error
             .map_or(String::new(), |e| format!(" (balance open by {} of it)", percent(e)));
-        let _ = writeln!(text, "{words:<22} {shown}{open}");
+        lines.push([words.into(), shown + &open]);
     }
-    text
+    aligned(&lines, &[0, 1])
 }
 
 /// What the search took, in words.

@@ -1,9 +1,8 @@
 //! `effects.svg`: what each effect does. A bar an effect: how much results change without it, in logarithms, and beside it the
 //! work that is left.
 
-use plotters::style::RGBColor;
-
 use super::canvas::{Anchor, Canvas, FAINT_INK, INK, Stroke, Words, picture};
+use super::colour::Colour;
 use super::extent;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
@@ -53,14 +52,14 @@ const LEAST: f64 = 1e-9;
 /// Work is shown up to this.
 const MOST: f64 = 2.0;
 
-const NEEDED: RGBColor = RGBColor(0xc4, 0x4e, 0x36);
-const SAVES: RGBColor = RGBColor(0x2f, 0x85, 0x5a);
-const HARMLESS: RGBColor = RGBColor(0x8b, 0xa6, 0xc1);
-const UNDECIDED: RGBColor = RGBColor(0xb9, 0xb3, 0xa6);
-const WHOLE: RGBColor = RGBColor(0x3b, 0x5b, 0x8c);
-const WORK: RGBColor = RGBColor(0xc3, 0xc9, 0xd0);
-const SHADE: RGBColor = RGBColor(0xf4, 0xf2, 0xec);
-const GRID: RGBColor = RGBColor(0xe4, 0xe7, 0xea);
+const NEEDED: Colour = Colour(0xc4, 0x4e, 0x36);
+const SAVES: Colour = Colour(0x2f, 0x85, 0x5a);
+const HARMLESS: Colour = Colour(0x8b, 0xa6, 0xc1);
+const UNDECIDED: Colour = Colour(0xb9, 0xb3, 0xa6);
+const WHOLE: Colour = Colour(0x3b, 0x5b, 0x8c);
+const WORK: Colour = Colour(0xc3, 0xc9, 0xd0);
+const SHADE: Colour = Colour(0xf4, 0xf2, 0xec);
+const GRID: Colour = Colour(0xe4, 0xe7, 0xea);
 
 /// Draws it; `None` when there is nothing to draw.
 pub fn draw(data: &AblationBars) -> Option<String> {
@@ -206,7 +205,7 @@ fn ring(canvas: &mut Canvas, (x, y): (f64, f64)) {
     canvas.line(&points, Stroke::solid(INK, 1.2));
 }
 
-fn colour(verdict: Option<Verdict>) -> RGBColor {
+fn colour(verdict: Option<Verdict>) -> Colour {
     match verdict {
         Some(Verdict::Needed | Verdict::Failed) => NEEDED,
         Some(Verdict::Saves) => SAVES,

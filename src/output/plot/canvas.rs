@@ -1,28 +1,23 @@
-//! Lines, rectangles and words onto plotters' SVG backend, in points with a tenth of a point resolution.
-//!
-//! The backend knows whole pixels only; drawing ten times as large under a view box makes curves smooth.
+//! Lines, rectangles and words as SVG, in points with a tenth of a point resolution.
 
-use plotters::prelude::{BLACK, Color, DrawingBackend, IntoFont, RGBColor, SVGBackend};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{FontStyle, FontTransform, ShapeStyle, TextStyle};
+use std::fmt::{self, Write as _};
 
-/// Pixels of the backend a point.
-const FINE: f64 = 10.0;
-/// The backend divides font sizes by this.
-const FONT_SCALE: f64 = 1.24;
+use super::colour::Colour;
+use crate::error::visible;
+
 /// Found in browsers and in what turns SVG into PDF.
 const FONT: &str = "Helvetica Neue, Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
 
 /// Colour of words.
-pub const INK: RGBColor = RGBColor(0x22, 0x26, 0x2b);
+pub const INK: Colour = Colour(0x22, 0x26, 0x2b);
 /// Colour of words that matter less.
-pub const FAINT_INK: RGBColor = RGBColor(0x5f, 0x66, 0x6e);
+pub const FAINT_INK: Colour = Colour(0x5f, 0x66, 0x6e);
 
 /// How a line looks.
 #[derive(Clone, Copy, Debug)]
 pub struct Stroke {
     /// Colour.
-    pub colour: RGBColor,
+    pub colour: Colour,
     /// Width in points.
     pub width: f64,
     /// Lengths of dash and gap in points.
@@ -31,7 +26,7 @@ pub struct Stroke {
 
 impl Stroke {
     /// An unbroken line.
-    pub fn solid(colour: RGBColor, width: f64) -> Self {
+    pub fn solid(colour: Colour, width: f64) -> Self {
         Self {
             colour,
             width,
@@ -57,7 +52,7 @@ pub struct Words {
     /// Size in points.
     pub size: f64,
     /// Colour.
-    pub colour: RGBColor,
+    pub colour: Colour,
     /// Which point is given.
     pub anchor: Anchor,
     /// Whether bold.
@@ -79,40 +74,36 @@ impl Words {
     }
 
     /// In another colour.
-    pub fn coloured(self, colour: RGBColor) -> Self {
+    pub fn coloured(self, colour: Colour) -> Self {
         Self { colour, ..self }
     }
 }
 
 /// A sheet to draw on; the origin is the upper left corner.
-pub struct Canvas<'a> {
-    backend: SVGBackend<'a>,
+pub struct Canvas {
+    svg: String,
 }
 
 /// Draws a picture of the given size in points and returns the SVG text.
 pub fn picture(width: f64, height: f64, draw: impl FnOnce(&mut Canvas)) -> String {
-    let mut text = String::new();
-    let fine = (fine(width) as u32, fine(height) as u32);
-    {
-        let mut canvas = Canvas {
-            backend: SVGBackend::with_string(&mut text, fine),
-        };
-        canvas.rectangle((0.0, 0.0), (width, height), RGBColor(255, 255, 255));
-        draw(&mut canvas);
-        settle(canvas.backend.present());
-    }
-    // What all elements share stands once, at the root; the size there is in points.
-    let large = format!("<svg width=\"{}\" height=\"{}\"", fine.0, fine.1);
-    let family = format!(" font-family=\"{FONT}\"");
-    let shared = format!(
-        "<svg width=\"{width}\" height=\"{height}\"{family} stroke-linejoin=\"round\" stroke-linecap=\"round\""
-    );
-    text.replace(&family, "")
-        .replace(" opacity=\"1\"", "")
-        .replacen(&large, &shared, 1)
+    let mut canvas = Canvas { svg: String::new() };
+    canvas.put(format_args!(
+        "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" \
+         font-family=\"{FONT}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">"
+    ));
+    canvas.rectangle((0.0, 0.0), (width, height), Colour(255, 255, 255));
+    draw(&mut canvas);
+    canvas.put(format_args!("</svg>"));
+    canvas.svg
 }
 
-impl Canvas<'_> {
+impl Canvas {
+    /// Writes an element.
+    fn put(&mut self, element: fmt::Arguments) {
+        // text takes everything
+        let _ = writeln!(self.svg, "{element}");
+    }
+
     /// A line through points; broken where a coordinate is not finite.
     pub fn line(&mut self, points: &[(f64, f64)], stroke: Stroke) {
         for piece in points.split(|p| !(p.0.is_finite() && p.1.is_finite())) {
@@ -127,38 +118,34 @@ impl Canvas<'_> {
         if points.len() < 2 {
             return;
         }
-        let mut fine: Vec<(i32, i32)> = points.iter().map(|&p| fine_point(p)).collect();
-        fine.dedup();
-        if fine.len() == 1 {
-            fine.push(fine[0]);
+        let mut points: Vec<_> = points.iter().map(|&p| fine(p)).collect();
+        points.dedup();
+        if points.len() == 1 {
+            points.push(points[0]);
         }
-        let style = ShapeStyle {
-            color: stroke.colour.to_rgba(),
-            filled: false,
-            stroke_width: fine_width(stroke.width),
-        };
-        settle(self.backend.draw_path(fine, &style));
+        let (colour, width) = (stroke.colour, tenths(stroke.width).max(0.1));
+        self.put(format_args!(
+            "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" points=\"{}\"/>",
+            listed(&points)
+        ));
     }
 
-    /// A filled rectangle between two corners.
-    pub fn rectangle(&mut self, a: (f64, f64), b: (f64, f64), colour: RGBColor) {
-        let style = ShapeStyle {
-            color: colour.to_rgba(),
-            filled: true,
-            stroke_width: 0,
-        };
-        settle(self.backend.draw_rect(fine_point(a), fine_point(b), &style, true));
+    /// A filled rectangle between two corners, the upper left one first.
+    pub fn rectangle(&mut self, a: (f64, f64), b: (f64, f64), colour: Colour) {
+        let ((x, y), b) = (fine(a), fine(b));
+        let (width, height) = (tenths(b.0 - x), tenths(b.1 - y));
+        self.put(format_args!(
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{colour}\"/>"
+        ));
     }
 
     /// A filled polygon.
-    pub fn polygon(&mut self, points: &[(f64, f64)], colour: RGBColor) {
-        let style = ShapeStyle {
-            color: colour.to_rgba(),
-            filled: true,
-            stroke_width: 0,
-        };
-        let fine: Vec<(i32, i32)> = points.iter().map(|&p| fine_point(p)).collect();
-        settle(self.backend.fill_polygon(fine, &style));
+    pub fn polygon(&mut self, points: &[(f64, f64)], colour: Colour) {
+        let points: Vec<_> = points.iter().map(|&p| fine(p)).collect();
+        self.put(format_args!(
+            "<polygon fill=\"{colour}\" points=\"{}\"/>",
+            listed(&points)
+        ));
     }
 
     /// The outline of a rectangle.
@@ -168,53 +155,45 @@ impl Canvas<'_> {
 
     /// Words at a point.
     pub fn text(&mut self, at: (f64, f64), text: &str, words: Words) {
-        let transform = if words.upright {
-            FontTransform::Rotate270
-        } else {
-            FontTransform::None
-        };
-        let weight = if words.bold { FontStyle::Bold } else { FontStyle::Normal };
-        let font = (FONT, words.size * FINE * FONT_SCALE)
-            .into_font()
-            .style(weight)
-            .transform(transform);
         let anchor = match words.anchor {
-            Anchor::Left => HPos::Left,
-            Anchor::Centre => HPos::Center,
-            Anchor::Right => HPos::Right,
+            Anchor::Left => "start",
+            Anchor::Centre => "middle",
+            Anchor::Right => "end",
         };
-        let style = TextStyle {
-            font,
-            color: BLACK.to_backend_color(),
-            pos: Pos::new(anchor, VPos::Center),
-        }
-        .color(&words.colour);
         // Half an ex below the point centres small letters; capitals and digits want a little more.
         let lower = 0.09 * words.size;
-        let at = if words.upright {
-            (at.0 + lower, at.1)
-        } else {
-            (at.0, at.1 + lower)
+        let (x, y) = fine(match words.upright {
+            true => (at.0 + lower, at.1),
+            false => (at.0, at.1 + lower),
+        });
+        let turned = match words.upright {
+            true => format!(" transform=\"rotate(270, {x}, {y})\""),
+            false => String::new(),
         };
-        settle(self.backend.draw_text(text, &style, fine_point(at)));
+        let weight = if words.bold { " font-weight=\"bold\"" } else { "" };
+        let text = visible(text)
+            .replace('&', "&amp;")
+            .replace('<', "&lt;")
+            .replace('>', "&gt;");
+        self.put(format_args!(
+            "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-size=\"{}\" fill=\"{}\"{weight}{turned}>{text}</text>",
+            words.size, words.colour
+        ));
     }
 }
 
-/// Writing into a string does not fail.
-fn settle<T, E>(drawn: Result<T, E>) {
-    debug_assert!(drawn.is_ok());
+/// To a tenth of a point; nothing in a picture is finer.
+fn tenths(x: f64) -> f64 {
+    f64::from((10.0 * x).round() as i32) / 10.0
 }
 
-fn fine(x: f64) -> f64 {
-    (x * FINE).round()
+fn fine(p: (f64, f64)) -> (f64, f64) {
+    (tenths(p.0), tenths(p.1))
 }
 
-fn fine_point(p: (f64, f64)) -> (i32, i32) {
-    (fine(p.0) as i32, fine(p.1) as i32)
-}
-
-fn fine_width(width: f64) -> u32 {
-    fine(width).max(1.0) as u32
+fn listed(points: &[(f64, f64)]) -> String {
+    let points: Vec<String> = points.iter().map(|(x, y)| format!("{x},{y}")).collect();
+    points.join(" ")
 }
 
 /// Cuts a line into dashes of equal length.

@@ -1,6 +1,16 @@
 //! Colours.
 
-use plotters::style::RGBColor;
+use std::fmt;
+
+/// Red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Colour(pub u8, pub u8, pub u8);
+
+impl fmt::Display for Colour {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "#{:02X}{:02X}{:02X}", self.0, self.1, self.2)
+    }
+}
 
 /// Dark blue to dark red, evenly in lightness up to a light middle that still shows on white.
 const TIME: [(f64, [u8; 3]); 7] = [
@@ -14,7 +24,7 @@ const TIME: [(f64, [u8; 3]); 7] = [
 ];
 
 /// Colour of a time, `s` from 0 (dark blue) to 1 (dark red).
-pub fn of_time(s: f64) -> RGBColor {
+pub fn of_time(s: f64) -> Colour {
     let s = s.clamp(0.0, 1.0);
     let k = TIME
         .iter()
@@ -24,19 +34,19 @@ pub fn of_time(s: f64) -> RGBColor {
     let ((a, from), (b, to)) = (TIME[k], TIME[k + 1]);
     let w = (s - a) / (b - a);
     let mix = |i: usize| (f64::from(from[i]) * (1.0 - w) + f64::from(to[i]) * w).round() as u8;
-    RGBColor(mix(0), mix(1), mix(2))
+    Colour(mix(0), mix(1), mix(2))
 }
 
 /// Lines told apart by every eye: Okabe and Ito's colours without yellow, which white swallows, and three of Tol's.
-pub const PALETTE: [RGBColor; 10] = [
-    RGBColor(0x00, 0x72, 0xb2),
-    RGBColor(0xd5, 0x5e, 0x00),
-    RGBColor(0x00, 0x9e, 0x73),
-    RGBColor(0xcc, 0x79, 0xa7),
-    RGBColor(0xe6, 0x9f, 0x00),
-    RGBColor(0x56, 0xb4, 0xe9),
-    RGBColor(0x33, 0x22, 0x88),
-    RGBColor(0x88, 0x22, 0x55),
-    RGBColor(0x99, 0x99, 0x33),
-    RGBColor(0x44, 0x44, 0x44),
+pub const PALETTE: [Colour; 10] = [
+    Colour(0x00, 0x72, 0xb2),
+    Colour(0xd5, 0x5e, 0x00),
+    Colour(0x00, 0x9e, 0x73),
+    Colour(0xcc, 0x79, 0xa7),
+    Colour(0xe6, 0x9f, 0x00),
+    Colour(0x56, 0xb4, 0xe9),
+    Colour(0x33, 0x22, 0x88),
+    Colour(0x88, 0x22, 0x55),
+    Colour(0x99, 0x99, 0x33),
+    Colour(0x44, 0x44, 0x44),
 ];

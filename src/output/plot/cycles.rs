@@ -1,8 +1,7 @@
 //! `sweep.svg`: cycles along a parameter, a panel a quantity; open rings: cycles that are not stable.
 
-use plotters::style::RGBColor;
-
 use super::canvas::{Canvas, Stroke, picture};
+use super::colour::Colour;
 use super::extent;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
@@ -41,8 +40,8 @@ const TOP: f64 = 64.0;
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 170.0;
 const GAP: f64 = 26.0;
-const LINE: RGBColor = RGBColor(0x00, 0x72, 0xb2);
-const WARNING: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
+const LINE: Colour = Colour(0x00, 0x72, 0xb2);
+const WARNING: Colour = Colour(0xd5, 0x5e, 0x00);
 
 /// Draws it; `None` when there is nothing to draw.
 pub fn draw(data: &Cycles) -> Option<String> {
@@ -90,7 +89,7 @@ pub fn draw(data: &Cycles) -> Option<String> {
     }))
 }
 
-fn ring(canvas: &mut Canvas, (x, y): (f64, f64), colour: RGBColor) {
+fn ring(canvas: &mut Canvas, (x, y): (f64, f64), colour: Colour) {
     let points: Vec<_> = (0..=16)
         .map(|k| f64::from(k) * std::f64::consts::TAU / 16.0)
         .map(|angle| (x + 3.4 * angle.cos(), y + 3.4 * angle.sin()))

@@ -5,18 +5,17 @@ use super::colour::PALETTE;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
 use super::{Curve, extent};
+use crate::discrete::quantities::{Group, Observable};
 
 /// Entries of the ledger over time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Energy {
     /// Name of the case.
     pub case: String,
-    /// Entries [J]: stored energies (`…_energy`), cumulative works (`work_…`), losses (`dissipated_…`, `harvested`),
-    /// and what is left over (`energy_residual`).
+    /// Entries [J]: stored energies, cumulative works, losses, and what is left over.
     pub curves: Vec<Curve>,
 }
 
-const RESIDUAL: &str = "energy_residual";
 /// Entries smaller than this share of the largest are not drawn.
 const NEGLIGIBLE: f64 = 1e-3;
 
@@ -28,17 +27,17 @@ const RESIDUAL_HEIGHT: f64 = 100.0;
 const GAP: f64 = 18.0;
 const SHEET: f64 = 880.0;
 
-/// Whether a column belongs into this picture.
-pub fn belongs(name: &str, unit: &str) -> bool {
-    unit == "J" && (is_stored(name) || is_flow(name) || name == RESIDUAL)
+/// Whether a quantity belongs into this picture.
+pub fn belongs(one: Observable) -> bool {
+    one.unit() == "J"
 }
 
-fn is_stored(name: &str) -> bool {
-    name.ends_with("_energy") || name.starts_with("energy_") && name != RESIDUAL
+fn is_stored(curve: &Curve) -> bool {
+    curve.of().is_some_and(|one| one.group() == Group::Stored)
 }
 
-fn is_flow(name: &str) -> bool {
-    name.starts_with("work_") || name.starts_with("dissipated_") || name.starts_with("harvested")
+fn is_residual(curve: &Curve) -> bool {
+    curve.of().is_some_and(|one| one.group() == Group::Open)
 }
 
 /// Draws it; `None` when there is nothing to draw.
@@ -47,7 +46,7 @@ pub fn draw(data: &Energy) -> Option<String> {
     let (from, to) = extent(lines.iter().flat_map(|c| c.points.iter().map(|p| p.0)))?;
     let x = Scale::exact(from, to, "s", 9);
     let largest = lines.iter().map(|c| c.max_abs()).fold(0.0, f64::max);
-    let residual = data.curves.iter().find(|c| c.name == RESIDUAL && !c.points.is_empty());
+    let residual = data.curves.iter().find(|c| is_residual(c) && !c.points.is_empty());
     let last = TOP + HEIGHT;
     let bottom = if residual.is_some() {
         last + GAP + RESIDUAL_HEIGHT
@@ -88,15 +87,10 @@ pub fn draw(data: &Energy) -> Option<String> {
     }))
 }
 
-/// Entries worth drawing: sums rather than their parts, and nothing negligible.
+/// Entries worth drawing: nothing negligible.
 fn entries(data: &Energy) -> Vec<&Curve> {
-    let has = |name: &str| data.curves.iter().any(|c| c.name == name);
-    let part = |name: &str| match name {
-        "bending_energy" | "axial_energy" | "bladder_energy" => has("elastic_energy"),
-        _ => false,
-    };
-    let all = data.curves.iter().filter(|c| is_stored(&c.name) || is_flow(&c.name));
-    let mut lines: Vec<_> = all.filter(|c| !part(&c.name) && !c.points.is_empty()).collect();
+    let all = data.curves.iter();
+    let mut lines: Vec<_> = all.filter(|c| !is_residual(c) && !c.points.is_empty()).collect();
     let largest = lines.iter().map(|c| c.max_abs()).fold(0.0, f64::max);
     if largest > 0.0 {
         lines.retain(|c| c.max_abs() > NEGLIGIBLE * largest);
@@ -105,7 +99,7 @@ fn entries(data: &Energy) -> Vec<&Curve> {
 }
 
 fn stroke(k: usize, curve: &Curve) -> Stroke {
-    let dash = is_flow(&curve.name).then_some((6.0, 3.5));
+    let dash = (!is_stored(curve)).then_some((6.0, 3.5));
     Stroke {
         colour: PALETTE[k % PALETTE.len()],
         width: 1.5,
@@ -122,19 +116,8 @@ fn legend(canvas: &mut Canvas, k: usize, curve: &Curve) {
             ..stroke(k, curve)
         },
     );
-    canvas.text((left + 33.0, y), &human(&curve.name), Words::new(12.0, Anchor::Left));
-}
-
-fn human(name: &str) -> String {
-    match name {
-        "work_formulation" => "published formulation".to_string(),
-        "work_reciprocity" => "lack of reciprocity".to_string(),
-        _ => match (name.strip_prefix("work_"), name.strip_prefix("dissipated_")) {
-            (Some(of), _) => format!("work of {of}"),
-            (_, Some(of)) => format!("lost in {of}"),
-            _ => name.replace('_', " "),
-        },
-    }
+    let label = curve.of().map_or(curve.name.as_str(), |one| one.label());
+    canvas.text((left + 33.0, y), label, Words::new(12.0, Anchor::Left));
 }
 
 fn draw_residual(canvas: &mut Canvas, place: Place, x: Scale, residual: &Curve, largest: f64) {

@@ -5,6 +5,7 @@ use super::colour::PALETTE;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
 use super::{Curve, extent};
+use crate::discrete::quantities::{Group, Observable};
 
 /// Curves over time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,36 +16,31 @@ pub struct History {
     pub curves: Vec<Curve>,
 }
 
-/// A panel: columns drawn in it, its name, and the smallest half range that is worth showing.
-struct Row {
-    columns: &'static [&'static str],
-    name: &'static str,
-    floor: f64,
-    /// Whether it is left out when it is zero throughout.
-    optional: bool,
+/// Groups that are drawn: the quantities of the first one by one, of pressures and powers those of a unit in one panel.
+const GROUPS: [Group; 3] = [Group::Tip, Group::Pressure, Group::Power];
+
+/// Whether a quantity belongs into this picture.
+pub fn belongs(one: Observable) -> bool {
+    GROUPS.contains(&one.group())
 }
 
-const fn row(columns: &'static [&'static str], name: &'static str, floor: f64, optional: bool) -> Row {
-    Row {
-        columns,
-        name,
-        floor,
-        optional,
+/// The smallest half range of a unit that is worth showing.
+fn floor(unit: &str) -> f64 {
+    match unit {
+        "m" => 1e-8,
+        "rad" => 1e-7,
+        "Pa" => 1e-3,
+        _ => 1e-12,
     }
 }
 
-const ROWS: [Row; 6] = [
-    row(&["tip_u1"], "tip u₁", 1e-8, false),
-    row(&["tip_u3"], "tip u₃", 1e-8, false),
-    row(&["tip_angle"], "tip angle", 1e-7, false),
-    row(&["max_pressure", "min_pressure"], "max, min p", 1e-3, false),
-    row(&["turbine_power"], "turbine power", 1e-12, true),
-    row(&["efficiency"], "efficiency", 1e-3, true),
-];
-
-/// Whether a column belongs into this picture.
-pub fn belongs(name: &str) -> bool {
-    ROWS.iter().any(|row| row.columns.contains(&name))
+/// What stands beside the axis of a panel.
+fn name(curves: &[&Curve]) -> &'static str {
+    match curves[0].of() {
+        Some(one) if one.group() == Group::Pressure => "max, min p",
+        Some(one) => one.label(),
+        None => "",
+    }
 }
 
 const LEFT: f64 = 78.0;
@@ -56,12 +52,8 @@ const SHEET: f64 = 748.0;
 
 /// Draws it; `None` when there is nothing to draw.
 pub fn draw(data: &History) -> Option<String> {
-    let shown: Vec<(&Row, Vec<&Curve>)> = ROWS
-        .iter()
-        .map(|row| (row, curves(data, row)))
-        .filter(|(_, curves)| !curves.is_empty())
-        .collect();
-    let all = shown.iter().flat_map(|(_, curves)| curves);
+    let shown = panels(data);
+    let all = shown.iter().flatten();
     let (from, to) = extent(all.flat_map(|c| c.points.iter().map(|p| p.0)))?;
     let x = Scale::exact(from, to, "s", 10);
     let bottom = TOP + shown.len() as f64 * (HEIGHT + GAP) - GAP;
@@ -72,7 +64,7 @@ pub fn draw(data: &History) -> Option<String> {
             &format!("{} · history", data.case),
             "quantities over the whole run",
         );
-        for (k, (row, curves)) in shown.iter().enumerate() {
+        for (k, curves) in shown.iter().enumerate() {
             let top = TOP + k as f64 * (HEIGHT + GAP);
             let place = Place {
                 left: LEFT,
@@ -81,7 +73,7 @@ pub fn draw(data: &History) -> Option<String> {
                 height: HEIGHT,
             };
             let values = curves.iter().flat_map(|c| c.points.iter().map(|p| p.1));
-            let y = Scale::around(extent(values), row.floor, &curves[0].unit, 4);
+            let y = Scale::around(extent(values), floor(&curves[0].unit), &curves[0].unit, 4);
             let panel = Panel { place, x: x.clone(), y };
             panel.grid(canvas);
             for (c, curve) in curves.iter().enumerate() {
@@ -89,13 +81,27 @@ pub fn draw(data: &History) -> Option<String> {
                 let colour = PALETTE[(k + 5 * c) % PALETTE.len()];
                 panel.curve(canvas, curve.points.iter().copied(), Stroke::solid(colour, 1.2));
             }
-            panel.axes(canvas, (k + 1 == shown.len()).then_some("time t"), row.name);
+            panel.axes(canvas, (k + 1 == shown.len()).then_some("time t"), name(curves));
         }
     }))
 }
 
-fn curves<'a>(data: &'a History, row: &Row) -> Vec<&'a Curve> {
-    let named = |name: &&str| data.curves.iter().find(|c| c.name == *name && !c.points.is_empty());
-    let found = row.columns.iter().filter_map(named);
-    found.filter(|c| !row.optional || c.max_abs() > 0.0).collect()
+/// Curves panel by panel; what is zero throughout is left out, unless it is motion or pressure.
+fn panels(data: &History) -> Vec<Vec<&Curve>> {
+    let mut panels: Vec<Vec<&Curve>> = vec![];
+    for (one, curve) in data.curves.iter().filter_map(|c| Some((c.of()?, c))) {
+        let group = one.group();
+        if curve.points.is_empty() || group == Group::Power && curve.max_abs() == 0.0 {
+            continue;
+        }
+        let joins = |panel: &&mut Vec<&Curve>| {
+            let first = panel[0].of();
+            group != Group::Tip && first.is_some_and(|first| first.group() == group && first.unit() == one.unit())
+        };
+        match panels.iter_mut().find(joins) {
+            Some(panel) => panel.push(curve),
+            None => panels.push(vec![curve]),
+        }
+    }
+    panels
 }

@@ -1,4 +1,4 @@
-//! `path.svg`: share of the loads over displacement, and the shapes on the way.
+//! `path.svg`: load factor over displacement, and the shapes on the way.
 
 use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words, picture};
 use super::colour::PALETTE;
@@ -20,7 +20,7 @@ pub struct LoadPath {
     pub stable: Vec<bool>,
     /// Quantities over the path: point k is `(share, value)` of state k.
     pub curves: Vec<Curve>,
-    /// Remarkable points: share of the loads, and a letter that stands for what it is.
+    /// Remarkable points: load factor, and a letter that stands for what it is.
     pub marks: Vec<(usize, char)>,
     /// Shapes to be drawn: the state, `x` and `z` of the nodes [m].
     pub shapes: Vec<(usize, Vec<f64>, Vec<f64>)>,

@@ -1,7 +1,7 @@
 //! Pictures of a run: plain data in, SVG text out. One picture a file; data that is absent makes no picture.
 //!
 //! ```text
-//! canvas      lines, rectangles and words, in points, onto plotters' SVG backend
+//! canvas      lines, rectangles and words, in points, as SVG
 //! colour      blue to red over time, and a palette every eye can tell apart
 //! ticks       round numbers along an axis, with SI prefixes
 //! panel       a frame with grid, ticks and curves
@@ -35,6 +35,7 @@ pub mod tongue;
 pub mod workprecision;
 
 use super::numbers;
+use crate::discrete::quantities::Observable;
 
 pub use ablation::AblationBars;
 pub use deflection::Deflection;
@@ -56,6 +57,11 @@ pub struct Curve {
 }
 
 impl Curve {
+    /// The quantity over time that it is, if it is one.
+    pub fn of(&self) -> Option<Observable> {
+        Observable::named(&self.name)
+    }
+
     /// Largest magnitude, 0 when there is none.
     pub fn max_abs(&self) -> f64 {
         let finite = self.points.iter().map(|p| p.1.abs()).filter(|y| y.is_finite());

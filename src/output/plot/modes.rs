@@ -1,10 +1,9 @@
 //! `modes.svg`: the shapes of modes, displacements on the left, pressures on the right.
 
 use nalgebra::Complex;
-use plotters::style::RGBColor;
 
 use super::canvas::{Anchor, Canvas, INK, Stroke, Words, picture};
-use super::colour::PALETTE;
+use super::colour::{Colour, PALETTE};
 use super::extent;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
@@ -49,7 +48,7 @@ const WIDTH: f64 = 380.0;
 const HEIGHT: f64 = 112.0;
 const GAP: f64 = 44.0;
 const BESIDE: f64 = 110.0;
-const UNSTABLE: RGBColor = RGBColor(0xb0, 0x1c, 0x2e);
+const UNSTABLE: Colour = Colour(0xb0, 0x1c, 0x2e);
 
 /// Draws it; `None` when there is nothing to draw.
 pub fn draw(data: &ModeShapes) -> Option<String> {

@@ -1,8 +1,7 @@
 //! `floquet.svg`: multipliers about the unit circle.
 
-use plotters::style::RGBColor;
-
 use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words, picture};
+use super::colour::Colour;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
 
@@ -31,9 +30,9 @@ pub struct Multipliers {
 const SIDE: f64 = 420.0;
 const LEFT: f64 = 84.0;
 const TOP: f64 = 64.0;
-const CIRCLE: RGBColor = RGBColor(0x6b, 0x72, 0x7a);
-const INSIDE: RGBColor = RGBColor(0x00, 0x72, 0xb2);
-const OUTSIDE: RGBColor = RGBColor(0xb5, 0x2b, 0x2b);
+const CIRCLE: Colour = Colour(0x6b, 0x72, 0x7a);
+const INSIDE: Colour = Colour(0x00, 0x72, 0xb2);
+const OUTSIDE: Colour = Colour(0xb5, 0x2b, 0x2b);
 /// Dots with a name beside them.
 const NAMED: usize = 6;
 
@@ -86,7 +85,7 @@ pub fn draw(data: &Multipliers) -> Option<String> {
     }))
 }
 
-fn disc(canvas: &mut Canvas, (x, y): (f64, f64), colour: RGBColor) {
+fn disc(canvas: &mut Canvas, (x, y): (f64, f64), colour: Colour) {
     let points: Vec<_> = (0..16)
         .map(|k| f64::from(k) * std::f64::consts::TAU / 16.0)
         .map(|angle| (x + 3.6 * angle.cos(), y + 3.6 * angle.sin()))

@@ -1,14 +1,12 @@
 //! A frame with grid, ticks and curves; and the bar that says which colour is which time.
 
-use plotters::style::RGBColor;
-
 use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words};
-use super::colour;
+use super::colour::{self, Colour};
 use super::ticks::Scale;
 
-const GRID: RGBColor = RGBColor(0xe4, 0xe7, 0xea);
-const ZERO: RGBColor = RGBColor(0xa9, 0xaf, 0xb6);
-const FRAME: RGBColor = RGBColor(0x6b, 0x72, 0x7a);
+const GRID: Colour = Colour(0xe4, 0xe7, 0xea);
+const ZERO: Colour = Colour(0xa9, 0xaf, 0xb6);
+const FRAME: Colour = Colour(0x6b, 0x72, 0x7a);
 /// Size of tick labels.
 const SMALL: f64 = 11.0;
 /// Size of axis names.

@@ -1,8 +1,7 @@
 //! `pressure.svg`: pressure along the networks over the last cycle, blue to red.
 
-use plotters::style::RGBColor;
-
 use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words, picture};
+use super::colour::Colour;
 use super::deflection::draw_over_time;
 use super::panel::{Panel, Place, time_bar, title};
 use super::ticks::Scale;
@@ -32,8 +31,8 @@ const TOP: f64 = 66.0;
 const WIDTH: f64 = 720.0;
 const HEIGHT: f64 = 300.0;
 const SHEET: f64 = 900.0;
-const BAND: RGBColor = RGBColor(0xf3, 0xf5, 0xf8);
-const DIVIDE: RGBColor = RGBColor(0x8a, 0x91, 0x99);
+const BAND: Colour = Colour(0xf3, 0xf5, 0xf8);
+const DIVIDE: Colour = Colour(0x8a, 0x91, 0x99);
 
 /// Draws it; `None` when there is nothing to draw.
 pub fn draw(data: &Pressure) -> Option<String> {

@@ -1,8 +1,7 @@
 //! `map.svg`: growth over frequency and amplitude of the shaking, a panel a permeability; dashed: Mathieu's equation.
 
-use plotters::style::RGBColor;
-
 use super::canvas::{Anchor, Canvas, FAINT_INK, INK, Stroke, Words, picture};
+use super::colour::Colour;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
 use crate::output::numbers::significant;
@@ -41,8 +40,8 @@ const GAP: f64 = 34.0;
 const BAR: f64 = 96.0;
 /// Growth over the largest one below which a point counts as stable in the picture.
 const NOTHING: f64 = 2e-3;
-const STABLE: RGBColor = RGBColor(0xee, 0xf2, 0xf6);
-const MISSING: RGBColor = RGBColor(0xc9, 0xcd, 0xd2);
+const STABLE: Colour = Colour(0xee, 0xf2, 0xf6);
+const MISSING: Colour = Colour(0xc9, 0xcd, 0xd2);
 /// Light to dark for growth from nothing to the largest.
 const GROWTH: [[u8; 3]; 5] = [
     [0xfd, 0xe8, 0xc8],
@@ -129,7 +128,7 @@ fn overlay(canvas: &mut Canvas, panel: &Panel, data: &Tongue) {
             .map(|k| f64::from(k) * std::f64::consts::TAU / 16.0)
             .map(|angle| (x + 5.0 * angle.cos(), y + 5.0 * angle.sin()))
             .collect();
-        canvas.line(&ring, Stroke::solid(RGBColor(0x00, 0x72, 0xb2), 1.8));
+        canvas.line(&ring, Stroke::solid(Colour(0x00, 0x72, 0xb2), 1.8));
     }
 }
 
@@ -152,7 +151,7 @@ fn bar(canvas: &mut Canvas, left: f64, most: f64) {
     canvas.text((left + 20.0, at), "stable", faint);
 }
 
-fn colour(growth: Option<f64>, most: f64) -> RGBColor {
+fn colour(growth: Option<f64>, most: f64) -> Colour {
     match growth {
         None => MISSING,
         Some(g) if g > NOTHING * most && most > 0.0 => shade(g / most),
@@ -160,10 +159,10 @@ fn colour(growth: Option<f64>, most: f64) -> RGBColor {
     }
 }
 
-fn shade(share: f64) -> RGBColor {
+fn shade(share: f64) -> Colour {
     let at = share.clamp(0.0, 1.0) * (GROWTH.len() - 1) as f64;
     let k = (at as usize).min(GROWTH.len() - 2);
     let w = at - k as f64;
     let mix = |i: usize| (f64::from(GROWTH[k][i]) * (1.0 - w) + f64::from(GROWTH[k + 1][i]) * w).round() as u8;
-    RGBColor(mix(0), mix(1), mix(2))
+    Colour(mix(0), mix(1), mix(2))
 }

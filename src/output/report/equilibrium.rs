@@ -2,104 +2,94 @@
 
 use std::path::Path;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-use super::{Kind, Place, pack, sheet};
+use super::{Found, Kind, Page, Place, pack, sheet};
 use crate::error::Result;
 use crate::output::equilibrium::{CSV, JSON, SHAPES};
 use crate::output::folder::CASE;
 use crate::output::numbers::{count, duration, quantity, significant, trimmed};
+use crate::results::equilibrium::Equilibrium;
+use crate::results::run::Status;
 
 /// States whose shapes the page holds, at most.
 const MOST_STATES: usize = 240;
 /// Nodes of a shape at most.
 const MOST_NODES: usize = 401;
 
+/// Figures of the last state: label, quantity, unit, note.
+const TILES: [(&str, &str, &str, &str); 4] = [
+    ("Tip, across", "tip_u1_m", "m", "deflection u₁ in the last state"),
+    ("Tip, along", "tip_u3_m", "m", "displacement u₃ in the last state"),
+    (
+        "Turn of the tip",
+        "tip_angle_rad",
+        "rad",
+        "slope angle in the last state",
+    ),
+    ("Largest pressure", "max_pressure_pa", "Pa", "gauge, in the last state"),
+];
+
 /// Everything the page shows.
-pub fn data(place: &Place) -> Result<Map<String, Value>> {
-    let found = place.json(JSON)?;
-    let text = |pointer: &str| found.pointer(pointer).and_then(Value::as_str).unwrap_or("").to_string();
-    let number = |pointer: &str| found.pointer(pointer).and_then(Value::as_f64);
-    let mut all = place.head(Kind::Equilibrium, &text("/case"));
-    let mut put = |key: &str, value: Value| all.insert(key.into(), value);
-    let failed = text("/status") == "failed";
-    put("label", "Static equilibrium".into());
-    put(
+pub fn data(place: &Place) -> Result<Page> {
+    let Found { result: found, head } = place.result::<Equilibrium>(JSON)?;
+    let mut page = place.page(Kind::Equilibrium, &found.case, Some(&head));
+    let tone = if found.status == Status::Failed { "bad" } else { "good" };
+    page.put("label", "Static equilibrium");
+    page.put("headlines", super::history::headlines());
+    page.put(
         "status",
-        json!({"word": text("/status"), "tone": if failed { "bad" } else { "good" }, "reason": found.get("reason")}),
+        json!({"word": found.status, "tone": tone, "reason": found.reason}),
     );
-    put("warnings", found.get("warnings").cloned().unwrap_or_default());
-    let (share, at) = (
-        number("/load_factor").unwrap_or(0.0),
-        number("/loads_at_s").unwrap_or(0.0),
-    );
-    put("answer", answer(&found, share, at).into());
-    put(
+    page.warnings.clone_from(&found.warnings);
+    let (share, at) = (found.load_factor.unwrap_or(0.0), found.loads_at_s);
+    page.put("answer", answer(&found, share));
+    page.put(
         "facts",
-        json!([
-            format!("{} states", count(number("/states").unwrap_or(0.0) as u64)),
-            format!(
-                "{} Newton steps",
-                count(number("/solver/newton_iterations").unwrap_or(0.0) as u64)
-            ),
-            format!("found in {}", duration(number("/wall_s/total").unwrap_or(f64::NAN))),
-        ]),
+        vec![
+            format!("{} states", count(found.states as u64)),
+            format!("{} Newton steps", count(found.solver.newton_iterations)),
+            format!("found in {}", duration(found.wall_s.total)),
+        ],
     );
-    let tile = |label: &str, pointer: &str, unit: &str, note: &str| {
-        let value = number(pointer)?;
-        Some(json!({"label": label, "value": quantity(value, unit, 3), "note": note}))
+    let tile = |label: &str, value: Option<f64>, unit: &str, note: &str| {
+        Some(json!({"label": label, "value": quantity(value?, unit, 3), "note": note}))
     };
-    let tiles = [
-        tile("Share of the loads", "/load_factor", "1", "at the end of the path"),
-        tile(
-            "Tip, across",
-            "/quantities/tip_u1_m",
-            "m",
-            "deflection u₁ in the last state",
-        ),
-        tile(
-            "Tip, along",
-            "/quantities/tip_u3_m",
-            "m",
-            "displacement u₃ in the last state",
-        ),
-        tile(
-            "Turn of the tip",
-            "/quantities/tip_angle_rad",
-            "rad",
-            "slope angle in the last state",
-        ),
-        tile(
-            "Largest pressure",
-            "/quantities/max_pressure_pa",
-            "Pa",
-            "gauge, in the last state",
-        ),
-    ];
-    put("tiles", tiles.into_iter().flatten().collect::<Vec<_>>().into());
-    put("events", found.get("events").cloned().unwrap_or_default());
-    put("derivatives", found.get("sensitivities").cloned().unwrap_or_default());
-    put("path", sheet::read(&place.path(CSV), |_| true));
-    put("shapes", shapes(&place.path(SHAPES)));
-    let command = format!("slcbeam equilibrium {CASE} --at {at} --load-factor {share}");
-    put("command", command.into());
-    Ok(all)
+    let last = |name: &str| {
+        found
+            .quantities
+            .as_ref()
+            .and_then(|all| all.named(name).copied().flatten())
+    };
+    let first = tile("Share of the loads", found.load_factor, "1", "at the end of the path");
+    let others = TILES
+        .iter()
+        .map(|(label, name, unit, note)| tile(label, last(name), unit, note));
+    page.put("tiles", [first].into_iter().chain(others).flatten().collect::<Vec<_>>());
+    page.put("events", json!(found.events));
+    page.put("derivatives", json!(found.sensitivities));
+    page.put("path", sheet::read(&place.path(CSV), |_| true));
+    page.put("shapes", shapes(&place.path(SHAPES)));
+    page.put(
+        "command",
+        format!("slcbeam equilibrium {CASE} --at {at} --load-factor {share}"),
+    );
+    Ok(page)
 }
 
-fn answer(found: &Value, share: f64, at: f64) -> String {
+fn answer(found: &Equilibrium, share: f64) -> String {
     let loads = format!(
         "{} % of the loads at t = {} s",
         trimmed(&significant(100.0 * share, 4)),
-        trimmed(&significant(at, 4))
+        trimmed(&significant(found.loads_at_s, 4))
     );
-    let stability = match found.pointer("/stability/unstable_modes").and_then(Value::as_u64) {
+    let stability = match found.stability.map(|s| s.unstable_modes) {
         None => "whether it is stable is not known".to_string(),
         Some(0) => "it is stable".to_string(),
         Some(1) => "it is unstable in one way".to_string(),
         Some(n) => format!("it is unstable in {n} ways"),
     };
-    let events = found.get("events").and_then(Value::as_array).map_or(0, Vec::len);
-    let way = match events {
+    let way = match found.events.len() {
         0 => "On the way there nothing gives way.".to_string(),
         1 => "On the way there one thing happens, told below.".to_string(),
         n => format!("On the way there {n} things happen, told below."),

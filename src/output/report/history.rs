@@ -5,13 +5,11 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 
 use super::pack;
-use crate::case::Case;
-use crate::discrete::System;
+use crate::discrete::quantities::{Group, Observable, Role};
 use crate::error::Result;
 use crate::output::envelope::{Envelope, Source, each_row};
 use crate::output::folder::{ENVELOPE, HISTORY};
 use crate::output::numbers::count;
-use crate::run::observe::Observer;
 
 /// Stretches of time of which least and largest value are kept.
 const STRETCHES: usize = 2000;
@@ -61,33 +59,25 @@ impl History {
     }
 
     /// First and last value of a column.
-    pub fn ends(&self, name: &str) -> Option<(f64, f64)> {
-        let k = self.names.iter().position(|n| n.0 == name)?;
+    pub fn ends(&self, one: Observable) -> Option<(f64, f64)> {
+        let k = self.names.iter().position(|n| n.0 == one.name())?;
         Some((*self.first.get(k)?, *self.last.get(k)?))
     }
 
     /// Columns with names, units, groups and meanings, and a note where rows were joined.
-    pub fn json(&self, case: Option<&Case>) -> Value {
+    pub fn json(&self) -> Value {
         if self.rows == 0 {
             return Value::Null;
         }
-        let system = case.map(System::new);
-        let header = case
-            .zip(system.as_ref())
-            .map(|(case, system)| Observer::header(case, system));
-        let about = |name: &str| {
-            let columns = header.iter().flat_map(|h| &h.columns);
-            columns
-                .into_iter()
-                .find(|c| c.name == name)
-                .map_or("", |c| c.about.as_str())
-        };
         let columns = self.names.iter().zip(&self.columns).map(|((name, unit), values)| {
             let mut all = Map::new();
             all.insert("name".into(), name.as_str().into());
             all.insert("unit".into(), unit.as_str().into());
-            all.insert("group".into(), group(name, unit).into());
-            all.insert("about".into(), about(name).into());
+            let one = Observable::named(name);
+            all.insert("group".into(), one.map_or("More", |one| one.group().title()).into());
+            all.insert("label".into(), one.map_or(name.as_str(), |one| one.label()).into());
+            all.insert("about".into(), one.map_or("", Observable::about).into());
+            all.insert("usual".into(), one.is_some_and(usual).into());
             all.insert("values".into(), pack::numbers(values.iter().copied()));
             Value::Object(all)
         });
@@ -112,14 +102,14 @@ impl History {
     }
 }
 
-/// Where a column belongs among those to choose from.
-fn group(name: &str, unit: &str) -> &'static str {
-    match (name, unit) {
-        (n, _) if n.starts_with("tip_") => "Tip",
-        (_, "Pa") => "Pressure",
-        (n, "J") if n.ends_with("_energy") => "Energy stored",
-        ("energy_residual", _) => "Unexplained",
-        (_, "J") => "Work done and lost",
-        _ => "More",
-    }
+/// Whether a quantity is shown unless others are chosen: headlines, and what belongs to the same pressures.
+fn usual(one: Observable) -> bool {
+    one.role() == Role::Headline || one.group() == Group::Pressure
+}
+
+/// Labels of the quantities that are shown first, by name.
+pub fn headlines() -> Value {
+    let all = Observable::ALL.iter().filter(|one| one.role() == Role::Headline);
+    let labelled = all.map(|one| (one.name().to_string(), one.label().into()));
+    Value::Object(labelled.collect())
 }

@@ -9,7 +9,7 @@
 //! scene       the drawing: beam, bladders, tubes, ports, loads, ends
 //! signals     functions of time in words
 //! run         the page of a run or a cycle
-//! books       the energy ledger, its entries and their sum
+//! energy_balance       the energy ledger, its entries and their sum
 //! facts       effects, solver, wall time, characteristic numbers in words
 //! parameters  the case as a table, described by its schema
 //! sheet       CSV files as tables
@@ -21,8 +21,8 @@
 //! The data of a page is JSON in a script element that is never run; the scripts put every text of a case into the page as
 //! text, so that nothing in it is taken for markup. The same folder gives the same bytes.
 
-mod books;
 mod cycles;
+mod energy_balance;
 mod equilibrium;
 mod facts;
 mod frames;
@@ -42,12 +42,13 @@ use std::fs;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
-use super::folder::{CASE, REPORT, ResultFolder, open, replace, replace_alike, text_of};
+use super::folder::{CASE, REPORT, ResultFolder, entries, name_of, open, replace, replace_alike, text_of};
 use super::kind::Kind;
 use crate::case::{self, Case};
 use crate::error::Result;
+use crate::results::{Found, Head, Kept};
 
 /// Bytes beyond which a picture or the text of a case is left to its file.
 const LARGEST_TEXT: usize = 800_000;
@@ -81,7 +82,7 @@ pub fn complete(folder: &ResultFolder, case: &Case) -> Result<Written> {
 
 fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
     let place = Place::new(dir);
-    let mut data = match kind {
+    let mut page = match kind {
         Kind::Run | Kind::Cycle => run::data(&place)?,
         Kind::Equilibrium => equilibrium::data(&place)?,
         Kind::Modes => modes::data(&place)?,
@@ -92,17 +93,12 @@ fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
         Kind::Sweep => cycles::sweep(&place)?,
     };
     // Whoever sees the page first needs them in words; their numbers alone say little.
-    let texts = data
-        .get("warnings")
-        .and_then(Value::as_array)
-        .cloned()
-        .unwrap_or_default();
-    data.insert("warnings".into(), warnings::groups(&texts));
+    page.put("warnings", warnings::groups(&page.warnings));
     let path = out.map_or_else(|| dir.join(REPORT), Path::to_path_buf);
     if folder_of(&path) != fs::canonicalize(dir).ok() {
-        data.insert("elsewhere".into(), true.into());
+        page.put("elsewhere", true);
     }
-    let text = page::assemble(&data);
+    let text = page::assemble(&page);
     match out {
         Some(_) => replace_alike(&path, &text, &["<!doctype html"])?,
         None => replace(&path, &text)?,
@@ -126,7 +122,7 @@ impl<'a> Place<'a> {
         Self {
             dir,
             // A case of an older or newer program may no longer be one; the page then goes without what needs it.
-            case: case::load(&path, &[]).ok().map(|loaded| loaded.case),
+            case: case::load(&path, &[]).ok(),
             case_text: text_of(&path).ok(),
         }
     }
@@ -135,11 +131,9 @@ impl<'a> Place<'a> {
         self.dir.join(name)
     }
 
-    /// A JSON file of the folder.
-    fn json(&self, name: &str) -> Result<Value> {
-        let path = self.path(name);
-        let text = text_of(&path)?;
-        serde_json::from_str(&text).map_err(|e| super::folder::fault("read", &path, e.into()))
+    /// A result of the folder.
+    fn result<T: Kept>(&self, name: &str) -> Result<Found<T>> {
+        super::folder::result(&self.path(name))
     }
 
     /// A picture of the folder as data of an image.
@@ -155,33 +149,48 @@ impl<'a> Place<'a> {
 
     /// Files beside the page, in order of their names, hidden ones and folders left out.
     fn files(&self) -> Vec<String> {
-        let entries = fs::read_dir(self.dir).into_iter().flatten().flatten();
-        let plain = entries.filter(|e| e.path().is_file());
-        let names = plain.map(|e| e.file_name().to_string_lossy().into_owned());
-        let mut names: Vec<String> = names.filter(|n| !n.starts_with('.') && n != REPORT).collect();
-        names.sort();
-        names
+        let all = entries(self.dir).unwrap_or_default();
+        let names = all.iter().filter(|path| path.is_file()).map(|path| name_of(path));
+        names.filter(|n| !n.starts_with('.') && n != REPORT).collect()
     }
 
     /// What every page begins with. `name` is used where the case cannot be read.
-    fn head(&self, kind: Kind, name: &str) -> Map<String, Value> {
-        let mut all = Map::new();
-        let mut put = |key: &str, value: Value| all.insert(key.into(), value);
-        put("kind", kind.name().into());
-        put("version", env!("CARGO_PKG_VERSION").into());
-        put("name", name.into());
-        put("about", self.case.as_ref().map_or("", |c| c.about.as_str()).into());
-        put("files", self.files().into());
-        put("scene", self.case.as_ref().and_then(scene::of).unwrap_or(Value::Null));
-        let rows = self.case_text.as_deref().map(parameters::rows).unwrap_or_default();
-        put("parameters", rows.into());
-        put(
-            "case_text",
-            json!(self.case_text.as_ref().filter(|text| text.len() < LARGEST_TEXT)),
-        );
+    fn page(&self, kind: Kind, name: &str, head: Option<&Head>) -> Page {
+        let mut page = Page {
+            name: name.into(),
+            ..Page::default()
+        };
+        page.put("kind", kind.name());
+        page.put("version", env!("CARGO_PKG_VERSION"));
+        page.put("made", head.map(Head::words));
+        page.put("name", name);
+        page.put("about", self.case.as_ref().map_or("", |c| c.about.as_str()));
+        page.put("files", self.files());
+        page.put("scene", self.case.as_ref().and_then(scene::of));
+        let rows = self.case_text.as_deref().map(parameters::rows);
+        page.put("parameters", rows.unwrap_or_default());
+        let text = self.case_text.clone();
+        page.put("case_text", text.filter(|text| text.len() < LARGEST_TEXT));
         let numbers = self.case.as_ref().map(facts::characteristic_of);
-        put("characteristic", numbers.unwrap_or_default().into());
-        all
+        page.put("characteristic", numbers.unwrap_or_default());
+        page
+    }
+}
+
+/// What a page shows.
+#[derive(Default)]
+struct Page {
+    /// Its title.
+    name: String,
+    /// What to know first.
+    warnings: Vec<String>,
+    /// What its scripts read.
+    data: Map<String, Value>,
+}
+
+impl Page {
+    fn put(&mut self, key: &str, value: impl Into<Value>) {
+        self.data.insert(key.into(), value.into());
     }
 }
 

@@ -5,12 +5,13 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::{Kind, Place, pack, sheet};
+use super::{Found, Kind, Page, Place, capital, pack, sheet};
 use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::modes::{ARRAYS, CSV, JSON, PICTURE};
 use crate::output::npz::Npz;
 use crate::output::numbers::count;
+use crate::results::modes::{About, Modes};
 
 /// Columns of the table that a reader needs; the file has the rest.
 const COLUMNS: [&str; 9] = [
@@ -29,70 +30,55 @@ const COLUMNS: [&str; 9] = [
 const MOST_NUMBERS: usize = 420_000;
 
 /// Everything the page shows.
-pub fn data(place: &Place) -> Result<Map<String, Value>> {
-    let found = place.json(JSON)?;
-    let text = |key: &str| found.get(key).and_then(Value::as_str).unwrap_or("").to_string();
-    let number = |key: &str| found.get(key).and_then(Value::as_f64).unwrap_or(0.0);
-    let mut all = place.head(Kind::Modes, &text("case"));
-    let mut put = |key: &str, value: Value| all.insert(key.into(), value);
-    let stable = found.get("stable").and_then(Value::as_bool).unwrap_or(false);
-    put("label", "Modes of small motions".into());
-    put(
-        "status",
-        json!({"word": if stable { "stable" } else { "unstable" }, "tone": if stable { "good" } else { "bad" }, "reason": null}),
-    );
-    let warnings = found.get("warnings").and_then(Value::as_array);
-    let mut warnings = warnings.cloned().unwrap_or_default();
-    put(
+pub fn data(place: &Place) -> Result<Page> {
+    let Found { result: found, head } = place.result::<Modes>(JSON)?;
+    let mut page = place.page(Kind::Modes, &found.case, Some(&head));
+    page.put("label", "Modes of small motions");
+    let (word, tone) = if found.stable {
+        ("stable", "good")
+    } else {
+        ("unstable", "bad")
+    };
+    page.put("status", json!({"word": word, "tone": tone, "reason": null}));
+    page.put(
         "answer",
         format!(
             "Small motions about {}, loads and valves held as at t = {} s: {}.",
-            text("about"),
-            number("at_s"),
-            text("verdict")
-        )
-        .into(),
+            found.about, found.at_s, found.verdict
+        ),
     );
-    put(
+    page.put(
         "facts",
-        json!([
-            format!("{} unknowns", count(number("unknowns") as u64)),
-            format!("{} finite eigenvalues", count(number("finite_eigenvalues") as u64)),
-        ]),
+        vec![
+            format!("{} unknowns", count(found.unknowns as u64)),
+            format!("{} finite eigenvalues", count(found.finite_eigenvalues as u64)),
+        ],
     );
-    put("table", sheet::read(&place.path(CSV), |name| COLUMNS.contains(&name)));
-    put("modes", found.get("modes").cloned().unwrap_or_default());
+    page.put("table", sheet::read(&place.path(CSV), |name| COLUMNS.contains(&name)));
+    page.put("modes", json!(found.modes));
+    page.warnings.clone_from(&found.warnings);
     let shapes = shapes(&place.path(ARRAYS));
     if let Some(e) = shapes.as_ref().err().filter(|e| e.kind() != io::ErrorKind::NotFound) {
         let told = format!("{ARRAYS} cannot be read ({e}), so no shapes are shown.");
-        warnings.push(told.into());
+        page.warnings.push(told);
     }
-    put("warnings", warnings.into());
-    put("shapes", shapes.unwrap_or_default());
-    put("picture", json!(place.picture(PICTURE)));
-    put(
-        "passivity",
-        found
-            .get("passivity")
-            .and_then(|p| p.get("words").or(Some(p)))
-            .filter(|p| p.is_string())
-            .cloned()
-            .unwrap_or_default(),
-    );
-    let modes = found.get("modes").and_then(Value::as_array).map_or(12, Vec::len);
-    let near = match number("near_hz") {
+    page.put("shapes", shapes.unwrap_or_default());
+    page.put("picture", place.picture(PICTURE));
+    page.put("passivity", found.coupling.map(|coupling| capital(&coupling.words)));
+    let near = match found.near_hz {
         0.0 => String::new(),
         near => format!(" --near {near}"),
     };
-    let at = match text("about").starts_with("the equilibrium") {
-        true => format!(" --at {}", number("at_s")),
-        false => String::new(),
+    // Results of before the state was told have the start at 0 s, and an equilibrium mostly later.
+    let at = match (found.state, found.at_s) {
+        (Some(About::Start), _) | (None, 0.0) => String::new(),
+        (_, at) => format!(" --at {at}"),
     };
-    put(
+    page.put(
         "command",
-        format!("slcbeam modes {CASE}{at} --count {modes}{near}").into(),
+        format!("slcbeam modes {CASE}{at} --count {}{near}", found.modes.len()),
     );
-    Ok(all)
+    Ok(page)
 }
 
 /// Amplitudes and phases, mode after mode; of many modes on a fine mesh the first ones.

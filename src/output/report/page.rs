@@ -1,6 +1,6 @@
 //! Shell, style, scripts and data as one text.
 
-use serde_json::{Map, Value};
+use super::Page;
 
 const SHELL: &str = include_str!("page/shell.html");
 
@@ -36,13 +36,12 @@ const VENDOR: &str = include_str!("vendor/uPlot.iife.min.js");
 const LICENCE: &str = include_str!("vendor/LICENSE");
 
 /// The page that shows the data.
-pub fn assemble(data: &Map<String, Value>) -> String {
-    let title = data.get("name").and_then(Value::as_str).unwrap_or("result");
-    let json = serde_json::to_string(data).unwrap_or_default();
+pub fn assemble(page: &Page) -> String {
+    let json = serde_json::to_string(&page.data).unwrap_or_default();
     let scripts: Vec<&str> = SCRIPTS.iter().map(|s| s.trim()).collect();
     // One pass from left to right: what is put in is never searched for marks.
     let parts = [
-        ("{{title}}", escaped(title)),
+        ("{{title}}", escaped(&page.name)),
         ("{{licence}}", LICENCE.trim().replace("--", "- -")),
         ("{{style}}", STYLES.map(str::trim).join("\n")),
         // Within a script element only `<` could end it, or begin a comment.
@@ -76,9 +75,12 @@ mod tests {
 
     #[test]
     fn what_a_case_says_stays_text() {
-        let mut data = Map::new();
-        data.insert("name".into(), "</script><img src=x onerror=alert(1)> {{script}}".into());
-        let page = assemble(&data);
+        let mut page = Page {
+            name: "</script><img src=x onerror=alert(1)> {{script}}".into(),
+            ..Page::default()
+        };
+        page.put("name", page.name.clone());
+        let page = assemble(&page);
         assert!(!page.contains("<img src=x"));
         assert!(page.contains("&lt;/script&gt;"));
         assert!(page.contains("\\u003c/script>"));

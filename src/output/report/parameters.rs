@@ -1,5 +1,8 @@
 //! The case as rows of a table: what each number is, by the descriptions of its schema.
 
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::case::schema_json;
@@ -13,12 +16,13 @@ pub fn rows(text: &str) -> Vec<Value> {
     let Ok(case) = serde_json::from_str::<Value>(text) else {
         return vec![];
     };
-    let schema = schema_json();
+    // The program's own schema is one.
+    let schema: Schema = serde_json::from_value(schema_json()).unwrap_or_default();
     let mut out = vec![];
     if let Value::Object(all) = &case {
         for (key, value) in all {
             if !matches!(key.as_str(), "$schema" | "name" | "about") {
-                let own = property(&schema, &schema, key);
+                let own = schema.property(&schema, key);
                 walk(value, own, &schema, key, &format!("/{key}"), &mut out);
             }
         }
@@ -26,15 +30,15 @@ pub fn rows(text: &str) -> Vec<Value> {
     out
 }
 
-fn walk(value: &Value, schema: Option<&Value>, root: &Value, group: &str, pointer: &str, out: &mut Vec<Value>) {
-    let about = schema.map_or(String::new(), |s| described(s, root));
+fn walk(value: &Value, schema: Option<&Schema>, root: &Schema, group: &str, pointer: &str, out: &mut Vec<Value>) {
+    let about = schema.map_or(String::new(), |s| s.described(root));
     if let Value::Object(all) = value
         && !all.is_empty()
         && depth(value) <= 3
         && schema.is_some()
     {
         for (key, inner) in all {
-            let own = schema.and_then(|s| property(s, root, key));
+            let own = schema.and_then(|s| s.property(root, key));
             walk(inner, own, root, group, &format!("{pointer}/{key}"), out);
         }
         return;
@@ -84,37 +88,46 @@ fn number(x: f64, unit: &str) -> String {
     format!("{}{rest}", trimmed(digits))
 }
 
-/// Schema behind references.
-fn resolved<'a>(schema: &'a Value, root: &'a Value) -> &'a Value {
-    let target = schema
-        .get("$ref")
-        .and_then(Value::as_str)
-        .and_then(|r| r.strip_prefix('#'));
-    target.and_then(|pointer| root.pointer(pointer)).unwrap_or(schema)
+/// What of a schema says what keys mean.
+#[derive(Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+struct Schema {
+    #[serde(rename = "$ref")]
+    reference: Option<String>,
+    #[serde(rename = "$defs")]
+    definitions: BTreeMap<String, Schema>,
+    description: Option<String>,
+    properties: BTreeMap<String, Schema>,
+    #[serde(rename = "else")]
+    otherwise: Option<Box<Schema>>,
+    any_of: Vec<Schema>,
+    one_of: Vec<Schema>,
+    all_of: Vec<Schema>,
 }
 
-/// Schema of a key, in the object itself or in one of its alternatives.
-fn property<'a>(schema: &'a Value, root: &'a Value, key: &str) -> Option<&'a Value> {
-    let schema = resolved(schema, root);
-    // A resolved case names no preset: what holds without one comes first.
-    let whole = schema
-        .get("else")
-        .and_then(|s| s.get("properties"))
-        .and_then(|p| p.get(key));
-    if let Some(own) = whole.or_else(|| schema.get("properties").and_then(|p| p.get(key))) {
-        return Some(own);
+impl Schema {
+    /// The schema behind a reference.
+    fn resolved<'a>(&'a self, root: &'a Self) -> &'a Self {
+        let name = self.reference.as_ref().and_then(|r| r.strip_prefix("#/$defs/"));
+        name.and_then(|name| root.definitions.get(name)).unwrap_or(self)
     }
-    let branches = ["anyOf", "oneOf", "allOf"]
-        .into_iter()
-        .filter_map(|kind| schema.get(kind)?.as_array());
-    branches.flatten().find_map(|branch| property(branch, root, key))
-}
 
-fn described(schema: &Value, root: &Value) -> String {
-    let own = schema
-        .get("description")
-        .or_else(|| resolved(schema, root).get("description"));
-    own.and_then(Value::as_str).unwrap_or("").replace('`', "")
+    /// Schema of a key, in the object itself or in one of its alternatives.
+    fn property<'a>(&'a self, root: &'a Self, key: &str) -> Option<&'a Self> {
+        let schema = self.resolved(root);
+        // A resolved case names no preset: what holds without one comes first.
+        let whole = schema.otherwise.as_ref().and_then(|s| s.properties.get(key));
+        if let Some(own) = whole.or_else(|| schema.properties.get(key)) {
+            return Some(own);
+        }
+        let mut branches = [&schema.any_of, &schema.one_of, &schema.all_of].into_iter().flatten();
+        branches.find_map(|branch| branch.property(root, key))
+    }
+
+    fn described(&self, root: &Self) -> String {
+        let own = self.description.as_ref().or(self.resolved(root).description.as_ref());
+        own.map_or(String::new(), |text| text.replace('`', ""))
+    }
 }
 
 /// `Length [m].` into words and unit.

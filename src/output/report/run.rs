@@ -2,34 +2,35 @@
 
 use std::io;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::history::History;
-use super::{Kind, Place, books, cycles, facts, frames};
+use super::{Kind, Page, Place, cycles, energy_balance, facts, frames};
 use crate::error::Result;
 use crate::model::characteristic;
-use crate::output::folder::{CASE, FIELDS, SUMMARY, text_of};
+use crate::output::folder::{CASE, FIELDS, SUMMARY};
 use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
 use crate::output::periodic::CYCLE;
 use crate::output::summary;
-use crate::run::summary::{Status, Summary};
+use crate::results::cycles::Cycle;
+use crate::results::run::{Status, Summary};
 
 /// Displacements below this [m] are round-off.
 const ROUND_OFF: f64 = 1e-14;
 
 /// Everything the page shows.
-pub fn data(place: &Place) -> Result<Map<String, Value>> {
-    let summary = match place.path(SUMMARY).is_file() {
-        true => Some(summary::read(place.dir)?),
+pub fn data(place: &Place) -> Result<Page> {
+    let found = match place.path(SUMMARY).is_file() {
+        true => Some(summary::found(place.dir)?),
         false => None,
     };
+    let (summary, head) = found.map(|found| (found.result, found.head)).unzip();
     let history = History::read(place.dir)?;
     let name = summary
         .as_ref()
         .map(|s| s.case.clone())
         .or_else(|| place.case.as_ref().map(|c| c.name.clone()));
-    let mut all = place.head(Kind::Run, &name.unwrap_or_else(|| "unnamed".into()));
-    let mut put = |key: &str, value: Value| all.insert(key.into(), value);
+    let mut page = place.page(Kind::Run, name.as_deref().unwrap_or("unnamed"), head.as_ref());
     let frequency = place
         .case
         .as_ref()
@@ -48,57 +49,46 @@ pub fn data(place: &Place) -> Result<Map<String, Value>> {
             Value::Null
         }
     };
-    put("motion", motion);
-    put("history", history.json(place.case.as_ref()));
-    let cycle = text_of(&place.path(CYCLE)).ok();
-    let cycle = cycle.and_then(|text| serde_json::from_str::<Value>(&text).ok());
+    page.put("motion", motion);
+    page.put("history", history.json());
     match &summary {
-        Some(summary) => fill(&mut all, summary, &history, &notes),
+        Some(summary) => fill(&mut page, summary, &history),
         None => {
             let why =
                 "The run was interrupted before it could write its summary; shown is what was recorded until then.";
-            all.insert(
-                "status".into(),
-                json!({"word": "interrupted", "tone": "bad", "reason": why}),
-            );
-            all.insert("warnings".into(), notes.into());
+            page.put("status", json!({"word": "interrupted", "tone": "bad", "reason": why}));
         }
     }
-    match cycle {
-        Some(cycle) => {
-            all.insert("label".into(), "Steady cycle".into());
-            all.insert("answer".into(), cycles::answer(&cycle).into());
-            all.insert("sections".into(), Value::Array(cycles::of_cycle(&cycle)));
-            all.insert("command".into(), format!("slcbeam periodic {CASE}").into());
-        }
-        None => {
-            all.insert("label".into(), "Run".into());
-            all.insert("command".into(), format!("slcbeam run {CASE}").into());
-        }
+    page.warnings.extend(notes);
+    if place.path(CYCLE).is_file() {
+        let cycle = place.result::<Cycle>(CYCLE)?.result;
+        page.put("label", "Steady cycle");
+        page.put("answer", cycles::answer(&cycle));
+        page.put("sections", cycles::of_cycle(&cycle));
+        page.put("command", format!("slcbeam periodic {CASE}"));
+    } else {
+        page.put("label", "Run");
+        page.put("command", format!("slcbeam run {CASE}"));
     }
-    Ok(all)
+    Ok(page)
 }
 
-fn fill(all: &mut Map<String, Value>, summary: &Summary, history: &History, notes: &[String]) {
-    let mut put = |key: &str, value: Value| all.insert(key.into(), value);
+fn fill(page: &mut Page, summary: &Summary, history: &History) {
     let (word, tone) = match summary.status {
         Status::Finished => ("finished", "good"),
         Status::Stopped => ("stopped early", "fair"),
         Status::OutOfRange => ("left the model's range", "bad"),
         Status::Failed => ("failed", "bad"),
     };
-    put("status", json!({"word": word, "tone": tone, "reason": summary.reason}));
-    put(
-        "warnings",
-        summary.warnings.iter().chain(notes).cloned().collect::<Vec<_>>().into(),
-    );
-    put("facts", facts_line(summary).into());
-    put("tiles", tiles(summary).into());
-    put("ledger", books::of(summary, history));
-    put("effects", facts::effects(summary).into());
-    put("work", facts::work(summary));
-    put("characteristic", facts::characteristic(&summary.characteristic).into());
-    put("remarks", remarks(summary).into());
+    page.put("status", json!({"word": word, "tone": tone, "reason": summary.reason}));
+    page.warnings.clone_from(&summary.warnings);
+    page.put("facts", facts_line(summary));
+    page.put("tiles", tiles(summary));
+    page.put("ledger", energy_balance::of(summary, history));
+    page.put("effects", facts::effects(summary));
+    page.put("work", facts::work(summary));
+    page.put("characteristic", facts::characteristic(&summary.characteristic));
+    page.put("remarks", remarks(summary));
 }
 
 /// One line under the title.
@@ -115,8 +105,8 @@ fn facts_line(summary: &Summary) -> Vec<String> {
 }
 
 fn tiles(summary: &Summary) -> Vec<Value> {
-    let largest = |name: &str| summary.quantities.get(name).and_then(|q| q.max_abs);
-    let last = |name: &str| summary.quantities.get(name).and_then(|q| q.last);
+    let largest = |name: &str| summary.quantity(name).and_then(|q| q.max_abs);
+    let last = |name: &str| summary.quantity(name).and_then(|q| q.last);
     let mut all = vec![];
     let mut tile = |label: &str, value: Option<String>, note: &str| {
         if let Some(value) = value {
@@ -129,7 +119,7 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     };
     tile("Tip, across", length("tip_u1_m"), "largest deflection u₁ at any time");
     tile("Tip, along", length("tip_u3_m"), "largest displacement u₃ at any time");
-    let window = summary.quantities.get("max_pressure_pa").and_then(|q| q.window_max_abs);
+    let window = summary.quantity("max_pressure_pa").and_then(|q| q.window_max_abs);
     let window = window.map_or("gauge, anywhere".into(), |p| {
         format!("anywhere; {} in the last part", quantity(p, "Pa", 3))
     });
@@ -148,7 +138,7 @@ fn tiles(summary: &Summary) -> Vec<Value> {
         last("harvested_energy_j").map(|e| quantity(e, "J", 3)),
         "by the turbines",
     );
-    let efficiency = summary.quantities.get("efficiency");
+    let efficiency = summary.quantity("efficiency");
     let window = efficiency
         .and_then(|q| q.window)
         .map_or("harvested over put in".into(), |e| {
@@ -186,7 +176,7 @@ fn remarks(summary: &Summary) -> Vec<Value> {
     }
     for (pointer, s) in &summary.sensitivities {
         let parts = s.quantities.iter().filter_map(|(name, slope)| {
-            let ratio = slope.max_abs? * s.value / summary.quantities.get(name)?.max_abs?;
+            let ratio = slope.max_abs? * s.value / summary.quantity(name)?.max_abs?;
             ratio
                 .is_finite()
                 .then(|| format!("{name} by {} %", significant(ratio, 3)))

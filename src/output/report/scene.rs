@@ -3,10 +3,11 @@
 use serde_json::{Value, json};
 
 use super::signals::{is_zero, peak, words};
-use crate::case::schema::{BladderEnd, Chain, ChainEnd, Endpoint, Load, Network as Wiring, Rectifier};
+use crate::case::schema::{BladderEnd, ChainEnd, Load, Rectifier};
+use crate::case::wiring::{Given, Point, Wiring};
 use crate::case::{Case, Profile, ResolvedEnd, Rotation, Signal, Translation};
-use crate::model::network::{Network, bladder_index};
-use crate::output::numbers::{quantity, trimmed};
+use crate::model::Network;
+use crate::output::numbers::{quantity, significant, trimmed};
 
 /// Places along the beam at which a load is drawn.
 const PLACES: usize = 41;
@@ -26,15 +27,15 @@ pub fn of(case: &Case) -> Option<Value> {
             "{} long, {} high, {} wide",
             q(beam.length_m, "m"), q(beam.height_m, "m"), q(beam.width_m, "m")
         ),
-        "bladders": case.bladders.as_ref().zip(case.fluid.as_ref()).map(|(b, fluid)| json!({
+        "bladders": case.bladders.as_ref().zip(Network::of(case).ok()?).map(|(b, network)| json!({
             "per_row": b.per_row,
             "length": b.length_m,
             "height": b.height_m,
             "width": b.width_m,
-            "volume": q_unit(b.length_m * b.height_m * b.width_m, "m^3"),
-            "network": Network::new(case, fluid, b).component_of_bladder,
+            "volume": format!("{} ml", significant(b.length_m * b.height_m * b.width_m * 1e6, 3)),
+            "network": network.component_of_bladder,
         })),
-        "wiring": case.bladders.as_ref().map(|b| wiring(case.network.as_ref(), b.per_row)),
+        "wiring": case.bladders.as_ref().and(wiring(case)),
         "ends": [end(&case.ends.root.resolve(), case.ends.root.form().0), end(&case.ends.tip.resolve(), case.ends.tip.form().0)],
         "loads": case.loads.iter().map(|l| load(l, end_s)).collect::<Vec<_>>(),
     }))
@@ -44,60 +45,49 @@ fn q(x: f64, unit: &str) -> String {
     trimmed(&quantity(x, unit, 3))
 }
 
-/// A volume as people say it: millilitres.
-fn q_unit(x: f64, unit: &str) -> String {
-    match unit {
-        "m^3" => format!("{} ml", crate::output::numbers::significant(x * 1e6, 3)),
-        _ => q(x, unit),
-    }
-}
-
-fn wiring(network: Option<&Wiring>, per_row: usize) -> Value {
-    let none = Wiring::default();
-    let network = network.unwrap_or(&none);
-    let point = |p: &Endpoint| match (p.bladder, &p.junction) {
-        (Some(signed), _) => {
-            let end = p.end.unwrap_or(BladderEnd::Inlet);
-            json!({"bladder": bladder_index(signed, per_row), "outlet": end == BladderEnd::Outlet})
-        }
-        (None, name) => json!({"junction": name}),
+/// Chains, tubes, ports and turbines, by indices of bladders and names of junctions.
+fn wiring(case: &Case) -> Option<Value> {
+    let found = Wiring::of(case).ok()?;
+    let point = |point: &Point| match *point {
+        Point::Bladder(bladder, end) => json!({"bladder": bladder, "outlet": end == BladderEnd::Outlet}),
+        Point::Junction(_) => json!({"junction": found.label(*point)}),
     };
     let valve = |opening: &Signal| match opening {
         Signal::Constant(o) if *o >= 1.0 => None,
         Signal::Constant(o) => Some(format!("valve open to {}", q(*o, "1"))),
         moving => Some(format!("valve, opening {}", words(moving, "1"))),
     };
-    let chain = |c: &Chain| {
-        let bladders: Vec<usize> = c.bladders.iter().map(|&b| bladder_index(b, per_row)).collect();
-        let ends = c.ends.iter().map(|e| match e {
+    let written = case.network.iter().flat_map(|network| &network.chains);
+    let chains = written.zip(&found.chains).map(|(chain, bladders)| {
+        let ends = chain.ends.iter().map(|e| match e {
             ChainEnd::Sealed => json!({"kind": "sealed"}),
             ChainEnd::Connected => json!({"kind": "connected"}),
             ChainEnd::PressurePa(p) => json!({"kind": "pressure", "words": pressure(p)}),
             ChainEnd::FlowM3S(f) => json!({"kind": "flow", "words": flow(f)}),
         });
-        json!({"bladders": bladders, "ends": ends.collect::<Vec<_>>(), "valve": valve(&c.opening)})
-    };
-    let port = |p: &crate::case::schema::Port| {
-        let (kind, words) = match (&p.pressure_pa, &p.flow_m3_s) {
-            (Some(signal), _) => ("pressure", pressure(signal)),
-            (None, signal) => ("flow", signal.as_ref().map_or(String::new(), flow)),
+        json!({"bladders": bladders, "ends": ends.collect::<Vec<_>>(), "valve": valve(&chain.opening)})
+    });
+    let tubes = found
+        .tubes
+        .iter()
+        .map(|t| json!({"from": point(&t.points[0]), "to": point(&t.points[1]), "valve": valve(t.opening)}));
+    let ports = found.ports.iter().map(|p| {
+        let (kind, words) = match p.given {
+            Given::Pressure(signal) => ("pressure", pressure(signal)),
+            Given::Flow(signal) => ("flow", flow(signal)),
         };
         json!({"name": p.name, "at": point(&p.at), "kind": kind, "words": words})
-    };
-    let turbine = |t: &crate::case::schema::Turbine| {
-        json!({
-            "name": t.name, "from": point(&t.from), "to": point(&t.to), "rectified": t.rectifier != Rectifier::Ideal,
-        })
-    };
-    json!({
-        "chains": network.chains.iter().map(chain).collect::<Vec<_>>(),
-        "junctions": network.junctions,
-        "tubes": network.tubes.iter().map(|t| json!({
-            "from": point(&t.from), "to": point(&t.to), "valve": valve(&t.opening),
-        })).collect::<Vec<_>>(),
-        "ports": network.ports.iter().map(port).collect::<Vec<_>>(),
-        "turbines": network.turbines.iter().map(turbine).collect::<Vec<_>>(),
-    })
+    });
+    let turbines = found.turbines.iter().map(|([from, to], t)| {
+        json!({"name": t.name, "from": point(from), "to": point(to), "rectified": t.rectifier != Rectifier::Ideal})
+    });
+    Some(json!({
+        "chains": chains.collect::<Vec<_>>(),
+        "junctions": found.junctions,
+        "tubes": tubes.collect::<Vec<_>>(),
+        "ports": ports.collect::<Vec<_>>(),
+        "turbines": turbines.collect::<Vec<_>>(),
+    }))
 }
 
 fn pressure(signal: &Signal) -> String {
@@ -111,11 +101,8 @@ fn pressure(signal: &Signal) -> String {
 fn flow(signal: &Signal) -> String {
     let scaled = Signal::Product(vec![Signal::Constant(1e9), signal.clone()]);
     match signal {
-        Signal::Constant(x) => format!("{} µl/s", crate::output::numbers::significant(x * 1e9, 3)),
-        _ => format!(
-            "flow up to {} µl/s",
-            crate::output::numbers::significant(peak(&scaled, 1e3).abs(), 3)
-        ),
+        Signal::Constant(x) => format!("{} µl/s", significant(x * 1e9, 3)),
+        _ => format!("flow up to {} µl/s", significant(peak(&scaled, 1e3).abs(), 3)),
     }
 }
 

@@ -1,44 +1,44 @@
 //! The pages of `study` and `effects`: many runs, one question.
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-use super::{Kind, Place, capital};
+use super::{Found, Kind, Page, Place, capital};
 use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::numbers::{count, duration, percent, significant};
 use crate::output::{effects as effects_files, study as study_files};
+use crate::results::studies::{Ablation, Study};
+use crate::study::accuracy::study::Point;
+use crate::study::accuracy::{Budget, Plan, Scheme};
+use crate::study::effects::Row;
+
+fn yes(it_is: bool) -> &'static str {
+    if it_is { "yes" } else { "no" }
+}
+
+/// `ida, order 5`.
+fn method(scheme: Scheme) -> String {
+    let name = if scheme.is_ida() { "ida".into() } else { scheme.label() };
+    format!("{name}, order {}", scheme.order)
+}
 
 /// What accuracy costs.
-pub fn study(place: &Place) -> Result<Map<String, Value>> {
-    let found = place.json(study_files::JSON)?;
-    let text = |key: &str| found.get(key).and_then(Value::as_str).unwrap_or("").to_string();
-    let mut all = place.head(Kind::Study, &text("case"));
-    let mut put = |key: &str, value: Value| all.insert(key.into(), value);
-    let headline = found.get("headline").and_then(Value::as_u64).unwrap_or(0) as usize;
-    let measure = found
-        .pointer(&format!("/measures/{headline}/name"))
-        .and_then(Value::as_str)
-        .unwrap_or("");
-    let points = found
-        .get("points")
-        .and_then(Value::as_array)
-        .cloned()
-        .unwrap_or_default();
-    put("label", "What accuracy costs".into());
-    put("answer", capital(&text("sentence")).into());
-    put("warnings", found.get("notes").cloned().unwrap_or_default());
-    put(
+pub fn study(place: &Place) -> Result<Page> {
+    let Found { result: found, head } = place.result::<Study>(study_files::JSON)?;
+    let mut page = place.page(Kind::Study, &found.case, Some(&head));
+    let measure = found.measure().map_or("", |measure| measure.name.as_str());
+    page.put("label", "What accuracy costs");
+    page.put("answer", capital(&study_files::sentence(&found)));
+    page.warnings.clone_from(&found.notes);
+    page.put(
         "facts",
-        json!([
-            format!("{} settings", count(points.len() as u64)),
-            format!(
-                "{} spent",
-                duration(found.get("spent").and_then(Value::as_f64).unwrap_or(f64::NAN))
-            ),
+        vec![
+            format!("{} settings", count(found.points.len() as u64)),
+            format!("{} spent", duration(found.spent)),
             format!("judged by {measure}"),
-        ]),
+        ],
     );
-    put(
+    page.put(
         "figures",
         json!([{
             "title": "Error and time",
@@ -47,49 +47,27 @@ pub fn study(place: &Place) -> Result<Map<String, Value>> {
                       faster; the settings worth using lie along the lower left edge.",
         }]),
     );
-    let number = |v: &Value, pointer: &str| v.pointer(pointer).and_then(Value::as_f64);
-    let row = |point: &Value| {
-        let setting = |key: &str| {
-            point
-                .pointer(&format!("/trial/setting/{key}"))
-                .cloned()
-                .unwrap_or_default()
-        };
-        let error = point
-            .get("errors")
-            .and_then(|e| e.get(headline))
-            .cloned()
-            .unwrap_or_default();
-        let scheme = setting("scheme");
-        let method = match (
-            scheme.get("method").and_then(Value::as_str),
-            scheme.get("order").and_then(Value::as_u64),
-        ) {
-            (Some(method), Some(order)) => format!("{method}, order {order}"),
-            (Some(method), None) => method.to_string(),
-            _ => scheme.to_string(),
-        };
+    let row = |(k, point): (usize, &Point)| {
+        let (trial, error) = (&point.trial, found.error(k));
+        let setting = trial.setting;
         json!([
-            setting("cells"),
-            method,
-            setting("rtol"),
-            point.pointer("/trial/unknowns"),
-            point.pointer("/trial/counters/steps"),
-            number(point, "/trial/wall_min_s"),
-            number(&error, "/total/max"),
-            if error.get("judged").and_then(Value::as_bool) == Some(true) {
-                "yes"
-            } else {
-                "no"
-            },
-            if point.get("on_front").and_then(Value::as_bool) == Some(true) {
-                "yes"
-            } else {
-                "no"
-            },
+            setting.cells,
+            method(setting.scheme),
+            setting.rtol,
+            trial.unknowns,
+            trial.counters.steps,
+            trial.wall_min_s,
+            error.map(|e| e.total.max),
+            yes(error.is_some_and(|e| e.judged)),
+            yes(point.on_front),
         ])
     };
-    put(
+    let ran = found
+        .points
+        .iter()
+        .enumerate()
+        .filter(|(_, p)| p.trial.counters.steps > 0);
+    page.put(
         "table",
         json!({
             "title": "Every setting",
@@ -97,95 +75,77 @@ pub fn study(place: &Place) -> Result<Map<String, Value>> {
                       \"Judged\" says whether that reference is exact enough to tell."),
             "headings": ["cells a segment", "method", "tolerance", "unknowns", "steps", "least wall time [s]", "largest error",
                          "judged", "worth using"],
-            "rows": points.iter().filter(|p| p.pointer("/trial/counters/steps").and_then(Value::as_u64) != Some(0)).map(row).collect::<Vec<_>>(), "file": study_files::CSV,
+            "rows": ran.map(row).collect::<Vec<_>>(), "file": study_files::CSV,
         }),
     );
-    put("command", format!("slcbeam study {CASE}{}", plan(&found)).into());
-    Ok(all)
+    page.put("command", format!("slcbeam study {CASE}{}", options(&found.plan)));
+    Ok(page)
 }
 
 /// Options of the command that made a study.
-fn plan(found: &Value) -> String {
-    let list = |pointer: &str| {
-        let values = found.pointer(pointer).and_then(Value::as_array)?;
-        Some(values.iter().map(ToString::to_string).collect::<Vec<_>>().join(","))
+fn options(plan: &Plan) -> String {
+    let list = |values: Vec<String>| values.join(",");
+    let rtols = list(plan.rtols.iter().map(|t| json!(t).to_string()).collect());
+    let cells = list(plan.cells.iter().map(ToString::to_string).collect());
+    let budget = match plan.budget {
+        Budget::Wall(seconds) => format!(" --budget {seconds}s"),
+        Budget::Steps(_) => String::new(),
     };
-    let mut text = String::new();
-    for (option, pointer) in [("--rtol", "/plan/rtols"), ("--cells", "/plan/cells")] {
-        if let Some(values) = list(pointer) {
-            text.push_str(&format!(" {option} {values}"));
-        }
-    }
-    if let Some(budget) = found.pointer("/plan/budget/wall").and_then(Value::as_f64) {
-        text.push_str(&format!(" --budget {budget}s"));
-    }
-    text
+    format!(" --rtol {rtols} --cells {cells}{budget}")
 }
 
 /// What each effect does.
-pub fn effects(place: &Place) -> Result<Map<String, Value>> {
-    let found = place.json(effects_files::JSON)?;
-    let text = |pointer: &str| found.pointer(pointer).and_then(Value::as_str).unwrap_or("").to_string();
-    let mut all = place.head(Kind::Effects, &text("/case"));
-    let mut put = |key: &str, value: Value| all.insert(key.into(), value);
-    let rows = found.get("rows").and_then(Value::as_array).cloned().unwrap_or_default();
-    let budget = found.pointer("/plan/budget_s").and_then(Value::as_f64);
-    put("label", "What each effect does".into());
-    put("answer", text("/sentence").into());
-    put("warnings", json!([]));
-    let compared = rows
-        .iter()
-        .filter(|r| r.get("left_out").is_some_and(Value::is_object))
-        .count();
-    put(
+pub fn effects(place: &Place) -> Result<Page> {
+    let Found { result: found, head } = place.result::<Ablation>(effects_files::JSON)?;
+    let mut page = place.page(Kind::Effects, &found.case, Some(&head));
+    page.put("label", "What each effect does");
+    page.put("answer", effects_files::sentence(&found));
+    let compared = found.rows.iter().filter(|r| r.left_out.is_some()).count();
+    page.put(
         "facts",
-        json!([
+        vec![
             format!("{compared} effects left out in turn"),
-            format!(
-                "{} spent",
-                duration(found.get("spent_s").and_then(Value::as_f64).unwrap_or(f64::NAN))
-            ),
-        ]),
+            format!("{} spent", duration(found.spent_s)),
+        ],
     );
-    let tolerance = found.get("tolerance").and_then(Value::as_f64).unwrap_or(f64::NAN);
-    put(
+    page.put(
         "figures",
         json!([{
             "title": "Changes and cost",
             "picture": place.picture(effects_files::PICTURE),
             "about": format!("For every effect, the full model is run once more without it. Bar: the quantity of the picture; \
-                      ring: the one that changes most. Where the ring stays below {}, the effect may be left out.", percent(tolerance)),
+                      ring: the one that changes most. Where the ring stays below {}, the effect may be left out.",
+                      percent(found.tolerance)),
         }]),
     );
-    let row = |r: &Value| {
-        let at = |pointer: &str| r.pointer(pointer).cloned().unwrap_or_default();
+    let row = |r: &Row| -> Value {
+        let left_out = r.left_out.as_ref();
+        let largest = left_out.and_then(|c| c.largest.as_ref());
         json!([
-            at("/name"),
-            at("/verdict"),
-            at("/left_out/largest/1"),
-            at("/left_out/largest/0"),
-            at("/left_out/unknowns"),
-            at("/left_out/work"),
-            at("/left_out/wall"),
-            r.get("reason")
-                .filter(|t| t.is_string())
-                .or(r.get("number"))
-                .cloned()
-                .unwrap_or_default(),
+            r.name,
+            r.verdict,
+            largest.map(|l| l.1),
+            largest.map(|l| &l.0),
+            left_out.map(|c| c.unknowns),
+            left_out.map(|c| c.work),
+            left_out.map(|c| c.wall),
+            r.reason.as_ref().unwrap_or(&r.number),
         ])
     };
-    put(
+    page.put(
         "table",
         json!({
             "title": "Every effect",
             "about": format!("\"Change\" is the largest relative change of any quantity when the effect is left out; work and time are \
                       those without it, over those of the full model (1 is the same). The integrator's own tolerance is {}.",
-                      significant(found.get("rtol").and_then(Value::as_f64).unwrap_or(f64::NAN), 1)),
+                      significant(found.rtol, 1)),
             "headings": ["effect", "verdict", "change", "of", "unknowns saved or added", "work", "time", "why"],
-            "rows": rows.iter().map(row).collect::<Vec<_>>(), "file": effects_files::CSV,
+            "rows": found.rows.iter().map(row).collect::<Vec<_>>(), "file": effects_files::CSV,
         }),
     );
-    let budget = budget.map_or(String::new(), |b| format!(" --budget {b}s"));
-    put("command", format!("slcbeam effects {CASE}{budget}").into());
-    Ok(all)
+    page.put(
+        "command",
+        format!("slcbeam effects {CASE} --budget {}s", found.plan.budget_s),
+    );
+    Ok(page)
 }

@@ -6,13 +6,13 @@ use crate::error::Code;
 
 /// Groups `{code, title, texts, explanation}` in the order in which their first texts stand; a text without a number is one by
 /// itself.
-pub fn groups(texts: &[Value]) -> Value {
+pub fn groups(texts: &[String]) -> Value {
     let mut all: Vec<(Option<Code>, Vec<&str>)> = vec![];
-    for text in texts.iter().filter_map(Value::as_str) {
+    for text in texts {
         let numbered = text
             .split_once(' ')
             .and_then(|(id, rest)| Some((Code::find(id)?, rest)));
-        let (code, words) = numbered.map_or((None, text), |(code, rest)| (Some(code), rest));
+        let (code, words) = numbered.map_or((None, text.as_str()), |(code, rest)| (Some(code), rest));
         match all.iter_mut().find(|group| code.is_some() && group.0 == code) {
             Some(group) => group.1.push(words),
             None => all.push((code, vec![words])),
@@ -32,11 +32,7 @@ mod tests {
 
     #[test]
     fn warnings_of_one_kind_stand_together() {
-        let found = groups(&[
-            json!("W003 fast"),
-            json!("as it was written before"),
-            json!("W003 faster"),
-        ]);
+        let found = groups(&["W003 fast", "as it was written before", "W003 faster"].map(String::from));
         assert_eq!(found.as_array().map(Vec::len), Some(2));
         assert_eq!(found[0]["texts"], json!(["fast", "faster"]));
         assert_eq!(found[0]["title"], Code::FastFlow.title());

@@ -13,6 +13,7 @@ use std::path::PathBuf;
 use super::folder::ResultFolder;
 use super::plot::workprecision::{self, Balance, Line, Marker, WorkPrecision};
 use crate::error::Result;
+use crate::results;
 use crate::study::accuracy::Study;
 
 pub use table::{csv, table};
@@ -27,9 +28,7 @@ pub const PICTURE: &str = "study.svg";
 
 /// The text of `study.json`; what is not finite is null.
 pub fn json(study: &Study) -> String {
-    let mut value = serde_json::to_value(study).unwrap_or_default();
-    value["sentence"] = sentence(study).into();
-    format!("{value:#}\n")
+    results::told(study, Some(&sentence(study)))
 }
 
 /// Writes the files into a folder; others in it stay.

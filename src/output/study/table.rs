@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use super::words::spoken;
-use crate::output::numbers::{shortest, significant};
+use crate::output::columns::aligned;
+use crate::output::numbers::significant;
+use crate::output::records::{self, number};
 use crate::study::accuracy::Study;
 use crate::study::accuracy::plan::fluid_cells;
 use crate::study::accuracy::study::Point;
@@ -55,15 +57,7 @@ pub fn table(study: &Study) -> String {
             None => unfinished.push(reasons(point)),
         }
     }
-    let widths: [usize; 13] = std::array::from_fn(|k| lines.iter().map(|l| l[k].chars().count()).max().unwrap_or(0));
-    for line in &lines {
-        let cells: Vec<String> = line
-            .iter()
-            .zip(widths)
-            .map(|(cell, width)| format!("{cell:>width$}"))
-            .collect();
-        let _ = writeln!(text, "{}", cells.join("  ").trim_end());
-    }
+    text += &aligned(&lines, &[]);
     text += "\n* no other point is both cheaper and more accurate   ? the reference is not ten times better than this point\n\
              time: least of the timed runs; failed: rejected steps and Newton failures\n";
     if !unfinished.is_empty() {
@@ -145,83 +139,80 @@ fn references(study: &Study) -> String {
 
 /// What is known of each measure: order in space, own error of the limit.
 fn limits(study: &Study) -> String {
-    let mut text = String::from(
-        "\nlimit of each measure             order  limit by        own error  of it in space      size\n",
-    );
-    for m in &study.measures {
-        let order = m.order.map_or("-".into(), |o| {
-            format!("{o:.2}{}", if m.order_is_clean { "" } else { "~" })
-        });
-        let by = match m.extrapolated_with {
-            Some(q) => format!("Richardson h^{}", significant(q, 2)),
-            None => "finest mesh".into(),
-        };
-        let _ = writeln!(
-            text,
-            "  {:<30} {order:>6}  {by:<14} {:>10.1e} {:>15}  {:>8} {}",
-            m.name,
-            m.own().max,
+    let headings = [
+        "limit of each measure",
+        "order",
+        "limit by",
+        "own error",
+        "of it in space",
+        "size",
+    ];
+    let mut lines = vec![headings.map(String::from)];
+    lines.extend(study.measures.iter().map(|m| {
+        [
+            m.name.clone(),
+            m.order.map_or("-".into(), |o| {
+                format!("{o:.2}{}", if m.order_is_clean { "" } else { "~" })
+            }),
+            match m.extrapolated_with {
+                Some(q) => format!("Richardson h^{}", significant(q, 2)),
+                None => "finest mesh".into(),
+            },
+            format!("{:.1e}", m.own().max),
             m.own_spatial
                 .map_or_else(|| "unknown".into(), |n| format!("{:.1e}", n.max)),
-            significant(m.size.max, 3),
-            m.unit
-        );
-    }
-    text += "  ~ errors in time are above a tenth of the differences between meshes\n";
+            format!("{} {}", significant(m.size.max, 3), m.unit),
+        ]
+    }));
+    let mut text = format!("\n{}", aligned(&lines, &[0, 2, 5]));
+    text += "~ errors in time are above a tenth of the differences between meshes\n";
     if !study.left_out.is_empty() {
-        let _ = writeln!(
-            text,
-            "  nothing beside others of its unit: {}",
-            study.left_out.join(", ")
-        );
+        let _ = writeln!(text, "nothing beside others of its unit: {}", study.left_out.join(", "));
     }
     text
 }
 
 /// `study.csv`: one row a setting and measure; one without errors for a setting that did not finish.
 pub fn csv(study: &Study) -> String {
-    let mut text = String::from(
-        "cells_per_segment,cells_per_bladder,method,max_order,rtol,role,status,reason,unknowns,wall_min [s],wall_median [s],repeats,\
-         steps,residual_evaluations,jacobian_evaluations,factorizations,error_test_failures,newton_failures,\
-         measure,kind,temporal_l2,temporal_max,spatial_l2,spatial_max,total_l2,total_max,limit_own_error_l2,\
-         limit_own_error_max,judged,on_front\n",
-    );
+    let headings = "cells_per_segment,cells_per_bladder,method,max_order,rtol,role,status,reason,unknowns,wall_min [s],wall_median [s],\
+                    repeats,steps,residual_evaluations,jacobian_evaluations,factorizations,error_test_failures,newton_failures,\
+                    measure,kind,temporal_l2,temporal_max,spatial_l2,spatial_max,total_l2,total_max,limit_own_error_l2,\
+                    limit_own_error_max,judged,on_front";
+    let mut rows = vec![];
     for point in &study.points {
         let (trial, s, c) = (&point.trial, point.trial.setting, &point.trial.counters);
-        let role = match trial.role {
-            Role::Point => "point",
-            Role::Reference => "reference",
-        };
-        let reason = trial.reason.as_deref().unwrap_or("").replace('"', "'");
-        let first = format!(
-            "{},{},{},{},{:e},{role},{},\"{reason}\",{},{},{},{},{},{},{},{},{},{}",
-            s.cells,
-            fluid_cells(s.cells),
+        let setting = vec![
+            s.cells.to_string(),
+            fluid_cells(s.cells).to_string(),
             if s.scheme.is_ida() {
                 "ida".into()
             } else {
                 s.scheme.label()
             },
-            s.scheme.order,
-            s.rtol,
-            ending(trial.ending),
-            trial.unknowns,
+            s.scheme.order.to_string(),
+            format!("{:e}", s.rtol),
+            match trial.role {
+                Role::Point => "point".into(),
+                Role::Reference => "reference".into(),
+            },
+            ending(trial.ending).into(),
+            trial.reason.clone().unwrap_or_default(),
+            trial.unknowns.to_string(),
             number(Some(trial.wall_min_s)),
             number(Some(trial.wall_median_s)),
-            trial.repeats,
-            c.steps,
-            c.residual_evaluations,
-            c.jacobian_evaluations,
-            c.factorizations,
-            c.error_test_failures,
-            c.newton_failures
-        );
+            trial.repeats.to_string(),
+            c.steps.to_string(),
+            c.residual_evaluations.to_string(),
+            c.jacobian_evaluations.to_string(),
+            c.factorizations.to_string(),
+            c.error_test_failures.to_string(),
+            c.newton_failures.to_string(),
+        ];
         let Some(errors) = &point.errors else {
-            let _ = writeln!(text, "{first}{}", ",".repeat(12));
+            rows.push([setting, vec![String::new(); 12]].concat());
             continue;
         };
         for (e, m) in errors.iter().zip(&study.measures) {
-            let kind = format!("{:?}", m.kind).to_lowercase();
             let own = m.own();
             let numbers = [
                 e.temporal.map(|n| n.l2),
@@ -232,20 +223,13 @@ pub fn csv(study: &Study) -> String {
                 Some(e.total.max),
                 Some(own.l2),
                 Some(own.max),
-            ]
-            .map(number)
-            .join(",");
-            let _ = writeln!(
-                text,
-                "{first},{},{kind},{numbers},{},{}",
-                m.name, e.judged, point.on_front
-            );
+            ];
+            let mut row = setting.clone();
+            row.extend([m.name.clone(), format!("{:?}", m.kind).to_lowercase()]);
+            row.extend(numbers.map(number));
+            row.extend([e.judged, point.on_front].map(|yes| yes.to_string()));
+            rows.push(row);
         }
     }
-    text
-}
-
-/// Empty when unknown or not finite.
-fn number(x: Option<f64>) -> String {
-    x.filter(|x| x.is_finite()).map_or_else(String::new, shortest)
+    records::text(headings.split(','), rows)
 }

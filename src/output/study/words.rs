@@ -1,17 +1,12 @@
 //! The sentence at the end of a study.
 
+use crate::discrete::quantities::Observable;
 use crate::output::numbers::{significant, trimmed};
 use crate::study::accuracy::{Scheme, Setting, Study};
 
 /// A measure as people say it.
 pub fn spoken(name: &str) -> String {
-    match name {
-        "tip_u1" => "tip deflection".into(),
-        "tip_u3" => "axial tip displacement".into(),
-        "tip_angle" => "tip angle".into(),
-        "max_pressure" => "the largest pressure".into(),
-        other => other.replace('_', " "),
-    }
+    Observable::named(name).map_or_else(|| name.replace('_', " "), |one| one.words().into())
 }
 
 /// `1 % of tip deflection costs 0.03 s (2 cells, rtol 1e-3); ...; looser than rtol 1e-3 costs more, not less.`

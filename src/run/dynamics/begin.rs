@@ -33,7 +33,7 @@ impl Run<'_> {
     pub(super) fn header(&self, system: &System) -> Header {
         let mut header = Observer::header(self.case, system);
         if let Some(forward) = &self.forward {
-            header.sensitivities = forward.names(&header.columns);
+            header.sensitivities = forward.names();
         }
         header
     }

@@ -2,7 +2,7 @@
 
 use super::{End, Outcome, Run};
 use crate::dae::BeamDae;
-use crate::discrete::ledger::FLOWS;
+use crate::discrete::quantities::Group;
 use crate::error::Code;
 use crate::run::estimate::{Unstable, Work};
 use crate::run::method::{Integrator, Options};
@@ -64,7 +64,7 @@ impl Run<'_> {
         o.energies.complete(&mut s.quantities);
         s.warnings.extend(o.energies.warning(&s.quantities));
         let unstable = Unstable::of(&o.growth, self.case.beam.length_m, &self.linear);
-        let work = Work::of(o.energies.largest_stored, &o.stored, &o.integrals);
+        let work = Work::of(&o.energies, &o.row);
         let (estimate, warning) = o.estimate.judge(&s.quantities, &unstable, &work);
         s.estimate = estimate;
         s.warnings.extend(warning);
@@ -77,19 +77,11 @@ impl Run<'_> {
         b.reaction_difference_relative = o.residuals.reaction_relative();
         b.momentum_residual_relative = o.residuals.momentum_relative();
         b.angular_momentum_residual_relative = o.residuals.angular_relative();
-        for flow in FLOWS.iter().filter(|f| f.energy_sign() != 0.0) {
-            b.energy_j.insert(flow.name().into(), o.integrals[*flow as usize]);
-        }
-        let e = &o.stored;
-        for (name, value) in [
-            ("kinetic_energy", e.kinetic),
-            ("rotary_energy", e.rotary),
-            ("axial_energy", e.axial),
-            ("bending_energy", e.bending),
-            ("bladder_energy", e.bladders),
-        ] {
-            b.energy_j.insert(name.into(), value);
-        }
+        let energies = o
+            .row
+            .each()
+            .filter(|(one, _)| one.unit() == "J" && one.group() != Group::Open);
+        b.energy_j = energies.map(|(one, value)| (one.name().into(), value)).collect();
         s.growth = o.growth.judge(self.case.beam.length_m, &self.linear);
         s.warnings
             .extend(s.growth.as_ref().map(|g| Code::Growth.warning(g.warning())));

@@ -75,7 +75,7 @@ impl Run<'_> {
         let dae = solver.dae_mut();
         let ahead = 0.5 * (t + next);
         if !switches {
-            dae.look_within(ahead);
+            dae.enter_smooth_interval(ahead);
         } else if let Some(fault) = self.switch(dae, t, ahead) {
             return Ok(Some(fault));
         }

@@ -5,7 +5,7 @@ use super::state::Stability;
 use super::{Event, Kind};
 use crate::sundials::{KinsolFailure, kernels};
 
-/// First step aside.
+/// First step along the branch, over its size.
 const ASIDE: f64 = 0.02;
 const INVERSE_ITERATIONS: usize = 12;
 
@@ -18,7 +18,7 @@ impl Follower<'_> {
         let mut x = last.clone();
         self.solve(&mut x, PATIENCE)
             .map_err(|failure| self.fail(&failure, last[n]))?;
-        let mut aside = self.softest();
+        let mut direction = self.softest();
         // The eigenvalue that changes sign does so in proportion to the distance.
         let here = Stability::of(self.solver.dae_mut().statics(), last[n], &last[..n]);
         let share = last[n] + (beyond.0 - last[n]) * between(here, beyond.1);
@@ -28,18 +28,18 @@ impl Follower<'_> {
         });
         self.branch = self.path.states.len();
         self.bounds.push(self.branch);
-        aside[n] = 0.0;
-        let displacements = aside
+        direction[n] = 0.0;
+        let displacements = direction
             .iter()
             .zip(&self.weights)
             .filter(|(_, w)| **w > 0.0)
             .map(|(x, _)| *x);
         let largest = displacements.fold(0.0_f64, |m, x| if x.abs() > m.abs() { x } else { m });
-        let unit = largest.signum() / self.norm(&aside).max(f64::MIN_POSITIVE);
-        aside.iter_mut().for_each(|x| *x *= unit);
+        let unit = largest.signum() / self.norm(&direction).max(f64::MIN_POSITIVE);
+        direction.iter_mut().for_each(|x| *x *= unit);
         let mut step = ASIDE;
         loop {
-            let guess: Vec<f64> = last.iter().zip(&aside).map(|(x, d)| x + step * d).collect();
+            let guess: Vec<f64> = last.iter().zip(&direction).map(|(x, d)| x + step * d).collect();
             self.aim(&last, &guess);
             let mut x = guess.clone();
             let solved = self.solve(&mut x, PATIENCE);

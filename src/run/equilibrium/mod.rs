@@ -1,7 +1,7 @@
 //! Static equilibrium: the path from rest to the full load, every point of it solved by KINSOL.
 //!
 //! ```text
-//! along    equilibrium with the share of the loads as one more unknown: the arc length
+//! arclength  equilibrium with the load factor as one more unknown: the arc length
 //! natural  coordinates in which paths are nearly straight
 //! predict  where the next point probably is
 //! path     step by step along the path, as far as predictions hold; limit points, bifurcations
@@ -13,7 +13,7 @@
 //! Everything that acts grows in proportion from nothing: loads, motions of the ends, pressures and flows of ports, volumes
 //! of closed networks. Valves stand as they do under the full load.
 
-mod along;
+mod arclength;
 mod branch;
 mod natural;
 mod path;
@@ -25,8 +25,8 @@ use crate::case::schema::Case;
 use crate::case::signals::Polynomial;
 use crate::case::{Clock, Signal};
 use crate::dae::{BeamDae, StaticBeam};
-use crate::discrete::{Instant, System, start};
-use crate::error::{At, SolverFault};
+use crate::discrete::{System, TimeData, start};
+use crate::error::{self, At, SolverFault};
 use crate::model::{Model, Storage};
 use crate::run::record::Control;
 use crate::sundials::Solution;
@@ -38,7 +38,7 @@ pub use state::{Stability, State, columns, restate};
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Instant whose loads are the full ones [s].
+    /// TimeData whose loads are the full ones [s].
     pub at_s: f64,
     /// Share of the loads at which the path ends.
     pub share: f64,
@@ -87,7 +87,7 @@ pub struct Event {
 /// What is remarkable about a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The share of the loads turns back: snap-through under a load that keeps growing.
+    /// The load factor turns back: snap-through under a load that keeps growing.
     LimitPoint,
     /// Another path crosses: buckling. The path that is followed from there on is the other one.
     Bifurcation,
@@ -114,11 +114,14 @@ impl Path {
 
 /// The system whose equilibria are looked for: everything the case describes without inertia and damping, all areas unknowns,
 /// with signals that grow from nothing to what they are at an instant [s] while t grows from 0 to 1.
-pub fn system(case: &Case, at_s: f64) -> System {
-    growing(case, Model::whole(case, false), at_s)
+///
+/// # Errors
+/// Those of [`System::new`].
+pub fn system(case: &Case, at_s: f64) -> error::Result<System> {
+    growing(case, Model::whole(case, false)?, at_s)?.accepted(case)
 }
 
-fn growing(case: &Case, mut model: Model, at_s: f64) -> System {
+fn growing(case: &Case, mut model: Model, at_s: f64) -> error::Result<System> {
     let at = |signal: &Signal| signal.jet(Clock { t: at_s, within: at_s }).value;
     let growing = |signal: &Signal| match at(signal) {
         0.0 => Signal::Constant(0.0),
@@ -156,7 +159,9 @@ pub fn at_start_watched(
     y: &[f64],
     ask: &mut dyn FnMut() -> Control,
 ) -> Result<Vec<f64>, SolverFault> {
-    let statics = growing(case, dae.system().model.at_rest(case), at_s);
+    let at_rest = dae.system().model.at_rest(case);
+    let statics = at_rest.and_then(|model| growing(case, model, at_s));
+    let statics = statics.map_err(|error| path::fault(0.0, &error.to_string()))?;
     let mut from = BeamDae::new(statics.clone());
     let path = path::follow_of(case, statics, &Options::at(at_s), false, &mut |_| ask());
     if let Some(fault) = path.fault {
@@ -176,7 +181,7 @@ pub fn at_start_watched(
 
 /// Scaled unknowns of a static system at rest, and of the state that its volumes are those of.
 fn rest(case: &Case, system: System) -> (StaticBeam, Vec<f64>) {
-    let mut now = Instant::new(&system);
+    let mut now = TimeData::new(&system);
     now.update(&system, Clock { t: 0.0, within: 0.0 });
     let volumes = start::state(&system, case, &now);
     let y = vec![0.0; volumes.len()];

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::dae::StaticBeam;
-use crate::discrete::Instant;
+use crate::discrete::TimeData;
 use crate::model::Kinematics;
 
 /// A beam that bends far moves its nodes on circles: what is extrapolated in displacements stretches it, and stretch costs
@@ -29,7 +29,7 @@ impl Natural {
         }
     }
 
-    /// Scaled unknowns with the share of the loads behind them, as coordinates: x and z of node 0, angles, lengths, all
+    /// Scaled unknowns with the load factor behind them, as coordinates: x and z of node 0, angles, lengths, all
     /// unknowns. Angles differ from those of `near`, another state, by less than half a turn at the root.
     pub fn of_unknowns(&self, statics: &mut StaticBeam, x: &[f64], near: Option<&[f64]>) -> Vec<f64> {
         if !self.finite {
@@ -88,10 +88,10 @@ impl Natural {
 
     /// x and z of the nodes [m].
     fn positions(&self, statics: &mut StaticBeam, x: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let (system, now): (_, &Instant) = statics.beam().instant(x[x.len() - 1]);
+        let (system, now): (_, &TimeData) = statics.beam().instant(x[x.len() - 1]);
         let l = &system.layout;
         let last = (self.nodes - 1) as f64;
-        let line = |frame: Option<crate::discrete::instant::Frame>, free: &std::ops::Range<usize>, first: usize| {
+        let line = |frame: Option<crate::discrete::time_data::Frame>, free: &std::ops::Range<usize>, first: usize| {
             (0..self.nodes)
                 .map(|node| {
                     let carried = frame.map_or(0.0, |f| f.at(node as f64 / last).value);

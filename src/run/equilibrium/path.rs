@@ -1,13 +1,13 @@
 //! Along the path of equilibria.
 
-use super::along::Along;
+use super::arclength::Arclength;
 use super::natural::Natural;
 use super::predict::Trail;
 use super::state::{Stability, State};
 use super::{Event, Kind, Options, Path, rest, system};
 use crate::case::schema::Case;
 use crate::discrete::System;
-use crate::error::{At, Code, SolverFault};
+use crate::error::{self, At, Code, SolverFault};
 use crate::run::record::Control;
 use crate::sundials::{Kinsol, KinsolFailure, KinsolOptions, Solution};
 
@@ -34,8 +34,11 @@ const MOST_POINTS: usize = 5000;
 const FURTHEST: f64 = 100.0;
 
 /// Follows the equilibria of a case from rest to a share of its loads. `watch` sees every state and may end the path.
-pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> Control) -> Path {
-    follow_of(case, system(case, options.at_s), options, true, watch)
+///
+/// # Errors
+/// Those of [`System::new`]; a path that ends early has its fault.
+pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> Control) -> error::Result<Path> {
+    Ok(follow_of(case, system(case, options.at_s)?, options, true, watch))
 }
 
 /// The same of another static system of the case; whether its states hold is judged where that is wanted.
@@ -67,7 +70,7 @@ pub(super) fn follow_of(
     let n = y.len();
     let weights = weights(statics.system());
     let natural = Natural::of(&statics);
-    match Kinsol::new(Along::new(statics)) {
+    match Kinsol::new(Arclength::new(statics)) {
         Err(failure) => path.fault = Some(fault(0.0, &failure.what)),
         Ok(solver) => {
             let mut x = y;
@@ -127,7 +130,7 @@ pub(super) struct Follower<'a> {
     natural: Natural,
     /// States where stability may change: after a limit point, on a new branch.
     pub(super) bounds: Vec<usize>,
-    pub(super) solver: Kinsol<Along>,
+    pub(super) solver: Kinsol<Arclength>,
     pub(super) weights: Vec<f64>,
     pub(super) n: usize,
     options: Options,
@@ -341,9 +344,8 @@ impl Follower<'_> {
 
     fn lost(&self, share: f64) -> End {
         let points = self.path.states.len();
-        let what = format!(
-            "the path does not come to the share of the loads that is asked for: {points} points end at {share:.4}"
-        );
+        let what =
+            format!("the path does not come to the load factor that is asked for: {points} points end at {share:.4}");
         End(fault(share, &what))
     }
 
@@ -361,7 +363,7 @@ impl Follower<'_> {
     }
 }
 
-fn fault(share: f64, what: &str) -> SolverFault {
+pub(super) fn fault(share: f64, what: &str) -> SolverFault {
     SolverFault {
         code: Code::NoEquilibrium,
         at: At::LoadFactor(share),

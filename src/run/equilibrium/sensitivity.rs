@@ -15,7 +15,7 @@ pub struct Sensitivity {
     pub parameter: Parameter,
     /// Derivative of the scaled unknowns.
     pub y: Vec<f64>,
-    /// Derivative of each column of a state; of the share of the loads it is 0.
+    /// Derivative of each column of a state; of the load factor it is 0.
     pub row: Vec<f64>,
 }
 
@@ -36,7 +36,7 @@ pub fn differentiate(
     state: &State,
     parameters: &[Parameter],
 ) -> Result<Vec<Sensitivity>> {
-    let (mut statics, _) = rest(case, system(case, options.at_s));
+    let (mut statics, _) = rest(case, system(case, options.at_s)?);
     let mut values = vec![0.0; statics.pattern().entries()];
     let singular = || Error::Usage("the equilibrium has no derivatives: its tangent is singular".into());
     statics
@@ -49,7 +49,7 @@ pub fn differentiate(
         for (steps, weight) in STEPS {
             let value = parameter.value * (1.0 + steps * CHANGE);
             let case = parameter.changed(case, value)?;
-            let (other, _) = rest(&case, system(&case, options.at_s));
+            let (other, _) = rest(&case, system(&case, options.at_s)?);
             if other.len() != statics.len() {
                 let what = "the number of unknowns depends on it";
                 return Err(Error::Usage(format!("--sensitivity {}: {what}", parameter.pointer)));
@@ -98,7 +98,7 @@ fn by_parameter(statics: &StaticBeam, changed: &mut [(f64, f64, StaticBeam)], st
     Ok(sum)
 }
 
-/// Scaled unknowns in the scales of another system, with the share of the loads behind them.
+/// Scaled unknowns in the scales of another system, with the load factor behind them.
 fn restated(from: &StaticBeam, to: &StaticBeam, state: &State, y: impl Fn(usize) -> f64) -> Vec<f64> {
     let (old, new) = (&from.system().layout.scales, &to.system().layout.scales);
     let scaled = (0..old.len()).map(|k| y(k) * old[k] / new[k]);

@@ -1,13 +1,13 @@
 //! One state of equilibrium.
 
 use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
-use crate::discrete::ledger::{self, FLOWS};
-use crate::discrete::sample::{self, ColumnText, EnergyBalance};
-use crate::discrete::{Instant, System, Workspace};
+use crate::discrete::ledger;
+use crate::discrete::quantities::{Extremes, Look, Observable, Row};
+use crate::discrete::{System, TimeData, Workspace};
 use crate::run::record::Column;
 use crate::spectral;
 
-/// An equilibrium under a share of the loads.
+/// An equilibrium under a load factor.
 #[derive(Clone, Debug)]
 pub struct State {
     /// Share of the loads.
@@ -40,42 +40,38 @@ pub struct Stability {
     pub softest: Option<f64>,
 }
 
-/// Columns of a history that a state at rest has too.
-fn at_rest(system: &System) -> impl Iterator<Item = (usize, ColumnText)> {
-    let stored = ["axial_energy", "bending_energy", "bladder_energy"];
-    let figures = if system.fluid.is_some() { 8 } else { 4 };
-    let all = sample::columns(system).into_iter().enumerate();
-    all.filter(move |(k, (name, ..))| (1..figures).contains(k) || stored.contains(name))
+/// Quantities of a history that a state at rest has too.
+fn at_rest(system: &System) -> Vec<Observable> {
+    Observable::of(system).into_iter().filter(|one| one.at_rest()).collect()
 }
 
-/// What a [`State`]'s row holds, the share of the loads first.
+/// What a [`State`]'s row holds, the load factor first.
 pub fn columns(system: &System) -> Vec<Column> {
-    let share = ("load_factor", "1", "share of the loads");
-    let all = std::iter::once(share).chain(at_rest(system).map(|(_, text)| text));
-    all.map(|(name, unit, about)| Column {
-        name: name.into(),
-        unit,
-        about: about.into(),
-    })
-    .collect()
+    let share = Column {
+        name: "load_factor".into(),
+        unit: "1",
+        about: "load factor".into(),
+    };
+    let all = at_rest(system).into_iter().map(Column::from);
+    std::iter::once(share).chain(all).collect()
 }
 
 impl State {
-    /// Reads the unknowns with the share of the loads behind them.
+    /// Reads the unknowns with the load factor behind them.
     pub fn read(statics: &mut StaticBeam, x: &[f64]) -> Self {
         let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
         let zeros = vec![0.0; y.len()];
         let (system, now, w) = statics.beam().evaluate(share, y, &zeros);
-        let balance = EnergyBalance {
+        let look = Look {
+            system,
+            now,
+            w,
             stored: ledger::energies(system, now, w),
-            residual: 0.0,
+            at: Extremes::of(system, w),
         };
-        let mut history = vec![];
-        let none = vec![0.0; FLOWS.len()];
-        sample::row(system, now, share, w, &balance, &none, &mut history);
-        let row = std::iter::once(share)
-            .chain(at_rest(system).map(|(k, _)| history[k]))
-            .collect();
+        let mut read = Row::new(at_rest(system));
+        read.take(share, &look, &[], 0.0);
+        let row = std::iter::once(share).chain(read.values().iter().copied()).collect();
         Self {
             share,
             y: y.to_vec(),
@@ -88,7 +84,7 @@ impl State {
 }
 
 impl Stability {
-    /// Of a state, scaled unknowns `y` under a share of the loads; none where the eigenvalues were not found.
+    /// Of a state, scaled unknowns `y` under a load factor; none where the eigenvalues were not found.
     pub fn of(statics: &mut StaticBeam, share: f64, y: &[f64]) -> Option<Self> {
         let mut values = vec![0.0; statics.pattern().entries()];
         statics
@@ -103,7 +99,7 @@ impl Stability {
                 mass[unknown] = of_node * l.scales[unknown] / l.row_scales[unknown];
             }
         }
-        let found = spectral::softest(statics.pattern(), &values, &mass).ok()?;
+        let found = spectral::lowest(statics.pattern(), &values, &mass).ok()?;
         Some(Self {
             unstable: found.iter().filter(|mu| mu.re < 0.0).count(),
             softest: found.first().map(|mu| mu.re),
@@ -113,7 +109,7 @@ impl Stability {
 
 /// The scaled unknowns of another system of the same case in the state `from` of a beam at rest under the loads at `share`:
 /// displacements, areas, junction and turbine pressures; what is algebraic besides is a guess, velocities are zero.
-pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &Instant) -> Vec<f64> {
+pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &TimeData) -> Vec<f64> {
     let zeros = vec![0.0; y.len()];
     let (_, _, w) = from.evaluate(share, y, &zeros);
     let mut z = vec![0.0; to.layout.len];
@@ -125,7 +121,7 @@ pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &Ins
     z
 }
 
-fn displacements(w: &Workspace<f64>, to: &System, now: &Instant, z: &mut [f64]) {
+fn displacements(w: &Workspace<f64>, to: &System, now: &TimeData, z: &mut [f64]) {
     let l = &to.layout;
     let last = (to.mesh.nodes - 1) as f64;
     let lines = [

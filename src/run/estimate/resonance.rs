@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::small::{self, SmallMode};
 use super::words::LARGE;
 use crate::case::{Rotation, Signal, Translation};
 use crate::discrete::System;
+use crate::discrete::straight::meshed::{self, SmallMode};
 use crate::model::loads::LoadKind;
 
 /// Vibrations that are looked at: the first are computed, the others follow from the spacing of their wave numbers.
@@ -54,7 +54,7 @@ pub fn nearest(system: &System) -> Option<Near> {
     let length = system.model.length;
     let unit = (s.bending_stiffness / s.mass_per_length).sqrt() / (length * length);
     let fine = (system.mesh.h / length).powi(2);
-    let modes = wave_numbers(&small::bending(&system.model.ends));
+    let modes = wave_numbers(&meshed::bending(&system.model.ends));
     let mut worst: Option<Near> = None;
     for drive_hz in tones(system)[0].iter().copied() {
         let drive = TAU * drive_hz;

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Unstable;
 use super::resonance::Near;
+use crate::discrete::quantities::Interest;
 use crate::discrete::resolution;
 use crate::error::Code;
 use crate::run::summary::Estimate;
@@ -59,7 +60,7 @@ pub struct Estimated {
 #[derive(Clone, Debug)]
 pub struct Row {
     /// The quantity.
-    pub name: &'static str,
+    pub name: Interest,
     /// Errors by steps and by the mesh, relative to its largest value.
     pub errors: [f64; 2],
     /// Part that is phase of one free vibration.
@@ -103,7 +104,7 @@ impl Estimated {
         Some(Self {
             time: worst.errors[0],
             space: worst.errors[1],
-            of: worst.name.into(),
+            of: worst.name.to_string(),
             phase: worst.phase,
             vibrations: worst.vibrations,
             shift_rad: worst.shift,
@@ -137,7 +138,7 @@ impl Estimated {
                     worst.vibrations, worst.shift
                 ),
             ),
-            false => ("values", self.because(large.iter().any(|row| row.name.ends_with("_j")))),
+            false => ("values", self.because(large.iter().any(|row| row.name.unit() == "J"))),
         };
         let [time, space] = worst.errors;
         let (by, other) = match time > space {

@@ -10,7 +10,7 @@ pub mod verdict;
 
 use std::f64::consts::TAU;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::krylov;
 use super::periodic::{Cycle, Scene};
@@ -26,7 +26,7 @@ const DEAD: f64 = 1e-9;
 const MOST_VECTORS: usize = 600;
 
 /// One multiplier; of a complex pair the one with positive angle.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Multiplier {
     /// Real part.
     pub re: f64,
@@ -49,7 +49,7 @@ pub struct Multiplier {
 }
 
 /// What is known of a cycle's stability.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Floquet {
     /// Period [s].
     pub period_s: f64,
@@ -78,7 +78,7 @@ pub fn multipliers(scene: &Scene, cycle: &mut Cycle, count: usize) -> Floquet {
     let most = scene.dimension().min(MOST_VECTORS);
     let found = krylov::largest(
         |v| {
-            cycle.march.carry(v);
+            cycle.march.propagate(v);
             scene.admit(v);
         },
         &start,

@@ -1,7 +1,7 @@
 //! What a disturbance is made of: bending modes of the dry beam, motion along it, fluid.
 
 use nalgebra::{DMatrix, SymmetricEigen};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::case::{Rotation, Translation};
 use crate::discrete::System;
@@ -10,7 +10,7 @@ use crate::discrete::System;
 const MODES: usize = 8;
 
 /// What most of the energy of a disturbance is in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
     /// A bending mode of the dry beam, counted from 1.

@@ -1,9 +1,10 @@
 //! Stable or not, and by what, in words.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Multiplier;
 use super::shape::Part;
+use crate::run::null;
 
 /// Growth over a period below which a disturbance counts as neither growing nor decaying: what the steps' own error makes of
 /// a multiplier of one.
@@ -12,7 +13,7 @@ const NEUTRAL: f64 = 1e-5;
 const REAL: f64 = 1e-6;
 
 /// Whether disturbances die.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stability {
     /// All of them.
@@ -24,11 +25,12 @@ pub enum Stability {
 }
 
 /// What is to be said of a cycle.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     /// In one word.
     pub stability: Stability,
     /// Growth rate of the largest multiplier [1/s].
+    #[serde(deserialize_with = "null::number")]
     pub growth_per_s: f64,
     /// In a sentence.
     pub words: String,

@@ -1,13 +1,13 @@
 //! What a mode does.
 
 use nalgebra::Complex;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::shape::Shape;
 use crate::spectral::Pair;
 
 /// What becomes of a mode once it is there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
     /// Swings, and does not grow.

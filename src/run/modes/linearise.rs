@@ -55,7 +55,7 @@ pub fn linearise(case: &Case, at: f64, state: Option<&[f64]>) -> Result<Linearis
     if let (None, Some(start)) = (state, &case.start.equilibrium) {
         return at_equilibrium(case, start.loads_at_s);
     }
-    let mut dae = held(case, at);
+    let mut dae = held(case, at)?;
     let (system, now) = dae.instant(at);
     let y = state.map_or_else(|| start::state(system, case, now), <[f64]>::to_vec);
     about(dae, at, y)
@@ -66,7 +66,7 @@ pub fn linearise(case: &Case, at: f64, state: Option<&[f64]>) -> Result<Linearis
 /// # Errors
 /// As [`linearise`], and [`Error::Solver`] when there is no equilibrium.
 pub fn at_equilibrium(case: &Case, at: f64) -> Result<Linearised> {
-    let mut dae = held(case, at);
+    let mut dae = held(case, at)?;
     let at_rest = vec![0.0; dae.len()];
     let y = equilibrium::at_start(case, at, &mut dae, &at_rest).map_err(|mut fault| {
         fault.at = At::Time(at);
@@ -76,12 +76,12 @@ pub fn at_equilibrium(case: &Case, at: f64) -> Result<Linearised> {
 }
 
 /// Everything that a case describes, signals held at an instant [s].
-fn held(case: &Case, at: f64) -> BeamDae {
-    let mut model = Model::whole(case, true);
+fn held(case: &Case, at: f64) -> Result<BeamDae> {
+    let mut model = Model::whole(case, true)?;
     model.freeze(at);
-    let mut dae = BeamDae::new(System::with(case, model));
-    dae.look_within(at);
-    dae
+    let mut dae = BeamDae::new(System::with(case, model)?);
+    dae.enter_smooth_interval(at);
+    Ok(dae)
 }
 
 fn about(mut dae: BeamDae, at: f64, mut y: Vec<f64>) -> Result<Linearised> {

@@ -15,9 +15,11 @@ pub mod sensitivity;
 pub mod shape;
 
 use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
 use crate::error::{At, Code, Error, Result, SolverFault};
+use crate::run::null;
 use crate::spectral::{self, Failure, Options, Pair, Pencil};
 
 pub use kind::Kind;
@@ -38,11 +40,13 @@ pub struct Plan {
 }
 
 /// The same mode with the fluid held or free.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// Frequency [Hz].
+    #[serde(deserialize_with = "null::number")]
     pub frequency_hz: f64,
     /// Likeness of the shapes, [E33].
+    #[serde(deserialize_with = "null::number")]
     pub likeness: f64,
 }
 

@@ -4,7 +4,7 @@ use nalgebra::Complex;
 
 use super::linearise::Linearised;
 use crate::dae::dual::Dual;
-use crate::discrete::{Instant, Workspace, recipe};
+use crate::discrete::{TimeData, Workspace, residual};
 
 /// Amplitudes of a mode: real parts cos, imaginary parts minus sin of the phase at t = 0.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,14 +25,14 @@ const PRESSURE: f64 = 1000.0;
 /// Shapes from eigenvectors, by the derivative of the model along them.
 pub struct Shapes<'a> {
     of: &'a Linearised,
-    now: Instant,
+    now: TimeData,
     workspace: Workspace<Dual<2>>,
 }
 
 impl<'a> Shapes<'a> {
     /// For the vectors of a linearisation.
     pub fn new(of: &'a Linearised) -> Self {
-        let mut now = Instant::new(of.system());
+        let mut now = TimeData::new(of.system());
         now.update(of.system(), of.clock());
         Self {
             of,
@@ -56,7 +56,7 @@ impl<'a> Shapes<'a> {
             derivative: [0.0; 2],
         };
         let yp = vec![at_rest; x.len()];
-        recipe::evaluate(system, &self.now, &y, &yp, &mut self.workspace);
+        residual::evaluate(system, &self.now, &y, &yp, &mut self.workspace);
         let complex = |values: &[Dual<2>]| -> Vec<Complex<f64>> {
             let parts = values.iter().map(|v| Complex::new(v.derivative[0], v.derivative[1]));
             parts.collect()

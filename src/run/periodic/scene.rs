@@ -6,8 +6,8 @@ use crate::dae::BeamDae;
 use crate::discrete::{System, start};
 use crate::error::{At, Code, Error, Result, SolverFault};
 use crate::model::Model;
-use crate::onestep::march::Impasse;
-use crate::onestep::{March, Method, OneStep, OneStepOptions};
+use crate::onestep::step_map::StepError;
+use crate::onestep::{Method, OneStep, OneStepOptions, StepMap};
 use crate::run::drive::{Drive, drive, settled};
 use crate::sundials::{Absolute, StartOptions, consistent_start};
 
@@ -15,6 +15,9 @@ use crate::sundials::{Absolute, StartOptions, consistent_start};
 const LEAST_STEPS: f64 = 32.0;
 /// Steps of a period at most: what asks for more is no cycle, but a motion that breaks up.
 const MOST_STEPS: usize = 5000;
+
+/// Method of the steps.
+pub const METHOD: Method = Method::Esdirk46;
 
 /// A case in the long run: everything that it describes, signals without their starts, a period.
 #[derive(Clone, Debug)]
@@ -40,31 +43,31 @@ impl Scene {
     /// motion can do without, a disturbance may grow from.
     ///
     /// # Errors
-    /// A case without a period, see [`drive`].
+    /// A case without a period, see [`drive`]; those of [`System::new`].
     pub fn new(case: &Case, period: Option<f64>) -> Result<Self> {
-        let mut model = whole(case);
+        let mut model = whole(case)?;
         let drive = drive(case, &model, period)?;
         model.replace_signals(settled, settled);
-        Ok(Self::of(case, model, drive))
+        Self::of(case, model, drive)
     }
 
-    /// Another model of the case, its signals settled.
-    pub fn of(case: &Case, model: Model, drive: Drive) -> Self {
-        let system = System::with(case, model);
-        Self {
+    /// Another model of the case, its signals settled; refused as by [`System::new`].
+    pub fn of(case: &Case, model: Model, drive: Drive) -> Result<Self> {
+        let system = System::with(case, model)?.accepted(case)?;
+        Ok(Self {
             guess: guess(&system, case),
             conserved: conserved(&system),
             system,
             drive,
             rtol: case.solver.rtol,
-            method: Method::Esdirk46,
-        }
+            method: METHOD,
+        })
     }
 
     /// The equations, looking at signals as they are in the long run.
     pub fn dae(&self) -> BeamDae {
         let mut dae = BeamDae::new(self.system.clone());
-        dae.look_within(0.5 * self.drive.period);
+        dae.enter_smooth_interval(0.5 * self.drive.period);
         dae
     }
 
@@ -72,10 +75,10 @@ impl Scene {
     ///
     /// # Errors
     /// When the integrator cannot follow the motion for a period.
-    pub fn map(&self, dae: BeamDae, y: &[f64]) -> std::result::Result<March<BeamDae>, Impasse> {
+    pub fn map(&self, dae: BeamDae, y: &[f64]) -> std::result::Result<StepMap<BeamDae>, StepError> {
         let end = self.drive.period;
         let (mut dae, mut y, mut yp) = (dae, y.to_vec(), vec![0.0; y.len()]);
-        consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default()).map_err(|failure| Impasse {
+        consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default()).map_err(|failure| StepError {
             time: 0.0,
             what: failure.to_string(),
         })?;
@@ -86,22 +89,22 @@ impl Scene {
             max_step: Some(end / LEAST_STEPS),
             ..OneStepOptions::default()
         };
-        let impasse = |failure: Box<crate::sundials::IdaFailure>| Impasse {
+        let error = |failure: Box<crate::sundials::IdaFailure>| StepError {
             time: failure.time,
             what: failure.to_string(),
         };
-        let mut solver = OneStep::new(dae, 0.0, &y, &yp, &options).map_err(impasse)?;
+        let mut solver = OneStep::new(dae, 0.0, &y, &yp, &options).map_err(error)?;
         let mut times = vec![0.0];
         while solver.time() < end {
-            times.push(solver.step(end).map_err(impasse)?.time);
+            times.push(solver.step(end).map_err(error)?.time);
             if times.len() > MOST_STEPS {
-                return Err(Impasse {
+                return Err(StepError {
                     time: solver.time(),
                     what: format!("the motion asks for more than {MOST_STEPS} steps a period"),
                 });
             }
         }
-        March::new(solver.into_dae(), self.method, times)
+        StepMap::new(solver.into_dae(), self.method, times)
     }
 
     /// Weighted root mean square of a change of state: 1 is the tolerance.
@@ -171,18 +174,26 @@ impl Scene {
     }
 }
 
+/// The system of everything that a case describes.
+///
+/// # Errors
+/// Those of [`System::new`].
+pub fn system(case: &Case) -> Result<System> {
+    System::with(case, whole(case)?)?.accepted(case)
+}
+
 /// Everything that a case describes; with inertia unless that is left out by name.
-pub fn whole(case: &Case) -> Model {
+pub fn whole(case: &Case) -> Result<Model> {
     let off = matches!(&case.effects, Effects::Chosen(chosen) if chosen.solid_inertia == Choice::Off);
     Model::whole(case, !off)
 }
 
 /// What happened, as the house says it.
-pub fn fault(impasse: Impasse) -> Error {
+pub fn fault(error: StepError) -> Error {
     Error::Solver(Box::new(SolverFault {
         code: Code::NoCycle,
-        at: At::Time(impasse.time),
-        what: impasse.what,
+        at: At::Time(error.time),
+        what: error.what,
         unknown: None,
         cause: Some("the motion could not be followed over a period".into()),
         hint: Some(
@@ -194,7 +205,7 @@ pub fn fault(impasse: Impasse) -> Error {
 /// The start of the case, as if its ends were at rest where they are.
 fn guess(system: &System, case: &Case) -> Vec<f64> {
     let mut dae = BeamDae::new(system.clone());
-    dae.look_within(1.0);
+    dae.enter_smooth_interval(1.0);
     let (system, now) = dae.instant(0.0);
     let mut y = start::state(system, case, now);
     let l = &system.layout;

@@ -3,7 +3,7 @@
 //! Tolerances refer to the sizes of displacements and pressures. What a cycle puts in and takes out may be a hundredth of what it
 //! stores, and then steps that are good enough for the motion are not for that difference.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::record;
 use super::scene::Scene;
@@ -32,7 +32,7 @@ pub struct Settled {
 }
 
 /// That a cycle was found again.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Refined {
     /// Tolerance of the case.
     pub from_rtol: f64,

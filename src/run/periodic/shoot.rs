@@ -1,11 +1,11 @@
 //! The steady cycle by shooting: Newton's iteration on the period map.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::scene::Scene;
 use crate::dae::BeamDae;
-use crate::onestep::March;
-use crate::onestep::march::{Impasse, MarchWork};
+use crate::onestep::StepMap;
+use crate::onestep::step_map::{StepError, StepMapWork};
 use crate::run::krylov;
 use crate::sundials::{StartOptions, consistent_start};
 
@@ -31,13 +31,13 @@ pub struct Cycle {
     /// Their rates [1/s].
     pub yp: Vec<f64>,
     /// The period map around it, its steps gone.
-    pub march: March<BeamDae>,
+    pub march: StepMap<BeamDae>,
     /// How it was found.
     pub search: Search,
 }
 
 /// How a cycle was found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Search {
     /// Periods gone: one a Newton step, more where a step was shortened or a start was sought by patience.
     pub periods: u64,
@@ -54,7 +54,7 @@ pub struct Search {
 }
 
 /// Work of several marches.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Total {
     /// Steps.
     pub steps: u64,
@@ -72,7 +72,7 @@ pub struct Total {
 
 impl Total {
     /// Adds the work of a march.
-    pub fn add(&mut self, work: MarchWork) {
+    pub fn add(&mut self, work: StepMapWork) {
         self.steps += work.steps;
         self.residual_evaluations += work.residual_evaluations;
         self.jacobian_evaluations += work.jacobian_evaluations;
@@ -93,7 +93,7 @@ impl Total {
 ///
 /// # Errors
 /// Where and why no cycle was found.
-pub fn shoot(scene: &Scene, from: Option<&[f64]>) -> Result<Cycle, Impasse> {
+pub fn shoot(scene: &Scene, from: Option<&[f64]>) -> Result<Cycle, StepError> {
     let mut search = Search::default();
     let begin = from.unwrap_or(&scene.guess);
     match attempt(scene, begin.to_vec(), &mut search) {
@@ -106,7 +106,7 @@ pub fn shoot(scene: &Scene, from: Option<&[f64]>) -> Result<Cycle, Impasse> {
 }
 
 /// The state after some periods.
-fn go_on(scene: &Scene, mut y: Vec<f64>, periods: usize, search: &mut Search) -> Result<Vec<f64>, Impasse> {
+fn go_on(scene: &Scene, mut y: Vec<f64>, periods: usize, search: &mut Search) -> Result<Vec<f64>, StepError> {
     let mut dae = scene.dae();
     for _ in 0..periods {
         let mut march = scene.map(dae, &y)?;
@@ -120,7 +120,7 @@ fn go_on(scene: &Scene, mut y: Vec<f64>, periods: usize, search: &mut Search) ->
     Ok(y)
 }
 
-fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Result<Cycle, Impasse> {
+fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Result<Cycle, StepError> {
     let mut march = scene.map(scene.dae(), &y)?;
     let mut fresh = false;
     let mut back = depart(scene, &mut march, &y, search)?;
@@ -129,7 +129,7 @@ fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Result<Cycle,
         let most = scene.dimension().min(MOST_DISTURBANCES);
         let (step, _) = krylov::solve(
             |v| {
-                march.carry(v);
+                march.propagate(v);
                 scene.admit(v);
             },
             &back,
@@ -167,15 +167,15 @@ fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Result<Cycle,
                         "Newton's steps no longer come nearer to one, at {size:.1e} of the tolerance"
                     )));
                 }
-                Err(impasse) => return Err(impasse),
+                Err(error) => return Err(error),
             }
         }
     }
     Err(lost(format!("none was reached in {ITERATIONS} Newton steps")))
 }
 
-fn lost(how: String) -> Impasse {
-    Impasse {
+fn lost(how: String) -> StepError {
+    StepError {
         time: 0.0,
         what: format!("no cycle was found: {how}"),
     }
@@ -186,7 +186,7 @@ fn move_by(y: &mut [f64], step: &[f64], part: f64) {
 }
 
 /// Goes one period; what the return differs from the departure by.
-fn depart(scene: &Scene, march: &mut March<BeamDae>, y: &[f64], search: &mut Search) -> Result<Vec<f64>, Impasse> {
+fn depart(scene: &Scene, march: &mut StepMap<BeamDae>, y: &[f64], search: &mut Search) -> Result<Vec<f64>, StepError> {
     let (mut end, mut yp) = (y.to_vec(), vec![0.0; y.len()]);
     search.periods += 1;
     march.go(&mut end, &mut yp)?;
@@ -195,10 +195,10 @@ fn depart(scene: &Scene, march: &mut March<BeamDae>, y: &[f64], search: &mut Sea
     Ok(back)
 }
 
-fn finish(scene: &Scene, march: March<BeamDae>, mut y: Vec<f64>, search: &Search) -> Result<Cycle, Impasse> {
+fn finish(scene: &Scene, march: StepMap<BeamDae>, mut y: Vec<f64>, search: &Search) -> Result<Cycle, StepError> {
     let mut yp = vec![0.0; y.len()];
     let mut dae = scene.dae();
-    consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default()).map_err(|failure| Impasse {
+    consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default()).map_err(|failure| StepError {
         time: 0.0,
         what: failure.to_string(),
     })?;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::discrete::quantities::{Group, Interest, Observable, Source};
 use crate::run::summary::Quantity;
 
 /// Derivatives with respect to one number of the case.
@@ -88,31 +89,14 @@ impl Track {
     }
 }
 
-/// Columns that are quantities by themselves, with their names as such.
-const PLAIN: [(&str, &str); 3] = [
-    ("tip_u1", "tip_u1_m"),
-    ("tip_u3", "tip_u3_m"),
-    ("tip_angle", "tip_angle_rad"),
-];
-
-/// What goes besides the harvest, with its sign in `H + D - P` ([`crate::run::energies`]).
-const SPENT: [(&str, f64); 6] = [
-    ("dissipated_bladders", 1.0),
-    ("dissipated_tubes", 1.0),
-    ("dissipated_rectifiers", 1.0),
-    ("dissipated_damping", 1.0),
-    ("work_formulation", -1.0),
-    ("work_reciprocity", -1.0),
-];
-/// Their sum with the harvest: followed for the efficiency, no quantity itself.
-const SPENT_NAME: &str = "spent";
-
 /// Follows a history and its derivatives; the quantities are those of [`crate::run::figures::Figures`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     window_start: f64,
     turbines: bool,
-    tracks: BTreeMap<String, Track>,
+    tracks: BTreeMap<Interest, Track>,
+    /// Of all that is spent, `H + D - P` ([`crate::run::energies`]): followed for the efficiency.
+    spent: Track,
 }
 
 impl Figures {
@@ -122,55 +106,58 @@ impl Figures {
             window_start,
             turbines,
             tracks: BTreeMap::new(),
+            spent: Track::default(),
         }
     }
 
-    /// Takes one instant: `at` gives a column's value and its derivative, `None` where there is no such column.
-    pub fn take(&mut self, t: f64, at: impl Fn(&str) -> Option<[f64; 2]>) {
+    /// Takes one instant: `at` gives a quantity's value and its derivative, `None` where there is no such column.
+    pub fn take(&mut self, t: f64, at: impl Fn(Observable) -> Option<[f64; 2]>) {
         let in_window = t >= self.window_start;
-        let mut track = |name: &str, now: [f64; 2]| match self.tracks.get_mut(name) {
-            Some(track) => track.take(t, now, in_window),
-            None => self.tracks.entry(name.into()).or_default().take(t, now, in_window),
+        let add = |sum: [f64; 2], sign: f64, of: Observable| {
+            let [value, slope] = at(of).unwrap_or_default();
+            [sum[0] + sign * value, sum[1] + sign * slope]
         };
-        for (column, name) in PLAIN {
-            if let Some(now) = at(column) {
-                track(name, now);
+        let sum = |group: Group| Observable::grouped(group).fold([0.0; 2], |sum, of| add(sum, 1.0, of));
+        for one in Interest::of([true, self.turbines]) {
+            let now = match (one.source(), one.columns()) {
+                (Source::Motion(_), [column]) => at(*column),
+                (Source::Motion(_), columns) => {
+                    let all = columns.iter().filter_map(|column| at(*column));
+                    let larger = all.reduce(|a, b| if b[0].abs() > a[0].abs() { b } else { a });
+                    larger.map(|[value, slope]| [value.abs(), slope * value.signum()])
+                }
+                (Source::Energy(group), _) => Some(sum(group)),
+                (Source::Efficiency, _) => None,
+            };
+            if let Some(now) = now {
+                self.tracks.entry(one).or_default().take(t, now, in_window);
             }
         }
-        if let (Some(high), Some(low)) = (at("max_pressure"), at("min_pressure")) {
-            let larger = if high[0].abs() >= low[0].abs() { high } else { low };
-            track("max_pressure_pa", [larger[0].abs(), larger[1] * larger[0].signum()]);
-        }
-        let works = ["work_loads", "work_ends", "work_ports"].into_iter().filter_map(&at);
-        let input = works.fold([0.0; 2], |sum, work| [sum[0] + work[0], sum[1] + work[1]]);
-        track("input_energy_j", input);
-        if let Some(now) = at("harvested").filter(|_| self.turbines) {
-            track("harvested_energy_j", now);
-            let parts = SPENT.iter().filter_map(|(column, sign)| Some((at(column)?, sign)));
-            let spent = parts.fold(now, |sum, (part, sign)| {
-                [sum[0] + sign * part[0], sum[1] + sign * part[1]]
-            });
-            track(SPENT_NAME, spent);
+        if self.turbines {
+            let spent = Observable::grouped(Group::Lost).fold(sum(Group::Harvested), |sum, of| add(sum, 1.0, of));
+            let spent = Observable::grouped(Group::Added).fold(spent, |sum, of| add(sum, -1.0, of));
+            self.spent.take(t, spent, in_window);
         }
     }
 
     /// The derivatives by quantity, per unit of the number.
     pub fn quantities(&self) -> BTreeMap<String, Quantity> {
-        let mut all = BTreeMap::new();
-        for (name, track) in self.tracks.iter().filter(|(name, _)| *name != SPENT_NAME) {
-            let energy = name.ends_with("_j");
-            all.insert(name.clone(), if energy { track.energy() } else { track.sizes() });
-        }
-        let track = |name: &str| self.tracks.get(name);
-        if let (Some(harvested), Some(input), Some(spent)) =
-            (track("harvested_energy_j"), track("input_energy_j"), track(SPENT_NAME))
-        {
+        let of = |(one, track): (&Interest, &Track)| {
+            let quantity = match one.source() {
+                Source::Energy(_) => track.energy(),
+                _ => track.sizes(),
+            };
+            (one.name().to_string(), quantity)
+        };
+        let mut all: BTreeMap<_, _> = self.tracks.iter().map(of).collect();
+        let track = |of: Interest| self.tracks.get(&of);
+        if let (Some(harvested), Some(input)) = (track(Interest::HarvestedEnergy), track(Interest::InputEnergy)) {
             let efficiency = Quantity {
                 last: ratio(harvested.last, input.last),
-                window: ratio(harvested.increment(), spent.increment()),
+                window: ratio(harvested.increment(), self.spent.increment()),
                 ..Quantity::default()
             };
-            all.insert("efficiency".into(), efficiency);
+            all.insert(Interest::Efficiency.name().into(), efficiency);
         }
         all
     }

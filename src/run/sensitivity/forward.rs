@@ -9,16 +9,13 @@ use super::figures::{Figures, Sensitivity};
 use super::kept::Kept;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
-use crate::dae::{BeamDae, Dae as _, Neighbours};
-use crate::discrete::{ledger, sample, start};
+use crate::dae::{BeamDae, Dae as _, PerturbedSystems};
+use crate::discrete::quantities::{Extremes, Look, Observable, Read, Row};
+use crate::discrete::{ledger, start};
 use crate::error::{At, Code, Error, Result, SolverFault};
 use crate::run::equilibrium;
-use crate::run::record::Column;
 use crate::run::schedule::{self, Stop};
 use crate::sundials::{Ida, IdaFailure, consistent_sensitivities};
-
-/// Columns of the history of which no derivative is given: time, and the integrator's own error.
-const WITHOUT: [&str; 2] = ["t", "energy_residual"];
 
 /// Sensitivities of a run to some numbers of its case.
 pub struct Forward<'a> {
@@ -27,10 +24,8 @@ pub struct Forward<'a> {
     cases: Vec<[Case; 4]>,
     /// Their stops.
     stops: Vec<[Vec<Stop>; 4]>,
-    /// Places and names of the columns of the history that are differentiated; the first `instant` are read off a state, the others
-    /// are integrals.
-    columns: Vec<(usize, &'static str)>,
-    instant: usize,
+    /// The quantities of the history that are differentiated.
+    columns: Vec<Observable>,
     s: Vec<Vec<f64>>,
     sp: Vec<Vec<f64>>,
     /// Derivatives of the integrals up to the last restart.
@@ -53,7 +48,7 @@ impl<'a> Forward<'a> {
     /// # Errors
     /// [`Error::Usage`] when a change of a number changes the unknowns or the number of switching times.
     pub fn new(case: &Case, dae: BeamDae, parameters: &'a [Parameter]) -> Result<(Self, BeamDae)> {
-        let (mut neighbours, mut all_cases, mut all_stops) = (vec![], vec![], vec![]);
+        let (mut perturbed, mut all_cases, mut all_stops) = (vec![], vec![], vec![]);
         let own = schedule::stops(case, &dae.system().model);
         for parameter in parameters {
             let refuse = |what: &str| {
@@ -63,7 +58,7 @@ impl<'a> Forward<'a> {
                 ))
             };
             let like = |case: &Case| {
-                let system = dae.system().like(case);
+                let system = dae.system().like(case)?;
                 system.ok_or_else(|| refuse("changes which unknowns there are"))
             };
             let [a, b, c, d] = STEPS.map(|(step, _)| parameter.changed(case, parameter.value * (1.0 + step * CHANGE)));
@@ -77,22 +72,13 @@ impl<'a> Forward<'a> {
                     "changes the order of switching times, or moves one past the end of the run",
                 ));
             }
-            neighbours.push(Neighbours::new(&dae, systems));
+            perturbed.push(PerturbedSystems::new(&dae, systems));
             all_cases.push(cases);
             all_stops.push(stops);
         }
         let count = parameters.len();
-        let all = sample::columns(dae.system());
-        let columns: Vec<_> = all
-            .iter()
-            .map(|c| c.0)
-            .enumerate()
-            .filter(|(_, name)| !WITHOUT.contains(name))
-            .collect();
-        let instant = columns
-            .iter()
-            .position(|(_, name)| *name == "work_loads")
-            .unwrap_or(columns.len());
+        let columns = Observable::of(dae.system()).into_iter();
+        let columns: Vec<_> = columns.filter(|one| one.has_derivative()).collect();
         let turbines = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
         let window_start = case.time.end_s - case.time.window() * (1.0 + schedule::SAME);
         let forward = Self {
@@ -100,22 +86,19 @@ impl<'a> Forward<'a> {
             cases: all_cases,
             stops: all_stops,
             columns,
-            instant,
             s: vec![vec![0.0; dae.len()]; count],
             sp: vec![vec![0.0; dae.len()]; count],
             carried: vec![vec![0.0; dae.integrals()]; count],
             figures: vec![Figures::new(window_start, turbines); count],
             row: vec![],
         };
-        Ok((forward, dae.with_neighbours(neighbours)))
+        Ok((forward, dae.with_perturbed(perturbed)))
     }
 
     /// Names of the columns that are recorded, units included; a derivative is per unit of the number that its pointer names.
-    pub fn names(&self, columns: &[Column]) -> Vec<String> {
+    pub fn names(&self) -> Vec<String> {
         let of = |parameter: &Parameter| -> Vec<String> {
-            let name = |&(place, name): &(usize, &str)| {
-                format!("d {name}/d {} [{} per unit]", parameter.pointer, columns[place].unit)
-            };
+            let name = |one: &Observable| format!("d {}/d {} [{} per unit]", one.name(), parameter.pointer, one.unit());
             self.columns.iter().map(name).collect()
         };
         let names = self.parameters.iter().flat_map(of);
@@ -124,9 +107,9 @@ impl<'a> Forward<'a> {
 
     /// Lets the changed systems look at signals in their own smooth interval before stop number `stop`.
     fn look(&self, dae: &mut BeamDae, stop: usize) {
-        for (neighbours, stops) in dae.neighbours_mut().iter_mut().zip(&self.stops) {
-            for (beam, stops) in neighbours.beams_mut().iter_mut().zip(stops) {
-                beam.look_within(middle(stops, stop));
+        for (perturbed, stops) in dae.perturbed_mut().iter_mut().zip(&self.stops) {
+            for (beam, stops) in perturbed.beams_mut().iter_mut().zip(stops) {
+                beam.enter_smooth_interval(middle(stops, stop));
             }
         }
     }
@@ -134,8 +117,8 @@ impl<'a> Forward<'a> {
     /// Sensitivities at t = 0 of the differential unknowns: of the state from which the run starts.
     pub fn begin(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverFault> {
         self.look(dae, 0);
-        for ((neighbours, cases), s) in dae.neighbours_mut().iter_mut().zip(&self.cases).zip(&mut self.s) {
-            neighbours.slope(s, |j, beam, out| {
+        for ((perturbed, cases), s) in dae.perturbed_mut().iter_mut().zip(&self.cases).zip(&mut self.s) {
+            perturbed.slope(s, |j, beam, out| {
                 let case = &cases[j];
                 let (system, now) = beam.instant(0.0);
                 let mut state = start::state(system, case, now);
@@ -249,19 +232,19 @@ impl<'a> Forward<'a> {
         let after = integrands(dae, t, state);
         let differential = dae.differential().to_vec();
         let mut restated = vec![0.0; differential.len()];
-        for (k, neighbours) in dae.neighbours_mut().iter_mut().enumerate() {
+        for (k, perturbed) in dae.perturbed_mut().iter_mut().enumerate() {
             let stops = &self.stops[k];
             let mut moved = [0.0];
-            let never = neighbours.slope(&mut moved, |j, _, out| {
+            let never = perturbed.slope(&mut moved, |j, _, out| {
                 out[0] = stops[j][stop].t;
                 Ok::<(), std::convert::Infallible>(())
             });
             let never = never.and_then(|()| {
-                neighbours.slope(&mut restated, |j, beam, out| {
+                perturbed.slope(&mut restated, |j, beam, out| {
                     let (change, own) = (STEPS[j].0 * CHANGE, stops[j][stop].t);
                     let from = moved_by([change, own - t], [&before.state, &before.rates, &before.s[k]]);
                     out.copy_from_slice(&from);
-                    beam.look_within(middle(&stops[j], stop));
+                    beam.enter_smooth_interval(middle(&stops[j], stop));
                     beam.switch(own, middle(&stops[j], stop + 1), out);
                     out.iter_mut().zip(&from).for_each(|(out, from)| *out -= from);
                     Ok(())
@@ -284,16 +267,16 @@ impl<'a> Forward<'a> {
     /// Derivatives of what is done in no time at a switch, between states that each of the changed systems has at its own time.
     fn jump(&mut self, dae: &mut BeamDae, stop: usize, t: f64, before: &Before, state: [&[f64]; 2]) {
         let mut jumped = vec![0.0; dae.integrals()];
-        for (k, neighbours) in dae.neighbours_mut().iter_mut().enumerate() {
+        for (k, perturbed) in dae.perturbed_mut().iter_mut().enumerate() {
             let stops = &self.stops[k];
             let (left, right) = (&before.s[k], &self.s[k]);
-            let never = neighbours.slope(&mut jumped, |j, beam, out| {
+            let never = perturbed.slope(&mut jumped, |j, beam, out| {
                 let (change, own) = (STEPS[j].0 * CHANGE, stops[j][stop].t);
                 let by = [change, own - t];
                 let from = moved_by(by, [&before.state, &before.rates, left]);
                 let to = moved_by(by, [state[0], state[1], right]);
                 out.fill(0.0);
-                beam.look_within(middle(&stops[j], stop + 1));
+                beam.enter_smooth_interval(middle(&stops[j], stop + 1));
                 beam.jump(own, (&from, middle(&stops[j], stop)), &to, out);
                 Ok::<(), std::convert::Infallible>(())
             });
@@ -309,22 +292,27 @@ impl<'a> Forward<'a> {
         self.look(dae, stop + 1);
     }
 
-    /// Takes a sample at a state within the last step, whose row of the history is `values`; returns the row of derivatives.
+    /// Takes a sample at a state within the last step, whose row of the history is `row`; returns the row of derivatives.
     pub fn sample(
         &mut self,
         ida: &mut Ida<BeamDae>,
         t: f64,
         [y, yp]: [&[f64]; 2],
-        values: &[f64],
+        row: &Row,
     ) -> std::result::Result<&[f64], Box<IdaFailure>> {
         let mut integrals = self.carried.clone();
         self.read(ida, t, &mut integrals)?;
         let dae = ida.dae_mut();
         let (system, _, w) = dae.evaluate(t, y, yp);
-        let extremes = sample::extremes(system, w);
+        let at = Extremes::of(system, w);
+        let reads = self.columns.iter().filter_map(|one| match one.read() {
+            Read::State(read) => Some(read),
+            _ => None,
+        });
+        let reads: Vec<fn(&Look) -> f64> = reads.collect();
         self.row.clear();
         self.row.push(t);
-        let mut slopes = vec![0.0; self.instant];
+        let mut slopes = vec![0.0; reads.len()];
         for (k, (parameter, integrals)) in self.parameters.iter().zip(&integrals).enumerate() {
             dae.read_slope(
                 k,
@@ -334,20 +322,29 @@ impl<'a> Forward<'a> {
                 &mut slopes,
                 |system, now, rates, w, out| {
                     ledger::complete(system, now, rates, w);
-                    sample::instantaneous(system, now, w, &extremes, out);
+                    let stored = ledger::energies(system, now, w);
+                    let look = Look {
+                        system,
+                        now,
+                        w,
+                        stored,
+                        at,
+                    };
+                    out.iter_mut().zip(&reads).for_each(|(out, read)| *out = read(&look));
                 },
             );
-            let flows = ledger::FLOWS
-                .iter()
-                .filter(|f| f.energy_sign() != 0.0)
-                .map(|f| integrals[*f as usize]);
+            let mut slopes = slopes.iter().copied();
+            let of = |one: &Observable| match one.read() {
+                Read::Integral(of) => of(integrals),
+                _ => slopes.next().unwrap_or(0.0),
+            };
             let first = self.row.len();
-            self.row
-                .extend(slopes.iter().copied().chain(flows).map(|slope| slope / parameter.value));
-            let (columns, row) = (&self.columns, &self.row[first..]);
-            self.figures[k].take(t, |name| {
-                let i = columns.iter().position(|c| c.1 == name)?;
-                Some([values[columns[i].0], row[i]])
+            let derivatives = self.columns.iter().map(of).map(|slope| slope / parameter.value);
+            self.row.extend(derivatives);
+            let (columns, derivatives) = (&self.columns, &self.row[first..]);
+            self.figures[k].take(t, |which| {
+                let i = columns.iter().position(|one| *one == which)?;
+                Some([row.get(which)?, derivatives[i]])
             });
         }
         Ok(&self.row)

@@ -1,13 +1,13 @@
 //! Errors of a point: in time, in space, together.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::norms::Norms;
 use super::reference::{Limit, Temporal};
 use super::trial::Trial;
 
 /// Relative errors of one signal.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
     /// Against the best run on the same mesh.
     pub temporal: Option<Norms>,

@@ -1,6 +1,8 @@
 //! What a cloud of points in the plane of error and time says.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+
+use crate::run::null;
 
 /// A point: error, cost, and the tolerance that made it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +32,7 @@ pub fn front(marks: &[Mark]) -> Vec<usize> {
 }
 
 /// The cheapest way to an accuracy.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// Accuracy asked for, relative.
     pub accuracy: f64,
@@ -51,13 +53,14 @@ pub fn answers(marks: &[Mark], front: &[usize], accuracies: &[f64]) -> Vec<Answe
 }
 
 /// A line on which looser tolerances cost more than a tighter one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Foot {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CostMinimum {
     /// The point that costs least.
     pub cheapest: usize,
     /// The looser point that costs most.
     pub looser: usize,
     /// How many times as much.
+    #[serde(deserialize_with = "null::number")]
     pub factor: f64,
 }
 
@@ -66,7 +69,7 @@ const MORE: f64 = 1.1;
 
 /// The foot of a line, if it has one. `line` are indices from loose to tight; `work` must show it as well as the cost,
 /// since clocks have accidents.
-pub fn foot(line: &[usize], cost: &[f64], work: &[f64]) -> Option<Foot> {
+pub fn cost_minimum(line: &[usize], cost: &[f64], work: &[f64]) -> Option<CostMinimum> {
     let at = (0..line.len()).min_by(|&a, &b| cost[line[a]].total_cmp(&cost[line[b]]))?;
     let cheapest = line[at];
     let looser = line[..at]
@@ -74,7 +77,7 @@ pub fn foot(line: &[usize], cost: &[f64], work: &[f64]) -> Option<Foot> {
         .copied()
         .max_by(|&a, &b| cost[a].total_cmp(&cost[b]))?;
     let factor = cost[looser] / cost[cheapest];
-    (factor > MORE && work[looser] > MORE * work[cheapest]).then_some(Foot {
+    (factor > MORE && work[looser] > MORE * work[cheapest]).then_some(CostMinimum {
         cheapest,
         looser,
         factor,
@@ -82,7 +85,7 @@ pub fn foot(line: &[usize], cost: &[f64], work: &[f64]) -> Option<Foot> {
 }
 
 /// Where on a line the temporal error falls to the spatial one, which is the same all along it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
     /// Tolerance.
     pub rtol: f64,

@@ -7,7 +7,7 @@
 //! trial      one setting: run, repeated, counted
 //! price      what the next run will cost
 //! scheme     how a setting integrates in time
-//! ladder     runs of one mesh and scheme over tolerances: what their sequence says of the error of the last
+//! tolerances runs of one mesh and scheme over tolerances: what their sequence says of the error of the last
 //! sweep      all runs within the budget: points, then references
 //! reference  the best run on each mesh; the limit to which the meshes point
 //! errors     temporal, spatial and total error of every point
@@ -23,7 +23,6 @@
 
 pub mod errors;
 pub mod front;
-pub mod ladder;
 pub mod norms;
 pub mod plan;
 pub mod price;
@@ -32,6 +31,7 @@ pub mod scheme;
 pub mod signals;
 pub mod study;
 mod sweep;
+pub mod tolerances;
 pub mod trial;
 
 pub use norms::Norms;

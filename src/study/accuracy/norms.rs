@@ -2,12 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::run::null;
+
 /// Mean square and maximum norm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Norms {
     /// Root of the mean square.
+    #[serde(deserialize_with = "null::number")]
     pub l2: f64,
     /// Largest absolute value.
+    #[serde(deserialize_with = "null::number")]
     pub max: f64,
 }
 

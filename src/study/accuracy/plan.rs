@@ -1,13 +1,13 @@
 //! What is asked for.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::scheme::Scheme;
 use crate::case::schema::{Case, Method};
 use crate::error::{Error, Result};
 
 /// One way to compute a case.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Setting {
     /// Beam cells per segment; half as many fluid cells per bladder.
     pub cells: usize,
@@ -43,7 +43,7 @@ impl Setting {
 }
 
 /// What may be spent on a whole study.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Budget {
     /// Wall time [s].
@@ -71,7 +71,7 @@ impl Budget {
 }
 
 /// Settings asked for, each list in the order in which it is run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// Tolerances, loose to tight.
     pub rtols: Vec<f64>,

@@ -1,15 +1,16 @@
 //! What points are judged by: the best run on each mesh, and the limit to which the meshes point.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::ladder::Ladder;
 use super::norms::Norms;
 use super::scheme::Scheme;
 use super::signals::{Kind, Signal};
+use super::tolerances::ToleranceSequence;
 use super::trial::Trial;
+use crate::run::null;
 
 /// The best run on a mesh.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Temporal {
     /// Beam cells per segment.
     pub cells: usize,
@@ -18,6 +19,7 @@ pub struct Temporal {
     /// Its tolerance.
     pub rtol: f64,
     /// Its wall time [s].
+    #[serde(deserialize_with = "null::number")]
     pub wall_s: f64,
     /// Scheme and tolerance of the run that checks it.
     pub checked_by: Option<(Scheme, f64)>,
@@ -46,25 +48,25 @@ pub fn temporal(
     sizes: &[Norms],
     headline: usize,
 ) -> Option<Temporal> {
-    let mut ladders: Vec<(f64, Ladder)> = schemes
+    let mut sequences: Vec<(f64, ToleranceSequence)> = schemes
         .iter()
-        .map(|&scheme| Ladder::of(trials, cells, scheme))
-        .filter(|ladder| !ladder.runs.is_empty())
-        .map(|ladder| (ladder.last_error(headline).map_or(f64::INFINITY, |e| e.max), ladder))
+        .map(|&scheme| ToleranceSequence::of(trials, cells, scheme))
+        .filter(|sequence| !sequence.runs.is_empty())
+        .map(|sequence| (sequence.last_error(headline).map_or(f64::INFINITY, |e| e.max), sequence))
         .collect();
-    ladders.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut ladders = ladders.into_iter().map(|(_, ladder)| ladder);
-    let main = ladders.next()?;
+    sequences.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut sequences = sequences.into_iter().map(|(_, sequence)| sequence);
+    let main = sequences.next()?;
     let best = main.last()?;
     let signals = best.signals.as_ref()?;
     // A run that is far looser does not check anything.
-    let sharp = |ladder: &Ladder| {
-        ladder
+    let sharp = |sequence: &ToleranceSequence| {
+        sequence
             .last()
             .is_some_and(|t| t.setting.rtol <= LOOSER * best.setting.rtol)
     };
-    let check = ladders.find(sharp);
-    let checking = check.as_ref().and_then(Ladder::last);
+    let check = sequences.find(sharp);
+    let checking = check.as_ref().and_then(ToleranceSequence::last);
     let relative = |norms: Option<Norms>, k: usize| norms.map(|n| n.over(sizes[k]));
     let by_tolerance: Vec<_> = (0..signals.len()).map(|k| relative(main.last_error(k), k)).collect();
     let by_order: Vec<_> = (0..signals.len())
@@ -118,7 +120,7 @@ fn believed(by_tolerance: Option<Norms>, by_order: Option<Norms>, expected: Opti
 }
 
 /// One signal in the limit of vanishing mesh size.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Limit {
     /// Name.
     pub name: String,

@@ -2,42 +2,39 @@
 
 use std::time::Instant;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::discrete::quantities::{Field, Interest, Observable, Role};
 use crate::error::Result;
 use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::summary::Summary;
 
 /// Columns of the history that are compared.
-const HISTORIES: [&str; 11] = [
-    "tip_u1",
-    "tip_u3",
-    "tip_angle",
-    "max_pressure",
-    "min_pressure",
-    "turbine_power",
-    "kinetic_energy",
-    "axial_energy",
-    "bending_energy",
-    "bladder_energy",
-    "harvested",
-];
+fn histories() -> impl Iterator<Item = Observable> {
+    Observable::ALL
+        .iter()
+        .copied()
+        .filter(|one| one.role() >= Role::Studied)
+}
 
 /// Fields that are compared, at the nodes between segments, which all meshes have.
-const FIELDS: [&str; 4] = ["u1_m", "u3_m", "v1_m_s", "v3_m_s"];
+fn fields() -> impl Iterator<Item = Field> {
+    Field::ALL.into_iter().filter(|one| one.role() >= Role::Studied)
+}
 
 /// Whether a case could have a signal of this name; figures of the summary, `quantity.figure`, are not known before a run.
 pub fn possible(name: &str) -> bool {
-    name.contains('.') || HISTORIES.contains(&name) || FIELDS.contains(&name)
+    name.contains('.') || histories().any(|one| one.name() == name) || fields().any(|one| one.name() == name)
 }
 
 /// Names of histories and fields.
 pub fn names() -> String {
-    [HISTORIES.join(", "), FIELDS.join(", ")].join(", ")
+    let all = histories().map(Observable::name).chain(fields().map(Field::name));
+    all.collect::<Vec<_>>().join(", ")
 }
 
 /// What a signal is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
     /// One number an output time.
@@ -108,9 +105,8 @@ impl Keep {
 fn quantities(summary: &Summary) -> Vec<Signal> {
     let mut all = vec![];
     for (name, q) in &summary.quantities {
-        let scale = q.figures().fold(0.0, |s: f64, (_, x)| s.max(x.abs()));
-        let unit = [("_m", "m"), ("_rad", "rad"), ("_pa", "Pa"), ("_j", "J")];
-        let unit = unit.iter().find(|u| name.ends_with(u.0)).map_or("1", |u| u.1);
+        let scale = q.size();
+        let unit = Interest::named(name).map_or("1", Interest::unit);
         all.extend(q.figures().map(|(figure, value)| Signal {
             name: format!("{name}.{figure}"),
             unit: unit.into(),
@@ -138,7 +134,7 @@ impl Recorder for Keep {
             .columns
             .iter()
             .enumerate()
-            .filter(|(_, c)| HISTORIES.contains(&c.name.as_str()));
+            .filter(|(_, c)| histories().any(|one| one.name() == c.name));
         self.columns = wanted
             .map(|(k, c)| (k, empty(&c.name, c.unit, Kind::History)))
             .collect();
@@ -146,7 +142,7 @@ impl Recorder for Keep {
             .fields
             .iter()
             .enumerate()
-            .filter(|(_, f)| FIELDS.contains(&f.name));
+            .filter(|(_, f)| fields().any(|one| one.name() == f.name));
         self.fields = wanted.map(|(k, f)| (k, empty(f.name, f.unit, Kind::Field))).collect();
         Ok(())
     }

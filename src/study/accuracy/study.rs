@@ -1,9 +1,9 @@
 //! The study of a case, from its settings to what they say.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::errors::{self, BETTER, Errors};
-use super::front::{self, Answer, Balance, Foot, Mark};
+use super::front::{self, Answer, Balance, CostMinimum, Mark};
 use super::norms::Norms;
 use super::plan::Plan;
 use super::reference::{self, Limit, Temporal};
@@ -12,6 +12,7 @@ use super::signals::{self, Kind, Signal};
 use super::sweep::{self, Watch};
 use super::trial::{Role, Trial};
 use crate::case::Case;
+use crate::discrete::quantities::Observable;
 use crate::error::{Error, Result};
 
 /// Accuracies for which the cheapest point is sought.
@@ -20,7 +21,7 @@ const ACCURACIES: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 const NOTHING: f64 = 1e-6;
 
 /// A run with its errors.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Point {
     /// The run.
     pub trial: Trial,
@@ -31,7 +32,7 @@ pub struct Point {
 }
 
 /// The balance of temporal and spatial error on one line.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct LineBalance {
     /// Beam cells per segment.
     pub cells: usize,
@@ -42,7 +43,7 @@ pub struct LineBalance {
 }
 
 /// Everything that a study found.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Study {
     /// Name of the case.
     pub case: String,
@@ -65,7 +66,7 @@ pub struct Study {
     /// Cheapest points for 10 %, 1 %, 0.1 %, 0.01 %.
     pub answers: Vec<Answer>,
     /// Lines on which looser tolerances cost more.
-    pub feet: Vec<Foot>,
+    pub feet: Vec<CostMinimum>,
     /// Where temporal equals spatial error.
     pub balances: Vec<LineBalance>,
     /// What to know before these numbers are used.
@@ -225,7 +226,9 @@ fn headline(names: &[String], wanted: Option<&str>) -> Result<usize> {
         Some(name) if !names.is_empty() => {
             at(name).ok_or_else(|| Error::Usage(format!("--measure {name}: this case has {}", names.join(", "))))
         }
-        _ => Ok(at("tip_u1").or_else(|| at("tip_u3")).unwrap_or(0)),
+        _ => Ok(at(Observable::TipU1.name())
+            .or_else(|| at(Observable::TipU3.name()))
+            .unwrap_or(0)),
     }
 }
 
@@ -261,7 +264,7 @@ fn conclude(study: &mut Study) {
             .flat_map(|&c| study.plan.schemes.iter().map(move |&o| (c, o)))
     };
     study.feet = lines()
-        .filter_map(|(c, o)| front::foot(&study.line(c, o), &cost, &work))
+        .filter_map(|(c, o)| front::cost_minimum(&study.line(c, o), &cost, &work))
         .collect();
     study.balances = lines()
         .filter_map(|(cells, scheme)| {

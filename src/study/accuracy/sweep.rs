@@ -4,10 +4,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use super::ladder::Ladder;
 use super::plan::{Budget, Plan, Setting};
 use super::price;
 use super::scheme::Scheme;
+use super::tolerances::ToleranceSequence;
 use super::trial::{self, Allowance, Role, Trial};
 use crate::case::Case;
 use crate::error::Result;
@@ -222,8 +222,8 @@ impl Sweep<'_> {
         loop {
             let (next, expected, first) = {
                 let state = self.lock();
-                let ladder = Ladder::of(&state.trials, cells, scheme);
-                let last = ladder.last().map(|t| t.setting.rtol);
+                let sequence = ToleranceSequence::of(&state.trials, cells, scheme);
+                let last = sequence.last().map(|t| t.setting.rtol);
                 let tighter = |rtol: &f64| *rtol > too_tight && last.is_none_or(|last| *rtol < last);
                 let mut candidates = self.plan.reference_rtols();
                 candidates.extend(self.plan.rtols.iter().rev());

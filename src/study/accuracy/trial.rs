@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::plan::{Budget, Setting};
 use super::scheme::Scheme;
@@ -10,10 +10,11 @@ use super::signals::{Keep, Limit, Signal};
 use crate::case::Case;
 use crate::error::Result;
 use crate::run::dynamics;
+use crate::run::null;
 use crate::run::summary::{Counters, Status};
 
 /// What a run is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
     /// A point of the study.
@@ -23,7 +24,7 @@ pub enum Role {
 }
 
 /// How it went.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
     /// To the end of the simulated time.
@@ -37,7 +38,7 @@ pub enum Ending {
 }
 
 /// A setting and what came of it.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Trial {
     /// How.
     pub setting: Setting,
@@ -52,12 +53,15 @@ pub struct Trial {
     /// Work of one run.
     pub counters: Counters,
     /// Least wall time of the timed runs [s].
+    #[serde(deserialize_with = "null::number")]
     pub wall_min_s: f64,
     /// Median of them [s].
+    #[serde(deserialize_with = "null::number")]
     pub wall_median_s: f64,
     /// Timed runs.
     pub repeats: usize,
     /// Seconds or steps of one run, as the budget counts.
+    #[serde(deserialize_with = "null::number")]
     pub cost: f64,
     /// What is compared; only of finished runs.
     #[serde(skip)]
@@ -84,7 +88,7 @@ impl Trial {
 
     /// Whether it can be compared.
     pub fn finished(&self) -> bool {
-        self.signals.is_some()
+        self.ending == Ending::Finished
     }
 
     /// Mesh and scheme: one line of the picture.

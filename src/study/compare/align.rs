@@ -2,23 +2,16 @@
 
 use super::interpolate::{cubic, hermite, interval, monotone};
 use super::recording::{Array, Recording};
+use crate::discrete::quantities::{Axis, Field};
 
 /// Field whose values are the slopes of another in time.
 pub fn slopes_of(name: &str) -> Option<&'static str> {
-    match name {
-        "u1_m" => Some("v1_m_s"),
-        "u3_m" => Some("v3_m_s"),
-        _ => None,
-    }
+    Some(Field::named(name)?.rate()?.name())
 }
 
 /// Coordinate of a field.
-pub fn axis_of(name: &str) -> &'static str {
-    match name {
-        "normal_force_n" => "theta_cell_m",
-        "pressure_pa" | "area_change_m2" => "x_f",
-        _ => "theta_node_m",
-    }
+pub fn axis_of(name: &str) -> Axis {
+    Field::named(name).map_or(Axis::Nodes, Field::axis)
 }
 
 /// Positions of a field. Those along the beam are relative to its length, so that beams of different length compare.
@@ -37,11 +30,11 @@ impl Places {
     /// Of a field in a recording.
     pub fn of(recording: &Recording, field: &Array) -> Option<Self> {
         let axis = axis_of(&field.name);
-        let raw = recording.axis(axis).filter(|x| x.len() == field.len)?;
-        let rough = axis == "x_f";
+        let raw = recording.axis(axis.name()).filter(|x| x.len() == field.len)?;
+        let rough = axis == Axis::Network;
         let length = if rough { 1.0 } else { recording.length() };
         let x: Vec<f64> = raw.iter().map(|x| x / length).collect();
-        let number = recording.axis("array").filter(|_| rough);
+        let number = recording.axis(Axis::Array.name()).filter(|_| rough);
         let mut pieces = vec![];
         let mut begin = 0;
         for k in 1..=x.len() {

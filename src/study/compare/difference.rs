@@ -1,15 +1,17 @@
 //! How far apart two recordings are.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::align::{self, Places};
 use super::changes::{self, Change};
 use super::interpolate::cubic;
 use super::recording::{Array, Recording, Series};
+use crate::discrete::quantities::Observable;
+use crate::run::null;
 use crate::study::accuracy::Norms;
 
 /// One field or column.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
     /// Name.
     pub name: String,
@@ -20,17 +22,19 @@ pub struct Difference {
     /// Size to which they refer.
     pub size: Norms,
     /// Time of the largest difference [s].
+    #[serde(deserialize_with = "null::number")]
     pub at_s: f64,
     /// Its place, a share of the beam's length or of the network, for fields.
     pub place: Option<f64>,
     /// What interpolation in time may add to the largest difference, relative; 0 where the times coincide.
+    #[serde(deserialize_with = "null::number")]
     pub interpolation: f64,
     /// Instants compared.
     pub instants: usize,
 }
 
 /// One figure of the summary.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FigureDifference {
     /// `tip_u1_m.max_abs`.
     pub name: String,
@@ -43,7 +47,7 @@ pub struct FigureDifference {
 }
 
 /// What each run took.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
     /// What is counted.
     pub name: String,
@@ -54,7 +58,7 @@ pub struct Cost {
 }
 
 /// Two results side by side.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// The two folders.
     pub folders: [String; 2],
@@ -103,7 +107,7 @@ pub fn compare(a: &Recording, b: &Recording) -> Comparison {
         alike.flat_map(|c| &c.values).fold(0.0, |m: f64, x| m.max(x.abs()))
     };
     // The residual of the balance is an error itself.
-    for column in a.columns.iter().filter(|c| c.name != "energy_residual") {
+    for column in a.columns.iter().filter(|c| c.name != Observable::EnergyResidual.name()) {
         match b
             .column(&column.name)
             .and_then(|other| history((a, column), (b, other)))

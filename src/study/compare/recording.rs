@@ -1,7 +1,9 @@
 //! A result folder as plain data.
 
+use serde::Deserialize;
 use serde_json::Value;
 
+use crate::case::schema::Thinning;
 use crate::run::schedule::SAME;
 use crate::run::summary::Summary;
 
@@ -34,6 +36,27 @@ impl Array {
     }
 }
 
+/// What a result has to know of its case. That of another version may no longer be one as a whole.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Known {
+    beam: Long,
+    bladders: Option<Long>,
+    time: Times,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct Long {
+    length_m: f64,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct Times {
+    end_s: f64,
+    window_s: Option<f64>,
+    #[serde(default)]
+    history: Thinning,
+}
+
 /// Everything that a result folder holds.
 #[derive(Clone, Debug)]
 pub struct Recording {
@@ -41,6 +64,8 @@ pub struct Recording {
     pub label: String,
     /// `case.json`.
     pub case: Value,
+    /// What is known of it.
+    pub known: Known,
     /// `summary.json`.
     pub summary: Summary,
     /// Times of the history [s].
@@ -58,12 +83,11 @@ pub struct Recording {
 impl Recording {
     /// The window alone, where not all output times before it were written: nothing is interpolated over what is not there.
     pub fn without_gaps(mut self) -> Self {
-        let time = |key: &str| self.case["time"][key].as_f64().unwrap_or(0.0);
-        let kept = &self.case["time"]["history"];
-        if kept.is_null() || kept == "all" {
+        let time = &self.known.time;
+        if time.history == Thinning::All {
             return self;
         }
-        let begin = time("end_s") - time("window_s") * (1.0 + SAME);
+        let begin = time.end_s - time.window_s.unwrap_or(0.0) * (1.0 + SAME);
         let before = |times: &[f64]| times.partition_point(|t| *t < begin);
         let rows = before(&self.times);
         self.times.drain(..rows);
@@ -95,9 +119,11 @@ impl Recording {
 
     /// Length of the beam [m], to which positions along it refer.
     pub fn length(&self) -> f64 {
-        self.case
-            .pointer("/beam/length_m")
-            .and_then(Value::as_f64)
-            .unwrap_or(1.0)
+        self.known.beam.length_m
+    }
+
+    /// Length of its bladders [m]; nothing in a dry beam.
+    pub fn bladder_length(&self) -> Option<f64> {
+        self.known.bladders.as_ref().map(|bladders| bladders.length_m)
     }
 }

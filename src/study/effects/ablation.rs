@@ -1,6 +1,6 @@
 //! Everything in order: the full model, itself at a tenth of the tolerance, each effect left out, the program's own choice.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::change::{Changes, Measure, Reference, Size, judge, largest};
 use super::choices::{Out, candidates, effects, guards, with, without};
@@ -9,6 +9,7 @@ use super::trial::{Plan, Runs, Trial, Watch};
 use crate::case::Case;
 use crate::case::schema::{Effect, Effects};
 use crate::error::{Error, Result};
+use crate::run::null;
 use crate::run::summary::Judged;
 use crate::study::counted::Floors;
 use crate::study::target::estimates::LOST;
@@ -22,7 +23,7 @@ pub const WORTH: f64 = 0.05;
 pub const LARGEST: &str = "largest";
 
 /// What became of an effect.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Results change by more than the tolerance.
@@ -42,28 +43,32 @@ pub enum Verdict {
 }
 
 /// A run beside another.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Compared {
     /// The run.
     pub trial: Trial,
     /// What it is compared with.
     pub against: String,
     /// Relative change by quantity.
+    #[serde(deserialize_with = "null::by_name")]
     pub changes: Changes,
     /// Name and change of the quantity that changes most.
+    #[serde(deserialize_with = "null::named")]
     pub largest: Option<(String, f64)>,
     /// Whether that is above the integrator's own error.
     pub above_own_error: bool,
     /// Unknowns more, or fewer.
     pub unknowns: i64,
     /// Work over work.
+    #[serde(deserialize_with = "null::number")]
     pub work: f64,
     /// Least wall time over least wall time.
+    #[serde(deserialize_with = "null::number")]
     pub wall: f64,
 }
 
 /// An effect of the table.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Row {
     /// The effect.
     pub name: Effect,
@@ -84,7 +89,7 @@ pub struct Row {
 }
 
 /// What each effect does to a case.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Ablation {
     /// Name of the case.
     pub case: String,
@@ -174,7 +179,7 @@ impl Judge {
 /// [`Error::Usage`] for a measure that the full model has not.
 pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> Result<Ablation> {
     let auto_case = with(case, Effects::Auto);
-    let decided = effects(&auto_case);
+    let decided = effects(&auto_case)?;
     let mut found = Ablation {
         case: case.name.clone(),
         plan,
@@ -190,10 +195,10 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
         recommendation: None,
         spent_s: 0.0,
     };
-    let all = candidates(case);
+    let all = candidates(case)?;
     let mut runs = Runs::new(plan, watch);
     let full_case = with(case, Effects::Full);
-    let full = runs.run("full", full_case.clone());
+    let full = runs.run("full", full_case.clone())?;
     found.full = runs.trial(full).clone();
     let row = |name: Effect, out: &Out| Row {
         name,
@@ -209,31 +214,31 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
         found.spent_s = runs.spent_s();
         return Ok(found);
     };
-    let floors = Floors::of(case);
+    let floors = Floors::of(case)?;
     known(measure, &Reference::new(summary, &floors).measures(None))?;
     let mut tight_case = full_case;
     tight_case.solver.rtol = (0.1 * tight_case.solver.rtol).max(TIGHTEST);
-    let tighter = runs.run("full, a tenth of the tolerance", tight_case);
+    let tighter = runs.run("full, a tenth of the tolerance", tight_case)?;
     let mut pairs = vec![];
     for candidate in &all {
-        let pair = candidate.out.as_ref().ok().map(|out| {
-            let base = match out.without.as_slice() {
-                [] => full,
-                others => runs.run(
-                    &format!("without {}", Effect::names(others, ", ")),
-                    without(case, others),
-                ),
-            };
-            let off = [out.without.as_slice(), &[candidate.effect]].concat();
-            (
-                base,
-                runs.run(&format!("without {}", Effect::names(&off, ", ")), without(case, &off)),
-            )
+        let mut run = |off: &[Effect]| runs.run(&format!("without {}", Effect::names(off, ", ")), without(case, off));
+        pairs.push(match &candidate.out {
+            Ok(out) => {
+                let base = match out.without.as_slice() {
+                    [] => full,
+                    others => run(others)?,
+                };
+                let off = [out.without.as_slice(), &[candidate.effect]].concat();
+                Some((base, run(&off)?))
+            }
+            Err(_) => None,
         });
-        pairs.push(pair);
     }
-    let auto = runs.run("auto", auto_case);
-    let given = matches!(case.effects, Effects::Chosen(_)).then(|| runs.run("as the case says", case.clone()));
+    let auto = runs.run("auto", auto_case)?;
+    let given = match case.effects {
+        Effects::Chosen(_) => Some(runs.run("as the case says", case.clone())?),
+        _ => None,
+    };
     runs.repeat();
     found.full = runs.trial(full).clone();
     found.tighter = runs.trial(tighter).clone();
@@ -269,13 +274,8 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
             }
         });
     }
-    found.recommendation = Some(recommend(
-        case,
-        &found.rows,
-        guards(case, &decided).as_ref(),
-        &judge,
-        &mut runs,
-    ));
+    let guard = guards(case, &decided)?;
+    found.recommendation = Some(recommend(case, &found.rows, guard.as_ref(), &judge, &mut runs)?);
     found.auto = judge.compare(&runs, full, auto);
     found.given = given.and_then(|given| judge.compare(&runs, full, given));
     found.spent_s = runs.spent_s();

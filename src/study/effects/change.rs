@@ -2,20 +2,22 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::run::null;
 use crate::run::summary::{Judged, Quantity, Summary};
-use crate::study::counted::{Floors, counted, size};
+use crate::study::counted::{Floors, counted};
 
 /// Relative changes by quantity.
 pub type Changes = BTreeMap<String, f64>;
 
 /// A quantity of the full model.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measure {
     /// Its name, unit included.
     pub name: String,
     /// Its largest figure, in its unit.
+    #[serde(deserialize_with = "null::number")]
     pub size: f64,
     /// The integrator's own relative error; unknown when the run at a tenth of the tolerance did not finish.
     pub own: Option<f64>,
@@ -52,7 +54,7 @@ impl Reference {
                 .into_iter()
                 .map(|(figure, _)| (at(&from, figure) - at(&to, figure)).abs());
             let apart = apart.fold(0.0, f64::max);
-            let relative = if apart > 0.0 { apart / size(q) } else { 0.0 };
+            let relative = if apart > 0.0 { apart / q.size() } else { 0.0 };
             (name.clone(), relative)
         };
         self.quantities.iter().map(change).collect()
@@ -62,7 +64,7 @@ impl Reference {
     pub fn measures(&self, own: Option<&Changes>) -> Vec<Measure> {
         let measure = |(name, q): (&String, &Quantity)| Measure {
             name: name.clone(),
-            size: size(q),
+            size: q.size(),
             own: own.and_then(|own| own.get(name)).copied(),
         };
         self.quantities.iter().map(measure).collect()

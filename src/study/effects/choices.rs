@@ -2,9 +2,9 @@
 
 use crate::case::Case;
 use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
-use crate::error::Violation;
+use crate::error;
+use crate::model::Model;
 use crate::model::effects::{Cause, EffectSet, Scene};
-use crate::model::{Model, audit};
 
 /// An effect, and what leaving it out takes.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,30 +51,22 @@ pub fn without(case: &Case, off: &[Effect]) -> Case {
     with(case, Effects::Chosen(choices))
 }
 
-/// The effects of a case's model.
-pub fn effects(case: &Case) -> EffectSet {
-    Model::new(case).effects
-}
-
-/// Why a case has no model, if it has none.
-pub fn refusals(case: &Case) -> Vec<Violation> {
-    let model = Model::new(case);
-    let mut all = model.effects.refusals.clone();
-    all.extend(audit::refusals(case, &model));
-    all
+/// The effects of a case's model, which may be refused.
+pub fn effects(case: &Case) -> error::Result<EffectSet> {
+    Ok(Model::new(case)?.effects)
 }
 
 /// Whether the program keeps an effect, whatever its number, since without it an instability might not show. A run need not
 /// show it either: what is not disturbed stays straight.
-pub fn guards(case: &Case, auto: &EffectSet) -> Option<Guard> {
+pub fn guards(case: &Case, auto: &EffectSet) -> error::Result<Option<Guard>> {
     let full = with(case, Effects::Full);
-    let model = Model::new(&full);
-    let why = Scene::new(&full, &model.section, model.wet.as_ref()).unstable()?;
+    let model = Model::new(&full)?;
+    let why = Scene::new(&full, &model.section, model.wet.as_ref()).unstable();
     let guarded = auto.decisions.iter().filter(|d| matches!(d.cause, Cause::Unstable(_)));
-    Some(Guard {
+    Ok(why.map(|why| Guard {
         effects: guarded.map(|d| d.effect).collect(),
         why,
-    })
+    }))
 }
 
 /// What must not be left out, and why.
@@ -87,9 +79,9 @@ pub struct Guard {
 }
 
 /// Every effect.
-pub fn candidates(case: &Case) -> Vec<Candidate> {
-    let full = effects(&with(case, Effects::Full));
-    let candidate = |effect: Effect| {
+pub fn candidates(case: &Case) -> error::Result<Vec<Candidate>> {
+    let full = effects(&with(case, Effects::Full))?;
+    let candidate = |effect: Effect| -> error::Result<Candidate> {
         let there = full.has(effect);
         let kept = |why: String| Err(Kept { there, why });
         let out = if !there {
@@ -97,40 +89,40 @@ pub fn candidates(case: &Case) -> Vec<Candidate> {
         } else if !Effect::CHOSEN.contains(&effect) {
             kept("given by the case, and left out by not giving it".into())
         } else {
-            leave_out(case, effect, &full).or_else(kept)
+            leave_out(case, effect, &full)?.or_else(kept)
         };
-        Candidate { effect, out }
+        Ok(Candidate { effect, out })
     };
     Effect::ALL.iter().copied().map(candidate).collect()
 }
 
 /// Alone where that is possible, else together with one other without which it can be compared.
-fn leave_out(case: &Case, effect: Effect, full: &EffectSet) -> Result<Out, String> {
-    let alone = effects(&without(case, &[effect]));
+fn leave_out(case: &Case, effect: Effect, full: &EffectSet) -> error::Result<Result<Out, String>> {
+    let alone = effects(&without(case, &[effect]))?;
     if alone.refusals.is_empty() {
-        return Ok(Out {
+        return Ok(Ok(Out {
             without: vec![],
             takes: taken(full, &alone, effect),
-        });
+        }));
     }
     for &other in Effect::CHOSEN
         .iter()
         .filter(|other| **other != effect && full.has(**other))
     {
-        let base = effects(&without(case, &[other]));
-        let both = effects(&without(case, &[other, effect]));
+        let base = effects(&without(case, &[other]))?;
+        let both = effects(&without(case, &[other, effect]))?;
         if base.refusals.is_empty() && base.has(effect) && both.refusals.is_empty() && !both.has(effect) {
-            return Ok(Out {
+            return Ok(Ok(Out {
                 without: vec![other],
                 takes: taken(&base, &both, effect),
-            });
+            }));
         }
     }
     let refused = alone.decisions.iter().filter_map(|d| match &d.cause {
         Cause::Refused(obstacle) => Some(obstacle.what.clone()),
         _ => None,
     });
-    Err(refused.collect::<Vec<_>>().join("; "))
+    Ok(Err(refused.collect::<Vec<_>>().join("; ")))
 }
 
 /// What goes with an effect.

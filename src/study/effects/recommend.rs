@@ -1,17 +1,19 @@
 //! What the case should leave out: everything that saves and changes nothing, checked by a run of all of it together.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::ablation::{Compared, Judge, Row, Verdict};
-use super::choices::{Guard, effects, refusals, with, without};
+use super::choices::{Guard, effects, with, without};
 use super::trial::Runs;
 use crate::case::Case;
 use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
+use crate::discrete::System;
+use crate::error::{Error, Result};
 use crate::model::effects::EffectSet;
 
 /// What a case should say, and how that was checked.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Recommendation {
     /// The value of `effects`.
     pub effects: Value,
@@ -25,7 +27,13 @@ pub struct Recommendation {
 
 /// Never leaves out what the program keeps for the sake of stability. Else leaves out everything that saves, and what is harmless where the
 /// program leaves it out by itself, then takes back what changes most until the rest together changes nothing.
-pub fn recommend(case: &Case, rows: &[Row], guard: Option<&Guard>, judge: &Judge, runs: &mut Runs) -> Recommendation {
+pub fn recommend(
+    case: &Case,
+    rows: &[Row],
+    guard: Option<&Guard>,
+    judge: &Judge,
+    runs: &mut Runs,
+) -> Result<Recommendation> {
     let row = |name: Effect| rows.iter().find(|r| r.name == name);
     let guarded = |name: Effect| guard.is_some_and(|g| g.effects.contains(&name));
     let small = |name: &Effect| {
@@ -57,26 +65,27 @@ pub fn recommend(case: &Case, rows: &[Row], guard: Option<&Guard>, judge: &Judge
             .filter(|effect| off.contains(effect))
             .collect();
         let wanted = without(case, &off);
-        let refusals = refusals(&wanted);
-        let (out, why) = if let Some(refusal) = refusals.first().filter(|_| !off.is_empty()) {
+        let (out, why) = if let Err(Error::Case(fault)) = System::new(&wanted)
+            && let Some(refusal) = fault.violations.into_iter().next().filter(|_| !off.is_empty())
+        {
             let named = off
                 .iter()
                 .copied()
                 .find(|name| refusal.pointer == format!("/effects/{name}"));
-            (named.or(off.last().copied()), refusal.what.clone())
+            (named.or(off.last().copied()), refusal.what)
         } else {
-            let effects = naming(case, &effects(&wanted));
-            let number = runs.run("recommended", with(case, Effects::Chosen(effects.clone())));
+            let effects = naming(case, &effects(&wanted)?)?;
+            let number = runs.run("recommended", with(case, Effects::Chosen(effects.clone())))?;
             runs.repeat();
             let run = judge.compare(runs, 0, number);
             let verdict = run.as_ref().map(|run| judge.verdict(run, 0.0));
             if off.is_empty() || matches!(verdict, Some(Verdict::Saves | Verdict::Harmless)) {
-                return Recommendation {
+                return Ok(Recommendation {
                     effects: value(&effects),
                     off,
                     dropped,
                     run,
-                };
+                });
             }
             let change = |name: Effect| {
                 row(name)
@@ -99,13 +108,13 @@ pub fn recommend(case: &Case, rows: &[Row], guard: Option<&Guard>, judge: &Judge
 }
 
 /// The fewest choices by name that make the program choose these effects.
-fn naming(case: &Case, wanted: &EffectSet) -> EffectChoices {
+fn naming(case: &Case, wanted: &EffectSet) -> Result<EffectChoices> {
     let mut named = EffectChoices::default();
     loop {
-        let chosen = effects(&with(case, Effects::Chosen(named.clone())));
+        let chosen = effects(&with(case, Effects::Chosen(named.clone())))?;
         let differs = |e: &&Effect| chosen.has(**e) != wanted.has(**e) && named.of(**e) == Choice::Auto;
         let Some(&effect) = Effect::CHOSEN.iter().find(differs) else {
-            return named;
+            return Ok(named);
         };
         let choice = if wanted.has(effect) { Choice::On } else { Choice::Off };
         named.set(effect, choice);

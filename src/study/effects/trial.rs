@@ -2,13 +2,15 @@
 
 use std::time::Instant;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::choices::{effects, refusals};
+use super::choices::effects;
 use crate::case::Case;
-use crate::error::Result;
+use crate::discrete::System;
+use crate::error::{Error, Result};
 use crate::model::effects::EffectSet;
 use crate::run::dynamics;
+use crate::run::null;
 use crate::run::record::{Control, Progress, Unrecorded};
 use crate::run::summary::{Counters, Status, Summary};
 use crate::study::accuracy::trial::Ending;
@@ -17,7 +19,7 @@ use crate::study::accuracy::trial::Ending;
 const LOOK: u64 = 64;
 
 /// What is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// Timed runs of each model, after one to warm up; with none no verdict looks at time.
     pub repeats: usize,
@@ -42,7 +44,7 @@ pub struct Event<'a> {
 pub type Watch<'a> = &'a dyn Fn(&Event);
 
 /// A model, and what came of it.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Trial {
     /// Of what.
     pub what: String,
@@ -55,6 +57,7 @@ pub struct Trial {
     /// Work of one run.
     pub counters: Counters,
     /// Residual evaluations times unknowns.
+    #[serde(deserialize_with = "null::number")]
     pub work: f64,
     /// Wall times of the timed runs, least first [s]; of the first run where there are no others.
     pub walls_s: Vec<f64>,
@@ -129,24 +132,24 @@ impl<'a> Runs<'a> {
     }
 
     /// Runs a case, unless one with the same effects and tolerance was run. Returns its number.
-    pub fn run(&mut self, what: &str, case: Case) -> usize {
-        let set = effects(&case);
+    pub fn run(&mut self, what: &str, case: Case) -> Result<usize> {
+        let set = effects(&case)?;
         let on = |set: &EffectSet| set.decisions.iter().map(|d| d.on).collect::<Vec<_>>();
         let alike = |c: &Case, s: &EffectSet| c.solver.rtol == case.solver.rtol && on(s) == on(&set);
         if set.refusals.is_empty()
             && let Some(known) = self.all.iter().position(|(c, s, _)| alike(c, s))
         {
-            return known;
+            return Ok(known);
         }
         let trial = self.first(what, &case);
         self.all.push((case, set, trial));
-        self.all.len() - 1
+        Ok(self.all.len() - 1)
     }
 
     fn first(&mut self, what: &str, case: &Case) -> Trial {
         let mut trial = Trial::skipped(what);
-        if let Some(refusal) = refusals(case).first() {
-            trial.reason = Some(refusal.what.clone());
+        if let Err(Error::Case(fault)) = System::new(case) {
+            trial.reason = fault.violations.first().map(|refusal| refusal.what.clone());
             return trial;
         }
         let left = self.left_s();

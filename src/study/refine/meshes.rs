@@ -10,7 +10,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{Numbers, SAFETY, has_cells_along_bladders};
 use crate::case::Case;
@@ -18,7 +18,7 @@ use crate::error::{Code, Error, Result};
 use crate::run::estimate::words::LARGE;
 
 /// What meshes do to one number, relative to it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Share {
     /// Cells of the beam; nothing where the other mesh has no such number.
     pub beam: Option<f64>,
@@ -34,17 +34,17 @@ impl Share {
 }
 
 /// What meshes do to numbers.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Meshes {
     /// By name.
     pub quantities: BTreeMap<String, Share>,
     /// Why a mesh could not be compared.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<String>,
 }
 
 /// Computes a case on other meshes; `here` are its numbers on its own.
-pub fn judge(case: &Case, here: &Numbers, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Meshes {
+pub fn judge(case: &Case, here: &Numbers, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<Meshes> {
     let mut found = Meshes::default();
     let mut other = case.clone();
     let halved = case.mesh.cells_per_segment.is_multiple_of(2);
@@ -56,12 +56,12 @@ pub fn judge(case: &Case, here: &Numbers, compute: &mut dyn FnMut(&Case) -> Resu
         SAFETY * 4.0 / 3.0
     };
     found.compare("beam", here, compute(&other), factor, |share| &mut share.beam);
-    if has_cells_along_bladders(case) {
+    if has_cells_along_bladders(case)? {
         let mut other = case.clone();
         other.mesh.cells_per_bladder *= 2;
         found.compare("bladders", here, compute(&other), 2.0, |share| &mut share.bladders);
     }
-    found
+    Ok(found)
 }
 
 impl Meshes {

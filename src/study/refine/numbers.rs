@@ -29,16 +29,16 @@ const DAMPING: f64 = 0.01;
 /// # Errors
 /// Where the path ends before.
 pub fn of_equilibrium(case: &Case, options: &Options) -> Result<Numbers> {
-    let path = equilibrium::follow(case, options, &mut |_| Control::Continue);
+    let path = equilibrium::follow(case, options, &mut |_| Control::Continue)?;
     if let Some(fault) = path.fault {
         return Err(Error::Solver(Box::new(fault)));
     }
-    let columns = equilibrium::columns(&equilibrium::system(case, options.at_s));
-    Ok(of_path(case, &columns, &path))
+    let columns = equilibrium::columns(&equilibrium::system(case, options.at_s)?);
+    of_path(case, &columns, &path)
 }
 
 /// The last state of a load path that was followed.
-pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Numbers {
+pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> {
     let row = path.states.last().map_or(&[][..], |state| &state.row);
     let length = case.beam.length_m;
     // an angle counts beside displacements
@@ -49,7 +49,7 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Numbers {
         same.map(|((_, factor), x)| factor * x.abs()).fold(0.0, f64::max)
     };
     // what nothing moves or presses is round-off, and so is all that is made of it
-    let (floors, section) = (Floors::of(case), Model::new(case).section);
+    let (floors, section) = (Floors::of(case)?, Model::new(case)?.section);
     let floor = |unit: &str| match unit {
         "m" => floors.displacement,
         "Pa" => floors.pressure,
@@ -64,7 +64,7 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Numbers {
             size: (NOTHING * largest(unit)).max(floor(unit)) / factor,
         }
     };
-    all().map(|(c, x)| (c.name.clone(), number(c.unit, *x))).collect()
+    Ok(all().map(|(c, x)| (c.name.clone(), number(c.unit, *x))).collect())
 }
 
 /// Frequencies and rates of the modes: those across by their order, those along, those of the fluid.
@@ -135,19 +135,19 @@ fn recorded(case: &Case, scene: &Scene, cycle: &Cycle) -> Result<Numbers> {
             |fault| Error::Solver(Box::new(fault)),
         ));
     }
-    Ok(of_summary(case, &outcome.summary))
+    of_summary(case, &outcome.summary)
 }
 
 /// Figures over a cycle that was recorded.
-pub fn of_summary(case: &Case, summary: &Summary) -> Numbers {
+pub fn of_summary(case: &Case, summary: &Summary) -> Result<Numbers> {
     let mut all = Numbers::new();
-    for (name, quantity) in counted(summary, &Floors::of(case)) {
+    for (name, quantity) in counted(summary, &Floors::of(case)?) {
         let largest = quantity.figures().fold(0.0_f64, |s, (_, x)| s.max(x.abs()));
         for (figure, value) in quantity.figures().filter(|(figure, _)| figure.starts_with("window")) {
             all.insert(format!("{name}.{figure}"), Number { value, size: largest });
         }
     }
-    all
+    Ok(all)
 }
 
 /// Figures over the cycle, and so many multipliers.

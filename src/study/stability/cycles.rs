@@ -2,11 +2,12 @@
 
 use std::time::Instant;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::case::schema::Case;
 use crate::error::Result;
 use crate::run::floquet::{self, Floquet};
+use crate::run::known;
 use crate::run::periodic::{Scene, Search, record, shoot};
 use crate::run::record::{Control, Unrecorded};
 use crate::run::summary::{Quantity, Status};
@@ -15,7 +16,7 @@ use crate::run::summary::{Quantity, Status};
 const COUNT: usize = 4;
 
 /// The cycle of one value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Member {
     /// Value of the parameter.
     pub value: f64,
@@ -32,7 +33,7 @@ pub struct Member {
 }
 
 /// All values.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Along {
     /// Name of the case.
     pub case: String,
@@ -44,6 +45,8 @@ pub struct Along {
     pub members: Vec<Member>,
     /// Values for which none was found, and why.
     pub missing: Vec<(f64, String)>,
+    /// What to know of the first case.
+    pub warnings: Vec<String>,
 }
 
 /// Finds the cycle of every case; `tell` hears how many of them are done.
@@ -57,6 +60,10 @@ pub fn along(pointer: &str, logarithmic: bool, cases: &[(f64, Case)], tell: &dyn
         logarithmic,
         members: vec![],
         missing: vec![],
+        warnings: match cases.first() {
+            Some((_, case)) => known::without_outputs(case, &crate::run::periodic::scene::system(case)?),
+            None => vec![],
+        },
     };
     let mut before: Option<(Scene, Vec<f64>)> = None;
     for (k, (value, case)) in cases.iter().enumerate() {

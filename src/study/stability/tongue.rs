@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::workers;
 use crate::case::schema::Case;
@@ -11,7 +11,8 @@ use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu};
 use crate::run::drive::{Drive, settled};
-use crate::run::floquet;
+use crate::run::floquet::{self, Stability};
+use crate::run::known;
 use crate::run::periodic::scene::whole;
 use crate::run::periodic::{Scene, shoot};
 
@@ -30,7 +31,7 @@ pub struct Plan {
 }
 
 /// One point of a sheet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Growth rate of the largest multiplier [1/s]; none where no cycle was found.
     pub growth_per_s: Option<f64>,
@@ -38,10 +39,20 @@ pub struct Point {
     pub multiplier: Option<(f64, f64)>,
     /// What is to be said of the cycle, or why there is none.
     pub words: String,
+    /// The same in one word; none where no cycle was found, and in maps of before it was told.
+    #[serde(default)]
+    pub stability: Option<Stability>,
+}
+
+impl Point {
+    /// Whether bending swings up by itself. Of a map of before the word was told, by the rate alone.
+    pub fn grows(&self) -> bool {
+        self.growth_per_s.is_some_and(|rate| rate > 0.0) && self.stability != Some(Stability::Neutral)
+    }
 }
 
 /// One permeability.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sheet {
     /// Factor of the case's permeabilities; none in a dry beam.
     pub permeability_factor: Option<f64>,
@@ -50,7 +61,7 @@ pub struct Sheet {
 }
 
 /// Mathieu's equation of the dry beam's first mode.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mathieu {
     /// First bending frequency [Hz].
     pub frequency_hz: f64,
@@ -59,7 +70,7 @@ pub struct Mathieu {
 }
 
 /// A stability map.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Map {
     /// Name of the case.
     pub case: String,
@@ -73,6 +84,8 @@ pub struct Map {
     pub sheets: Vec<Sheet>,
     /// The prediction without fluid and stretch; of a cantilever.
     pub mathieu: Option<Mathieu>,
+    /// What to know of the case.
+    pub warnings: Vec<String>,
 }
 
 /// Frequency [Hz] and amplitude [m] of the sine by which the root is shaken along the beam.
@@ -80,7 +93,7 @@ pub struct Map {
 /// # Errors
 /// [`Error::Usage`] when there is none.
 pub fn shaking(case: &Case) -> Result<(f64, f64)> {
-    match settled(axial(&whole(case).ends)) {
+    match settled(axial(&whole(case)?.ends)) {
         Signal::Sine(sine) => Ok((sine.frequency_hz, sine.amplitude.abs())),
         _ => Err(Error::Usage(format!(
             "{}: a map needs a root that is shaken along the beam by a sine, /ends/root/clamped/u3_m = \
@@ -103,7 +116,7 @@ fn axial(ends: &[ResolvedEnd; 2]) -> &Signal {
 pub fn map(case: &Case, plan: &Plan, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Map> {
     let own = shaking(case)?;
     // another drive beside the shaking would have a period of its own
-    crate::run::drive::drive(case, &whole(case), None)?;
+    crate::run::drive::drive(case, &whole(case)?, None)?;
     let wet = case.bladders.is_some();
     let factors: Vec<Option<f64>> = if wet && case.network.is_some() {
         plan.permeability_factors.iter().copied().map(Some).collect()
@@ -123,7 +136,7 @@ pub fn map(case: &Case, plan: &Plan, tell: &(dyn Fn(usize, usize) + Sync)) -> Re
         tell(1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed), count);
         made
     });
-    let mut all = all.into_iter();
+    let mut all = all.into_iter().collect::<Result<Vec<_>>>()?.into_iter();
     let sheets = factors
         .iter()
         .map(|&permeability_factor| Sheet {
@@ -137,12 +150,13 @@ pub fn map(case: &Case, plan: &Plan, tell: &(dyn Fn(usize, usize) + Sync)) -> Re
         frequencies_hz: plan.frequencies_hz.clone(),
         amplitudes_m: plan.amplitudes_m.clone(),
         sheets,
-        mathieu: prediction(case, &plan.frequencies_hz),
+        mathieu: prediction(case, &plan.frequencies_hz)?,
+        warnings: known::without_outputs(case, &crate::run::periodic::scene::system(case)?),
     })
 }
 
 /// All amplitudes at one frequency, each cycle found from the one before.
-fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64]) -> Vec<Point> {
+fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64]) -> Result<Vec<Point>> {
     let mut case = case.clone();
     if let (Some(factor), Some(network)) = (factor, &mut case.network) {
         network.permeability_factor *= factor;
@@ -153,14 +167,14 @@ fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64
         .map(|&amplitude| {
             let scene = Scene::of(
                 &case,
-                shaken(&case, frequency_hz, amplitude),
+                shaken(&case, frequency_hz, amplitude)?,
                 Drive {
                     period: 1.0 / frequency_hz,
                     driven: true,
                 },
-            );
+            )?;
             let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
-            match shoot(&scene, from.as_deref()) {
+            Ok(match shoot(&scene, from.as_deref()) {
                 Ok(mut cycle) => {
                     let found = floquet::multipliers(&scene, &mut cycle, COUNT);
                     before = Some((scene, cycle.y));
@@ -168,26 +182,28 @@ fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64
                         growth_per_s: Some(found.verdict.growth_per_s),
                         multiplier: found.multipliers.first().map(|m| (m.re, m.im)),
                         words: found.verdict.words,
+                        stability: Some(found.verdict.stability),
                     }
                 }
                 Err(impasse) => Point {
                     growth_per_s: None,
                     multiplier: None,
                     words: impasse.what,
+                    stability: None,
                 },
-            }
+            })
         })
         .collect()
 }
 
 /// The model with another shaking of the root.
-fn shaken(case: &Case, frequency_hz: f64, amplitude: f64) -> Model {
-    let mut model = whole(case);
+fn shaken(case: &Case, frequency_hz: f64, amplitude: f64) -> Result<Model> {
+    let mut model = whole(case)?;
     model.replace_signals(settled, settled);
     if let Translation::Displacement(Signal::Sine(sine)) = &mut model.ends[0].axial {
         (sine.frequency_hz, sine.amplitude) = (frequency_hz, amplitude);
     }
-    model
+    Ok(model)
 }
 
 /// `[E39]` Where the principal tongue begins, of the drained beam's first mode alone, to first order in the modulation:
@@ -195,17 +211,17 @@ fn shaken(case: &Case, frequency_hz: f64, amplitude: f64) -> Model {
 /// ```text
 /// |Ω/(2 ω1) - 1| < ε/4     ε = κ_1 U Ω²/(l_s ω1²)     U the amplitude of the root
 /// ```
-fn prediction(case: &Case, frequencies: &[f64]) -> Option<Mathieu> {
-    let model = Model::whole(case, true);
-    let sine = mathieu(&model)?;
+fn prediction(case: &Case, frequencies: &[f64]) -> Result<Option<Mathieu>> {
+    let model = Model::whole(case, true)?;
+    let Some(sine) = mathieu(&model) else { return Ok(None) };
     let first = (MATHIEU_COUPLING * sine.acceleration / (model.length * sine.modulation)).sqrt();
     let onset = |f: &f64| {
         let omega = TAU * f;
         let epsilon = 4.0 * (omega / (2.0 * first) - 1.0).abs();
         epsilon * model.length * first * first / (MATHIEU_COUPLING * omega * omega)
     };
-    Some(Mathieu {
+    Ok(Some(Mathieu {
         frequency_hz: first / TAU,
         onset_m: frequencies.iter().map(onset).collect(),
-    })
+    }))
 }

@@ -2,6 +2,7 @@
 
 use crate::case::Case;
 use crate::discrete::{System, resolution};
+use crate::error::Result;
 use crate::study::accuracy::plan;
 
 /// Cells a segment to begin with where nothing asks for more, and with bladders, so that half of them have fewer cells along a
@@ -15,13 +16,15 @@ const MOST: usize = 32;
 
 /// Fewest cells a segment, a power of two, that resolve every load and every shape at the start. What comes of them is right on
 /// every mesh; what they do between nodes is not, and two meshes that both leave that out agree about it.
-pub fn least_cells(case: &Case) -> usize {
+pub fn least_cells(case: &Case) -> Result<usize> {
     let coarse = plan::refined(case, LEAST, case.solver.rtol);
-    let system = System::new(&coarse);
-    let cells = resolution::cells_that_resolve(&coarse, &system);
+    let system = System::new(&coarse)?;
+    let [along, in_bladders] = resolution::cells_that_resolve(&coarse, &system);
+    let both = (1..=MOST).find(|cells| *cells >= along && plan::fluid_cells(*cells) >= in_bladders);
     let least = if case.bladders.is_some() { LEAST_WET } else { LEAST };
     let least = least.max(LEAST_IN_ALL.div_ceil(system.mesh.segments));
-    cells.next_power_of_two().clamp(least.next_power_of_two(), MOST)
+    let cells = both.unwrap_or(MOST).next_power_of_two();
+    Ok(cells.clamp(least.next_power_of_two(), MOST))
 }
 
 #[cfg(test)]
@@ -40,8 +43,8 @@ mod tests {
                 "density_kg_m3": 950}}, "ends": {{"root": "clamped", "tip": "free"}}, "time": {{"end_s": 1}},
                 "loads": [{{"force_x_n_m": {{"signal": 5, "profile": {profile}}}}}]}}"#
             );
-            let loaded = crate::case::parse(&text, Path::new("first.json"), Path::new("."), &[]);
-            least_cells(&loaded.expect("a case").case)
+            let case = crate::case::parse(&text, Path::new("first.json"), Path::new("."), &[]);
+            least_cells(&case.expect("a case")).expect("a system")
         };
         let pad = r#"{"sum": [1, {"table": {"positions": [0, 0.524, 0.525, 0.535, 0.536, 1], "values": [0, 0, -12, -12, 0, 0],
             "interpolation": "linear"}}]}"#;

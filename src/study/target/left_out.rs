@@ -72,7 +72,7 @@ impl Search<'_> {
 
     /// Goes over to the fewest effects with which what is left out changes no more than `most`, beside a run with all of them.
     fn take_in(&mut self, full: &Full, beside: At, most: f64) -> Result<Look> {
-        for candidate in models::tighter(&self.case, full).into_iter().take(TRIED) {
+        for candidate in models::tighter(&self.case, full)?.into_iter().take(TRIED) {
             let case = crate::study::accuracy::plan::refined(&candidate, beside.0, 10_f64.powi(-beside.1));
             let (summary, stopped) = self.unrecorded(&case, Way::Candidate, beside, None)?;
             if let Some(reason) = stopped {
@@ -86,9 +86,9 @@ impl Search<'_> {
             self.runs.take(Way::Candidate, beside, &summary);
             if self.within(&self.runs.changes(beside), most) {
                 self.taken_in
-                    .extend(models::more(&effects(&self.case), &effects(&candidate)));
+                    .extend(models::more(&effects(&self.case)?, &effects(&candidate)?));
                 self.case = candidate;
-                self.full = models::full(&self.case);
+                self.full = models::full(&self.case)?;
                 self.failed.clear();
                 return Ok(Look::MoreEffects);
             }

@@ -2,8 +2,10 @@
 
 use crate::case::Case;
 use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
+use crate::discrete::System;
+use crate::error::Result;
 use crate::model::effects::EffectSet;
-use crate::study::effects::choices::{effects, refusals, with};
+use crate::study::effects::choices::{effects, with};
 
 /// Decades by which the tolerance of effects is tightened, each a candidate.
 const TIGHTER: i32 = 3;
@@ -19,8 +21,8 @@ pub struct Full {
 
 /// The case with everything that it leaves to the program. What it names off stays off; motion across stays out where nothing
 /// makes the beam leave its line, which is exact. `None` where nothing is then left out.
-pub fn full(case: &Case) -> Option<Full> {
-    let auto = effects(case);
+pub fn full(case: &Case) -> Result<Option<Full>> {
+    let auto = effects(case)?;
     let mut choices = named(case, &auto);
     let open: Vec<Effect> = Effect::CHOSEN
         .iter()
@@ -31,32 +33,32 @@ pub fn full(case: &Case) -> Option<Full> {
         let mut more = choices.clone();
         more.set(effect, Choice::On);
         let case = with(case, Effects::Chosen(more.clone()));
-        if effects(&case).has(effect) && refusals(&case).is_empty() {
+        if System::new(&case).is_ok_and(|system| system.model.effects.has(effect)) {
             choices = more;
         }
     }
     let case = with(case, Effects::Chosen(choices));
-    let left_out = more(&auto, &effects(&case));
-    (!left_out.is_empty()).then_some(Full { case, left_out })
+    let left_out = more(&auto, &effects(&case)?);
+    Ok((!left_out.is_empty()).then_some(Full { case, left_out }))
 }
 
 /// The case with tighter tolerances of effects, as far as that makes a difference to it and to the full one.
-pub fn tighter(case: &Case, full: &Full) -> Vec<Case> {
-    let all = effects(&full.case);
-    let mut before = effects(case);
+pub fn tighter(case: &Case, full: &Full) -> Result<Vec<Case>> {
+    let all = effects(&full.case)?;
+    let mut before = effects(case)?;
     let tolerance = case.effects_tolerance();
     let mut found = vec![];
     for decades in 1..=TIGHTER {
         let mut candidate = case.clone();
         candidate.effects_tolerance = Some(tolerance * 10_f64.powi(-decades));
-        let set = effects(&candidate);
+        let set = effects(&candidate)?;
         let new = !more(&before, &set).is_empty();
-        if new && !more(&set, &all).is_empty() && refusals(&candidate).is_empty() {
+        if new && !more(&set, &all).is_empty() && System::new(&candidate).is_ok() {
             found.push(candidate);
             before = set;
         }
     }
-    found
+    Ok(found)
 }
 
 /// Effects of one set that another has not.
@@ -94,7 +96,7 @@ mod tests {
         );
         let path = std::path::Path::new("x.json");
         match crate::case::parse(&text, path, path, &[]) {
-            Ok(loaded) => loaded.case,
+            Ok(case) => case,
             Err(error) => panic!("{error}"),
         }
     }
@@ -103,15 +105,17 @@ mod tests {
     /// stays off; of a full case nothing is left out.
     #[test]
     fn the_full_case_has_what_was_left_to_the_program() {
+        let full = |case: &Case| full(case).expect("effects");
         let found = full(&case("")).expect("something left out");
         assert!(found.left_out.contains(&Effect::SolidInertia), "{:?}", found.left_out);
         assert!(found.left_out.contains(&Effect::FiniteRotation), "{:?}", found.left_out);
-        assert!(refusals(&found.case).is_empty());
+        assert!(System::new(&found.case).is_ok());
         assert!(full(&found.case).is_none());
         let off = full(&case(r#", "effects": {"solid_inertia": "off"}"#)).expect("something left out");
         assert!(!off.left_out.contains(&Effect::SolidInertia), "{:?}", off.left_out);
         assert!(full(&case(r#", "effects": "full""#)).is_none());
-        for tighter in tighter(&case(""), &found) {
+        for tighter in tighter(&case(""), &found).expect("effects") {
+            let effects = |case: &Case| effects(case).expect("effects");
             assert!(!more(&effects(&case("")), &effects(&tighter)).is_empty());
         }
     }

@@ -8,6 +8,7 @@ use super::models::{self, Full};
 use crate::case::Case;
 use crate::case::schema::Effect;
 use crate::case::schema::Method;
+use crate::discrete::{System, resolution};
 use crate::error::Result;
 use crate::run::dynamics;
 use crate::run::record::{Control, Progress, Unrecorded};
@@ -20,6 +21,10 @@ const FINEST: usize = 64;
 const TIGHTEST: i32 = 9;
 /// Part of the accuracy asked that errors of time and mesh may fill: estimates are no bounds.
 pub const FILL: f64 = 0.6;
+/// Share of a shape beyond which no order is to be expected while a mesh leaves it out.
+const LEFT_OUT: f64 = 0.1;
+/// Part of the present error below which that of a setting must be for it to be worth a run.
+const WORTH: f64 = 0.9;
 /// Steps that a run beside a candidate may take: so many times the candidate's, and some for what is short.
 const STEPS: (u64, u64) = (30, 3000);
 
@@ -54,17 +59,17 @@ pub enum Ran {
 
 impl<'a> Search<'a> {
     /// Nothing known yet.
-    pub fn new(case: Case, asked: f64, hook: Hook<'a>) -> Self {
-        Self {
-            runs: Runs::new(Floors::of(&case)),
-            full: models::full(&case),
+    pub fn new(case: Case, asked: f64, hook: Hook<'a>) -> Result<Self> {
+        Ok(Self {
+            runs: Runs::new(Floors::of(&case)?),
+            full: models::full(&case)?,
             case,
             asked,
             hook,
             pilots: vec![],
             taken_in: vec![],
             failed: BTreeMap::new(),
-        }
+        })
     }
 
     /// A candidate: the case on a mesh at a tolerance.
@@ -154,12 +159,26 @@ impl<'a> Search<'a> {
     /// The two runs that the errors of one are estimated by, after that itself where it is not known.
     pub fn compare_with_cheaper(&mut self, at: At) -> Result<Option<String>> {
         let (cells, decades) = at;
+        if !self.runs.knows_mesh(cells) {
+            let case = self.variant(at);
+            let findings = resolution::findings(&case, &System::new(&case)?);
+            let unresolved = findings.iter().any(|finding| finding.left_out > LEFT_OUT);
+            self.runs.take_mesh(cells, unresolved);
+        }
         for candidate in [at, (cells / 2, decades), (cells, decades - 1)] {
             if let Ran::Stopped(reason) = self.run(Way::Candidate, candidate)? {
                 return Ok(Some(reason));
             }
         }
         Ok(None)
+    }
+
+    /// The run on a quarter of the mesh, that shows how differences fall; a cheap one before anything is promised.
+    pub fn compare_with_coarsest(&mut self, at: At) -> Result<Ran> {
+        if at.0 < 4 {
+            return Ok(Ran::Known);
+        }
+        self.run(Way::Candidate, (at.0 / 4, at.1))
     }
 
     /// The run by another method, on half the mesh, that a candidate's error in time is not taken below.
@@ -190,13 +209,14 @@ impl<'a> Search<'a> {
         };
         // Twice the cells are four times the work: unknowns, and steps through stiffness. A decade is 10^(1/3) of steps.
         let cost = |refinements: i32, tighter: i32| 4_f64.powi(refinements) * 10_f64.powf(f64::from(tighter) / 3.0);
+        let now = predicted(0, 0);
         let mut best: Option<((i32, i32), f64, f64)> = None;
         for refinements in 0..=6 {
             for tighter in 0..=6 {
                 let (fill, cost) = (predicted(refinements, tighter), cost(refinements, tighter));
                 let possible = cells << refinements <= FINEST && decades + tighter <= TIGHTEST;
                 let better = best.is_none_or(|(_, f, c)| if fill <= FILL { f > FILL || cost < c } else { fill < f });
-                if possible && (refinements, tighter) != (0, 0) && better {
+                if possible && fill < WORTH * now && better {
                     best = Some(((refinements, tighter), fill, cost));
                 }
             }

@@ -1,9 +1,12 @@
 //! One number, computed and exact.
 
+use serde::{Deserialize, Serialize};
+
 use super::fit::richardson;
 
 /// Whether an error is relative to the exact value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Measure {
     /// `|computed - exact|/|exact|`.
     Relative,

@@ -85,8 +85,8 @@ fn first(cells: usize, ratio: f64, (epsilon, zeta): (f64, f64)) -> Result<Vec<Mu
 
 /// Multipliers of the first bending mode of a case, largest first.
 pub fn bending(case: &Value) -> Result<Vec<Multiplier>> {
-    let loaded = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
-    let scene = Scene::new(&loaded.case, None)?;
+    let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    let scene = Scene::new(&case, None)?;
     let mut cycle = shoot(&scene, None).map_err(fault)?;
     let mut found = floquet::multipliers(&scene, &mut cycle, COUNT).multipliers;
     found.retain(|m| m.part == Part::Bending(1));

@@ -73,8 +73,8 @@ fn case_of(amplitude: f64, cells: usize) -> serde_json::Value {
 
 fn section() -> Result<(Section, f64)> {
     let text = case_of(0.03, 10).to_string();
-    let loaded = case::parse(&text, Path::new("verify.json"), Path::new(""), &[])?;
-    let model = Model::new(&loaded.case);
+    let case = case::parse(&text, Path::new("verify.json"), Path::new(""), &[])?;
+    let model = Model::new(&case)?;
     Ok((model.section, model.length))
 }
 

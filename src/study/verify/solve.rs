@@ -20,9 +20,9 @@ pub struct Solved {
 /// # Errors
 /// A case that is not valid, a solver that cannot go on.
 pub fn solve(case: &Value) -> Result<Solved> {
-    let loaded = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
     let mut memory = Memory::default();
-    let outcome = dynamics::run(&loaded.case, &mut memory)?;
+    let outcome = dynamics::run(&case, &mut memory)?;
     match outcome.fault {
         Some(fault) => Err(Error::Solver(Box::new(fault))),
         None => Ok(Solved { memory }),
@@ -34,13 +34,13 @@ pub fn solve(case: &Value) -> Result<Solved> {
 /// # Errors
 /// A case that is not valid, eigenvalues that do not converge.
 pub fn modes(case: &Value, count: usize) -> Result<Modes> {
-    let loaded = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
     let plan = Plan {
         count,
         near_hz: 0.0,
         limits: false,
     };
-    modes::modes(&loaded.case, &plan)
+    modes::modes(&case, &plan)
 }
 
 impl Solved {
@@ -71,17 +71,17 @@ pub struct Balanced {
 /// # Errors
 /// A case that is not valid, a path that ends before.
 pub fn balance(case: &Value, share: f64) -> Result<Balanced> {
-    let loaded = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
-    let at_s = loaded.case.time.end_s;
+    let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    let at_s = case.time.end_s;
     let options = equilibrium::Options {
         share,
         ..equilibrium::Options::at(at_s)
     };
-    let path = equilibrium::follow(&loaded.case, &options, &mut |_| Control::Continue);
+    let path = equilibrium::follow(&case, &options, &mut |_| Control::Continue)?;
     match path.fault {
         Some(fault) => Err(Error::Solver(Box::new(fault))),
         None => Ok(Balanced {
-            columns: equilibrium::columns(&equilibrium::system(&loaded.case, at_s)),
+            columns: equilibrium::columns(&equilibrium::system(&case, at_s)?),
             path,
         }),
     }

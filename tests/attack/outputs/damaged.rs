@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-use super::{answered, bounded, copied, read_by_all};
-use crate::program::{CASE, run, slcbeam, stderr};
+use super::{answered, read_by_all, told};
+use crate::chance::Random;
+use crate::program::{CASE, copy, run, slcbeam, stderr};
 
 /// Name, description and count of the numbers of an array.
 type Told = (&'static str, String, usize);
@@ -94,12 +95,12 @@ fn outputs_that_lie_about_their_size_are_refused() {
         ("no arrays but times", vec![("t_fields_s.npy", times.clone(), 11)]),
     ];
     for (what, entries) in &lies {
-        copied(&sound, &bad);
+        copy(&sound, &bad);
         archive(&bad.join("fields.npz"), entries);
         let [export, _, compare] = read_by_all(&bad, &sound, what);
         assert_eq!(export, 5, "{what}");
         assert!(compare == 5 || *what == "no arrays but times", "{what}: {compare}");
-        let told = stderr(&bounded(&["export", &bad.display().to_string()]));
+        let told = stderr(&told(&["export", &bad.display().to_string()]));
         assert!(told.contains("E050") && told.contains("fields.npz"), "{what}: {told}");
     }
 }
@@ -110,7 +111,7 @@ fn outputs_that_lie_over_each_other_are_refused() {
     let folder = tempfile::tempdir().expect("a place");
     let (sound, bad) = (folder.path().join("sound"), folder.path().join("bad"));
     assert!(run(&sound, &[]).status.success());
-    copied(&sound, &bad);
+    copy(&sound, &bad);
     let path = bad.join("fields.npz");
     let count = 400;
     archive(&path, &[("t_fields_s.npy", described("(200000,)"), 200_000)]);
@@ -144,7 +145,7 @@ fn outputs_that_changed_are_refused() {
     let folder = tempfile::tempdir().expect("a place");
     let (sound, bad) = (folder.path().join("sound"), folder.path().join("bad"));
     assert!(run(&sound, &[]).status.success());
-    copied(&sound, &bad);
+    copy(&sound, &bad);
     let mut bytes = fs::read(bad.join("fields.npz")).expect("a file");
     let name = b"u1_m.npy";
     let begin = bytes
@@ -167,7 +168,7 @@ fn outputs_without_an_end_are_refused() {
     assert!(run(&sound, &[]).status.success());
     for name in ["fields.npz", "history.csv", "summary.json", "history.svg"] {
         for endless in ["/dev/zero", "fifo"] {
-            copied(&sound, &bad);
+            copy(&sound, &bad);
             fs::remove_file(bad.join(name)).expect("it goes");
             if endless == "fifo" {
                 let made = Command::new("mkfifo").arg(bad.join(name)).status().expect("it starts");
@@ -180,46 +181,33 @@ fn outputs_without_an_end_are_refused() {
     }
 }
 
-/// A generator of numbers that is the same everywhere (splitmix64).
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self, sides: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) % sides.max(1) as u64) as usize
-    }
-}
-
 /// Flips, cuts, overwrites or repeats some bytes.
-fn mutate(bytes: &mut Vec<u8>, dice: &mut Dice) {
-    let at = dice.roll(bytes.len());
-    match dice.roll(5) {
-        0 => bytes[at] ^= 1 << dice.roll(8),
+fn mutate(bytes: &mut Vec<u8>, dice: &mut Random) {
+    let at = dice.below(bytes.len());
+    match dice.below(5) {
+        0 => bytes[at] ^= 1 << dice.below(8),
         1 => bytes.truncate(at),
         2 => {
-            let end = (at + 1 + dice.roll(16)).min(bytes.len());
-            let with = [0, 255, 127, b'9'][dice.roll(4)];
+            let end = (at + 1 + dice.below(16)).min(bytes.len());
+            let with = [0, 255, 127, b'9'][dice.below(4)];
             bytes[at..end].fill(with);
         }
         3 => {
             // in a description or in the directory
             let marks = [&b"shape"[..], b"NUMPY", b"PK\x01\x02", b"PK\x03\x04", b"PK\x05\x06"];
-            let mark = marks[dice.roll(marks.len())];
+            let mark = marks[dice.below(marks.len())];
             let places: Vec<usize> = bytes
                 .windows(mark.len())
                 .enumerate()
                 .filter(|w| w.1 == mark)
                 .map(|w| w.0)
                 .collect();
-            let begin = places.get(dice.roll(places.len())).copied().unwrap_or(at);
-            let at = (begin + dice.roll(48)).min(bytes.len() - 1);
-            bytes[at] = [0, 255, b'9', dice.roll(256) as u8][dice.roll(4)];
+            let begin = places.get(dice.below(places.len())).copied().unwrap_or(at);
+            let at = (begin + dice.below(48)).min(bytes.len() - 1);
+            bytes[at] = [0, 255, b'9', dice.below(256) as u8][dice.below(4)];
         }
         _ => {
-            let end = (at + dice.roll(400)).min(bytes.len());
+            let end = (at + dice.below(400)).min(bytes.len());
             let again = bytes[at..end].to_vec();
             bytes.splice(at..at, again);
         }
@@ -243,7 +231,7 @@ fn fuzz(trials: u64) {
     assert!(found.status.success(), "{}", stderr(&found));
     let (mut refused, mut taken) = (0, 0);
     for trial in 0..trials {
-        let mut dice = Dice(trial);
+        let mut dice = Random(trial);
         let of_modes = trial % 5 == 4;
         let (from, names): (_, &[&str]) = if of_modes {
             (
@@ -263,10 +251,10 @@ fn fuzz(trials: u64) {
                 ],
             )
         };
-        copied(from, &bad);
-        let path = bad.join(names[dice.roll(names.len())]);
+        copy(from, &bad);
+        let path = bad.join(names[dice.below(names.len())]);
         let mut bytes = fs::read(&path).expect("a file");
-        for _ in 0..=dice.roll(3) {
+        for _ in 0..=dice.below(3) {
             if !bytes.is_empty() {
                 mutate(&mut bytes, &mut dice);
             }
@@ -274,7 +262,7 @@ fn fuzz(trials: u64) {
         fs::write(&path, bytes).expect("it is changed");
         let what = format!("trial {trial}, {}", path.display());
         let codes = if of_modes {
-            vec![answered(&bounded(&["report", &bad.display().to_string()]), &what)]
+            vec![answered(&told(&["report", &bad.display().to_string()]), &what)]
         } else {
             read_by_all(&bad, &sound, &what).to_vec()
         };

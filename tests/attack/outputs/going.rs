@@ -7,8 +7,8 @@ use std::time::Duration;
 use slcbeam::run::record::{Control, Header, Progress, Recorder};
 use slcbeam::run::summary::Status;
 
-use super::{answered, bounded};
-use crate::program::{CASE, contents, run, same, slcbeam, start, stderr, unchanged};
+use super::{answered, told};
+use crate::program::{CASE, contents, kill, run, same, slcbeam, start, stderr, unchanged, wait};
 
 /// Takes its time for every row, and stops the run as soon as it is asked between two rows of one step.
 #[derive(Default)]
@@ -50,7 +50,7 @@ fn outputs_within_one_step_can_be_stopped() {
     ];
     let case = slcbeam::case::load(Path::new(CASE), &sets.map(String::from));
     let mut slow = Slow::default();
-    let outcome = slcbeam::run::dynamics::run(&case.expect("a case").case, &mut slow).expect("a run");
+    let outcome = slcbeam::run::dynamics::run(&case.expect("a case"), &mut slow).expect("a run");
     assert_eq!(outcome.summary.status, Status::Stopped);
     assert_eq!(outcome.summary.reason.as_deref(), Some("asked within a step"));
     let last = slow.times.last().copied();
@@ -130,11 +130,8 @@ fn stopped_after(out: &Path, more: &[&str], t: f64) {
             .and_then(|rest| rest.split(',').next()?.parse::<f64>().ok());
         at.is_some_and(|at| at > checkpoint - 1e-9)
     };
-    while !there() && child.try_wait().expect("its state").is_none() {
-        std::thread::sleep(Duration::from_micros(200));
-    }
-    child.kill().expect("it is killed");
-    child.wait().expect("it ends");
+    wait(&mut child, there);
+    kill(&mut child);
     assert!(out.join("checkpoint.json").exists(), "the run is too fast to be killed");
 }
 
@@ -200,7 +197,7 @@ fn outputs_before_the_window_are_left_to_their_envelope() {
         let page = fs::read_to_string(out.join("report.html")).expect("a page");
         assert!(page.contains("of every stretch of envelope.csv"), "the page says so");
         let both = [out.display().to_string(), all.display().to_string()];
-        let compared = bounded(&["compare", &both[0], &both[1], "--json"]);
+        let compared = told(&["compare", &both[0], &both[1], "--json"]);
         assert_eq!(answered(&compared, "compare"), 0);
         fs::remove_dir_all(&out).expect("it goes");
         fs::remove_dir_all(&killed).expect("it goes");

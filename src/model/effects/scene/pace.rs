@@ -28,7 +28,7 @@ impl Pace {
 
     /// How far something of an angular frequency `ω` [1/s] or more departs, at most, from what this does to it at rest, relative to
     /// the most that this does.
-    pub fn haste(&self, omega: f64) -> f64 {
+    pub fn inertia_ratio(&self, omega: f64) -> f64 {
         self.excitation.above(omega) / self.size
     }
 

@@ -48,7 +48,7 @@ impl Scene<'_> {
         }
         let (ea, m) = (section.axial_stiffness, section.mass_per_length);
         if force > 0.0 {
-            force *= 1.0 + self.haste_of(self.others.iter(), self.axial).min(1.0);
+            force *= 1.0 + self.inertia_ratio_of(self.others.iter(), self.axial).min(1.0);
         }
         force += m * l * d.axial_acceleration + d.axial_jump * (ea * m).sqrt() + d.axial_pull * ea / l;
         if root && tip {

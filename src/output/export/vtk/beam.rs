@@ -2,7 +2,7 @@
 //! bladders.
 
 use super::curve::{Curve, Section};
-use super::hollow::Hollow;
+use super::cutout::Cutout;
 use super::surface::{Data, Surface};
 
 /// Fields of the beam at an instant; vectors as axial and transverse parts.
@@ -20,15 +20,15 @@ pub(super) struct Fields<'a> {
 }
 
 /// The surface. Data of points are those of their section's centre, data of quadrilaterals those of the beam's cell.
-pub(super) fn surface(hollow: &Hollow, curve: &Curve, sections: &[Section], fields: &Fields) -> Surface {
-    let heights = hollow.heights();
+pub(super) fn surface(cutout: &Cutout, curve: &Curve, sections: &[Section], fields: &Fields) -> Surface {
+    let heights = cutout.heights();
     let m = heights.len();
     let mut out = Surface::default();
     // Station of each point.
     let mut stations = vec![];
     for (k, section) in sections.iter().enumerate() {
         for side in [-1.0, 1.0] {
-            let across = side * hollow.half_width;
+            let across = side * cutout.half_width;
             out.points.extend(heights.iter().map(|&h| section.point(h, across)));
         }
         stations.resize(out.points.len(), k);
@@ -37,7 +37,7 @@ pub(super) fn surface(hollow: &Hollow, curve: &Curve, sections: &[Section], fiel
     let at = |k: usize, side: usize, i: usize| (2 * k + side) * m + i;
     let mut cells = vec![];
     for (k, pair) in sections.windows(2).enumerate() {
-        let open = hollow.beside_bladder(pair[0].theta, pair[1].theta);
+        let open = cutout.beside_bladder(pair[0].theta, pair[1].theta);
         // Sides are divided at the rows' edges; a row is every second strip.
         for i in (0..m - 1).filter(|i| !(open && i % 2 == 1)) {
             out.quads
@@ -63,7 +63,7 @@ pub(super) fn surface(hollow: &Hollow, curve: &Curve, sections: &[Section], fiel
         .extend((0..m - 1).map(|i| [at(last, 0, i), at(last, 0, i + 1), at(last, 1, i + 1), at(last, 1, i)]));
     cells.resize(out.quads.len(), fields.force.len() - 1);
 
-    reveals(&mut out, hollow, sections, &mut stations, |from, to| {
+    reveals(&mut out, cutout, sections, &mut stations, |from, to| {
         cells.push(curve.cell(from, to))
     });
 
@@ -96,18 +96,18 @@ pub(super) fn surface(hollow: &Hollow, curve: &Curve, sections: &[Section], fiel
 /// Walls of the windows, from the beam's sides in to the bladders' ends; `owned` hears between which coordinates each lies.
 fn reveals(
     out: &mut Surface,
-    hollow: &Hollow,
+    cutout: &Cutout,
     sections: &[Section],
     stations: &mut Vec<usize>,
     mut owned: impl FnMut(f64, f64),
 ) {
-    let apart = 1e-9 * hollow.length;
-    let rows = [[-hollow.row[1], -hollow.row[0]], hollow.row];
-    let depths = [hollow.half_width, hollow.half_across];
+    let apart = 1e-9 * cutout.length;
+    let rows = [[-cutout.row[1], -cutout.row[0]], cutout.row];
+    let depths = [cutout.half_width, cutout.half_across];
     if depths[0] - depths[1] <= apart {
         return;
     }
-    for window in &hollow.windows {
+    for window in &cutout.windows {
         let within = |k: &usize| (window[0] - apart..=window[1] + apart).contains(&sections[*k].theta);
         let along: Vec<usize> = (0..sections.len()).filter(within).collect();
         let last = along.len() - 1;

@@ -1,10 +1,10 @@
 //! The bladders as boxes that move with their segments, divided across the width into their fluid cells.
 
 use super::curve::Section;
-use super::hollow::Hollow;
+use super::cutout::Cutout;
 use super::surface::{Data, Surface};
+use crate::case::wiring::bladder_index;
 use crate::model::Wet;
-use crate::model::network::bladder_index;
 
 /// A bladder and its fluid cells.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,20 +32,20 @@ impl Layout {
     /// `labels`: the bladder of each recorded cell. Along a chain inlets change sides, so that tubes join neighbours.
     pub fn new(wet: &Wet, labels: &[f64]) -> Self {
         let cells = labels.iter().take_while(|l| **l == labels[0]).count().max(1);
-        let bladders = labels.iter().enumerate().step_by(cells).map(|(first, &label)| {
+        let bladders = labels.iter().enumerate().step_by(cells).filter_map(|(first, &label)| {
             let label = label.round() as i64;
-            let index = bladder_index(label, wet.per_row);
+            let index = bladder_index(label, wet.per_row)?;
             let place = wet
                 .network
                 .chains
                 .iter()
                 .find_map(|c| c.iter().position(|b| *b == index));
-            Bladder {
+            Some(Bladder {
                 label,
                 network: wet.network.component_of_bladder[index] as i32 + 1,
                 first,
                 inlet: if place.unwrap_or(0) % 2 == 0 { -1.0 } else { 1.0 },
-            }
+            })
         });
         Self {
             bladders: bladders.collect(),
@@ -56,7 +56,7 @@ impl Layout {
 
 /// The boxes, with pressure [Pa] and area change [m^2] of each fluid cell.
 pub(super) fn surface(
-    hollow: &Hollow,
+    cutout: &Cutout,
     layout: &Layout,
     sections: &[Section],
     pressure: &[f64],
@@ -65,11 +65,11 @@ pub(super) fn surface(
     let mut out = Surface::default();
     let mut owners: Vec<(usize, usize)> = vec![];
     for (number, bladder) in layout.bladders.iter().enumerate() {
-        let window = hollow.windows[bladder.label.unsigned_abs() as usize - 1];
-        let apart = 1e-9 * hollow.length;
+        let window = cutout.windows[bladder.label.unsigned_abs() as usize - 1];
+        let apart = 1e-9 * cutout.length;
         let within = |s: &&Section| s.theta >= window[0] - apart && s.theta <= window[1] + apart;
         let along: Vec<&Section> = sections.iter().filter(within).collect();
-        shape(&mut out, hollow, bladder, &along, layout.cells, |cell| {
+        shape(&mut out, cutout, bladder, &along, layout.cells, |cell| {
             owners.push((number, cell))
         });
     }
@@ -93,7 +93,7 @@ pub(super) fn surface(
 /// One box: points and quadrilaterals; `owned` hears the fluid cell of each.
 fn shape(
     out: &mut Surface,
-    hollow: &Hollow,
+    cutout: &Cutout,
     bladder: &Bladder,
     along: &[&Section],
     cells: usize,
@@ -101,13 +101,13 @@ fn shape(
 ) {
     let first = out.points.len();
     let [low, high] = match bladder.label > 0 {
-        true => hollow.row,
-        false => [-hollow.row[1], -hollow.row[0]],
+        true => cutout.row,
+        false => [-cutout.row[1], -cutout.row[0]],
     };
     // Slices from one side of the beam to the other, whichever side the inlet is on: so all faces look outwards.
     for section in along {
         for slice in 0..=cells {
-            let across = hollow.half_across * (2.0 * slice as f64 / cells as f64 - 1.0);
+            let across = cutout.half_across * (2.0 * slice as f64 / cells as f64 - 1.0);
             out.points.extend([low, high].map(|h| section.point(h, across)));
         }
     }

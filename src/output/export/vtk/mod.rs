@@ -3,7 +3,7 @@
 //! ```text
 //! surface   points, quadrilaterals, lines and their data, as VTK's XML
 //! curve     the reference curve of an instant: where a section is and how it is turned
-//! hollow    rows and windows: where the bladders lie in the beam
+//! cutout    rows and windows: where the bladders lie in the beam
 //! beam      the beam's surface, open where one looks into the bladders
 //! bladders  the bladders as boxes that move with their segments
 //! tubes     tubes and turbines as lines
@@ -15,7 +15,7 @@
 mod beam;
 mod bladders;
 mod curve;
-mod hollow;
+mod cutout;
 mod surface;
 mod tubes;
 
@@ -33,7 +33,7 @@ use crate::output::numbers::shortest;
 use crate::run::observe::Observer;
 use crate::study::compare::Recording;
 use curve::Curve;
-use hollow::Hollow;
+use cutout::Cutout;
 use surface::Surface;
 
 /// What is drawn, each a file an instant.
@@ -46,7 +46,7 @@ const SAME: f64 = 1e-9;
 pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> Result<Written> {
     fits(case, from)?;
     let staged = Staged::new(dir, VTK)?;
-    let scene = Scene::new(case, from);
+    let scene = Scene::new(case, from)?;
     let digits = from.field_times.len().to_string().len();
     let collection = format!("{}.pvd", case.name);
     let mut written = Written::new(staged.target().join(&collection));
@@ -74,7 +74,7 @@ pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> R
 
 /// That the arrays are those of the case: what is drawn is looked up in both.
 fn fits(case: &Case, from: &Recording) -> Result<()> {
-    let header = Observer::header(case, &System::new(case));
+    let header = Observer::header(case, &System::new(case)?);
     let path = Path::new(&from.label).join(FIELDS);
     let other = |why: String| Err(fault("read", &path, damaged(why)));
     for expected in &header.axes {
@@ -105,27 +105,27 @@ fn put(path: &Path, bytes: &[u8]) -> Result<u64> {
 /// What does not move: sizes, windows, which bladder is where, which tube joins what.
 struct Scene<'a> {
     from: &'a Recording,
-    hollow: Hollow,
+    cutout: Cutout,
     stations: Vec<f64>,
     wet: Option<(bladders::Layout, Vec<tubes::Tube>)>,
 }
 
 impl<'a> Scene<'a> {
-    fn new(case: &Case, from: &'a Recording) -> Self {
-        let hollow = Hollow::new(case);
-        let stations = hollow.stations(from.axis("theta_node_m").unwrap_or_default());
-        let model = Model::new(case);
+    fn new(case: &Case, from: &'a Recording) -> Result<Self> {
+        let cutout = Cutout::new(case);
+        let stations = cutout.stations(from.axis("theta_node_m").unwrap_or_default());
+        let model = Model::new(case)?;
         let wet = model.wet.as_ref().zip(from.axis("bladder")).map(|(wet, labels)| {
             let layout = bladders::Layout::new(wet, labels);
-            let tubes = tubes::all(case, wet, &hollow, &layout);
+            let tubes = tubes::all(case, wet, &cutout, &layout);
             (layout, tubes)
         });
-        Self {
+        Ok(Self {
             from,
-            hollow,
+            cutout,
             stations,
             wet,
-        }
+        })
     }
 
     /// The parts at an instant, in the order of [`PARTS`]; a dry beam has the first alone.
@@ -141,10 +141,10 @@ impl<'a> Scene<'a> {
             moment: row("moment_n_m"),
             force: row("normal_force_n"),
         };
-        let mut parts = vec![beam::surface(&self.hollow, &curve, &sections, &fields)];
+        let mut parts = vec![beam::surface(&self.cutout, &curve, &sections, &fields)];
         if let Some((layout, tubes)) = &self.wet {
             let (pressure, area) = (row("pressure_pa"), row("area_change_m2"));
-            parts.push(bladders::surface(&self.hollow, layout, &sections, pressure, area));
+            parts.push(bladders::surface(&self.cutout, layout, &sections, pressure, area));
             parts.push(tubes::lines(tubes, &curve, pressure));
         }
         parts

@@ -4,12 +4,13 @@ use std::f64::consts::PI;
 
 use super::bladders::Layout;
 use super::curve::Curve;
-use super::hollow::Hollow;
+use super::cutout::Cutout;
 use super::surface::{Data, Surface};
 use crate::case::Case;
 use crate::case::schema::BladderEnd;
+use crate::case::wiring::bladder_index;
 use crate::model::Wet;
-use crate::model::network::{LinkKind, Node, bladder_index};
+use crate::model::network::{LinkKind, Node};
 
 /// Points of a line.
 const POINTS: usize = 13;
@@ -28,7 +29,7 @@ pub(super) struct Tube {
 }
 
 /// All tubes and turbines of a network, rectified ones included. What ends nowhere near a bladder is left out.
-pub(super) fn all(case: &Case, wet: &Wet, hollow: &Hollow, layout: &Layout) -> Vec<Tube> {
+pub(super) fn all(case: &Case, wet: &Wet, cutout: &Cutout, layout: &Layout) -> Vec<Tube> {
     let network = &wet.network;
     let drawn = |kind: &LinkKind| !matches!(kind, LinkKind::Opening);
     let links = network.links.iter().map(|l| (l.from, l.to, l.kind));
@@ -38,7 +39,7 @@ pub(super) fn all(case: &Case, wet: &Wet, hollow: &Hollow, layout: &Layout) -> V
         .map(|b| (b.from, b.to, LinkKind::Turbine(b.turbine)));
     let joints: Vec<(Node, Node, LinkKind)> = links.chain(bridges).collect();
     let length = case.tubes.as_ref().map_or(0.0, |t| t.length_m);
-    let mouth = |node: Node| mouth(node, wet, hollow, layout);
+    let mouth = |node: Node| mouth(node, wet, cutout, layout);
     let place = |node: Node| {
         mouth(node).map(|m| m.0).or_else(|| {
             // A junction or port lies outside of the mouths that it is joined to.
@@ -64,19 +65,19 @@ pub(super) fn all(case: &Case, wet: &Wet, hollow: &Hollow, layout: &Layout) -> V
 }
 
 /// Where a bladder's end meets the beam's side, and its outermost fluid cell.
-fn mouth(node: Node, wet: &Wet, hollow: &Hollow, layout: &Layout) -> Option<(Place, usize)> {
+fn mouth(node: Node, wet: &Wet, cutout: &Cutout, layout: &Layout) -> Option<(Place, usize)> {
     let Node::Cell { bladder, end } = node else { return None };
     let owner = layout
         .bladders
         .iter()
-        .find(|b| bladder_index(b.label, wet.per_row) == bladder)?;
-    let window = hollow.windows[owner.label.unsigned_abs() as usize - 1];
-    let height = 0.5 * (hollow.row[0] + hollow.row[1]) * owner.label.signum() as f64;
+        .find(|b| bladder_index(b.label, wet.per_row) == Some(bladder))?;
+    let window = cutout.windows[owner.label.unsigned_abs() as usize - 1];
+    let height = 0.5 * (cutout.row[0] + cutout.row[1]) * owner.label.signum() as f64;
     let (side, cell) = match end {
         BladderEnd::Inlet => (owner.inlet, owner.first),
         BladderEnd::Outlet => (-owner.inlet, owner.first + layout.cells - 1),
     };
-    Some(([0.5 * (window[0] + window[1]), height, side * hollow.half_width], cell))
+    Some(([0.5 * (window[0] + window[1]), height, side * cutout.half_width], cell))
 }
 
 /// From one place to the other: bulging out of the beam's side as far as the tube is long, straight between two sides.

@@ -150,7 +150,8 @@ function showFoot() {
     const body = section("files", title, lead);
     body.append(el("ul", { class: "files" }, files.map((f) => el("li", {}, fileLink(f)))));
   }
-  document.getElementById("foot").append(el("p", { text: `Made by slcbeam ${data.version}. This page needs nothing but itself.` }));
+  const made = data.made ? `${data.made} ` : "";
+  document.getElementById("foot").append(el("p", { text: `${made}The page was made by slcbeam ${data.version} and needs nothing but itself.` }));
 }
 
 function showContents() {

@@ -1,13 +1,5 @@
 // Columns over time: chosen by buttons, zoomed together, read at the cursor.
 
-const SYMBOLS = {
-  tip_u1: "tip u₁", tip_u3: "tip u₃", tip_angle: "tip angle", max_pressure: "largest pressure", min_pressure: "smallest pressure", turbine_power: "turbine power", least_opening: "least opening of a bladder",
-  energy_residual: "what does not close", harvested: "harvested",
-};
-function spoken(name) {
-  return SYMBOLS[name] || name.replace(/^work_/, "work of ").replace(/^dissipated_/, "lost in ").replace(/_/g, " ");
-}
-
 /** Panels over one time axis that zoom and read together. */
 function makePanels(host, clock, readable) {
   const group = { key: `g${(makePanels.count = (makePanels.count || 0) + 1)}`, plots: [], range: null, full: null };
@@ -95,15 +87,14 @@ function families(columns) {
 
 function unpackHistory(history) {
   if (!history) return null;
-  const columns = history.columns.map((c) => ({ ...c, values: floats(c.values), label: spoken(c.name) }));
+  const columns = history.columns.map((c) => ({ ...c, values: floats(c.values) }));
   return { ...history, times: columns[0].values, columns: columns.slice(1) };
 }
 
 function showHistories(host, history, clock) {
   const all = history.columns.filter((c) => c.values.length && largest(c.values) > 0);
   const zero = history.columns.filter((c) => !all.includes(c)).map((c) => c.label);
-  const usual = new Set(["tip_u1", "tip_u3", "max_pressure", "min_pressure"]);
-  const chosen = new Set(all.filter((c) => usual.has(c.name)).map((c) => c.name));
+  const chosen = new Set(all.filter((c) => c.usual).map((c) => c.name));
   if (!chosen.size && all.length) chosen.add(all[0].name);
   const time = () => (clock ? clock.time : history.times[0]);
   const slot = el("div");

@@ -37,20 +37,20 @@ function showEnergies(host, ledger, history, clock) {
   };
   const { columns } = ledger;
   const lines = [
-    ["put in from outside", sum(["work_loads", "work_ends", "work_ports"])],
+    ["put in from outside", sum(columns.in)],
     ["stored now", sum(columns.stored)],
-    ["lost", sum(columns.out.filter((n) => n !== "harvested"))],
-    ["harvested", sum(["harvested"])],
-    ["added by the published forms", sum(["work_formulation", "work_reciprocity"])],
+    ["lost", sum(columns.lost)],
+    ["harvested", sum(columns.harvested)],
+    ["added by the published forms", sum(columns.added)],
   ].filter(([, values]) => values && largest(values) > 0);
-  const residual = by("energy_residual");
+  const residual = by(columns.open[0]);
   if (!lines.length) return;
   const slot = el("div");
   const group = makePanels(slot, { times: history.times, time: () => (clock ? clock.time : history.times[0]) });
   const paint = () => {
     group.clear();
     group.add(lines.map(([label, values], k) => ({ label, values, unit: "J", colour: named(k) })), 280, "energy");
-    if (residual) group.add([{ label: spoken(residual.name), values: residual.values, unit: "J", colour: css("--bad") }], 150, "residual");
+    if (residual) group.add([{ label: residual.label, values: residual.values, unit: "J", colour: css("--bad") }], 150, "residual");
     setTimeout(group.mark, 0);
   };
   host.append(figure("Over time", "What was put in equals what is stored, lost and harvested; the small picture shows by how much it does not.", zoomTools(group), slot));

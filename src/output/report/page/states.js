@@ -50,10 +50,9 @@ function showPath() {
         paintBeam(ctx, view, curve(now), scene, layout, null);
       });
       const row = path?.rows?.[states[now]] || [];
-      const wanted = ["tip_u1", "tip_u3", "max_pressure"];
       const ways = row[columns.findIndex((c) => c && c[0] === "unstable_modes")];
       const verdict = ways === 0 ? "stable" : ways > 0 ? `unstable in ${ways} way${ways === 1 ? "" : "s"}` : "stability unknown";
-      const parts = columns.map((c, k) => (c && wanted.includes(c[0]) && typeof row[k] === "number" ? `${spoken(c[0])} ${quantity(row[k], c[1])}` : null)).filter(Boolean);
+      const parts = columns.map((c, k) => (c && c[0] in data.headlines && typeof row[k] === "number" ? `${data.headlines[c[0]]} ${quantity(row[k], c[1])}` : null)).filter(Boolean);
       words.textContent = `${shortest(100 * share[now])} % of the loads · ${parts.join(" · ")} · ${verdict}`;
       for (const act of follow) act(states[now]);
     };
@@ -64,15 +63,15 @@ function showPath() {
     paint();
   }
   showEvents();
-  if (path) section("table", "Every state", null).append(tableCard({ ...path, title: null, about: "The first column is the share of the loads; the last counts the ways in which the state gives way (0: stable)." }));
+  if (path) section("table", "Every state", null).append(tableCard({ ...path, title: null, about: "The first column is the load factor; the last counts the ways in which the state gives way (0: stable)." }));
   if (scene) showScene();
 }
 
-/** Displacements and pressure over the share of the loads, with a mark at the present state. */
+/** Displacements and pressure over the load factor, with a mark at the present state. */
 function loadCurves(body, path, columns, follow) {
   const grid = el("div", { class: "grid2" });
   body.append(grid);
-  for (const [name, title] of [["tip_u1", "Tip across, u₁"], ["tip_u3", "Tip along, u₃"], ["max_pressure", "Largest pressure"]]) {
+  for (const [name, title] of Object.entries(data.headlines)) {
     const k = columns.findIndex((c) => c && c[0] === name);
     if (k < 0) continue;
     const values = path.rows.map((r) => (typeof r[k] === "number" ? r[k] : NaN));
@@ -91,7 +90,7 @@ function loadCurves(body, path, columns, follow) {
     const draw = () => {
       const [low, high] = roomy(extent(values));
       const [x0, x1] = roomy(extent(share));
-      drawn = chart(Math.max(slot.clientWidth, 260), 240, { low: x0, high: x1, unit: "1", name: "share of the loads" }, { low, high, unit: columns[k][1], name: spoken(name) }, title);
+      drawn = chart(Math.max(slot.clientWidth, 260), 240, { low: x0, high: x1, unit: "1", name: "load factor" }, { low, high, unit: columns[k][1], name: title }, title);
       drawn.area.append(svg("path", { d: linePath(values.length, (i) => [drawn.px(share[i]), drawn.py(values[i])]), style: `fill:none;stroke:${css("--accent")};stroke-width:2.2` }));
       for (const e of data.events || []) {
         const x = drawn.px(e.load_factor);

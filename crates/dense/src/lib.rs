@@ -1,0 +1,20 @@
+//! Eigenvalues of dense matrices, by faer.
+//!
+//! faer is generic: who calls it compiles it. Here that happens once; in the program, at its level of optimisation, it took more than a
+//! minute of a core after every change.
+
+use faer::{Mat, c64};
+
+/// Eigenvalues of an n × n matrix, the largest first, each with a vector of unit length; every copy of a repeated one counts. None
+/// when an entry is not finite or the iteration does not converge.
+pub fn eigen(n: usize, entry: &dyn Fn(usize, usize) -> c64) -> Option<Vec<(c64, Vec<c64>)>> {
+    let found = Mat::from_fn(n, n, entry).eigen().ok()?;
+    let values = found.S().column_vector().iter().copied();
+    let vectors = found.U().col_iter().map(|x| {
+        let length = x.norm_l2();
+        x.iter().map(|x| x / length).collect()
+    });
+    let mut all: Vec<(c64, Vec<c64>)> = values.zip(vectors).collect();
+    all.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
+    Some(all)
+}

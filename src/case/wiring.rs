@@ -1,0 +1,131 @@
+//! The network of a case, resolved: every number, end and name is a point, every tube has a size, every port gives one thing.
+
+use super::check;
+use super::faults::Faults;
+use super::schema::{BladderEnd, Case, CrossSection, TubeDefaults, Turbine};
+use super::signals::Signal;
+use crate::error::Result;
+
+/// A point of the network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Point {
+    /// An end of a bladder, `0..n`: upper row first.
+    Bladder(usize, BladderEnd),
+    /// A junction, by its place under `/network/junctions`.
+    Junction(usize),
+}
+
+/// A tube.
+#[derive(Clone, Debug)]
+pub struct Tube<'a> {
+    /// Where it starts and where it ends.
+    pub points: [Point; 2],
+    /// Length `l_c` [m].
+    pub length_m: f64,
+    /// What it is inside.
+    pub bore: Bore<'a>,
+    /// Opening of its valve.
+    pub opening: &'a Signal,
+}
+
+/// What the permeability of a tube follows from.
+#[derive(Clone, Copy, Debug)]
+pub enum Bore<'a> {
+    /// Itself, `q1c` [m^4].
+    Permeability(f64),
+    /// A cross-section.
+    CrossSection(&'a CrossSection),
+    /// The radius of a circle [m].
+    Radius(f64),
+}
+
+impl Bore<'_> {
+    /// That of a tube that says nothing else.
+    pub(super) fn usual(tubes: &TubeDefaults) -> Self {
+        tubes
+            .permeability_m4
+            .map_or(Self::Radius(tubes.radius_m), Self::Permeability)
+    }
+}
+
+/// What a port prescribes.
+#[derive(Clone, Copy, Debug)]
+pub enum Given<'a> {
+    /// A pressure [Pa].
+    Pressure(&'a Signal),
+    /// A flow into the network [m^3/s].
+    Flow(&'a Signal),
+}
+
+/// A port, or what prescribes something at the end of a chain.
+#[derive(Clone, Debug)]
+pub struct Port<'a> {
+    /// Where it is.
+    pub at: Point,
+    /// Its name, where it has one.
+    pub name: Option<&'a str>,
+    /// What it prescribes.
+    pub given: Given<'a>,
+}
+
+/// A network, resolved; empty where there is none, and every bladder is sealed singly.
+#[derive(Clone, Debug, Default)]
+pub struct Wiring<'a> {
+    /// Bladders in a row.
+    pub per_row: usize,
+    /// Names of the junctions.
+    pub junctions: &'a [String],
+    /// Bladders of every chain.
+    pub chains: Vec<Vec<usize>>,
+    /// Tubes of the chains.
+    pub chain_tubes: Vec<Tube<'a>>,
+    /// Ports at the ends of chains.
+    pub chain_ports: Vec<Port<'a>>,
+    /// Single tubes.
+    pub tubes: Vec<Tube<'a>>,
+    /// Ports.
+    pub ports: Vec<Port<'a>>,
+    /// Turbines, each with its two points.
+    pub turbines: Vec<([Point; 2], &'a Turbine)>,
+}
+
+impl<'a> Wiring<'a> {
+    /// That of a case.
+    ///
+    /// # Errors
+    /// [`Error::Case`](crate::error::Error::Case) with everything that leads nowhere, as the check of the case tells it.
+    pub fn of(case: &'a Case) -> Result<Self> {
+        let mut faults = Faults::default();
+        let wiring = check::network::resolve(case, &mut faults).0;
+        match faults.is_empty() {
+            true => Ok(wiring),
+            false => Err(case.source.error(faults.placed(&case.source))),
+        }
+    }
+
+    /// Name of a point: `inlet of bladder -3`, or that of the junction.
+    pub fn label(&self, point: Point) -> String {
+        match point {
+            Point::Bladder(bladder, end) => format!("{end} of bladder {}", bladder_label(bladder, self.per_row)),
+            Point::Junction(j) => self.junctions[j].clone(),
+        }
+    }
+}
+
+/// Index of a bladder `R j` in `0..n`, upper row first; none where there is no such bladder.
+pub fn bladder_index(signed: i64, per_row: usize) -> Option<usize> {
+    let j = usize::try_from(signed.unsigned_abs())
+        .ok()
+        .filter(|j| (1..=per_row).contains(j))?
+        - 1;
+    Some(if signed > 0 { j } else { per_row + j })
+}
+
+/// `R j` of a bladder index.
+pub fn bladder_label(index: usize, per_row: usize) -> i64 {
+    if index < per_row {
+        index as i64 + 1
+    } else {
+        -((index - per_row) as i64 + 1)
+    }
+}

@@ -1,0 +1,299 @@
+//! The box at the end of a run: what matters, in a glance.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use textwrap::core::display_width;
+use textwrap::{Options, WordSplitter};
+
+use crate::discrete::quantities::Interest;
+use crate::error::visible;
+use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
+use crate::run::sensitivity::figures::Sensitivity;
+use crate::run::summary::{Quantity, Status, Summary};
+
+/// Warnings shown; the rest is counted.
+const WARNINGS: usize = 3;
+/// Lines a single entry may take; the reason of a failure half as many again.
+const LINES: usize = 2;
+/// Between parts of an entry; stays on the line of what it follows.
+const BETWEEN: &str = "\u{a0}· ";
+/// Width of the names of entries.
+const NAME: usize = 11;
+
+/// How a row is painted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Tone {
+    Plain,
+    Good,
+    Warning,
+    Bad,
+}
+
+impl Tone {
+    fn paint(self, text: &str, colour: bool) -> String {
+        let code = match self {
+            _ if !colour => return text.to_string(),
+            Self::Plain => return text.to_string(),
+            Self::Good => "32",
+            Self::Warning => "33",
+            Self::Bad => "1;31",
+        };
+        format!("\u{1b}[{code}m{text}\u{1b}[0m")
+    }
+}
+
+struct Row {
+    name: &'static str,
+    text: String,
+    tone: Tone,
+}
+
+/// The box, `width` columns wide (at least 40), with a newline at the end; coloured when `colour`.
+pub fn render(summary: &Summary, dir: &Path, colour: bool, width: usize) -> String {
+    let width = width.clamp(40, 100);
+    let (status, tone) = match summary.status {
+        Status::Finished => ("finished", Tone::Good),
+        Status::Stopped => ("stopped", Tone::Warning),
+        Status::OutOfRange => ("OUT OF RANGE", Tone::Bad),
+        Status::Failed => ("FAILED", Tone::Bad),
+    };
+    let room = width - status.len() - 9;
+    let case = start(&visible(&summary.case), room);
+    let rule = "─".repeat((width - status.len() - 8).saturating_sub(display_width(&case)));
+    let mut out = format!("╭─ {case} {rule} {} ─╮\n", tone.paint(status, colour));
+    for row in rows(summary, tone) {
+        push_row(&mut out, &row, width, colour);
+    }
+    let files = visible(&format!("report.html and data in {}", dir.display())).into_owned();
+    let length = display_width(&files);
+    if length + 6 <= width {
+        out.push_str(&format!("╰─ {files} {}╯\n", "─".repeat(width - length - 5)));
+    } else {
+        // A path is to be copied whole.
+        out.push_str(&format!("╰{}╯\n{files}\n", "─".repeat(width - 2)));
+    }
+    out.replace('\u{a0}', " ")
+}
+
+fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
+    let mut rows = Vec::new();
+    let mut add = |name, text: Option<String>, tone| {
+        if let Some(text) = text.filter(|t| !t.is_empty()) {
+            let text = visible(&text).into_owned();
+            rows.push(Row { name, text, tone });
+        }
+    };
+    add("why", summary.reason.clone(), tone);
+    for warning in summary.warnings.iter().take(WARNINGS) {
+        add("warning", Some(warning.clone()), Tone::Warning);
+    }
+    let more = summary.warnings.len().saturating_sub(WARNINGS);
+    let more = (more > 0).then(|| format!("and {more} more in summary.json; slcbeam explain says more of each number"));
+    add("", more, Tone::Warning);
+    add("deflection", deflection(summary), Tone::Plain);
+    add("pressure", pressure(summary), Tone::Plain);
+    add("energy", energy(summary), Tone::Plain);
+    add("sensitivity", sensitivities(summary), Tone::Plain);
+    add("accuracy", accuracy(summary), Tone::Plain);
+    add("balances", Some(balances(summary)), Tone::Plain);
+    add("integrator", Some(integrator(summary)), Tone::Plain);
+    add("time", Some(times(summary)), Tone::Plain);
+    let ended_well = !matches!(summary.status, Status::Failed | Status::OutOfRange);
+    add("spent on", spent(summary).filter(|_| ended_well), Tone::Plain);
+    rows
+}
+
+/// What one per cent more of each number does to the largest deflections and the largest pressure.
+fn sensitivities(summary: &Summary) -> Option<String> {
+    let of = |(pointer, s): (&String, &Sensitivity)| -> String {
+        let relative = |one: Interest, word: &str| {
+            let of = |all: &std::collections::BTreeMap<String, Quantity>| all.get(one.name())?.max_abs;
+            let (value, slope) = (of(&summary.quantities)?, of(&s.quantities)?);
+            let ratio = slope * s.value / value;
+            let sign = if ratio > 0.0 { "+" } else { "" };
+            ratio
+                .is_finite()
+                .then(|| format!("{word} {sign}{} %", significant(ratio, 3)))
+        };
+        let shown = [
+            (Interest::TipU1, "u₁"),
+            (Interest::TipU3, "u₃"),
+            (Interest::MaxPressure, "p"),
+        ];
+        let shown: Vec<String> = shown
+            .into_iter()
+            .filter_map(|(one, word)| relative(one, word))
+            .collect();
+        format!("{pointer} +1 %: largest {}", shown.join(", "))
+    };
+    Some(summary.sensitivities.iter().map(of).collect::<Vec<_>>().join(BETWEEN))
+}
+
+fn push_row(out: &mut String, row: &Row, width: usize, colour: bool) {
+    let room = width - NAME - 5;
+    let mut lines = lines(&row.text, room);
+    let most = if row.tone == Tone::Bad { LINES + 1 } else { LINES };
+    if lines.len() > most {
+        lines.truncate(most);
+        if let Some(last) = lines.last_mut() {
+            *last = format!("{} …", start(last, room - 2)).into();
+        }
+    }
+    for (k, line) in lines.iter().enumerate() {
+        let name = format!("{:<NAME$}", if k == 0 { row.name } else { "" });
+        let name = if colour && row.tone == Tone::Plain {
+            format!("\u{1b}[2m{name}\u{1b}[0m")
+        } else {
+            row.tone.paint(&name, colour)
+        };
+        let pad = " ".repeat(room.saturating_sub(display_width(line)));
+        out.push_str(&format!("│ {name} {}{pad} │\n", row.tone.paint(line, colour)));
+    }
+}
+
+/// Lines of at most `room` columns, broken between words where that is possible.
+fn lines(text: &str, room: usize) -> Vec<Cow<'_, str>> {
+    textwrap::wrap(text, Options::new(room).word_splitter(WordSplitter::NoHyphenation))
+}
+
+/// The first of these lines.
+fn start(text: &str, room: usize) -> String {
+    lines(text, room).into_iter().next().unwrap_or_default().into_owned()
+}
+
+/// Numbers hold together with their units: wrapping knows only blanks.
+fn hold(text: String) -> String {
+    text.replace(' ', "\u{a0}")
+}
+
+fn shown(value: f64, unit: &str) -> String {
+    hold(quantity(value, unit, 3))
+}
+
+fn get(summary: &Summary, one: Interest) -> Option<&Quantity> {
+    summary.quantities.get(one.name())
+}
+
+fn deflection(summary: &Summary) -> Option<String> {
+    let tip = [("u₁", Interest::TipU1), ("u₃", Interest::TipU3)];
+    let parts = tip.into_iter().filter_map(|(symbol, one)| {
+        let largest = get(summary, one)?.max_abs?;
+        Some(hold(format!("{symbol} {}", shown(largest, "m"))))
+    });
+    let parts: Vec<_> = parts.collect();
+    (!parts.is_empty()).then(|| format!("tip, largest: {}", parts.join(BETWEEN)))
+}
+
+fn pressure(summary: &Summary) -> Option<String> {
+    let pressure = get(summary, Interest::MaxPressure)?;
+    let largest = shown(pressure.max_abs?, "Pa");
+    let window = pressure
+        .window_max_abs
+        .map_or(String::new(), |p| format!("{BETWEEN}in the window {}", shown(p, "Pa")));
+    Some(format!("largest: {largest}{window}"))
+}
+
+fn energy(summary: &Summary) -> Option<String> {
+    let last = |one: Interest| get(summary, one)?.last;
+    let parts = [
+        last(Interest::InputEnergy).map(|e| format!("put in {}", shown(e, "J"))),
+        last(Interest::HarvestedEnergy).map(|e| format!("harvested {}", shown(e, "J"))),
+        last(Interest::Efficiency).map(|e| hold(format!("efficiency {}", percent(e)))),
+        get(summary, Interest::Efficiency)
+            .and_then(|q| q.window)
+            .map(|e| hold(format!("in the window {}", percent(e)))),
+    ];
+    Some(parts.into_iter().flatten().collect::<Vec<_>>().join(BETWEEN))
+}
+
+/// What was asked, the estimates of the worst quantities first, and how it was reached.
+fn accuracy(summary: &Summary) -> Option<String> {
+    let found = summary.accuracy.as_ref()?;
+    let mut worst: Vec<_> = found.quantities.iter().collect();
+    worst.sort_by(|a, b| b.1.total.unwrap_or(f64::MAX).total_cmp(&a.1.total.unwrap_or(f64::MAX)));
+    let shown = worst.iter().take(3).map(|(name, e)| match (e.total, e.time, e.space) {
+        (Some(total), Some(time), Some(space)) => format!(
+            "{name} {} (time {}, space {}{})",
+            significant(total, 2),
+            significant(time, 2),
+            significant(space, 2),
+            e.effects.map_or(String::new(), |effects| format!(
+                ", effects {}",
+                significant(effects, 2)
+            ))
+        ),
+        _ => format!("{name} unknown"),
+    });
+    Some(format!(
+        "asked {}, estimated errors: {} · with {} cells a segment, rtol {}, after {} pilot runs",
+        significant(found.asked, 2),
+        shown.collect::<Vec<_>>().join(" · "),
+        found.cells_per_segment,
+        significant(found.rtol, 1),
+        found.pilots.len()
+    ))
+}
+
+fn balances(summary: &Summary) -> String {
+    let b = &summary.balances;
+    let open = |what: &str, x: f64| hold(format!("{what} {}", significant(x, 2)));
+    let parts = [
+        ("energy", b.energy_residual_relative),
+        ("volume", b.volume_residual_relative),
+        ("port flow", b.port_flow_residual_relative),
+        ("momentum", b.momentum_residual_relative),
+        ("angular momentum", b.angular_momentum_residual_relative),
+    ];
+    // Exactly zero where a balance does not apply; energy always does.
+    let shown = parts.into_iter().filter(|(what, x)| *what == "energy" || *x != 0.0);
+    let shown: Vec<_> = shown.map(|(what, x)| open(what, x)).collect();
+    format!("open by (relative): {}", shown.join(BETWEEN))
+}
+
+fn integrator(summary: &Summary) -> String {
+    let c = &summary.solver;
+    let mostly = c
+        .steps_by_order
+        .iter()
+        .enumerate()
+        .max_by_key(|(_, n)| **n)
+        .filter(|(_, n)| **n > 0);
+    let mostly = mostly.map_or(String::new(), |(k, _)| format!(", mostly of order {}", k + 1));
+    let failed = c.error_test_failures + c.newton_failures;
+    let parts = [
+        format!("{} steps{mostly}", count(c.steps)),
+        format!("{} rejected", count(failed)),
+        format!("{} unknowns", count(summary.unknowns as u64)),
+    ];
+    parts.map(hold).join(BETWEEN)
+}
+
+fn times(summary: &Summary) -> String {
+    let (simulated, wall) = (summary.time_s, summary.wall_s.total);
+    let simulated_text = hold(trimmed(&quantity(simulated, "s", 4)));
+    let ratio = if simulated > 0.0 && wall > 0.0 {
+        format!("{BETWEEN}{} for a simulated second", hold(duration(wall / simulated)))
+    } else {
+        String::new()
+    };
+    format!("{simulated_text} simulated in {}{ratio}", hold(duration(wall)))
+}
+
+fn spent(summary: &Summary) -> Option<String> {
+    let w = &summary.wall_s;
+    if w.total <= 0.0 {
+        return None;
+    }
+    let shares = [
+        ("residual", w.residual),
+        ("Jacobian", w.jacobian),
+        ("linear solver", w.linear_solver),
+        ("output", w.output),
+    ];
+    let share = |(name, s): (&str, f64)| hold(format!("{name} {:.0} %", 100.0 * s / w.total));
+    Some(shares.map(share).join(BETWEEN))
+}
+
+#[cfg(test)]
+mod tests;

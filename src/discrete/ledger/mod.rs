@@ -1,0 +1,191 @@
+//! Energies, powers and impulses, exact in the semi-discrete system: their balance is the integrator's error alone.
+
+mod fluid;
+mod jump;
+mod reactions;
+mod solid;
+
+pub use fluid::pressure_rate;
+pub use jump::{side, strokes, travel};
+pub use reactions::compared;
+
+use crate::case::schema::Effect;
+use serde::{Deserialize, Serialize};
+
+use super::{System, TimeData, Workspace, residual};
+
+/// Rates that are integrated along the run, and what they add up to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// Power of distributed loads and given end forces.
+    Loads,
+    /// Power of driven ends and end moments.
+    Ends,
+    /// Power of pressure and flow ports.
+    Ports,
+    /// Dissipated in the bladders.
+    Bladders,
+    /// Dissipated in the tubes.
+    Tubes,
+    /// Harvested by the turbines.
+    Turbines,
+    /// Dissipated in the check valves of rectifiers.
+    Rectifiers,
+    /// Dissipated by material damping and drag.
+    Damping,
+    /// Power that the published form of the momentum balance adds.
+    Formulation,
+    /// Power that a coupling without reciprocity adds.
+    Reciprocity,
+    /// External force in x (its integral is the impulse).
+    ImpulseX,
+    /// External force in z.
+    ImpulseZ,
+    /// External torque about the origin.
+    AngularImpulse,
+}
+
+/// All flows, in the order in which they are stored; outflow and throughput of every open network follow, then of each what its
+/// ports' law gives and how finely that can be known.
+pub const FLOWS: [Flow; 13] = [
+    Flow::Loads,
+    Flow::Ends,
+    Flow::Ports,
+    Flow::Bladders,
+    Flow::Tubes,
+    Flow::Turbines,
+    Flow::Rectifiers,
+    Flow::Damping,
+    Flow::Formulation,
+    Flow::Reciprocity,
+    Flow::ImpulseX,
+    Flow::ImpulseZ,
+    Flow::AngularImpulse,
+];
+
+impl Flow {
+    /// Sign with which the flow enters the energy balance; 0 for impulses.
+    pub fn energy_sign(self) -> f64 {
+        match self {
+            Self::Loads | Self::Ends | Self::Ports | Self::Formulation | Self::Reciprocity => 1.0,
+            Self::Bladders | Self::Tubes | Self::Turbines | Self::Rectifiers | Self::Damping => -1.0,
+            Self::ImpulseX | Self::ImpulseZ | Self::AngularImpulse => 0.0,
+        }
+    }
+}
+
+/// Stored energies [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energies {
+    /// `Σ h_i m |v_i|²/2`.
+    pub kinetic: f64,
+    /// Rotation of the sections.
+    pub rotary: f64,
+    /// `Σ h N²/2EA`.
+    pub axial: f64,
+    /// `Σ h_i M²/2EI`.
+    pub bending: f64,
+    /// Stored in the bladders.
+    pub bladders: f64,
+}
+
+impl Energies {
+    /// Sum.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.rotary + self.axial + self.bending + self.bladders
+    }
+}
+
+/// Momentum, angular momentum and stored volumes: what else is conserved.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Invariants {
+    /// `Σ h_i m v` in x and z [kg m/s].
+    pub momentum: [f64; 2],
+    /// About the origin, positive in the sense of growing phi [kg m^2/s].
+    pub angular_momentum: f64,
+    /// Volume change stored in each component of the network [m^3].
+    pub volumes: Vec<f64>,
+}
+
+/// Balance of energy at an instant.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EnergyBalance {
+    /// Stored now.
+    pub stored: Energies,
+    /// Residual [J].
+    pub residual: f64,
+}
+
+/// Energy now, less at the start, less all that came in and went out (`integrals` of [`FLOWS`]).
+pub fn balance(stored: Energies, at_start: f64, integrals: &[f64]) -> EnergyBalance {
+    let passed: f64 = FLOWS.iter().map(|f| f.energy_sign() * integrals[*f as usize]).sum();
+    EnergyBalance {
+        stored,
+        residual: stored.total() - at_start - passed,
+    }
+}
+
+/// Number of integrated rates of a system.
+pub fn flow_count(system: &System) -> usize {
+    FLOWS.len() + 4 * system.model.wet.as_ref().map_or(0, |w| w.network.open.len())
+}
+
+/// Volume that has left the `open`-th open network through its ports, and volume that has passed them either way [m^3].
+pub fn passed(integrals: &[f64], open: usize) -> (f64, f64) {
+    (integrals[FLOWS.len() + 2 * open], integrals[FLOWS.len() + 2 * open + 1])
+}
+
+/// Volume that has left the `open`-th of `count` open networks by the law of its ports, and the volume that conductances times
+/// pressures would have passed [m^3]: a share of it, the last digits of pressures, is noise.
+pub fn by_law(integrals: &[f64], open: usize, count: usize) -> (f64, f64) {
+    let first = FLOWS.len() + 2 * count + 2 * open;
+    (integrals[first], integrals[first + 1])
+}
+
+/// `[E19]` Rates of all integrals (SI) at a state given in SI units:
+///
+/// ```text
+/// dE/dt = P_loads + P_ends + P_ports - D_bladders - D_tubes - D_turbines - D_rectifiers - D_damping
+///         + P_formulation + P_reciprocity
+/// ```
+///
+/// The workspace must hold [`residual::evaluate`] of the same state; rates are added to it here.
+pub fn flows(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
+    out.fill(0.0);
+    complete(system, now, yp, w);
+    let rates = fluid::rates(system, w, out);
+    solid::flows(system, now, rates, w, out);
+    fluid::flows(system, now, w, out);
+}
+
+/// What balances and samples need and no equation does: rates of strain, means, motion along where it has no unknowns.
+/// The workspace must hold [`residual::evaluate`] of the same state.
+pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>) {
+    residual::complete(system, now, yp, w);
+    fluid::complete(system, now, yp, w);
+    if !system.model.effects.has(Effect::AxialStretch) {
+        fluid::foreshorten(system, w);
+    }
+}
+
+/// Energies at the state in the workspace; needs the strain rates of [`flows`].
+pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies {
+    let mut e = solid::energies(system, now, w);
+    e.bladders = fluid::energy(system, w);
+    e
+}
+
+/// Invariants at the state in the workspace; needs the strain rates of [`flows`].
+pub fn invariants(system: &System, now: &TimeData, w: &Workspace<f64>) -> Invariants {
+    let (momentum, angular_momentum) = solid::momenta(system, now, w);
+    Invariants {
+        momentum,
+        angular_momentum,
+        volumes: fluid::volumes(system, w),
+    }
+}
+
+/// Adds `value` to a flow.
+fn add(out: &mut [f64], flow: Flow, value: f64) {
+    out[flow as usize] += value;
+}

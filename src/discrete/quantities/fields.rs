@@ -1,0 +1,218 @@
+//! Fields along the beam and along the network.
+
+use super::observables::Role;
+use crate::case::wiring::bladder_label;
+use crate::discrete::{System, Workspace};
+use crate::model::mapping::NetworkCoordinate;
+
+/// What is fixed along a line: coordinates, and numbers of what lies there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// Nodes of the beam.
+    Nodes,
+    /// Cells of the beam.
+    Cells,
+    /// Cells of the bladders.
+    Network,
+    /// The bladder of each of these.
+    Bladder,
+    /// The connected array of each of these.
+    Array,
+}
+
+/// A quantity at every place of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Field {
+    /// Transverse displacement.
+    U1,
+    /// Axial displacement.
+    U3,
+    /// Transverse velocity.
+    V1,
+    /// Axial velocity.
+    V3,
+    /// Curvature.
+    Curvature,
+    /// Bending moment.
+    Moment,
+    /// Normal force.
+    NormalForce,
+    /// Pressure.
+    Pressure,
+    /// Area change.
+    AreaChange,
+}
+
+/// One row of the table: name with unit, unit, axis, what is made of it, what it is, how it is read.
+type Entry = (
+    &'static str,
+    &'static str,
+    Axis,
+    Role,
+    &'static str,
+    fn(&Workspace<f64>) -> &[f64],
+);
+
+impl Field {
+    /// All of them, in the order in which they are recorded.
+    pub const ALL: [Self; 9] = [
+        Self::U1,
+        Self::U3,
+        Self::V1,
+        Self::V3,
+        Self::Curvature,
+        Self::Moment,
+        Self::NormalForce,
+        Self::Pressure,
+        Self::AreaChange,
+    ];
+
+    #[rustfmt::skip]
+    fn entry(self) -> Entry {
+        use Axis::{Cells, Network, Nodes};
+        use Role::{Recorded, Studied};
+        match self {
+            Self::U1 => ("u1_m", "m", Nodes, Studied, "transverse displacement", |w| &w.u1),
+            Self::U3 => ("u3_m", "m", Nodes, Studied, "axial displacement", |w| &w.u3),
+            Self::V1 => ("v1_m_s", "m/s", Nodes, Studied, "transverse velocity", |w| &w.v1),
+            Self::V3 => ("v3_m_s", "m/s", Nodes, Studied, "axial velocity", |w| &w.v3),
+            Self::Curvature => ("curvature_1_m", "1/m", Nodes, Recorded, "curvature, positive with the +x fibre in tension", |w| &w.kappa),
+            Self::Moment => ("moment_n_m", "N m", Nodes, Recorded, "bending moment", |w| &w.moment),
+            Self::NormalForce => ("normal_force_n", "N", Cells, Recorded, "normal force", |w| &w.force),
+            Self::Pressure => ("pressure_pa", "Pa", Network, Recorded, "pressure of the bladder cells", |w| &w.pressure),
+            Self::AreaChange => ("area_change_m2", "m^2", Network, Recorded, "area change of the bladder cells", |w| &w.area),
+        }
+    }
+
+    /// Name of its array, unit included: `u1_m`.
+    pub fn name(self) -> &'static str {
+        self.entry().0
+    }
+
+    /// Unit.
+    pub fn unit(self) -> &'static str {
+        self.entry().1
+    }
+
+    /// The line along which it is.
+    pub fn axis(self) -> Axis {
+        self.entry().2
+    }
+
+    /// How much is made of it.
+    pub fn role(self) -> Role {
+        self.entry().3
+    }
+
+    /// What it is, in one sentence.
+    pub fn about(self) -> &'static str {
+        self.entry().4
+    }
+
+    /// Values in a state, in the order of the mesh: along the network those of [`cell_order`] are recorded.
+    pub fn values(self, w: &Workspace<f64>) -> &[f64] {
+        (self.entry().5)(w)
+    }
+
+    /// The field whose values are its slopes in time.
+    pub fn rate(self) -> Option<Self> {
+        match self {
+            Self::U1 => Some(Self::V1),
+            Self::U3 => Some(Self::V3),
+            _ => None,
+        }
+    }
+
+    /// That of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|field| field.name() == name)
+    }
+
+    /// Those that a system has.
+    pub fn of(system: &System) -> impl Iterator<Item = Self> {
+        let wet = system.fluid.is_some();
+        Self::ALL
+            .into_iter()
+            .filter(move |field| wet || field.axis() != Axis::Network)
+    }
+
+    /// Numbers that it has in a system.
+    pub fn len(self, system: &System) -> usize {
+        match self.axis() {
+            Axis::Nodes => system.mesh.nodes,
+            Axis::Cells => system.mesh.cells,
+            Axis::Network | Axis::Bladder | Axis::Array => system.fluid.as_ref().map_or(0, |fluid| fluid.cells),
+        }
+    }
+}
+
+impl Axis {
+    const ALL: [Self; 5] = [Self::Nodes, Self::Cells, Self::Network, Self::Bladder, Self::Array];
+
+    fn entry(self) -> [&'static str; 3] {
+        match self {
+            Self::Nodes => ["theta_node_m", "m", "material coordinate of the nodes"],
+            Self::Cells => ["theta_cell_m", "m", "material coordinate of the cells' midpoints"],
+            Self::Network => ["x_f", "1", "network coordinate of the bladder cells, array by array"],
+            Self::Bladder => ["bladder", "1", "bladder index R j of each cell along x_f"],
+            Self::Array => ["array", "1", "number of the connected array of each cell along x_f"],
+        }
+    }
+
+    /// Name of its array.
+    pub fn name(self) -> &'static str {
+        self.entry()[0]
+    }
+
+    /// Unit.
+    pub fn unit(self) -> &'static str {
+        self.entry()[1]
+    }
+
+    /// What it is, in one sentence.
+    pub fn about(self) -> &'static str {
+        self.entry()[2]
+    }
+
+    /// Those that a system has.
+    pub fn of(system: &System) -> impl Iterator<Item = Self> {
+        let wet = system.fluid.is_some();
+        Self::ALL
+            .into_iter()
+            .filter(move |axis| wet || matches!(axis, Self::Nodes | Self::Cells))
+    }
+
+    /// Its values in a system whose tubes have a length [m].
+    pub fn values(self, system: &System, tube_length: f64) -> Vec<f64> {
+        let mesh = &system.mesh;
+        match self {
+            Self::Nodes => return (0..mesh.nodes).map(|i| mesh.node_coordinate(i)).collect(),
+            Self::Cells => return (0..mesh.cells).map(|c| mesh.cell_coordinate(c)).collect(),
+            Self::Network | Self::Bladder | Self::Array => {}
+        }
+        let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+            return vec![];
+        };
+        let map = NetworkCoordinate::of(wet, tube_length);
+        let k = fluid.cells_per_bladder;
+        let at = |cell: usize| match self {
+            Self::Bladder => bladder_label(cell / k, wet.per_row) as f64,
+            Self::Array => map.arrays.iter().position(|a| a.contains(&(cell / k))).unwrap_or(0) as f64,
+            _ => {
+                let (start, end) = map.spans[cell / k];
+                start + (end - start) * ((cell % k) as f64 + 0.5) / k as f64
+            }
+        };
+        cell_order(system, tube_length).into_iter().map(at).collect()
+    }
+}
+
+/// Cells in the order of `X_f`.
+pub fn cell_order(system: &System, tube_length: f64) -> Vec<usize> {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return vec![];
+    };
+    let map = NetworkCoordinate::of(wet, tube_length);
+    let bladders = map.arrays.iter().flatten();
+    bladders.flat_map(|&bladder| fluid.cells_of(bladder)).collect()
+}

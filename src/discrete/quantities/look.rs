@@ -1,0 +1,155 @@
+//! How a state is read.
+
+use crate::discrete::fluid_mesh::Place;
+use crate::discrete::ledger::{self, Energies};
+use crate::discrete::residual::fluid::pressure_at;
+use crate::discrete::residual::solid::node_stretch;
+use crate::discrete::{System, TimeData, Workspace};
+use crate::model::Kinematics;
+use crate::model::network::LinkKind;
+
+/// Where the largest and smallest values of a state are, and its slope angle at the tip: what a derivative holds on to.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extremes {
+    high: usize,
+    low: usize,
+    closed: usize,
+    angle: f64,
+}
+
+impl Extremes {
+    /// Of the state in the workspace.
+    pub fn of(system: &System, w: &Workspace<f64>) -> Self {
+        let place = |values: &[f64], sign: f64| {
+            let all = values.iter().enumerate();
+            all.max_by(|a, b| (sign * a.1).total_cmp(&(sign * b.1)))
+                .map_or(0, |(i, _)| i)
+        };
+        Self {
+            high: place(&w.pressure, 1.0),
+            low: place(&w.pressure, -1.0),
+            closed: place(&w.area, -1.0),
+            angle: tip_angle(system, w),
+        }
+    }
+}
+
+/// A state that is read; the workspace holds [`ledger::complete`] of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Look<'a> {
+    /// Model and mesh.
+    pub system: &'a System,
+    /// What is given at the time.
+    pub now: &'a TimeData,
+    /// The state.
+    pub w: &'a Workspace<f64>,
+    /// What it stores.
+    pub stored: Energies,
+    /// Where its largest values are looked for.
+    pub at: Extremes,
+}
+
+impl Look<'_> {
+    fn tip(&self) -> usize {
+        self.system.mesh.nodes - 1
+    }
+
+    pub(super) fn tip_u1(&self) -> f64 {
+        self.w.u1[self.tip()]
+    }
+
+    pub(super) fn tip_u3(&self) -> f64 {
+        self.w.u3[self.tip()]
+    }
+
+    /// Without full turns between it and the angle that is held on to.
+    pub(super) fn tip_angle(&self) -> f64 {
+        let turn = std::f64::consts::TAU;
+        let angle = tip_angle(self.system, self.w);
+        angle - turn * ((angle - self.at.angle) / turn).round()
+    }
+
+    pub(super) fn max_pressure(&self) -> f64 {
+        self.w.pressure[self.at.high]
+    }
+
+    pub(super) fn min_pressure(&self) -> f64 {
+        self.w.pressure[self.at.low]
+    }
+
+    /// `(h_b w_b + a1)/(h_b w_b)`.
+    pub(super) fn least_opening(&self) -> f64 {
+        let at_rest = self.system.model.wet.as_ref().map(|wet| wet.area_at_rest);
+        at_rest.map_or(1.0, |at_rest| 1.0 + self.w.area[self.at.closed] / at_rest)
+    }
+
+    /// `Σ R q²` of turbines between bladders, `Σ g Δp²` of those of bridges.
+    pub(super) fn turbine_power(&self) -> f64 {
+        let Self { system, now, w, .. } = *self;
+        let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+            return 0.0;
+        };
+        let mut power = 0.0;
+        for (link, &conductance) in fluid.links.iter().zip(&now.conductance) {
+            if matches!(link.kind, LinkKind::Turbine(_)) {
+                let q = conductance * (pressure_at(link.from, now, w) - pressure_at(link.to, now, w));
+                power += q * q * link.resistance;
+            }
+        }
+        for (bridge, drop) in fluid.bridges.iter().zip(&w.bridge) {
+            let turbine = wet.network.bridges[bridge.number].turbine;
+            power += wet.network.turbines[turbine].conductance * drop * drop;
+        }
+        power
+    }
+}
+
+/// `φ` of the tip, followed along the beam so that full turns count.
+pub(in crate::discrete) fn tip_angle(system: &System, w: &Workspace<f64>) -> f64 {
+    let last = system.mesh.nodes - 1;
+    let interior: f64 = w.kappa[1..last].iter().sum();
+    let first = match system.model.kinematics {
+        Kinematics::Bar | Kinematics::FiniteRotation => w.tx[0].atan2(w.tz[0]),
+        Kinematics::Linear | Kinematics::SmallRotation => w.d3x[0],
+    };
+    first - system.mesh.h * (interior + 0.5 * w.kappa[last])
+}
+
+/// Largest flow through a tube [m^3/s], its rate as far as bladders and ports make it, and the tube's number among the tubes.
+pub fn largest_flow(system: &System, now: &TimeData, w: &Workspace<f64>) -> Option<(f64, f64, usize)> {
+    let (wet, fluid) = (system.model.wet.as_ref()?, system.fluid.as_ref()?);
+    let tubes = fluid
+        .links
+        .iter()
+        .zip(&now.conductance)
+        .filter(|(link, _)| link.kind == LinkKind::Tube);
+    let (q, link, g) = tubes
+        .map(|(link, g)| {
+            let drop = pressure_at(link.from, now, w) - pressure_at(link.to, now, w);
+            (g * drop, link, g)
+        })
+        .reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a })?;
+    let rate = |place: Place| match place {
+        Place::Cell(cell) => ledger::pressure_rate(wet, fluid, w, cell),
+        Place::Port(port) => now.port_pressure_rate[port],
+        Place::Junction(_) => 0.0,
+    };
+    let before = wet.network.links[..link.number]
+        .iter()
+        .filter(|l| l.kind == LinkKind::Tube);
+    let rate = q.signum() * g * (rate(link.from) - rate(link.to));
+    Some((q.abs(), rate, before.count()))
+}
+
+/// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`, and the node where it is.
+pub fn largest_strain(system: &System, half_height: f64, w: &Workspace<f64>) -> (f64, usize) {
+    let last = system.mesh.nodes - 1;
+    (0..=last)
+        .map(|i| {
+            (
+                (node_stretch(w, i, last) - 1.0).abs() + w.kappa[i].abs() * half_height,
+                i,
+            )
+        })
+        .fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a })
+}

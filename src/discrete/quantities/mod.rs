@@ -1,0 +1,24 @@
+//! What is read off a run: one table of the quantities over time, one of those of interest in the end, one of fields.
+//!
+//! ```text
+//! observables   over time: the columns of the history, from which its derivatives, pictures, comparisons and the energy balance follow
+//! interest      in the end: the quantities of the summary
+//! fields        along the beam and the network, with their axes
+//! look          how a state is read
+//! row           the values of all of them at one instant
+//! ```
+//!
+//! A quantity is added by a row of its table. What it is called, its unit, where it stands in reports and how it is read are told there,
+//! and nowhere else; `docs/data.md` is held against the tables by a test.
+
+pub mod fields;
+pub mod interest;
+pub mod look;
+pub mod observables;
+pub mod row;
+
+pub use fields::{Axis, Field};
+pub use interest::{Interest, Source};
+pub use look::{Extremes, Look};
+pub use observables::{Group, Observable, Read, Role};
+pub use row::Row;

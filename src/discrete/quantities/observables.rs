@@ -1,0 +1,299 @@
+//! Quantities over time.
+
+use serde::{Deserialize, Serialize};
+
+use super::look::Look;
+use crate::discrete::System;
+use crate::discrete::ledger::{FLOWS, Flow, passed};
+
+/// What a quantity is read off.
+#[derive(Clone, Copy, Debug)]
+pub enum Read {
+    /// The time [s].
+    Time,
+    /// A state: smooth in it, as long as largest values are where they were looked for.
+    State(fn(&Look) -> f64),
+    /// What has flowed since the start, of the integrals of [`crate::discrete::ledger::flows`].
+    Integral(fn(&[f64]) -> f64),
+    /// What the balance of energy leaves open [J].
+    Open,
+}
+
+/// Where a quantity belongs among others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// Time itself.
+    Time,
+    /// Motion of the tip.
+    Tip,
+    /// Pressures.
+    Pressure,
+    /// Powers and flows.
+    Power,
+    /// What else a state has.
+    State,
+    /// What passes ports.
+    Ports,
+    /// Energy that is stored.
+    Stored,
+    /// Energy that came in.
+    PutIn,
+    /// Energy that forms of the equations add.
+    Added,
+    /// Energy that is lost.
+    Lost,
+    /// Energy that is harvested.
+    Harvested,
+    /// Energy that nothing explains.
+    Open,
+}
+
+impl Group {
+    /// Its title in a list to choose from.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Time | Self::Power | Self::State => "More",
+            Self::Ports => "Ports",
+            Self::Tip => "Tip",
+            Self::Pressure => "Pressure",
+            Self::Stored => "Energy stored",
+            Self::PutIn | Self::Added | Self::Lost | Self::Harvested => "Work done and lost",
+            Self::Open => "Unexplained",
+        }
+    }
+}
+
+/// How much is made of a quantity; each has what those before it lack.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// It is recorded.
+    Recorded,
+    /// Studies measure errors by it as well.
+    Studied,
+    /// It is shown first.
+    Headline,
+}
+
+fn always(_: &System) -> bool {
+    true
+}
+
+fn wet(system: &System) -> bool {
+    system.fluid.is_some()
+}
+
+fn open(system: &System) -> bool {
+    let wet = system.model.wet.as_ref().filter(|_| system.fluid.is_some());
+    wet.is_some_and(|wet| !wet.network.open.is_empty())
+}
+
+/// Volume that all open networks together have taken in [m^3].
+fn injected(integrals: &[f64]) -> f64 {
+    let networks = (integrals.len() - FLOWS.len()) / 4;
+    -(0..networks).map(|network| passed(integrals, network).0).sum::<f64>()
+}
+
+/// Flow through all ports into their networks, told exactly by what these store [m^3/s].
+fn port_flow(look: &Look) -> f64 {
+    let (Some(wet), Some(fluid)) = (&look.system.model.wet, &look.system.fluid) else {
+        return 0.0;
+    };
+    let open = |bladder: &usize| wet.network.open.contains(&wet.network.component_of_bladder[*bladder]);
+    let cells = (0..fluid.bladders)
+        .filter(open)
+        .flat_map(|bladder| fluid.cells_of(bladder));
+    cells.map(|cell| look.w.area_rate[cell]).sum::<f64>() * fluid.ds
+}
+
+/// One row of the table.
+struct Entry {
+    name: &'static str,
+    unit: &'static str,
+    label: &'static str,
+    words: &'static str,
+    about: &'static str,
+    group: Group,
+    role: Role,
+    present: fn(&System) -> bool,
+    read: Read,
+}
+
+macro_rules! observables {
+    ($($id:ident: $name:literal [$unit:literal], $label:literal, $words:literal, $group:ident, $role:ident, $present:ident, $read:expr,
+        $about:literal;)*) => {
+        /// A quantity over time: a column of the history.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+        pub enum Observable {
+            $(#[doc = $about] $id,)*
+        }
+
+        impl Observable {
+            /// All of them, in the order of the history.
+            pub const ALL: &[Self] = &[$(Self::$id),*];
+
+            fn entry(self) -> &'static Entry {
+                &TABLE[self as usize]
+            }
+        }
+
+        static TABLE: &[Entry] = &[$(Entry {
+            name: $name, unit: $unit, label: $label, words: $words, about: $about,
+            group: Group::$group, role: Role::$role, present: $present, read: $read,
+        }),*];
+    };
+}
+
+// name [unit], label, words, where it belongs, what is made of it, where it is, how it is read, what it is
+observables! {
+    Time: "t" ["s"], "time", "time", Time, Recorded, always, Read::Time,
+        "time";
+    TipU1: "tip_u1" ["m"], "tip u₁", "tip deflection", Tip, Headline, always, Read::State(|look| look.tip_u1()),
+        "transverse displacement of the tip";
+    TipU3: "tip_u3" ["m"], "tip u₃", "axial tip displacement", Tip, Headline, always, Read::State(|look| look.tip_u3()),
+        "axial displacement of the tip";
+    TipAngle: "tip_angle" ["rad"], "tip angle", "tip angle", Tip, Studied, always, Read::State(|look| look.tip_angle()),
+        "slope angle phi of the tip, counted over full turns";
+    MaxPressure: "max_pressure" ["Pa"], "largest pressure", "the largest pressure", Pressure, Headline, wet, Read::State(|look| look.max_pressure()),
+        "pressure of the cell with the highest pressure";
+    MinPressure: "min_pressure" ["Pa"], "smallest pressure", "the smallest pressure", Pressure, Studied, wet, Read::State(|look| look.min_pressure()),
+        "pressure of the cell with the lowest pressure";
+    TurbinePower: "turbine_power" ["W"], "turbine power", "turbine power", Power, Studied, wet, Read::State(|look| look.turbine_power()),
+        "power of all turbines";
+    LeastOpening: "least_opening" ["1"], "least opening of a bladder", "least opening of a bladder", State, Recorded, wet, Read::State(|look| look.least_opening()),
+        "smallest bladder cross-section over that at rest; 0 is closed";
+    PortFlow: "port_flow" ["m^3/s"], "flow through ports", "the flow through ports", Ports, Recorded, open, Read::State(port_flow),
+        "flow through all ports into the networks";
+    InjectedVolume: "injected_volume" ["m^3"], "volume let in", "volume let in", Ports, Recorded, open, Read::Integral(injected),
+        "volume let in through all ports since the start, less what left through them";
+    KineticEnergy: "kinetic_energy" ["J"], "kinetic energy", "kinetic energy", Stored, Studied, always, Read::State(|look| look.stored.kinetic),
+        "kinetic energy of the beam's translation";
+    RotaryEnergy: "rotary_energy" ["J"], "rotary energy", "rotary energy", Stored, Recorded, always, Read::State(|look| look.stored.rotary),
+        "kinetic energy of the sections' rotation";
+    AxialEnergy: "axial_energy" ["J"], "axial energy", "axial energy", Stored, Studied, always, Read::State(|look| look.stored.axial),
+        "elastic energy of stretch";
+    BendingEnergy: "bending_energy" ["J"], "bending energy", "bending energy", Stored, Studied, always, Read::State(|look| look.stored.bending),
+        "elastic energy of bending";
+    BladderEnergy: "bladder_energy" ["J"], "bladder energy", "bladder energy", Stored, Studied, always, Read::State(|look| look.stored.bladders),
+        "energy stored in the bladders";
+    WorkLoads: "work_loads" ["J"], "work of loads", "work of the loads", PutIn, Recorded, always, Read::Integral(|i| i[Flow::Loads as usize]),
+        "work of distributed loads and end forces";
+    WorkEnds: "work_ends" ["J"], "work of ends", "work of the driven ends", PutIn, Recorded, always, Read::Integral(|i| i[Flow::Ends as usize]),
+        "work of driven ends and end moments";
+    WorkPorts: "work_ports" ["J"], "work of ports", "work of the ports", PutIn, Recorded, always, Read::Integral(|i| i[Flow::Ports as usize]),
+        "work of pressure and flow ports";
+    DissipatedBladders: "dissipated_bladders" ["J"], "lost in bladders", "lost to flow in the bladders", Lost, Recorded, always, Read::Integral(|i| i[Flow::Bladders as usize]),
+        "dissipated by flow in the bladders";
+    DissipatedTubes: "dissipated_tubes" ["J"], "lost in tubes", "lost to flow in the tubes", Lost, Recorded, always, Read::Integral(|i| i[Flow::Tubes as usize]),
+        "dissipated by flow in the tubes";
+    Harvested: "harvested" ["J"], "harvested", "harvested by the turbines", Harvested, Studied, always, Read::Integral(|i| i[Flow::Turbines as usize]),
+        "harvested by the turbines";
+    DissipatedRectifiers: "dissipated_rectifiers" ["J"], "lost in rectifiers", "lost in check valves", Lost, Recorded, always, Read::Integral(|i| i[Flow::Rectifiers as usize]),
+        "dissipated in check valves";
+    DissipatedDamping: "dissipated_damping" ["J"], "lost in damping", "lost to damping", Lost, Recorded, always, Read::Integral(|i| i[Flow::Damping as usize]),
+        "dissipated by material damping and drag";
+    WorkFormulation: "work_formulation" ["J"], "published formulation", "added by the published momentum balance", Added, Recorded, always, Read::Integral(|i| i[Flow::Formulation as usize]),
+        "energy that the published momentum balance adds";
+    WorkReciprocity: "work_reciprocity" ["J"], "lack of reciprocity", "added by a coupling without reciprocity", Added, Recorded, always, Read::Integral(|i| i[Flow::Reciprocity as usize]),
+        "energy that a coupling without reciprocity adds";
+    EnergyResidual: "energy_residual" ["J"], "what does not close", "what does not close", Open, Recorded, always, Read::Open,
+        "energy now less energy at the start less all of the above: the integrator's error";
+}
+
+impl Observable {
+    /// Name without unit: `tip_u1`.
+    pub fn name(self) -> &'static str {
+        self.entry().name
+    }
+
+    /// Unit, `1` when dimensionless.
+    pub fn unit(self) -> &'static str {
+        self.entry().unit
+    }
+
+    /// What stands beside an axis or in a legend.
+    pub fn label(self) -> &'static str {
+        self.entry().label
+    }
+
+    /// What it is called within a sentence.
+    pub fn words(self) -> &'static str {
+        self.entry().words
+    }
+
+    /// What it is, in one sentence.
+    pub fn about(self) -> &'static str {
+        self.entry().about
+    }
+
+    /// Where it belongs.
+    pub fn group(self) -> Group {
+        self.entry().group
+    }
+
+    /// How much is made of it.
+    pub fn role(self) -> Role {
+        self.entry().role
+    }
+
+    /// How it is read.
+    pub fn read(self) -> Read {
+        self.entry().read
+    }
+
+    /// That of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|one| one.name() == name)
+    }
+
+    /// Those that the history of a system has.
+    pub fn of(system: &System) -> Vec<Self> {
+        let all = Self::ALL.iter().copied();
+        all.filter(|one| (one.entry().present)(system)).collect()
+    }
+
+    /// Those of a group.
+    pub fn grouped(group: Group) -> impl Iterator<Item = Self> {
+        Self::ALL.iter().copied().filter(move |one| one.group() == group)
+    }
+
+    /// Those that are read off a state at rest as well: motion and pressures, and what is elastic.
+    pub fn at_rest(self) -> bool {
+        match self.group() {
+            Group::Tip | Group::Pressure | Group::Power | Group::State => true,
+            Group::Stored => !matches!(self, Self::KineticEnergy | Self::RotaryEnergy),
+            _ => false,
+        }
+    }
+
+    /// Whether it has a derivative by a number of the case: time has none, and the integrator's error is none of the model's.
+    pub fn has_derivative(self) -> bool {
+        !matches!(self.read(), Read::Time | Read::Open)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: each energy that flows is in one column, and enters the balance as its group says.
+    #[test]
+    fn every_energy_that_flows_has_its_column() {
+        for flow in FLOWS.iter().filter(|flow| flow.energy_sign() != 0.0) {
+            let mut one_joule = [0.0; FLOWS.len()];
+            one_joule[*flow as usize] = 1.0;
+            let has = |one: &&Observable| matches!(one.read(), Read::Integral(of) if one.unit() == "J" && of(&one_joule) == 1.0);
+            let own: Vec<_> = Observable::ALL.iter().filter(has).collect();
+            assert_eq!(own.len(), 1, "{flow:?}");
+            let comes_in = matches!(own[0].group(), Group::PutIn | Group::Added);
+            assert_eq!(comes_in, flow.energy_sign() > 0.0, "{flow:?}");
+        }
+    }
+
+    /// Goal: names tell quantities apart, and each finds its own.
+    #[test]
+    fn names_are_unique() {
+        for one in Observable::ALL {
+            assert_eq!(Observable::named(one.name()), Some(*one));
+        }
+    }
+}

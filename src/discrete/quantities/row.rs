@@ -1,0 +1,77 @@
+//! One row of a history.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Group, Look, Observable, Read};
+use crate::discrete::System;
+
+/// Values of the quantities over time at one instant.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    columns: Vec<Observable>,
+    values: Vec<f64>,
+}
+
+impl Row {
+    /// Of a system, zero yet.
+    pub fn of(system: &System) -> Self {
+        Self::new(Observable::of(system))
+    }
+
+    /// Of columns, zero yet.
+    pub fn new(columns: Vec<Observable>) -> Self {
+        let values = vec![0.0; columns.len()];
+        Self { columns, values }
+    }
+
+    /// Reads a state at a time [s], with what has flowed up to then and what the balance of energy leaves open [J].
+    pub fn take(&mut self, t: f64, look: &Look, integrals: &[f64], open: f64) {
+        for (value, column) in self.values.iter_mut().zip(&self.columns) {
+            *value = match column.read() {
+                Read::Time => t,
+                Read::State(read) => read(look),
+                Read::Integral(of) => of(integrals),
+                Read::Open => open,
+            };
+        }
+    }
+
+    /// What its values are.
+    pub fn columns(&self) -> &[Observable] {
+        &self.columns
+    }
+
+    /// Its values, in the order of the columns.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Time [s].
+    pub fn t(&self) -> f64 {
+        self.get(Observable::Time).unwrap_or(0.0)
+    }
+
+    /// One value, where there is such a column.
+    pub fn get(&self, which: Observable) -> Option<f64> {
+        let place = self.columns.iter().position(|column| *column == which)?;
+        Some(self.values[place])
+    }
+
+    /// Sets one value, where there is such a column.
+    pub fn set(&mut self, which: Observable, value: f64) {
+        if let Some(place) = self.columns.iter().position(|column| *column == which) {
+            self.values[place] = value;
+        }
+    }
+
+    /// Each value with what it is.
+    pub fn each(&self) -> impl Iterator<Item = (Observable, f64)> {
+        self.columns.iter().copied().zip(self.values.iter().copied())
+    }
+
+    /// Sum of the values of a group.
+    pub fn sum(&self, group: Group) -> f64 {
+        let own = self.each().filter(|(column, _)| column.group() == group);
+        own.map(|(_, value)| value).sum()
+    }
+}

@@ -1,0 +1,130 @@
+//! Pressures, what they do to the beam, and the flows they drive.
+
+use crate::case::schema::Effect;
+use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
+use crate::discrete::{System, TimeData, Workspace};
+use crate::model::{Scalar, Storage};
+
+/// `[E8]` Pressure of each cell from its stored area, and each bladder's mean (A.15, A.16 solved for p):
+///
+/// ```text
+/// p = (a1 - R A_M(Mbar_j) - A_N(Nbar_j))/a_p
+/// ```
+///
+/// A bladder that keeps its volume has one pressure, one that shares its pressure one area, `[E23]`.
+pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
+    let law = &wet.area;
+    let share = 1.0 / fluid.cells_per_bladder as f64;
+    for j in 0..wet.per_row {
+        let of_force = law.of_force(w.mean_force[j]);
+        for (bladder, row) in [(j, 1.0), (wet.per_row + j, -1.0)] {
+            let imposed = of_force + law.of_moment(w.mean_moment[j], row);
+            let cells = fluid.cells_of(bladder);
+            w.mean_pressure[bladder] = match wet.storage[bladder] {
+                Storage::Flowing => {
+                    let mut sum = T::zero();
+                    for cell in cells {
+                        let p = law.pressure(w.area[cell], imposed);
+                        w.pressure[cell] = p;
+                        sum += p;
+                    }
+                    sum * share
+                }
+                Storage::Kept => {
+                    let p = law.pressure(w.area[cells.start], imposed);
+                    w.pressure[cells].fill(p);
+                    p
+                }
+                Storage::Shared(pool) => {
+                    let p = w.pool[pool];
+                    w.area[cells.clone()].fill(p * law.per_pressure + imposed);
+                    w.pressure[cells].fill(p);
+                    p
+                }
+            };
+        }
+    }
+}
+
+/// Stretch and curvature of each segment due to pressure, `[E3]`.
+pub fn pressure_strains<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+    let Some(wet) = &system.model.wet else { return };
+    let effects = &system.model.effects;
+    for j in 0..wet.per_row {
+        let (upper, lower) = (w.mean_pressure[j], w.mean_pressure[wet.per_row + j]);
+        if effects.has(Effect::PressureToStretch) && effects.has(Effect::AxialStretch) {
+            w.pressure_stretch[j] = wet.coupling.stretch(&wet.strains, w.mean_force[j], upper, lower);
+        }
+        if effects.has(Effect::PressureToCurvature) {
+            w.pressure_curvature[j] = wet.coupling.curvature(&wet.strains, w.mean_moment[j], upper, lower);
+        }
+    }
+}
+
+/// Pressure at a place.
+#[inline]
+pub fn pressure_at<T: Scalar>(place: Place, now: &TimeData, w: &Workspace<T>) -> T {
+    match place {
+        Place::Cell(c) => w.pressure[c],
+        Place::Junction(j) => w.junction[j],
+        Place::Port(p) => T::constant(now.port_pressure[p]),
+    }
+}
+
+/// `[E9]` Net inflow of each cell and junction (A.13):
+///
+/// ```text
+/// q = -(q1b/μ) dp/ds inside a bladder, q = g (p_a - p_b) along a link, prescribed at a source
+/// ```
+pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
+    if !wet.flows {
+        return;
+    }
+    let k = fluid.cells_per_bladder;
+    w.inflow.fill(T::zero());
+    w.junction_inflow.fill(T::zero());
+    for &bladder in &fluid.flowing {
+        for cell in bladder * k + 1..(bladder + 1) * k {
+            let q = (w.pressure[cell - 1] - w.pressure[cell]) * fluid.conductance;
+            w.inflow[cell - 1] -= q;
+            w.inflow[cell] += q;
+        }
+    }
+    for (link, &conductance) in fluid.links.iter().zip(&now.conductance) {
+        let q = (pressure_at(link.from, now, w) - pressure_at(link.to, now, w)) * conductance;
+        deliver(link.from, -q, w);
+        deliver(link.to, q, w);
+    }
+    for &MeshSource { number, into } in &fluid.sources {
+        deliver(into, T::constant(now.source_flow[number]), w);
+    }
+    for (k, &MeshBridge { number, from, to }) in fluid.bridges.iter().enumerate() {
+        let bridge = &wet.network.bridges[number];
+        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.bridge[k]);
+        let q = bridge.valve.flow(forward) - bridge.valve.flow(backward);
+        deliver(from, -q, w);
+        deliver(to, q, w);
+    }
+}
+
+/// `[E10]` Pressure drops over the two pairs of valves of a symmetric bridge, `d` between its ports and `w` over the
+/// turbine: `(d - w)/2` and `(-d - w)/2`.
+#[inline]
+pub fn bridge_drops<T: Scalar>(d: T, turbine: T) -> (T, T) {
+    ((d - turbine) * 0.5, (-d - turbine) * 0.5)
+}
+
+#[inline]
+fn deliver<T: Scalar>(place: Place, flow: T, w: &mut Workspace<T>) {
+    match place {
+        Place::Cell(c) => w.inflow[c] += flow,
+        Place::Junction(j) => w.junction_inflow[j] += flow,
+        Place::Port(_) => {}
+    }
+}

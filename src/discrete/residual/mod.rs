@@ -1,0 +1,66 @@
+//! The semi-discrete equations in the paper's order: what lies between two instants is nothing but this.
+
+pub mod bar;
+pub mod fluid;
+pub mod rows;
+pub mod small;
+pub mod solid;
+mod unpack;
+
+use super::{System, TimeData, Workspace};
+use crate::model::{Kinematics, Scalar};
+
+pub use unpack::unpack;
+
+/// Everything up to forces and flows: fills the workspace from the state (SI units, not scaled).
+pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>) {
+    unpack(system, now, y, yp, w);
+    fluid::pressures(system, w);
+    fluid::pressure_strains(system, w);
+    match system.model.kinematics {
+        Kinematics::Bar => {
+            bar::kinematics(system, w);
+            bar::rates(system, w);
+            solid::normal_forces(system, w);
+            bar::section_forces(system, w);
+        }
+        Kinematics::Linear | Kinematics::SmallRotation => {
+            small::kinematics(system, now, w);
+            small::rates(system, now, w);
+            small::normal_forces(system, now, w);
+            solid::moments(system, now, w);
+            small::section_forces(system, now, w);
+        }
+        Kinematics::FiniteRotation => {
+            solid::kinematics(system, now, w);
+            solid::rates(system, now, w);
+            solid::normal_forces(system, w);
+            solid::moments(system, now, w);
+            solid::shears(system, w);
+            solid::section_forces(system, now, w);
+        }
+    }
+    fluid::flows(system, now, w);
+}
+
+/// What balances and samples need besides: velocities and rates of strain, whether or not an equation depends on them.
+pub fn complete<T: Scalar>(system: &System, now: &TimeData, yp: &[T], w: &mut Workspace<T>) {
+    unpack::complete_velocities(system, now, yp, w);
+    match system.model.kinematics {
+        Kinematics::Bar => bar::strain_rates(system, w),
+        Kinematics::Linear | Kinematics::SmallRotation => small::strain_rates(system, now, w),
+        Kinematics::FiniteRotation => solid::strain_rates(system, now, w),
+    }
+}
+
+/// The residual `F(t, y, y')`, one equation an unknown, in SI units.
+pub fn residual<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>, r: &mut [T]) {
+    evaluate(system, now, y, yp, w);
+    rows::momentum(system, now, w, r);
+    rows::motion(system, y, yp, r);
+    rows::means(system, w, r);
+    rows::storage(system, w, r);
+    rows::pools(system, now, y, yp, w, r);
+    rows::junctions(system, w, r);
+    rows::bridges(system, now, w, r);
+}

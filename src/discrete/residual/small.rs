@@ -1,0 +1,136 @@
+//! The beam that turns little: von Karman's, and the linear one.
+
+use super::solid::{self, couple, curvature_rates, normal_force, total_moment_drop};
+use crate::case::Translation;
+use crate::case::schema::Effect;
+use crate::discrete::{System, TimeData, Workspace};
+use crate::model::{Kinematics, Scalar};
+
+/// `[E26]` Small rotations, g = 1; without axial force on bending (the linear beam) g = 0:
+///
+/// ```text
+/// e = u3' + g u1'²/2    φ = u1'    κ = -φ'    N = EA (e - λ_p)    M = EI (κ - α_p)    V = -M'
+/// n_x = g N φ - V + r    n_z = N    r = m b1_z + g φ m b1_x + m y11 φ_tt
+/// ```
+///
+/// from the potential ∫ (N²/2EA + M²/2EI): `N δe + M δκ = (g N φ - V) δu1' + N δu3' - (M δφ)'`. Relative to finite
+/// rotations it leaves out terms of the order φ².
+pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    let inverse = 1.0 / system.mesh.h;
+    let tension = system.model.kinematics == Kinematics::SmallRotation;
+    let stretches = system.model.effects.has(Effect::AxialStretch);
+    for c in 0..system.mesh.cells {
+        let angle = (w.u1[c + 1] - w.u1[c]) * inverse;
+        w.d3x[c] = angle;
+        if !stretches {
+            continue;
+        }
+        let mut e = (w.u3[c + 1] - w.u3[c]) * inverse;
+        if tension {
+            e += angle.squared() * 0.5;
+        }
+        w.strain[c] = e;
+        w.stretch[c] = e + 1.0;
+    }
+    curvatures(system, now, w);
+}
+
+/// `κ` at nodes from the angles of cells and prescribed slopes.
+fn curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    let inverse = 1.0 / system.mesh.h;
+    let last = system.mesh.nodes - 1;
+    for i in 1..last {
+        w.kappa[i] = (w.d3x[i - 1] - w.d3x[i]) * inverse;
+    }
+    if let Some(slope) = now.ends[0].slope {
+        w.kappa[0] = (-w.d3x[0] + slope.value) * (2.0 * inverse);
+    }
+    if let Some(slope) = now.ends[1].slope {
+        w.kappa[last] = (w.d3x[last - 1] + -slope.value) * (2.0 * inverse);
+    }
+}
+
+/// Rates of strain, where damping depends on them.
+pub fn rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    if system.damped {
+        strain_rates(system, now, w);
+    }
+}
+
+/// Rates of strain, always: `e_t = u3'_t + g φ φ_t`, `φ_t = u1'_t`.
+pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    let inverse = 1.0 / system.mesh.h;
+    let tension = system.model.kinematics == Kinematics::SmallRotation;
+    for c in 0..system.mesh.cells {
+        let turning = (w.v1[c + 1] - w.v1[c]) * inverse;
+        w.angle_rate[c] = turning;
+        w.stretch_rate[c] = (w.v3[c + 1] - w.v3[c]) * inverse;
+        if tension {
+            w.stretch_rate[c] += w.d3x[c] * turning;
+        }
+    }
+    curvature_rates(system, now, w);
+}
+
+/// Normal forces: elastic, or where the beam does not stretch those of statics, `[E28]`.
+pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    if system.model.effects.has(Effect::AxialStretch) {
+        solid::normal_forces(system, w);
+        return;
+    }
+    for (force, &given) in w.force.iter_mut().zip(&now.statics.force) {
+        *force = T::constant(given);
+    }
+}
+
+/// Displacement and velocity along of a beam that does not stretch, from the end that is held on, `[E28]`; with the rates
+/// of stretch by pressure in each segment.
+pub fn foreshorten(system: &System, stretch_rate: impl Fn(&Workspace<f64>, usize) -> f64, w: &mut Workspace<f64>) {
+    let (h, k, last) = (system.mesh.h, system.mesh.cells_per_segment, system.mesh.cells);
+    let tension = system.model.kinematics == Kinematics::SmallRotation;
+    let root_held = matches!(system.model.ends[0].axial, Translation::Displacement(_));
+    let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
+    let held = if root_held { 0 } else { last };
+    let (mut u, mut v) = (w.u3[held], w.v3[held]);
+    for step in 0..last {
+        let (cell, node, outward) = if root_held {
+            (step, step + 1, 1.0)
+        } else {
+            (last - 1 - step, last - 1 - step, -1.0)
+        };
+        if pressed {
+            u += outward * h * w.pressure_stretch[cell / k];
+            v += outward * h * stretch_rate(w, cell / k);
+        }
+        if tension {
+            u -= outward * h * 0.5 * w.d3x[cell] * w.d3x[cell];
+            v -= outward * h * w.d3x[cell] * w.angle_rate[cell];
+        }
+        (w.u3[node], w.v3[node]) = (u, v);
+    }
+}
+
+/// Section forces in lab axes.
+pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    let section = &system.model.section;
+    let inverse = 1.0 / system.mesh.h;
+    let tension = system.model.kinematics == Kinematics::SmallRotation;
+    for c in 0..system.mesh.cells {
+        let normal = normal_force(system, w, c);
+        w.shear[c] = total_moment_drop(system, w, c) * inverse;
+        w.sz[c] = normal;
+        w.sx[c] = if tension {
+            normal * w.d3x[c] - w.shear[c]
+        } else {
+            -w.shear[c]
+        };
+        if system.has_moments {
+            let turning = couple(system, now, w, c);
+            w.sx[c] += turning;
+        }
+        if system.model.effects.has(Effect::RotaryInertia) {
+            let inertia = section.mass_per_length * section.gyration_radius_squared;
+            w.sx[c] += (w.a1[c + 1] - w.a1[c]) * (inverse * inertia);
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! What a mesh does not see of loads and of the start.
+//!
+//! Loads reach the mesh with the force and the moment that they have, so that M is right at nodes; how it goes between two nodes is
+//! left out. Each shape is judged by what that does to the beam: a narrow load far from what holds the beam is nothing but its force,
+//! a wave shorter than a cell is all bending between the nodes. What a beam begins with is judged by its energy, and by what becomes of
+//! its short waves while they run.
+
+mod begun;
+mod held;
+mod ports;
+mod statics;
+mod vibrations;
+
+use crate::case::profile::{Integrals, Profile};
+use crate::case::schema::Case;
+use crate::case::schema::Effect;
+use crate::case::signals::Signal;
+use crate::case::wiring::bladder_index;
+use crate::error::Code;
+use crate::model::{Load, Model, Storage};
+
+use super::{System, shapes};
+use begun::Begun;
+use statics::Shape;
+
+/// Share of a shape's effect beyond which leaving it out is told.
+pub const LIMIT: f64 = 0.05;
+
+/// Cells in a segment, or in a bladder, up to which a mesh that resolves is looked for.
+const FINEST: usize = 1024;
+
+/// How much of one shape the mesh leaves out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// Where it stands in the case; of several loads that act together, of the first.
+    pub pointer: String,
+    /// What is left out, in words.
+    pub what: &'static str,
+    /// The share of it that is left out.
+    pub left_out: f64,
+    /// Cells in a segment, or in a bladder, that leave out less than [`LIMIT`]; nothing where no mesh up to the finest does.
+    pub wanted: Option<usize>,
+    /// Setting of the mesh that decides.
+    pub setting: &'static str,
+}
+
+/// Everything that the mesh of a system leaves out of the shapes of its case, by more than [`LIMIT`] or not.
+pub fn findings(case: &Case, system: &System) -> Vec<Finding> {
+    of_beam_and_bladders(case, system, true)
+}
+
+/// What is left out from the beginning, or also what becomes of it later.
+fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Finding> {
+    let (segments, cells) = (system.mesh.segments, system.mesh.cells_per_segment);
+    let along = "/mesh/cells_per_segment";
+    let mut all = vec![];
+    for shape in loads_along(case, &system.model) {
+        let on = |cells: usize| (shape.left_out(segments * cells), shape.what());
+        all.push(finding(shape.pointer.clone(), cells, along, on));
+    }
+    for begun in Begun::all(case, system) {
+        let on = |cells: usize| {
+            let cells = segments * cells;
+            if later {
+                begun.left_out(cells)
+            } else {
+                begun.at_once(cells)
+            }
+        };
+        all.push(finding(begun.pointer(), cells, along, on));
+    }
+    if let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid)
+        && system.model.effects.has(Effect::FlowAlongBladders)
+    {
+        let along = "/mesh/cells_per_bladder";
+        for port in ports::ports(case, wet).into_iter().filter(|_| later) {
+            let on = |cells| port.left_out(cells);
+            all.push(finding(port.pointer(), fluid.cells_per_bladder, along, on));
+        }
+        for (k, start) in case.start.pressures.iter().enumerate() {
+            let mut bladders = start.bladders.iter().filter_map(|b| bladder_index(*b, wet.per_row));
+            if bladders.any(|b| wet.storage[b] == Storage::Flowing) {
+                let on = |cells| of_means(&start.pressure_pa, cells);
+                let pointer = format!("/start/pressures/{k}/pressure_pa");
+                all.push(finding(pointer, fluid.cells_per_bladder, along, on));
+            }
+        }
+    }
+    all
+}
+
+/// What the mesh leaves out by more than [`LIMIT`].
+pub fn unresolved(case: &Case, system: &System) -> Vec<Finding> {
+    let mut all = findings(case, system);
+    all.retain(|finding| finding.left_out > LIMIT);
+    all
+}
+
+/// Cells that resolve every shape as it is given, in a segment and in a bladder; those of the case where they do, or where none do.
+pub fn cells_that_resolve(case: &Case, system: &System) -> [usize; 2] {
+    let all = of_beam_and_bladders(case, system, false);
+    ["/mesh/cells_per_segment", "/mesh/cells_per_bladder"].map(|setting| {
+        let those = all.iter().filter(|finding| finding.setting == setting);
+        those.filter_map(|finding| finding.wanted).fold(0, usize::max)
+    })
+}
+
+/// A warning for every shape that is not resolved.
+pub fn warnings(case: &Case, system: &System) -> Vec<String> {
+    let told = |finding: Finding| {
+        let advice = match finding.wanted {
+            Some(cells) => format!("{cells} in {} resolve it", finding.setting),
+            None => format!("{FINEST} in {} would not resolve it", finding.setting),
+        };
+        Code::Unresolved.warning(format!(
+            "mesh: {} is not resolved: {} is off by {:.0} % of itself; {advice}",
+            finding.pointer,
+            finding.what,
+            100.0 * finding.left_out.min(9.99)
+        ))
+    };
+    unresolved(case, system).into_iter().map(told).collect()
+}
+
+fn finding(
+    pointer: String,
+    cells: usize,
+    setting: &'static str,
+    left_out: impl Fn(usize) -> (f64, &'static str),
+) -> Finding {
+    let (here, what) = left_out(cells);
+    let doubled = std::iter::successors(Some(cells), |cells| Some(2 * cells));
+    let wanted = if here > LIMIT {
+        doubled
+            .skip(1)
+            .take_while(|cells| *cells <= FINEST)
+            .find(|cells| left_out(*cells).0 <= LIMIT)
+    } else {
+        Some(cells)
+    };
+    Finding {
+        pointer,
+        what,
+        left_out: here,
+        wanted,
+        setting,
+    }
+}
+
+/// Loads along the beam that take part: those of one time function together, for they act together.
+fn loads_along(case: &Case, model: &Model) -> Vec<Shape> {
+    let mut groups: Vec<(Option<&Signal>, Shape)> = vec![];
+    for (k, written) in case.loads.iter().enumerate() {
+        let signal = written.distributed().map(|(_, load)| &load.signal);
+        // Loads that never change act together whatever their values.
+        let (signal, constant) = match signal {
+            Some(Signal::Constant(value)) => (None, *value),
+            signal => (signal, 1.0),
+        };
+        for load in Load::resolve(written, model.section.mass_per_length) {
+            let part = Shape::new(format!("/loads/{k}"), load, constant, model);
+            let known = groups
+                .iter()
+                .position(|(s, shape)| *s == signal && shape.acts_with(&part));
+            match known {
+                Some(place) => groups[place].1.join(part),
+                None => groups.push((signal, part)),
+            }
+        }
+    }
+    let across = !model.effects.has(Effect::TransverseMotion);
+    groups
+        .into_iter()
+        .map(|(_, shape)| shape)
+        .filter(|shape| !(across && shape.bends()))
+        .collect()
+}
+
+/// What taking means over cells changes of a pressure: of the root of its mean square, or of its largest value, whichever is more.
+fn of_means(profile: &Profile, cells: usize) -> (f64, &'static str) {
+    let means = shapes::in_cells(profile, cells);
+    let square = change(means.iter().map(|p| p * p).sum::<f64>() / cells as f64, profile);
+    let exact = profile.size();
+    let seen = means.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
+    let largest = ratio((exact - seen).max(0.0), exact, exact);
+    if largest > square {
+        (largest, "the largest pressure along the bladder at the start")
+    } else {
+        (square, "pressure along the bladder at the start")
+    }
+}
+
+/// Change of a root of a mean square.
+fn change(on_mesh: f64, profile: &Profile) -> f64 {
+    let square = Profile::Product(vec![profile.clone(), profile.clone()]);
+    let exact = Integrals::of(&square).moments(0.0, 1.0)[0].max(0.0).sqrt();
+    ratio((on_mesh.sqrt() - exact).abs(), exact, exact)
+}
+
+/// A share of something that may vanish to round-off.
+fn ratio(part: f64, whole: f64, scale: f64) -> f64 {
+    let floor = 1e-12 * scale;
+    if whole <= floor { 0.0 } else { part / whole }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::signals::Polynomial;
+
+    /// Goal: a pressure that is largest between two cells: its root mean square is off by 9 %, its largest value by a third.
+    #[test]
+    fn largest_values_between_cells_are_missed() {
+        let hill = Profile::Polynomial(Polynomial {
+            coefficients: vec![0.0, 4.0, -4.0],
+        });
+        let (off, what) = of_means(&hill, 2);
+        assert!((off - 1.0 / 3.0).abs() < 2e-3, "{off}");
+        assert!(what.contains("largest"), "{what}");
+        assert!(of_means(&hill, 8).0 < LIMIT);
+        assert!(of_means(&Profile::Constant(3.0), 1).0 < 1e-12);
+    }
+}

@@ -1,0 +1,250 @@
+//! Everything that depends on time alone, evaluated once an instant.
+
+use super::{Statics, System, shapes};
+use crate::case::signals::{Clock, Jet, Signal};
+use crate::case::{Rotation, Translation};
+use crate::model::Load;
+use crate::model::loads::LoadKind;
+
+/// A load's shape where it acts: forces at nodes, moments in cells.
+///
+/// `[E46]` Forces weigh with the hat functions of the nodes, moments with their cells,
+///
+/// ```text
+/// h_i b_i = ∫ b hat_i dθ        h (m b1)_c = ∫_c m b1 dθ
+/// ```
+///
+/// exactly ([`crate::case::profile::Integrals`]): force, moment about any point and couple are those of the load on every mesh, and so are the moments M
+/// that it causes at nodes and the mean of N in each cell, where the beam is statically determinate. What no mesh sees is how M
+/// goes between two nodes ([`super::resolution`]).
+#[derive(Clone, Debug)]
+pub struct SampledLoad {
+    /// What it acts on.
+    pub kind: LoadKind,
+    /// Time function.
+    pub signal: Signal,
+    /// Factor at each node or cell, unit of the load.
+    pub shape: Vec<f64>,
+}
+
+impl SampledLoad {
+    /// Puts a load on a mesh.
+    pub fn new(load: &Load, mesh: &super::Mesh) -> Self {
+        let mut shape = match load.kind {
+            LoadKind::ForceX | LoadKind::ForceZ => shapes::at_nodes(&load.profile, mesh.cells),
+            LoadKind::MomentX | LoadKind::MomentZ => shapes::in_cells(&load.profile, mesh.cells),
+        };
+        shape.iter_mut().for_each(|value| *value *= load.factor);
+        Self {
+            kind: load.kind,
+            signal: load.signal.clone(),
+            shape,
+        }
+    }
+}
+
+/// Given values at one end of the beam.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EndData {
+    /// Prescribed `u1`, when transverse motion is prescribed.
+    pub u1: Option<Jet>,
+    /// Prescribed `u3`, when axial motion is prescribed.
+    pub u3: Option<Jet>,
+    /// Prescribed slope, when the slope is prescribed.
+    pub slope: Option<Jet>,
+    /// Prescribed moment (zero where the slope is prescribed).
+    pub moment: Jet,
+    /// Dead force on the end in x [N].
+    pub force_x: f64,
+    /// Dead force on the end in z [N].
+    pub force_z: f64,
+    /// Section forces N and V along the end's tangent and normal.
+    pub follower: Option<(f64, f64)>,
+}
+
+/// Motion of the straight line through the displacements that the ends prescribe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    root: Jet,
+    /// Tip less root.
+    lean: Jet,
+}
+
+impl Frame {
+    /// The line through both driven ends, or the motion of the one; `None` when neither is driven.
+    fn through(root: Option<Jet>, tip: Option<Jet>) -> Option<Self> {
+        let alone = |root: Jet| Self {
+            root,
+            lean: Jet::default(),
+        };
+        match (root, tip) {
+            (Some(root), Some(tip)) => Some(Self {
+                root,
+                lean: Jet {
+                    value: tip.value - root.value,
+                    rate: tip.rate - root.rate,
+                    acceleration: tip.acceleration - root.acceleration,
+                    jerk: tip.jerk - root.jerk,
+                },
+            }),
+            (Some(end), None) | (None, Some(end)) => Some(alone(end)),
+            (None, None) => None,
+        }
+    }
+
+    /// Displacement, velocity and acceleration at a share of the length, 0 at the root and 1 at the tip.
+    #[inline]
+    pub fn at(&self, share: f64) -> Jet {
+        Jet {
+            value: self.root.value + share * self.lean.value,
+            rate: self.root.rate + share * self.lean.rate,
+            acceleration: self.root.acceleration + share * self.lean.acceleration,
+            jerk: self.root.jerk + share * self.lean.jerk,
+        }
+    }
+}
+
+/// Values at one instant.
+#[derive(Clone, Debug)]
+pub struct TimeData {
+    clock: Option<Clock>,
+    /// Root and tip.
+    pub ends: [EndData; 2],
+    /// Force per length in x at each node [N/m].
+    pub force_x: Vec<f64>,
+    /// Force per length in z at each node [N/m].
+    pub force_z: Vec<f64>,
+    /// First moment per length, x component, in each cell [N].
+    pub moment_x: Vec<f64>,
+    /// First moment per length, z component, in each cell [N].
+    pub moment_z: Vec<f64>,
+    /// Normal forces that follow from loads alone; nothing where the beam can stretch.
+    pub statics: Statics,
+    /// Conductance of each link [m^3/(s Pa)].
+    pub conductance: Vec<f64>,
+    /// Resistance of each link between its half cells, valve included [Pa s/m^3]; infinite when closed.
+    pub resistance: Vec<f64>,
+    /// Prescribed pressure of each port [Pa].
+    pub port_pressure: Vec<f64>,
+    /// Its rate [Pa/s].
+    pub port_pressure_rate: Vec<f64>,
+    /// Prescribed flow of each source [m^3/s].
+    pub source_flow: Vec<f64>,
+}
+
+impl TimeData {
+    /// Room for the values of a system; nothing is evaluated yet.
+    pub fn new(system: &System) -> Self {
+        let (ports, sources) = system
+            .model
+            .wet
+            .as_ref()
+            .map_or((0, 0), |wet| (wet.network.ports.len(), wet.network.sources.len()));
+        let links = system.fluid.as_ref().map_or(0, |fluid| fluid.links.len());
+        Self {
+            clock: None,
+            ends: [EndData::default(); 2],
+            force_x: vec![0.0; system.mesh.nodes],
+            force_z: vec![0.0; system.mesh.nodes],
+            moment_x: vec![0.0; system.mesh.cells],
+            moment_z: vec![0.0; system.mesh.cells],
+            statics: Statics::new(system),
+            conductance: vec![0.0; links],
+            resistance: vec![0.0; links],
+            port_pressure: vec![0.0; ports],
+            port_pressure_rate: vec![0.0; ports],
+            source_flow: vec![0.0; sources],
+        }
+    }
+
+    /// Frame of the transverse displacements.
+    #[inline]
+    pub fn frame_1(&self) -> Option<Frame> {
+        Frame::through(self.ends[0].u1, self.ends[1].u1)
+    }
+
+    /// Frame of the axial displacements.
+    #[inline]
+    pub fn frame_3(&self) -> Option<Frame> {
+        Frame::through(self.ends[0].u3, self.ends[1].u3)
+    }
+
+    /// Evaluates every signal at `clock`, unless that is where it stands already.
+    pub fn update(&mut self, system: &System, clock: Clock) {
+        if self.clock == Some(clock) {
+            return;
+        }
+        let first = self.clock.is_none();
+        self.clock = Some(clock);
+        for (values, end) in self.ends.iter_mut().zip(&system.model.ends) {
+            let motion = |m: &Translation| match m {
+                Translation::Displacement(s) => (Some(s.jet(clock)), 0.0),
+                Translation::Force(s) => (None, s.jet(clock).value),
+            };
+            (values.u1, values.force_x) = motion(&end.transverse);
+            (values.u3, values.force_z) = motion(&end.axial);
+            (values.slope, values.moment) = match &end.rotation {
+                Rotation::Slope(s) => (Some(s.jet(clock)), Jet::default()),
+                Rotation::Moment(s) => (None, s.jet(clock)),
+            };
+            values.follower = end
+                .follower
+                .as_ref()
+                .map(|f| (f.normal.jet(clock).value, f.shear.jet(clock).value));
+        }
+        self.loads(system, clock);
+        self.statics.update(system, self.frame_3(), clock);
+        self.network(system, clock, first);
+    }
+
+    fn loads(&mut self, system: &System, clock: Clock) {
+        let arrays = [
+            &mut self.force_x,
+            &mut self.force_z,
+            &mut self.moment_x,
+            &mut self.moment_z,
+        ];
+        for array in arrays {
+            array.fill(0.0);
+        }
+        for load in &system.loads {
+            let factor = load.signal.jet(clock).value;
+            let array = match load.kind {
+                LoadKind::ForceX => &mut self.force_x,
+                LoadKind::ForceZ => &mut self.force_z,
+                LoadKind::MomentX => &mut self.moment_x,
+                LoadKind::MomentZ => &mut self.moment_z,
+            };
+            for (value, shape) in array.iter_mut().zip(&load.shape) {
+                *value += factor * shape;
+            }
+        }
+    }
+
+    fn network(&mut self, system: &System, clock: Clock, first: bool) {
+        let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+            return;
+        };
+        for (k, mesh_link) in fluid.links.iter().enumerate() {
+            match &wet.network.links[mesh_link.number].opening {
+                None if !first => {}
+                None => {
+                    self.conductance[k] = 1.0 / (mesh_link.half_cells + mesh_link.resistance);
+                    self.resistance[k] = mesh_link.resistance;
+                }
+                Some(opening) => {
+                    let o = opening.jet(clock).value.clamp(0.0, 1.0);
+                    self.conductance[k] = o / (o * mesh_link.half_cells + mesh_link.resistance);
+                    self.resistance[k] = mesh_link.resistance / o;
+                }
+            }
+        }
+        for (k, port) in wet.network.ports.iter().enumerate() {
+            let pressure = port.pressure.jet(clock);
+            (self.port_pressure[k], self.port_pressure_rate[k]) = (pressure.value, pressure.rate);
+        }
+        for (value, source) in self.source_flow.iter_mut().zip(&wet.network.sources) {
+            *value = source.flow.jet(clock).value;
+        }
+    }
+}

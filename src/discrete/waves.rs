@@ -1,0 +1,72 @@
+//! Waves that a mesh carries: how fast, how damped, and which order of BDF they make unstable.
+
+use super::System;
+use crate::case::schema::{Case, MaxOrder, Method};
+use crate::error::{Code, Violation};
+
+/// Damping ratio from which on high orders are taken: measured, 5 % nearly removes the trap, 0.5 % does not.
+pub const ENOUGH: f64 = 0.05;
+
+/// Why the order asked for is refused, if it is: 3 and 4 on a scene with hardly damped waves.
+pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
+    let MaxOrder::Order(order @ (3 | 4)) = case.solver.max_order else {
+        return None;
+    };
+    if !matches!(case.solver.method, Method::Auto | Method::Ida) || system.layout.waves == [false; 2] {
+        return None;
+    }
+    let ratio = least_damping_ratio(system);
+    (ratio < ENOUGH).then(|| {
+        Violation::new(
+            Code::Order, "/solver/max_order",
+            format!(
+                "BDF of order {order} is unstable for the waves of this beam, whose least damping ratio is {ratio:.1e}: \
+                 steps become tiny or rates become garbage"
+            ),
+        )
+        .allowed("\"auto\", 1, 2, or 5 for errors below about 1e-5")
+        .hint(format!("use \"auto\"; to see what happens, force it with {{\"forced\": {order}}}"))
+    })
+}
+
+/// Smallest damping ratio among the waves that the mesh carries: `ζ = c/(2 m ω) + ω τ/2`, bending and axial.
+pub fn least_damping_ratio(system: &System) -> f64 {
+    let s = &system.model.section;
+    let (m, h, l) = (s.mass_per_length, system.mesh.h, system.model.length);
+    let bending = (s.bending_stiffness / m).sqrt();
+    let axial = (s.axial_stiffness / m).sqrt();
+    let families = [
+        (
+            s.bending_damping_time,
+            3.516 * bending / (l * l),
+            4.0 * bending / (h * h),
+        ),
+        (s.axial_damping_time, 1.571 * axial / l, 2.0 * axial / h),
+    ];
+    let mut least = f64::INFINITY;
+    let carried = families
+        .into_iter()
+        .zip(system.layout.waves)
+        .filter(|(_, waves)| *waves);
+    for ((time, slowest, fastest), _) in carried {
+        let ratio = |omega: f64| s.drag / (2.0 * m * omega) + 0.5 * omega * time;
+        least = least.min(ratio(slowest)).min(ratio(fastest));
+        if time > 0.0 {
+            let between = (s.drag / (m * time)).sqrt();
+            if (slowest..fastest).contains(&between) {
+                least = least.min(ratio(between));
+            }
+        }
+    }
+    least
+}
+
+/// Highest angular frequency that the mesh carries [1/s].
+pub fn highest_frequency(system: &System) -> f64 {
+    let s = &system.model.section;
+    let h = system.mesh.h;
+    let bending = 4.0 / (h * h) * (s.bending_stiffness / s.mass_per_length).sqrt();
+    let axial = 2.0 / h * (s.axial_stiffness / s.mass_per_length).sqrt();
+    let carried = [bending, axial].into_iter().zip(system.layout.waves);
+    carried.filter(|(_, waves)| *waves).map(|(f, _)| f).fold(0.0, f64::max)
+}

@@ -1,0 +1,367 @@
+//! What the scene does to the beam, in the numbers by which effects are left out: each estimates the relative error that
+//! leaving one out makes.
+
+mod least;
+mod pace;
+mod stability;
+
+use std::cell::OnceCell;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use crate::case::schema::{BladderEnd, Case};
+use crate::case::{ResolvedEnd, Rotation, Signal, Translation};
+use crate::model::characteristic::first_wave_number;
+use crate::model::network::{Link, Node};
+use crate::model::scales::Drive;
+use crate::model::{Load, Network, Scales, Section, Wet, each_signal};
+
+use least::Least;
+use pace::Pace;
+use stability::SAFE_COMPRESSION;
+
+/// A scene, before anything is left out.
+pub struct Scene<'a> {
+    case: &'a Case,
+    section: &'a Section,
+    wet: Option<&'a Wet>,
+    ends: [ResolvedEnd; 2],
+    loads: Vec<Load>,
+    scales: Scales,
+    drive: Drive,
+    /// First bending frequency of the drained beam [1/s].
+    bending: f64,
+    /// First axial frequency [1/s].
+    axial: f64,
+    /// Least buckling load that the ends allow [N].
+    buckling: f64,
+    /// Of the motions along that ends prescribe.
+    driven_along: Vec<Pace>,
+    /// Of all other signals.
+    others: Vec<Pace>,
+    instability: OnceCell<Option<String>>,
+    least: OnceCell<Least>,
+}
+
+impl<'a> Scene<'a> {
+    /// Of a case; `wet` with every effect.
+    pub fn new(case: &'a Case, section: &'a Section, wet: Option<&'a Wet>) -> Self {
+        let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
+        let mass = section.mass_per_length;
+        let length = case.beam.length_m;
+        let drive = Drive::of(case, section, &ends);
+        let held = |e: &ResolvedEnd| matches!(e.axial, Translation::Displacement(_));
+        let quarter = if held(&ends[0]) == held(&ends[1]) {
+            PI
+        } else {
+            FRAC_PI_2
+        };
+        let beta = first_wave_number(&ends).unwrap_or(FRAC_PI_2) / length;
+        let loads: Vec<Load> = case.loads.iter().flat_map(|load| Load::resolve(load, mass)).collect();
+        let mut undriven = ends.clone();
+        let mut driven_along = vec![];
+        for end in &mut undriven {
+            if let Translation::Displacement(signal) = &mut end.axial {
+                driven_along.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
+                *signal = Signal::Constant(0.0);
+            }
+        }
+        let mut others = vec![];
+        each_signal(&undriven, &loads, wet.map(|wet| &wet.network), |signal| {
+            others.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
+        });
+        Self {
+            wet,
+            loads,
+            driven_along,
+            others,
+            instability: OnceCell::new(),
+            least: OnceCell::new(),
+            scales: Scales::estimate(case, section, wet),
+            bending: beta * beta * (section.bending_stiffness / mass).sqrt(),
+            axial: quarter / length * (section.axial_stiffness / mass).sqrt(),
+            buckling: FRAC_PI_2.powi(2) * section.bending_stiffness / (length * length),
+            drive,
+            ends,
+            case,
+            section,
+        }
+    }
+
+    fn network(&self) -> Option<&Network> {
+        self.wet.map(|wet| &wet.network)
+    }
+
+    fn signals(&self, visit: impl FnMut(&Signal)) {
+        each_signal(&self.ends, &self.loads, self.network(), visit);
+    }
+
+    /// Whether the beam begins bent, stretched, moving, or with bladders under pressure.
+    fn begins_displaced(&self) -> bool {
+        let s = &self.case.start;
+        let given = [&s.u1_m, &s.u3_m, &s.u1_rate_m_s, &s.u3_rate_m_s];
+        given.iter().any(|profile| profile.is_some()) || (!s.pressures.is_empty() && s.equilibrium.is_none())
+    }
+
+    /// Whether an end moves otherwise than at rest, which acts on the beam by its inertia.
+    pub fn driven(&self) -> bool {
+        let moves = |motion: &Translation| matches!(motion, Translation::Displacement(s) if !s.is_constant());
+        let turns = |turn: &Rotation| matches!(turn, Rotation::Slope(s) if !s.is_constant());
+        let driven = |e: &ResolvedEnd| moves(&e.transverse) || moves(&e.axial) || turns(&e.rotation);
+        self.ends.iter().any(driven)
+    }
+
+    /// The sum of [`Pace::inertia_ratio`] of all that acts; 1 where the beam begins displaced.
+    fn inertia_ratio(&self, omega: f64) -> f64 {
+        self.inertia_ratio_of(self.others.iter().chain(&self.driven_along), omega)
+    }
+
+    fn inertia_ratio_of<'p>(&self, paces: impl Iterator<Item = &'p Pace>, omega: f64) -> f64 {
+        if self.begins_displaced() {
+            return 1.0;
+        }
+        paces.map(|pace| pace.inertia_ratio(omega)).sum()
+    }
+
+    /// Free bending vibrations and the inertia of forced ones, relative to the static deflection.
+    pub fn bending_inertia(&self) -> f64 {
+        // compression makes the beam slower; beyond this it is unstable anyway
+        let slower = (1.0 - self.pressed().min(SAFE_COMPRESSION)).sqrt();
+        self.inertia_ratio(self.bending * slower)
+    }
+
+    /// Axial waves, relative to the stretch without them; a driven end acts by its acceleration, which must begin smoothly.
+    pub fn axial_waves(&self) -> f64 {
+        let waves = self.driven_along.iter().map(|pace| pace.waves(self.axial));
+        waves.fold(self.inertia_ratio_of(self.others.iter(), self.axial), f64::max)
+    }
+
+    /// `(u1/l_s)²`: how much bending shortens the beam.
+    pub fn shortening(&self) -> f64 {
+        (self.scales.transverse / self.case.beam.length_m).powi(2)
+    }
+
+    /// `φ²`, of the largest angle that a cantilever of this deflection or under these moments has at rest, up to three times as
+    /// large where something comes suddenly; infinite where nothing keeps the beam from turning.
+    pub fn rotation(&self) -> f64 {
+        let across = |e: &ResolvedEnd| matches!(e.transverse, Translation::Displacement(_));
+        let turned = |e: &ResolvedEnd| matches!(e.rotation, Rotation::Slope(_));
+        if !self.ends.iter().any(turned) && !self.ends.iter().all(across) {
+            return f64::INFINITY;
+        }
+        let (l, d) = (self.case.beam.length_m, &self.drive);
+        let moment = d.moment + d.transverse_force * l + 0.5 * d.transverse_load * l * l;
+        let begins = self
+            .case
+            .start
+            .u1_m
+            .as_ref()
+            .map_or(0.0, |profile| profile.steepness() / l);
+        let angle = (2.0 * self.scales.transverse / l).max(moment * l / self.section.bending_stiffness);
+        (angle * (1.0 + self.inertia_ratio(self.bending).min(2.0)) + begins + d.slope).powi(2)
+    }
+
+    /// What the loads do at the least.
+    fn least(&self) -> &Least {
+        self.least.get_or_init(|| Least::of(self))
+    }
+
+    /// Second bending frequency [1/s], and its wavenumber [1/m].
+    fn second_mode(&self) -> (f64, f64) {
+        let k = 4.694_091_132_974 / self.case.beam.length_m;
+        let stiffness = self.section.bending_stiffness / self.section.mass_per_length;
+        (k * k * stiffness.sqrt(), k)
+    }
+
+    /// Whether something acts suddenly enough to excite bending waves of every length.
+    pub fn sudden(&self, tolerance: f64) -> bool {
+        self.inertia_ratio(self.second_mode().0) >= tolerance
+    }
+
+    /// `y11 k²/2 (1 + ω T)`, the phase that rotary inertia changes a vibration of the second bending mode by in the whole run.
+    pub fn rotary(&self) -> f64 {
+        let (omega, k) = self.second_mode();
+        0.5 * self.section.gyration_radius_squared * k * k * (1.0 + omega * self.case.time.end_s)
+    }
+
+    /// Whether a bladder begins with pressures that differ along it.
+    pub fn uneven_start(&self) -> bool {
+        self.case
+            .start
+            .pressures
+            .iter()
+            .any(|start| !start.pressure_pa.is_uniform())
+    }
+
+    /// Largest normal force, of either sign, over the buckling load.
+    pub fn normal_force(&self) -> f64 {
+        self.largest_force() / self.buckling
+    }
+
+    /// Of either sign; twice what acts at rest where it comes suddenly [N].
+    fn largest_force(&self) -> f64 {
+        self.scales.force * (1.0 + self.inertia_ratio_of(self.others.iter(), self.axial).min(1.0))
+    }
+
+    /// Stretch at the most over how much bending draws the beam in at the least.
+    pub fn stretch(&self) -> f64 {
+        self.largest_force() * self.case.beam.length_m / self.section.axial_stiffness / self.least().drawn_in
+    }
+
+    /// How much bending draws the beam in at the most over the stretch at the least; 0 where nothing bends it.
+    pub fn drawn_in(&self) -> f64 {
+        let l = self.case.beam.length_m;
+        // that of a slope which is the largest angle everywhere
+        let most = 0.5 * self.rotation() * l;
+        if most > 0.0 { most / self.least().stretch } else { 0.0 }
+    }
+
+    /// Whether the ends hold the beam without its inertia.
+    pub fn held(&self) -> bool {
+        let across = |e: &ResolvedEnd| matches!(e.transverse, Translation::Displacement(_));
+        let turned = |e: &ResolvedEnd| matches!(e.rotation, Rotation::Slope(_));
+        let along = |e: &ResolvedEnd| matches!(e.axial, Translation::Displacement(_));
+        let clamped = self.ends.iter().any(|e| across(e) && turned(e));
+        (clamped || self.ends.iter().all(across)) && self.ends.iter().any(along)
+    }
+
+    /// Whether upper and lower row are each other's mirror image: tubes, ports, start.
+    pub fn mirrored(&self) -> bool {
+        let Some(wet) = self.wet else { return true };
+        let network = &wet.network;
+        let plain = network.junctions.is_empty() && network.bridges.is_empty() && network.sources.is_empty();
+        let quiet_start = self.case.start.pressures.is_empty();
+        let other = |bladder: usize| (bladder + wet.per_row) % (2 * wet.per_row);
+        // a link by what it does: its ends in any order, whatever way a bladder is passed
+        let seen = |link: &Link, mirror: bool| {
+            let end = |node: Node| match node {
+                Node::Cell { bladder, end } => {
+                    let bladder = if mirror { other(bladder) } else { bladder };
+                    (0, bladder, usize::from(end == BladderEnd::Outlet), 0)
+                }
+                Node::Junction(j) => (1, j, 0, 0),
+                Node::Port(p) => {
+                    let signal = &network.ports[p].pressure;
+                    let constant = if signal.is_constant() {
+                        signal.value(0.0).to_bits()
+                    } else {
+                        u64::MAX
+                    };
+                    (2, 0, 0, constant)
+                }
+            };
+            let mut ends = [end(link.from), end(link.to)];
+            ends.sort_unstable();
+            (ends, link.resistance.to_bits())
+        };
+        let sorted = |mirror: bool| {
+            let mut all: Vec<_> = network.links.iter().map(|link| seen(link, mirror)).collect();
+            all.sort_unstable();
+            all
+        };
+        let steady = network.ports.iter().all(|p| p.pressure.is_constant());
+        let fixed = network.links.iter().all(|link| link.opening.is_none());
+        plain && quiet_start && steady && fixed && sorted(false) == sorted(true)
+    }
+
+    /// Whether fluid comes from or does work outside: ports of other than no pressure, sources, turbines.
+    pub fn fed(&self) -> bool {
+        self.network().is_some_and(|n| {
+            let pressed = |signal: &Signal| {
+                signal.largest(self.case.time.end_s).value > 0.0 || self.case.held_at_start(signal) != 0.0
+            };
+            n.ports.iter().any(|p| pressed(&p.pressure)) || !n.sources.is_empty() || !n.turbines.is_empty()
+        })
+    }
+
+    /// Part of a bladder's volume that its fastest neighbours take in the whole run: bounded by the sum of conductances.
+    pub fn leakage(&self) -> f64 {
+        let Some(wet) = self.wet else { return 0.0 };
+        let mut most = vec![0.0; 2 * wet.per_row];
+        for link in &wet.network.links {
+            for node in [link.from, link.to] {
+                if let Node::Cell { bladder, .. } = node {
+                    most[bladder] += 1.0 / link.resistance.max(0.5 * self.bladder_resistance(wet));
+                }
+            }
+        }
+        let conductance = most.into_iter().fold(0.0, f64::max);
+        2.0 * conductance * self.case.time.end_s / (wet.area.per_pressure * wet.bladder_length)
+    }
+
+    fn bladder_resistance(&self, wet: &Wet) -> f64 {
+        wet.bladder_length / wet.network.bladder_mobility
+    }
+
+    /// `τ ω`, `τ = a_p l_b² μ/(π² q1b)` a bladder's own time and ω of the fastest motion that is asked for. Of a vibration whose part
+    /// in the motion is i and whose stiffness is fluid to the part χ it is `τ ω (1 + χ i ω T)`: what flows along bladders damps it
+    /// over the whole run T.
+    pub fn lag_along_bladders(&self, tolerance: f64) -> f64 {
+        let Some(wet) = self.wet else { return 0.0 };
+        let end = self.case.time.end_s;
+        let mut rate = 0.0_f64;
+        self.signals(|signal| {
+            if let Some(period) = signal.shortest_time_s(end) {
+                rate = rate.max(2.0 * PI / period);
+            }
+        });
+        let [bent, stretched] = self.stiffness_of_fluid(wet);
+        let waves = [
+            (self.bending_inertia(), self.bending, bent),
+            (self.axial_waves(), self.axial, stretched),
+        ];
+        for (inertia, free, fluid) in waves {
+            if inertia > tolerance {
+                rate = rate.max(free * (1.0 + fluid * inertia * free * end));
+            }
+        }
+        rate * wet.area.per_pressure * wet.bladder_length.powi(2) / (PI * PI * wet.network.bladder_mobility)
+    }
+
+    /// Parts χ of curvature and stretch that the pressure of sealed bladders takes back, at most: `EI (∂α_p/∂p_u - ∂α_p/∂p_d) A_M'/a_p`
+    /// and `EA (∂λ_p/∂p_u + ∂λ_p/∂p_d) A_N'/a_p`.
+    fn stiffness_of_fluid(&self, wet: &Wet) -> [f64; 2] {
+        let (area, coupling) = (&wet.area, &wet.coupling);
+        // far from a kink on either side of it, where slopes are steepest
+        let steepest = |slope: &dyn Fn(f64) -> f64| slope(1e100).abs().max(slope(-1e100).abs());
+        let bent = steepest(&|m| coupling.curvature(area, m, 1.0, -1.0) * area.moment_slope(m, 1.0));
+        let stretched = steepest(&|n| coupling.stretch(area, n, 1.0, 1.0) * area.force_slope(n));
+        let stiffness = [self.section.bending_stiffness, self.section.axial_stiffness];
+        [
+            stiffness[0] * bent / area.per_pressure,
+            stiffness[1] * stretched / area.per_pressure,
+        ]
+    }
+
+    /// Moment and force that pressure causes, over those of the loads at the least; over the whole run where vibrations are damped by it.
+    pub fn strains_of_pressure(&self) -> [f64; 2] {
+        let Some(wet) = self.wet else { return [0.0; 2] };
+        if !wet.network.sources.is_empty() {
+            return [f64::INFINITY; 2];
+        }
+        let p = self.scales.pressure;
+        let moment = self.section.bending_stiffness * wet.coupling.curvature(&wet.area, 0.0, p, 0.0).abs();
+        let force = self.section.axial_stiffness * wet.coupling.stretch(&wet.area, 0.0, p, p).abs();
+        let swings = 1.0 + self.bending * self.case.time.end_s;
+        let Least {
+            moment: by_loads,
+            force: along,
+            ..
+        } = *self.least();
+        let over = |part: f64, loads: f64| if part > 0.0 { swings * part / loads } else { 0.0 };
+        [over(moment, by_loads), over(force, along)]
+    }
+
+    /// `dm/am`, `dn/an`.
+    pub fn asymmetries(&self) -> [f64; 2] {
+        let Some(b) = &self.case.bladders else { return [0.0; 2] };
+        let (m, n) = (&b.area_per_moment_m2_per_n_m, &b.area_per_force_m2_per_n);
+        let ratio = |large: f64, small: f64| {
+            if large + small > 0.0 {
+                (large - small) / (large + small)
+            } else {
+                0.0
+            }
+        };
+        [ratio(m.closing, m.opening), ratio(n.compression, n.tension)]
+    }
+}

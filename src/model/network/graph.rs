@@ -1,0 +1,199 @@
+//! From the resolved network of a case to the graph: a pressure of its own where several things meet, a cell or a port elsewhere.
+
+use std::collections::BTreeMap;
+
+use super::{
+    Bridge, CheckValve, Link, LinkKind, Network, Node, PressurePort, Source, Turbine, bladder_permeability, components,
+};
+use crate::case::schema::{Bladders, Fluid, Rectifier, TurbineConductance};
+use crate::case::signals::Signal;
+use crate::case::wiring::{Bore, Given, Point, Tube, Wiring};
+use crate::model::duct;
+use crate::model::mapping::TABLE_TUBE_RATIO;
+
+/// What is attached to a point.
+enum Thing<'a> {
+    Tube { to: Point, tube: &'a Tube<'a> },
+    Turbine { to: Point, index: usize },
+    Pressure { port: usize },
+    Flow { name: String, flow: &'a Signal },
+}
+
+/// The graph of a network whose permeabilities are scaled by `factor`.
+pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Bladders) -> Network {
+    let viscosity = fluid.viscosity_pa_s;
+    let permeability = bladder_permeability(bladders);
+    let chain_tubes = wiring.chain_tubes.len();
+    let mut network = Network {
+        bladder_mobility: permeability * factor / viscosity,
+        chains: wiring.chains.clone(),
+        tubes: chain_tubes + wiring.tubes.len(),
+        ..Network::default()
+    };
+    let tube = wiring.chain_tubes.first().map_or(0.0, |tube| tube.length_m);
+    let length = bladders.length_m * 2.0 * bladders.per_row as f64 + TABLE_TUBE_RATIO * tube * chain_tubes as f64;
+    for (k, (_, written)) in wiring.turbines.iter().enumerate() {
+        network.turbines.push(Turbine {
+            name: written.name.clone().unwrap_or_else(|| format!("turbine-{}", k + 1)),
+            conductance: match written.conductance {
+                TurbineConductance::M3SPa(g) => g,
+                TurbineConductance::Kappa {
+                    kappa,
+                    network_length_m,
+                } => permeability * kappa / (viscosity * network_length_m.unwrap_or(length)),
+            },
+        });
+    }
+    let things = things(wiring, &mut network.ports);
+    let nodes = nodes(wiring, &things, &mut network);
+    // R = μ l_c/q1c
+    let resistance = |tube: &Tube| viscosity * tube.length_m / (self::permeability(tube.bore) * factor);
+    for (at, thing) in things {
+        let from = nodes[&at];
+        match thing {
+            Thing::Tube { to, tube } => network.links.push(Link {
+                from,
+                to: nodes[&to],
+                resistance: resistance(tube),
+                opening: (!tube.opening.is_one()).then(|| tube.opening.clone()),
+                kind: LinkKind::Tube,
+            }),
+            Thing::Turbine { to, index } => join(
+                &mut network,
+                [from, nodes[&to]],
+                index,
+                &wiring.turbines[index].1.rectifier,
+            ),
+            Thing::Pressure { port } => {
+                if let Node::Cell { .. } = from {
+                    network.links.push(opening(from, Node::Port(port)));
+                }
+            }
+            Thing::Flow { name, flow } => network.sources.push(Source {
+                into: from,
+                flow: flow.clone(),
+                name,
+            }),
+        }
+    }
+    components::find(&mut network, 2 * bladders.per_row);
+    network
+}
+
+/// Permeability `q1c` [m^4].
+fn permeability(bore: Bore) -> f64 {
+    match bore {
+        Bore::Permeability(permeability) => permeability,
+        Bore::CrossSection(section) => duct::permeability(section),
+        Bore::Radius(radius) => duct::circle(radius),
+    }
+}
+
+/// Everything that is attached, point by point; pressures are put among the ports.
+fn things<'a>(wiring: &'a Wiring<'a>, ports: &mut Vec<PressurePort>) -> Vec<(Point, Thing<'a>)> {
+    let mut things = vec![];
+    for tube in wiring.chain_tubes.iter().chain(&wiring.tubes) {
+        let [from, to] = tube.points;
+        things.push((from, Thing::Tube { to, tube }));
+    }
+    for port in wiring.chain_ports.iter().chain(&wiring.ports) {
+        let name = port.name.map_or_else(|| wiring.label(port.at), str::to_owned);
+        let thing = match port.given {
+            Given::Flow(flow) => Thing::Flow { name, flow },
+            Given::Pressure(pressure) => {
+                let pressure = pressure.clone();
+                ports.push(PressurePort { pressure, name });
+                Thing::Pressure { port: ports.len() - 1 }
+            }
+        };
+        things.push((port.at, thing));
+    }
+    for (index, &([from, to], _)) in wiring.turbines.iter().enumerate() {
+        things.push((from, Thing::Turbine { to, index }));
+    }
+    things.sort_by_key(|(at, _)| *at);
+    things
+}
+
+/// The node of every point where something is attached. Where several things meet, or a real rectifier needs a pressure, that
+/// is a junction or a port, into which a bladder opens.
+fn nodes(wiring: &Wiring, things: &[(Point, Thing)], network: &mut Network) -> BTreeMap<Point, Node> {
+    let real = |index: usize| matches!(wiring.turbines[index].1.rectifier, Rectifier::CheckValves { .. });
+    let mut meeting: BTreeMap<Point, (usize, bool)> = BTreeMap::new();
+    let mut held: BTreeMap<Point, usize> = BTreeMap::new();
+    let mut count = |point: Point, needs_node: bool| {
+        let entry = meeting.entry(point).or_default();
+        entry.0 += 1;
+        entry.1 |= needs_node;
+    };
+    for (at, thing) in things {
+        let (to, needs_node) = match thing {
+            Thing::Tube { to, .. } => (Some(*to), false),
+            Thing::Turbine { to, index } => (Some(*to), real(*index)),
+            Thing::Pressure { port } => {
+                held.entry(*at).or_insert(*port);
+                (None, false)
+            }
+            Thing::Flow { .. } => (None, false),
+        };
+        count(*at, needs_node);
+        to.into_iter().for_each(|to| count(to, needs_node));
+    }
+    let node = |(point, (things, needs_node)): (Point, (usize, bool))| {
+        if let (Point::Bladder(bladder, end), 1, false) = (point, things, needs_node) {
+            return (point, Node::Cell { bladder, end });
+        }
+        let here = held.get(&point).map_or_else(
+            || {
+                network.junctions.push(wiring.label(point));
+                Node::Junction(network.junctions.len() - 1)
+            },
+            |port| Node::Port(*port),
+        );
+        if let Point::Bladder(bladder, end) = point {
+            network.links.push(opening(Node::Cell { bladder, end }, here));
+        }
+        (point, here)
+    };
+    meeting.into_iter().map(node).collect()
+}
+
+/// A bladder's end that is a junction or a port.
+fn opening(cell: Node, here: Node) -> Link {
+    Link {
+        from: cell,
+        to: here,
+        resistance: 0.0,
+        opening: None,
+        kind: LinkKind::Opening,
+    }
+}
+
+/// A turbine between two points, behind check valves where it has some.
+fn join(network: &mut Network, [from, to]: [Node; 2], index: usize, rectifier: &Rectifier) {
+    match *rectifier {
+        Rectifier::Ideal => network.links.push(Link {
+            from,
+            to,
+            resistance: 1.0 / network.turbines[index].conductance,
+            opening: None,
+            kind: LinkKind::Turbine(index),
+        }),
+        Rectifier::CheckValves {
+            cracking_pressure_pa,
+            forward_conductance_m3_s_pa,
+            reverse_conductance_m3_s_pa,
+            smoothing_pa,
+        } => network.bridges.push(Bridge {
+            from,
+            to,
+            turbine: index,
+            valve: CheckValve {
+                cracking_pressure: cracking_pressure_pa,
+                forward: forward_conductance_m3_s_pa,
+                reverse: reverse_conductance_m3_s_pa,
+                width: smoothing_pa,
+            },
+        }),
+    }
+}

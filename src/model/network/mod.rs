@@ -1,0 +1,219 @@
+//! The network as a graph: bladder ends, junctions and ports joined by conductances.
+//!
+//! ```text
+//! graph       the graph of what a case has resolved: a pressure of its own where several things meet
+//! components  what is joined to what
+//! ```
+
+mod components;
+mod graph;
+
+use super::duct;
+use crate::case::schema::{BladderEnd, Bladders, Case};
+use crate::case::signals::Signal;
+use crate::case::wiring::Wiring;
+use crate::error::Result;
+
+/// A point of the graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Node {
+    /// The outermost cell of a bladder, behind its half-cell resistance.
+    Cell {
+        /// Bladder, `0..n`: upper row first.
+        bladder: usize,
+        /// Which of its ends.
+        end: BladderEnd,
+    },
+    /// A junction without storage; its pressure is an unknown.
+    Junction(usize),
+    /// A point with prescribed pressure.
+    Port(usize),
+}
+
+/// What resists the flow along a link besides half cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinkKind {
+    /// Nothing: a bladder's end that is a junction or a port.
+    Opening,
+    /// A tube.
+    Tube,
+    /// A turbine; index.
+    Turbine(usize),
+}
+
+/// `[E6]` Two points and what lies between them (A.13, A.67), a valve of opening `o` included:
+///
+/// ```text
+/// q = g (p_a - p_b)    g = o/(o (R_half,a + R_half,b) + R)    R = μ l_c/q1c
+/// ```
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// Where positive flow comes from.
+    pub from: Node,
+    /// Where it goes to.
+    pub to: Node,
+    /// Resistance between the points, half cells excluded [Pa s/m^3].
+    pub resistance: f64,
+    /// Opening of the valve; `None`: always open.
+    pub opening: Option<Signal>,
+    /// What it is.
+    pub kind: LinkKind,
+}
+
+impl Link {
+    /// A valve that never opens.
+    pub fn is_shut(&self) -> bool {
+        let shut = |o: &Signal| o.is_constant() && o.value(0.0) <= 0.0;
+        self.opening.as_ref().is_some_and(shut)
+    }
+}
+
+/// Prescribed flow into a cell or a junction.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Where it enters: a cell or a junction.
+    pub into: Node,
+    /// Flow [m^3/s].
+    pub flow: Signal,
+    /// Name.
+    pub name: String,
+}
+
+/// A prescribed pressure.
+#[derive(Clone, Debug)]
+pub struct PressurePort {
+    /// Pressure [Pa].
+    pub pressure: Signal,
+    /// Name.
+    pub name: String,
+}
+
+/// A bridge of four equal real check valves in front of a turbine, between two junctions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bridge {
+    /// One port: a junction or a pressure port.
+    pub from: Node,
+    /// The other.
+    pub to: Node,
+    /// Turbine that it feeds.
+    pub turbine: usize,
+    /// Law of one valve.
+    pub valve: CheckValve,
+}
+
+/// `[E7]` A real check valve, smooth over `width`:
+///
+/// ```text
+/// q(Δ) = G_r Δ + (G_f - G_r) w [ln(1 + e^((Δ - p_c)/w)) - ln(1 + e^(-p_c/w))]
+/// ```
+///
+/// so that `q(0) = 0`, and `q Δ ≥ 0` always.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CheckValve {
+    /// `p_c` [Pa].
+    pub cracking_pressure: f64,
+    /// `G_f` [m^3/(s Pa)].
+    pub forward: f64,
+    /// `G_r` [m^3/(s Pa)].
+    pub reverse: f64,
+    /// `w` [Pa].
+    pub width: f64,
+}
+
+impl CheckValve {
+    /// Flow under the pressure drop `drop`.
+    #[inline]
+    pub fn flow<T: super::Scalar>(&self, drop: T) -> T {
+        let closed = f64::ln_1p((-self.cracking_pressure / self.width).exp());
+        let open = ((drop - self.cracking_pressure) * (1.0 / self.width)).softplus() - closed;
+        drop * self.reverse + open * ((self.forward - self.reverse) * self.width)
+    }
+}
+
+/// A turbine: conductance and name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turbine {
+    /// Name in outputs.
+    pub name: String,
+    /// `G` [m^3/(s Pa)].
+    pub conductance: f64,
+}
+
+/// The resolved network.
+#[derive(Clone, Debug, Default)]
+pub struct Network {
+    /// `q1b/mu`, permeability factor included [m^4/(Pa s)].
+    pub bladder_mobility: f64,
+    /// Conductances between points.
+    pub links: Vec<Link>,
+    /// Prescribed flows.
+    pub sources: Vec<Source>,
+    /// Prescribed pressures.
+    pub ports: Vec<PressurePort>,
+    /// Names of the junctions whose pressures are unknowns.
+    pub junctions: Vec<String>,
+    /// Turbines.
+    pub turbines: Vec<Turbine>,
+    /// Real rectifiers.
+    pub bridges: Vec<Bridge>,
+    /// Component of each bladder; components are joined by links, not through pressure ports.
+    pub component_of_bladder: Vec<usize>,
+    /// Component of each junction.
+    pub component_of_junction: Vec<usize>,
+    /// Number of components.
+    pub components: usize,
+    /// Components that a port or a source touches.
+    pub open: Vec<usize>,
+    /// Chains of bladders as written: the network coordinate follows them.
+    pub chains: Vec<Vec<usize>>,
+    /// Tubes of all chains and free tubes, `n_c`.
+    pub tubes: usize,
+}
+
+impl Network {
+    /// That of the bladders of a case; none of a dry beam.
+    ///
+    /// # Errors
+    /// Of [`Wiring::of`].
+    pub fn of(case: &Case) -> Result<Option<Self>> {
+        let Some((fluid, bladders)) = case.fluid.as_ref().zip(case.bladders.as_ref()) else {
+            return Ok(None);
+        };
+        let factor = case.network.as_ref().map_or(1.0, |network| network.permeability_factor);
+        Ok(Some(graph::graph(&Wiring::of(case)?, factor, fluid, bladders)))
+    }
+
+    /// True when no port or flow source touches the component.
+    pub fn is_closed(&self, component: usize) -> bool {
+        !self.open.contains(&component)
+    }
+
+    /// Of each bladder, whether nothing can ever flow into it or out of it.
+    pub fn sealed(&self) -> impl Iterator<Item = bool> + '_ {
+        let joined = |bladder: usize| {
+            let here = |node: Node| matches!(node, Node::Cell { bladder: b, .. } if b == bladder);
+            let links = self.links.iter().filter(|l| !l.is_shut());
+            links.into_iter().any(|l| here(l.from) || here(l.to)) || self.sources.iter().any(|s| here(s.into))
+        };
+        (0..self.component_of_bladder.len()).map(move |bladder| !joined(bladder))
+    }
+
+    /// Component of a point; `None` for a pressure port.
+    pub fn component_of(&self, node: Node) -> Option<usize> {
+        match node {
+            Node::Cell { bladder, .. } => Some(self.component_of_bladder[bladder]),
+            Node::Junction(j) => Some(self.component_of_junction[j]),
+            Node::Port(_) => None,
+        }
+    }
+}
+
+/// Unscaled permeability `q1b` of the bladders [m^4].
+pub fn bladder_permeability(bladders: &Bladders) -> f64 {
+    bladders
+        .permeability_m4
+        .unwrap_or_else(|| match &bladders.cross_section {
+            Some(section) => duct::permeability(section),
+            None => duct::rectangle(bladders.height_m, bladders.width_m),
+        })
+}

@@ -1,0 +1,371 @@
+//! A march over given times, and its exact derivative: what a period map needs.
+//!
+//! The steps are those of a one-step method over a fixed grid, each stage solved to round-off, so that the end is a smooth
+//! function of the beginning. The equations of the stages, differentiated, carry disturbances along: with the factors of
+//! every stage at hand that costs one solve a stage and disturbance.
+
+use super::equations::{Equations, Obstacle};
+use super::stages::add;
+use super::tableau::{Method, Tableau};
+use crate::dae::{Dae, Seeds};
+use crate::sundials::{Klu, StartOptions, consistent_start};
+
+/// Correction, relative to 1 + |unknown|, at which a stage counts as solved.
+const SOLVED: f64 = 1e-12;
+/// The same where corrections no longer shrink: round-off of the residual.
+const ROUND_OFF: f64 = 1e-8;
+/// Newton steps allowed in a stage.
+const ITERATIONS: usize = 25;
+/// Contraction beyond which old factors are replaced.
+const SLOW: f64 = 0.2;
+/// Disturbances carried along at once.
+const BLOCK: usize = 64;
+
+/// Bytes kept for an entry of the Jacobian: its value, and with fill about four entries of the factors with their places.
+const BYTES: f64 = 80.0;
+/// Bytes that the factors of all stages may take.
+const MOST_ROOM: f64 = 2e9;
+
+/// Why a march could not be finished.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepError {
+    /// Time [s].
+    pub time: f64,
+    /// What happened.
+    pub what: String,
+}
+
+/// What has been done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct StepMapWork {
+    /// Steps.
+    pub steps: u64,
+    /// Residuals.
+    pub residual_evaluations: u64,
+    /// Jacobians, `∂F/∂y` for the disturbances among them.
+    pub jacobian_evaluations: u64,
+    /// Factorisations.
+    pub factorizations: u64,
+    /// Linear solves of stages.
+    pub linear_solves: u64,
+    /// Disturbances carried over the whole march.
+    pub disturbances: u64,
+}
+
+/// The matrix of one stage.
+struct Slot {
+    klu: Klu,
+    /// Whether it holds factors.
+    factored: bool,
+    /// `∂F/∂y` at the solution, in the order of the pattern.
+    of_y: Vec<f64>,
+    /// Rates of differential, values of algebraic unknowns.
+    x: Vec<f64>,
+}
+
+/// A march over a fixed grid.
+pub struct StepMap<D: Dae> {
+    equations: Equations<D>,
+    tableau: Tableau,
+    times: Vec<f64>,
+    mask: Vec<f64>,
+    /// Of the start, then of every implicit stage in order of time.
+    slots: Vec<Slot>,
+    values: Vec<f64>,
+    work: StepMapWork,
+}
+
+impl<D: Dae> StepMap<D> {
+    /// A march from the first to the last of `times` [s], ascending, at least two.
+    ///
+    /// # Errors
+    /// When the equations' matrix cannot be analysed.
+    pub fn new(dae: D, method: Method, times: Vec<f64>) -> Result<Self, StepError> {
+        let tableau = method.tableau();
+        let n = dae.len();
+        let count = 1 + (times.len() - 1) * (tableau.stages - 1);
+        let room = count as f64 * (BYTES * dae.pattern().entries() as f64);
+        if room > MOST_ROOM {
+            return Err(StepError {
+                time: times[0],
+                what: format!(
+                    "the factors of all {count} stages would take {:.0} GB; a coarser mesh takes less",
+                    1e-9 * room
+                ),
+            });
+        }
+        let slots = (0..count).map(|_| {
+            let klu = Klu::new(dae.pattern()).map_err(|fault| StepError {
+                time: times[0],
+                what: format!("KLU cannot analyse the matrix: {fault:?}"),
+            })?;
+            Ok(Slot {
+                of_y: vec![0.0; klu.entries()],
+                klu,
+                factored: false,
+                x: vec![0.0; n],
+            })
+        });
+        Ok(Self {
+            slots: slots.collect::<Result<_, _>>()?,
+            values: vec![0.0; dae.pattern().entries()],
+            mask: dae.differential().iter().map(|&d| f64::from(u8::from(d))).collect(),
+            equations: Equations::new(dae),
+            tableau,
+            times,
+            work: StepMapWork::default(),
+        })
+    }
+
+    /// Times of the grid [s].
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The equations.
+    pub fn dae(&self) -> &D {
+        &self.equations.dae
+    }
+
+    /// Gives the equations back.
+    pub fn into_dae(self) -> D {
+        self.equations.dae
+    }
+
+    /// Work done.
+    pub fn work(&self) -> StepMapWork {
+        StepMapWork {
+            residual_evaluations: self.equations.residuals,
+            jacobian_evaluations: self.equations.jacobians,
+            ..self.work
+        }
+    }
+
+    /// From the differential unknowns in `y` at the first time to all unknowns and their rates at the last. On the way `y` and
+    /// `yp` pass consistent values; the entries of algebraic unknowns are first guesses. Ready for [`StepMap::propagate`] afterwards.
+    ///
+    /// # Errors
+    /// When no consistent start is found or a stage has no solution: `y` and `yp` are then of no use.
+    pub fn go(&mut self, y: &mut [f64], yp: &mut [f64]) -> Result<(), StepError> {
+        let t0 = self.times[0];
+        consistent_start(&mut self.equations.dae, t0, y, yp, &StartOptions::default()).map_err(|failure| {
+            StepError {
+                time: t0,
+                what: failure.to_string(),
+            }
+        })?;
+        self.linearise_start(t0, y, yp)?;
+        let s = self.tableau.stages;
+        let mut x: Vec<Vec<f64>> = vec![vec![0.0; y.len()]; s];
+        for (i, x) in x[0].iter_mut().enumerate() {
+            *x = if self.mask[i] > 0.0 { yp[i] } else { y[i] };
+        }
+        for step in 0..self.times.len() - 1 {
+            let (t, h) = (self.times[step], self.times[step + 1] - self.times[step]);
+            let begin = y.to_vec();
+            for i in 1..s {
+                let mut base = begin.clone();
+                for (j, x) in x.iter().enumerate().take(i) {
+                    add(&mut base, h * self.tableau.a[i][j], x);
+                }
+                for (base, mask) in base.iter_mut().zip(&self.mask) {
+                    *base *= mask;
+                }
+                let slot = 1 + step * (s - 1) + i - 1;
+                let guess = if self.slots[slot].factored {
+                    self.slots[slot].x.clone()
+                } else {
+                    x[i - 1].clone()
+                };
+                x[i].copy_from_slice(&guess);
+                let time = t + self.tableau.c[i] * h;
+                self.stage(slot, time, h, &base, &mut x[i], y, yp)?;
+                self.slots[slot].x.copy_from_slice(&x[i]);
+            }
+            x.swap(0, s - 1);
+            self.work.steps += 1;
+        }
+        // rates of algebraic unknowns do not appear anywhere
+        for ((yp, x), mask) in yp.iter_mut().zip(&x[0]).zip(&self.mask) {
+            *yp = mask * x;
+        }
+        Ok(())
+    }
+
+    /// Solves one stage from the guess `x` and leaves its matrix for the disturbances.
+    #[allow(clippy::too_many_arguments)]
+    fn stage(
+        &mut self,
+        slot: usize,
+        t: f64,
+        h: f64,
+        base: &[f64],
+        x: &mut [f64],
+        y: &mut [f64],
+        yp: &mut [f64],
+    ) -> Result<(), StepError> {
+        let scale = h * self.tableau.gamma();
+        let mut r = vec![0.0; y.len()];
+        let mut before = f64::INFINITY;
+        self.lay(scale, base, x, y, yp);
+        if !self.slots[slot].factored {
+            self.factor(slot, t, y, yp, scale)?;
+        }
+        for iteration in 0.. {
+            self.equations.residual(t, y, yp, &mut r).map_err(|o| error(t, o))?;
+            self.slots[slot].klu.solve(&mut r);
+            self.work.linear_solves += 1;
+            for ((x, r), mask) in x.iter_mut().zip(&r).zip(&self.mask) {
+                *x -= if *mask > 0.0 { r / scale } else { *r };
+            }
+            let size = r
+                .iter()
+                .zip(&*y)
+                .map(|(r, y)| r.abs() / (1.0 + y.abs()))
+                .fold(0.0, f64::max);
+            self.lay(scale, base, x, y, yp);
+            if size <= SOLVED || size <= ROUND_OFF && size > 0.5 * before {
+                break;
+            }
+            if !size.is_finite() || iteration == ITERATIONS {
+                let what = format!("Newton's iteration does not converge in a step of {h:.2e} s");
+                return Err(StepError { time: t, what });
+            }
+            if size > SLOW * before {
+                self.factor(slot, t, y, yp, scale)?;
+            }
+            before = size;
+        }
+        self.factor(slot, t, y, yp, scale)?;
+        let of_y = std::mem::take(&mut self.slots[slot].of_y);
+        self.slots[slot].of_y = self.of_y(t, y, yp, of_y)?;
+        Ok(())
+    }
+
+    /// Values and rates of a stage from its own unknowns.
+    fn lay(&self, scale: f64, base: &[f64], x: &[f64], y: &mut [f64], yp: &mut [f64]) {
+        for ((y, base), (x, mask)) in y.iter_mut().zip(base).zip(x.iter().zip(&self.mask)) {
+            *y = base + if *mask > 0.0 { scale * x } else { *x };
+        }
+        for ((yp, x), mask) in yp.iter_mut().zip(x).zip(&self.mask) {
+            *yp = mask * x;
+        }
+    }
+
+    /// Factors `∂F/∂y + 1/(h γ) ∂F/∂y'`.
+    fn factor(&mut self, slot: usize, t: f64, y: &[f64], yp: &[f64], scale: f64) -> Result<(), StepError> {
+        let mut values = std::mem::take(&mut self.values);
+        let done = self.equations.jacobian(t, y, yp, 1.0 / scale, &mut values);
+        self.values = values;
+        done.map_err(|o| error(t, o))?;
+        self.take_factors(slot, t)
+    }
+
+    fn take_factors(&mut self, slot: usize, t: f64) -> Result<(), StepError> {
+        self.work.factorizations += 1;
+        let slot = &mut self.slots[slot];
+        slot.klu.factor(&self.values).map_err(|fault| StepError {
+            time: t,
+            what: format!("the matrix of a stage cannot be factored: {fault:?}"),
+        })?;
+        slot.factored = true;
+        Ok(())
+    }
+
+    fn of_y(&mut self, t: f64, y: &[f64], yp: &[f64], mut out: Vec<f64>) -> Result<Vec<f64>, StepError> {
+        self.equations
+            .jacobian(t, y, yp, 0.0, &mut out)
+            .map_err(|o| error(t, o))?;
+        Ok(out)
+    }
+
+    /// The matrix that gives rates and algebraic unknowns of the start from its differential ones.
+    fn linearise_start(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), StepError> {
+        let free: Vec<f64> = self.mask.iter().map(|m| 1.0 - m).collect();
+        let seeds = Seeds::Columns {
+            y: &free,
+            yp: &self.mask,
+        };
+        let done = self.equations.dae.jacobian(t, y, yp, seeds, &mut self.values);
+        done.map_err(|fault| error(t, fault.into()))?;
+        self.take_factors(0, t)?;
+        let of_y = std::mem::take(&mut self.slots[0].of_y);
+        self.slots[0].of_y = self.of_y(t, y, yp, of_y)?;
+        Ok(())
+    }
+
+    /// `[E36]` Carries disturbances of the differential unknowns at the first time, one after the other in `block`, each as
+    /// long as all unknowns, to the last time, along the march last gone. Entries of algebraic unknowns count for nothing
+    /// and come back as zero.
+    ///
+    /// ```text
+    /// ∂F/∂y δYᵢ + ∂F/∂y' δKᵢ = 0     δYᵢ = δyₙ + h Σⱼ aᵢⱼ δKⱼ     δyₙ₊₁ = δYₛ
+    /// (∂F/∂y + 1/(hγ) ∂F/∂y') hγ δKᵢ = -∂F/∂y (δyₙ + h Σ_{j<i} aᵢⱼ δKⱼ)
+    /// ```
+    ///
+    /// the stages of [`super`], differentiated: exact for the steps taken, not for the flow they approximate.
+    pub fn propagate(&mut self, block: &mut [f64]) {
+        let n = self.mask.len();
+        assert!(block.len().is_multiple_of(n), "disturbances of another system");
+        self.work.disturbances += (block.len() / n) as u64;
+        for part in block.chunks_mut(n * BLOCK) {
+            self.carry_part(part);
+        }
+    }
+
+    fn carry_part(&mut self, d: &mut [f64]) {
+        let s = self.tableau.stages;
+        let keep = |mask: &[f64], v: &mut [f64]| {
+            for column in v.chunks_mut(mask.len()) {
+                column.iter_mut().zip(mask).for_each(|(v, m)| *v *= m);
+            }
+        };
+        keep(&self.mask, d);
+        let mut k: Vec<Vec<f64>> = vec![vec![0.0; d.len()]; s];
+        self.respond(0, d, &mut k[0]);
+        keep(&self.mask, &mut k[0]);
+        let mut base = vec![0.0; d.len()];
+        for step in 0..self.times.len() - 1 {
+            let h = self.times[step + 1] - self.times[step];
+            let scale = h * self.tableau.gamma();
+            for i in 1..s {
+                base.copy_from_slice(d);
+                for (j, k) in k.iter().enumerate().take(i) {
+                    add(&mut base, h * self.tableau.a[i][j], k);
+                }
+                self.respond(1 + step * (s - 1) + i - 1, &base, &mut k[i]);
+                keep(&self.mask, &mut k[i]);
+                k[i].iter_mut().for_each(|k| *k /= scale);
+            }
+            d.copy_from_slice(&base);
+            add(d, scale, &k[s - 1]);
+            k.swap(0, s - 1);
+        }
+    }
+
+    /// `out = -A⁻¹ ∂F/∂y v` of a slot, for every column.
+    fn respond(&mut self, slot: usize, v: &[f64], out: &mut [f64]) {
+        let n = self.mask.len();
+        let slot = &mut self.slots[slot];
+        let pattern = self.equations.dae.pattern();
+        out.fill(0.0);
+        for (out, v) in out.chunks_mut(n).zip(v.chunks(n)) {
+            for (column, v) in v.iter().enumerate().filter(|(_, v)| **v != 0.0) {
+                for entry in pattern.column(column) {
+                    out[pattern.rows[entry] as usize] -= slot.of_y[entry] * v;
+                }
+            }
+        }
+        slot.klu.solve_block(out);
+        self.work.linear_solves += (v.len() / n) as u64;
+    }
+}
+
+fn error(time: f64, obstacle: Obstacle) -> StepError {
+    let what = match obstacle {
+        Obstacle::Newton => "Newton's iteration does not converge".into(),
+        Obstacle::Singular(column) => format!("the matrix has no pivot in column {column}"),
+        Obstacle::Recoverable(what) | Obstacle::Fatal(what) => what,
+    };
+    StepError { time, what }
+}

@@ -1,0 +1,74 @@
+//! Where the bladders lie in the beam: two rows, walls of equal thickness above, between and below them.
+
+use crate::case::Case;
+
+/// Sizes of the beam and of what is cutout in it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Cutout {
+    /// Half the beam's height `h_s` [m].
+    pub half_height: f64,
+    /// Half its width `w_s` [m].
+    pub half_width: f64,
+    /// Half a bladder's length `l_b` across the width, at most the beam's [m].
+    pub half_across: f64,
+    /// Lower and upper edge of the upper row; the lower one mirrors it [m].
+    pub row: [f64; 2],
+    /// Start and end of each segment's bladders along the beam [m]; none in a dry beam.
+    pub windows: Vec<[f64; 2]>,
+    /// Length of the beam [m].
+    pub length: f64,
+}
+
+impl Cutout {
+    /// Of a case. The paper prints sizes of bladders, not their places: they are set in the middle of their segments.
+    pub fn new(case: &Case) -> Self {
+        let (beam, bladders) = (&case.beam, case.bladders.as_ref());
+        let half_height = 0.5 * beam.height_m;
+        let height = bladders.map_or(0.0, |b| b.height_m.min(half_height));
+        let wall = (beam.height_m - 2.0 * height) / 3.0;
+        let per_row = bladders.map_or(0, |b| b.per_row);
+        let segment = beam.length_m / per_row.max(1) as f64;
+        let half = 0.5 * bladders.map_or(0.0, |b| b.width_m.min(segment));
+        Self {
+            half_height,
+            half_width: 0.5 * beam.width_m,
+            half_across: 0.5 * bladders.map_or(0.0, |b| b.length_m.min(beam.width_m)),
+            row: [0.5 * wall, 0.5 * wall + height],
+            windows: (0..per_row)
+                .map(|j| {
+                    let middle = (j as f64 + 0.5) * segment;
+                    [middle - half, middle + half]
+                })
+                .collect(),
+            length: beam.length_m,
+        }
+    }
+
+    /// Nodes and edges of windows, ascending.
+    pub fn stations(&self, nodes: &[f64]) -> Vec<f64> {
+        // An edge that misses a node by round-off only is that node.
+        let apart = 1e-9 * self.length;
+        let edges = self.windows.iter().flatten().copied();
+        let mut all: Vec<f64> = nodes.to_vec();
+        all.extend(edges.filter(|e| nodes.iter().all(|n| (n - e).abs() > apart)));
+        all.sort_by(f64::total_cmp);
+        all.dedup_by(|a, b| (*a - *b).abs() <= apart);
+        all
+    }
+
+    /// Whether the stretch between two stations lies beside a bladder.
+    pub fn beside_bladder(&self, from: f64, to: f64) -> bool {
+        let middle = 0.5 * (from + to);
+        self.windows.iter().any(|w| w[0] < middle && middle < w[1])
+    }
+
+    /// Heights at which the beam's sides are divided, bottom to top.
+    pub fn heights(&self) -> Vec<f64> {
+        let (top, [low, high]) = (self.half_height, self.row);
+        if self.windows.is_empty() {
+            vec![-top, top]
+        } else {
+            vec![-top, -high, -low, low, high, top]
+        }
+    }
+}

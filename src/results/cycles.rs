@@ -1,0 +1,60 @@
+//! `floquet.json`, `cycle.json`, `map.json`, `sweep.json`: steady cycles and whether they hold.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Integrator, Kept};
+pub use crate::run::floquet::{Floquet, Stability};
+pub use crate::run::periodic::Search;
+use crate::run::periodic::scene::METHOD;
+use crate::run::periodic::settle::Refined;
+use crate::run::summary::Accuracy;
+use crate::study::refine::meshes::Meshes;
+pub use crate::study::stability::{Along, Map};
+
+/// A steady cycle and its stability.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cycle {
+    /// Name of the case.
+    pub case: String,
+    /// How the cycle was found.
+    pub cycle: Search,
+    /// Its multipliers.
+    pub floquet: Floquet,
+    /// What to know of case and cycle.
+    pub warnings: Vec<String>,
+    /// Why the tolerance of the cycle is not the case's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refined: Option<Refined>,
+    /// Estimated errors, when an accuracy was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<Accuracy>,
+    /// What meshes do to it, where no accuracy was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub meshes: Option<Meshes>,
+}
+
+/// The method of all cycles.
+fn shooting() -> Option<Integrator> {
+    Some(Integrator {
+        name: METHOD.into(),
+        order: METHOD.order(),
+    })
+}
+
+impl Kept for Cycle {
+    fn integrator(&self) -> Option<Integrator> {
+        shooting()
+    }
+}
+
+impl Kept for Map {
+    fn integrator(&self) -> Option<Integrator> {
+        shooting()
+    }
+}
+
+impl Kept for Along {
+    fn integrator(&self) -> Option<Integrator> {
+        shooting()
+    }
+}

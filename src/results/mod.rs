@@ -1,0 +1,175 @@
+//! Results as files hold them: one type a kind, which writers fill and readers get back.
+//!
+//! | file | kind |
+//! |---|---|
+//! | [`run`] | `summary.json` |
+//! | [`equilibrium`] | `equilibrium.json` |
+//! | [`modes`] | `modes.json` |
+//! | [`cycles`] | `floquet.json` and `cycle.json`, `map.json`, `sweep.json` |
+//! | [`studies`] | `study.json`, `effects.json`, what `compare --json` prints |
+//! | [`verify`] | a row of what `verify --json` prints |
+//! | [`provenance`] | what made a result |
+//! | [`ordered`] | numbers by name, in an order of their own |
+//!
+//! A result is one object: the number of its format, its provenance, and the keys of its type. A number that is not finite is
+//! null. A key that is missing or of another kind is an error that names its place.
+
+pub mod cycles;
+pub mod equilibrium;
+pub mod modes;
+pub mod ordered;
+pub mod provenance;
+pub mod run;
+pub mod studies;
+pub mod verify;
+
+use std::io;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+pub use provenance::{Integrator, Provenance};
+
+/// A result that a file holds.
+pub trait Kept: Serialize + DeserializeOwned {
+    /// Number of the format: one more where a key goes or means something else, the same where one comes. Results of before there
+    /// were numbers have none.
+    const FORMAT: u32 = 1;
+
+    /// How time was integrated, where one method holds for all of it.
+    fn integrator(&self) -> Option<Integrator> {
+        None
+    }
+}
+
+/// Everything in the file of a result.
+#[derive(Serialize)]
+struct Whole<'a, T: Kept> {
+    format: u32,
+    provenance: Provenance,
+    #[serde(flatten)]
+    found: &'a T,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sentence: Option<&'a str>,
+}
+
+impl<'a, T: Kept> Whole<'a, T> {
+    fn of(found: &'a T, sentence: Option<&'a str>) -> Self {
+        Self {
+            format: T::FORMAT,
+            provenance: Provenance::of(found.integrator()),
+            found,
+            sentence,
+        }
+    }
+}
+
+/// The text of a result.
+pub fn text<T: Kept>(found: &T) -> String {
+    told(found, None)
+}
+
+/// The same with a sentence at its end that says what was found.
+pub fn told<T: Kept>(found: &T, sentence: Option<&str>) -> String {
+    // What could fail are keys that are no text, and there are none.
+    serde_json::to_string_pretty(&Whole::of(found, sentence)).unwrap_or_default() + "\n"
+}
+
+/// A result as a part of something larger.
+pub fn value<T: Kept>(found: &T) -> Value {
+    serde_json::to_value(Whole::of(found, None)).unwrap_or_default()
+}
+
+/// A result that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found<T> {
+    /// The result.
+    pub result: T,
+    /// What it says of itself.
+    pub head: Head,
+}
+
+/// What a result says of itself; results of before that was told say nothing.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+pub struct Head {
+    /// Number of its format.
+    pub format: Option<u32>,
+    /// What made it.
+    pub provenance: Option<Provenance>,
+}
+
+impl Head {
+    /// In words, a sentence.
+    pub fn words(&self) -> String {
+        let by = self.provenance.as_ref().map(Provenance::words);
+        match (self.format, by) {
+            (Some(format), Some(by)) => format!("The result has format {format} and was computed by {by}."),
+            (Some(format), None) => format!("The result has format {format}; what computed it is not told."),
+            (None, _) => "The result has no format number: a version before format 1 wrote it.".into(),
+        }
+    }
+}
+
+/// Reads a result.
+///
+/// # Errors
+///
+/// The text is not JSON, something in it is missing or of another kind, or a later version wrote it; the words name the place.
+pub fn read<T: Kept>(text: &str) -> io::Result<Found<T>> {
+    let head: Head = parse(text)?;
+    if let Some(format) = head.format.filter(|format| *format > T::FORMAT) {
+        return Err(damaged(format!(
+            "it has format {format} of a later version of the program; this one reads formats up to {}",
+            T::FORMAT
+        )));
+    }
+    match parsed(text) {
+        Ok(result) => Ok(Found { result, head }),
+        Err(why) if head.format.is_none() => Err(damaged(format!(
+            "{why}; it has no format number, so that a version before format 1 may have written it"
+        ))),
+        Err(why) => Err(damaged(why)),
+    }
+}
+
+/// Whether a text is that of a result: a JSON object with the name of a case.
+pub fn is_one(text: &str) -> bool {
+    #[derive(Deserialize)]
+    struct Named {
+        #[serde(rename = "case")]
+        _case: String,
+    }
+    parsed::<Named>(text).is_ok()
+}
+
+/// A value of JSON.
+///
+/// # Errors
+///
+/// As of [`read`].
+pub fn parse<T: DeserializeOwned>(text: &str) -> io::Result<T> {
+    parsed(text).map_err(damaged)
+}
+
+/// A value of JSON, or what is wrong with it, with a JSON pointer where it is below the top.
+fn parsed<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+    let mut reader = serde_json::Deserializer::from_str(text);
+    let value = serde_path_to_error::deserialize(&mut reader).map_err(|e| {
+        let place: String = e
+            .path()
+            .iter()
+            .map(|part| format!("/{part}").replace(['[', ']'], ""))
+            .collect();
+        match place.as_str() {
+            "" | "/?" => e.inner().to_string(),
+            place => format!("{place}: {}", e.inner()),
+        }
+    })?;
+    reader.end().map_err(|e| e.to_string())?;
+    Ok(value)
+}
+
+fn damaged(why: String) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, why)
+}

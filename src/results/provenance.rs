@@ -1,0 +1,69 @@
+//! What made a result: the program, its libraries, the method. Nothing of the machine, so that the same program makes the same of a
+//! case everywhere.
+
+use serde::{Deserialize, Serialize};
+
+use crate::case::schema::Method;
+use crate::sundials::{Counters, suitesparse_version, sundials_version};
+
+/// What made a result.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Name of the program.
+    pub program: String,
+    /// Its version.
+    pub version: String,
+    /// Commit of its sources, `+` behind it where they had been changed; absent where they were built outside a checkout.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
+    /// Version of SUNDIALS.
+    pub sundials: String,
+    /// Version of SuiteSparse.
+    pub suitesparse: String,
+    /// How time was integrated, where it was and one method holds for all of the result.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub method: Option<Integrator>,
+}
+
+/// What integrates in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Integrator {
+    /// Its name; never "auto".
+    pub name: Method,
+    /// Its order; of IDA the highest allowed.
+    pub order: u8,
+}
+
+impl Integrator {
+    /// Of what it has counted.
+    pub fn of(counters: &Counters) -> Option<Self> {
+        let order = counters.max_order;
+        counters.method.map(|name| Self { name, order })
+    }
+}
+
+impl Provenance {
+    /// Of a result of this program.
+    pub fn of(method: Option<Integrator>) -> Self {
+        Self {
+            program: env!("CARGO_PKG_NAME").into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            commit: option_env!("SLCBEAM_COMMIT").map(str::to_owned),
+            sundials: sundials_version(),
+            suitesparse: suitesparse_version(),
+            method,
+        }
+    }
+
+    /// `slcbeam 0.1.0 (0123456789ab) with SUNDIALS 6.4.1 and SuiteSparse 5.12.0`.
+    pub fn words(&self) -> String {
+        let commit = self
+            .commit
+            .as_ref()
+            .map_or(String::new(), |commit| format!(" ({commit})"));
+        format!(
+            "{} {}{commit} with SUNDIALS {} and SuiteSparse {}",
+            self.program, self.version, self.sundials, self.suitesparse
+        )
+    }
+}

@@ -1,0 +1,12 @@
+//! `study.json`, `effects.json`, and a comparison: many runs, one question.
+
+use super::Kept;
+pub use crate::study::accuracy::Study;
+pub use crate::study::compare::Comparison;
+pub use crate::study::effects::{Ablation, Verdict};
+
+impl Kept for Study {}
+
+impl Kept for Ablation {}
+
+impl Kept for Comparison {}

@@ -1,0 +1,358 @@
+//! One run in time: from a case to samples and a summary.
+
+mod begin;
+mod faults;
+mod finish;
+mod follow;
+mod pace;
+mod switch;
+
+use std::time::Instant;
+
+use faults::{fault, inconsistent, stalled, too_many_steps};
+use pace::Pace;
+
+use super::checkpoint::Checkpoint;
+use super::growth::Linear;
+use super::known;
+use super::method::{self, Integrator, Options};
+use super::observe::Observer;
+use super::record::{Control, Header, Progress, Recorder};
+use super::schedule::{self, Outputs, Stop};
+use super::sensitivity::forward::Forward;
+use super::strides::Strides;
+use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
+use crate::case::parameter::Parameter;
+use crate::case::schema::Case;
+use crate::dae::BeamDae;
+use crate::discrete::{System, start};
+use crate::error::{Result, SolverFault};
+use crate::model::{audit, characteristic};
+use crate::sundials::{StartOptions, consistent_start};
+
+/// A run that ended, in whatever way; everything up to its end is recorded.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Summary, complete in every case.
+    pub summary: Summary,
+    /// Why the solver could not go on, when it could not.
+    pub fault: Option<SolverFault>,
+}
+
+/// Runs a checked case. A failing solver is an [`Outcome`].
+///
+/// # Errors
+/// Those of [`System::new`], and the recorder's.
+pub fn run(case: &Case, recorder: &mut dyn Recorder) -> Result<Outcome> {
+    run_with(case, System::new(case)?, &[], recorder)
+}
+
+/// Runs the system of a case with derivatives by some of its numbers, as [`run`].
+///
+/// # Errors
+/// The recorder's, and [`Error::Usage`](crate::error::Error::Usage) for a number by which there is no derivative.
+pub fn run_with(case: &Case, system: System, by: &[Parameter], recorder: &mut dyn Recorder) -> Result<Outcome> {
+    let (run, dae) = Run::of(case, system, by)?;
+    run.go(dae, None, recorder)
+}
+
+/// Runs a system of the case from consistent values and rates of its scaled unknowns at t = 0.
+pub fn go_on(case: &Case, system: System, y: &[f64], yp: &[f64], recorder: &mut dyn Recorder) -> Result<Outcome> {
+    let (mut run, mut dae) = Run::of(case, system, &[])?;
+    dae.enter_smooth_interval(0.5 * run.stops[0].t);
+    run.prepare(&dae);
+    run.state.copy_from_slice(y);
+    run.rates.copy_from_slice(yp);
+    let header = Observer::header(case, dae.system());
+    let end = run.solve(dae, 0.0, 0, Some(header), recorder)?;
+    Ok(run.finish(end))
+}
+
+/// Goes on with the system of a case from a checkpoint of it; the recorder holds what was recorded before.
+pub fn resume(case: &Case, system: System, checkpoint: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
+    checkpoint.fits(case, &system)?;
+    let parameters = checkpoint.forward.as_ref().map_or(&[][..], |kept| &kept.parameters);
+    let (run, dae) = Run::of(case, system, parameters)?;
+    run.go(dae, Some(checkpoint), recorder)
+}
+
+struct Run<'a> {
+    case: &'a Case,
+    observer: Observer,
+    outputs: Outputs,
+    stops: Vec<Stop>,
+    strides: Strides,
+    summary: Summary,
+    options: Options,
+    linear: Linear,
+    inertia: bool,
+    forward: Option<Forward<'a>>,
+    held: Option<String>,
+    begin: Instant,
+    /// Where the last step ended.
+    latest: Progress,
+    output_wall: f64,
+    state: Vec<f64>,
+    rates: Vec<f64>,
+    integrals: Vec<f64>,
+    /// Integrals up to the last restart.
+    carried: Vec<f64>,
+    /// Work before the checkpoint from which this run goes on.
+    earlier: Counters,
+}
+
+/// How a run left its loop.
+enum End {
+    Finished,
+    Stopped(String),
+    /// What lies beyond the model.
+    Left(SolverFault),
+    Failed(SolverFault),
+}
+
+impl<'a> Run<'a> {
+    fn of(case: &'a Case, system: System, parameters: &'a [Parameter]) -> Result<(Self, BeamDae)> {
+        let begin = Instant::now();
+        let interval = case.time.output_interval();
+        let characteristic = characteristic::numbers(case, &system.model);
+        let mut warnings = known::lasting(case, &system);
+        if !parameters.is_empty() {
+            warnings.extend(audit::derivatives(case));
+        }
+        let decisions = &system.model.effects.decisions;
+        let chosen = if parameters.is_empty() {
+            method::choose(case, &system)
+        } else {
+            method::with_sensitivities(case, &system)
+        };
+        let strides = Strides::new(case, &system);
+        let options = Options::new(case, &system, &chosen, strides.least());
+        let inertia = system.layout.inertia;
+        let mathieu = characteristic::mathieu(&system.model);
+        let linear = Linear {
+            mathieu,
+            euler_load: characteristic.get("euler_load_n").copied(),
+        };
+        let mut run = Self {
+            case,
+            observer: Observer::new(case, &system, interval),
+            outputs: Outputs::new(case),
+            stops: schedule::stops(case, &system.model),
+            strides,
+            summary: Summary {
+                case: case.name.clone(),
+                status: Status::Failed,
+                reason: None,
+                time_s: 0.0,
+                unknowns: system.layout.len,
+                quantities: Default::default(),
+                balances: Default::default(),
+                solver: Counters::default(),
+                wall_s: WallTimes::default(),
+                effects: decisions
+                    .iter()
+                    .map(|d| {
+                        let value = if d.on { "on" } else { "off" }.to_string();
+                        (
+                            d.effect.to_string(),
+                            Chosen {
+                                value,
+                                reason: d.cause.to_string(),
+                            },
+                        )
+                    })
+                    .chain([
+                        (
+                            "method".into(),
+                            Chosen {
+                                value: chosen.name(),
+                                reason: chosen.reason,
+                            },
+                        ),
+                        (
+                            "max_order".into(),
+                            Chosen {
+                                value: chosen.order.order.to_string(),
+                                reason: chosen.order.reason,
+                            },
+                        ),
+                    ])
+                    .collect(),
+                growth: None,
+                estimate: None,
+                accuracy: None,
+                sensitivities: Default::default(),
+                characteristic,
+                origins: case.origins.words(),
+                warnings,
+            },
+            options,
+            linear,
+            inertia,
+            forward: None,
+            held: None,
+            begin,
+            latest: Progress {
+                t: 0.0,
+                end: case.time.end_s,
+                steps: 0,
+                step: 0.0,
+                order: 0,
+            },
+            output_wall: 0.0,
+            state: vec![],
+            rates: vec![],
+            integrals: vec![],
+            carried: vec![],
+            earlier: Counters::default(),
+        };
+        let mut dae = BeamDae::new(system);
+        if !parameters.is_empty() {
+            let (forward, with_neighbours) = Forward::new(case, dae, parameters)?;
+            (run.forward, dae) = (Some(forward), with_neighbours);
+        }
+        Ok((run, dae))
+    }
+}
+
+impl Run<'_> {
+    fn go(mut self, mut dae: BeamDae, from: Option<&Checkpoint>, recorder: &mut dyn Recorder) -> Result<Outcome> {
+        self.prepare(&dae);
+        let (t, first_stop) = match from {
+            None => {
+                dae.enter_smooth_interval(0.5 * self.stops[0].t);
+                let (system, now) = dae.instant(0.0);
+                self.state = start::state(system, self.case, now);
+                if let Some(start) = &self.case.start.equilibrium {
+                    match self.seek(start.loads_at_s, &mut dae, recorder)? {
+                        Ok(state) => self.state = state,
+                        Err(end) => return Ok(self.finish(end)),
+                    }
+                }
+                (0.0, 0)
+            }
+            Some(checkpoint) => {
+                self.take_up(checkpoint);
+                (checkpoint.t, checkpoint.stop + 1)
+            }
+        };
+        let ahead = 0.5 * (t + self.stops[first_stop].t);
+        match from.map(|c| self.stops[c.stop]) {
+            Some(stop) if stop.switches => {
+                let last = first_stop.checked_sub(2).map_or(0.0, |k| self.stops[k].t);
+                dae.enter_smooth_interval(0.5 * (last + t));
+            }
+            _ => dae.enter_smooth_interval(ahead),
+        }
+        let before = from.and_then(|c| self.before(&mut dae, c));
+        let consistent = match from.map(|c| self.stops[c.stop].switches) {
+            Some(true) => self.switch(&mut dae, t, ahead),
+            Some(false) => None,
+            None => consistent_start(&mut dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
+                .map_err(|failure| inconsistent(t, &failure))
+                .err(),
+        };
+        let consistent = consistent.or_else(|| match from {
+            None => self.begin_forward(&mut dae).err(),
+            Some(checkpoint) => self.go_on_forward(&mut dae, checkpoint, before).err(),
+        });
+        let header = from.is_none().then(|| self.header(dae.system()));
+        let end = match consistent {
+            Some(fault) => End::Failed(fault),
+            None => self.solve(dae, t, first_stop, header, recorder)?,
+        };
+        Ok(self.finish(end))
+    }
+
+    /// From the present state, which is consistent, to the end.
+    fn solve(
+        &mut self,
+        dae: BeamDae,
+        t: f64,
+        first_stop: usize,
+        header: Option<Header>,
+        recorder: &mut dyn Recorder,
+    ) -> Result<End> {
+        match Integrator::new(dae, t, &self.state, &self.rates, &self.options) {
+            Err(failure) => Ok(End::Failed(fault(&failure))),
+            Ok(mut solver) => {
+                if let (Some(forward), Some(ida)) = (&self.forward, solver.ida_mut())
+                    && let Err(failure) = forward.hand_over(ida, false)
+                {
+                    return Ok(End::Failed(fault(&failure)));
+                }
+                header.map_or(Ok(()), |header| recorder.begin(&header))?;
+                let end = self.integrate(&mut solver, first_stop, recorder)?;
+                self.observer.close(recorder)?;
+                self.count(&solver);
+                Ok(end)
+            }
+        }
+    }
+
+    fn integrate(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        first: usize,
+        recorder: &mut dyn Recorder,
+    ) -> Result<End> {
+        if let Some(end) = self.enter(solver, recorder)? {
+            return Ok(end);
+        }
+        let mut pace = Pace::new(solver.time());
+        for k in first..self.stops.len() {
+            let stop = self.stops[k];
+            loop {
+                let from = solver.time();
+                let stride = self.strides.at(from);
+                let stepped = solver
+                    .limit(stride.largest)
+                    .and_then(|()| solver.step(stop.t.min(stride.to)));
+                let step = match stepped {
+                    Ok(step) => step,
+                    Err(failure) => return Ok(End::Failed(fault(&failure))),
+                };
+                self.summary.time_s = step.time;
+                let method = self.options.one_step();
+                self.observer
+                    .seen
+                    .estimate
+                    .step(method, &step, [solver.y(), solver.yp()]);
+                self.observer.seen.estimate.erred(step.size, solver.local_errors());
+                let steps = solver.steps();
+                let progress = Progress {
+                    t: step.time,
+                    steps: self.earlier.steps + steps,
+                    step: step.size,
+                    order: step.order,
+                    ..self.latest
+                };
+                self.latest = progress;
+                if let Some(end) = self.follow(solver, from, recorder)? {
+                    return Ok(end);
+                }
+                if let Control::Stop(reason) = recorder.progress(&progress)? {
+                    return Ok(End::Stopped(reason));
+                }
+                if progress.steps >= self.case.solver.max_steps {
+                    return Ok(End::Failed(too_many_steps(step.time, step.size)));
+                }
+                if pace.stalled(steps, step.time, self.case.time.end_s) {
+                    return Ok(End::Failed(stalled(step.time, step.size)));
+                }
+                if step.stopped && step.time >= stop.t {
+                    break;
+                }
+            }
+            if let Some(next) = self.stops.get(k + 1).copied() {
+                if let Some(fault) = self.pass(solver, k, next.t, recorder)? {
+                    return Ok(End::Failed(fault));
+                }
+                if let Some(end) = self.enter(solver, recorder)? {
+                    return Ok(end);
+                }
+            }
+        }
+        Ok(End::Finished)
+    }
+}

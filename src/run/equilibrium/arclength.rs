@@ -1,0 +1,120 @@
+//! The equations of equilibrium with the load factor as one more unknown.
+
+use crate::dae::{Dae, Fault, Pattern, Seeds, StaticBeam};
+
+/// `[E30]` A point of the load path: n equations of equilibrium for n unknowns y and the share s of the loads, and one that
+/// says how far along the path the point is (Keller's pseudo-arclength):
+///
+/// ```text
+/// F(s, y) = 0        d·(y, s) = a        d, a chosen by whoever follows the path
+/// ```
+///
+/// Where the path turns back in s (a limit point) this stays regular, unlike F alone. With `d = (0, 1)` it is equilibrium
+/// under the share a.
+pub struct Arclength {
+    statics: StaticBeam,
+    pattern: Pattern,
+    /// `d`, length n + 1.
+    pub direction: Vec<f64>,
+    /// `a`.
+    pub position: f64,
+    inner: Vec<f64>,
+    above: Vec<f64>,
+    below: Vec<f64>,
+    none: Vec<bool>,
+}
+
+/// Difference of shares that gives `∂F/∂s`: dead loads are linear in s, follower loads too; driven ends are not.
+const DIFFERENCE: f64 = 1e-4;
+
+impl Arclength {
+    /// Equilibria of a beam under a share of its loads.
+    pub fn new(statics: StaticBeam) -> Self {
+        let n = statics.len();
+        let inner = statics.pattern();
+        let columns = |j: usize| inner.rows[inner.column(j)].iter().map(|&row| row as usize);
+        let mut all: Vec<Vec<usize>> = (0..n).map(|j| columns(j).chain([n]).collect()).collect();
+        all.push((0..=n).collect());
+        let mut direction = vec![0.0; n + 1];
+        direction[n] = 1.0;
+        Self {
+            inner: vec![0.0; inner.entries()],
+            pattern: Pattern::from_columns(&all),
+            direction,
+            position: 0.0,
+            above: vec![0.0; n],
+            below: vec![0.0; n],
+            none: vec![false; n + 1],
+            statics,
+        }
+    }
+
+    /// The beam.
+    pub fn statics(&mut self) -> &mut StaticBeam {
+        &mut self.statics
+    }
+
+    /// Asks for equilibrium under a load factor.
+    pub fn at_share(&mut self, share: f64) {
+        self.direction.fill(0.0);
+        self.direction[self.none.len() - 1] = 1.0;
+        self.position = share;
+    }
+
+    /// `∂F/∂s` into `above`.
+    fn by_share(&mut self, y: &[f64], s: f64) -> Result<(), Fault> {
+        self.statics.residual(s + DIFFERENCE, y, &[], &mut self.above)?;
+        self.statics.residual(s - DIFFERENCE, y, &[], &mut self.below)?;
+        for (above, below) in self.above.iter_mut().zip(&self.below) {
+            *above = (*above - below) / (2.0 * DIFFERENCE);
+        }
+        Ok(())
+    }
+}
+
+impl Dae for Arclength {
+    fn len(&self) -> usize {
+        self.none.len()
+    }
+
+    fn differential(&self) -> &[bool] {
+        &self.none
+    }
+
+    fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    fn residual(&mut self, _: f64, y: &[f64], _: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+        let n = y.len() - 1;
+        self.statics.residual(y[n], &y[..n], &[], &mut residual[..n])?;
+        residual[n] = self.direction.iter().zip(y).map(|(d, x)| d * x).sum::<f64>() - self.position;
+        Ok(())
+    }
+
+    fn jacobian(&mut self, _: f64, y: &[f64], _: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+        let n = y.len() - 1;
+        self.statics.jacobian(y[n], &y[..n], &[], seeds, &mut self.inner)?;
+        self.by_share(&y[..n], y[n])?;
+        let mut to = 0;
+        for column in 0..n {
+            for entry in self.statics.pattern().column(column) {
+                values[to] = self.inner[entry];
+                to += 1;
+            }
+            values[to] = self.direction[column];
+            to += 1;
+        }
+        values[to..to + n].copy_from_slice(&self.above);
+        values[to + n] = self.direction[n];
+        Ok(())
+    }
+
+    fn name(&self, unknown: usize) -> String {
+        if unknown + 1 == self.none.len() {
+            "the load factor".into()
+        } else {
+            self.statics.name(unknown)
+        }
+    }
+}

@@ -1,0 +1,392 @@
+//! Named numbers with estimated errors, of whatever computes a case at once: equilibria, modes, cycles, multipliers.
+//!
+//! With `x(K, G, τ)` a number on a mesh of K cells a segment and G a bladder at tolerance τ,
+//!
+//! ```text
+//! e_beam = S ρ/(1 - ρ) |x(K) - x(K/2)|      ρ = |x(K) - x(K/2)|/|x(K/2) - x(K/4)|      likewise with G/2, G/4 and 10 τ, 100 τ
+//! ```
+//!
+//! the sum of the geometric series of differences, with a factor S for safety. No mesh is believed whose half and quarter have not
+//! been looked at, no tolerance without ten times it. What is worst is refined; what was a tenth of the accuracy that is asked for is not
+//! looked at again while others are refined.
+
+pub mod meshes;
+pub mod numbers;
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use super::accuracy::plan;
+use crate::case::Case;
+use crate::case::schema::Effect;
+use crate::discrete::System;
+use crate::error::{Code, Result};
+use crate::model::Model;
+use crate::run::summary::{Accuracy, Estimate, Judged, Pilot};
+
+/// Finest meshes and tightest tolerance that are tried: cells a segment, cells a bladder, decades.
+const FINEST: usize = 64;
+const FINEST_ALONG_BLADDERS: usize = 64;
+const TIGHTEST: i32 = 9;
+/// First mesh and tolerance that may do.
+const FIRST: At = At {
+    cells: 4,
+    along: None,
+    decades: 5,
+};
+/// First cells a bladder that may do: their quarter is one.
+const FIRST_ALONG_BLADDERS: usize = 4;
+/// Coarsest first mesh, where coarser ones have no answer.
+const LAST_FIRST: usize = 16;
+/// Ratios of differences that are believed: beyond them differences happen to be small or large.
+const BELIEVED: [f64; 2] = [0.2, 0.7];
+/// Part of what is asked for below which an error is not looked at again.
+const SETTLED: f64 = 0.1;
+/// Of an estimate, for safety.
+const SAFETY: f64 = 1.25;
+/// Largest dimensionless accuracy that makes sense, and least.
+const SENSIBLE: std::ops::RangeInclusive<f64> = 1e-6..=0.5;
+
+/// Cells a segment, cells a bladder where flows along bladders are resolved, and `k` of `rtol = 10^-k`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct At {
+    cells: usize,
+    along: Option<usize>,
+    decades: i32,
+}
+
+/// What can be refined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Axis {
+    Bladders,
+    Beam,
+    Time,
+}
+
+impl At {
+    /// So many times coarser, or finer, by a factor of two, or of ten.
+    fn moved(self, axis: Axis, finer: i32) -> Self {
+        let times = |count: usize| {
+            if finer < 0 { count >> -finer } else { count << finer }
+        };
+        let mut at = self;
+        match axis {
+            Axis::Bladders => at.along = self.along.map(times),
+            Axis::Beam => at.cells = times(self.cells),
+            Axis::Time => at.decades += finer,
+        }
+        at
+    }
+
+    fn possible(self) -> bool {
+        let along = self.along.is_none_or(|along| along <= FINEST_ALONG_BLADDERS);
+        along && self.cells <= FINEST && self.decades <= TIGHTEST
+    }
+}
+
+/// A number that is computed, and the size beside which its errors count when it is smaller itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Number {
+    /// Its value.
+    pub value: f64,
+    /// What would be large.
+    pub size: f64,
+}
+
+/// Numbers by name.
+pub type Numbers = BTreeMap<String, Number>;
+
+/// Finds mesh, and tolerance where `in_time`, at which every number of `compute` has an estimated error below `asked`, relative to
+/// it. Returns the case so, and what is known.
+///
+/// # Errors
+/// Those of `compute`, on the first mesh; when a finer one fails, the one before stands.
+pub fn refine(
+    case: &Case,
+    asked: f64,
+    in_time: bool,
+    compute: &mut dyn FnMut(&Case) -> Result<Numbers>,
+) -> Result<(Case, Accuracy)> {
+    let along = has_cells_along_bladders(case)?;
+    let mut search = Search {
+        case,
+        axes: [(Axis::Bladders, along), (Axis::Beam, true), (Axis::Time, in_time)]
+            .into_iter()
+            .filter_map(|(axis, there)| there.then_some(axis))
+            .collect(),
+        in_time,
+        runs: BTreeMap::new(),
+        known: vec![],
+        pilots: vec![],
+    };
+    let mut at = At {
+        along: along.then_some(FIRST_ALONG_BLADDERS),
+        ..FIRST
+    };
+    // a coarse mesh may have no answer at all: fewer modes than are asked for, no equilibrium
+    let settled = SETTLED * asked;
+    while let Err(fault) = search.look(at, settled, compute) {
+        if at.cells >= LAST_FIRST {
+            return Err(fault);
+        }
+        at.cells *= 2;
+    }
+    let mut estimates = search.estimates(at);
+    while largest(&estimates) > asked {
+        let Some(next) = search.next(at, asked) else { break };
+        if search.look(next, settled, compute).is_err() {
+            break;
+        }
+        at = next;
+        estimates = search.estimates(at);
+    }
+    let case = search.variant(at);
+    let accuracy = Accuracy {
+        asked,
+        reached: largest(&estimates) <= asked,
+        cells_per_segment: case.mesh.cells_per_segment,
+        cells_per_bladder: case.mesh.cells_per_bladder,
+        rtol: case.solver.rtol,
+        judged_by: Judged::Figures,
+        effects: String::new(),
+        quantities: estimates,
+        pilots: search.pilots,
+    };
+    Ok((case, accuracy))
+}
+
+/// Whether an accuracy makes sense.
+pub fn sensible(asked: f64) -> bool {
+    SENSIBLE.contains(&asked)
+}
+
+/// What to say where an accuracy is not reached.
+pub fn warning(found: &Accuracy) -> Option<String> {
+    let short = found.quantities.iter().filter_map(|(name, e)| match e.total {
+        Some(total) if total <= found.asked => None,
+        Some(total) => Some(format!("{name} {total:.1e}")),
+        None => Some(format!("{name} unknown")),
+    });
+    let short: Vec<String> = short.collect();
+    (!found.reached).then(|| {
+        Code::Accuracy.warning(format!(
+            "accuracy: {:e} is not reached with {} cells a segment, {} a bladder and rtol {:e}: {}",
+            found.asked,
+            found.cells_per_segment,
+            found.cells_per_bladder,
+            found.rtol,
+            short.join(", ")
+        ))
+    })
+}
+
+/// Whether a case has cells along its bladders: flows within them, and effects that keep these.
+pub fn has_cells_along_bladders(case: &Case) -> Result<bool> {
+    let system = System::with(case, Model::whole(case, true)?)?;
+    let flows = system.fluid.as_ref().is_some_and(|fluid| !fluid.flowing.is_empty());
+    Ok(flows && system.model.effects.has(Effect::FlowAlongBladders))
+}
+
+/// Errors by name, relative; none where they are not known.
+type Errors = BTreeMap<String, Option<f64>>;
+
+struct Search<'a> {
+    case: &'a Case,
+    axes: Vec<Axis>,
+    in_time: bool,
+    runs: BTreeMap<At, Numbers>,
+    /// Of every axis, in its order.
+    known: Vec<Errors>,
+    pilots: Vec<Pilot>,
+}
+
+impl Search<'_> {
+    fn variant(&self, at: At) -> Case {
+        let rtol = if self.in_time {
+            10_f64.powi(-at.decades)
+        } else {
+            self.case.solver.rtol
+        };
+        let mut case = plan::refined(self.case, at.cells, rtol);
+        if let Some(along) = at.along {
+            case.mesh.cells_per_bladder = along;
+        }
+        case
+    }
+
+    /// Computes what a setting is judged by.
+    fn look(&mut self, at: At, settled: f64, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<()> {
+        // coarse before fine, as long as nothing is known
+        if self.known.is_empty() {
+            for &axis in &self.axes.clone() {
+                for coarser in [-2, -1] {
+                    self.run(at.moved(axis, coarser), compute)?;
+                }
+            }
+        }
+        self.run(at, compute)?;
+        let mut known = vec![];
+        for (k, &axis) in self.axes.clone().iter().enumerate() {
+            let names = self.runs.get(&at).into_iter().flat_map(BTreeMap::keys);
+            let small = |errors: &Errors| {
+                let error = |name: &String| errors.get(name).copied().flatten();
+                names.clone().all(|name| error(name).is_some_and(|e| e <= settled))
+            };
+            if let Some(before) = self.known.get(k).filter(|errors| small(errors)) {
+                known.push(before.clone());
+                continue;
+            }
+            for coarser in [-2, -1] {
+                self.run(at.moved(axis, coarser), compute)?;
+            }
+            known.push(self.errors(at, axis));
+        }
+        self.known = known;
+        Ok(())
+    }
+
+    /// What is worst, refined; nothing where what cannot be refined is too much by itself.
+    fn next(&self, at: At, asked: f64) -> Option<At> {
+        let mut worst: Vec<(f64, At)> = self
+            .axes
+            .iter()
+            .zip(&self.known)
+            .map(|(axis, errors)| (most(errors.values().copied()), at.moved(*axis, 1)))
+            .collect();
+        worst.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let stuck: f64 = worst
+            .iter()
+            .filter(|(_, to)| !to.possible())
+            .map(|(error, _)| error)
+            .sum();
+        let best = worst.into_iter().find(|(error, to)| *error > 0.0 && to.possible())?;
+        (stuck <= asked).then_some(best.1)
+    }
+
+    fn run(&mut self, at: At, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<()> {
+        if self.runs.contains_key(&at) {
+            return Ok(());
+        }
+        let (case, begin) = (self.variant(at), Instant::now());
+        let numbers = compute(&case)?;
+        self.runs.insert(at, numbers);
+        self.pilots.push(Pilot {
+            with: String::new(),
+            unknowns: 0,
+            cells_per_segment: at.cells,
+            rtol: case.solver.rtol,
+            steps: 0,
+            wall_s: begin.elapsed().as_secs_f64(),
+        });
+        Ok(())
+    }
+
+    fn errors(&self, at: At, axis: Axis) -> Errors {
+        let numbers = self.runs.get(&at).into_iter().flatten();
+        let before = [at.moved(axis, -2), at.moved(axis, -1)];
+        numbers
+            .map(|(name, number)| (name.clone(), self.series(name, number, before)))
+            .collect()
+    }
+
+    fn estimates(&self, at: At) -> BTreeMap<String, Estimate> {
+        let names = self.runs.get(&at).into_iter().flat_map(BTreeMap::keys);
+        let of = |name: &String| {
+            let along = |wanted: fn(Axis) -> bool| {
+                let chosen = self.axes.iter().zip(&self.known).filter(|(axis, _)| wanted(**axis));
+                let errors = chosen.map(|(_, errors)| errors.get(name).copied().flatten());
+                errors.reduce(|a, b| Some(a? + b?)).flatten()
+            };
+            let (space, time) = (along(|axis| axis != Axis::Time), along(|axis| axis == Axis::Time));
+            let estimate = Estimate {
+                time,
+                space,
+                total: if self.in_time {
+                    time.zip(space).map(|(t, s)| t + s)
+                } else {
+                    space
+                },
+                ..Estimate::default()
+            };
+            (name.clone(), estimate)
+        };
+        names.map(of).collect()
+    }
+
+    /// Error of a number, relative to it, by what it was twice before.
+    fn series(&self, name: &str, number: &Number, [coarsest, coarse]: [At; 2]) -> Option<f64> {
+        let value = |at: At| Some(self.runs.get(&at)?.get(name)?.value);
+        let (coarsest, coarse) = (value(coarsest)?, value(coarse)?);
+        let (before, last) = ((coarse - coarsest).abs(), (number.value - coarse).abs());
+        if last == 0.0 {
+            return Some(0.0);
+        }
+        let [least, most] = BELIEVED;
+        let ratio = if before > 0.0 {
+            (last / before).clamp(least, most)
+        } else {
+            most
+        };
+        let size = number.value.abs().max(number.size).max(f64::MIN_POSITIVE);
+        Some(SAFETY * ratio / (1.0 - ratio) * last / size).filter(|e| e.is_finite())
+    }
+}
+
+fn largest(estimates: &BTreeMap<String, Estimate>) -> f64 {
+    most(estimates.values().map(|e| e.total))
+}
+
+/// The largest of errors, without bounds where one is not known.
+fn most(errors: impl Iterator<Item = Option<f64>>) -> f64 {
+    errors.map(|e| e.unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case() -> Case {
+        serde_json::from_str(
+            r#"{"name": "x", "beam": {"length_m": 1, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1e9,
+                "density_kg_m3": 1e3}, "ends": {"root": "clamped", "tip": "free"}, "time": {"end_s": 1}}"#,
+        )
+        .unwrap()
+    }
+
+    /// A number with errors of order 2 in space and 4/5 in the tolerance, of one sign: reached, and the estimate is no less than the truth and no
+    /// more than three times it. One that goes on to jump is said not to be reached.
+    #[test]
+    fn numbers_are_refined_until_their_estimates_do() {
+        let value = |case: &Case| {
+            let h = 1.0 / case.mesh.cells_per_segment as f64;
+            1.0 + 0.7 * h * h + 3.0 * case.solver.rtol.powf(0.8)
+        };
+        let mut compute = |case: &Case| {
+            let number = Number {
+                value: value(case),
+                size: 0.0,
+            };
+            Ok(Numbers::from([("x".to_string(), number)]))
+        };
+        let (chosen, found) = refine(&case(), 1e-3, true, &mut compute).unwrap();
+        let (error, total) = ((value(&chosen) - 1.0).abs(), found.quantities["x"].total.unwrap());
+        assert!(
+            found.reached && error <= total && total < 3.0 * error,
+            "{error:e} {total:e}"
+        );
+        assert_eq!(warning(&found), None);
+        let mut sign = 1.0;
+        let mut jumps = |_: &Case| {
+            sign = -sign;
+            Ok(Numbers::from([(
+                "x".to_string(),
+                Number {
+                    value: 2.0 + sign,
+                    size: 0.0,
+                },
+            )]))
+        };
+        let (_, found) = refine(&case(), 1e-3, false, &mut jumps).unwrap();
+        assert!(!found.reached && warning(&found).unwrap().contains("W012"));
+    }
+}
