@@ -11,11 +11,15 @@
 //! | room | what it knows |
 //! |---|---|
 //! | [`error`] | everything that ends a command without success, and its exit code |
-//! | [`case`] | what the user wrote: schema, check with all faults at once, functions of time and place |
+//! | [`numerics`] | mathematics that knows nothing of beams: dual numbers, kernels, quadrature, Krylov spaces |
+//! | [`functions`] | functions of time and place, with bounds of what they do |
+//! | [`sparse`] | sparse matrices: patterns, and SuiteSparse's KLU behind a safe type |
+//! | [`case`] | what the user wrote: schema, check with all faults at once |
 //! | [`model`] | physics of one cross-section, one bladder, one network: pure functions generic over the scalar; effects chosen |
 //! | [`discrete`] | space: mesh, unknowns with their scales, the residual in the paper's order, the exact balances |
-//! | [`dae`] | the trait [`dae::Dae`]; the beam as one; dual numbers, pattern, Jacobian. Knows no solver |
-//! | [`sundials`] | IDA, KINSOL and KLU behind safe types; the only `unsafe` code; knows only [`dae::Dae`] |
+//! | [`dae`] | the trait [`dae::Dae`]; the beam as one; its Jacobian. Knows no solver |
+//! | [`integrate`] | what integrators share: tolerances, consistent starts, counters, failures |
+//! | [`sundials`] | IDA and KINSOL behind safe types; knows only [`dae::Dae`] |
 //! | [`onestep`] | A-stable one-step methods of order 2 to 5, with the interface of [`sundials::Ida`] |
 //! | [`spectral`] | eigenvalues of sparse pencils nearest a shift, with bounds of their errors |
 //! | [`run`] | a run in time, equilibria, modes, cycles: samples, balances, range checks. Emits what happens, prints nothing |
@@ -48,11 +52,15 @@ pub mod cli;
 pub mod dae;
 pub mod discrete;
 pub mod error;
+pub mod functions;
+pub mod integrate;
 pub mod model;
+pub mod numerics;
 pub mod onestep;
 pub mod output;
 pub mod results;
 pub mod run;
+pub mod sparse;
 pub mod spectral;
 pub mod study;
 pub mod sundials;

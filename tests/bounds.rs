@@ -1,7 +1,7 @@
 //! Bounds of functions of time: nothing exceeds them, and they are not wide.
 
 use proptest::prelude::*;
-use slcbeam::case::{Clock, Signal};
+use slcbeam::functions::{Clock, Signal};
 
 const END: f64 = 2.0;
 

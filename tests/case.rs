@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use slcbeam::case::schema::{Case, MaxOrder};
 use slcbeam::case::{self, Rotation, Translation};
 use slcbeam::error::Error;
+use slcbeam::functions;
 
 fn shipped() -> Vec<PathBuf> {
     let entries = std::fs::read_dir("cases").unwrap().map(|entry| entry.unwrap().path());
@@ -150,21 +151,21 @@ fn names_of_ends_stand_for_their_conditions() {
     ));
     let pinned = read("{\"pinned\": {\"moment_n_m\": 2}}").resolve();
     assert!(matches!(pinned.transverse, Translation::Displacement(_)));
-    assert_eq!(pinned.rotation, Rotation::Moment(case::Signal::constant(2.0)));
+    assert_eq!(pinned.rotation, Rotation::Moment(functions::Signal::constant(2.0)));
     let guided = read("\"guided\"").resolve();
     assert!(matches!(
         (guided.transverse, guided.rotation, guided.axial),
         (Translation::Force(_), Rotation::Slope(_), Translation::Displacement(_))
     ));
     let sliding = read("{\"guided\": {\"force_z_n\": 1}}").resolve();
-    assert_eq!(sliding.axial, Translation::Force(case::Signal::constant(1.0)));
+    assert_eq!(sliding.axial, Translation::Force(functions::Signal::constant(1.0)));
     let follower = read("{\"free\": {\"follower_shear_n\": 3}}")
         .resolve()
         .follower
         .unwrap();
     assert_eq!(
         (follower.normal, follower.shear),
-        (case::Signal::constant(0.0), case::Signal::constant(3.0))
+        (functions::Signal::constant(0.0), functions::Signal::constant(3.0))
     );
     for text in ["\"free\"", "\"guided\"", "{\"clamped\":{\"u3_m\":1.0}}"] {
         assert_eq!(serde_json::to_string(&read(text)).unwrap(), text);

@@ -1,7 +1,7 @@
 //! Functions of time and place: exact derivatives, smooth joins, switching times.
 
 use proptest::prelude::*;
-use slcbeam::case::{Clock, Jet, Profile, Signal};
+use slcbeam::functions::{Clock, Jet, Profile, Signal};
 
 fn signal(json: &str) -> Signal {
     serde_json::from_str(json).unwrap()

@@ -9,6 +9,7 @@ use slcbeam::case::{self, Case};
 use slcbeam::dae::BeamDae;
 use slcbeam::discrete::residual::{self, fluid::bridge_drops};
 use slcbeam::discrete::{System, TimeData, Workspace};
+use slcbeam::functions;
 use slcbeam::model::network::CheckValve;
 use slcbeam::model::{AreaLaw, Coupling, Model, audit, bladder, characteristic, duct};
 use slcbeam::run::dynamics;
@@ -198,7 +199,7 @@ fn close(value: f64, exact: f64, tolerance: f64) {
 /// Evaluates a system at a state in SI units whose rates are zero.
 fn evaluated(system: &System, y: &[f64]) -> Workspace<f64> {
     let mut now = TimeData::new(system);
-    now.update(system, case::Clock { t: 0.0, within: 0.0 });
+    now.update(system, functions::Clock { t: 0.0, within: 0.0 });
     let mut w = Workspace::new(system);
     residual::evaluate(system, &now, y, &vec![0.0; y.len()], &mut w);
     w
@@ -340,7 +341,7 @@ fn body_forces_act_on_the_mass() {
     let system = System::new(&load("bend-dry", &loads)).unwrap();
     let m = system.model.section.mass_per_length;
     let mut now = TimeData::new(&system);
-    now.update(&system, case::Clock { t: 0.0, within: 0.0 });
+    now.update(&system, functions::Clock { t: 0.0, within: 0.0 });
     assert!(now.force_x.iter().all(|f| (f - (2.0 * m + 7.0)).abs() < 1e-14));
     assert!(now.force_z.iter().all(|f| (f + 9.81 * m).abs() < 1e-14));
 }
@@ -355,7 +356,7 @@ fn a_valve_is_in_series_with_its_half_cells() {
         let set = format!("/network/tubes/0/opening={opening:?}");
         let system = System::new(&load("two-bladders", &[&set])).unwrap();
         let mut now = TimeData::new(&system);
-        now.update(&system, case::Clock { t: 0.0, within: 0.0 });
+        now.update(&system, functions::Clock { t: 0.0, within: 0.0 });
         let exact = if opening > 0.0 {
             1.0 / (2.0 * half + tube / opening)
         } else {
@@ -676,7 +677,7 @@ fn a_rigid_motion_leaves_the_unknowns_alone() {
     let at = |sets: &[&str]| {
         let system = System::new(&load("wiring-2", sets)).unwrap();
         let mut now = TimeData::new(&system);
-        now.update(&system, case::Clock { t: 0.0123, within: 0.0 });
+        now.update(&system, functions::Clock { t: 0.0123, within: 0.0 });
         let mut w = Workspace::new(&system);
         let zero = vec![0.0; system.layout.len];
         residual::evaluate(&system, &now, &zero, &zero, &mut w);

@@ -7,7 +7,7 @@ use serde::de::{Error as _, MapAccess, Visitor, value::MapAccessDeserializer};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::schema::{End, EndConditions};
-use super::signals::Signal;
+use crate::functions::Signal;
 
 /// Form of an end, its description, and the keys it takes.
 const FORMS: [(&str, &str, &[&str]); 5] = [

@@ -3,8 +3,8 @@
 use super::check;
 use super::faults::Faults;
 use super::schema::{BladderEnd, Case, CrossSection, TubeDefaults, Turbine};
-use super::signals::Signal;
 use crate::error::Result;
+use crate::functions::Signal;
 
 /// A point of the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,9 +1,10 @@
 //! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
 
-use super::dual::Dual;
-use super::{Dae, Fault, Pattern, PerturbedSystems, Seeds, colour, trace};
-use crate::case::signals::Clock;
+use super::{Dae, Fault, Pattern, PerturbedSystems, Seeds, trace};
 use crate::discrete::{System, TimeData, Workspace, kick, ledger, residual, start};
+use crate::functions::signals::Clock;
+use crate::numerics::Dual;
+use crate::sparse::colour;
 
 /// Directions differentiated in one sweep.
 const LANES: usize = 8;
@@ -31,7 +32,7 @@ struct Buffers<T> {
     residual: Vec<T>,
 }
 
-impl<T: crate::model::Scalar> Buffers<T> {
+impl<T: crate::numerics::Scalar> Buffers<T> {
     fn new(system: &System) -> Self {
         let zeros = vec![T::zero(); system.layout.len];
         Self {
@@ -323,11 +324,11 @@ impl Dae for BeamDae {
         self.perturbed.len()
     }
 
-    fn slope(&mut self, k: usize, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Fault> {
-        self.perturbed[k].slope(out, |_, beam, out| beam.residual(t, y, yp, out))
+    fn parameter_derivative(&mut self, k: usize, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Fault> {
+        self.perturbed[k].derivative(out, |_, beam, out| beam.residual(t, y, yp, out))
     }
 
-    fn integrand_slope(
+    fn integrand_derivative(
         &mut self,
         k: usize,
         t: f64,

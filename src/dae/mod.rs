@@ -1,17 +1,15 @@
 //! Differential-algebraic systems `F(t, y, y') = 0`, and the beam as one of them. Knows no solver.
 
 pub mod beam;
-pub mod colour;
-pub mod dual;
-pub mod pattern;
 pub mod perturbed;
 pub mod statics;
 pub mod trace;
 
 pub use beam::BeamDae;
-pub use pattern::Pattern;
 pub use perturbed::PerturbedSystems;
 pub use statics::StaticBeam;
+
+use crate::sparse::Pattern;
 
 /// Why an evaluation could not be done.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,14 +91,21 @@ pub trait Dae {
     }
 
     /// Writes `∂F/∂σₖ` at fixed unknowns and rates into `out`, of length `len`; k is below [`Dae::parameters`].
-    fn slope(&mut self, _k: usize, _t: f64, _y: &[f64], _yp: &[f64], out: &mut [f64]) -> Result<(), Fault> {
+    fn parameter_derivative(
+        &mut self,
+        _k: usize,
+        _t: f64,
+        _y: &[f64],
+        _yp: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Fault> {
         out.fill(0.0);
         Ok(())
     }
 
     /// Writes `g_y s + g_y' s' + ∂g/∂σₖ` of the integrands g along a sensitivity `[s, s']`; `out` has length
     /// [`Dae::integrals`].
-    fn integrand_slope(
+    fn integrand_derivative(
         &mut self,
         _k: usize,
         _t: f64,

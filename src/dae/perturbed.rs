@@ -38,7 +38,7 @@ impl PerturbedSystems {
     ///
     /// In error by `ε⁴ f⁽⁵⁾/30`: 4e-12 of f where it is proportional to 1/p, nothing but round-off (3e-13 of the largest term)
     /// where it is a polynomial of p of up to the fourth degree.
-    pub fn slope<E>(
+    pub fn derivative<E>(
         &mut self,
         out: &mut [f64],
         mut value: impl FnMut(usize, &mut BeamDae, &mut [f64]) -> Result<(), E>,
@@ -84,7 +84,7 @@ impl BeamDae {
                 read(system, now, rates, w, values)
             });
         }
-        let by_parameter = self.perturbed_mut()[k].slope(out, |_, beam, out| {
+        let by_parameter = self.perturbed_mut()[k].derivative(out, |_, beam, out| {
             beam.visit(t, y, yp, |system, now, rates, w| read(system, now, rates, w, out));
             Ok::<(), std::convert::Infallible>(())
         });

@@ -3,9 +3,9 @@
 use std::cell::RefCell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use super::Pattern;
 use crate::discrete::{System, TimeData, Workspace, residual};
-use crate::model::Scalar;
+use crate::numerics::Scalar;
+use crate::sparse::Pattern;
 
 /// A number known only by the unknowns it depends on: an index into the thread's table of sorted sets.
 #[derive(Clone, Copy, Debug, PartialEq)]

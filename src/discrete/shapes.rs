@@ -1,6 +1,6 @@
 //! Functions of place on a mesh, by their exact integrals.
 
-use crate::case::profile::{Integrals, Profile};
+use crate::functions::profile::{Integrals, Profile};
 
 /// `∫ f hat_i / ∫ hat_i` at every node: total and first moment are those of `f`.
 pub fn at_nodes(profile: &Profile, cells: usize) -> Vec<f64> {

@@ -1,10 +1,10 @@
 //! The state at t = 0 (A.55-A.58, A.70).
 
 use super::{System, TimeData, Workspace, residual, shapes};
-use crate::case::profile::Profile;
 use crate::case::schema::Case;
-use crate::case::signals::Clock;
 use crate::case::wiring::bladder_index;
+use crate::functions::profile::Profile;
+use crate::functions::signals::Clock;
 
 /// Scaled unknowns at the start: displacements of nodes as given, velocities nearest to those given, areas from the means of the given
 /// pressures over each cell, so that momentum and volume are those of the start on every mesh.

@@ -4,7 +4,7 @@ use super::System;
 use super::time_data::Frame;
 use crate::case::Translation;
 use crate::case::schema::Effect;
-use crate::case::signals::{Clock, Jet};
+use crate::functions::signals::{Clock, Jet};
 use crate::model::loads::LoadKind;
 
 /// `[E28]` Without axial stretch (EA → ∞) a beam that one end holds and whose other end is free moves along as

@@ -1,8 +1,8 @@
 //! Everything that depends on time alone, evaluated once an instant.
 
 use super::{Statics, System, shapes};
-use crate::case::signals::{Clock, Jet, Signal};
 use crate::case::{Rotation, Translation};
+use crate::functions::signals::{Clock, Jet, Signal};
 use crate::model::Load;
 use crate::model::loads::LoadKind;
 
@@ -14,7 +14,7 @@ use crate::model::loads::LoadKind;
 /// h_i b_i = ∫ b hat_i dθ        h (m b1)_c = ∫_c m b1 dθ
 /// ```
 ///
-/// exactly ([`crate::case::profile::Integrals`]): force, moment about any point and couple are those of the load on every mesh, and so are the moments M
+/// exactly ([`crate::functions::profile::Integrals`]): force, moment about any point and couple are those of the load on every mesh, and so are the moments M
 /// that it causes at nodes and the mean of N in each cell, where the beam is statically determinate. What no mesh sees is how M
 /// goes between two nodes ([`super::resolution`]).
 #[derive(Clone, Debug)]

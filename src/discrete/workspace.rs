@@ -1,7 +1,7 @@
 //! Intermediate quantities of one evaluation; allocated once, for each scalar type.
 
 use super::System;
-use crate::model::Scalar;
+use crate::numerics::Scalar;
 
 /// Arrays over nodes, cells, segments, bladders. Names follow the equations.
 #[derive(Clone, Debug)]

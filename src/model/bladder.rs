@@ -1,7 +1,8 @@
 //! One bladder's cross-section: how its area changes with pressure, bending moment and normal force.
 
-use super::{Section, scalar::Scalar};
+use super::Section;
 use crate::case::schema::{Bladders, Case, Coupling as CouplingChoice};
+use crate::numerics::Scalar;
 
 /// `[E2]` (A.15, A.16) in closed form, R = +1 for the upper row, -1 for the lower:
 ///

@@ -9,7 +9,8 @@ use super::network::{Network, Node};
 use super::{Load, Model, Wet, each_signal, tongue};
 use crate::case::schema::Effect;
 use crate::case::schema::{Case, ChainEnd};
-use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};
+use crate::case::{ResolvedEnd, Rotation, Translation};
+use crate::functions::{Clock, Signal};
 
 /// `κ_1` of the clamped-free beam under axial base acceleration.
 pub const MATHIEU_COUPLING: f64 = 1.570_878_189_99;

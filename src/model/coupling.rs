@@ -1,7 +1,8 @@
 //! How pressure strains the beam.
 
-use super::{AreaLaw, scalar::Scalar};
+use super::AreaLaw;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
+use crate::numerics::Scalar;
 
 /// `[E3]` Stretch and curvature due to pressure (A.22-A.26), `p_u` and `p_d` the means over upper and lower bladder:
 ///

@@ -1,8 +1,8 @@
 //! Distributed loads.
 
-use crate::case::profile::Profile;
 use crate::case::schema::{Distributed, Load as Written};
-use crate::case::signals::Signal;
+use crate::functions::profile::Profile;
+use crate::functions::signals::Signal;
 
 /// What a load acts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

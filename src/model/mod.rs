@@ -14,15 +14,15 @@ pub mod loads;
 pub mod mapping;
 pub mod network;
 pub mod passivity;
-pub mod scalar;
 pub mod scales;
 pub mod storage;
 pub mod tongue;
 
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Effects, Formulation};
-use crate::case::{Clock, ResolvedEnd, Rotation, Signal, Translation};
+use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::error::Result;
+use crate::functions::{Clock, Signal};
 
 pub use beam::Section;
 pub use bladder::AreaLaw;
@@ -31,7 +31,6 @@ pub use effects::{Decision, EffectSet, Scene};
 pub use kinematics::Kinematics;
 pub use loads::Load;
 pub use network::Network;
-pub use scalar::Scalar;
 pub use scales::Scales;
 pub use storage::{Pool, PoolKind, Storage};
 

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 use super::{Section, Wet};
-use crate::case::profile::Profile;
 use crate::case::schema::{Case, Distributed, Load};
-use crate::case::signals::{Clock, Signal};
 use crate::case::{ResolvedEnd, Rotation, Translation};
+use crate::functions::profile::Profile;
+use crate::functions::signals::{Clock, Signal};
 
 /// Sizes to which tolerances are relative; SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use super::integrator::OneStep;
 use super::polynomial;
 use super::stages::{Stages, add};
 use crate::dae::Dae;
-use crate::sundials::IdaFailure;
+use crate::integrate::IntegrationFailure;
 
 /// Integrals at both ends of the last step, with their integrands.
 #[derive(Clone, Debug)]
@@ -55,11 +55,11 @@ impl<D: Dae> OneStep<D> {
     /// Derivative number `k`, 0 or 1, of the unknowns at a time [s] within the last step.
     ///
     /// Panics when `out` has another length than the unknowns.
-    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
+    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IntegrationFailure>> {
         let x = self.place(time)?;
         if k > 1 {
             let message = format!("derivative {k} of the unknowns is not available");
-            return Err(IdaFailure::request(message, self.time));
+            return Err(IntegrationFailure::request(message, self.time));
         }
         assert_eq!(out.len(), self.mask.len(), "values of another system");
         let Stages { h, x: stages, y, .. } = &self.last;
@@ -77,7 +77,7 @@ impl<D: Dae> OneStep<D> {
 
     /// The integrals `∫ g dt` since the last restart: at the present time, or at a time [s] within the last step. `out` has
     /// length `dae.integrals()`.
-    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
+    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationFailure>> {
         let Integrals { total, rate, .. } = &self.integrals;
         match time {
             Some(time) if self.last.h > 0.0 => {
@@ -94,7 +94,7 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Place of a time within the last step, 0 to 1.
-    fn place(&self, time: f64) -> Result<f64, Box<IdaFailure>> {
+    fn place(&self, time: f64) -> Result<f64, Box<IntegrationFailure>> {
         let Stages { t, h, .. } = self.last;
         let x = (time - t) / h;
         let round_off = 100.0 * f64::EPSILON * (time.abs() + self.time.abs()) / h;
@@ -106,7 +106,7 @@ impl<D: Dae> OneStep<D> {
         } else {
             "nothing can be interpolated before the first step".to_owned()
         };
-        Err(IdaFailure::request(message, self.time))
+        Err(IntegrationFailure::request(message, self.time))
     }
 
     /// Puts in the values of algebraic unknowns at a place in a step, or their rates [1/s].

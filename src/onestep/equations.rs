@@ -3,7 +3,8 @@
 use std::time::{Duration, Instant};
 
 use crate::dae::{Dae, Fault, Seeds};
-use crate::sundials::{kernels, not_finite};
+use crate::integrate::not_finite;
+use crate::numerics::kernels;
 
 /// Why an attempt at a step was given up.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,7 +8,9 @@ use super::options::OneStepOptions;
 use super::stages::{Stages, Work};
 use super::tableau::Tableau;
 use crate::dae::Dae;
-use crate::sundials::{Counters, IdaFailure, Step, Wall, Worst, kernels, request};
+use crate::integrate::{Counters, IntegrationFailure, Wall, Worst, request};
+use crate::numerics::kernels;
+use crate::sundials::Step;
 
 /// Integrator of a system `F(t, y, y') = 0` of index one, with the interface of [`crate::sundials::Ida`].
 pub struct OneStep<D: Dae> {
@@ -37,10 +39,16 @@ pub struct OneStep<D: Dae> {
 
 impl<D: Dae> OneStep<D> {
     /// An integrator at time `t0` [s] with consistent values `y0` and derivatives `yp0`, both of length `dae.len()`.
-    pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &OneStepOptions) -> Result<Self, Box<IdaFailure>> {
+    pub fn new(
+        dae: D,
+        t0: f64,
+        y0: &[f64],
+        yp0: &[f64],
+        options: &OneStepOptions,
+    ) -> Result<Self, Box<IntegrationFailure>> {
         let n = dae.len();
-        let klu =
-            request::admit(&dae, [y0, yp0], options.check(n)).map_err(|message| IdaFailure::request(message, t0))?;
+        let klu = request::admit(&dae, [y0, yp0], options.check(n))
+            .map_err(|message| IntegrationFailure::request(message, t0))?;
         let tableau = options.method.tableau();
         let order = options.method.order();
         let differential = dae.differential();
@@ -73,7 +81,7 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Takes up a state, without a past.
-    fn begin(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IdaFailure>> {
+    fn begin(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationFailure>> {
         self.matrix.forget();
         self.integrals.restart();
         self.time = t;
@@ -88,13 +96,13 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Weights of the error norm at the present state.
-    fn weigh(&mut self) -> Result<(), Box<IdaFailure>> {
+    fn weigh(&mut self) -> Result<(), Box<IntegrationFailure>> {
         let (y, relative) = (&self.now.y[0], self.options.relative);
         if kernels::error_weights(y, relative, &self.absolute, &mut self.work.weights) {
             return Ok(());
         }
         let message = "an error weight is not positive and finite".to_owned();
-        Err(IdaFailure::request(message, self.time))
+        Err(IntegrationFailure::request(message, self.time))
     }
 
     /// Largest step [s] from now on.
@@ -103,7 +111,7 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// One accepted step, which does not pass `stop` [s]. A stop closer than round-off counts as reached.
-    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IdaFailure>> {
+    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationFailure>> {
         let order = self.options.method.order();
         if request::reached(self.time, stop)? {
             self.time = stop;
@@ -165,7 +173,7 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// The step tried becomes the last one, and its end the present.
-    fn accept(&mut self, h: f64, t1: f64, error: f64) -> Result<(), Box<IdaFailure>> {
+    fn accept(&mut self, h: f64, t1: f64, error: f64) -> Result<(), Box<IntegrationFailure>> {
         let mut yp = std::mem::take(&mut self.yp);
         let end = self.tableau.stages - 1;
         self.rates(end, &mut yp);
@@ -200,10 +208,10 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Everything known about a failure.
-    fn failure(&self, meaning: &'static str, step: f64, fatal: Option<String>) -> Box<IdaFailure> {
+    fn failure(&self, meaning: &'static str, step: f64, fatal: Option<String>) -> Box<IntegrationFailure> {
         let ratios = self.work.r.iter().zip(&self.work.weights).map(|(r, w)| (r * w).abs());
         let worst = ratios.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        Box::new(IdaFailure {
+        Box::new(IntegrationFailure {
             code: 0,
             meaning,
             fatal,
@@ -245,7 +253,7 @@ impl<D: Dae> OneStep<D> {
     /// a new integrator from the same values would do the same bit for bit. Integrals start at zero.
     ///
     /// Panics when a slice has another length than the unknowns.
-    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IdaFailure>> {
+    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationFailure>> {
         self.counters.restarts += 1;
         self.begin(t, y, yp)
     }

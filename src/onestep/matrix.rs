@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::equations::{Equations, Obstacle};
 use crate::dae::Dae;
-use crate::sundials::{Klu, KluFault};
+use crate::sparse::{Klu, KluFault};
 
 /// Contraction that is assumed before one is measured: corrections are then taken for what is left.
 const UNKNOWN_RATE: f64 = 0.5;

@@ -2,7 +2,7 @@
 
 use super::tableau::Method;
 use crate::case::schema;
-use crate::sundials::Absolute;
+use crate::integrate::Absolute;
 
 /// Settings of [`super::OneStep`]. Weights of the error norm are IDA's, `1 / (relative |yᵢ| + absoluteᵢ)`.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use super::equations::Obstacle;
 use super::integrator::OneStep;
 use super::polynomial;
 use crate::dae::Dae;
-use crate::sundials::kernels::weighted_square;
+use crate::numerics::kernels::weighted_square;
 
 /// Iterations allowed in one stage.
 const ITERATIONS: usize = 7;

@@ -8,7 +8,8 @@ use super::equations::{Equations, Obstacle};
 use super::stages::add;
 use super::tableau::{Method, Tableau};
 use crate::dae::{Dae, Seeds};
-use crate::sundials::{Klu, StartOptions, consistent_start};
+use crate::integrate::{StartOptions, consistent_start};
+use crate::sparse::Klu;
 
 /// Correction, relative to 1 + |unknown|, at which a stage counts as solved.
 const SOLVED: f64 = 1e-12;

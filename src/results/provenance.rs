@@ -4,7 +4,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::case::schema::Method;
-use crate::sundials::{Counters, suitesparse_version, sundials_version};
+use crate::integrate::Counters;
+use crate::sparse::suitesparse_version;
+use crate::sundials::sundials_version;
 
 /// What made a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,8 +1,8 @@
 //! The common period of everything that acts on a case, once whatever starts smoothly has started.
 
 use crate::case::schema::Case;
-use crate::case::signals::{Signal, Sine};
 use crate::error::{Error, Result};
+use crate::functions::signals::{Signal, Sine};
 use crate::model::Model;
 
 /// Periods of two signals that fit into a common one this often are told apart.

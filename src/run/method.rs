@@ -4,8 +4,10 @@ use super::order::{self, OrderChoice};
 use crate::case::schema::{self, Case, MaxOrder};
 use crate::dae::Dae;
 use crate::discrete::System;
+use crate::integrate::{Absolute, Counters, IntegrationFailure, Wall};
 use crate::onestep::{Method, OneStep, OneStepOptions};
-use crate::sundials::{Absolute, Counters, Ida, IdaFailure, IdaOptions, Step, Wall};
+use crate::sundials::IdaOptions;
+use crate::sundials::{Ida, Step};
 
 /// Method and highest order of a case, with reasons.
 #[derive(Clone, Debug, PartialEq)]
@@ -171,7 +173,7 @@ macro_rules! either {
 
 impl<D: Dae> Integrator<D> {
     /// An integrator at time `t0` [s] with consistent values and derivatives.
-    pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &Options) -> Result<Self, Box<IdaFailure>> {
+    pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &Options) -> Result<Self, Box<IntegrationFailure>> {
         match options {
             Options::Ida(options) => Ida::new(dae, t0, y0, yp0, options).map(Self::Ida),
             Options::OneStep(options) => OneStep::new(dae, t0, y0, yp0, options).map(Self::OneStep),
@@ -179,12 +181,12 @@ impl<D: Dae> Integrator<D> {
     }
 
     /// One accepted step, which does not pass `stop` [s].
-    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IdaFailure>> {
+    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationFailure>> {
         either!(self, one => one.step(stop))
     }
 
     /// Largest step [s] from now on; what has been learned of the motion is kept.
-    pub fn limit(&mut self, largest: f64) -> Result<(), Box<IdaFailure>> {
+    pub fn limit(&mut self, largest: f64) -> Result<(), Box<IntegrationFailure>> {
         match self {
             Self::Ida(ida) => ida.limit(largest),
             Self::OneStep(one) => {
@@ -215,17 +217,17 @@ impl<D: Dae> Integrator<D> {
     }
 
     /// Derivative number `k` of the unknowns at a time [s] within the last step.
-    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
+    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IntegrationFailure>> {
         either!(self, one => one.interpolate(time, k, out))
     }
 
     /// The integrals since the last restart, at the present time or at one [s] within the last step.
-    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
+    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationFailure>> {
         either!(self, one => one.integrals(time, out))
     }
 
     /// Goes on from consistent values at time `t` [s], forgetting the past.
-    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IdaFailure>> {
+    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationFailure>> {
         either!(self, one => one.restart(t, y, yp))
     }
 

@@ -13,7 +13,6 @@ pub mod floors;
 pub mod floquet;
 pub mod growth;
 pub mod known;
-pub mod krylov;
 pub mod method;
 pub mod modes;
 pub mod needs;

@@ -1,9 +1,9 @@
 //! The largest steps of a run, stretch by stretch: short where a signal is fast, and nowhere else.
 
 use super::schedule;
-use crate::case::bounds::{Stretch, merged};
 use crate::case::schema::Case;
 use crate::discrete::System;
+use crate::functions::bounds::{Stretch, merged};
 use crate::model::Model;
 
 /// Stretches whose largest steps are nearer than this factor share the shorter.

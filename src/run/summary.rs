@@ -8,7 +8,7 @@ use super::estimate::Estimated;
 use super::growth::Growing;
 use super::null;
 use super::sensitivity::figures::Sensitivity;
-pub use crate::sundials::Counters;
+pub use crate::integrate::Counters;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

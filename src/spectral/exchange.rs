@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use crate::dae::Pattern;
+use crate::sparse::Pattern;
 
 /// A pattern whose rows have been exchanged in pairs.
 ///

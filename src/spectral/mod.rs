@@ -199,7 +199,7 @@ pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Opt
 
 /// `yᴴ (A' + s B') x / yᴴ B x` of a pair, for entries A' and B' of the pencil's pattern: what changes of the pencil move its
 /// eigenvalue by, with the opposite sign.
-pub fn quotient(pattern: &crate::dae::Pattern, a: &[f64], b: &[f64], of_b: &[f64], pair: &Pair) -> Complex<f64> {
+pub fn quotient(pattern: &crate::sparse::Pattern, a: &[f64], b: &[f64], of_b: &[f64], pair: &Pair) -> Complex<f64> {
     let (mut above, mut below) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
     for (column, x) in pair.x.iter().enumerate() {
         for entry in pattern.column(column) {

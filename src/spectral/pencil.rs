@@ -4,9 +4,9 @@ use nalgebra::Complex;
 
 use super::Failure;
 use super::exchange::Exchanged;
-use crate::dae::Pattern;
-use crate::sundials::KluFault;
-use crate::sundials::klu::complex::ComplexKlu;
+use crate::sparse::KluFault;
+use crate::sparse::Pattern;
+use crate::sparse::klu::complex::ComplexKlu;
 
 /// Two real sparse matrices of one pattern.
 #[derive(Clone, Copy, Debug)]

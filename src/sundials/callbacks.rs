@@ -9,11 +9,12 @@ use std::time::{Duration, Instant};
 
 use sundials_sys::{N_Vector, SUNMatrix};
 
-use super::kernels;
 use super::linear_solver::system_of;
 use super::sensitivities::Slopes;
 use super::vector::{entries, entries_mut};
 use crate::dae::{Dae, Fault, Seeds};
+use crate::integrate::not_finite;
+use crate::numerics::kernels;
 
 /// What ended an integration from inside a callback.
 pub(super) enum Stop {
@@ -157,15 +158,6 @@ pub(super) unsafe extern "C" fn jacobian<D: Dae>(
     bridge.jacobians += 1;
     bridge.jacobian_wall += begin.elapsed();
     code
-}
-
-/// Says which derivative is not finite; `entry` is a position in the pattern.
-pub(crate) fn not_finite<D: Dae>(dae: &D, entry: usize, t: f64) -> String {
-    let pattern = dae.pattern();
-    let column = pattern.starts.partition_point(|&start| start as usize <= entry) - 1;
-    let row = pattern.rows[entry] as usize;
-    let (equation, unknown) = (dae.name(row), dae.name(column));
-    format!("the derivative of the equation of {equation} by {unknown} is not finite at t = {t:.6e} s")
 }
 
 /// `IDAEwtFn` with a [`Bridge`] as user data: `wᵢ = 1 / (relative |yᵢ| + absoluteᵢ)`.

@@ -11,7 +11,7 @@ pub(super) fn loaded() -> [c_int; 3] {
     let (mut major, mut minor, mut patch) = (0, 0, 0);
     let mut label = [0 as c_char; 32];
     // SAFETY: the pointers are valid for writing and the label's length is passed.
-    unsafe { super::c::SUNDIALSGetVersionNumber(&mut major, &mut minor, &mut patch, label.as_mut_ptr(), 32) };
+    unsafe { crate::sparse::c::SUNDIALSGetVersionNumber(&mut major, &mut minor, &mut patch, label.as_mut_ptr(), 32) };
     [major, minor, patch]
 }
 

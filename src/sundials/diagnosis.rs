@@ -6,9 +6,9 @@ use std::panic::resume_unwind;
 use sundials_sys as s;
 
 use super::callbacks::Stop;
-use super::failure::{IdaFailure, Worst, meaning};
 use super::ida::Ida;
 use crate::dae::Dae;
+use crate::integrate::{IntegrationFailure, Worst};
 
 impl<D: Dae> Ida<D> {
     /// Lets a panic of the equations or of the linear solver go on.
@@ -23,7 +23,7 @@ impl<D: Dae> Ida<D> {
     }
 
     /// Everything known about a failure.
-    pub(super) fn failure(&mut self, code: c_int) -> Box<IdaFailure> {
+    pub(super) fn failure(&mut self, code: c_int) -> Box<IntegrationFailure> {
         let mut step = 0.0;
         // SAFETY: IDA is alive.
         unsafe { s::IDAGetCurrentStep(self.memory.0, &mut step) };
@@ -33,7 +33,7 @@ impl<D: Dae> Ida<D> {
             Some(Stop::Fatal(what)) => Some(what),
             _ => None,
         };
-        Box::new(IdaFailure {
+        Box::new(IntegrationFailure {
             code,
             meaning: meaning(code),
             fatal,
@@ -68,5 +68,35 @@ impl<D: Dae> Ida<D> {
             name: self.dae().name(unknown),
             ratio,
         })
+    }
+}
+
+/// What IDA's codes mean.
+pub(super) fn meaning(code: i32) -> &'static str {
+    match code {
+        s::IDA_TOO_MUCH_WORK => "too many steps were taken",
+        s::IDA_TOO_MUCH_ACC => "the tolerances ask for more than double precision can give",
+        s::IDA_ERR_FAIL => "the error test failed too often, or the step became too small",
+        s::IDA_CONV_FAIL => "Newton's iteration failed too often, or the step became too small",
+        s::IDA_LINIT_FAIL => "the linear solver could not be initialised",
+        s::IDA_LSETUP_FAIL => "the matrix could not be evaluated or factored",
+        s::IDA_LSOLVE_FAIL => "the linear system could not be solved",
+        s::IDA_RES_FAIL => "the equations could not be evaluated",
+        s::IDA_REP_RES_ERR => "the equations could not be evaluated, however short the step",
+        s::IDA_CONSTR_FAIL => "the constraints could not be met",
+        s::IDA_FIRST_RES_FAIL => "the equations could not be evaluated at the start",
+        s::IDA_NLS_INIT_FAIL | s::IDA_NLS_SETUP_FAIL | s::IDA_NLS_FAIL => "the nonlinear solver failed",
+        s::IDA_MEM_NULL | s::IDA_NO_MALLOC => "the integrator is not initialised",
+        s::IDA_MEM_FAIL => "there is no memory left",
+        s::IDA_ILL_INPUT => "an input of the integrator is not allowed",
+        s::IDA_BAD_EWT => "an error weight is not positive and finite",
+        s::IDA_BAD_K => "a derivative of this order is not available",
+        s::IDA_BAD_T => "the time is outside the last step",
+        s::IDA_VECTOROP_ERR => "a vector operation failed",
+        s::IDA_SRES_FAIL | s::IDA_QSRHS_FAIL => "the equations of a sensitivity could not be evaluated",
+        s::IDA_REP_SRES_ERR | s::IDA_REP_QSRHS_ERR => {
+            "the equations of a sensitivity could not be evaluated, however short the step"
+        }
+        _ => "the integrator failed",
     }
 }

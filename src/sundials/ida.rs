@@ -6,17 +6,18 @@ use sundials_sys as s;
 
 use super::callbacks::{self, Bridge};
 use super::context::{Context, Messages, keep};
-use super::counters::{Counters, Wall};
-use super::failure::{IdaFailure, meaning};
+use super::diagnosis::meaning;
 use super::integrals;
 use super::linear_solver::LinearSolver;
 use super::options::IdaOptions;
-use super::request;
 use super::sensitivities::Carried;
 use super::shared::Shared;
 use super::vector::Vector;
 use crate::case::schema::Method;
 use crate::dae::Dae;
+use crate::integrate::IntegrationFailure;
+use crate::integrate::request;
+use crate::integrate::{Counters, Wall};
 
 /// An accepted step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,9 +65,15 @@ pub struct Ida<D: Dae> {
 
 impl<D: Dae> Ida<D> {
     /// An integrator at time `t0` [s] with consistent values `y0` and derivatives `yp0`, both of length `dae.len()`.
-    pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &IdaOptions) -> Result<Self, Box<IdaFailure>> {
+    pub fn new(
+        dae: D,
+        t0: f64,
+        y0: &[f64],
+        yp0: &[f64],
+        options: &IdaOptions,
+    ) -> Result<Self, Box<IntegrationFailure>> {
         let n = dae.len();
-        let refuse = |message: String| IdaFailure::request(message, t0);
+        let refuse = |message: String| IntegrationFailure::request(message, t0);
         let klu = request::admit(&dae, [y0, yp0], options.check(n)).map_err(refuse)?;
         let context = Context::new().map_err(refuse)?;
         let vector = |entries: &[f64]| Vector::new(entries, context.raw()).map_err(refuse);
@@ -147,7 +154,7 @@ impl<D: Dae> Ida<D> {
     /// One accepted step, which does not pass `stop` [s]. A stop closer than round-off counts as reached.
     ///
     /// Panics of the equations go on here.
-    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IdaFailure>> {
+    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationFailure>> {
         if request::reached(self.time, stop)? {
             self.time = stop;
             return Ok(Step {
@@ -213,10 +220,10 @@ impl<D: Dae> Ida<D> {
     /// Derivative number `k` of the unknowns at a time [s] within the last step, from IDA's own polynomial.
     ///
     /// `k` is at most the order of the last step; panics when `out` has another length than the unknowns.
-    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
+    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IntegrationFailure>> {
         if !self.stepped {
             let message = "nothing can be interpolated before the first step".to_owned();
-            return Err(IdaFailure::request(message, self.time));
+            return Err(IntegrationFailure::request(message, self.time));
         }
         // SAFETY: IDA and the vector are alive.
         let flag = unsafe { s::IDAGetDky(self.memory.0, time, k.into(), self.scratch.raw()) };
@@ -239,7 +246,7 @@ impl<D: Dae> Ida<D> {
     /// short steps.
     ///
     /// Panics when a slice has another length than the unknowns.
-    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IdaFailure>> {
+    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationFailure>> {
         let counters = self.counters();
         self.solver.system_mut().klu.forget();
         let reset = self.reset_integrals();
@@ -264,7 +271,7 @@ impl<D: Dae> Ida<D> {
     }
 
     /// Largest step [s] from now on; order and past are kept.
-    pub fn limit(&mut self, largest: f64) -> Result<(), Box<IdaFailure>> {
+    pub fn limit(&mut self, largest: f64) -> Result<(), Box<IntegrationFailure>> {
         if largest == self.largest {
             return Ok(());
         }
@@ -278,7 +285,7 @@ impl<D: Dae> Ida<D> {
     }
 
     /// First step [s] after the next restart; IDA's guess when absent.
-    pub fn set_initial_step(&mut self, step: Option<f64>) -> Result<(), Box<IdaFailure>> {
+    pub fn set_initial_step(&mut self, step: Option<f64>) -> Result<(), Box<IntegrationFailure>> {
         // SAFETY: IDA is alive.
         let flag = unsafe { s::IDASetInitStep(self.memory.0, step.unwrap_or(0.0)) };
         if flag < 0 { Err(self.failure(flag)) } else { Ok(()) }

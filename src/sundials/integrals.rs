@@ -5,10 +5,10 @@ use std::ffi::{c_int, c_void};
 use sundials_sys as s;
 
 use super::callbacks::Bridge;
-use super::failure::IdaFailure;
 use super::ida::Ida;
 use super::vector::{Vector, entries, entries_mut};
 use crate::dae::Dae;
+use crate::integrate::IntegrationFailure;
 
 /// `IDAQuadRhsFn` with a [`Bridge`] as user data.
 pub(super) unsafe extern "C" fn integrands<D: Dae>(
@@ -49,7 +49,7 @@ pub(super) fn begin<D: Dae>(memory: *mut c_void, zeros: Option<&Vector>) -> c_in
 impl<D: Dae> Ida<D> {
     /// The integrals `∫ g dt` since the last restart: at the present time, or at a time [s] within the last
     /// step. `out` has length `dae.integrals()`.
-    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
+    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationFailure>> {
         let Some(quadratures) = &mut self.quadratures else {
             return Ok(());
         };

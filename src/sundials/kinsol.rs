@@ -6,14 +6,15 @@ use std::fmt;
 use sundials_sys as s;
 use sundials_sys::{N_Vector, SUNMatrix};
 
-use super::callbacks::{Bridge, Stop, not_finite};
+use super::callbacks::{Bridge, Stop};
 use super::context::{Context, Messages, keep};
-use super::kernels;
 use super::linear_solver::{LinearSolver, system_of};
-use super::request;
 use super::shared::Shared;
 use super::vector::{Vector, entries, entries_mut};
 use crate::dae::{Dae, Fault, Seeds};
+use crate::integrate::not_finite;
+use crate::integrate::request;
+use crate::numerics::kernels;
 
 /// Settings of [`Kinsol::solve`].
 #[derive(Clone, Copy, Debug, PartialEq)]

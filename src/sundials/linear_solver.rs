@@ -11,10 +11,10 @@ use std::time::{Duration, Instant};
 use sundials_sys as s;
 use sundials_sys::{N_Vector, SUNContext, SUNLinearSolver, SUNMatrix};
 
-use super::kernels;
-use super::klu::{Klu, KluFault};
 use super::shared::Shared;
 use super::vector::{entries, entries_mut};
+use crate::numerics::kernels;
+use crate::sparse::{Klu, KluFault};
 
 /// Matrix values, factors, and what happened to them.
 pub(super) struct LinearSystem {

@@ -10,8 +10,8 @@ use std::slice;
 
 use sundials_sys::{_generic_N_Vector_Ops, N_VClone_Serial, N_Vector};
 
-use super::kernels;
 use super::vector::{entries, entries_mut, parts};
+use crate::numerics::kernels;
 
 /// Puts our operations into the table of a serial vector.
 pub(super) fn replace(ops: &mut _generic_N_Vector_Ops) {

@@ -5,11 +5,11 @@ use std::ffi::{c_int, c_void};
 use sundials_sys as s;
 
 use super::callbacks::Bridge;
-use super::failure::IdaFailure;
 use super::ida::Ida;
-use super::kernels;
 use super::vector::{Vector, entries, entries_mut};
 use crate::dae::{Dae, Fault};
+use crate::integrate::IntegrationFailure;
+use crate::numerics::kernels;
 
 /// `∂F/∂σₖ` at one state, kept because a corrector asks for it again and again.
 #[derive(Default)]
@@ -30,7 +30,7 @@ impl Slopes {
         self.of.resize_with(dae.parameters(), Vec::new);
         for (k, slope) in self.of.iter_mut().enumerate() {
             slope.resize(y.len(), 0.0);
-            dae.slope(k, t, y, yp, slope)?;
+            dae.parameter_derivative(k, t, y, yp, slope)?;
         }
         self.t = t;
         self.y.extend_from_slice(y);
@@ -153,7 +153,7 @@ unsafe extern "C" fn integrands<D: Dae>(
     let begin = std::time::Instant::now();
     let code = bridge.call(|dae| {
         for (k, out) in out.iter_mut().enumerate() {
-            dae.integrand_slope(k, t, [y, yp], [along[k], along_rates[k]], out)?;
+            dae.integrand_derivative(k, t, [y, yp], [along[k], along_rates[k]], out)?;
         }
         Ok(())
     });
@@ -177,7 +177,7 @@ impl<D: Dae> Ida<D> {
     /// To be called before the first step.
     ///
     /// Panics when a sensitivity has another length than the unknowns.
-    pub fn carry(&mut self, from: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Box<IdaFailure>> {
+    pub fn carry(&mut self, from: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Box<IntegrationFailure>> {
         let (count, n) = (self.dae().parameters(), self.dae().len());
         let integrals = self.dae().integrals();
         assert!(from.len() == count && rates.len() == count && from.iter().chain(rates).all(|s| s.len() == n));
@@ -185,10 +185,10 @@ impl<D: Dae> Ida<D> {
             return Ok(());
         }
         let time = self.time;
-        let vectors = |all: &[Vec<f64>]| -> Result<Vec<Vector>, Box<IdaFailure>> {
+        let vectors = |all: &[Vec<f64>]| -> Result<Vec<Vector>, Box<IntegrationFailure>> {
             let vector = |entries: &Vec<f64>| Vector::new(entries, self.context.raw());
             let made: Result<_, _> = all.iter().map(vector).collect();
-            made.map_err(|message| IdaFailure::request(message, time))
+            made.map_err(|message| IntegrationFailure::request(message, time))
         };
         let carried = Carried {
             s: vectors(from)?,
@@ -233,7 +233,7 @@ impl<D: Dae> Ida<D> {
     /// Goes on with other sensitivities after [`Ida::restart`]; those of the integrals start at zero.
     ///
     /// Panics when a sensitivity has another length than the unknowns.
-    pub fn carry_on(&mut self, from: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Box<IdaFailure>> {
+    pub fn carry_on(&mut self, from: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Box<IntegrationFailure>> {
         self.bridge.get_mut().slopes.forget();
         let Some(carried) = &mut self.sensitivities else {
             return Ok(());
@@ -259,7 +259,7 @@ impl<D: Dae> Ida<D> {
     /// Sensitivity to parameter k and its rate, at a time [s] within the last step; the first ones before the first step.
     ///
     /// Panics when a slice has another length than the unknowns.
-    pub fn sensitivity(&mut self, k: usize, time: f64, out: [&mut [f64]; 2]) -> Result<(), Box<IdaFailure>> {
+    pub fn sensitivity(&mut self, k: usize, time: f64, out: [&mut [f64]; 2]) -> Result<(), Box<IntegrationFailure>> {
         let Some(carried) = &self.sensitivities else {
             return Ok(());
         };
@@ -281,7 +281,12 @@ impl<D: Dae> Ida<D> {
     /// Sensitivities of the integrals since the last restart to parameter k, at a time [s] within the last step.
     ///
     /// Panics when `out` has another length than the integrals.
-    pub fn integral_sensitivity(&mut self, k: usize, time: f64, out: &mut [f64]) -> Result<(), Box<IdaFailure>> {
+    pub fn integral_sensitivity(
+        &mut self,
+        k: usize,
+        time: f64,
+        out: &mut [f64],
+    ) -> Result<(), Box<IntegrationFailure>> {
         let Some(vector) = self.sensitivities.as_ref().and_then(|carried| carried.integrals.get(k)) else {
             return Ok(());
         };

@@ -1,6 +1,7 @@
 //! Exact derivatives of a residual against coloured central differences.
 
-use slcbeam::dae::{BeamDae, Dae, Seeds, colour};
+use slcbeam::dae::{BeamDae, Dae, Seeds};
+use slcbeam::sparse::colour;
 
 use crate::chance::Random;
 

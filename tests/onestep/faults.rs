@@ -3,12 +3,12 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use slcbeam::dae::Fault;
+use slcbeam::integrate::IntegrationFailure;
 use slcbeam::onestep::{OneStep, OneStepOptions};
-use slcbeam::sundials::IdaFailure;
 
 use super::problems::{Plain, Residual};
 
-fn solve(residual: Residual) -> Result<OneStep<Plain>, Box<IdaFailure>> {
+fn solve(residual: Residual) -> Result<OneStep<Plain>, Box<IntegrationFailure>> {
     let mut one = OneStep::new(
         Plain::new(&[true], residual),
         0.0,

@@ -1,8 +1,8 @@
 //! Orders of convergence, stiff problems, problems with published answers.
 
 use slcbeam::dae::Dae;
+use slcbeam::integrate::Absolute;
 use slcbeam::onestep::{Method, OneStep, OneStepOptions};
-use slcbeam::sundials::Absolute;
 
 use super::problems::{Plain, TRANSISTOR, beam, robertson, transistor, transistor_start, transistor_voltages};
 

@@ -1,8 +1,9 @@
 //! Steps, stops, what stands between them, restarts, requests that cannot be met.
 
-use slcbeam::dae::{Dae, Fault, Pattern, Seeds};
+use slcbeam::dae::{Dae, Fault, Seeds};
+use slcbeam::integrate::Absolute;
 use slcbeam::onestep::{Method, OneStep, OneStepOptions};
-use slcbeam::sundials::Absolute;
+use slcbeam::sparse::Pattern;
 
 use super::orders::{circle, fixed, run};
 use super::problems::Plain;

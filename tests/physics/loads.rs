@@ -5,9 +5,10 @@
 use std::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
-use slcbeam::case::profile::{Integrals, Profile};
-use slcbeam::case::{Case, Clock};
+use slcbeam::case::Case;
 use slcbeam::discrete::{System, TimeData, shapes, start};
+use slcbeam::functions::Clock;
+use slcbeam::functions::profile::{Integrals, Profile};
 
 use super::common::{EI, run, shipped, within};
 

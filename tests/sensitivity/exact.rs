@@ -2,9 +2,12 @@
 
 use slcbeam::case::Case;
 use slcbeam::case::parameter::{CHANGE, Parameter, STEPS};
-use slcbeam::dae::{BeamDae, Dae, Fault, Pattern, PerturbedSystems, Seeds};
+use slcbeam::dae::{BeamDae, Dae, Fault, PerturbedSystems, Seeds};
 use slcbeam::discrete::{System, start};
-use slcbeam::sundials::{Absolute, Ida, IdaOptions, StartOptions, consistent_sensitivities, consistent_start};
+use slcbeam::integrate::{Absolute, StartOptions, consistent_sensitivities, consistent_start};
+use slcbeam::sparse::Pattern;
+use slcbeam::sundials::Ida;
+use slcbeam::sundials::IdaOptions;
 
 use super::common::{beam, parse, wet};
 
@@ -114,7 +117,7 @@ fn difference_formula_is_of_fourth_order() {
     let mut dae = with_parameter(&case, "/beam/density_kg_m3");
     let slope = |dae: &mut BeamDae, f: fn(f64) -> f64| {
         let mut out = [0.0];
-        let done = dae.perturbed_mut()[0].slope(&mut out, |j, _, out| {
+        let done = dae.perturbed_mut()[0].derivative(&mut out, |j, _, out| {
             out[0] = f(1.0 + CHANGE * STEPS[j].0);
             Ok::<(), ()>(())
         });
@@ -136,7 +139,7 @@ fn difference_formula_is_of_fourth_order() {
     let (mut f, mut g, mut out) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     dae.residual(0.0, &y, &yp, &mut f).unwrap();
     twice.residual(0.0, &y, &yp, &mut g).unwrap();
-    dae.slope(0, 0.0, &y, &yp, &mut out).unwrap();
+    dae.parameter_derivative(0, 0.0, &y, &yp, &mut out).unwrap();
     let largest = f.iter().chain(&g).fold(0.0_f64, |m, x| m.max(x.abs()));
     for i in 0..n {
         assert!(

@@ -2,8 +2,11 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use slcbeam::dae::{Dae, Fault, Pattern, Seeds};
-use slcbeam::sundials::{Absolute, Ida, IdaFailure, IdaOptions};
+use slcbeam::dae::{Dae, Fault, Seeds};
+use slcbeam::integrate::{Absolute, IntegrationFailure};
+use slcbeam::sparse::Pattern;
+use slcbeam::sundials::Ida;
+use slcbeam::sundials::IdaOptions;
 
 /// `y' = -y` with something that happens in the residual and the Jacobian.
 struct Decay<R, J> {
@@ -77,7 +80,7 @@ fn after(calls: u32, bad: impl Fn() -> Result<f64, Fault>) -> impl FnMut(f64, f6
 }
 
 /// Steps to t = 1, at most a thousand of them.
-fn to_one<D: Dae>(ida: &mut Ida<D>) -> Result<f64, Box<IdaFailure>> {
+fn to_one<D: Dae>(ida: &mut Ida<D>) -> Result<f64, Box<IntegrationFailure>> {
     for _ in 0..1000 {
         if ida.step(1.0)?.stopped {
             return Ok(ida.y()[0]);

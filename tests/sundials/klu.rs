@@ -1,7 +1,7 @@
 //! Factors and their guard.
 
-use slcbeam::dae::Pattern;
-use slcbeam::sundials::{Klu, KluFault, RowScaling};
+use slcbeam::sparse::Pattern;
+use slcbeam::sparse::{Klu, KluFault, RowScaling};
 
 /// Dense 2 by 2.
 fn small() -> Pattern {

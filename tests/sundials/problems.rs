@@ -1,6 +1,7 @@
 //! Small systems with known answers, Jacobians by central differences on a dense pattern.
 
-use slcbeam::dae::{Dae, Fault, Pattern, Seeds};
+use slcbeam::dae::{Dae, Fault, Seeds};
+use slcbeam::sparse::Pattern;
 
 /// A residual `F(t, y, y')` as a plain function.
 pub type Residual = fn(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Fault>;

@@ -1,7 +1,9 @@
 //! Problems of the IVP test set (Mazzia & Magherini, Bari) and of SUNDIALS' examples, against their published answers.
 
 use slcbeam::dae::Dae;
-use slcbeam::sundials::{Absolute, Ida, IdaOptions};
+use slcbeam::integrate::Absolute;
+use slcbeam::sundials::Ida;
+use slcbeam::sundials::IdaOptions;
 
 use crate::problems::{TRANSISTOR, beam, robertson, transistor, transistor_start, transistor_voltages};
 

@@ -1,7 +1,7 @@
 //! Consistent initial values.
 
 use slcbeam::dae::Dae;
-use slcbeam::sundials::{StartOptions, consistent_start};
+use slcbeam::integrate::{StartOptions, consistent_start};
 
 use crate::problems::{Plain, transistor, transistor_start};
 

@@ -1,7 +1,10 @@
 //! Steps, stops, interpolation, restarts and requests that cannot be met.
 
-use slcbeam::dae::{Dae, Fault, Pattern, Seeds};
-use slcbeam::sundials::{Absolute, Ida, IdaOptions};
+use slcbeam::dae::{Dae, Fault, Seeds};
+use slcbeam::integrate::Absolute;
+use slcbeam::sparse::Pattern;
+use slcbeam::sundials::Ida;
+use slcbeam::sundials::IdaOptions;
 
 /// `q' = p, p' = -q, 0 = s - q p`: known for all times, one unknown algebraic.
 struct Pendulum {

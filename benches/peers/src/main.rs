@@ -12,12 +12,15 @@ use std::time::Instant;
 
 use diffsol::{FaerSparseMat, KLU, MatrixCommon, OdeBuilder, OdeSolverMethod};
 use slcbeam::case::{self, Case};
-use slcbeam::dae::{BeamDae, Dae, Fault, Pattern, Seeds};
+use slcbeam::dae::{BeamDae, Dae, Fault, Seeds};
+use slcbeam::sparse::Pattern;
 use slcbeam::discrete::{System, start};
 use slcbeam::onestep::{Method, OneStepOptions};
 use slcbeam::run::method::{Integrator, Options};
-use slcbeam::sundials::start::{StartOptions, consistent_start};
-use slcbeam::sundials::{Absolute, IdaOptions, Klu};
+use slcbeam::integrate::start::{StartOptions, consistent_start};
+use slcbeam::integrate::Absolute;
+use slcbeam::sundials::IdaOptions;
+use slcbeam::sparse::Klu;
 
 use radau::{Radau, Work};
 

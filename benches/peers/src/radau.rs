@@ -4,8 +4,9 @@
 //! its time is not: an implementation that splits the system into a real one and a complex one of n unknowns pays for each
 //! iteration three residuals, a real and a complex solution, for each factorisation a real and a complex one.
 
-use slcbeam::dae::{Dae, Pattern, Seeds};
-use slcbeam::sundials::Klu;
+use slcbeam::dae::{Dae, Seeds};
+use slcbeam::sparse::Pattern;
+use slcbeam::sparse::Klu;
 
 /// Iterations allowed in a step.
 const ITERATIONS: u32 = 7;

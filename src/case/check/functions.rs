@@ -3,10 +3,10 @@
 use crate::case::faults::Faults;
 use crate::case::locate::child;
 use crate::case::numbers::plain;
-use crate::case::profile::Profile;
 use crate::case::schema::{Case, ChainEnd};
-use crate::case::signals::{Clock, Signal};
 use crate::error::{Code, Violation};
+use crate::functions::profile::Profile;
+use crate::functions::signals::{Clock, Signal};
 
 /// Beyond this a beam does not move [Hz].
 const HIGHEST_FREQUENCY: f64 = 1e6;

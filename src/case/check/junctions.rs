@@ -6,9 +6,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::network::Joined;
 use crate::case::faults::Faults;
 use crate::case::schema::Case;
-use crate::case::signals::Signal;
 use crate::case::wiring::Point;
 use crate::error::{Code, Violation};
+use crate::functions::signals::Signal;
 
 /// An opening below this is closed.
 const CLOSED: f64 = 1e-9;

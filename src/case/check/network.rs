@@ -6,10 +6,10 @@ use super::bladders::two_permeabilities;
 use super::junctions;
 use crate::case::faults::Faults;
 use crate::case::schema::{self, BladderEnd, Case, ChainEnd, Endpoint, Network, TubeDefaults};
-use crate::case::signals::Signal;
 use crate::case::wiring::{Bore, Given, Point, Port, Tube, Wiring, bladder_index, bladder_label};
 use crate::case::wording::nearest;
 use crate::error::{Code, Violation};
+use crate::functions::signals::Signal;
 
 pub(super) fn check(case: &Case, faults: &mut Faults) {
     let (_, joined) = resolve(case, faults);

@@ -1,7 +1,7 @@
 //! How large a function of time or place gets.
 
-use crate::case::profile::Profile;
-use crate::case::signals::Signal;
+use crate::functions::profile::Profile;
+use crate::functions::signals::Signal;
 
 /// Largest absolute value that a signal reaches by `end` [s]: what is found is reached, so that nothing is refused for what it does
 /// not do.

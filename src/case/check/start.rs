@@ -5,10 +5,10 @@ use std::collections::HashMap;
 use crate::case::ends::{Rotation, Translation};
 use crate::case::faults::Faults;
 use crate::case::locate::child;
-use crate::case::profile::Profile;
 use crate::case::schema::{Case, End};
-use crate::case::signals::{Clock, Signal};
 use crate::error::{Code, Violation};
+use crate::functions::profile::Profile;
+use crate::functions::signals::{Clock, Signal};
 
 pub(super) fn check(case: &Case, faults: &mut Faults) {
     pressures(case, faults);

@@ -4,8 +4,8 @@ use super::size::{size_along, size_of, size_of_integral};
 use crate::case::faults::Faults;
 use crate::case::numbers::plain;
 use crate::case::schema::{Bladders, Case, ChainEnd, Load, Rectifier};
-use crate::case::signals::Signal;
 use crate::error::{Code, Violation};
+use crate::functions::signals::Signal;
 
 /// Largest strain and largest pressure over the modulus: the model ends at a tenth of that, whatever the material.
 const MOST: f64 = 10.0;

@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::case::profile::Profile;
-use crate::case::signals::Signal;
+use crate::functions::profile::Profile;
+use crate::functions::signals::Signal;
 
 /// A distributed load.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::case::faults::Source;
 use crate::case::origins::Origins;
 use crate::case::presets::Preset;
-use crate::case::signals::{Clock, Signal};
+use crate::functions::signals::{Clock, Signal};
 
 mod beam;
 mod bladders;

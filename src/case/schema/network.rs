@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::CrossSection;
-use crate::case::signals::Signal;
+use crate::functions::signals::Signal;
 
 /// What a tube is unless it says otherwise: rigid, slender, without storage.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,9 +1,9 @@
 //! What is done in no time: work at a switch, where a solid without inertia jumps with its load and ends turn with their moment.
 
 use super::{Flow, add, complete, fluid, solid};
-use crate::case::signals::Jet;
 use crate::discrete::kick::{self, Nodal};
 use crate::discrete::{System, TimeData, Workspace};
+use crate::functions::signals::Jet;
 use crate::model::Kinematics;
 
 /// Gives the values of time the differences over a jump as rates: the jump takes one unit of a time that nobody counts.

@@ -2,7 +2,7 @@
 
 use super::solid::normal_force;
 use crate::discrete::{System, Workspace};
-use crate::model::Scalar;
+use crate::numerics::Scalar;
 
 /// `[E24]` A bar can only stretch; what bends it is taken up by whatever keeps it straight:
 ///

@@ -3,7 +3,8 @@
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::{Scalar, Storage};
+use crate::model::Storage;
+use crate::numerics::Scalar;
 
 /// `[E8]` Pressure of each cell from its stored area, and each bladder's mean (A.15, A.16 solved for p):
 ///

@@ -8,7 +8,8 @@ pub mod solid;
 mod unpack;
 
 use super::{System, TimeData, Workspace};
-use crate::model::{Kinematics, Scalar};
+use crate::model::Kinematics;
+use crate::numerics::Scalar;
 
 pub use unpack::unpack;
 

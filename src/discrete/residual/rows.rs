@@ -3,7 +3,8 @@
 use super::fluid::{bridge_drops, pressure_at};
 use crate::discrete::fluid_mesh::MeshBridge;
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::{Kinematics, PoolKind, Scalar};
+use crate::model::{Kinematics, PoolKind};
+use crate::numerics::Scalar;
 
 /// `[E14]` Momentum of each node (A.5), in the conservative form telescoping:
 ///

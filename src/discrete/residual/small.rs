@@ -4,7 +4,8 @@ use super::solid::{self, couple, curvature_rates, normal_force, total_moment_dro
 use crate::case::Translation;
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::{Kinematics, Scalar};
+use crate::model::Kinematics;
+use crate::numerics::Scalar;
 
 /// `[E26]` Small rotations, g = 1; without axial force on bending (the linear beam) g = 0:
 ///

@@ -2,7 +2,8 @@
 
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::{Kinematics, Scalar};
+use crate::model::Kinematics;
+use crate::numerics::Scalar;
 
 /// `[E11]` Directors, stretch, tangent and curvature (A.1, A.2, A.19, A.20), curvature positive with the +x fibre in
 /// tension:

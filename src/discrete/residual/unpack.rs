@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use crate::discrete::time_data::Frame;
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::{PoolKind, Scalar};
+use crate::model::PoolKind;
+use crate::numerics::Scalar;
 
 /// Copies the state into the workspace; what an end prescribes comes from its signal, with exact rates.
 ///

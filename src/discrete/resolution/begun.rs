@@ -1,10 +1,10 @@
 //! How a mesh carries the displacements and the velocities that a beam begins with.
 
-use crate::case::profile::{Integrals, Profile};
 use crate::case::schema::Case;
-use crate::case::signals::Clock;
 use crate::case::{Rotation, Translation};
 use crate::discrete::{System, shapes};
+use crate::functions::profile::{Integrals, Profile};
+use crate::functions::signals::Clock;
 use crate::model::Model;
 
 use super::ratio;

@@ -11,12 +11,12 @@ mod ports;
 mod statics;
 mod vibrations;
 
-use crate::case::profile::{Integrals, Profile};
 use crate::case::schema::Case;
 use crate::case::schema::Effect;
-use crate::case::signals::Signal;
 use crate::case::wiring::bladder_index;
 use crate::error::Code;
+use crate::functions::profile::{Integrals, Profile};
+use crate::functions::signals::Signal;
 use crate::model::{Load, Model, Storage};
 
 use super::{System, shapes};
@@ -206,7 +206,7 @@ fn ratio(part: f64, whole: f64, scale: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::signals::Polynomial;
+    use crate::functions::signals::Polynomial;
 
     /// Goal: a pressure that is largest between two cells: its root mean square is off by 9 %, its largest value by a third.
     #[test]

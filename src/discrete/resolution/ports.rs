@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use crate::case::schema::{BladderEnd, Case};
-use crate::case::signals::Signal;
+use crate::functions::signals::Signal;
 use crate::model::Wet;
 use crate::model::network::{Node, PressurePort, Source};
 

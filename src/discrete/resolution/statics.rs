@@ -1,7 +1,7 @@
 //! What a load does to a beam at rest, and what of it a mesh leaves out.
 
-use crate::case::profile::Integrals;
 use crate::case::{Rotation, Translation};
+use crate::functions::profile::Integrals;
 use crate::model::loads::LoadKind;
 use crate::model::{Load, Model};
 

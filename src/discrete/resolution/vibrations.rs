@@ -2,9 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
-use crate::case::profile::Profile;
 use crate::discrete::shapes;
 use crate::discrete::straight::{self, Mode};
+use crate::functions::profile::Profile;
 use crate::model::Model;
 
 /// Vibrations into which a shape is taken apart.

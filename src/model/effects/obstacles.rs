@@ -1,9 +1,9 @@
 //! What stands against leaving an effect out: something in the case that has a meaning only with it.
 
-use crate::case::profile::Profile;
 use crate::case::schema::{Case, Formulation, Load};
-use crate::case::signals::Signal;
 use crate::case::{ResolvedEnd, Rotation, Translation};
+use crate::functions::profile::Profile;
+use crate::functions::signals::Signal;
 use crate::model::{Network, Pool};
 
 /// Why an effect must stay, and what to do.

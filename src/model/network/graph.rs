@@ -6,8 +6,8 @@ use super::{
     Bridge, CheckValve, Link, LinkKind, Network, Node, PressurePort, Source, Turbine, bladder_permeability, components,
 };
 use crate::case::schema::{Bladders, Fluid, Rectifier, TurbineConductance};
-use crate::case::signals::Signal;
 use crate::case::wiring::{Bore, Given, Point, Tube, Wiring};
+use crate::functions::signals::Signal;
 use crate::model::duct;
 use crate::model::mapping::TABLE_TUBE_RATIO;
 

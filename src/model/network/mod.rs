@@ -10,9 +10,9 @@ mod graph;
 
 use super::duct;
 use crate::case::schema::{BladderEnd, Bladders, Case};
-use crate::case::signals::Signal;
 use crate::case::wiring::Wiring;
 use crate::error::Result;
+use crate::functions::signals::Signal;
 
 /// A point of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,7 +123,7 @@ pub struct CheckValve {
 impl CheckValve {
     /// Flow under the pressure drop `drop`.
     #[inline]
-    pub fn flow<T: super::Scalar>(&self, drop: T) -> T {
+    pub fn flow<T: crate::numerics::Scalar>(&self, drop: T) -> T {
         let closed = f64::ln_1p((-self.cracking_pressure / self.width).exp());
         let open = ((drop - self.cracking_pressure) * (1.0 / self.width)).softplus() - closed;
         drop * self.reverse + open * ((self.forward - self.reverse) * self.width)

@@ -5,7 +5,8 @@ use serde_json::{Value, json};
 use super::signals::{is_zero, peak, words};
 use crate::case::schema::{BladderEnd, ChainEnd, Load, Rectifier};
 use crate::case::wiring::{Given, Point, Wiring};
-use crate::case::{Case, Profile, ResolvedEnd, Rotation, Signal, Translation};
+use crate::case::{Case, ResolvedEnd, Rotation, Translation};
+use crate::functions::{Profile, Signal};
 use crate::model::Network;
 use crate::output::numbers::{quantity, significant, trimmed};
 

@@ -1,8 +1,8 @@
 //! Functions of time in words.
 
-use crate::case::Signal;
-use crate::case::bounds::Interval;
-use crate::case::signals::{Ramp, Sine};
+use crate::functions::Signal;
+use crate::functions::bounds::Interval;
+use crate::functions::signals::{Ramp, Sine};
 use crate::output::numbers::{quantity, trimmed};
 
 /// Longest words of a sum or product.

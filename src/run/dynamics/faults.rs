@@ -2,9 +2,9 @@
 
 use super::pace::STALL_STEPS;
 use crate::error::{At, Code, SolverFault};
-use crate::sundials::{IdaFailure, StartFailure};
+use crate::integrate::{IntegrationFailure, StartFailure};
 
-pub(super) fn fault(failure: &IdaFailure) -> SolverFault {
+pub(super) fn fault(failure: &IntegrationFailure) -> SolverFault {
     SolverFault {
         code: if failure.singular.is_some() { Code::Singular } else { Code::Integrator },
         at: At::Time(failure.time),

@@ -27,8 +27,8 @@ use crate::case::schema::Case;
 use crate::dae::BeamDae;
 use crate::discrete::{System, start};
 use crate::error::{Result, SolverFault};
+use crate::integrate::{StartOptions, consistent_start};
 use crate::model::{audit, characteristic};
-use crate::sundials::{StartOptions, consistent_start};
 
 /// A run that ended, in whatever way; everything up to its end is recorded.
 #[derive(Clone, Debug)]

@@ -4,13 +4,13 @@ use super::Run;
 use super::faults::{fault, inconsistent};
 use crate::dae::BeamDae;
 use crate::error::{Result, SolverFault};
+use crate::integrate::{StartOptions, consistent_start};
 use crate::run::checkpoint::{Checkpoint, VERSION};
 use crate::run::method::Integrator;
 use crate::run::record::Recorder;
 use crate::run::schedule::Stop;
 use crate::run::sensitivity::forward::Forward;
 use crate::run::summary::Counters;
-use crate::sundials::{StartOptions, consistent_start};
 
 impl Run<'_> {
     /// Passes a switch: the next smooth branch of every signal, a consistent state, and what is done in no time in between.

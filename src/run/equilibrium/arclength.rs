@@ -1,6 +1,7 @@
 //! The equations of equilibrium with the load factor as one more unknown.
 
-use crate::dae::{Dae, Fault, Pattern, Seeds, StaticBeam};
+use crate::dae::{Dae, Fault, Seeds, StaticBeam};
+use crate::sparse::Pattern;
 
 /// `[E30]` A point of the load path: n equations of equilibrium for n unknowns y and the share s of the loads, and one that
 /// says how far along the path the point is (Keller's pseudo-arclength):

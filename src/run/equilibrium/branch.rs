@@ -3,7 +3,8 @@
 use super::path::{End, Follower, NEAR, PATIENCE, Way, difference};
 use super::state::Stability;
 use super::{Event, Kind};
-use crate::sundials::{KinsolFailure, kernels};
+use crate::numerics::kernels;
+use crate::sundials::KinsolFailure;
 
 /// First step along the branch, over its size.
 const ASIDE: f64 = 0.02;

@@ -22,11 +22,11 @@ mod sensitivity;
 mod state;
 
 use crate::case::schema::Case;
-use crate::case::signals::Polynomial;
-use crate::case::{Clock, Signal};
 use crate::dae::{BeamDae, StaticBeam};
 use crate::discrete::{System, TimeData, start};
 use crate::error::{self, At, SolverFault};
+use crate::functions::signals::Polynomial;
+use crate::functions::{Clock, Signal};
 use crate::model::{Model, Storage};
 use crate::run::record::Control;
 use crate::sundials::Solution;

@@ -6,7 +6,7 @@ use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{Dae as _, Seeds, StaticBeam};
 use crate::error::{Error, Result};
-use crate::sundials::Klu;
+use crate::sparse::Klu;
 
 /// Derivatives by one parameter.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,9 +5,10 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use super::words::LARGE;
-use crate::case::{Rotation, Signal, Translation};
+use crate::case::{Rotation, Translation};
 use crate::discrete::System;
 use crate::discrete::straight::meshed::{self, SmallMode};
+use crate::functions::Signal;
 use crate::model::loads::LoadKind;
 
 /// Vibrations that are looked at: the first are computed, the others follow from the spacing of their wave numbers.

@@ -1,9 +1,9 @@
 //! A wave that an end or a pulse sends out, while it has not yet become a vibration of the whole beam.
 
 use crate::case::schema::Case;
-use crate::case::signals::Signal;
 use crate::case::{Rotation, Translation};
 use crate::discrete::System;
+use crate::functions::signals::Signal;
 use crate::model::Model;
 
 /// What a motion grows like that a smooth step begins: the third power of time, and two more by inertia.

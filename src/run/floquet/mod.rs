@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::krylov;
 use super::periodic::{Cycle, Scene};
+use crate::numerics::krylov;
 use shape::{Modes, Part};
 
 pub use verdict::{Stability, Verdict};

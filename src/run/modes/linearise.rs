@@ -1,14 +1,14 @@
 //! The linearisation of a case about a state.
 
 use crate::case::Case;
-use crate::case::signals::Clock;
 use crate::dae::{BeamDae, Dae as _, Fault, Seeds};
 use crate::discrete::{System, start};
 use crate::error::{At, Code, Error, Result, SolverFault};
+use crate::functions::signals::Clock;
+use crate::integrate::{StartOptions, consistent_start};
 use crate::model::Model;
 use crate::run::equilibrium;
 use crate::spectral::Pencil;
-use crate::sundials::{StartOptions, consistent_start};
 
 /// What the fluid does in the linearised equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

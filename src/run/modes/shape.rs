@@ -3,8 +3,8 @@
 use nalgebra::Complex;
 
 use super::linearise::Linearised;
-use crate::dae::dual::Dual;
 use crate::discrete::{TimeData, Workspace, residual};
+use crate::numerics::dual::Dual;
 
 /// Amplitudes of a mode: real parts cos, imaginary parts minus sin of the phase at t = 0.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,11 +5,11 @@ use crate::case::schema::{Case, Choice, Effects};
 use crate::dae::BeamDae;
 use crate::discrete::{System, start};
 use crate::error::{At, Code, Error, Result, SolverFault};
+use crate::integrate::{Absolute, StartOptions, consistent_start};
 use crate::model::Model;
 use crate::onestep::step_map::StepError;
 use crate::onestep::{Method, OneStep, OneStepOptions, StepMap};
 use crate::run::drive::{Drive, drive, settled};
-use crate::sundials::{Absolute, StartOptions, consistent_start};
 
 /// Steps of a period at least: signals are smooth, but a mode that is at rest has no say in the error test.
 const LEAST_STEPS: f64 = 32.0;
@@ -89,7 +89,7 @@ impl Scene {
             max_step: Some(end / LEAST_STEPS),
             ..OneStepOptions::default()
         };
-        let error = |failure: Box<crate::sundials::IdaFailure>| StepError {
+        let error = |failure: Box<crate::integrate::IntegrationFailure>| StepError {
             time: failure.time,
             what: failure.to_string(),
         };

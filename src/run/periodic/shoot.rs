@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::scene::Scene;
 use crate::dae::BeamDae;
+use crate::integrate::{StartOptions, consistent_start};
+use crate::numerics::krylov;
 use crate::onestep::StepMap;
 use crate::onestep::step_map::{StepError, StepMapWork};
-use crate::run::krylov;
-use crate::sundials::{StartOptions, consistent_start};
 
 /// Correction over the tolerance at which a cycle is found.
 const FOUND: f64 = 0.05;

@@ -13,9 +13,10 @@ use crate::dae::{BeamDae, Dae as _, PerturbedSystems};
 use crate::discrete::quantities::{Extremes, Look, Observable, Read, Row};
 use crate::discrete::{ledger, start};
 use crate::error::{At, Code, Error, Result, SolverFault};
+use crate::integrate::{IntegrationFailure, consistent_sensitivities};
 use crate::run::equilibrium;
 use crate::run::schedule::{self, Stop};
-use crate::sundials::{Ida, IdaFailure, consistent_sensitivities};
+use crate::sundials::Ida;
 
 /// Sensitivities of a run to some numbers of its case.
 pub struct Forward<'a> {
@@ -118,7 +119,7 @@ impl<'a> Forward<'a> {
     pub fn begin(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverFault> {
         self.look(dae, 0);
         for ((perturbed, cases), s) in dae.perturbed_mut().iter_mut().zip(&self.cases).zip(&mut self.s) {
-            perturbed.slope(s, |j, beam, out| {
+            perturbed.derivative(s, |j, beam, out| {
                 let case = &cases[j];
                 let (system, now) = beam.instant(0.0);
                 let mut state = start::state(system, case, now);
@@ -145,7 +146,7 @@ impl<'a> Forward<'a> {
     }
 
     /// Hands them to the integrator: at the start of the run, or after a restart.
-    pub fn hand_over(&self, ida: &mut Ida<BeamDae>, again: bool) -> std::result::Result<(), Box<IdaFailure>> {
+    pub fn hand_over(&self, ida: &mut Ida<BeamDae>, again: bool) -> std::result::Result<(), Box<IntegrationFailure>> {
         if again {
             ida.carry_on(&self.s, &self.sp)
         } else {
@@ -159,7 +160,7 @@ impl<'a> Forward<'a> {
         ida: &mut Ida<BeamDae>,
         t: f64,
         integrals: &mut [Vec<f64>],
-    ) -> std::result::Result<(), Box<IdaFailure>> {
+    ) -> std::result::Result<(), Box<IntegrationFailure>> {
         for (k, integrals) in integrals.iter_mut().enumerate() {
             ida.sensitivity(k, t, [&mut self.s[k], &mut self.sp[k]])?;
             ida.integral_sensitivity(k, t, integrals)?;
@@ -176,7 +177,7 @@ impl<'a> Forward<'a> {
         ida: &mut Ida<BeamDae>,
         t: f64,
         [y, yp]: [&[f64]; 2],
-    ) -> std::result::Result<Before, Box<IdaFailure>> {
+    ) -> std::result::Result<Before, Box<IntegrationFailure>> {
         let mut totals = self.carried.clone();
         self.read(ida, t, &mut totals)?;
         self.carried = totals;
@@ -235,12 +236,12 @@ impl<'a> Forward<'a> {
         for (k, perturbed) in dae.perturbed_mut().iter_mut().enumerate() {
             let stops = &self.stops[k];
             let mut moved = [0.0];
-            let never = perturbed.slope(&mut moved, |j, _, out| {
+            let never = perturbed.derivative(&mut moved, |j, _, out| {
                 out[0] = stops[j][stop].t;
                 Ok::<(), std::convert::Infallible>(())
             });
             let never = never.and_then(|()| {
-                perturbed.slope(&mut restated, |j, beam, out| {
+                perturbed.derivative(&mut restated, |j, beam, out| {
                     let (change, own) = (STEPS[j].0 * CHANGE, stops[j][stop].t);
                     let from = moved_by([change, own - t], [&before.state, &before.rates, &before.s[k]]);
                     out.copy_from_slice(&from);
@@ -270,7 +271,7 @@ impl<'a> Forward<'a> {
         for (k, perturbed) in dae.perturbed_mut().iter_mut().enumerate() {
             let stops = &self.stops[k];
             let (left, right) = (&before.s[k], &self.s[k]);
-            let never = perturbed.slope(&mut jumped, |j, beam, out| {
+            let never = perturbed.derivative(&mut jumped, |j, beam, out| {
                 let (change, own) = (STEPS[j].0 * CHANGE, stops[j][stop].t);
                 let by = [change, own - t];
                 let from = moved_by(by, [&before.state, &before.rates, left]);
@@ -299,7 +300,7 @@ impl<'a> Forward<'a> {
         t: f64,
         [y, yp]: [&[f64]; 2],
         row: &Row,
-    ) -> std::result::Result<&[f64], Box<IdaFailure>> {
+    ) -> std::result::Result<&[f64], Box<IntegrationFailure>> {
         let mut integrals = self.carried.clone();
         self.read(ida, t, &mut integrals)?;
         let dae = ida.dae_mut();

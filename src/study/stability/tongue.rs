@@ -6,8 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::workers;
 use crate::case::schema::Case;
-use crate::case::{ResolvedEnd, Signal, Translation};
+use crate::case::{ResolvedEnd, Translation};
 use crate::error::{Error, Result};
+use crate::functions::Signal;
 use crate::model::Model;
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu};
 use crate::run::drive::{Drive, settled};

@@ -8,8 +8,8 @@ use super::figure::Figure;
 use super::fit::{minimum, smooth_mean};
 use super::row::Row;
 use super::solve::{on_three_meshes, solve};
-use crate::case::{Clock, Signal};
 use crate::error::Result;
+use crate::functions::{Clock, Signal};
 
 /// Length [m], stiffnesses [N], [N m^2], mass [kg/m], final speed [1/s], time of acceleration [s].
 const LENGTH: f64 = 10.0;

@@ -8,7 +8,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::Scene;
-use crate::case::{Rotation, Signal, Translation};
+use crate::case::{Rotation, Translation};
+use crate::functions::Signal;
 use crate::model::loads::LoadKind;
 
 const ELEMENTS: usize = 32;
@@ -145,7 +146,7 @@ fn most(scene: &Scene, units: &[Unit], measure: impl Fn(&[f64], usize) -> f64) -
 
 /// Forces of a profile on elements, with their first moments about the left node over the element's length; none where the profile
 /// is too narrow for them.
-fn forces(profile: &crate::case::Profile, length: f64) -> Option<Vec<[f64; 4]>> {
+fn forces(profile: &crate::functions::Profile, length: f64) -> Option<Vec<[f64; 4]>> {
     let h = 1.0 / ELEMENTS as f64;
     let mut amount = 0.0;
     let all = (0..ELEMENTS)

@@ -9,7 +9,8 @@ use std::cell::OnceCell;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::case::schema::{BladderEnd, Case};
-use crate::case::{ResolvedEnd, Rotation, Signal, Translation};
+use crate::case::{ResolvedEnd, Rotation, Translation};
+use crate::functions::Signal;
 use crate::model::characteristic::first_wave_number;
 use crate::model::network::{Link, Node};
 use crate::model::scales::Drive;

@@ -1,7 +1,7 @@
 //! How fast a signal asks for what it asks.
 
-use crate::case::Signal;
-use crate::case::bounds::Excitation;
+use crate::functions::Signal;
+use crate::functions::bounds::Excitation;
 
 /// How a signal excites vibrations over the run, relative to its size.
 pub struct Pace {

@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use super::Scene;
 use super::pace::Pace;
-use crate::case::{Signal, Translation};
+use crate::case::Translation;
+use crate::functions::Signal;
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
 use crate::model::loads::LoadKind;
 

@@ -6,8 +6,8 @@ use super::enclose::{crests, wave};
 use super::interval::{Bounded, Interval, Span};
 use super::search::{self, Search, overflows, sizes};
 use super::variation::Variation;
-use crate::case::jet::Jet;
-use crate::case::profile::Profile;
+use crate::functions::jet::Jet;
+use crate::functions::profile::Profile;
 
 impl Profile {
     /// All values between two places in [0, 1].

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 /// Points in [0, 1] and weights that sum to 1.
 #[derive(Clone, Debug)]
-pub(super) struct Gauss {
+pub struct Gauss {
     points: Vec<(f64, f64)>,
 }
 

@@ -9,7 +9,7 @@ pub mod complex;
 
 use std::ptr;
 
-use crate::dae::Pattern;
+use crate::sparse::Pattern;
 
 use super::c;
 

@@ -4,7 +4,7 @@ use std::collections::BinaryHeap;
 
 use super::interval::{Bounded, Interval};
 use super::search::{ROUND_OFF, Search, sizes, told};
-use crate::case::jet::Jet;
+use crate::functions::jet::Jet;
 
 /// Pieces that are looked at, at most, beyond those between breaks.
 const MOST_PIECES: usize = 400;

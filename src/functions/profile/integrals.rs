@@ -2,10 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::gauss::Gauss;
 use super::waves::Waves;
 use super::{Polynomial, Profile, Wave};
-use crate::case::curve::Interpolation;
+use crate::functions::curve::Interpolation;
+use crate::numerics::gauss::Gauss;
 
 /// Turns of half a wave that one piece is divided into before waves are integrated in closed form.
 const HALF_WAVES: f64 = 64.0;

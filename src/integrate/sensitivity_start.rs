@@ -1,7 +1,7 @@
 //! Consistent initial values of sensitivities: one linear system, with the matrix of a consistent start.
 
-use super::klu::{Klu, KluFault};
 use crate::dae::{Dae, Fault, Seeds};
+use crate::sparse::{Klu, KluFault};
 
 /// Solves `F_y s + F_y' s' + ∂F/∂σₖ = 0` ([E41]) for the sensitivities of algebraic unknowns and the rates of
 /// those of differential ones, for every parameter k of the equations; `(y, yp)` is consistent.
@@ -40,7 +40,7 @@ pub fn consistent_sensitivities<D: Dae>(
             }
             sp[i] = 0.0;
         }
-        dae.slope(k, t, y, yp, &mut slope).map_err(text)?;
+        dae.parameter_derivative(k, t, y, yp, &mut slope).map_err(text)?;
         for _ in 0..2 {
             let out = &mut [residual.as_mut_slice()];
             dae.tangent(t, y, yp, [&[s.as_slice()], &[sp.as_slice()]], out)

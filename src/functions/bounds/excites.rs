@@ -18,7 +18,7 @@
 use super::interval::Bounded;
 use super::tones::{Envelope, Factor, Tone};
 use super::variation::Variation;
-use crate::case::signals::{RampShape, Signal};
+use crate::functions::signals::{RampShape, Signal};
 
 /// Tones at this part of a frequency and above may be in resonance with it.
 pub const NEAR: f64 = 0.4;

@@ -3,9 +3,9 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::interval::{Bounded, Interval, Span};
-use crate::case::curve::Interpolation;
-use crate::case::jet::{Clock, Jet};
-use crate::case::signals::{Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine};
+use crate::functions::curve::Interpolation;
+use crate::functions::jet::{Clock, Jet};
+use crate::functions::signals::{Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine};
 
 impl Bounded for Signal {
     fn exactly(&self, t: f64, within: f64) -> Jet {
@@ -226,7 +226,7 @@ impl Polynomial {
     }
 }
 
-impl crate::case::curve::Curve {
+impl crate::functions::curve::Curve {
     /// All that the curve does in `[from, to]`, piece by piece.
     pub(super) fn span(&self, from: f64, to: f64) -> Span {
         let knots = self.knots();

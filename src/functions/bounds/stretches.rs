@@ -12,8 +12,8 @@
 
 use super::interval::Bounded;
 use super::period::AT_REST;
-use crate::case::curve::Interpolation;
-use crate::case::signals::{Polynomial, Sigmoid, Signal, Sine};
+use crate::functions::curve::Interpolation;
+use crate::functions::signals::{Polynomial, Sigmoid, Signal, Sine};
 
 /// Slopes of a logistic step within which it happens.
 const HAPPENS: f64 = 12.0;

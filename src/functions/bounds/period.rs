@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::case::signals::{Polynomial, Signal};
+use crate::functions::signals::{Polynomial, Signal};
 
 /// Cycles of the slowest sine in a common period, at most.
 const MOST_CYCLES: f64 = 64.0;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use sundials_sys as s;
+use crate::dae::Dae;
 
 /// The unknown whose error is largest against its tolerance.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub struct Worst {
 
 /// A step that could not be done, or a request that cannot be met.
 #[derive(Clone, Debug, PartialEq)]
-pub struct IdaFailure {
+pub struct IntegrationFailure {
     /// IDA's code, negative; 0 when the failure is not IDA's.
     pub code: i32,
     /// What the code means.
@@ -40,7 +40,7 @@ pub struct IdaFailure {
     pub singular: Option<String>,
 }
 
-impl IdaFailure {
+impl IntegrationFailure {
     /// A request that cannot be met, at time `time` [s].
     pub(crate) fn request(message: String, time: f64) -> Box<Self> {
         Box::new(Self {
@@ -58,7 +58,7 @@ impl IdaFailure {
     }
 }
 
-impl fmt::Display for IdaFailure {
+impl fmt::Display for IntegrationFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(fatal) = &self.fatal {
             return f.write_str(fatal);
@@ -87,34 +87,13 @@ impl fmt::Display for IdaFailure {
     }
 }
 
-impl std::error::Error for IdaFailure {}
+impl std::error::Error for IntegrationFailure {}
 
-/// What IDA's codes mean.
-pub(super) fn meaning(code: i32) -> &'static str {
-    match code {
-        s::IDA_TOO_MUCH_WORK => "too many steps were taken",
-        s::IDA_TOO_MUCH_ACC => "the tolerances ask for more than double precision can give",
-        s::IDA_ERR_FAIL => "the error test failed too often, or the step became too small",
-        s::IDA_CONV_FAIL => "Newton's iteration failed too often, or the step became too small",
-        s::IDA_LINIT_FAIL => "the linear solver could not be initialised",
-        s::IDA_LSETUP_FAIL => "the matrix could not be evaluated or factored",
-        s::IDA_LSOLVE_FAIL => "the linear system could not be solved",
-        s::IDA_RES_FAIL => "the equations could not be evaluated",
-        s::IDA_REP_RES_ERR => "the equations could not be evaluated, however short the step",
-        s::IDA_CONSTR_FAIL => "the constraints could not be met",
-        s::IDA_FIRST_RES_FAIL => "the equations could not be evaluated at the start",
-        s::IDA_NLS_INIT_FAIL | s::IDA_NLS_SETUP_FAIL | s::IDA_NLS_FAIL => "the nonlinear solver failed",
-        s::IDA_MEM_NULL | s::IDA_NO_MALLOC => "the integrator is not initialised",
-        s::IDA_MEM_FAIL => "there is no memory left",
-        s::IDA_ILL_INPUT => "an input of the integrator is not allowed",
-        s::IDA_BAD_EWT => "an error weight is not positive and finite",
-        s::IDA_BAD_K => "a derivative of this order is not available",
-        s::IDA_BAD_T => "the time is outside the last step",
-        s::IDA_VECTOROP_ERR => "a vector operation failed",
-        s::IDA_SRES_FAIL | s::IDA_QSRHS_FAIL => "the equations of a sensitivity could not be evaluated",
-        s::IDA_REP_SRES_ERR | s::IDA_REP_QSRHS_ERR => {
-            "the equations of a sensitivity could not be evaluated, however short the step"
-        }
-        _ => "the integrator failed",
-    }
+/// Says which derivative is not finite; `entry` is a position in the pattern.
+pub(crate) fn not_finite<D: Dae>(dae: &D, entry: usize, t: f64) -> String {
+    let pattern = dae.pattern();
+    let column = pattern.starts.partition_point(|&start| start as usize <= entry) - 1;
+    let row = pattern.rows[entry] as usize;
+    let (equation, unknown) = (dae.name(row), dae.name(column));
+    format!("the derivative of the equation of {equation} by {unknown} is not finite at t = {t:.6e} s")
 }

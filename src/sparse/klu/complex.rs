@@ -5,8 +5,8 @@ use std::ptr;
 use nalgebra::Complex;
 
 use super::{Analysis, KluFault, RowScaling};
-use crate::dae::Pattern;
-use crate::sundials::c;
+use crate::sparse::Pattern;
+use crate::sparse::c;
 
 /// Factors of complex matrices that share a pattern; pivots are chosen anew for every matrix.
 pub struct ComplexKlu {

@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::gauss::Gauss;
 use super::{Polynomial, Profile, Wave};
+use crate::numerics::gauss::Gauss;
 
 /// Waves beyond which a product is not written out.
 const MOST: usize = 64;

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use crate::model::Scalar;
+use crate::numerics::Scalar;
 
 /// `value + Σ derivative[l] ε_l`, `ε_l ε_m = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]

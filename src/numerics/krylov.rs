@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 use slcbeam_dense::eigen;
 
-use crate::sundials::kernels::dot;
+use crate::numerics::kernels::dot;
 
 /// A vector in which later ones have no part any more counts as none.
 const SPENT: f64 = 1e-13;

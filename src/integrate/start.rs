@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use super::callbacks::not_finite;
-use super::kernels;
-use super::klu::{Klu, KluFault};
+use super::not_finite;
 use crate::dae::{Dae, Fault, Seeds};
+use crate::numerics::kernels;
+use crate::sparse::{Klu, KluFault};
 
 /// Settings of [`consistent_start`].
 #[derive(Clone, Debug, PartialEq)]

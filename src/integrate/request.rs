@@ -1,8 +1,8 @@
 //! What every integrator checks before it begins, and before a step.
 
-use super::failure::IdaFailure;
-use super::klu::{Klu, KluFault};
+use super::failure::IntegrationFailure;
 use crate::dae::Dae;
+use crate::sparse::{Klu, KluFault};
 
 /// The factors to be of a system that fits its values `[y, y']` and whose `options` were found good; else what is wrong.
 pub(crate) fn admit<D: Dae>(dae: &D, values: [&[f64]; 2], options: Result<(), String>) -> Result<Klu, String> {
@@ -22,11 +22,11 @@ pub(crate) fn admit<D: Dae>(dae: &D, values: [&[f64]; 2], options: Result<(), St
 }
 
 /// Whether a stop time [s] is reached, round-off included; one that lies behind is refused.
-pub(crate) fn reached(time: f64, stop: f64) -> Result<bool, Box<IdaFailure>> {
+pub(crate) fn reached(time: f64, stop: f64) -> Result<bool, Box<IntegrationFailure>> {
     let round_off = 100.0 * f64::EPSILON * (time.abs() + stop.abs());
     if stop.is_nan() || stop < time - round_off {
         let message = format!("the stop time {stop:e} s lies behind");
-        return Err(IdaFailure::request(message, time));
+        return Err(IntegrationFailure::request(message, time));
     }
     Ok(stop - time <= round_off)
 }

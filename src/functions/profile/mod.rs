@@ -1,6 +1,5 @@
 //! Functions of place, `x = theta/l_s` along the beam or `s/l_b` along a bladder.
 
-mod gauss;
 mod integrals;
 mod waves;
 

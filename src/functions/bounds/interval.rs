@@ -1,6 +1,6 @@
 //! Intervals of numbers, and of values with their derivatives, with the rules of calculus.
 
-use crate::case::jet::Jet;
+use crate::functions::jet::Jet;
 
 /// All numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]

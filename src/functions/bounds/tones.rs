@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::interval::{Bounded, Span};
 use super::search::{Search, sizes};
-use crate::case::jet::{Clock, Jet};
-use crate::case::signals::{Ramp, RampShape, Signal};
+use crate::functions::jet::{Clock, Jet};
+use crate::functions::signals::{Ramp, RampShape, Signal};
 
 /// Sums that multiply out to more tones than this stay products.
 const MOST_TONES: usize = 64;

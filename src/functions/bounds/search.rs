@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::interval::{Bounded, Interval, Span};
-use crate::case::jet::Jet;
+use crate::functions::jet::Jet;
 
 /// Pieces that are looked at, at most.
 const MOST_PIECES: usize = 1500;
