@@ -1,7 +1,8 @@
 //! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
 
 use super::{Dae, Fault, Pattern, PerturbedSystems, Seeds, trace};
-use crate::discrete::{System, TimeData, Workspace, kick, ledger, residual, start};
+use crate::discrete::layout::Line;
+use crate::discrete::{State, System, TimeData, Workspace, kick, ledger, residual, start};
 use crate::functions::signals::Clock;
 use crate::numerics::Dual;
 use crate::sparse::colour;
@@ -166,13 +167,10 @@ impl BeamDae {
                 b.yp[k] = (after[k] - before[k]) * scale;
             }
             // Velocities become what displacements jump by, and nothing is accelerated.
-            for (u, v, nodes, waves) in [
-                (l.u1, l.v1, &l.free_u1, l.waves[0]),
-                (l.u3, l.v3, &l.free_u3, l.waves[1]),
-            ] {
-                for k in 0..if waves { nodes.len() } else { 0 } {
-                    b.y[v + k] = b.yp[u + k];
-                    b.yp[v + k] = 0.0;
+            for (_, u, v) in l.lines.iter().flat_map(Line::unknowns) {
+                if let Some(v) = v {
+                    b.y[v] = b.yp[u];
+                    b.yp[v] = 0.0;
                 }
             }
             residual::evaluate(system, &now, &b.y, &b.yp, &mut b.workspace);
@@ -196,21 +194,21 @@ impl BeamDae {
     }
 
     /// Evaluates the model at a scaled state and hands out time's values and the workspace, for balances and samples.
-    pub fn evaluate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, &mut Workspace<f64>) {
+    pub fn evaluate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, State<'_>) {
         self.unscale(t, y, yp);
         let b = &mut self.plain;
         residual::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
-        ledger::complete(&self.system, &self.now, &b.yp, &mut b.workspace);
-        (&self.system, &self.now, &mut b.workspace)
+        let state = ledger::complete(&self.system, &self.now, &b.yp, &mut b.workspace);
+        (&self.system, &self.now, state)
     }
 
     /// As [`BeamDae::evaluate`], of a state that the integrator has just accepted at `t` [s]: its integrands were the last thing
     /// that was evaluated, if it was not another time, and the workspace holds them still.
-    pub fn accepted(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, &mut Workspace<f64>) {
+    pub fn accepted(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, State<'_>) {
         if self.held != Some(t) {
             return self.evaluate(t, y, yp);
         }
-        (&self.system, &self.now, &mut self.plain.workspace)
+        (&self.system, &self.now, State::still(&self.plain.workspace))
     }
 
     /// Evaluates the model at a scaled state and lets `read` look at time's values, rates in SI units and the workspace.

@@ -130,7 +130,7 @@ fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
     }
     let given = sets.root(given);
     let mut closed: Vec<(usize, Closed)> = vec![];
-    for (unknown, cell) in (layout.area..).zip(flowing_cells(fluid)) {
+    for (unknown, cell) in layout.network.area.clone().zip(flowing_cells(fluid)) {
         let root = sets.root(cell);
         if root == given {
             continue;

@@ -3,14 +3,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::quantities::look;
-use super::{System, TimeData, Workspace, ledger};
+use super::workspace::Motion;
+use super::{State, System, TimeData, Workspace, ledger};
 use crate::discrete::residual::solid::node_stretch;
 use crate::model::Kinematics;
 
 /// A value and its rate in time.
 pub type Moving = [f64; 2];
 
-/// Values with their rates at an instant, signs kept; the workspace held [`ledger::complete`] of the state.
+/// Values with their rates at an instant, signs kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Glance {
     /// Time [s].
@@ -69,21 +70,28 @@ impl Glance {
         self.moving[which as usize]
     }
 
-    /// Looks at the state in the workspace.
-    pub fn new(system: &System, now: &TimeData, t: f64, half_height: f64, w: &Workspace<f64>) -> Self {
+    /// Looks at a state.
+    pub fn new(system: &System, now: &TimeData, t: f64, half_height: f64, w: State) -> Self {
+        let w = &*w;
         let mut g = Self { t, ..Self::default() };
         let last = system.mesh.nodes - 1;
         let mut set = |which: Watched, moving: Moving| g.moving[which as usize] = moving;
-        set(Watched::Tip1, [w.u1[last], w.v1[last]]);
-        set(Watched::Tip3, [w.u3[last], w.v3[last]]);
+        set(Watched::Tip1, [w.motion.u[last].x, w.motion.v[last].x]);
+        set(Watched::Tip3, [w.motion.u[last].z, w.motion.v[last].z]);
         set(
             Watched::Angle,
             [look::tip_angle(system, w), tip_angle_rate(system, now, w)],
         );
         let (a, b) = (last / 2, last.div_ceil(2));
-        set(Watched::Middle1, [0.5 * (w.u1[a] + w.u1[b]), 0.5 * (w.v1[a] + w.v1[b])]);
-        set(Watched::Largest1, largest(&w.u1, &w.v1));
-        set(Watched::Largest3, largest(&w.u3, &w.v3));
+        set(
+            Watched::Middle1,
+            [
+                0.5 * (w.motion.u[a].x + w.motion.u[b].x),
+                0.5 * (w.motion.v[a].x + w.motion.v[b].x),
+            ],
+        );
+        set(Watched::Largest1, largest(&w.motion, 0));
+        set(Watched::Largest3, largest(&w.motion, 1));
         (g.deflection, g.moved) = moved(w);
         let (strain, node) = look::largest_strain(system, half_height, w);
         g.strained = node;
@@ -99,20 +107,20 @@ impl Glance {
         };
         let mut set = |which: Watched, moving: Moving| self.moving[which as usize] = moving;
         let rate = |cell: usize| ledger::pressure_rate(wet, fluid, w, cell);
-        let (low, high) = extremes(&w.pressure);
-        set(Watched::High, [w.pressure[high], rate(high)]);
-        set(Watched::Low, [w.pressure[low], rate(low)]);
-        let (least, most) = extremes(&w.area);
+        let (low, high) = extremes(&w.fluid.pressure);
+        set(Watched::High, [w.fluid.pressure[high], rate(high)]);
+        set(Watched::Low, [w.fluid.pressure[low], rate(low)]);
+        let (least, most) = extremes(&w.fluid.area);
         set(
             Watched::Opening,
             [
-                1.0 + w.area[least] / wet.area_at_rest,
-                w.area_rate[least] / wet.area_at_rest,
+                1.0 + w.fluid.area[least] / wet.area_at_rest,
+                w.fluid.area_rate[least] / wet.area_at_rest,
             ],
         );
-        set(Watched::Swelling, [w.area[most], w.area_rate[most]]);
+        set(Watched::Swelling, [w.fluid.area[most], w.fluid.area_rate[most]]);
         let pressed = (0..wet.per_row)
-            .map(|j| (w.mean_pressure[j] + w.mean_pressure[wet.per_row + j], j))
+            .map(|j| (wet.pair(j).map(|b| w.fluid.mean_pressure[b]).iter().sum::<f64>(), j))
             .reduce(|a, b| if b.0 > a.0 { b } else { a });
         if let Some((sum, j)) = pressed {
             let mean = |bladder: usize| {
@@ -120,7 +128,7 @@ impl Glance {
                 let count = cells.len() as f64;
                 cells.map(rate).sum::<f64>() / count
             };
-            set(Watched::Pressed, [sum, mean(j) + mean(wet.per_row + j)]);
+            set(Watched::Pressed, [sum, wet.pair(j).map(mean).iter().sum()]);
         }
         if let Some((flow, flow_rate, tube)) = look::largest_flow(system, now, w) {
             set(Watched::Flow, [flow, flow_rate]);
@@ -143,24 +151,24 @@ fn extremes(values: &[f64]) -> (usize, usize) {
     (low, high)
 }
 
-/// The value that is largest in size, with its rate.
-fn largest(values: &[f64], rates: &[f64]) -> Moving {
+/// The displacement that is largest in size, with its rate.
+fn largest(motion: &Motion<f64>, axis: usize) -> Moving {
     let mut most = 0;
-    for (i, value) in values.iter().enumerate() {
-        if value.abs() > values[most].abs() {
+    for (i, u) in motion.u.iter().enumerate() {
+        if u[axis].abs() > motion.u[most][axis].abs() {
             most = i;
         }
     }
-    [values[most], rates[most]]
+    [motion.u[most][axis], motion.v[most][axis]]
 }
 
 /// Largest deflection across and largest motion of a node against the root [m].
 fn moved(w: &Workspace<f64>) -> (f64, f64) {
     let (mut across, mut squared) = (0.0_f64, 0.0_f64);
-    for (u1, u3) in w.u1.iter().zip(&w.u3) {
-        let (x, z) = (u1 - w.u1[0], u3 - w.u3[0]);
-        across = across.max(x.abs());
-        squared = squared.max(x * x + z * z);
+    for u in &w.motion.u {
+        let way = *u - w.motion.u[0];
+        across = across.max(way.x.abs());
+        squared = squared.max(way.squared());
     }
     (across, squared.sqrt())
 }
@@ -172,16 +180,16 @@ fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
         return 0.0;
     }
     let curvature_rate = match now.ends[1].slope {
-        Some(_) => w.kappa_rate[last],
+        Some(_) => w.shape.kappa_rate[last],
         None => now.ends[1].moment.rate / system.model.section.bending_stiffness,
     };
-    w.angle_rate[last - 1] - 0.5 * system.mesh.h * curvature_rate
+    w.shape.angle_rate[last - 1] - 0.5 * system.mesh.h * curvature_rate
 }
 
 /// Rate of the largest fibre strain at its node [1/s].
 fn strain_rate(node: usize, last: usize, half_height: f64, w: &Workspace<f64>) -> f64 {
     let (a, b) = (node.saturating_sub(1), node.min(last - 1));
-    let stretch_rate = 0.5 * (w.stretch_rate[a] + w.stretch_rate[b]);
+    let stretch_rate = 0.5 * (w.shape.stretch_rate[a] + w.shape.stretch_rate[b]);
     (node_stretch(w, node, last) - 1.0).signum() * stretch_rate
-        + w.kappa[node].signum() * w.kappa_rate[node] * half_height
+        + w.shape.kappa[node].signum() * w.shape.kappa_rate[node] * half_height
 }

@@ -11,18 +11,19 @@
 //! Along a straight beam it is `Δv = Δv_0 exp(-θ/√y11)` on fine meshes, and the end takes `m √y11` along. The energy gains
 //! `P·(v⁻ + v⁺)/2` at driven ends and nothing elsewhere, the angular momentum what the impulses turn, both exactly.
 
+use nalgebra::{Matrix2, Vector2};
+
 use super::{System, TimeData, Workspace};
 use crate::case::schema::Effect;
 use crate::model::Kinematics;
+use crate::numerics::Planar;
 
-/// Velocities or impulses of all nodes, x and z.
-pub type Nodal = Vec<[f64; 2]>;
-
-type Block = [[f64; 2]; 2];
+/// Velocities or impulses of all nodes.
+pub type Nodal = Vec<Planar<f64>>;
 
 /// Velocities of nodes in the workspace [m/s].
 pub fn velocities(w: &Workspace<f64>) -> Nodal {
-    w.v1.iter().zip(&w.v3).map(|(x, z)| [*x, *z]).collect()
+    w.motion.v.clone()
 }
 
 /// Jumps of velocity of all nodes [m/s] that follow from those of driven ends; none where no sections turn. The workspace holds
@@ -36,11 +37,9 @@ pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f6
     let mut given = vec![[None; 2]; last + 1];
     for (node, end) in [(0, 0), (last, 1)] {
         let (from, to) = (&before.ends[end], &after.ends[end]);
-        for (k, from, to) in [(0, from.u1, to.u1), (1, from.u3, to.u3)] {
-            given[node][k] = from.zip(to).map(|(from, to)| to.rate - from.rate);
-        }
+        given[node] = [0, 1].map(|k| from.u[k].zip(to.u[k]).map(|(from, to)| to.rate - from.rate));
     }
-    if !l.waves[1] {
+    if l.lines[1].v.is_none() {
         given.iter_mut().for_each(|node| node[1] = Some(0.0));
     }
     let jumps = given.iter().flatten().flatten().any(|jump| *jump != 0.0);
@@ -48,83 +47,75 @@ pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f6
 }
 
 /// Impulses of nodes [kg m/s] over jumps of their velocities: what outer forces have given them.
-pub fn impulses(system: &System, jumps: &[[f64; 2]], w: &Workspace<f64>) -> Nodal {
+pub fn impulses(system: &System, jumps: &[Planar<f64>], w: &Workspace<f64>) -> Nodal {
     let (mesh, mass) = (&system.mesh, system.model.section.mass_per_length);
     let mut all: Nodal = (0..mesh.nodes)
-        .map(|i| jumps[i].map(|jump| mass * mesh.node_length(i) * jump))
+        .map(|i| jumps[i] * (mass * mesh.node_length(i)))
         .collect();
     for c in 0..mesh.cells {
-        let coupled = coupling(system, w, c);
-        for k in 0..2 {
-            let handed: f64 = (0..2).map(|j| coupled[k][j] * (jumps[c + 1][j] - jumps[c][j])).sum();
-            all[c][k] -= handed;
-            all[c + 1][k] += handed;
-        }
+        let handed = planar(coupling(system, w, c) * vector(jumps[c + 1] - jumps[c]));
+        all[c] -= handed;
+        all[c + 1] += handed;
     }
     all
 }
 
+fn vector(v: Planar<f64>) -> Vector2<f64> {
+    Vector2::new(v.x, v.z)
+}
+
+fn planar(v: Vector2<f64>) -> Planar<f64> {
+    Planar { x: v.x, z: v.y }
+}
+
 /// `J/h n nᵀ` of a cell.
-fn coupling(system: &System, w: &Workspace<f64>, c: usize) -> Block {
+fn coupling(system: &System, w: &Workspace<f64>, c: usize) -> Matrix2<f64> {
     let section = &system.model.section;
     if !system.model.effects.has(Effect::RotaryInertia) || system.model.kinematics == Kinematics::Bar {
-        return [[0.0; 2]; 2];
+        return Matrix2::zeros();
     }
     let mut inertia = section.mass_per_length * section.gyration_radius_squared / system.mesh.h;
-    let turned = system.model.kinematics == Kinematics::FiniteRotation && system.layout.waves[1];
-    let n = if turned { [w.tz[c], -w.tx[c]] } else { [1.0, 0.0] };
+    let turned = system.model.kinematics == Kinematics::FiniteRotation && system.layout.lines[1].v.is_some();
+    let n = if turned {
+        -vector(w.shape.tangent[c].normal())
+    } else {
+        Vector2::x()
+    };
     if turned && !system.model.published() {
-        inertia /= w.stretch[c] * w.stretch[c];
+        inertia /= w.shape.stretch[c] * w.shape.stretch[c];
     }
-    n.map(|a| n.map(|b| inertia * a * b))
+    inertia * n * n.transpose()
 }
 
 /// Thomas' algorithm, node by node: no impulse where no jump is given.
 fn solve(system: &System, given: &[[Option<f64>; 2]], w: &Workspace<f64>) -> Nodal {
     let (mesh, mass) = (&system.mesh, system.model.section.mass_per_length);
-    let mut upper: Vec<Block> = vec![[[0.0; 2]; 2]; mesh.nodes];
-    let mut jumps: Nodal = vec![[0.0; 2]; mesh.nodes];
-    for i in 0..mesh.nodes {
-        let left = if i > 0 {
-            coupling(system, w, i - 1)
-        } else {
-            [[0.0; 2]; 2]
-        };
-        let right = if i < mesh.cells {
-            coupling(system, w, i)
-        } else {
-            [[0.0; 2]; 2]
-        };
-        let (mut pivot, mut next, mut sum) = ([[0.0; 2]; 2], [[0.0; 2]; 2], [0.0; 2]);
-        for k in 0..2 {
-            if let Some(jump) = given[i][k] {
-                (pivot[k][k], sum[k]) = (1.0, jump);
-                continue;
+    let beside = |cell: Option<usize>| cell.map_or(Matrix2::zeros(), |cell| coupling(system, w, cell));
+    // jumps[i] = sums[i] - upper[i] jumps[i + 1]
+    let (mut upper, mut sums) = (Matrix2::zeros(), Vector2::zeros());
+    let mut eliminated = Vec::with_capacity(mesh.nodes);
+    for (i, given) in given.iter().enumerate() {
+        let left = beside(i.checked_sub(1));
+        let right = beside(Some(i).filter(|i| *i < mesh.cells));
+        let mut pivot = left + right + left * upper + Matrix2::identity() * (mass * mesh.node_length(i));
+        let (mut next, mut sum) = (-right, left * sums);
+        for (k, jump) in given.iter().enumerate() {
+            if let Some(jump) = jump {
+                pivot.set_row(k, &Matrix2::identity().row(k));
+                next.row_mut(k).fill(0.0);
+                sum[k] = *jump;
             }
-            for j in 0..2 {
-                pivot[k][j] = left[k][j] + right[k][j];
-                next[k][j] = -right[k][j];
-                if i > 0 {
-                    sum[k] += left[k][j] * jumps[i - 1][j];
-                    (0..2).for_each(|m| pivot[k][m] += left[k][j] * upper[i - 1][j][m]);
-                }
-            }
-            pivot[k][k] += mass * mesh.node_length(i);
         }
-        let inverse = inverse(pivot);
-        upper[i] = inverse.map(|row| [0, 1].map(|j| row[0] * next[0][j] + row[1] * next[1][j]));
-        jumps[i] = inverse.map(|row| row[0] * sum[0] + row[1] * sum[1]);
+        // masses make it positive
+        let inverse = pivot.try_inverse().unwrap_or_default();
+        (upper, sums) = (inverse * next, inverse * sum);
+        eliminated.push((upper, sums));
     }
-    for i in (0..mesh.cells).rev() {
-        let ahead = jumps[i + 1];
-        for k in 0..2 {
-            jumps[i][k] -= upper[i][k][0] * ahead[0] + upper[i][k][1] * ahead[1];
-        }
+    let mut jumps = vec![Planar::default(); mesh.nodes];
+    let mut ahead = Vector2::zeros();
+    for (jump, (upper, sums)) in jumps.iter_mut().zip(eliminated).rev() {
+        ahead = sums - upper * ahead;
+        *jump = planar(ahead);
     }
     jumps
-}
-
-fn inverse([[a, b], [c, d]]: Block) -> Block {
-    let determinant = a * d - b * c;
-    [[d, -b], [-c, a]].map(|row| row.map(|x| x / determinant))
 }

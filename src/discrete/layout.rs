@@ -1,7 +1,7 @@
 //! Which unknowns there are, in which order, what they are called and how large they are.
 //!
 //! An absent effect is an absent unknown: a driven end has no position, a quasi-static solid no velocities, a dry beam
-//! no fluid. Equation i belongs to unknown i.
+//! no fluid. Equation i belongs to unknown i. Unknowns come in blocks, [`Line`], [`Coupling`], [`Network`]; each knows its own.
 
 use std::ops::Range;
 
@@ -9,43 +9,21 @@ use super::{FluidMesh, Mesh};
 use crate::case::Translation;
 use crate::case::schema::Effect;
 use crate::case::wiring::bladder_label;
-use crate::model::{Kinematics, Model, PoolKind};
+use crate::model::{Kinematics, Model, PoolKind, Wet};
 
-/// Blocks of unknowns, in this order.
+/// Blocks of unknowns, in this order; what each unknown is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    /// Nodes whose `u1` is unknown.
-    pub free_u1: Range<usize>,
-    /// Nodes whose `u3` is unknown.
-    pub free_u3: Range<usize>,
-    /// First `u1`.
-    pub u1: usize,
-    /// First `u3`.
-    pub u3: usize,
-    /// First `v1`, where it is an unknown.
-    pub v1: usize,
-    /// First `v3`, where it is an unknown.
-    pub v3: usize,
-    /// First mean moment `Mbar_j`.
-    pub mean_moment: usize,
-    /// First mean force `Nbar_j`.
-    pub mean_force: usize,
-    /// First stored area.
-    pub area: usize,
-    /// First junction pressure.
-    pub junction: usize,
-    /// First turbine pressure drop behind a real rectifier.
-    pub bridge: usize,
-    /// Pressure of each pool, where it is unknown.
-    pub pool_pressure: Vec<Option<usize>>,
-    /// Volume of each pool, where it is unknown.
-    pub pool_volume: Vec<Option<usize>>,
+    /// Motion of the beam across (`u1`) and along (`u3`).
+    pub lines: [Line; 2],
+    /// What beam and bladders know of each other.
+    pub coupling: Coupling,
+    /// Bladders and what joins them.
+    pub network: Network,
     /// Number of unknowns.
     pub len: usize,
     /// Whether masses resist acceleration.
     pub inertia: bool,
-    /// Whether `v1` and `v3` are unknowns: with inertia, but not along a beam without axial waves.
-    pub waves: [bool; 2],
     /// Characteristic size of each unknown, in its unit.
     pub scales: Vec<f64>,
     /// Characteristic size of each equation.
@@ -54,6 +32,41 @@ pub struct Layout {
     pub differential: Vec<bool>,
     names: Vec<Name>,
     per_row: usize,
+}
+
+/// Motion of the nodes in one direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// Nodes whose displacement is unknown.
+    pub free: Range<usize>,
+    /// Their displacements.
+    pub u: Range<usize>,
+    /// Their velocities; none without inertia, and along a beam without axial waves.
+    pub v: Option<Range<usize>>,
+}
+
+/// Means of segments that bladders feel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Coupling {
+    /// Mean moments `Mbar_j`.
+    pub mean_moment: Range<usize>,
+    /// Mean forces `Nbar_j`.
+    pub mean_force: Range<usize>,
+}
+
+/// Unknowns of the fluid.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Network {
+    /// Stored areas of cells.
+    pub area: Range<usize>,
+    /// Pressures of junctions.
+    pub junction: Range<usize>,
+    /// Pressure drops of turbines behind real rectifiers.
+    pub bridge: Range<usize>,
+    /// Pressure of each pool, where it is unknown.
+    pub pool_pressure: Vec<Option<usize>>,
+    /// Volume of each pool, where it is unknown.
+    pub pool_volume: Vec<Option<usize>>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,128 +79,50 @@ enum Name {
     Pool(&'static str, usize),
 }
 
+impl Line {
+    /// Every free node with its displacement and, where it is an unknown, its velocity.
+    pub fn unknowns(&self) -> impl Iterator<Item = (usize, usize, Option<usize>)> {
+        let velocity = self.v.as_ref().map(|v| v.start);
+        let (free, u) = (self.free.clone(), self.u.start);
+        free.enumerate()
+            .map(move |(k, node)| (node, u + k, velocity.map(|v| v + k)))
+    }
+
+    /// The balance of momentum of a node; none where its motion is given.
+    #[inline]
+    pub fn momentum(&self, node: usize) -> Option<usize> {
+        let rows = self.v.as_ref().unwrap_or(&self.u);
+        self.free.contains(&node).then(|| rows.start + node - self.free.start)
+    }
+}
+
 impl Layout {
     /// Unknowns of a model on a mesh.
     pub fn new(model: &Model, mesh: &Mesh, fluid: Option<&FluidMesh>) -> Self {
-        let driven = |motion: &Translation| matches!(motion, Translation::Displacement(_));
-        let [root, tip] = &model.ends;
-        let free =
-            |root: &Translation, tip: &Translation| usize::from(driven(root))..mesh.nodes - usize::from(driven(tip));
-        let bar = model.kinematics == Kinematics::Bar;
-        let free_u1 = if bar {
-            0..0
-        } else {
-            free(&root.transverse, &tip.transverse)
-        };
-        let free_u3 = if model.effects.has(Effect::AxialStretch) {
-            free(&root.axial, &tip.axial)
-        } else {
-            0..0
-        };
-        let inertia = model.effects.has(Effect::SolidInertia);
-        let waves = [inertia && !bar, inertia && model.effects.has(Effect::AxialInertia)];
-        let damped = model.section.drag > 0.0 || model.section.axial_damping_time > 0.0;
-        let bent = model.section.bending_damping_time > 0.0;
-        let s = &model.scales;
-        let cell_mass = model.section.mass_per_length * mesh.h;
         let mut build = Builder::default();
-
-        let force_1 = s.transverse_force.max(1e-12);
-        let force_3 = s.axial_force.max(1e-12);
-        let row = |waves, rate, force| if waves { rate } else { force };
-        let u1 = build.nodes(
-            "u1 [m]",
-            &free_u1,
-            s.transverse,
-            row(waves[0], s.transverse_rate, force_1),
-            inertia || damped || bent,
-        );
-        // Without waves the damping of bending alone does not make u3 differential: in a straight beam it acts across.
-        let u3 = build.nodes(
-            "u3 [m]",
-            &free_u3,
-            s.axial,
-            row(waves[1], s.axial_rate, force_3),
-            waves[1] || damped || (bent && !inertia),
-        );
-        let acceleration = |rate: f64| cell_mass * rate * s.frequency;
-        let none = 0..0;
-        let v1 = build.nodes(
-            "v1 [m/s]",
-            if waves[0] { &free_u1 } else { &none },
-            s.transverse_rate,
-            acceleration(s.transverse_rate),
-            true,
-        );
-        let v3 = build.nodes(
-            "v3 [m/s]",
-            if waves[1] { &free_u3 } else { &none },
-            s.axial_rate,
-            acceleration(s.axial_rate),
-            true,
-        );
-        let mut mean_moment = build.len();
-        let mut mean_force = mean_moment;
-        let (mut area, mut junction, mut bridge) = (mean_moment, mean_moment, mean_moment);
-        let (mut pool_pressure, mut pool_volume) = (vec![], vec![]);
-        let mut per_row = 0;
-        if let (Some(wet), Some(fluid)) = (&model.wet, fluid) {
-            per_row = wet.per_row;
-            let segments = |takes: bool| if takes { mesh.segments } else { 0 };
-            mean_moment = build.segments("mean moment [N m]", segments(wet.takes_moments), s.moment);
-            mean_force = build.segments("mean normal force [N]", segments(wet.takes_forces), s.force);
-            let stored = wet.area.per_pressure * s.pressure;
-            area = build.len();
-            for &bladder in &fluid.flowing {
-                for cell in 0..fluid.cells_per_bladder {
-                    let name = Name::Area(bladder, cell);
-                    build.push(name, stored, stored * fluid.ds * s.frequency, true);
-                }
-            }
-            junction = build.len();
-            for &j in &fluid.junctions {
-                build.push(Name::Junction(j), s.pressure, s.pressure * fluid.conductance, false);
-            }
-            bridge = build.len();
-            for bridge in &fluid.bridges {
-                let turbine = wet.network.bridges[bridge.number].turbine;
-                let conductance = wet.network.turbines[turbine].conductance;
-                build.push(Name::Bridge(bridge.number), s.pressure, s.pressure * conductance, false);
-            }
-            for pool in &wet.pools {
-                let volume = stored * wet.bladder_length * pool.bladders.len() as f64;
-                let name = |what| Name::Pool(what, pool.component);
-                let closed = pool.kind == PoolKind::Closed;
-                let fed = matches!(pool.kind, PoolKind::Fed(_));
-                pool_pressure
-                    .push((closed || fed).then(|| build.push(name("pressure [Pa]"), s.pressure, volume, false)));
-                let rate = volume * s.frequency;
-                pool_volume.push(fed.then(|| build.push(name("volume change [m^3]"), volume, rate, true)));
-            }
-        }
+        let lines = Line::both(model, mesh, &mut build);
+        let wet = model.wet.as_ref().zip(fluid);
+        let coupling = wet.map_or_else(Default::default, |(wet, _)| Coupling::new(model, wet, mesh, &mut build));
+        let network = wet.map_or_else(Default::default, |(wet, fluid)| {
+            Network::new(model, wet, fluid, &mut build)
+        });
         Self {
-            free_u1,
-            free_u3,
-            u1,
-            u3,
-            v1,
-            v3,
-            mean_moment,
-            mean_force,
-            area,
-            junction,
-            bridge,
-            pool_pressure,
-            pool_volume,
+            lines,
+            coupling,
+            network,
             len: build.len(),
-            inertia,
-            waves,
+            inertia: model.effects.has(Effect::SolidInertia),
             scales: build.scales,
             row_scales: build.row_scales,
             differential: build.differential,
             names: build.names,
-            per_row,
+            per_row: wet.map_or(0, |(wet, _)| wet.per_row),
         }
+    }
+
+    /// Whether velocities across and along are unknowns.
+    pub fn waves(&self) -> [bool; 2] {
+        self.lines.each_ref().map(|line| line.v.is_some())
     }
 
     /// Name of an unknown with unit and place.
@@ -200,6 +135,100 @@ impl Layout {
             Name::Junction(j) => format!("pressure [Pa] of junction {}", j + 1),
             Name::Pool(what, component) => format!("{what} of network {}", component + 1),
             Name::Bridge(k) => format!("pressure drop [Pa] of turbine behind rectifier {}", k + 1),
+        }
+    }
+}
+
+impl Line {
+    /// Across and along; displacements of both stand before velocities.
+    fn both(model: &Model, mesh: &Mesh, build: &mut Builder) -> [Self; 2] {
+        let driven = |motion: &Translation| usize::from(matches!(motion, Translation::Displacement(_)));
+        let [root, tip] = &model.ends;
+        let free = |root: &Translation, tip: &Translation| driven(root)..mesh.nodes - driven(tip);
+        let bar = model.kinematics == Kinematics::Bar;
+        let across = if bar {
+            0..0
+        } else {
+            free(&root.transverse, &tip.transverse)
+        };
+        let along = if model.effects.has(Effect::AxialStretch) {
+            free(&root.axial, &tip.axial)
+        } else {
+            0..0
+        };
+        let inertia = model.effects.has(Effect::SolidInertia);
+        let waves = [inertia && !bar, inertia && model.effects.has(Effect::AxialInertia)];
+        let damped = model.section.resists_motion();
+        let bent = model.section.bending_damping_time > 0.0;
+        // Without waves the damping of bending alone does not make u3 differential: in a straight beam it acts across.
+        let differential = [inertia || damped || bent, waves[1] || damped || (bent && !inertia)];
+        let s = &model.scales;
+        let (sizes, rates) = ([s.transverse, s.axial], [s.transverse_rate, s.axial_rate]);
+        let forces = [s.transverse_force, s.axial_force].map(|force| force.max(1e-12));
+        let free = [across, along];
+        let u = [0, 1].map(|k| {
+            let row = if waves[k] { rates[k] } else { forces[k] };
+            build.nodes(["u1 [m]", "u3 [m]"][k], &free[k], sizes[k], row, differential[k])
+        });
+        let v = [0, 1].map(|k| {
+            let acceleration = model.section.mass_per_length * mesh.h * rates[k] * s.frequency;
+            waves[k].then(|| build.nodes(["v1 [m/s]", "v3 [m/s]"][k], &free[k], rates[k], acceleration, true))
+        });
+        let ([free_1, free_3], [u_1, u_3], [v_1, v_3]) = (free, u, v);
+        [(free_1, u_1, v_1), (free_3, u_3, v_3)].map(|(free, u, v)| Self { free, u, v })
+    }
+}
+
+impl Coupling {
+    fn new(model: &Model, wet: &Wet, mesh: &Mesh, build: &mut Builder) -> Self {
+        let segments = |takes: bool| if takes { mesh.segments } else { 0 };
+        Self {
+            mean_moment: build.segments("mean moment [N m]", segments(wet.takes_moments), model.scales.moment),
+            mean_force: build.segments("mean normal force [N]", segments(wet.takes_forces), model.scales.force),
+        }
+    }
+}
+
+impl Network {
+    fn new(model: &Model, wet: &Wet, fluid: &FluidMesh, build: &mut Builder) -> Self {
+        let s = &model.scales;
+        let stored = wet.area.per_pressure * s.pressure;
+        let area = build.block(|build| {
+            for &bladder in &fluid.flowing {
+                for cell in 0..fluid.cells_per_bladder {
+                    let name = Name::Area(bladder, cell);
+                    build.push(name, stored, stored * fluid.ds * s.frequency, true);
+                }
+            }
+        });
+        let junction = build.block(|build| {
+            for &j in &fluid.junctions {
+                build.push(Name::Junction(j), s.pressure, s.pressure * fluid.conductance, false);
+            }
+        });
+        let bridge = build.block(|build| {
+            for bridge in &fluid.bridges {
+                let turbine = wet.network.bridges[bridge.number].turbine;
+                let conductance = wet.network.turbines[turbine].conductance;
+                build.push(Name::Bridge(bridge.number), s.pressure, s.pressure * conductance, false);
+            }
+        });
+        let (mut pool_pressure, mut pool_volume) = (vec![], vec![]);
+        for pool in &wet.pools {
+            let volume = stored * wet.bladder_length * pool.bladders.len() as f64;
+            let name = |what| Name::Pool(what, pool.component);
+            let closed = pool.kind == PoolKind::Closed;
+            let fed = matches!(pool.kind, PoolKind::Fed(_));
+            pool_pressure.push((closed || fed).then(|| build.push(name("pressure [Pa]"), s.pressure, volume, false)));
+            let rate = volume * s.frequency;
+            pool_volume.push(fed.then(|| build.push(name("volume change [m^3]"), volume, rate, true)));
+        }
+        Self {
+            area,
+            junction,
+            bridge,
+            pool_pressure,
+            pool_volume,
         }
     }
 }
@@ -226,19 +255,33 @@ impl Builder {
         self.len() - 1
     }
 
-    fn nodes(&mut self, what: &'static str, nodes: &Range<usize>, scale: f64, row: f64, differential: bool) -> usize {
+    /// What `add` adds.
+    fn block(&mut self, add: impl FnOnce(&mut Self)) -> Range<usize> {
         let first = self.len();
-        for node in nodes.clone() {
-            self.push(Name::Node(what, node), scale, row, differential);
-        }
-        first
+        add(self);
+        first..self.len()
     }
 
-    fn segments(&mut self, what: &'static str, segments: usize, scale: f64) -> usize {
-        let first = self.len();
-        for segment in 0..segments {
-            self.push(Name::Segment(what, segment), scale, scale, false);
-        }
-        first
+    fn nodes(
+        &mut self,
+        what: &'static str,
+        nodes: &Range<usize>,
+        scale: f64,
+        row: f64,
+        differential: bool,
+    ) -> Range<usize> {
+        self.block(|build| {
+            for node in nodes.clone() {
+                build.push(Name::Node(what, node), scale, row, differential);
+            }
+        })
+    }
+
+    fn segments(&mut self, what: &'static str, segments: usize, scale: f64) -> Range<usize> {
+        self.block(|build| {
+            for segment in 0..segments {
+                build.push(Name::Segment(what, segment), scale, scale, false);
+            }
+        })
     }
 }

@@ -27,7 +27,7 @@ pub use layout::Layout;
 pub use mesh::Mesh;
 pub use statics::Statics;
 pub use time_data::{SampledLoad, TimeData};
-pub use workspace::Workspace;
+pub use workspace::{State, Workspace};
 
 /// A model on a mesh: everything the residual needs besides time and state.
 #[derive(Clone, Debug)]
@@ -67,7 +67,8 @@ impl System {
     /// unknowns are then others.
     pub fn like(&self, case: &Case) -> Result<Option<Self>> {
         let mut system = Self::starting(case, self.model.like(case)?, |model| Ok(model.clone()))?;
-        let same = system.layout.differential == self.layout.differential && system.layout.waves == self.layout.waves;
+        let same =
+            system.layout.differential == self.layout.differential && system.layout.waves() == self.layout.waves();
         system.layout = self.layout.clone();
         Ok(same.then_some(system))
     }

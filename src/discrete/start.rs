@@ -5,6 +5,8 @@ use crate::case::schema::Case;
 use crate::case::wiring::bladder_index;
 use crate::functions::profile::Profile;
 use crate::functions::signals::Clock;
+use crate::model::ROWS;
+use crate::numerics::Planar;
 
 /// Scaled unknowns at the start: displacements of nodes as given, velocities nearest to those given, areas from the means of the given
 /// pressures over each cell, so that momentum and volume are those of the start on every mesh.
@@ -19,33 +21,17 @@ pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
             .map_or(0.0, |p| p.value(system.mesh.node_coordinate(node) / length))
     };
     let last = (system.mesh.nodes - 1) as f64;
-    let lines = [
-        (
-            now.frame_1(),
-            &l.free_u1,
-            l.u1,
-            l.v1,
-            l.waves[0],
-            &case.start.u1_m,
-            &case.start.u1_rate_m_s,
-        ),
-        (
-            now.frame_3(),
-            &l.free_u3,
-            l.u3,
-            l.v3,
-            l.waves[1],
-            &case.start.u3_m,
-            &case.start.u3_rate_m_s,
-        ),
+    let given = [
+        (&case.start.u1_m, &case.start.u1_rate_m_s),
+        (&case.start.u3_m, &case.start.u3_rate_m_s),
     ];
-    for (frame, free, u, v, waves, displacement, velocity) in lines {
+    for (axis, (line, (displacement, velocity))) in l.lines.iter().zip(given).enumerate() {
         let moving = velocity.as_ref().map(|v| shapes::nearest(v, system.mesh.cells));
-        for (k, node) in free.clone().enumerate() {
-            let frame = frame.map_or(Default::default(), |f| f.at(node as f64 / last));
-            y[u + k] = at(displacement, node) - frame.value;
-            if waves {
-                y[v + k] = moving.as_ref().map_or(0.0, |v| v[node]) - frame.rate;
+        for (node, u, v) in line.unknowns() {
+            let frame = now.frame(axis).map_or(Default::default(), |f| f.at(node as f64 / last));
+            y[u] = at(displacement, node) - frame.value;
+            if let Some(v) = v {
+                y[v] = moving.as_ref().map_or(0.0, |v| v[node]) - frame.rate;
             }
         }
     }
@@ -61,7 +47,7 @@ pub fn areas(system: &System, case: &Case) -> Vec<f64> {
     let mut now = TimeData::new(system);
     now.update(system, Clock { t: 0.0, within: 0.0 });
     let (l, y) = (&system.layout, state(system, case, &now));
-    (l.area..l.junction).map(|k| y[k] * l.scales[k]).collect()
+    l.network.area.clone().map(|k| y[k] * l.scales[k]).collect()
 }
 
 /// Areas that give the prescribed pressures, with the means that follow from them: a fixed point, exact after one
@@ -80,12 +66,12 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64]) {
         }
     }
     for (k, pool) in wet.pools.iter().enumerate() {
-        if let Some(unknown) = l.pool_pressure[k] {
+        if let Some(unknown) = l.network.pool_pressure[k] {
             let cells = pool.bladders.iter().flat_map(|&b| fluid.cells_of(b));
             y[unknown] =
                 cells.map(|c| pressure[c]).sum::<f64>() / (pool.bladders.len() * fluid.cells_per_bladder) as f64;
         }
-        if let Some(unknown) = l.pool_volume[k] {
+        if let Some(unknown) = l.network.pool_volume[k] {
             y[unknown] = fluid.volume_at_start[k];
         }
     }
@@ -94,16 +80,13 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64]) {
     let mut residual = vec![0.0; y.len()];
     for _ in 0..20 {
         for j in 0..wet.per_row {
-            let mean = |takes: bool, first: usize| if takes { y[first + j] } else { 0.0 };
-            let (moment, force) = (
-                mean(wet.takes_moments, l.mean_moment),
-                mean(wet.takes_forces, l.mean_force),
-            );
-            for (bladder, row) in [(j, 1.0), (wet.per_row + j, -1.0)] {
+            let [moment, force] = [&l.coupling.mean_moment, &l.coupling.mean_force]
+                .map(|means| means.clone().nth(j).map_or(0.0, |unknown| y[unknown]));
+            for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
                 let imposed = wet.area.of_moment(moment, row) + wet.area.of_force(force);
                 if let Ok(slot) = fluid.flowing.binary_search(&bladder) {
                     for (k, cell) in fluid.cells_of(bladder).enumerate() {
-                        y[l.area + slot * fluid.cells_per_bladder + k] =
+                        y[l.network.area.start + slot * fluid.cells_per_bladder + k] =
                             wet.area.per_pressure * pressure[cell] + imposed;
                     }
                 }
@@ -111,7 +94,7 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64]) {
         }
         residual::residual(system, now, y, &yp, &mut w, &mut residual);
         // The residual of a mean is what it lacks.
-        let means = l.mean_moment..l.area;
+        let means = l.coupling.mean_moment.clone().chain(l.coupling.mean_force.clone());
         let worst = means
             .clone()
             .map(|i| (residual[i] / l.scales[i]).abs())
@@ -123,18 +106,19 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64]) {
             break;
         }
     }
-    for (junction, value) in y[l.junction..l.bridge].iter_mut().enumerate() {
-        *value = w.junction.get(junction).copied().unwrap_or(0.0);
+    for (junction, value) in y[l.network.junction.clone()].iter_mut().enumerate() {
+        *value = w.fluid.junction.get(junction).copied().unwrap_or(0.0);
     }
 }
 
 /// Adds jumps [m/s] to the velocities of free nodes.
-pub fn speed_up(system: &System, jumps: &[[f64; 2]], y: &mut [f64]) {
+pub fn speed_up(system: &System, jumps: &[Planar<f64>], y: &mut [f64]) {
     let l = &system.layout;
-    let lines = [(&l.free_u1, l.v1, l.waves[0]), (&l.free_u3, l.v3, l.waves[1])];
-    for (k, (free, v, _)) in lines.into_iter().enumerate().filter(|(_, line)| line.2) {
-        for (unknown, node) in free.clone().enumerate() {
-            y[v + unknown] += jumps[node][k] / l.scales[v + unknown];
+    for (axis, line) in l.lines.iter().enumerate() {
+        for (node, _, v) in line.unknowns() {
+            if let Some(v) = v {
+                y[v] += jumps[node][axis] / l.scales[v];
+            }
         }
     }
 }
@@ -143,19 +127,15 @@ pub fn speed_up(system: &System, jumps: &[[f64; 2]], y: &mut [f64]) {
 pub fn change_frame(system: &System, before: &TimeData, after: &TimeData, y: &mut [f64]) {
     let l = &system.layout;
     let last = (system.mesh.nodes - 1) as f64;
-    let lines = [
-        (before.frame_1(), after.frame_1(), &l.free_u1, l.u1, l.v1, l.waves[0]),
-        (before.frame_3(), after.frame_3(), &l.free_u3, l.u3, l.v3, l.waves[1]),
-    ];
-    for (before, after, free, u, v, waves) in lines {
-        let (Some(before), Some(after)) = (before, after) else {
+    for (axis, line) in l.lines.iter().enumerate() {
+        let Some((before, after)) = before.frame(axis).zip(after.frame(axis)) else {
             continue;
         };
-        for (k, node) in free.clone().enumerate() {
+        for (node, u, v) in line.unknowns() {
             let (old, new) = (before.at(node as f64 / last), after.at(node as f64 / last));
-            y[u + k] += (old.value - new.value) / l.scales[u + k];
-            if waves {
-                y[v + k] += (old.rate - new.rate) / l.scales[v + k];
+            y[u] += (old.value - new.value) / l.scales[u];
+            if let Some(v) = v {
+                y[v] += (old.rate - new.rate) / l.scales[v];
             }
         }
     }

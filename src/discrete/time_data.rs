@@ -5,6 +5,7 @@ use crate::case::{Rotation, Translation};
 use crate::functions::signals::{Clock, Jet, Signal};
 use crate::model::Load;
 use crate::model::loads::LoadKind;
+use crate::numerics::Planar;
 
 /// A load's shape where it acts: forces at nodes, moments in cells.
 ///
@@ -46,18 +47,14 @@ impl SampledLoad {
 /// Given values at one end of the beam.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EndData {
-    /// Prescribed `u1`, when transverse motion is prescribed.
-    pub u1: Option<Jet>,
-    /// Prescribed `u3`, when axial motion is prescribed.
-    pub u3: Option<Jet>,
+    /// Prescribed displacements across and along, where motion is prescribed.
+    pub u: [Option<Jet>; 2],
     /// Prescribed slope, when the slope is prescribed.
     pub slope: Option<Jet>,
     /// Prescribed moment (zero where the slope is prescribed).
     pub moment: Jet,
-    /// Dead force on the end in x [N].
-    pub force_x: f64,
-    /// Dead force on the end in z [N].
-    pub force_z: f64,
+    /// Dead force on the end [N].
+    pub force: Planar<f64>,
     /// Section forces N and V along the end's tangent and normal.
     pub follower: Option<(f64, f64)>,
 }
@@ -110,14 +107,10 @@ pub struct TimeData {
     clock: Option<Clock>,
     /// Root and tip.
     pub ends: [EndData; 2],
-    /// Force per length in x at each node [N/m].
-    pub force_x: Vec<f64>,
-    /// Force per length in z at each node [N/m].
-    pub force_z: Vec<f64>,
-    /// First moment per length, x component, in each cell [N].
-    pub moment_x: Vec<f64>,
-    /// First moment per length, z component, in each cell [N].
-    pub moment_z: Vec<f64>,
+    /// Force per length at each node [N/m].
+    pub force: Vec<Planar<f64>>,
+    /// First moment per length in each cell [N].
+    pub moment: Vec<Planar<f64>>,
     /// Normal forces that follow from loads alone; nothing where the beam can stretch.
     pub statics: Statics,
     /// Conductance of each link [m^3/(s Pa)].
@@ -144,10 +137,8 @@ impl TimeData {
         Self {
             clock: None,
             ends: [EndData::default(); 2],
-            force_x: vec![0.0; system.mesh.nodes],
-            force_z: vec![0.0; system.mesh.nodes],
-            moment_x: vec![0.0; system.mesh.cells],
-            moment_z: vec![0.0; system.mesh.cells],
+            force: vec![Planar::default(); system.mesh.nodes],
+            moment: vec![Planar::default(); system.mesh.cells],
             statics: Statics::new(system),
             conductance: vec![0.0; links],
             resistance: vec![0.0; links],
@@ -157,16 +148,10 @@ impl TimeData {
         }
     }
 
-    /// Frame of the transverse displacements.
+    /// Frame of the displacements across (0) or along (1).
     #[inline]
-    pub fn frame_1(&self) -> Option<Frame> {
-        Frame::through(self.ends[0].u1, self.ends[1].u1)
-    }
-
-    /// Frame of the axial displacements.
-    #[inline]
-    pub fn frame_3(&self) -> Option<Frame> {
-        Frame::through(self.ends[0].u3, self.ends[1].u3)
+    pub fn frame(&self, axis: usize) -> Option<Frame> {
+        Frame::through(self.ends[0].u[axis], self.ends[1].u[axis])
     }
 
     /// Evaluates every signal at `clock`, unless that is where it stands already.
@@ -181,8 +166,8 @@ impl TimeData {
                 Translation::Displacement(s) => (Some(s.jet(clock)), 0.0),
                 Translation::Force(s) => (None, s.jet(clock).value),
             };
-            (values.u1, values.force_x) = motion(&end.transverse);
-            (values.u3, values.force_z) = motion(&end.axial);
+            (values.u[0], values.force.x) = motion(&end.transverse);
+            (values.u[1], values.force.z) = motion(&end.axial);
             (values.slope, values.moment) = match &end.rotation {
                 Rotation::Slope(s) => (Some(s.jet(clock)), Jet::default()),
                 Rotation::Moment(s) => (None, s.jet(clock)),
@@ -193,30 +178,23 @@ impl TimeData {
                 .map(|f| (f.normal.jet(clock).value, f.shear.jet(clock).value));
         }
         self.loads(system, clock);
-        self.statics.update(system, self.frame_3(), clock);
+        self.statics.update(system, self.frame(1), clock);
         self.network(system, clock, first);
     }
 
     fn loads(&mut self, system: &System, clock: Clock) {
-        let arrays = [
-            &mut self.force_x,
-            &mut self.force_z,
-            &mut self.moment_x,
-            &mut self.moment_z,
-        ];
-        for array in arrays {
-            array.fill(0.0);
-        }
+        self.force.fill(Planar::default());
+        self.moment.fill(Planar::default());
         for load in &system.loads {
             let factor = load.signal.jet(clock).value;
-            let array = match load.kind {
-                LoadKind::ForceX => &mut self.force_x,
-                LoadKind::ForceZ => &mut self.force_z,
-                LoadKind::MomentX => &mut self.moment_x,
-                LoadKind::MomentZ => &mut self.moment_z,
+            let (array, axis) = match load.kind {
+                LoadKind::ForceX => (&mut self.force, 0),
+                LoadKind::ForceZ => (&mut self.force, 1),
+                LoadKind::MomentX => (&mut self.moment, 0),
+                LoadKind::MomentZ => (&mut self.moment, 1),
             };
             for (value, shape) in array.iter_mut().zip(&load.shape) {
-                *value += factor * shape;
+                value[axis] += factor * shape;
             }
         }
     }

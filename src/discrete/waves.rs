@@ -12,7 +12,7 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
     let MaxOrder::Order(order @ (3 | 4)) = case.solver.max_order else {
         return None;
     };
-    if !matches!(case.solver.method, Method::Auto | Method::Ida) || system.layout.waves == [false; 2] {
+    if !matches!(case.solver.method, Method::Auto | Method::Ida) || system.layout.waves() == [false; 2] {
         return None;
     }
     let ratio = least_damping_ratio(system);
@@ -46,7 +46,7 @@ pub fn least_damping_ratio(system: &System) -> f64 {
     let mut least = f64::INFINITY;
     let carried = families
         .into_iter()
-        .zip(system.layout.waves)
+        .zip(system.layout.waves())
         .filter(|(_, waves)| *waves);
     for ((time, slowest, fastest), _) in carried {
         let ratio = |omega: f64| s.drag / (2.0 * m * omega) + 0.5 * omega * time;
@@ -67,6 +67,6 @@ pub fn highest_frequency(system: &System) -> f64 {
     let h = system.mesh.h;
     let bending = 4.0 / (h * h) * (s.bending_stiffness / s.mass_per_length).sqrt();
     let axial = 2.0 / h * (s.axial_stiffness / s.mass_per_length).sqrt();
-    let carried = [bending, axial].into_iter().zip(system.layout.waves);
+    let carried = [bending, axial].into_iter().zip(system.layout.waves());
     carried.filter(|(_, waves)| *waves).map(|(f, _)| f).fold(0.0, f64::max)
 }

@@ -1,60 +1,75 @@
-//! Intermediate quantities of one evaluation; allocated once, for each scalar type.
+//! Intermediate quantities of one evaluation, stage by stage; allocated once, for each scalar type.
 
 use super::System;
-use crate::numerics::Scalar;
+use crate::numerics::{Planar, Scalar};
 
-/// Arrays over nodes, cells, segments, bladders. Names follow the equations.
+/// What an evaluation makes of the unknowns, in the order in which it is computed. Names follow the equations.
 #[derive(Clone, Debug)]
 pub struct Workspace<T> {
-    // nodes
+    /// How the nodes move.
+    pub motion: Motion<T>,
+    /// How the beam is bent and stretched.
+    pub shape: Shape<T>,
+    /// What its sections carry.
+    pub forces: Forces<T>,
+    /// What beam and bladders know of each other.
+    pub coupling: Coupling<T>,
+    /// Pressures and flows.
+    pub fluid: Fluid<T>,
+}
+
+/// Of nodes.
+#[derive(Clone, Debug)]
+pub struct Motion<T> {
     /// Displacements.
-    pub u1: Vec<T>,
-    /// Displacements.
-    pub u3: Vec<T>,
+    pub u: Vec<Planar<T>>,
     /// Velocities.
-    pub v1: Vec<T>,
-    /// Velocities.
-    pub v3: Vec<T>,
+    pub v: Vec<Planar<T>>,
     /// Accelerations (zero in a quasi-static solid).
-    pub a1: Vec<T>,
-    /// Accelerations.
-    pub a3: Vec<T>,
-    /// Curvature `kappa` [1/m].
-    pub kappa: Vec<T>,
-    /// Elastic moment M [N m].
-    pub moment: Vec<T>,
-    /// Viscous part of the moment [N m].
-    pub viscous_moment: Vec<T>,
-    /// `d kappa/dt` [1/(m s)].
-    pub kappa_rate: Vec<T>,
-    // cells
-    /// `x'`.
-    pub d3x: Vec<T>,
-    /// `z'`.
-    pub d3z: Vec<T>,
+    pub a: Vec<Planar<T>>,
+}
+
+/// Curvatures of nodes, all else of cells.
+#[derive(Clone, Debug)]
+pub struct Shape<T> {
+    /// Director `d3 = (x', z')`.
+    pub d3: Vec<Planar<T>>,
     /// `lambda`.
     pub stretch: Vec<T>,
     /// `lambda - 1`, without cancellation.
     pub strain: Vec<T>,
-    /// Unit tangent, x.
-    pub tx: Vec<T>,
-    /// Unit tangent, z.
-    pub tz: Vec<T>,
+    /// Unit tangent `e_t`.
+    pub tangent: Vec<Planar<T>>,
     /// `d lambda/dt`.
     pub stretch_rate: Vec<T>,
     /// `d phi/dt`.
     pub angle_rate: Vec<T>,
+    /// Curvature `kappa` [1/m].
+    pub kappa: Vec<T>,
+    /// `d kappa/dt` [1/(m s)].
+    pub kappa_rate: Vec<T>,
+}
+
+/// Moments at nodes, forces in cells.
+#[derive(Clone, Debug)]
+pub struct Forces<T> {
+    /// Elastic moment M [N m].
+    pub moment: Vec<T>,
+    /// Viscous part of the moment [N m].
+    pub viscous_moment: Vec<T>,
     /// Elastic normal force N [N].
-    pub force: Vec<T>,
+    pub normal: Vec<T>,
     /// Viscous part of the normal force [N].
-    pub viscous_force: Vec<T>,
+    pub viscous_normal: Vec<T>,
     /// Shear force V [N].
     pub shear: Vec<T>,
-    /// Section force in x [N].
-    pub sx: Vec<T>,
-    /// Section force in z [N].
-    pub sz: Vec<T>,
-    // segments
+    /// Section force in lab axes [N].
+    pub section: Vec<Planar<T>>,
+}
+
+/// Of segments.
+#[derive(Clone, Debug)]
+pub struct Coupling<T> {
     /// Mean moment.
     pub mean_moment: Vec<T>,
     /// Mean force.
@@ -67,7 +82,11 @@ pub struct Workspace<T> {
     pub pressure_stretch: Vec<T>,
     /// `alpha_p`.
     pub pressure_curvature: Vec<T>,
-    // fluid
+}
+
+/// Of bladders' cells and of the network.
+#[derive(Clone, Debug)]
+pub struct Fluid<T> {
     /// Area changes of cells [m^2].
     pub area: Vec<T>,
     /// Their rates [m^2/s].
@@ -94,10 +113,30 @@ pub struct Workspace<T> {
     pub port_conductance: Vec<T>,
 }
 
+/// A workspace that holds everything about a state, rates that no equation takes included: what balances and samples read.
+/// [`super::ledger::complete`] alone makes one.
+#[derive(Clone, Copy, Debug)]
+pub struct State<'w>(pub(super) &'w Workspace<f64>);
+
+impl<'w> State<'w> {
+    /// Of a workspace that [`super::ledger::flows`] has left and nobody has touched since.
+    pub(crate) fn still(w: &'w Workspace<f64>) -> Self {
+        Self(w)
+    }
+}
+
+impl std::ops::Deref for State<'_> {
+    type Target = Workspace<f64>;
+    fn deref(&self) -> &Workspace<f64> {
+        self.0
+    }
+}
+
 impl<T: Scalar> Workspace<T> {
     /// Room for a system.
     pub fn new(system: &System) -> Self {
         let zeros = |n: usize| vec![T::zero(); n];
+        let vectors = |n: usize| vec![Planar::zero(); n];
         let (n, c) = (system.mesh.nodes, system.mesh.cells);
         let s = if system.fluid.is_some() {
             system.mesh.segments
@@ -112,47 +151,51 @@ impl<T: Scalar> Workspace<T> {
         // What is the same at all times is set here, and stays.
         let kept = fluid.map_or(&[][..], |f| &f.area_at_start);
         Self {
-            u1: zeros(n),
-            u3: zeros(n),
-            v1: zeros(n),
-            v3: zeros(n),
-            a1: zeros(n),
-            a3: zeros(n),
-            kappa: zeros(n),
-            moment: zeros(n),
-            viscous_moment: zeros(n),
-            kappa_rate: zeros(n),
-            d3x: zeros(c),
-            d3z: zeros(c),
-            stretch: vec![T::constant(1.0); c],
-            strain: zeros(c),
-            tx: zeros(c),
-            tz: vec![T::constant(1.0); c],
-            stretch_rate: zeros(c),
-            angle_rate: zeros(c),
-            force: zeros(c),
-            viscous_force: zeros(c),
-            shear: zeros(c),
-            sx: zeros(c),
-            sz: zeros(c),
-            mean_moment: zeros(s),
-            mean_force: zeros(s),
-            mean_moment_rate: zeros(s),
-            mean_force_rate: zeros(s),
-            pressure_stretch: zeros(s),
-            pressure_curvature: zeros(s),
-            area: kept.iter().map(|&a| T::constant(a)).collect(),
-            area_rate: zeros(cells),
-            pressure: zeros(cells),
-            mean_pressure: zeros(bladders),
-            junction: zeros(junctions),
-            pool: zeros(pools),
-            pool_rate: zeros(pools),
-            bridge: zeros(bridges),
-            inflow: zeros(cells),
-            junction_inflow: zeros(junctions),
-            volume_defect: zeros(components),
-            port_conductance: zeros(components),
+            motion: Motion {
+                u: vectors(n),
+                v: vectors(n),
+                a: vectors(n),
+            },
+            shape: Shape {
+                d3: vectors(c),
+                stretch: vec![T::constant(1.0); c],
+                strain: zeros(c),
+                tangent: vec![Planar::constant(Planar { x: 0.0, z: 1.0 }); c],
+                stretch_rate: zeros(c),
+                angle_rate: zeros(c),
+                kappa: zeros(n),
+                kappa_rate: zeros(n),
+            },
+            forces: Forces {
+                moment: zeros(n),
+                viscous_moment: zeros(n),
+                normal: zeros(c),
+                viscous_normal: zeros(c),
+                shear: zeros(c),
+                section: vectors(c),
+            },
+            coupling: Coupling {
+                mean_moment: zeros(s),
+                mean_force: zeros(s),
+                mean_moment_rate: zeros(s),
+                mean_force_rate: zeros(s),
+                pressure_stretch: zeros(s),
+                pressure_curvature: zeros(s),
+            },
+            fluid: Fluid {
+                area: kept.iter().map(|&a| T::constant(a)).collect(),
+                area_rate: zeros(cells),
+                pressure: zeros(cells),
+                mean_pressure: zeros(bladders),
+                junction: zeros(junctions),
+                pool: zeros(pools),
+                pool_rate: zeros(pools),
+                bridge: zeros(bridges),
+                inflow: zeros(cells),
+                junction_inflow: zeros(junctions),
+                volume_defect: zeros(components),
+                port_conductance: zeros(components),
+            },
         }
     }
 }

@@ -24,6 +24,11 @@ pub struct Section {
 }
 
 impl Section {
+    /// Whether forces depend on the velocity along the beam even where it is straight.
+    pub fn resists_motion(&self) -> bool {
+        self.drag > 0.0 || self.axial_damping_time > 0.0
+    }
+
     /// `[E1]` (2, A.1):
     ///
     /// ```text

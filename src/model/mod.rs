@@ -63,7 +63,21 @@ pub struct Wet {
     pub takes_forces: bool,
 }
 
+/// `R` of the rows: upper, lower.
+pub const ROWS: [f64; 2] = [1.0, -1.0];
+
 impl Wet {
+    /// The bladders of a segment: upper, lower.
+    pub fn pair(&self, segment: usize) -> [usize; 2] {
+        [segment, self.per_row + segment]
+    }
+
+    /// Segment and row `R` of a bladder.
+    pub fn place(&self, bladder: usize) -> (usize, f64) {
+        let row = bladder / self.per_row;
+        (bladder - row * self.per_row, ROWS[row])
+    }
+
     /// The whole coupling of a case's bladders.
     fn new(case: &Case, bladders: &Bladders, section: &Section, network: Network, effects: &EffectSet) -> Self {
         let area = AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry));

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`scalar`] | the numbers in which equations are written |
 //! | [`dual`] | a number with its derivatives |
+//! | [`planar`] | vectors in the plane |
 //! | [`kernels`] | loops over vectors |
 //! | `gauss` | Gauss' quadrature |
 //! | [`krylov`] | linear systems and eigenvalues of a map known only by what it does |
@@ -12,7 +13,9 @@ pub mod dual;
 pub mod gauss;
 pub mod kernels;
 pub mod krylov;
+pub mod planar;
 pub mod scalar;
 
 pub use dual::Dual;
+pub use planar::Planar;
 pub use scalar::Scalar;

@@ -7,6 +7,7 @@ use crate::discrete::TimeData;
 use crate::discrete::ledger::Flow;
 use crate::model::Model;
 use crate::model::characteristic::Mathieu;
+use crate::numerics::Planar;
 
 /// Windows into which a run is divided.
 const WINDOWS: usize = 16;
@@ -333,23 +334,25 @@ impl Growth {
 
 /// Sizes of what drives the beam at an instant, by kind.
 fn drives(now: &TimeData) -> [f64; KINDS] {
-    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let size = |most: f64, v: &f64| most.max(v.abs());
+    let largest = |values: &[f64]| values.iter().fold(0.0, size);
+    let component = |values: &[Planar<f64>], axis: usize| values.iter().fold(0.0, |most, v| size(most, &v[axis]));
     let end = |f: &dyn Fn(usize) -> f64| f(0).abs().max(f(1).abs());
     let ends = &now.ends;
     [
-        largest(&now.force_x),
-        largest(&now.force_z),
-        largest(&now.moment_x).max(largest(&now.moment_z)),
-        end(&|k| ends[k].force_x),
-        end(&|k| ends[k].force_z),
+        component(&now.force, 0),
+        component(&now.force, 1),
+        component(&now.moment, 0).max(component(&now.moment, 1)),
+        end(&|k| ends[k].force.x),
+        end(&|k| ends[k].force.z),
         end(&|k| {
             ends[k]
                 .follower
                 .map_or(0.0, |(normal, shear)| normal.abs().max(shear.abs()))
         }),
         end(&|k| ends[k].moment.value).max(end(&|k| ends[k].slope.map_or(0.0, |s| s.value))),
-        end(&|k| ends[k].u1.map_or(0.0, |u| u.value)),
-        end(&|k| ends[k].u3.map_or(0.0, |u| u.value)),
+        end(&|k| ends[k].u[0].map_or(0.0, |u| u.value)),
+        end(&|k| ends[k].u[1].map_or(0.0, |u| u.value)),
         largest(&now.port_pressure).max(largest(&now.source_flow)),
     ]
 }

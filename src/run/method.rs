@@ -116,7 +116,7 @@ impl Options {
                 max_order: choice.order.order,
                 nonlinear_coefficient: solver
                     .nonlinear_coefficient
-                    .unwrap_or(if system.layout.waves != [false; 2] {
+                    .unwrap_or(if system.layout.waves() != [false; 2] {
                         NONLINEAR
                     } else {
                         NONLINEAR_STATIC

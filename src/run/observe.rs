@@ -7,7 +7,7 @@ use crate::dae::BeamDae;
 use crate::discrete::glance::{Glance, Watched};
 use crate::discrete::ledger::{self, EnergyBalance, Invariants};
 use crate::discrete::quantities::{self, Extremes, Look, Observable, Row};
-use crate::discrete::{System, TimeData, Workspace};
+use crate::discrete::{State, System, TimeData};
 use crate::error::Result;
 use crate::model::mapping::NetworkCoordinate;
 
@@ -201,7 +201,7 @@ impl Observer {
         &mut self,
         system: &System,
         now: &TimeData,
-        w: &Workspace<f64>,
+        w: State,
         glance: &Glance,
         integrals: &[f64],
     ) -> EnergyBalance {
@@ -214,7 +214,7 @@ impl Observer {
         let balance = ledger::balance(stored, *at_start, integrals);
         let residuals = &mut self.seen.residuals;
         residuals.take(system, w, &balance, [first, &invariants], integrals);
-        let least_force = w.force.iter().copied().fold(f64::INFINITY, f64::min);
+        let least_force = w.forces.normal.iter().copied().fold(f64::INFINITY, f64::min);
         self.seen.growth.take(
             now,
             glance.t,
@@ -272,7 +272,7 @@ impl Observer {
             now,
             w,
             stored: balance.stored,
-            at: Extremes::of(system, w),
+            at: Extremes::of(system, &w),
         };
         self.seen.row.take(t, &look, integrals, balance.residual);
         let seen = &mut self.seen;
@@ -295,8 +295,8 @@ impl Observer {
             let along = |values: &[f64]| -> Vec<f64> { self.cell_order.iter().map(|&c| values[c]).collect() };
             let ordered: Vec<Cow<[f64]>> = quantities::Field::of(system)
                 .map(|field| match field.axis() {
-                    quantities::Axis::Network => Cow::Owned(along(field.values(w))),
-                    _ => Cow::Borrowed(field.values(w)),
+                    quantities::Axis::Network => Cow::Owned(along(&field.values(&w))),
+                    _ => field.values(&w),
                 })
                 .collect();
             let arrays: Vec<&[f64]> = ordered.iter().map(AsRef::as_ref).collect();

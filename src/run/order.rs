@@ -23,7 +23,7 @@ pub fn choose(case: &Case, system: &System) -> OrderChoice {
     match case.solver.max_order {
         MaxOrder::Order(order) => chosen(order, "as asked".into()),
         MaxOrder::Forced(order) => chosen(order, "forced".into()),
-        MaxOrder::Auto if system.layout.waves == [false; 2] => {
+        MaxOrder::Auto if system.layout.waves() == [false; 2] => {
             chosen(5, "no solid inertia: nothing oscillates freely".into())
         }
         MaxOrder::Auto => match least_damping_ratio(system) {
@@ -48,7 +48,7 @@ pub fn choose(case: &Case, system: &System) -> OrderChoice {
 /// A sentence when the steps of a run were held down by stability and not by accuracy: orders beyond 2 were allowed on
 /// hardly damped waves, and the mean step stayed near the period of the fastest wave.
 pub fn held_by_stability(system: &System, order: u8, time: f64, steps: u64, rejected: u64) -> Option<String> {
-    if order <= 2 || system.layout.waves == [false; 2] || steps < 1000 {
+    if order <= 2 || system.layout.waves() == [false; 2] || steps < 1000 {
         return None;
     }
     let ratio = least_damping_ratio(system);

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::floors::Floors;
 use crate::discrete::ledger::EnergyBalance;
 use crate::discrete::ledger::{self, Flow, Invariants};
-use crate::discrete::{System, TimeData, Workspace};
+use crate::discrete::{State, System, TimeData};
 use crate::error::Code;
 
 /// Above this the run warns that a balance does not close.
@@ -62,7 +62,7 @@ impl Residuals {
     pub fn take(
         &mut self,
         system: &System,
-        w: &Workspace<f64>,
+        w: State,
         balance: &EnergyBalance,
         [first, invariants]: [&Invariants; 2],
         integrals: &[f64],
@@ -85,7 +85,7 @@ impl Residuals {
                 *passed = passed.max(through);
             }
         }
-        displaced(system, &w.area, &w.pressure, &mut self.volume_seen);
+        displaced(system, &w.fluid.area, &w.fluid.pressure, &mut self.volume_seen);
         if !system.layout.inertia {
             return;
         }
@@ -111,7 +111,7 @@ impl Residuals {
     }
 
     /// Takes the reactions over a step of `dt` [s] that ends in the workspace's state.
-    pub fn follow(&mut self, system: &System, now: &TimeData, w: &Workspace<f64>, dt: f64) {
+    pub fn follow(&mut self, system: &System, now: &TimeData, w: State, dt: f64) {
         for (sum, square) in self.reactions.iter_mut().zip(ledger::compared(system, now, w)) {
             *sum += dt * square;
         }

@@ -11,7 +11,7 @@ pub fn worst_difference(dae: &mut BeamDae, seed: u64, size: f64) -> f64 {
     let mut random = Random(seed);
     // Neighbouring nodes may move against each other by a fifth of a cell: beyond that a cell folds over.
     let (layout, h) = (&dae.system().layout, dae.system().mesh.h);
-    let displacements = layout.u1..layout.u3 + layout.free_u3.len();
+    let displacements = layout.lines[0].u.start..layout.lines[1].u.end;
     let reach = |i: usize| {
         if displacements.contains(&i) {
             (0.2 * h / layout.scales[i]).min(1.0)

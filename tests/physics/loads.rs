@@ -252,9 +252,9 @@ fn a_start_has_its_momentum_on_every_mesh() {
         now.update(&system, Clock { t: 0.0, within: 0.0 });
         let y = start::state(&system, &case, &now);
         let l = &system.layout;
-        let nodes = l.free_u1.clone().enumerate();
-        let sum: f64 = nodes
-            .map(|(k, node)| y[l.v1 + k] * l.scales[l.v1 + k] * system.mesh.node_length(node))
+        let velocities = l.lines[0].unknowns().filter_map(|(node, _, v)| Some((node, v?)));
+        let sum: f64 = velocities
+            .map(|(node, v)| y[v] * l.scales[v] * system.mesh.node_length(node))
             .sum();
         within("∫ v", sum, 0.1 * (0.01 + 1e-6), 1e-12);
     }

@@ -34,7 +34,7 @@ fn closed_network_keeps_its_volume() {
     let (system, now) = dae.instant(0.0);
     let layout = system.layout.clone();
     let chain: Vec<usize> = (0..2 * system.fluid.as_ref().unwrap().cells_per_bladder)
-        .map(|i| layout.area + i)
+        .map(|i| layout.network.area.start + i)
         .collect();
     let mut y = start::state(system, &case, now);
     let mut yp = vec![0.0; y.len()];

@@ -1,5 +1,7 @@
 //! The fluid's part of the balances.
 
+use std::ops::Range;
+
 use super::{FLOWS, Flow, add};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
@@ -9,7 +11,7 @@ use crate::discrete::residual::small;
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
 use crate::model::bladder::{kink_curvature, kink_slope};
 use crate::model::network::{LinkKind, Node};
-use crate::model::{AreaLaw, Coupling, Pool, PoolKind, Storage, Wet};
+use crate::model::{AreaLaw, Coupling, Pool, PoolKind, ROWS, Storage, Wet};
 
 /// What no equation needs but the balances: means, rates of pools' pressures and of their bladders' areas.
 pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>) {
@@ -18,48 +20,47 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
     };
     for j in 0..wet.per_row {
         if !wet.takes_moments {
-            w.mean_moment[j] = mean_moment(system, w, j);
+            w.coupling.mean_moment[j] = mean_moment(system, w, j);
         }
         if !wet.takes_forces {
-            w.mean_force[j] = mean_force(system, w, j);
+            w.coupling.mean_force[j] = mean_force(system, w, j);
         }
-        let rate = |takes: bool, first: usize| if takes { yp[first + j] } else { 0.0 };
-        w.mean_moment_rate[j] = rate(wet.takes_moments, system.layout.mean_moment);
-        w.mean_force_rate[j] = match now.statics.mean_rate.get(j) {
+        let own = &system.layout.coupling;
+        let rate = |means: &Range<usize>| yp[means.clone()].get(j).copied().unwrap_or(0.0);
+        w.coupling.mean_moment_rate[j] = rate(&own.mean_moment);
+        w.coupling.mean_force_rate[j] = match now.statics.mean_rate.get(j) {
             Some(&given) => given,
-            None => rate(wet.takes_forces, system.layout.mean_force),
+            None => rate(&own.mean_force),
         };
     }
     for (k, pool) in wet.pools.iter().enumerate() {
-        w.pool_rate[k] = match (&pool.kind, system.layout.pool_pressure[k]) {
+        w.fluid.pool_rate[k] = match (&pool.kind, system.layout.network.pool_pressure[k]) {
             (PoolKind::Port(port), _) => now.port_pressure_rate[*port],
             (_, Some(unknown)) => yp[unknown],
             _ => 0.0,
         };
         for &bladder in &pool.bladders {
             let rate = imposed_rate(wet, w, bladder);
-            w.area_rate[fluid.cells_of(bladder)].fill(wet.area.per_pressure * w.pool_rate[k] + rate);
+            w.fluid.area_rate[fluid.cells_of(bladder)].fill(wet.area.per_pressure * w.fluid.pool_rate[k] + rate);
         }
     }
 }
 
 /// Rate of the area that moment and force impose on a bladder.
 fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
-    let (j, row) = if bladder < wet.per_row {
-        (bladder, 1.0)
-    } else {
-        (bladder - wet.per_row, -1.0)
-    };
-    wet.area.moment_slope(w.mean_moment[j], row) * w.mean_moment_rate[j]
-        + wet.area.force_slope(w.mean_force[j]) * w.mean_force_rate[j]
+    let (j, row) = wet.place(bladder);
+    wet.area.moment_slope(w.coupling.mean_moment[j], row) * w.coupling.mean_moment_rate[j]
+        + wet.area.force_slope(w.coupling.mean_force[j]) * w.coupling.mean_force_rate[j]
 }
 
 /// Rate of a cell's pressure [Pa/s]; needs [`complete`].
 pub fn pressure_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usize) -> f64 {
     let bladder = cell / fluid.cells_per_bladder;
     match wet.storage[bladder] {
-        Storage::Shared(pool) => w.pool_rate[pool],
-        Storage::Flowing | Storage::Kept => (w.area_rate[cell] - imposed_rate(wet, w, bladder)) / wet.area.per_pressure,
+        Storage::Shared(pool) => w.fluid.pool_rate[pool],
+        Storage::Flowing | Storage::Kept => {
+            (w.fluid.area_rate[cell] - imposed_rate(wet, w, bladder)) / wet.area.per_pressure
+        }
     }
 }
 
@@ -69,8 +70,10 @@ pub fn foreshorten(system: &System, w: &mut Workspace<f64>) {
         && system.model.effects.has(Effect::PressureToStretch)
     {
         for j in 0..wet.per_row {
-            let (upper, lower) = (w.mean_pressure[j], w.mean_pressure[wet.per_row + j]);
-            w.pressure_stretch[j] = wet.coupling.stretch(&wet.strains, w.mean_force[j], upper, lower);
+            let [upper, lower] = wet.pair(j).map(|bladder| w.fluid.mean_pressure[bladder]);
+            w.coupling.pressure_stretch[j] = wet
+                .coupling
+                .stretch(&wet.strains, w.coupling.mean_force[j], upper, lower);
         }
     }
     let stretch_rate = |w: &Workspace<f64>, j| {
@@ -126,18 +129,18 @@ struct SegmentRates {
 
 impl SegmentRates {
     fn new(system: &System, wet: &Wet, w: &Workspace<f64>, j: usize) -> Self {
-        let (moment, force) = (w.mean_moment[j], w.mean_force[j]);
-        let (moment_rate, force_rate) = (w.mean_moment_rate[j], w.mean_force_rate[j]);
+        let (moment, force) = (w.coupling.mean_moment[j], w.coupling.mean_force[j]);
+        let (moment_rate, force_rate) = (w.coupling.mean_moment_rate[j], w.coupling.mean_force_rate[j]);
         let mut pressure = [0.0; 2];
         let mut pressure_rate = [0.0; 2];
-        for (k, bladder) in [j, wet.per_row + j].into_iter().enumerate() {
-            pressure[k] = w.mean_pressure[bladder];
+        for (k, bladder) in wet.pair(j).into_iter().enumerate() {
+            pressure[k] = w.fluid.mean_pressure[bladder];
             pressure_rate[k] = match wet.storage[bladder] {
-                Storage::Shared(pool) => w.pool_rate[pool],
+                Storage::Shared(pool) => w.fluid.pool_rate[pool],
                 Storage::Flowing | Storage::Kept => {
                     let cells = system.fluid.as_ref().map_or(0..0, |f| f.cells_of(bladder));
                     let count = cells.len() as f64;
-                    let area_rate = w.area_rate[cells].iter().sum::<f64>() / count;
+                    let area_rate = w.fluid.area_rate[cells].iter().sum::<f64>() / count;
                     (area_rate - imposed_rate(wet, w, bladder)) / wet.area.per_pressure
                 }
             };
@@ -191,7 +194,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     let k = fluid.cells_per_bladder;
     for &bladder in &fluid.flowing {
         for cell in bladder * k + 1..(bladder + 1) * k {
-            let drop = w.pressure[cell - 1] - w.pressure[cell];
+            let drop = w.fluid.pressure[cell - 1] - w.fluid.pressure[cell];
             add(out, Flow::Bladders, fluid.conductance * drop * drop);
         }
     }
@@ -243,7 +246,8 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
             },
             rest,
         );
-        let share = |c: usize| w.volume_defect[c] * conductance / w.port_conductance[c].max(f64::MIN_POSITIVE);
+        let share =
+            |c: usize| w.fluid.volume_defect[c] * conductance / w.fluid.port_conductance[c].max(f64::MIN_POSITIVE);
         let surplus = match (component(link.from), component(link.to)) {
             (None, Some(c)) => share(c),
             (Some(c), None) => -share(c),
@@ -268,10 +272,10 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     }
     for (b, &MeshBridge { number, from, to }) in fluid.bridges.iter().enumerate() {
         let bridge = &network.bridges[number];
-        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.bridge[b]);
+        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.fluid.bridge[b]);
         let (qf, qb) = (bridge.valve.flow(forward), bridge.valve.flow(backward));
         let conductance = network.turbines[bridge.turbine].conductance;
-        add(out, Flow::Turbines, conductance * w.bridge[b] * w.bridge[b]);
+        add(out, Flow::Turbines, conductance * w.fluid.bridge[b] * w.fluid.bridge[b]);
         add(out, Flow::Rectifiers, 2.0 * (qf * forward + qb * backward));
         cross(from, to, [qf - qb, qf - qb, 0.0], out);
     }
@@ -284,10 +288,10 @@ fn pool_ports(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>, k: usize, p
         PoolKind::Fed(sources) => sources.iter().map(|&s| now.source_flow[s]).sum(),
         PoolKind::Port(_) => {
             let cells = pool.bladders.iter().flat_map(|&b| fluid.cells_of(b));
-            cells.map(|cell| w.area_rate[cell]).sum::<f64>() * fluid.ds
+            cells.map(|cell| w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds
         }
     };
-    (w.pool[k] * gain, -gain)
+    (w.fluid.pool[k] * gain, -gain)
 }
 
 /// Power and outflow of pools with given pressure, whose areas jump where their pressure or the beam does.
@@ -319,16 +323,16 @@ fn surplus(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     if network.ports.is_empty() {
         return;
     }
-    w.volume_defect.fill(0.0);
-    w.port_conductance.fill(0.0);
+    w.fluid.volume_defect.fill(0.0);
+    w.fluid.port_conductance.fill(0.0);
     for (bladder, &component) in network.component_of_bladder.iter().enumerate() {
         let cells = fluid.cells_of(bladder);
-        let inflow: f64 = w.inflow[cells.clone()].iter().sum();
-        let stored: f64 = w.area_rate[cells].iter().sum();
-        w.volume_defect[component] += inflow - stored * fluid.ds;
+        let inflow: f64 = w.fluid.inflow[cells.clone()].iter().sum();
+        let stored: f64 = w.fluid.area_rate[cells].iter().sum();
+        w.fluid.volume_defect[component] += inflow - stored * fluid.ds;
     }
-    for (inflow, &junction) in w.junction_inflow.iter().zip(&fluid.junctions) {
-        w.volume_defect[network.component_of_junction[junction]] += inflow;
+    for (inflow, &junction) in w.fluid.junction_inflow.iter().zip(&fluid.junctions) {
+        w.fluid.volume_defect[network.component_of_junction[junction]] += inflow;
     }
     for (link, conductance) in fluid.links.iter().zip(&now.conductance) {
         let link = &network.links[link.number];
@@ -337,7 +341,7 @@ fn surplus(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
             _ => None,
         };
         if let Some(component) = inside {
-            w.port_conductance[component] += conductance;
+            w.fluid.port_conductance[component] += conductance;
         }
     }
 }
@@ -353,12 +357,12 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     };
     let mut sum = 0.0;
     for j in 0..wet.per_row {
-        for (bladder, row) in [(j, 1.0), (wet.per_row + j, -1.0)] {
-            let cells = &w.pressure[fluid.cells_of(bladder)];
+        for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
+            let cells = &w.fluid.pressure[fluid.cells_of(bladder)];
             let squares: f64 = cells.iter().map(|p| p * p).sum();
-            let mixed = w.mean_force[j] * wet.area.force_slope(w.mean_force[j])
-                + w.mean_moment[j] * wet.area.moment_slope(w.mean_moment[j], row);
-            sum += 0.5 * wet.area.per_pressure * squares / cells.len() as f64 + w.mean_pressure[bladder] * mixed;
+            let mixed = w.coupling.mean_force[j] * wet.area.force_slope(w.coupling.mean_force[j])
+                + w.coupling.mean_moment[j] * wet.area.moment_slope(w.coupling.mean_moment[j], row);
+            sum += 0.5 * wet.area.per_pressure * squares / cells.len() as f64 + w.fluid.mean_pressure[bladder] * mixed;
         }
     }
     wet.bladder_length * sum
@@ -371,7 +375,7 @@ pub fn volumes(system: &System, w: &Workspace<f64>) -> Vec<f64> {
     };
     let mut volumes = vec![0.0; wet.network.components];
     for bladder in 0..fluid.bladders {
-        let stored: f64 = w.area[fluid.cells_of(bladder)].iter().sum();
+        let stored: f64 = w.fluid.area[fluid.cells_of(bladder)].iter().sum();
         volumes[wet.network.component_of_bladder[bladder]] += stored * fluid.ds;
     }
     volumes

@@ -15,8 +15,7 @@ pub fn travel(now: &mut TimeData, [before, after]: [&TimeData; 2]) {
         }
     };
     for ((end, from), to) in now.ends.iter_mut().zip(&before.ends).zip(&after.ends) {
-        option(&mut end.u1, &from.u1, &to.u1);
-        option(&mut end.u3, &from.u3, &to.u3);
+        (0..2).for_each(|axis| option(&mut end.u[axis], &from.u[axis], &to.u[axis]));
         option(&mut end.slope, &from.slope, &to.slope);
         step(&mut end.moment, &from.moment, &to.moment);
     }
@@ -37,7 +36,7 @@ pub fn travel(now: &mut TimeData, [before, after]: [&TimeData; 2]) {
 /// trapezoid rule along the straight way, exact where the response is linear.
 pub fn side(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
-    complete(system, now, yp, w);
+    let w = &*complete(system, now, yp, w);
     let rates = fluid::rates(system, w, out);
     solid::flows(system, now, rates, w, out);
     fluid::pools_jump(system, now, w, out);
@@ -60,7 +59,7 @@ pub fn strokes(
         return;
     }
     let last = mesh.nodes - 1;
-    let jumps: Nodal = was.iter().zip(is).map(|(a, b)| [b[0] - a[0], b[1] - a[1]]).collect();
+    let jumps: Nodal = was.iter().zip(is).map(|(a, b)| *b - *a).collect();
     let impulses = kick::impulses(system, &jumps, w);
     for node in 0..=last {
         let end = match node {
@@ -74,10 +73,10 @@ pub fn strokes(
                 0.5 * impulses[node][k] * (was[node][k] + is[node][k]),
             )
         };
-        let across = system.model.kinematics != Kinematics::Bar && end.is_some_and(|end| end.u1.is_some());
+        let across = system.model.kinematics != Kinematics::Bar && end.is_some_and(|end| end.u[0].is_some());
         let (px, work_x) = if across { stroke(0) } else { (0.0, 0.0) };
-        let (pz, work_z) = if l.waves[1] {
-            let driven = end.is_some_and(|end| end.u3.is_some());
+        let (pz, work_z) = if l.lines[1].v.is_some() {
+            let driven = end.is_some_and(|end| end.u[1].is_some());
             if driven { stroke(1) } else { (0.0, 0.0) }
         } else {
             carried(system, [before, after], node)
@@ -85,8 +84,8 @@ pub fn strokes(
         add(out, Flow::Ends, work_x + work_z);
         add(out, Flow::ImpulseX, px);
         add(out, Flow::ImpulseZ, pz);
-        let ([x, z], _) = solid::arms(system, w, node);
-        add(out, Flow::AngularImpulse, z * px - x * pz);
+        let (arm, _) = solid::arms(system, w, node);
+        add(out, Flow::AngularImpulse, arm.z * px - arm.x * pz);
     }
 }
 
@@ -94,7 +93,7 @@ pub fn strokes(
 fn carried(system: &System, sides: [&TimeData; 2], node: usize) -> (f64, f64) {
     let mass = system.model.section.mass_per_length * system.mesh.node_length(node);
     let share = node as f64 / (system.mesh.nodes - 1) as f64;
-    match sides.map(|now| now.frame_3().map(|frame| frame.at(share).rate)) {
+    match sides.map(|now| now.frame(1).map(|frame| frame.at(share).rate)) {
         [Some(from), Some(to)] => (mass * (to - from), 0.5 * mass * (to * to - from * from)),
         _ => (0.0, 0.0),
     }

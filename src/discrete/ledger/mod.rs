@@ -12,7 +12,7 @@ pub use reactions::compared;
 use crate::case::schema::Effect;
 use serde::{Deserialize, Serialize};
 
-use super::{System, TimeData, Workspace, residual};
+use super::{State, System, TimeData, Workspace, residual};
 
 /// Rates that are integrated along the run, and what they add up to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,36 +152,37 @@ pub fn by_law(integrals: &[f64], open: usize, count: usize) -> (f64, f64) {
 /// The workspace must hold [`residual::evaluate`] of the same state; rates are added to it here.
 pub fn flows(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
-    complete(system, now, yp, w);
-    let rates = fluid::rates(system, w, out);
-    solid::flows(system, now, rates, w, out);
+    let state = complete(system, now, yp, w);
+    let rates = fluid::rates(system, &state, out);
+    solid::flows(system, now, rates, &state, out);
     fluid::flows(system, now, w, out);
 }
 
 /// What balances and samples need and no equation does: rates of strain, means, motion along where it has no unknowns.
 /// The workspace must hold [`residual::evaluate`] of the same state.
-pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>) {
+pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Workspace<f64>) -> State<'w> {
     residual::complete(system, now, yp, w);
     fluid::complete(system, now, yp, w);
     if !system.model.effects.has(Effect::AxialStretch) {
         fluid::foreshorten(system, w);
     }
+    State(w)
 }
 
-/// Energies at the state in the workspace; needs the strain rates of [`flows`].
-pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies {
-    let mut e = solid::energies(system, now, w);
-    e.bladders = fluid::energy(system, w);
+/// Energies of a state.
+pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
+    let mut e = solid::energies(system, now, &w);
+    e.bladders = fluid::energy(system, &w);
     e
 }
 
-/// Invariants at the state in the workspace; needs the strain rates of [`flows`].
-pub fn invariants(system: &System, now: &TimeData, w: &Workspace<f64>) -> Invariants {
-    let (momentum, angular_momentum) = solid::momenta(system, now, w);
+/// Invariants of a state.
+pub fn invariants(system: &System, now: &TimeData, w: State) -> Invariants {
+    let (momentum, angular_momentum) = solid::momenta(system, now, &w);
     Invariants {
-        momentum,
+        momentum: [momentum.x, momentum.z],
         angular_momentum,
-        volumes: fluid::volumes(system, w),
+        volumes: fluid::volumes(system, &w),
     }
 }
 

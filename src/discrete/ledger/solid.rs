@@ -2,11 +2,12 @@
 
 use super::{Energies, Flow, add};
 use crate::case::schema::Effect;
-use crate::discrete::residual::rows::{end_force, published_force};
+use crate::discrete::residual::rows::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
 use crate::discrete::time_data::Frame;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::model::Kinematics;
+use crate::numerics::Planar;
 
 /// Powers and impulses of loads, ends, damping, and of the published form.
 pub fn flows(
@@ -19,63 +20,39 @@ pub fn flows(
     let (mesh, section, l) = (&system.mesh, &system.model.section, &system.layout);
     let last = mesh.nodes - 1;
     let published = system.model.published();
-    let frame = now.frame_3();
+    let frame = now.frame(1);
     for i in 0..=last {
         let length = mesh.node_length(i);
-        let (mut fx, mut fz) = (length * now.force_x[i], length * now.force_z[i]);
-        if i == 0 || i == last {
-            let (ex, ez) = end_force(system, now, w, i);
-            fx += ex;
-            fz += ez;
-        }
-        add(out, Flow::Loads, fx * w.v1[i] + fz * w.v3[i]);
-        if published {
-            let (cx, cz) = published_force(system, w, i);
-            add(out, Flow::Formulation, cx * w.v1[i] + cz * w.v3[i]);
-            fx += cx;
-            fz += cz;
-        }
-        if section.drag > 0.0 {
-            let along = if system.model.effects.has(Effect::AxialStretch) {
-                w.v3[i]
-            } else {
-                carried(system, frame, w, i)
-            };
-            let (dx, dz) = (length * section.drag * w.v1[i], length * section.drag * along);
-            add(out, Flow::Damping, dx * w.v1[i] + dz * w.v3[i]);
-            fx -= dx;
-            fz -= dz;
-        }
+        let (v, a) = (w.motion.v[i], w.motion.a[i]);
+        let mut f = Planar::default();
+        outer_forces(system, now, w, i, |flow, force| {
+            add(out, flow, flow.energy_sign() * force.dot(v));
+            f += force;
+        });
         // Reaction of a driven end: what is missing in its momentum balance.
         let inertia = section.mass_per_length * length;
-        let right = if i < last { (w.sx[i], w.sz[i]) } else { (0.0, 0.0) };
-        let left = if i > 0 { (w.sx[i - 1], w.sz[i - 1]) } else { (0.0, 0.0) };
-        if !l.free_u1.contains(&i) {
-            let reaction = inertia * w.a1[i] - fx - right.0 + left.0;
-            add(out, Flow::Ends, reaction * w.v1[i]);
-            fx += reaction;
+        let none = Planar::default();
+        let right = w.forces.section.get(i).copied().unwrap_or(none);
+        let left = if i > 0 { w.forces.section[i - 1] } else { none };
+        let missing = a * inertia - f - right + left;
+        if l.inertia && l.lines[1].v.is_none() {
+            add(out, Flow::Ends, -inertia * a.z * (v.z - carried(system, frame, w, i)));
         }
-        if l.inertia && !l.waves[1] {
-            add(
-                out,
-                Flow::Ends,
-                -inertia * w.a3[i] * (w.v3[i] - carried(system, frame, w, i)),
-            );
+        for (axis, line) in l.lines.iter().enumerate() {
+            if !line.free.contains(&i) {
+                add(out, Flow::Ends, missing[axis] * v[axis]);
+                f[axis] += missing[axis];
+            }
         }
-        if !l.free_u3.contains(&i) {
-            let reaction = inertia * w.a3[i] - fz - right.1 + left.1;
-            add(out, Flow::Ends, reaction * w.v3[i]);
-            fz += reaction;
-        }
-        let ([x, z], [x_t, z_t]) = arms(system, w, i);
-        add(out, Flow::ImpulseX, fx);
-        add(out, Flow::ImpulseZ, fz);
+        let (arm, arm_rate) = arms(system, w, i);
+        add(out, Flow::ImpulseX, f.x);
+        add(out, Flow::ImpulseZ, f.z);
         let turning = if l.inertia {
-            inertia * (z_t * w.v1[i] - x_t * carried(system, frame, w, i))
+            inertia * (arm_rate.z * v.x - arm_rate.x * carried(system, frame, w, i))
         } else {
             0.0
         };
-        add(out, Flow::AngularImpulse, z * fx - x * fz + turning);
+        add(out, Flow::AngularImpulse, arm.cross(f) + turning);
         if system.model.kinematics != Kinematics::Bar {
             bending(system, now, &curvature_rate, w, i, out);
         }
@@ -103,7 +80,10 @@ fn bending(
     };
     let (stretch, stretch_rate) = if published {
         let (a, b) = (i.saturating_sub(1), i.min(last - 1));
-        (node_stretch(w, i, last), 0.5 * (w.stretch_rate[a] + w.stretch_rate[b]))
+        (
+            node_stretch(w, i, last),
+            0.5 * (w.shape.stretch_rate[a] + w.shape.stretch_rate[b]),
+        )
     } else {
         (1.0, 0.0)
     };
@@ -111,25 +91,25 @@ fn bending(
     let kappa_rate = match end {
         Some(e) if e.slope.is_none() => {
             let alpha_rate = e.moment.rate / section.bending_stiffness + curvature_rate(w, i);
-            (alpha_rate - w.kappa[i] * stretch_rate) / stretch
+            (alpha_rate - w.shape.kappa[i] * stretch_rate) / stretch
         }
-        _ => w.kappa_rate[i],
+        _ => w.shape.kappa_rate[i],
     };
     if let Some(e) = end {
         let (sign, cell) = if i == 0 { (1.0, 0) } else { (-1.0, last - 1) };
         let angle_rate = match e.slope {
             Some(slope) => slope.rate,
-            None => w.angle_rate[cell] + sign * 0.5 * mesh.h * kappa_rate,
+            None => w.shape.angle_rate[cell] + sign * 0.5 * mesh.h * kappa_rate,
         };
-        let moment = w.moment[i] + w.viscous_moment[i];
+        let moment = w.forces.moment[i] + w.forces.viscous_moment[i];
         add(out, Flow::Ends, sign * moment * angle_rate);
         add(out, Flow::AngularImpulse, sign * moment);
     }
-    add(out, Flow::Damping, length * w.viscous_moment[i] * kappa_rate);
+    add(out, Flow::Damping, length * w.forces.viscous_moment[i] * kappa_rate);
     if published {
         // d/dt (λ κ - κ)
-        let excess_rate = (stretch - 1.0) * kappa_rate + w.kappa[i] * stretch_rate;
-        add(out, Flow::Formulation, length * w.moment[i] * excess_rate);
+        let excess_rate = (stretch - 1.0) * kappa_rate + w.shape.kappa[i] * stretch_rate;
+        add(out, Flow::Formulation, length * w.forces.moment[i] * excess_rate);
     }
 }
 
@@ -140,15 +120,19 @@ fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, o
     for c in 0..system.mesh.cells {
         if system.has_moments {
             let couple = couple(system, now, w, c);
-            add(out, Flow::Loads, -h * couple * w.angle_rate[c]);
+            add(out, Flow::Loads, -h * couple * w.shape.angle_rate[c]);
             add(out, Flow::AngularImpulse, -h * couple);
         }
-        add(out, Flow::Damping, h * w.viscous_force[c] * w.stretch_rate[c]);
+        add(
+            out,
+            Flow::Damping,
+            h * w.forces.viscous_normal[c] * w.shape.stretch_rate[c],
+        );
         if turned_across(system) {
-            let turning = (w.v3[c + 1] - w.v3[c]) * turning_rate(system, w, c);
+            let turning = (w.motion.v[c + 1].z - w.motion.v[c].z) * turning_rate(system, w, c);
             add(out, Flow::AngularImpulse, rotary * turning);
         } else if published && system.model.effects.has(Effect::RotaryInertia) {
-            let spurious = rotary * w.stretch[c] * w.stretch_rate[c] * w.angle_rate[c].powi(2);
+            let spurious = rotary * w.shape.stretch[c] * w.shape.stretch_rate[c] * w.shape.angle_rate[c].powi(2);
             add(out, Flow::Formulation, -h * spurious);
         }
     }
@@ -156,8 +140,8 @@ fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, o
 
 /// Velocity along with which a node carries its mass: its own, without axial inertia that of the frame, `[E27]`.
 fn carried(system: &System, frame: Option<Frame>, w: &Workspace<f64>, node: usize) -> f64 {
-    if system.layout.waves[1] {
-        return w.v3[node];
+    if system.layout.lines[1].v.is_some() {
+        return w.motion.v[node].z;
     }
     let share = node as f64 / (system.mesh.nodes - 1) as f64;
     frame.map_or(0.0, |frame| frame.at(share).rate)
@@ -166,15 +150,15 @@ fn carried(system: &System, frame: Option<Frame>, w: &Workspace<f64>, node: usiz
 /// Whether sections turn finitely but have the rotary inertia of `[E27]`.
 fn turned_across(system: &System) -> bool {
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
-    finite && system.model.effects.has(Effect::RotaryInertia) && !system.layout.waves[1]
+    finite && system.model.effects.has(Effect::RotaryInertia) && system.layout.lines[1].v.is_none()
 }
 
 /// Rate of turning that rotary inertia resists: `φ_t`, without axial inertia `x'_t`.
 fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
     if turned_across(system) {
-        (w.v1[c + 1] - w.v1[c]) / system.mesh.h
+        (w.motion.v[c + 1].x - w.motion.v[c].x) / system.mesh.h
     } else {
-        w.angle_rate[c]
+        w.shape.angle_rate[c]
     }
 }
 
@@ -182,18 +166,18 @@ fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
 pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies {
     let (mesh, section) = (&system.mesh, &system.model.section);
     let mut e = Energies::default();
-    let frame = now.frame_3();
+    let frame = now.frame(1);
     for i in 0..mesh.nodes {
         let length = mesh.node_length(i);
         if system.layout.inertia {
             let along = carried(system, frame, w, i);
-            e.kinetic += 0.5 * section.mass_per_length * length * (w.v1[i] * w.v1[i] + along * along);
+            e.kinetic += 0.5 * section.mass_per_length * length * (w.motion.v[i].x * w.motion.v[i].x + along * along);
         }
-        e.bending += 0.5 * length * w.moment[i] * w.moment[i] / section.bending_stiffness;
+        e.bending += 0.5 * length * w.forces.moment[i] * w.forces.moment[i] / section.bending_stiffness;
     }
     for c in 0..mesh.cells {
         if system.model.effects.has(Effect::AxialStretch) {
-            e.axial += 0.5 * mesh.h * w.force[c] * w.force[c] / section.axial_stiffness;
+            e.axial += 0.5 * mesh.h * w.forces.normal[c] * w.forces.normal[c] / section.axial_stiffness;
         }
         if system.model.effects.has(Effect::RotaryInertia) {
             e.rotary += 0.5 * mesh.h * spin(system, w, c) * turning_rate(system, w, c);
@@ -205,8 +189,8 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies
 /// Angular momentum of a cell's rotation per length and turning: `m y11 φ_t`, published `m y11 λ² φ_t`.
 fn spin(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
     let section = &system.model.section;
-    let factor = if system.model.published() && system.layout.waves[1] {
-        w.stretch[c] * w.stretch[c]
+    let factor = if system.model.published() && system.layout.lines[1].v.is_some() {
+        w.shape.stretch[c] * w.shape.stretch[c]
     } else {
         1.0
     };
@@ -215,33 +199,39 @@ fn spin(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
 
 /// Arms (x, z) with which a node's momentum and force turn about the origin, and their rates: its position. A small
 /// rotation ε moves a node by (ε θ, -ε g u1), whatever u3 is: that is what the potential of `[E26]` does not feel.
-pub fn arms(system: &System, w: &Workspace<f64>, i: usize) -> ([f64; 2], [f64; 2]) {
-    let theta = system.mesh.node_coordinate(i);
+pub fn arms(system: &System, w: &Workspace<f64>, i: usize) -> (Planar<f64>, Planar<f64>) {
+    let at = Planar {
+        x: 0.0,
+        z: system.mesh.node_coordinate(i),
+    };
+    let (u, v) = (w.motion.u[i], w.motion.v[i]);
     match system.model.kinematics {
-        Kinematics::Bar | Kinematics::FiniteRotation => ([w.u1[i], theta + w.u3[i]], [w.v1[i], w.v3[i]]),
-        Kinematics::SmallRotation => ([w.u1[i], theta], [w.v1[i], 0.0]),
-        Kinematics::Linear => ([0.0, theta], [0.0, 0.0]),
+        Kinematics::Bar | Kinematics::FiniteRotation => (at + u, v),
+        Kinematics::SmallRotation => (Planar { x: u.x, ..at }, Planar { x: v.x, z: 0.0 }),
+        Kinematics::Linear => (at, Planar::default()),
     }
 }
 
-/// Momentum (x, z) and angular momentum about the origin.
-pub fn momenta(system: &System, now: &TimeData, w: &Workspace<f64>) -> ([f64; 2], f64) {
+/// Momentum and angular momentum about the origin.
+pub fn momenta(system: &System, now: &TimeData, w: &Workspace<f64>) -> (Planar<f64>, f64) {
     let (mesh, section) = (&system.mesh, &system.model.section);
-    let (mut momentum, mut angular) = ([0.0; 2], 0.0);
+    let (mut momentum, mut angular) = (Planar::default(), 0.0);
     if !system.layout.inertia {
         return (momentum, angular);
     }
-    let frame = now.frame_3();
+    let frame = now.frame(1);
     for i in 0..mesh.nodes {
-        let mass = section.mass_per_length * mesh.node_length(i);
-        momentum[0] += mass * w.v1[i];
         let along = carried(system, frame, w, i);
-        momentum[1] += mass * along;
-        let ([x, z], _) = arms(system, w, i);
-        angular += mass * (z * w.v1[i] - x * along);
+        let mass = section.mass_per_length * mesh.node_length(i);
+        let own = Planar {
+            z: along,
+            ..w.motion.v[i]
+        } * mass;
+        momentum += own;
+        angular += arms(system, w, i).0.cross(own);
     }
     if system.model.effects.has(Effect::RotaryInertia) {
-        let arm = |c: usize| if turned_across(system) { w.d3z[c] } else { 1.0 };
+        let arm = |c: usize| if turned_across(system) { w.shape.d3[c].z } else { 1.0 };
         let cells = (0..mesh.cells).map(|c| mesh.h * arm(c) * spin(system, w, c));
         angular += cells.sum::<f64>();
     }

@@ -1,5 +1,7 @@
 //! Fields along the beam and along the network.
 
+use std::borrow::Cow;
+
 use super::observables::Role;
 use crate::case::wiring::bladder_label;
 use crate::discrete::{System, Workspace};
@@ -50,7 +52,7 @@ type Entry = (
     Axis,
     Role,
     &'static str,
-    fn(&Workspace<f64>) -> &[f64],
+    for<'w> fn(&'w Workspace<f64>) -> Cow<'w, [f64]>,
 );
 
 impl Field {
@@ -72,15 +74,15 @@ impl Field {
         use Axis::{Cells, Network, Nodes};
         use Role::{Recorded, Studied};
         match self {
-            Self::U1 => ("u1_m", "m", Nodes, Studied, "transverse displacement", |w| &w.u1),
-            Self::U3 => ("u3_m", "m", Nodes, Studied, "axial displacement", |w| &w.u3),
-            Self::V1 => ("v1_m_s", "m/s", Nodes, Studied, "transverse velocity", |w| &w.v1),
-            Self::V3 => ("v3_m_s", "m/s", Nodes, Studied, "axial velocity", |w| &w.v3),
-            Self::Curvature => ("curvature_1_m", "1/m", Nodes, Recorded, "curvature, positive with the +x fibre in tension", |w| &w.kappa),
-            Self::Moment => ("moment_n_m", "N m", Nodes, Recorded, "bending moment", |w| &w.moment),
-            Self::NormalForce => ("normal_force_n", "N", Cells, Recorded, "normal force", |w| &w.force),
-            Self::Pressure => ("pressure_pa", "Pa", Network, Recorded, "pressure of the bladder cells", |w| &w.pressure),
-            Self::AreaChange => ("area_change_m2", "m^2", Network, Recorded, "area change of the bladder cells", |w| &w.area),
+            Self::U1 => ("u1_m", "m", Nodes, Studied, "transverse displacement", |w| w.motion.u.iter().map(|u| u.x).collect()),
+            Self::U3 => ("u3_m", "m", Nodes, Studied, "axial displacement", |w| w.motion.u.iter().map(|u| u.z).collect()),
+            Self::V1 => ("v1_m_s", "m/s", Nodes, Studied, "transverse velocity", |w| w.motion.v.iter().map(|v| v.x).collect()),
+            Self::V3 => ("v3_m_s", "m/s", Nodes, Studied, "axial velocity", |w| w.motion.v.iter().map(|v| v.z).collect()),
+            Self::Curvature => ("curvature_1_m", "1/m", Nodes, Recorded, "curvature, positive with the +x fibre in tension", |w| Cow::Borrowed(&w.shape.kappa)),
+            Self::Moment => ("moment_n_m", "N m", Nodes, Recorded, "bending moment", |w| Cow::Borrowed(&w.forces.moment)),
+            Self::NormalForce => ("normal_force_n", "N", Cells, Recorded, "normal force", |w| Cow::Borrowed(&w.forces.normal)),
+            Self::Pressure => ("pressure_pa", "Pa", Network, Recorded, "pressure of the bladder cells", |w| Cow::Borrowed(&w.fluid.pressure)),
+            Self::AreaChange => ("area_change_m2", "m^2", Network, Recorded, "area change of the bladder cells", |w| Cow::Borrowed(&w.fluid.area)),
         }
     }
 
@@ -110,7 +112,7 @@ impl Field {
     }
 
     /// Values in a state, in the order of the mesh: along the network those of [`cell_order`] are recorded.
-    pub fn values(self, w: &Workspace<f64>) -> &[f64] {
+    pub fn values(self, w: &Workspace<f64>) -> Cow<'_, [f64]> {
         (self.entry().5)(w)
     }
 

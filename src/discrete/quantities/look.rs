@@ -4,7 +4,7 @@ use crate::discrete::fluid_mesh::Place;
 use crate::discrete::ledger::{self, Energies};
 use crate::discrete::residual::fluid::pressure_at;
 use crate::discrete::residual::solid::node_stretch;
-use crate::discrete::{System, TimeData, Workspace};
+use crate::discrete::{State, System, TimeData, Workspace};
 use crate::model::Kinematics;
 use crate::model::network::LinkKind;
 
@@ -26,15 +26,15 @@ impl Extremes {
                 .map_or(0, |(i, _)| i)
         };
         Self {
-            high: place(&w.pressure, 1.0),
-            low: place(&w.pressure, -1.0),
-            closed: place(&w.area, -1.0),
+            high: place(&w.fluid.pressure, 1.0),
+            low: place(&w.fluid.pressure, -1.0),
+            closed: place(&w.fluid.area, -1.0),
             angle: tip_angle(system, w),
         }
     }
 }
 
-/// A state that is read; the workspace holds [`ledger::complete`] of it.
+/// A state that is read.
 #[derive(Clone, Copy, Debug)]
 pub struct Look<'a> {
     /// Model and mesh.
@@ -42,7 +42,7 @@ pub struct Look<'a> {
     /// What is given at the time.
     pub now: &'a TimeData,
     /// The state.
-    pub w: &'a Workspace<f64>,
+    pub w: State<'a>,
     /// What it stores.
     pub stored: Energies,
     /// Where its largest values are looked for.
@@ -55,32 +55,32 @@ impl Look<'_> {
     }
 
     pub(super) fn tip_u1(&self) -> f64 {
-        self.w.u1[self.tip()]
+        self.w.motion.u[self.tip()].x
     }
 
     pub(super) fn tip_u3(&self) -> f64 {
-        self.w.u3[self.tip()]
+        self.w.motion.u[self.tip()].z
     }
 
     /// Without full turns between it and the angle that is held on to.
     pub(super) fn tip_angle(&self) -> f64 {
         let turn = std::f64::consts::TAU;
-        let angle = tip_angle(self.system, self.w);
+        let angle = tip_angle(self.system, &self.w);
         angle - turn * ((angle - self.at.angle) / turn).round()
     }
 
     pub(super) fn max_pressure(&self) -> f64 {
-        self.w.pressure[self.at.high]
+        self.w.fluid.pressure[self.at.high]
     }
 
     pub(super) fn min_pressure(&self) -> f64 {
-        self.w.pressure[self.at.low]
+        self.w.fluid.pressure[self.at.low]
     }
 
     /// `(h_b w_b + a1)/(h_b w_b)`.
     pub(super) fn least_opening(&self) -> f64 {
         let at_rest = self.system.model.wet.as_ref().map(|wet| wet.area_at_rest);
-        at_rest.map_or(1.0, |at_rest| 1.0 + self.w.area[self.at.closed] / at_rest)
+        at_rest.map_or(1.0, |at_rest| 1.0 + self.w.fluid.area[self.at.closed] / at_rest)
     }
 
     /// `Σ R q²` of turbines between bladders, `Σ g Δp²` of those of bridges.
@@ -92,11 +92,11 @@ impl Look<'_> {
         let mut power = 0.0;
         for (link, &conductance) in fluid.links.iter().zip(&now.conductance) {
             if matches!(link.kind, LinkKind::Turbine(_)) {
-                let q = conductance * (pressure_at(link.from, now, w) - pressure_at(link.to, now, w));
+                let q = conductance * (pressure_at(link.from, now, &w) - pressure_at(link.to, now, &w));
                 power += q * q * link.resistance;
             }
         }
-        for (bridge, drop) in fluid.bridges.iter().zip(&w.bridge) {
+        for (bridge, drop) in fluid.bridges.iter().zip(&w.fluid.bridge) {
             let turbine = wet.network.bridges[bridge.number].turbine;
             power += wet.network.turbines[turbine].conductance * drop * drop;
         }
@@ -107,12 +107,12 @@ impl Look<'_> {
 /// `φ` of the tip, followed along the beam so that full turns count.
 pub(in crate::discrete) fn tip_angle(system: &System, w: &Workspace<f64>) -> f64 {
     let last = system.mesh.nodes - 1;
-    let interior: f64 = w.kappa[1..last].iter().sum();
+    let interior: f64 = w.shape.kappa[1..last].iter().sum();
     let first = match system.model.kinematics {
-        Kinematics::Bar | Kinematics::FiniteRotation => w.tx[0].atan2(w.tz[0]),
-        Kinematics::Linear | Kinematics::SmallRotation => w.d3x[0],
+        Kinematics::Bar | Kinematics::FiniteRotation => w.shape.tangent[0].x.atan2(w.shape.tangent[0].z),
+        Kinematics::Linear | Kinematics::SmallRotation => w.shape.d3[0].x,
     };
-    first - system.mesh.h * (interior + 0.5 * w.kappa[last])
+    first - system.mesh.h * (interior + 0.5 * w.shape.kappa[last])
 }
 
 /// Largest flow through a tube [m^3/s], its rate as far as bladders and ports make it, and the tube's number among the tubes.
@@ -147,7 +147,7 @@ pub fn largest_strain(system: &System, half_height: f64, w: &Workspace<f64>) -> 
     (0..=last)
         .map(|i| {
             (
-                (node_stretch(w, i, last) - 1.0).abs() + w.kappa[i].abs() * half_height,
+                (node_stretch(w, i, last) - 1.0).abs() + w.shape.kappa[i].abs() * half_height,
                 i,
             )
         })

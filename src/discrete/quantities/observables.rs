@@ -102,7 +102,7 @@ fn port_flow(look: &Look) -> f64 {
     let cells = (0..fluid.bladders)
         .filter(open)
         .flat_map(|bladder| fluid.cells_of(bladder));
-    cells.map(|cell| look.w.area_rate[cell]).sum::<f64>() * fluid.ds
+    cells.map(|cell| look.w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds
 }
 
 /// One row of the table.

@@ -14,9 +14,9 @@ use crate::numerics::Scalar;
 pub fn kinematics<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     for c in 0..system.mesh.cells {
-        let e = (w.u3[c + 1] - w.u3[c]) * inverse;
-        w.strain[c] = e;
-        w.stretch[c] = e + 1.0;
+        let e = (w.motion.u[c + 1].z - w.motion.u[c].z) * inverse;
+        w.shape.strain[c] = e;
+        w.shape.stretch[c] = e + 1.0;
     }
 }
 
@@ -31,13 +31,13 @@ pub fn rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 pub fn strain_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     for c in 0..system.mesh.cells {
-        w.stretch_rate[c] = (w.v3[c + 1] - w.v3[c]) * inverse;
+        w.shape.stretch_rate[c] = (w.motion.v[c + 1].z - w.motion.v[c].z) * inverse;
     }
 }
 
 /// The section force is the normal force.
 pub fn section_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     for c in 0..system.mesh.cells {
-        w.sz[c] = normal_force(system, w, c);
+        w.forces.section[c].z = normal_force(system, w, c);
     }
 }

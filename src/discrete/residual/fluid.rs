@@ -3,7 +3,7 @@
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::Storage;
+use crate::model::{ROWS, Storage};
 use crate::numerics::Scalar;
 
 /// `[E8]` Pressure of each cell from its stored area, and each bladder's mean (A.15, A.16 solved for p):
@@ -20,29 +20,29 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let law = &wet.area;
     let share = 1.0 / fluid.cells_per_bladder as f64;
     for j in 0..wet.per_row {
-        let of_force = law.of_force(w.mean_force[j]);
-        for (bladder, row) in [(j, 1.0), (wet.per_row + j, -1.0)] {
-            let imposed = of_force + law.of_moment(w.mean_moment[j], row);
+        let of_force = law.of_force(w.coupling.mean_force[j]);
+        for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
+            let imposed = of_force + law.of_moment(w.coupling.mean_moment[j], row);
             let cells = fluid.cells_of(bladder);
-            w.mean_pressure[bladder] = match wet.storage[bladder] {
+            w.fluid.mean_pressure[bladder] = match wet.storage[bladder] {
                 Storage::Flowing => {
                     let mut sum = T::zero();
                     for cell in cells {
-                        let p = law.pressure(w.area[cell], imposed);
-                        w.pressure[cell] = p;
+                        let p = law.pressure(w.fluid.area[cell], imposed);
+                        w.fluid.pressure[cell] = p;
                         sum += p;
                     }
                     sum * share
                 }
                 Storage::Kept => {
-                    let p = law.pressure(w.area[cells.start], imposed);
-                    w.pressure[cells].fill(p);
+                    let p = law.pressure(w.fluid.area[cells.start], imposed);
+                    w.fluid.pressure[cells].fill(p);
                     p
                 }
                 Storage::Shared(pool) => {
-                    let p = w.pool[pool];
-                    w.area[cells.clone()].fill(p * law.per_pressure + imposed);
-                    w.pressure[cells].fill(p);
+                    let p = w.fluid.pool[pool];
+                    w.fluid.area[cells.clone()].fill(p * law.per_pressure + imposed);
+                    w.fluid.pressure[cells].fill(p);
                     p
                 }
             };
@@ -55,12 +55,16 @@ pub fn pressure_strains<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let Some(wet) = &system.model.wet else { return };
     let effects = &system.model.effects;
     for j in 0..wet.per_row {
-        let (upper, lower) = (w.mean_pressure[j], w.mean_pressure[wet.per_row + j]);
+        let [upper, lower] = wet.pair(j).map(|bladder| w.fluid.mean_pressure[bladder]);
         if effects.has(Effect::PressureToStretch) && effects.has(Effect::AxialStretch) {
-            w.pressure_stretch[j] = wet.coupling.stretch(&wet.strains, w.mean_force[j], upper, lower);
+            w.coupling.pressure_stretch[j] = wet
+                .coupling
+                .stretch(&wet.strains, w.coupling.mean_force[j], upper, lower);
         }
         if effects.has(Effect::PressureToCurvature) {
-            w.pressure_curvature[j] = wet.coupling.curvature(&wet.strains, w.mean_moment[j], upper, lower);
+            w.coupling.pressure_curvature[j] =
+                wet.coupling
+                    .curvature(&wet.strains, w.coupling.mean_moment[j], upper, lower);
         }
     }
 }
@@ -69,8 +73,8 @@ pub fn pressure_strains<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 #[inline]
 pub fn pressure_at<T: Scalar>(place: Place, now: &TimeData, w: &Workspace<T>) -> T {
     match place {
-        Place::Cell(c) => w.pressure[c],
-        Place::Junction(j) => w.junction[j],
+        Place::Cell(c) => w.fluid.pressure[c],
+        Place::Junction(j) => w.fluid.junction[j],
         Place::Port(p) => T::constant(now.port_pressure[p]),
     }
 }
@@ -88,13 +92,13 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
         return;
     }
     let k = fluid.cells_per_bladder;
-    w.inflow.fill(T::zero());
-    w.junction_inflow.fill(T::zero());
+    w.fluid.inflow.fill(T::zero());
+    w.fluid.junction_inflow.fill(T::zero());
     for &bladder in &fluid.flowing {
         for cell in bladder * k + 1..(bladder + 1) * k {
-            let q = (w.pressure[cell - 1] - w.pressure[cell]) * fluid.conductance;
-            w.inflow[cell - 1] -= q;
-            w.inflow[cell] += q;
+            let q = (w.fluid.pressure[cell - 1] - w.fluid.pressure[cell]) * fluid.conductance;
+            w.fluid.inflow[cell - 1] -= q;
+            w.fluid.inflow[cell] += q;
         }
     }
     for (link, &conductance) in fluid.links.iter().zip(&now.conductance) {
@@ -107,7 +111,7 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     }
     for (k, &MeshBridge { number, from, to }) in fluid.bridges.iter().enumerate() {
         let bridge = &wet.network.bridges[number];
-        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.bridge[k]);
+        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.fluid.bridge[k]);
         let q = bridge.valve.flow(forward) - bridge.valve.flow(backward);
         deliver(from, -q, w);
         deliver(to, q, w);
@@ -124,8 +128,8 @@ pub fn bridge_drops<T: Scalar>(d: T, turbine: T) -> (T, T) {
 #[inline]
 fn deliver<T: Scalar>(place: Place, flow: T, w: &mut Workspace<T>) {
     match place {
-        Place::Cell(c) => w.inflow[c] += flow,
-        Place::Junction(j) => w.junction_inflow[j] += flow,
+        Place::Cell(c) => w.fluid.inflow[c] += flow,
+        Place::Junction(j) => w.fluid.junction_inflow[j] += flow,
         Place::Port(_) => {}
     }
 }

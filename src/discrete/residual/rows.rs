@@ -1,10 +1,12 @@
 //! The equations, one block after the other.
 
 use super::fluid::{bridge_drops, pressure_at};
+use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::MeshBridge;
+use crate::discrete::ledger::Flow;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::model::{Kinematics, PoolKind};
-use crate::numerics::Scalar;
+use crate::numerics::{Planar, Scalar};
 
 /// `[E14]` Momentum of each node (A.5), in the conservative form telescoping:
 ///
@@ -23,100 +25,102 @@ use crate::numerics::Scalar;
 /// kinetic energy along is that of the frame, `Σ h_i m U_i'²/2`.
 pub fn momentum<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let (l, mesh) = (&system.layout, &system.mesh);
-    let section = &system.model.section;
     let last = mesh.nodes - 1;
-    let published = system.model.published();
-    let across = system.model.kinematics != Kinematics::Bar;
-    let row_1 = if l.waves[0] { l.v1 } else { l.u1 };
-    let row_3 = if l.waves[1] { l.v3 } else { l.u3 };
     for i in 0..=last {
-        let length = mesh.node_length(i);
-        let (mut fx, mut fz) = (T::zero(), T::constant(length * now.force_z[i]));
+        let mut f = Planar::zero();
+        outer_forces(system, now, w, i, |_, force| f += force);
         if i < last {
-            fz += w.sz[i];
+            f += w.forces.section[i];
         }
         if i > 0 {
-            fz -= w.sz[i - 1];
+            f -= w.forces.section[i - 1];
         }
-        if across {
-            fx = T::constant(length * now.force_x[i]);
-            if i < last {
-                fx += w.sx[i];
+        let mass = system.model.section.mass_per_length * mesh.node_length(i);
+        for (axis, line) in l.lines.iter().enumerate() {
+            if let Some(row) = line.momentum(i) {
+                r[row] = if l.inertia {
+                    w.motion.a[i][axis] * mass - f[axis]
+                } else {
+                    -f[axis]
+                };
             }
-            if i > 0 {
-                fx -= w.sx[i - 1];
-            }
-        }
-        if i == 0 || i == last {
-            let (ex, ez) = end_force(system, now, w, i);
-            fx += ex;
-            fz += ez;
-        }
-        if published {
-            let (cx, cz) = published_force(system, w, i);
-            fx += cx;
-            fz += cz;
-        }
-        if section.drag > 0.0 {
-            fx -= w.v1[i] * (length * section.drag);
-            fz -= w.v3[i] * (length * section.drag);
-        }
-        let mass = section.mass_per_length * length;
-        if l.free_u1.contains(&i) {
-            let index = row_1 + i - l.free_u1.start;
-            r[index] = if l.inertia { w.a1[i] * mass - fx } else { -fx };
-        }
-        if l.free_u3.contains(&i) {
-            let index = row_3 + i - l.free_u3.start;
-            r[index] = if l.inertia { w.a3[i] * mass - fz } else { -fz };
         }
     }
+}
+
+/// What acts on a node besides its sections, each force with the account of the balance of energy that its work goes to, [E19].
+#[inline(always)]
+pub fn outer_forces<T: Scalar>(
+    system: &System,
+    now: &TimeData,
+    w: &Workspace<T>,
+    node: usize,
+    mut each: impl FnMut(Flow, Planar<T>),
+) {
+    let (section, length) = (&system.model.section, system.mesh.node_length(node));
+    let mut given = Planar::constant(now.force[node] * length);
+    if node == 0 || node == system.mesh.nodes - 1 {
+        given += end_force(system, now, w, node);
+    }
+    each(Flow::Loads, given);
+    if system.model.published() {
+        each(Flow::Formulation, published_force(system, w, node));
+    }
+    if section.drag > 0.0 {
+        each(
+            Flow::Damping,
+            -felt_velocity(system, now, w, node) * (length * section.drag),
+        );
+    }
+}
+
+/// Velocity with which a node meets what surrounds the beam: its own; along a beam that does not stretch that of its frame, [E28].
+#[inline]
+fn felt_velocity<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
+    let own = w.motion.v[node];
+    if system.model.effects.has(Effect::AxialStretch) {
+        return own;
+    }
+    let share = node as f64 / (system.mesh.nodes - 1) as f64;
+    let along = now.frame(1).map_or(0.0, |frame| frame.at(share).rate);
+    Planar::new(own.x, T::constant(along))
 }
 
 /// Force given at an end node: dead, plus follower section forces `N e_t + V e_n` at the end's angle (A.53, A.54),
 /// which act on the body with the sign of the outward section.
-pub fn end_force<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> (T, T) {
+pub fn end_force<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
     let last = system.mesh.nodes - 1;
     let end = &now.ends[usize::from(node == last)];
-    let (mut fx, mut fz) = (T::constant(end.force_x), T::constant(end.force_z));
-    if let Some((normal, shear)) = end.follower {
-        let outward = if node == last { 1.0 } else { -1.0 };
-        let (tx, tz) = match system.model.kinematics {
-            Kinematics::FiniteRotation => end_tangent(system, now, w, node),
-            // n_x = g N φ - V, n_z = N, as [E26] has it in every section.
-            kinematics => {
-                let turned = kinematics == Kinematics::SmallRotation;
-                let angle = if turned {
-                    end_angle(system, now, w, node)
-                } else {
-                    T::zero()
-                };
-                fx += angle * (outward * normal) + -outward * shear;
-                fz += T::constant(outward * normal);
-                return (fx, fz);
-            }
-        };
-        fx += tx * (outward * normal) - tz * (outward * shear);
-        fz += tz * (outward * normal) + tx * (outward * shear);
-    }
-    (fx, fz)
+    let dead = Planar::constant(end.force);
+    let Some((normal, shear)) = end.follower else {
+        return dead;
+    };
+    let outward = if node == last { 1.0 } else { -1.0 };
+    let (normal, shear) = (outward * normal, outward * shear);
+    let own = match system.model.kinematics {
+        Kinematics::FiniteRotation => {
+            let tangent = end_tangent(system, now, w, node);
+            tangent * normal + tangent.normal() * shear
+        }
+        // n_x = g N φ - V, n_z = N, as [E26] has it in every section.
+        Kinematics::SmallRotation => Planar::new(end_angle(system, now, w, node) * normal - shear, T::constant(normal)),
+        Kinematics::Linear | Kinematics::Bar => Planar::constant(Planar { x: -shear, z: normal }),
+    };
+    dead + own
 }
 
 /// Unit tangent at an end: prescribed, or `φ_0 = φ_{1/2} + (h/2) κ_0`, `φ_n = φ_{n-1/2} - (h/2) κ_n`.
-pub fn end_tangent<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> (T, T) {
+pub fn end_tangent<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
     let last = system.mesh.nodes - 1;
     let at_tip = node == last;
     if let Some(slope) = now.ends[usize::from(at_tip)].slope {
-        let (sine, cosine) = slope.value.sin_cos();
-        return (T::constant(sine), T::constant(cosine));
+        return Planar::constant(Planar::tangent(slope.value));
     }
     let cell = if at_tip { last - 1 } else { 0 };
     let half = if at_tip { -0.5 } else { 0.5 } * system.mesh.h;
-    let (sine, cosine) = (w.kappa[node] * half).sin_cos();
-    (
-        w.tx[cell] * cosine + w.tz[cell] * sine,
-        w.tz[cell] * cosine - w.tx[cell] * sine,
-    )
+    let (sine, cosine) = (w.shape.kappa[node] * half).sin_cos();
+    let tangent = w.shape.tangent[cell];
+    tangent.times(cosine) - tangent.normal().times(sine)
 }
 
 /// Angle at an end of a beam that turns little, as [`end_tangent`] has it.
@@ -127,9 +131,9 @@ fn end_angle<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node:
     }
     let half = 0.5 * system.mesh.h;
     if at_tip {
-        w.d3x[node - 1] - w.kappa[node] * half
+        w.shape.d3[node - 1].x - w.shape.kappa[node] * half
     } else {
-        w.d3x[0] + w.kappa[0] * half
+        w.shape.d3[0].x + w.shape.kappa[0] * half
     }
 }
 
@@ -138,39 +142,29 @@ fn end_angle<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node:
 /// ```text
 /// c_i = h_i (κ_i - M_i/EI) (V^ e_t(φ^) - N^ e_n(φ^))        ^ mean of the neighbouring cells
 /// ```
-pub fn published_force<T: Scalar>(system: &System, w: &Workspace<T>, i: usize) -> (T, T) {
+pub fn published_force<T: Scalar>(system: &System, w: &Workspace<T>, i: usize) -> Planar<T> {
     let last = system.mesh.nodes - 1;
-    let (a, b) = if i == 0 {
-        (0, 0)
-    } else if i == last {
-        (last - 1, last - 1)
-    } else {
-        (i - 1, i)
-    };
-    let (mut tx, mut tz) = (w.tx[a] + w.tx[b], w.tz[a] + w.tz[b]);
-    let scale = T::constant(1.0) / (tx.squared() + tz.squared()).sqrt();
-    tx = tx * scale;
-    tz = tz * scale;
-    let mut normal = (w.force[a] + w.force[b]) * 0.5;
+    let (a, b) = (i.saturating_sub(1), i.min(last - 1));
+    let (forces, tangents) = (&w.forces, &w.shape.tangent);
+    let mean = tangents[a] + tangents[b];
+    let tangent = mean.times(T::constant(1.0) / mean.squared().sqrt());
+    let mut normal = (forces.normal[a] + forces.normal[b]) * 0.5;
     if system.damped {
-        normal += (w.viscous_force[a] + w.viscous_force[b]) * 0.5;
+        normal += (forces.viscous_normal[a] + forces.viscous_normal[b]) * 0.5;
     }
-    let shear = (w.shear[a] + w.shear[b]) * 0.5;
-    let excess =
-        (w.kappa[i] - w.moment[i] * (1.0 / system.model.section.bending_stiffness)) * system.mesh.node_length(i);
-    (excess * (shear * tx + normal * tz), excess * (shear * tz - normal * tx))
+    let shear = (forces.shear[a] + forces.shear[b]) * 0.5;
+    let excess = (w.shape.kappa[i] - forces.moment[i] * (1.0 / system.model.section.bending_stiffness))
+        * system.mesh.node_length(i);
+    (tangent.times(shear) - tangent.normal().times(normal)).times(excess)
 }
 
 /// `u' = v`, where velocities are unknowns.
 pub fn motion<T: Scalar>(system: &System, y: &[T], yp: &[T], r: &mut [T]) {
-    let l = &system.layout;
-    let lines = [
-        (l.u1, l.v1, &l.free_u1, l.waves[0]),
-        (l.u3, l.v3, &l.free_u3, l.waves[1]),
-    ];
-    for (u, v, nodes, _) in lines.into_iter().filter(|(.., waves)| *waves) {
-        for k in 0..nodes.len() {
-            r[u + k] = yp[u + k] - y[v + k];
+    for line in &system.layout.lines {
+        for (_, u, v) in line.unknowns() {
+            if let Some(v) = v {
+                r[u] = yp[u] - y[v];
+            }
         }
     }
 }
@@ -181,15 +175,12 @@ pub fn motion<T: Scalar>(system: &System, y: &[T], yp: &[T], r: &mut [T]) {
 /// Mbar_j = Σ w_ji M_i    w = (1/2, 1, .., 1, 1/2)/K        Nbar_j = mean of N over the cells
 /// ```
 pub fn means<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
-    let Some(wet) = &system.model.wet else { return };
-    let (l, mesh) = (&system.layout, &system.mesh);
-    for j in 0..mesh.segments {
-        if wet.takes_moments {
-            r[l.mean_moment + j] = w.mean_moment[j] - mean_moment(system, w, j);
-        }
-        if wet.takes_forces {
-            r[l.mean_force + j] = w.mean_force[j] - mean_force(system, w, j);
-        }
+    let own = &system.layout.coupling;
+    for (j, row) in own.mean_moment.clone().enumerate() {
+        r[row] = w.coupling.mean_moment[j] - mean_moment(system, w, j);
+    }
+    for (j, row) in own.mean_force.clone().enumerate() {
+        r[row] = w.coupling.mean_force[j] - mean_force(system, w, j);
     }
 }
 
@@ -198,7 +189,7 @@ pub fn mean_moment<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize)
     let k = system.mesh.cells_per_segment;
     let mut moment = T::zero();
     for i in 0..=k {
-        moment += w.moment[segment * k + i] * system.mesh.moment_weight(i);
+        moment += w.forces.moment[segment * k + i] * system.mesh.moment_weight(i);
     }
     moment
 }
@@ -208,7 +199,7 @@ pub fn mean_force<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize) 
     let k = system.mesh.cells_per_segment;
     let mut force = T::zero();
     for c in segment * k..(segment + 1) * k {
-        force += w.force[c];
+        force += w.forces.normal[c];
     }
     force * (1.0 / k as f64)
 }
@@ -216,10 +207,10 @@ pub fn mean_force<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize) 
 /// `[E17]` Storage of each cell, `ds da/dt = inflow` (A.13).
 pub fn storage<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     let Some(fluid) = &system.fluid else { return };
-    let mut row = system.layout.area;
+    let mut row = system.layout.network.area.start;
     for run in &fluid.runs {
         for cell in run.clone() {
-            r[row] = w.area_rate[cell] * fluid.ds - w.inflow[cell];
+            r[row] = w.fluid.area_rate[cell] * fluid.ds - w.fluid.inflow[cell];
             row += 1;
         }
     }
@@ -230,12 +221,12 @@ pub fn pools<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
-    let l = &system.layout;
+    let l = &system.layout.network;
     for (k, pool) in wet.pools.iter().enumerate() {
         let Some(row) = l.pool_pressure[k] else { continue };
         let mut areas = T::zero();
         for &bladder in &pool.bladders {
-            areas += w.area[fluid.cells_of(bladder).start];
+            areas += w.fluid.area[fluid.cells_of(bladder).start];
         }
         let volume = areas * wet.bladder_length;
         r[row] = match (&pool.kind, l.pool_volume[k]) {
@@ -251,9 +242,7 @@ pub fn pools<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &
 
 /// Flows into a junction sum to zero.
 pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
-    for (k, &inflow) in w.junction_inflow.iter().enumerate() {
-        r[system.layout.junction + k] = inflow;
-    }
+    r[system.layout.network.junction.clone()].copy_from_slice(&w.fluid.junction_inflow);
 }
 
 /// `[E18]` What flows through the valves of a bridge flows through its turbine:
@@ -264,8 +253,8 @@ pub fn bridges<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: 
     };
     for (k, &MeshBridge { number, from, to }) in fluid.bridges.iter().enumerate() {
         let bridge = &wet.network.bridges[number];
-        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.bridge[k]);
-        let through = w.bridge[k] * wet.network.turbines[bridge.turbine].conductance;
-        r[system.layout.bridge + k] = bridge.valve.flow(forward) + bridge.valve.flow(backward) - through;
+        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.fluid.bridge[k]);
+        let through = w.fluid.bridge[k] * wet.network.turbines[bridge.turbine].conductance;
+        r[system.layout.network.bridge.start + k] = bridge.valve.flow(forward) + bridge.valve.flow(backward) - through;
     }
 }

@@ -5,7 +5,7 @@ use crate::case::Translation;
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::model::Kinematics;
-use crate::numerics::Scalar;
+use crate::numerics::{Planar, Scalar};
 
 /// `[E26]` Small rotations, g = 1; without axial force on bending (the linear beam) g = 0:
 ///
@@ -21,17 +21,17 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     let tension = system.model.kinematics == Kinematics::SmallRotation;
     let stretches = system.model.effects.has(Effect::AxialStretch);
     for c in 0..system.mesh.cells {
-        let angle = (w.u1[c + 1] - w.u1[c]) * inverse;
-        w.d3x[c] = angle;
+        let angle = (w.motion.u[c + 1].x - w.motion.u[c].x) * inverse;
+        w.shape.d3[c].x = angle;
         if !stretches {
             continue;
         }
-        let mut e = (w.u3[c + 1] - w.u3[c]) * inverse;
+        let mut e = (w.motion.u[c + 1].z - w.motion.u[c].z) * inverse;
         if tension {
             e += angle.squared() * 0.5;
         }
-        w.strain[c] = e;
-        w.stretch[c] = e + 1.0;
+        w.shape.strain[c] = e;
+        w.shape.stretch[c] = e + 1.0;
     }
     curvatures(system, now, w);
 }
@@ -41,13 +41,13 @@ fn curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
     let inverse = 1.0 / system.mesh.h;
     let last = system.mesh.nodes - 1;
     for i in 1..last {
-        w.kappa[i] = (w.d3x[i - 1] - w.d3x[i]) * inverse;
+        w.shape.kappa[i] = (w.shape.d3[i - 1].x - w.shape.d3[i].x) * inverse;
     }
     if let Some(slope) = now.ends[0].slope {
-        w.kappa[0] = (-w.d3x[0] + slope.value) * (2.0 * inverse);
+        w.shape.kappa[0] = (-w.shape.d3[0].x + slope.value) * (2.0 * inverse);
     }
     if let Some(slope) = now.ends[1].slope {
-        w.kappa[last] = (w.d3x[last - 1] + -slope.value) * (2.0 * inverse);
+        w.shape.kappa[last] = (w.shape.d3[last - 1].x + -slope.value) * (2.0 * inverse);
     }
 }
 
@@ -63,11 +63,11 @@ pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspac
     let inverse = 1.0 / system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
     for c in 0..system.mesh.cells {
-        let turning = (w.v1[c + 1] - w.v1[c]) * inverse;
-        w.angle_rate[c] = turning;
-        w.stretch_rate[c] = (w.v3[c + 1] - w.v3[c]) * inverse;
+        let turning = (w.motion.v[c + 1].x - w.motion.v[c].x) * inverse;
+        w.shape.angle_rate[c] = turning;
+        w.shape.stretch_rate[c] = (w.motion.v[c + 1].z - w.motion.v[c].z) * inverse;
         if tension {
-            w.stretch_rate[c] += w.d3x[c] * turning;
+            w.shape.stretch_rate[c] += w.shape.d3[c].x * turning;
         }
     }
     curvature_rates(system, now, w);
@@ -79,7 +79,7 @@ pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspa
         solid::normal_forces(system, w);
         return;
     }
-    for (force, &given) in w.force.iter_mut().zip(&now.statics.force) {
+    for (force, &given) in w.forces.normal.iter_mut().zip(&now.statics.force) {
         *force = T::constant(given);
     }
 }
@@ -92,7 +92,7 @@ pub fn foreshorten(system: &System, stretch_rate: impl Fn(&Workspace<f64>, usize
     let root_held = matches!(system.model.ends[0].axial, Translation::Displacement(_));
     let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
     let held = if root_held { 0 } else { last };
-    let (mut u, mut v) = (w.u3[held], w.v3[held]);
+    let (mut u, mut v) = (w.motion.u[held].z, w.motion.v[held].z);
     for step in 0..last {
         let (cell, node, outward) = if root_held {
             (step, step + 1, 1.0)
@@ -100,14 +100,14 @@ pub fn foreshorten(system: &System, stretch_rate: impl Fn(&Workspace<f64>, usize
             (last - 1 - step, last - 1 - step, -1.0)
         };
         if pressed {
-            u += outward * h * w.pressure_stretch[cell / k];
+            u += outward * h * w.coupling.pressure_stretch[cell / k];
             v += outward * h * stretch_rate(w, cell / k);
         }
         if tension {
-            u -= outward * h * 0.5 * w.d3x[cell] * w.d3x[cell];
-            v -= outward * h * w.d3x[cell] * w.angle_rate[cell];
+            u -= outward * h * 0.5 * w.shape.d3[cell].x * w.shape.d3[cell].x;
+            v -= outward * h * w.shape.d3[cell].x * w.shape.angle_rate[cell];
         }
-        (w.u3[node], w.v3[node]) = (u, v);
+        (w.motion.u[node].z, w.motion.v[node].z) = (u, v);
     }
 }
 
@@ -118,20 +118,20 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
     let tension = system.model.kinematics == Kinematics::SmallRotation;
     for c in 0..system.mesh.cells {
         let normal = normal_force(system, w, c);
-        w.shear[c] = total_moment_drop(system, w, c) * inverse;
-        w.sz[c] = normal;
-        w.sx[c] = if tension {
-            normal * w.d3x[c] - w.shear[c]
+        w.forces.shear[c] = total_moment_drop(system, w, c) * inverse;
+        let across = if tension {
+            normal * w.shape.d3[c].x - w.forces.shear[c]
         } else {
-            -w.shear[c]
+            -w.forces.shear[c]
         };
+        w.forces.section[c] = Planar::new(across, normal);
         if system.has_moments {
             let turning = couple(system, now, w, c);
-            w.sx[c] += turning;
+            w.forces.section[c].x += turning;
         }
         if system.model.effects.has(Effect::RotaryInertia) {
             let inertia = section.mass_per_length * section.gyration_radius_squared;
-            w.sx[c] += (w.a1[c + 1] - w.a1[c]) * (inverse * inertia);
+            w.forces.section[c].x += (w.motion.a[c + 1].x - w.motion.a[c].x) * (inverse * inertia);
         }
     }
 }

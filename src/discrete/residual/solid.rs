@@ -3,7 +3,7 @@
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::model::Kinematics;
-use crate::numerics::Scalar;
+use crate::numerics::{Planar, Scalar};
 
 /// `[E11]` Directors, stretch, tangent and curvature (A.1, A.2, A.19, A.20), curvature positive with the +x fibre in
 /// tension:
@@ -16,48 +16,34 @@ use crate::numerics::Scalar;
 /// Angles enter as differences only, from cross and dot products, so that any number of turns is fine.
 pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
+    let (u, shape) = (&w.motion.u, &mut w.shape);
     for c in 0..system.mesh.cells {
-        let dx = (w.u1[c + 1] - w.u1[c]) * inverse;
-        let e = (w.u3[c + 1] - w.u3[c]) * inverse;
-        let dz = e + 1.0;
-        let stretch = (dx.squared() + dz.squared()).sqrt();
-        w.d3x[c] = dx;
-        w.d3z[c] = dz;
-        w.stretch[c] = stretch;
-        w.strain[c] = (dx.squared() + e * (e + 2.0)) / (stretch + 1.0);
-        let reciprocal = T::constant(1.0) / stretch;
-        w.tx[c] = dx * reciprocal;
-        w.tz[c] = dz * reciprocal;
+        let e = (u[c + 1] - u[c]) * inverse;
+        let d3 = Planar::new(e.x, e.z + 1.0);
+        let stretch = d3.squared().sqrt();
+        shape.d3[c] = d3;
+        shape.stretch[c] = stretch;
+        shape.strain[c] = (e.x.squared() + e.z * (e.z + 2.0)) / (stretch + 1.0);
+        shape.tangent[c] = d3.times(T::constant(1.0) / stretch);
     }
     let last = system.mesh.nodes - 1;
+    let tangent = &shape.tangent;
     for i in 1..last {
-        let turn = turn((w.tx[i - 1], w.tz[i - 1]), (w.tx[i], w.tz[i]));
-        w.kappa[i] = -turn * inverse;
+        shape.kappa[i] = -tangent[i - 1].angle_to(tangent[i]) * inverse;
     }
     if let Some(slope) = now.ends[0].slope {
-        let given = direction(slope.value);
-        w.kappa[0] = -turn(given, (w.tx[0], w.tz[0])) * (2.0 * inverse);
+        let given = Planar::constant(Planar::tangent(slope.value));
+        shape.kappa[0] = -given.angle_to(tangent[0]) * (2.0 * inverse);
     }
     if let Some(slope) = now.ends[1].slope {
-        let given = direction(slope.value);
-        w.kappa[last] = -turn((w.tx[last - 1], w.tz[last - 1]), given) * (2.0 * inverse);
+        let given = Planar::constant(Planar::tangent(slope.value));
+        shape.kappa[last] = -tangent[last - 1].angle_to(given) * (2.0 * inverse);
     }
-}
-
-/// Angle from one unit tangent to another.
-#[inline]
-fn turn<T: Scalar>(from: (T, T), to: (T, T)) -> T {
-    (to.0 * from.1 - to.1 * from.0).atan2(to.1 * from.1 + to.0 * from.0)
-}
-
-fn direction<T: Scalar>(angle: f64) -> (T, T) {
-    let (sine, cosine) = angle.sin_cos();
-    (T::constant(sine), T::constant(cosine))
 }
 
 /// Rates of stretch, angle and curvature, where something depends on them: `λ_t = e_t·d3_t`, `φ_t = d1·d3_t/λ²`.
 pub fn rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let turned = system.model.effects.has(Effect::RotaryInertia) && system.layout.waves[1];
+    let turned = system.model.effects.has(Effect::RotaryInertia) && system.layout.lines[1].v.is_some();
     if !(turned || system.damped) {
         return;
     }
@@ -67,11 +53,12 @@ pub fn rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
 /// Rates of stretch, angle and curvature, always.
 pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
+    let (v, shape) = (&w.motion.v, &mut w.shape);
     for c in 0..system.mesh.cells {
-        let dx_t = (w.v1[c + 1] - w.v1[c]) * inverse;
-        let dz_t = (w.v3[c + 1] - w.v3[c]) * inverse;
-        w.stretch_rate[c] = w.tx[c] * dx_t + w.tz[c] * dz_t;
-        w.angle_rate[c] = (w.tz[c] * dx_t - w.tx[c] * dz_t) / w.stretch[c];
+        let d3_t = (v[c + 1] - v[c]) * inverse;
+        let tangent = shape.tangent[c];
+        shape.stretch_rate[c] = tangent.dot(d3_t);
+        shape.angle_rate[c] = tangent.cross(d3_t) / shape.stretch[c];
     }
     curvature_rates(system, now, w);
 }
@@ -81,13 +68,13 @@ pub fn curvature_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Works
     let inverse = 1.0 / system.mesh.h;
     let last = system.mesh.nodes - 1;
     for i in 1..last {
-        w.kappa_rate[i] = (w.angle_rate[i - 1] - w.angle_rate[i]) * inverse;
+        w.shape.kappa_rate[i] = (w.shape.angle_rate[i - 1] - w.shape.angle_rate[i]) * inverse;
     }
     if let Some(slope) = now.ends[0].slope {
-        w.kappa_rate[0] = (-w.angle_rate[0] + slope.rate) * (2.0 * inverse);
+        w.shape.kappa_rate[0] = (-w.shape.angle_rate[0] + slope.rate) * (2.0 * inverse);
     }
     if let Some(slope) = now.ends[1].slope {
-        w.kappa_rate[last] = (w.angle_rate[last - 1] - slope.rate) * (2.0 * inverse);
+        w.shape.kappa_rate[last] = (w.shape.angle_rate[last - 1] - slope.rate) * (2.0 * inverse);
     }
 }
 
@@ -106,15 +93,15 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let k = system.mesh.cells_per_segment;
     for c in 0..system.mesh.cells {
         let elastic = if pressed {
-            w.strain[c] - w.pressure_stretch[c / k]
+            w.shape.strain[c] - w.coupling.pressure_stretch[c / k]
         } else {
-            w.strain[c]
+            w.shape.strain[c]
         };
-        w.force[c] = elastic * ea;
+        w.forces.normal[c] = elastic * ea;
     }
     if section.axial_damping_time > 0.0 {
         for c in 0..system.mesh.cells {
-            w.viscous_force[c] = w.stretch_rate[c] * (ea * section.axial_damping_time);
+            w.forces.viscous_normal[c] = w.shape.stretch_rate[c] * (ea * section.axial_damping_time);
         }
     }
 }
@@ -139,13 +126,17 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
         };
         match given {
             Some(moment) => {
-                w.moment[i] = T::constant(moment);
+                w.forces.moment[i] = T::constant(moment);
                 let alpha = pressure_curvature + moment / ei;
-                w.kappa[i] = if published { alpha / stretch } else { alpha };
+                w.shape.kappa[i] = if published { alpha / stretch } else { alpha };
             }
             None => {
-                let alpha = if published { w.kappa[i] * stretch } else { w.kappa[i] };
-                w.moment[i] = (alpha - pressure_curvature) * ei;
+                let alpha = if published {
+                    w.shape.kappa[i] * stretch
+                } else {
+                    w.shape.kappa[i]
+                };
+                w.forces.moment[i] = (alpha - pressure_curvature) * ei;
             }
         }
     }
@@ -153,7 +144,7 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
         let first = usize::from(now.ends[0].slope.is_none());
         let end = last + usize::from(now.ends[1].slope.is_some());
         for i in first..end {
-            w.viscous_moment[i] = w.kappa_rate[i] * (ei * section.bending_damping_time);
+            w.forces.viscous_moment[i] = w.shape.kappa_rate[i] * (ei * section.bending_damping_time);
         }
     }
 }
@@ -162,16 +153,16 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
 pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     for c in 0..system.mesh.cells {
-        w.shear[c] = total_moment_drop(system, w, c) * inverse / w.stretch[c];
+        w.forces.shear[c] = total_moment_drop(system, w, c) * inverse / w.shape.stretch[c];
     }
 }
 
 /// By how much the moment, viscous part included, falls over a cell [N m].
 #[inline]
 pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
-    let drop = w.moment[c] - w.moment[c + 1];
+    let drop = w.forces.moment[c] - w.forces.moment[c + 1];
     if system.model.section.bending_damping_time > 0.0 {
-        drop + (w.viscous_moment[c] - w.viscous_moment[c + 1])
+        drop + (w.forces.viscous_moment[c] - w.forces.viscous_moment[c + 1])
     } else {
         drop
     }
@@ -181,9 +172,9 @@ pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize)
 #[inline]
 pub fn normal_force<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
     if system.model.section.axial_damping_time > 0.0 {
-        w.force[c] + w.viscous_force[c]
+        w.forces.normal[c] + w.forces.viscous_normal[c]
     } else {
-        w.force[c]
+        w.forces.normal[c]
     }
 }
 
@@ -192,9 +183,9 @@ pub fn normal_force<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T
 pub fn couple<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, c: usize) -> T {
     match system.model.kinematics {
         Kinematics::Bar => T::zero(),
-        Kinematics::Linear => T::constant(now.moment_z[c]),
-        Kinematics::SmallRotation => w.d3x[c] * now.moment_x[c] + now.moment_z[c],
-        Kinematics::FiniteRotation => w.d3x[c] * now.moment_x[c] + w.d3z[c] * now.moment_z[c],
+        Kinematics::Linear => T::constant(now.moment[c].z),
+        Kinematics::SmallRotation => w.shape.d3[c].x * now.moment[c].x + now.moment[c].z,
+        Kinematics::FiniteRotation => w.shape.d3[c].x * now.moment[c].x + w.shape.d3[c].z * now.moment[c].z,
     }
 }
 
@@ -206,9 +197,9 @@ pub fn pressure_curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: us
     }
     let (left, right) = system.mesh.segments_of_node(node);
     if left == right {
-        w.pressure_curvature[left]
+        w.coupling.pressure_curvature[left]
     } else {
-        (w.pressure_curvature[left] + w.pressure_curvature[right]) * 0.5
+        (w.coupling.pressure_curvature[left] + w.coupling.pressure_curvature[right]) * 0.5
     }
 }
 
@@ -216,11 +207,11 @@ pub fn pressure_curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: us
 #[inline]
 pub fn node_stretch<T: Scalar>(w: &Workspace<T>, node: usize, last: usize) -> T {
     if node == 0 {
-        w.stretch[0]
+        w.shape.stretch[0]
     } else if node == last {
-        w.stretch[last - 1]
+        w.shape.stretch[last - 1]
     } else {
-        (w.stretch[node - 1] + w.stretch[node]) * 0.5
+        (w.shape.stretch[node - 1] + w.shape.stretch[node]) * 0.5
     }
 }
 
@@ -235,10 +226,9 @@ pub fn node_stretch<T: Scalar>(w: &Workspace<T>, node: usize, last: usize) -> T 
 pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let section = &system.model.section;
     for c in 0..system.mesh.cells {
-        let (tx, tz) = (w.tx[c], w.tz[c]);
+        let tangent = w.shape.tangent[c];
         let normal = normal_force(system, w, c);
-        w.sx[c] = normal * tx - w.shear[c] * tz;
-        w.sz[c] = normal * tz + w.shear[c] * tx;
+        w.forces.section[c] = tangent.times(normal) + tangent.normal().times(w.forces.shear[c]);
     }
     if system.has_moments {
         for c in 0..system.mesh.cells {
@@ -250,25 +240,23 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
         let inertia = section.mass_per_length * section.gyration_radius_squared;
         let inverse = 1.0 / system.mesh.h;
         let published = system.model.published();
-        if !system.layout.waves[1] {
+        let a = &w.motion.a;
+        if system.layout.lines[1].v.is_none() {
             for c in 0..system.mesh.cells {
-                let turned = (w.a1[c + 1] - w.a1[c]) * (inverse * inertia);
-                w.sx[c] += turned;
+                w.forces.section[c].x += (a[c + 1].x - a[c].x) * (inverse * inertia);
             }
             return;
         }
         for c in 0..system.mesh.cells {
-            let dx_tt = (w.a1[c + 1] - w.a1[c]) * inverse;
-            let dz_tt = (w.a3[c + 1] - w.a3[c]) * inverse;
-            let across = w.tz[c] * dx_tt - w.tx[c] * dz_tt;
+            let d3_tt = (w.motion.a[c + 1] - w.motion.a[c]) * inverse;
+            let across = w.shape.tangent[c].cross(d3_tt);
             // λ φ_tt + 2 λ_t φ_t; the published term has it whole and without 1/λ².
             let couple = if published {
-                across * w.stretch[c]
+                across * w.shape.stretch[c]
             } else {
-                (across - w.stretch_rate[c] * w.angle_rate[c] * 2.0) / w.stretch[c]
+                (across - w.shape.stretch_rate[c] * w.shape.angle_rate[c] * 2.0) / w.shape.stretch[c]
             };
-            let couple = couple * inertia;
-            add_couple(couple, c, w);
+            add_couple(couple * inertia, c, w);
         }
     }
 }
@@ -276,7 +264,6 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
 /// Adds `r d1` with `r = couple/λ²` to the section force.
 #[inline]
 fn add_couple<T: Scalar>(couple: T, c: usize, w: &mut Workspace<T>) {
-    let r = couple / w.stretch[c];
-    w.sx[c] += r * w.tz[c];
-    w.sz[c] -= r * w.tx[c];
+    let r = couple / w.shape.stretch[c];
+    w.forces.section[c] -= w.shape.tangent[c].normal().times(r);
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::discrete::time_data::Frame;
+use crate::discrete::workspace::Motion;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::model::PoolKind;
 use crate::numerics::Scalar;
@@ -19,68 +20,37 @@ use crate::numerics::Scalar;
 /// its neighbour that is integrated.
 pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>) {
     let l = &system.layout;
-    let last = system.mesh.nodes - 1;
-    let lines = [
-        (
-            now.frame_1(),
-            &l.free_u1,
-            l.u1,
-            l.v1,
-            l.waves[0],
-            &mut w.u1,
-            &mut w.v1,
-            &mut w.a1,
-        ),
-        (
-            now.frame_3(),
-            &l.free_u3,
-            l.u3,
-            l.v3,
-            l.waves[1],
-            &mut w.u3,
-            &mut w.v3,
-            &mut w.a3,
-        ),
-    ];
-    for (frame, free, u, v, waves, displacement, velocity, acceleration) in lines {
-        copy(&mut displacement[free.clone()], y, u);
-        if waves {
-            copy(&mut velocity[free.clone()], y, v);
-            copy(&mut acceleration[free.clone()], yp, v);
-        } else {
-            acceleration[free.clone()].fill(T::zero());
-            for (k, rate) in velocity[free.clone()].iter_mut().enumerate() {
-                *rate = if l.differential[u + k] || !l.inertia {
-                    yp[u + k]
-                } else {
-                    T::zero()
-                };
-            }
+    for (axis, line) in l.lines.iter().enumerate() {
+        let motion = &mut w.motion;
+        for (node, u, v) in line.unknowns() {
+            motion.u[node][axis] = y[u];
+            (motion.v[node][axis], motion.a[node][axis]) = match v {
+                Some(v) => (y[v], yp[v]),
+                None if l.differential[u] || !l.inertia => (yp[u], T::zero()),
+                None => (T::zero(), T::zero()),
+            };
         }
-        if let Some(frame) = frame {
-            carry(&frame, l.inertia, free, last, [displacement, velocity, acceleration]);
+        if let Some(frame) = now.frame(axis) {
+            carry(&frame, system, axis, motion);
         }
     }
     if let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) {
-        if wet.takes_moments {
-            copy(&mut w.mean_moment, y, l.mean_moment);
-        }
-        if wet.takes_forces {
-            copy(&mut w.mean_force, y, l.mean_force);
-        }
-        for (mean, &given) in w.mean_force.iter_mut().zip(&now.statics.mean) {
+        copy(&mut w.coupling.mean_moment, y, &l.coupling.mean_moment);
+        copy(&mut w.coupling.mean_force, y, &l.coupling.mean_force);
+        for (mean, &given) in w.coupling.mean_force.iter_mut().zip(&now.statics.mean) {
             *mean = T::constant(given);
         }
-        let mut first = l.area;
+        let mut first = l.network.area.start;
         for run in &fluid.runs {
-            copy(&mut w.area[run.clone()], y, first);
-            copy(&mut w.area_rate[run.clone()], yp, first);
-            first += run.len();
+            let unknowns = first..first + run.len();
+            w.fluid.area[run.clone()].copy_from_slice(&y[unknowns.clone()]);
+            w.fluid.area_rate[run.clone()].copy_from_slice(&yp[unknowns.clone()]);
+            first = unknowns.end;
         }
-        copy(&mut w.junction, y, l.junction);
-        copy(&mut w.bridge, y, l.bridge);
+        copy(&mut w.fluid.junction, y, &l.network.junction);
+        copy(&mut w.fluid.bridge, y, &l.network.bridge);
         for (k, pool) in wet.pools.iter().enumerate() {
-            w.pool[k] = match (&pool.kind, l.pool_pressure[k]) {
+            w.fluid.pool[k] = match (&pool.kind, l.network.pool_pressure[k]) {
                 (PoolKind::Port(port), _) => T::constant(now.port_pressure[*port]),
                 (_, Some(unknown)) => y[unknown],
                 _ => T::zero(),
@@ -91,35 +61,38 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
 
 /// Axial velocities that no equation takes, because nothing but waves depends on them; for balances and samples.
 pub fn complete_velocities<T: Scalar>(system: &System, now: &TimeData, yp: &[T], w: &mut Workspace<T>) {
-    let l = &system.layout;
-    if l.waves[1] || !l.inertia {
+    let along = &system.layout.lines[1];
+    if along.v.is_some() || !system.layout.inertia {
         return;
     }
     let last = (system.mesh.nodes - 1) as f64;
-    for (k, node) in l.free_u3.clone().enumerate() {
-        let frame = now.frame_3().map_or(0.0, |frame| frame.at(node as f64 / last).rate);
-        w.v3[node] = yp[l.u3 + k] + frame;
+    for (node, u, _) in along.unknowns() {
+        let frame = now.frame(1).map_or(0.0, |frame| frame.at(node as f64 / last).rate);
+        w.motion.v[node].z = yp[u] + frame;
     }
 }
 
-fn copy<T: Scalar>(target: &mut [T], source: &[T], first: usize) {
-    let len = target.len();
-    target.copy_from_slice(&source[first..first + len]);
+/// Values of a block; where it has no unknowns the target keeps its own.
+fn copy<T: Scalar>(target: &mut [T], source: &[T], block: &Range<usize>) {
+    if !block.is_empty() {
+        target.copy_from_slice(&source[block.clone()]);
+    }
 }
 
 /// Adds the frame's motion to the free nodes and gives it to the driven ones.
-fn carry<T: Scalar>(frame: &Frame, inertia: bool, free: &Range<usize>, last: usize, [u, v, a]: [&mut Vec<T>; 3]) {
+fn carry<T: Scalar>(frame: &Frame, system: &System, axis: usize, motion: &mut Motion<T>) {
+    let last = system.mesh.nodes - 1;
+    let free = &system.layout.lines[axis].free;
     for node in 0..=last {
         let jet = frame.at(node as f64 / last as f64);
-        let acceleration = if inertia { jet.acceleration } else { 0.0 };
-        if free.contains(&node) {
-            u[node] += T::constant(jet.value);
-            v[node] += T::constant(jet.rate);
-            a[node] += T::constant(acceleration);
-        } else {
-            u[node] = T::constant(jet.value);
-            v[node] = T::constant(jet.rate);
-            a[node] = T::constant(acceleration);
+        let acceleration = if system.layout.inertia { jet.acceleration } else { 0.0 };
+        let own = [&mut motion.u, &mut motion.v, &mut motion.a].map(|of| &mut of[node][axis]);
+        for (own, given) in own.into_iter().zip([jet.value, jet.rate, acceleration]) {
+            if free.contains(&node) {
+                *own += T::constant(given);
+            } else {
+                *own = T::constant(given);
+            }
         }
     }
 }

@@ -47,12 +47,8 @@ impl<'a> Begun<'a> {
         let model = &system.model;
         let of = |(key, profile, displacement, bends): (&'static str, &'a Option<Profile>, bool, bool)| {
             let profile = profile.as_ref()?;
-            let free = if bends {
-                &system.layout.free_u1
-            } else {
-                &system.layout.free_u3
-            };
-            let waves = system.layout.waves[usize::from(!bends)] && !free.is_empty();
+            let line = &system.layout.lines[usize::from(!bends)];
+            let waves = line.v.is_some() && !line.free.is_empty();
             Some(Self {
                 key,
                 profile,

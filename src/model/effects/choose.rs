@@ -2,8 +2,9 @@
 
 use super::cause::{Cause, Keeps, Number, Weighed};
 use super::obstacles::{self, Obstacle};
+use super::table::{Presence, about};
 use super::{Decision, EffectSet, Scene};
-use crate::case::schema::{Case, Choice, Coupling, Effect, EffectChoices, Effects, Load};
+use crate::case::schema::{Case, Choice, Coupling, Effect, EffectChoices, Effects};
 use crate::error::{Code, Violation};
 use crate::model::Network;
 
@@ -18,21 +19,6 @@ pub(super) struct Chooser<'a> {
     tolerance: f64,
     /// What is decided so far.
     set: EffectSet,
-}
-
-/// Other effects without which one has no meaning.
-const fn needs(effect: Effect) -> &'static [Effect] {
-    use Effect::*;
-    match effect {
-        TransverseMotion | AxialStretch | SolidInertia | Fluid | Damping | Loads | Gravity => &[],
-        FiniteRotation | AxialForceOnBending => &[TransverseMotion],
-        AxialInertia => &[SolidInertia, AxialStretch],
-        RotaryInertia => &[SolidInertia, TransverseMotion],
-        Flow | PressureToStretch | ForceToArea | Asymmetry | Valves | Turbines => &[Fluid],
-        NetworkPressureDifferences => &[Fluid, Flow],
-        FlowAlongBladders => &[Fluid, Flow, NetworkPressureDifferences],
-        PressureToCurvature | MomentToArea => &[Fluid, TransverseMotion],
-    }
 }
 
 impl<'a> Chooser<'a> {
@@ -60,18 +46,13 @@ impl<'a> Chooser<'a> {
 
     /// Of an effect that is there where the case gives it, and only there: whether it does.
     fn given(&self, effect: Effect) -> Option<bool> {
-        let damping = &self.case.beam.damping;
-        let gravity = |load: &Load| matches!(load, Load::Gravity { .. });
-        let network = self.network.filter(|_| self.set.has(Effect::Fluid));
-        let given = match effect {
-            Effect::Damping => damping.axial_time_s > 0.0 || damping.bending_time_s > 0.0 || damping.drag_n_s_m2 > 0.0,
-            Effect::Valves => network.is_some_and(|n| n.links.iter().any(|l| l.opening.is_some())),
-            Effect::Turbines => network.is_some_and(|n| !n.turbines.is_empty()),
-            Effect::Loads => self.case.loads.iter().any(|load| !gravity(load)),
-            Effect::Gravity => self.case.loads.iter().any(gravity),
-            _ => return None,
-        };
-        Some(given)
+        match about(effect).presence {
+            Presence::Chosen => None,
+            Presence::Given(gives) => {
+                let network = self.network.filter(|_| self.set.has(Effect::Fluid));
+                Some(gives(self.case, network))
+            }
+        }
     }
 
     /// Where an effect has no meaning it is off, whatever was asked; where something stands against leaving it out it stays, and the
@@ -103,7 +84,7 @@ impl<'a> Chooser<'a> {
 
     /// Whether an effect has a meaning.
     fn possible(&self, effect: Effect) -> Result<(), Cause> {
-        if let Some(missing) = needs(effect).iter().find(|needed| !self.set.has(**needed)) {
+        if let Some(missing) = about(effect).needs.iter().find(|needed| !self.set.has(**needed)) {
             return Err(Cause::Needs(*missing));
         }
         let bladders = self.case.bladders.as_ref();
@@ -203,9 +184,8 @@ impl<'a> Chooser<'a> {
                 weigh(Number::Asymmetry, m.max(n))
             }
             Effect::Fluid => (true, Cause::Filled(true)),
-            Effect::Damping | Effect::Valves | Effect::Turbines | Effect::Loads | Effect::Gravity => {
-                (true, Cause::Given(true))
-            }
+            // all others are there where the case gives them
+            _ => (true, Cause::Given(true)),
         }
     }
 }

@@ -1,9 +1,10 @@
 //! All effects that the program knows: what each adds, what it brings with it, what decides, what it costs.
 
-use crate::case::schema::Effect;
+use crate::case::schema::{Case, Effect, Load};
+use crate::model::Network;
 
-/// An effect, in words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// An effect: what is to be known of it before it is decided, in words and otherwise.
+#[derive(Clone, Copy, Debug)]
 pub struct About {
     /// What it adds physically, as an equation.
     pub adds: &'static str,
@@ -13,136 +14,201 @@ pub struct About {
     pub number: &'static str,
     /// What it costs.
     pub cost: &'static str,
+    /// Other effects without which it has no meaning.
+    pub needs: &'static [Effect],
+    /// How it comes to be there.
+    pub presence: Presence,
+}
+
+/// How an effect comes to be there.
+#[derive(Clone, Copy, Debug)]
+pub enum Presence {
+    /// A case or the program chooses.
+    Chosen,
+    /// Where the case gives it, and only there: whether a case does, with the network of its bladders where they hold fluid.
+    Given(fn(&Case, Option<&Network>) -> bool),
+}
+
+fn gravity(load: &Load) -> bool {
+    matches!(load, Load::Gravity { .. })
 }
 
 /// What is to be known of an effect.
-pub const fn about(effect: Effect) -> About {
+pub fn about(effect: Effect) -> About {
+    use Effect::*;
     match effect {
         Effect::TransverseMotion => About {
             adds: "x = u1, φ, κ, M = EI (κ - α_p), V = -M'/λ; without it a bar, N = EA (u3' - λ_p)",
             brings: "u1, v1 of every node; mean moments; turning, curvature, moments, shear",
             number: "0 where nothing moves or loads the beam across and p_u = p_d",
             cost: "half the unknowns of the solid, most of its arithmetic",
+            needs: &[],
+            presence: Presence::Chosen,
         },
         Effect::FiniteRotation => About {
             adds: "x' = λ sin φ, z' = λ cos φ; without it e = u3' + u1'²/2, φ = u1'",
             brings: "roots and arcs in every cell, neighbours of u3 in the rows of u1 and the other way round",
             number: "φ², the square of the largest angle",
             cost: "most of the arithmetic of the solid",
+            needs: &[TransverseMotion],
+            presence: Presence::Chosen,
         },
         Effect::AxialForceOnBending => About {
             adds: "N u1' in n_x, u1'²/2 in e",
             brings: "geometric stiffness: buckling, tension, parametric excitation; without it bending and stretch are apart",
             number: "N l_s²/(π² EI), and (u1/h_s)² where both ends hold u3",
             cost: "entries that couple u1 and u3",
+            needs: &[TransverseMotion],
+            presence: Presence::Chosen,
         },
         Effect::AxialStretch => About {
             adds: "N = EA (e - λ_p); without it u3' = λ_p - g u1'²/2, N from statics",
             brings: "u3 and v3 of every node; mean forces",
             number: "N/EA: the stretch, and with inertia (f/f_axial)²",
             cost: "half the unknowns of the solid; axial waves",
+            needs: &[],
+            presence: Presence::Chosen,
         },
         Effect::SolidInertia => About {
             adds: "m a",
             brings: "v1, v3 of every node",
             number: "(ω/ω1)², ω1 the first bending frequency",
             cost: "half the unknowns of the solid; the waves that limit steps and orders",
+            needs: &[],
+            presence: Presence::Chosen,
         },
         Effect::AxialInertia => About {
             adds: "m u3_tt; without it m U'', U the motion of the driven ends",
             brings: "v3 of every node; axial waves",
             number: "(f/f_axial)², and (u1/l_s)² where the beam bends",
             cost: "a quarter of the unknowns of the solid; its fastest waves where the mesh is coarse",
+            needs: &[SolidInertia, AxialStretch],
+            presence: Presence::Chosen,
         },
         Effect::RotaryInertia => About {
             adds: "r = m y11 φ_tt/λ² in n = N e_t + V e_n + r d1",
             brings: "neighbouring accelerations coupled in every cell",
             number: "y11 k²/2 (1 + ω T), k and ω of the second bending mode, T the run; kept where something acts suddenly",
             cost: "arithmetic in every cell",
+            needs: &[SolidInertia, TransverseMotion],
+            presence: Presence::Chosen,
         },
         Effect::Fluid => About {
             adds: "da1/dt + dq/ds = 0, λ_p and α_p",
             brings: "areas, junction pressures, mean moments and forces",
             number: "2 EI φ_b l_b am²/a_p and 2 EA φ_b l_b an²/a_p: how much sealed bladders stiffen the beam",
             cost: "the unknowns of the fluid and its times",
+            needs: &[],
+            presence: Presence::Chosen,
         },
         Effect::Flow => About {
             adds: "q = g (p_a - p_b) between bladders; without it a1 = const, p = (a0 - R A_M - A_N)/a_p",
             brings: "an area for each cell of each bladder that is not sealed",
             number: "1/(ω τ), τ the slowest time of the network; by itself only where next to nothing leaks in the whole run",
             cost: "cells_per_bladder unknowns a bladder; the stiffness of the network",
+            needs: &[Fluid],
+            presence: Presence::Chosen,
         },
         Effect::NetworkPressureDifferences => About {
             adds: "p of its own in each bladder; without it one p for all that is joined, l_b Σ a1 = V",
             brings: "areas, junction pressures; without it one pressure for each closed network, none where a port gives it",
             number: "ω τ, τ the slowest time of the network",
             cost: "the unknowns and the stiffness of the network",
+            needs: &[Fluid, Flow],
+            presence: Presence::Chosen,
         },
         Effect::FlowAlongBladders => About {
             adds: "q = -(q1b/μ) dp/ds inside a bladder",
             brings: "cells_per_bladder areas in each bladder instead of one",
             number: "ω a_p l_b² μ/(π² q1b)",
             cost: "cells_per_bladder - 1 unknowns a bladder",
+            needs: &[Fluid, Flow, NetworkPressureDifferences],
+            presence: Presence::Chosen,
         },
         Effect::PressureToCurvature => About {
             adds: "α_p = φ_b l_b am (p_u - p_d), published φ_b ψ' (p_u - p_d)/E",
             brings: "a term in every moment",
             number: "α_p l_s over the slope without it",
             cost: "entries of pressure in the rows of bending",
+            needs: &[Fluid, TransverseMotion],
+            presence: Presence::Chosen,
         },
         Effect::PressureToStretch => About {
             adds: "λ_p = φ_b l_b A_N' (p_u + p_d), published φ_b ζ' (p_u + p_d)/E",
             brings: "a term in every normal force",
             number: "λ_p over the stretch without it",
             cost: "entries of pressure in the rows of stretch",
+            needs: &[Fluid],
+            presence: Presence::Chosen,
         },
         Effect::MomentToArea => About {
             adds: "R A_M(Mbar) in a1 = a_p p + R A_M + A_N",
             brings: "a mean moment a segment",
             number: "am Mbar/(a_p p)",
             cost: "an unknown a segment, with K + 1 entries",
+            needs: &[Fluid, TransverseMotion],
+            presence: Presence::Chosen,
         },
         Effect::ForceToArea => About {
             adds: "A_N(Nbar) in a1 = a_p p + R A_M + A_N",
             brings: "a mean force a segment",
             number: "an Nbar/(a_p p)",
             cost: "an unknown a segment, with K entries",
+            needs: &[Fluid],
+            presence: Presence::Chosen,
         },
         Effect::Asymmetry => About {
             adds: "-dm σ(M), -dn σ(N) in the areas",
             brings: "kinks",
             number: "dm/am, dn/an",
             cost: "square roots a segment; steps at the kinks",
+            needs: &[Fluid],
+            presence: Presence::Chosen,
         },
         Effect::Damping => About {
             adds: "EA τ_a λ_t, EI τ_b κ_t, -c v",
             brings: "rates of strain",
             number: "the least damping ratio; present where given",
             cost: "arithmetic in every cell; saves steps",
+            needs: &[],
+            presence: Presence::Given(|case, _| {
+                let damping = &case.beam.damping;
+                damping.axial_time_s > 0.0 || damping.bending_time_s > 0.0 || damping.drag_n_s_m2 > 0.0
+            }),
         },
         Effect::Valves => About {
             adds: "g = o/(o R_half + R), o(t) given",
             brings: "conductances that change in time",
             number: "present where given",
             cost: "a signal a valve",
+            needs: &[Fluid],
+            presence: Presence::Given(|_, network| {
+                network.is_some_and(|n| n.links.iter().any(|l| l.opening.is_some()))
+            }),
         },
         Effect::Turbines => About {
             adds: "q = G (p_a - p_b), and a bridge of check valves where given",
             brings: "conductances; a pressure drop behind each real rectifier",
             number: "present where given",
             cost: "an unknown a real rectifier",
+            needs: &[Fluid],
+            presence: Presence::Given(|_, network| network.is_some_and(|n| !n.turbines.is_empty())),
         },
         Effect::Loads => About {
             adds: "b, b1, end forces and moments",
             brings: "terms of time and place",
             number: "present where given",
             cost: "signals",
+            needs: &[],
+            presence: Presence::Given(|case, _| case.loads.iter().any(|load| !gravity(load))),
         },
         Effect::Gravity => About {
             adds: "m g",
             brings: "a constant load",
             number: "m g l_s³/EI; present where given",
             cost: "nothing",
+            needs: &[],
+            presence: Presence::Given(|case, _| case.loads.iter().any(gravity)),
         },
     }
 }

@@ -175,7 +175,9 @@ pub fn at_start_watched(
     let (system, now) = dae.instant(0.0);
     let mut z = restate(&mut from, last.share, &last.y, system, now);
     let l = &system.layout;
-    z[l.v1..l.mean_moment].copy_from_slice(&y[l.v1..l.mean_moment]);
+    for velocities in l.lines.iter().filter_map(|line| line.v.clone()) {
+        z[velocities.clone()].copy_from_slice(&y[velocities]);
+    }
     Ok(z)
 }
 

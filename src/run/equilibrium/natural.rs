@@ -62,8 +62,8 @@ impl Natural {
         let l = &system.layout;
         let h = system.mesh.h;
         let parts: [fn(f64) -> f64; 2] = [f64::sin, f64::cos];
-        let lines = [(now.frame_1(), &l.free_u1, l.u1), (now.frame_3(), &l.free_u3, l.u3)];
-        for (axis, (frame, free, first)) in lines.into_iter().enumerate() {
+        for (axis, line) in l.lines.iter().enumerate() {
+            let (frame, free) = (now.frame(axis), &line.free);
             let rest = |node: usize| if axis == 1 { h * node as f64 } else { 0.0 };
             let carried = |node: usize| frame.map_or(0.0, |f| f.at(node as f64 / cells as f64).value);
             let mut u = Vec::with_capacity(self.nodes);
@@ -78,7 +78,7 @@ impl Natural {
             } else {
                 carried(cells) - u[cells]
             };
-            for (unknown, node) in (first..).zip(free.clone()) {
+            for (node, unknown, _) in line.unknowns() {
                 let shared = missing * node as f64 / cells as f64;
                 x[unknown] = (u[node] + shared - carried(node)) / l.scales[unknown];
             }
@@ -91,22 +91,14 @@ impl Natural {
         let (system, now): (_, &TimeData) = statics.beam().instant(x[x.len() - 1]);
         let l = &system.layout;
         let last = (self.nodes - 1) as f64;
-        let line = |frame: Option<crate::discrete::time_data::Frame>, free: &std::ops::Range<usize>, first: usize| {
-            (0..self.nodes)
-                .map(|node| {
-                    let carried = frame.map_or(0.0, |f| f.at(node as f64 / last).value);
-                    let unknown = first + node - free.start.min(node);
-                    let own = if free.contains(&node) {
-                        x[unknown] * l.scales[unknown]
-                    } else {
-                        0.0
-                    };
-                    carried + own
-                })
-                .collect::<Vec<f64>>()
-        };
-        let across = line(now.frame_1(), &l.free_u1, l.u1);
-        let mut along = line(now.frame_3(), &l.free_u3, l.u3);
+        let [across, mut along] = [0, 1].map(|axis| {
+            let carried = |node: usize| now.frame(axis).map_or(0.0, |f| f.at(node as f64 / last).value);
+            let mut all: Vec<f64> = (0..self.nodes).map(carried).collect();
+            for (node, unknown, _) in l.lines[axis].unknowns() {
+                all[node] += x[unknown] * l.scales[unknown];
+            }
+            all
+        });
         for (node, z) in along.iter_mut().enumerate() {
             *z += system.mesh.h * node as f64;
         }

@@ -102,7 +102,7 @@ pub(super) fn follow_of(
 fn weights(system: &System) -> Vec<f64> {
     let l = &system.layout;
     let mut weights = vec![0.0; l.len + 1];
-    for unknown in (l.u1..l.u1 + l.free_u1.len()).chain(l.u3..l.u3 + l.free_u3.len()) {
+    for unknown in l.lines.iter().flat_map(|line| line.u.clone()) {
         weights[unknown] = (l.scales[unknown] / system.model.length).powi(2) / system.mesh.nodes as f64;
     }
     weights[l.len] = 1.0;

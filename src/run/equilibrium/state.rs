@@ -1,6 +1,7 @@
 //! One state of equilibrium.
 
 use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
+use crate::discrete::layout::Line;
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, Look, Observable, Row};
 use crate::discrete::{System, TimeData, Workspace};
@@ -67,7 +68,7 @@ impl State {
             now,
             w,
             stored: ledger::energies(system, now, w),
-            at: Extremes::of(system, w),
+            at: Extremes::of(system, &w),
         };
         let mut read = Row::new(at_rest(system));
         read.take(share, &look, &[], 0.0);
@@ -76,8 +77,8 @@ impl State {
             share,
             y: y.to_vec(),
             row,
-            u1: w.u1.clone(),
-            u3: w.u3.clone(),
+            u1: w.motion.u.iter().map(|u| u.x).collect(),
+            u3: w.motion.u.iter().map(|u| u.z).collect(),
             stability: None,
         }
     }
@@ -93,11 +94,9 @@ impl Stability {
         let system = statics.system();
         let l = &system.layout;
         let mut mass = vec![0.0; l.len];
-        for (first, free) in [(l.u1, &l.free_u1), (l.u3, &l.free_u3)] {
-            for (unknown, node) in (first..).zip(free.clone()) {
-                let of_node = system.model.section.mass_per_length * system.mesh.node_length(node);
-                mass[unknown] = of_node * l.scales[unknown] / l.row_scales[unknown];
-            }
+        for (node, unknown, _) in l.lines.iter().flat_map(Line::unknowns) {
+            let of_node = system.model.section.mass_per_length * system.mesh.node_length(node);
+            mass[unknown] = of_node * l.scales[unknown] / l.row_scales[unknown];
         }
         let found = spectral::lowest(statics.pattern(), &values, &mass).ok()?;
         Some(Self {
@@ -113,8 +112,8 @@ pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &Tim
     let zeros = vec![0.0; y.len()];
     let (_, _, w) = from.evaluate(share, y, &zeros);
     let mut z = vec![0.0; to.layout.len];
-    displacements(w, to, now, &mut z);
-    fluid(w, to, &mut z);
+    displacements(&w, to, now, &mut z);
+    fluid(&w, to, &mut z);
     for (z, scale) in z.iter_mut().zip(&to.layout.scales) {
         *z /= scale;
     }
@@ -124,14 +123,10 @@ pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &Tim
 fn displacements(w: &Workspace<f64>, to: &System, now: &TimeData, z: &mut [f64]) {
     let l = &to.layout;
     let last = (to.mesh.nodes - 1) as f64;
-    let lines = [
-        (now.frame_1(), &l.free_u1, l.u1, &w.u1),
-        (now.frame_3(), &l.free_u3, l.u3, &w.u3),
-    ];
-    for (frame, free, first, u) in lines {
-        for (k, node) in free.clone().enumerate() {
-            let carried = frame.map_or(0.0, |f| f.at(node as f64 / last).value);
-            z[first + k] = u[node] - carried;
+    for (axis, line) in l.lines.iter().enumerate() {
+        for (node, unknown, _) in line.unknowns() {
+            let carried = now.frame(axis).map_or(0.0, |f| f.at(node as f64 / last).value);
+            z[unknown] = w.motion.u[node][axis] - carried;
         }
     }
 }
@@ -140,37 +135,36 @@ fn fluid(w: &Workspace<f64>, to: &System, z: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&to.model.wet, &to.fluid) else {
         return;
     };
-    let l = &to.layout;
-    let segments = to.mesh.segments;
+    let (means, l) = (&to.layout.coupling, &to.layout.network);
     if wet.takes_moments {
-        z[l.mean_moment..l.mean_moment + segments].copy_from_slice(&w.mean_moment);
+        z[means.mean_moment.clone()].copy_from_slice(&w.coupling.mean_moment);
     }
     if wet.takes_forces {
-        z[l.mean_force..l.mean_force + segments].copy_from_slice(&w.mean_force);
+        z[means.mean_force.clone()].copy_from_slice(&w.coupling.mean_force);
     }
-    let cells = w.area.len() / (2 * wet.per_row);
+    let cells = w.fluid.area.len() / (2 * wet.per_row);
     // As many cells as before, or one for all of a bladder's.
     let merged = cells / fluid.cells_per_bladder;
-    let mut unknown = l.area;
+    let mut unknown = l.area.start;
     for &bladder in &fluid.flowing {
-        for areas in w.area[bladder * cells..(bladder + 1) * cells].chunks(merged) {
+        for areas in w.fluid.area[bladder * cells..(bladder + 1) * cells].chunks(merged) {
             z[unknown] = areas.iter().sum::<f64>() / merged as f64;
             unknown += 1;
         }
     }
     for (k, &junction) in fluid.junctions.iter().enumerate() {
-        z[l.junction + k] = w.junction.get(junction).copied().unwrap_or(0.0);
+        z[l.junction.start + k] = w.fluid.junction.get(junction).copied().unwrap_or(0.0);
     }
-    for (k, drop) in w.bridge.iter().take(fluid.bridges.len()).enumerate() {
-        z[l.bridge + k] = *drop;
+    for (k, drop) in w.fluid.bridge.iter().take(fluid.bridges.len()).enumerate() {
+        z[l.bridge.start + k] = *drop;
     }
     for (k, pool) in wet.pools.iter().enumerate() {
         let of_pool = || pool.bladders.iter().flat_map(|&b| b * cells..(b + 1) * cells);
         if let Some(unknown) = l.pool_pressure[k] {
-            z[unknown] = of_pool().map(|c| w.pressure[c]).sum::<f64>() / of_pool().count() as f64;
+            z[unknown] = of_pool().map(|c| w.fluid.pressure[c]).sum::<f64>() / of_pool().count() as f64;
         }
         if let Some(unknown) = l.pool_volume[k] {
-            z[unknown] = of_pool().map(|c| w.area[c]).sum::<f64>() * wet.bladder_length / cells as f64;
+            z[unknown] = of_pool().map(|c| w.fluid.area[c]).sum::<f64>() * wet.bladder_length / cells as f64;
         }
     }
 }

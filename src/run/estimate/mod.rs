@@ -129,23 +129,20 @@ impl Estimator {
         let stiffer = coupled::sealed(system);
         let pressed = coupled::pressed(system);
         let tones = resonance::tones(system);
-        let across = if layout.free_u1.is_empty() {
+        let across = if layout.lines[0].free.is_empty() {
             vec![]
         } else {
             meshed::bending(&model.ends)
         };
-        let along = if layout.free_u3.is_empty() {
+        let along = if layout.lines[1].free.is_empty() {
             vec![]
         } else {
             meshed::axial(&model.ends)
         };
         let first = [&across, &along].map(|modes| modes.first().map_or((0.0, 0.0), |m| (m.mesh.abs(), m.frequency)));
         let one = |mode: SmallMode, which: usize| {
-            let (free, first) = match which {
-                0 => (&layout.free_u1, [layout.u1, layout.v1]),
-                _ => (&layout.free_u3, [layout.u3, layout.v3]),
-            };
-            let [size, rate] = first.map(|k| layout.scales[k]);
+            let line = &layout.lines[which];
+            let [size, rate] = [Some(&line.u), line.v.as_ref()].map(|of| of.map_or(1.0, |of| layout.scales[of.start]));
             let frequency = mode.frequency * units[which];
             let frequencies = [frequency, frequency * stiffer[which]];
             let material = [s.bending_damping_time, s.axial_damping_time][which];
@@ -155,8 +152,8 @@ impl Estimator {
             };
             let [low, high] = vibration::band(frequencies);
             Vibration::new(Known {
-                first,
-                weights: free.clone().map(weight).collect(),
+                first: [Some(&line.u), line.v.as_ref()].map(|of| of.map_or(0, |of| of.start)),
+                weights: line.free.clone().map(weight).collect(),
                 rate: rate / size,
                 frequencies,
                 mesh: mode.mesh * fine,
@@ -174,7 +171,7 @@ impl Estimator {
             })
         };
         let follow = |modes: Vec<SmallMode>, which: usize| -> Vec<Vibration> {
-            let all = modes.into_iter().filter(|_| layout.waves[which]);
+            let all = modes.into_iter().filter(|_| layout.lines[which].v.is_some());
             all.map(|mode| one(mode, which)).collect()
         };
         Self {
@@ -185,10 +182,8 @@ impl Estimator {
             first: if first[0].1 > 0.0 { first[0].1.recip() } else { 0.0 },
             tolerance: Tolerance::new(case.solver.rtol, &model.scales, layout),
             near: resonance::nearest(system),
-            velocities: match layout.waves[0] {
-                true => (layout.v1, layout.free_u1.len(), model.scales.transverse_rate),
-                false => (0, 0, 0.0),
-            },
+            velocities: (layout.lines[0].v.as_ref())
+                .map_or((0, 0, 0.0), |v| (v.start, v.len(), model.scales.transverse_rate)),
             acceleration: 0.0,
             floors,
             pressed: [0, 1].map(|which| pressed[which] * first[which].1),

@@ -48,7 +48,7 @@ impl Near {
 /// q = f/(ω² - Ω²)     Δq/q = 2 δ ω²/(ω² - Ω²)
 /// ```
 pub fn nearest(system: &System) -> Option<Near> {
-    if !system.layout.waves[0] {
+    if !system.layout.lines[0].v.is_some() {
         return None;
     }
     let s = &system.model.section;

@@ -1,5 +1,7 @@
 //! What steps make of their tolerance where they follow a motion.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use crate::discrete::Layout;
@@ -32,15 +34,13 @@ pub struct Tolerance {
 impl Tolerance {
     /// Of a layout of unknowns of these sizes.
     pub fn new(rtol: f64, scales: &Scales, layout: &Layout) -> Self {
-        let groups = [
-            (layout.u1, layout.v1, layout.free_u1.len(), layout.waves[0]),
-            (layout.u3, layout.v3, layout.free_u3.len(), layout.waves[1]),
-        ];
+        let group = |unknowns: &Range<usize>| (unknowns.start, unknowns.len());
+        let groups = layout.lines.each_ref();
         Self {
             rtol,
             scales: [scales.transverse, scales.axial],
             frequency: scales.frequency,
-            groups: groups.map(|(u, v, number, waves)| [(u, number), (v, if waves { number } else { 0 })]),
+            groups: groups.map(|line| [group(&line.u), line.v.as_ref().map_or((0, 0), group)]),
             ..Self::default()
         }
     }

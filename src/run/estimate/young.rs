@@ -19,7 +19,8 @@ const PORTS: usize = 4;
 /// How many times as large as that of the first vibration the square of the wave number is of what is sent out across and along, at
 /// least 1. `omega`: angular frequencies of the first vibrations [1/s], 0 where there are none.
 pub fn shorter(case: &Case, system: &System, omega: [f64; 2]) -> [f64; 2] {
-    let [across, along] = [0, 1].map(|k| Some(omega[k]).filter(|omega| *omega > 0.0 && system.layout.waves[k]));
+    let [across, along] =
+        [0, 1].map(|k| Some(omega[k]).filter(|omega| *omega > 0.0 && system.layout.lines[k].v.is_some()));
     let drives = drives(&system.model);
     let end = case.time.end_s;
     [

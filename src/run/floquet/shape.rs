@@ -46,7 +46,7 @@ impl Modes {
     /// The lowest modes of a system: stiffness `Σ EI κ² length` of the curvatures at nodes, mass at nodes. Empty where nothing
     /// can move across.
     pub fn new(system: &System) -> Self {
-        let (mesh, free) = (&system.mesh, &system.layout.free_u1);
+        let (mesh, free) = (&system.mesh, &system.layout.lines[0].free);
         let (section, h, n) = (&system.model.section, system.mesh.h, free.len());
         let mut stiffness = DMatrix::<f64>::zeros(n, n);
         let mut bend = |terms: &[(usize, f64)], length: f64| {
@@ -93,22 +93,20 @@ impl Modes {
     /// Energies of a small disturbance of the scaled unknowns [J]: of every mode, along the beam, of the fluid.
     fn energies(&self, system: &System, v: &[f64]) -> (Vec<f64>, f64, f64) {
         let (l, s) = (&system.layout, &system.model.section);
+        let [across, along] = &l.lines;
         let at = |k: usize| v[k] * l.scales[k];
         let modal = |first: usize, shape: &[f64]| -> f64 {
             let terms = shape.iter().zip(&self.masses).enumerate();
             terms.map(|(k, (shape, mass))| shape * mass * at(first + k)).sum()
         };
         let bending = self.shapes.iter().zip(&self.frequencies).map(|(shape, w)| {
-            let rate = if l.waves[0] { modal(l.v1, shape) } else { 0.0 };
-            0.5 * ((w * modal(l.u1, shape)).powi(2) + rate * rate)
+            let rate = across.v.as_ref().map_or(0.0, |v| modal(v.start, shape));
+            0.5 * ((w * modal(across.u.start, shape)).powi(2) + rate * rate)
         });
         let (stretch, _) = stretched(system, v);
         let h = system.mesh.h;
-        let speed: f64 = if l.waves[1] {
-            (0..l.free_u3.len()).map(|k| at(l.v3 + k).powi(2)).sum()
-        } else {
-            0.0
-        };
+        let speeds = along.v.iter().flat_map(|v| v.clone());
+        let speed: f64 = speeds.map(|k| at(k).powi(2)).sum();
         let along = 0.5 * (s.axial_stiffness * stretch + s.mass_per_length * h * speed);
         let fluid = system
             .model
@@ -116,7 +114,7 @@ impl Modes {
             .as_ref()
             .zip(system.fluid.as_ref())
             .map_or(0.0, |(wet, fluid)| {
-                let squares: f64 = (l.area..l.junction).map(|k| at(k).powi(2)).sum();
+                let squares: f64 = l.network.area.clone().map(|k| at(k).powi(2)).sum();
                 0.5 * squares * fluid.ds / wet.area.per_pressure
             });
         (bending.collect(), along, fluid)
@@ -162,7 +160,7 @@ impl Modes {
 fn stretched(system: &System, v: &[f64]) -> (f64, f64) {
     let (l, h) = (&system.layout, system.mesh.h);
     let held = |k: usize| matches!(system.model.ends[k].axial, Translation::Displacement(_));
-    let free: Vec<f64> = (0..l.free_u3.len()).map(|k| v[l.u3 + k] * l.scales[l.u3 + k]).collect();
+    let free: Vec<f64> = l.lines[1].u.clone().map(|k| v[k] * l.scales[k]).collect();
     let squares = free.iter().map(|u| u * u).sum::<f64>() * h;
     let u3: Vec<f64> = (held(0).then_some(0.0).into_iter())
         .chain(free)

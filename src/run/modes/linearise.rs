@@ -86,10 +86,8 @@ fn held(case: &Case, at: f64) -> Result<BeamDae> {
 
 fn about(mut dae: BeamDae, at: f64, mut y: Vec<f64>) -> Result<Linearised> {
     let l = dae.system().layout.clone();
-    for (first, nodes, waves) in [(l.v1, &l.free_u1, l.waves[0]), (l.v3, &l.free_u3, l.waves[1])] {
-        if waves {
-            y[first..first + nodes.len()].fill(0.0);
-        }
+    for velocities in l.lines.iter().filter_map(|line| line.v.clone()) {
+        y[velocities].fill(0.0);
     }
     let mut yp = vec![0.0; l.len];
     let fault = |what: String, unknown| {
@@ -146,7 +144,7 @@ impl Linearised {
     pub fn with(&self, fluid: Fluid) -> (Vec<f64>, Vec<f64>) {
         let (mut a, mut b) = (self.a.clone(), self.b.clone());
         let (pattern, l) = (self.dae.pattern(), &self.system().layout);
-        let storage = l.area..l.junction;
+        let storage = l.network.area.clone();
         for column in 0..pattern.columns() {
             for entry in pattern.column(column) {
                 let row = pattern.rows[entry] as usize;
@@ -163,8 +161,7 @@ impl Linearised {
 
     /// Whether there are flows that could be held or freed.
     pub fn flows(&self) -> bool {
-        let l = &self.system().layout;
-        l.junction > l.area
+        !self.system().layout.network.area.is_empty()
     }
 
     /// Whether the state would change noticeably in the time of the beam. An equilibrium as Newton's iteration leaves it has

@@ -57,15 +57,14 @@ impl<'a> Shapes<'a> {
         };
         let yp = vec![at_rest; x.len()];
         residual::evaluate(system, &self.now, &y, &yp, &mut self.workspace);
-        let complex = |values: &[Dual<2>]| -> Vec<Complex<f64>> {
-            let parts = values.iter().map(|v| Complex::new(v.derivative[0], v.derivative[1]));
-            parts.collect()
+        let complex = |values: &mut dyn Iterator<Item = Dual<2>>| -> Vec<Complex<f64>> {
+            values.map(|v| Complex::new(v.derivative[0], v.derivative[1])).collect()
         };
         let w = &self.workspace;
         Shape {
-            u1: complex(&w.u1),
-            u3: complex(&w.u3),
-            pressure: complex(&w.mean_pressure),
+            u1: complex(&mut w.motion.u.iter().map(|u| u.x)),
+            u3: complex(&mut w.motion.u.iter().map(|u| u.z)),
+            pressure: complex(&mut w.fluid.mean_pressure.iter().copied()),
         }
         .normalised(system.model.length)
     }

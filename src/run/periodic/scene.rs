@@ -132,7 +132,7 @@ impl Scene {
     /// when the unknowns differ.
     pub fn take_over(&self, other: &Self, y: &[f64]) -> Option<Vec<f64>> {
         let (new, old) = (&self.system.layout, &other.system.layout);
-        let same = new.len == old.len && new.differential == old.differential && new.area == old.area;
+        let same = new.len == old.len && new.differential == old.differential && new.network.area == old.network.area;
         let mut taken: Vec<f64> = same.then(|| {
             let scales = old.scales.iter().zip(&new.scales);
             y.iter().zip(scales).map(|(y, (old, new))| y * old / new).collect()
@@ -210,15 +210,12 @@ fn guess(system: &System, case: &Case) -> Vec<f64> {
     let mut y = start::state(system, case, now);
     let l = &system.layout;
     let last = (system.mesh.nodes - 1) as f64;
-    for (frame, free, u, v, waves) in [
-        (now.frame_1(), &l.free_u1, l.u1, l.v1, l.waves[0]),
-        (now.frame_3(), &l.free_u3, l.u3, l.v3, l.waves[1]),
-    ] {
-        for (k, node) in free.clone().enumerate() {
-            let frame = frame.map_or(Default::default(), |f| f.at(node as f64 / last));
-            y[u + k] += frame.value / l.scales[u + k];
-            if waves {
-                y[v + k] = 0.0;
+    for (axis, line) in l.lines.iter().enumerate() {
+        for (node, u, v) in line.unknowns() {
+            let frame = now.frame(axis).map_or(Default::default(), |f| f.at(node as f64 / last));
+            y[u] += frame.value / l.scales[u];
+            if let Some(v) = v {
+                y[v] = 0.0;
             }
         }
     }
@@ -238,7 +235,7 @@ fn conserved(system: &System) -> Vec<Vec<f64>> {
             let mut count = 0;
             for (slot, &bladder) in fluid.flowing.iter().enumerate() {
                 if wet.network.component_of_bladder[bladder] == component {
-                    let first = l.area + slot * fluid.cells_per_bladder;
+                    let first = l.network.area.start + slot * fluid.cells_per_bladder;
                     w[first..first + fluid.cells_per_bladder].fill(1.0);
                     count += fluid.cells_per_bladder;
                 }

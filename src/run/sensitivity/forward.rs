@@ -305,7 +305,7 @@ impl<'a> Forward<'a> {
         self.read(ida, t, &mut integrals)?;
         let dae = ida.dae_mut();
         let (system, _, w) = dae.evaluate(t, y, yp);
-        let at = Extremes::of(system, w);
+        let at = Extremes::of(system, &w);
         let reads = self.columns.iter().filter_map(|one| match one.read() {
             Read::State(read) => Some(read),
             _ => None,
@@ -322,7 +322,7 @@ impl<'a> Forward<'a> {
                 [&self.s[k], &self.sp[k]],
                 &mut slopes,
                 |system, now, rates, w, out| {
-                    ledger::complete(system, now, rates, w);
+                    let w = ledger::complete(system, now, rates, w);
                     let stored = ledger::energies(system, now, w);
                     let look = Look {
                         system,
