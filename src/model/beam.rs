@@ -21,12 +21,14 @@ pub struct Section {
     pub bending_damping_time: f64,
     /// `c` [N s/m^2].
     pub drag: f64,
+    /// `c_2` [N s^2/m^3].
+    pub quadratic_drag: f64,
 }
 
 impl Section {
-    /// Whether forces depend on the velocity along the beam even where it is straight.
+    /// Whether forces of the straight beam depend on velocities of its nodes.
     pub fn resists_motion(&self) -> bool {
-        self.drag > 0.0 || self.axial_damping_time > 0.0
+        self.drag > 0.0 || self.quadratic_drag > 0.0 || self.axial_damping_time > 0.0
     }
 
     /// `[E1]` (2, A.1):
@@ -59,6 +61,7 @@ impl Section {
             axial_damping_time: beam.damping.axial_time_s,
             bending_damping_time: beam.damping.bending_time_s,
             drag: beam.damping.drag_n_s_m2,
+            quadratic_drag: beam.damping.quadratic_drag_n_s2_m3,
         }
     }
 }

@@ -85,3 +85,62 @@ fn the_published_form_loses_momentum_and_says_so() {
     assert!(drift > 1e-6);
     assert!(b.momentum_residual_relative < 1e-6 && b.energy_residual_relative < 1e-4);
 }
+
+/// Source: `m v' = m g - c₂ v²` from rest, `u = (v_t²/g) ln cosh(g t/v_t)`, `v_t = √(m g/c₂)`. Goal: a beam that falls flat, and one that falls
+/// upright, which nothing holds back; a plate that is let go, with inertia and without, closes its balances. Tolerances: the drag is
+/// linear below a millionth of the velocity that the case expects: 1e-4 of the way; 1e-3 of what is lost; 1e-3 of balances at 1e-6.
+#[test]
+fn a_falling_beam_reaches_the_velocity_of_its_drag() {
+    let dry = |sets: &[&str]| {
+        let mut all = vec![
+            CONSERVATIVE,
+            "/fluid=null",
+            "/bladders=null",
+            "/tubes=null",
+            "/network=null",
+            "/start=null",
+            "/beam/damping={\"quadratic_drag_n_s2_m3\": 50}",
+        ];
+        all.extend(sets);
+        run(&written(THROWN, &all))
+    };
+    let falling = "/time={\"end_s\": 1, \"output_interval_s\": 0.01}";
+    let g = 9.81;
+    let flat = dry(&[
+        falling,
+        "/solver/rtol=1e-8",
+        "/loads=[{\"gravity\": {\"x_m_s2\": 9.81}}]",
+    ]);
+    let mass = 950.0 * 0.0216 * 0.05;
+    let terminal = (mass * g / 50.0_f64).sqrt();
+    for (t, u) in flat.column("t").iter().zip(flat.column("tip_u1")) {
+        let exact = terminal * terminal / g * (g * t / terminal).cosh().ln();
+        assert!((u - exact).abs() < 1e-4 * (0.01 + exact), "{t}: {u} {exact}");
+    }
+    let (fallen, speed) = (flat.last("tip_u1"), terminal * (g / terminal).tanh());
+    let lost = flat.summary.balances.energy_j["dissipated_damping"];
+    let expected = mass * 0.1 * (g * fallen - 0.5 * speed * speed);
+    assert!((lost / expected - 1.0).abs() < 1e-3, "{lost} {expected}");
+    let upright = dry(&[
+        falling,
+        "/solver/rtol=1e-8",
+        "/loads=[{\"gravity\": {\"z_m_s2\": 9.81}}]",
+    ]);
+    assert!((upright.last("tip_u3") - 0.5 * g).abs() < 1e-4 * g);
+
+    let release =
+        r#"/loads=[{"force_x_n_m": {"signal": {"ramp": {"from": 20, "to": 0, "start_s": 0.05, "duration_s": 0.01}}}}]"#;
+    for inertia in ["on", "off"] {
+        let held = dry(&[
+            release,
+            "/ends/root=\"clamped\"",
+            "/time={\"end_s\": 0.3, \"output_interval_s\": 0.001}",
+            "/solver/rtol=1e-6",
+            &format!(r#"/effects={{"solid_inertia": "{inertia}"}}"#),
+        ]);
+        let b = &held.summary.balances;
+        println!("inertia {inertia}: energy {:.1e}", b.energy_residual_relative);
+        assert!(b.energy_residual_relative < 1e-3, "{b:?}");
+        assert!(b.energy_j["dissipated_damping"] > 0.0);
+    }
+}

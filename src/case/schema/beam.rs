@@ -55,6 +55,15 @@ pub struct Damping {
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub drag_n_s_m2: f64,
+    /// `c_2`: force per length across the beam `-c_2 v_n |v_n|` of what it moves through; of a plate of width w in a fluid
+    /// `C_d rho w/2`, `C_d` about 2 [N s^2/m^3].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub quadratic_drag_n_s2_m3: f64,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 fn one() -> f64 {

@@ -122,6 +122,8 @@ effects! {
     given {
         /// Damping of the material, and drag.
         Damping damping,
+        /// Drag across the beam that grows with the square of its velocity.
+        QuadraticDrag quadratic_drag,
         /// Valves that move.
         Valves valves,
         /// Turbines that harvest energy.

@@ -72,6 +72,31 @@ pub fn outer_forces<T: Scalar>(
             -felt_velocity(system, now, w, node) * (length * section.drag),
         );
     }
+    if section.quadratic_drag > 0.0 {
+        each(Flow::Damping, quadratic_drag(system, now, w, node) * length);
+    }
+}
+
+/// `[E47]` Drag of what the beam moves through, per length, on the velocity across it (Morison et al. 1950), linear and the same in all
+/// directions where the motion turns, so that it is smooth and never without a slope:
+///
+/// ```text
+/// b = -c₂ [(√(v_n² + v_s²) - v_s) v_n e_n + v_s v]        v_n = v·e_n        v_s a millionth of the largest v1 that the case expects
+/// ```
+fn quadratic_drag<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
+    let normal = node_tangent(system, w, node).normal();
+    let v = felt_velocity(system, now, w, node);
+    let across = v.dot(normal);
+    let slow = 1e-6 * system.model.scales.transverse_rate;
+    let beyond = (across.squared() + slow * slow).sqrt() - slow;
+    (normal.times(across * beyond) + v * slow) * -system.model.section.quadratic_drag
+}
+
+/// Unit tangent at a node: along the mean of those of its cells.
+fn node_tangent<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> Planar<T> {
+    let cells = &w.shape.tangent;
+    let mean = cells[node.saturating_sub(1)] + cells[node.min(system.mesh.cells - 1)];
+    mean.times(T::constant(1.0) / mean.squared().sqrt())
 }
 
 /// Velocity with which a node meets what surrounds the beam: its own; along a beam that does not stretch that of its frame, [E28].
@@ -145,9 +170,7 @@ fn end_angle<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node:
 pub fn published_force<T: Scalar>(system: &System, w: &Workspace<T>, i: usize) -> Planar<T> {
     let last = system.mesh.nodes - 1;
     let (a, b) = (i.saturating_sub(1), i.min(last - 1));
-    let (forces, tangents) = (&w.forces, &w.shape.tangent);
-    let mean = tangents[a] + tangents[b];
-    let tangent = mean.times(T::constant(1.0) / mean.squared().sqrt());
+    let (forces, tangent) = (&w.forces, node_tangent(system, w, i));
     let mut normal = (forces.normal[a] + forces.normal[b]) * 0.5;
     if system.damped {
         normal += (forces.viscous_normal[a] + forces.viscous_normal[b]) * 0.5;

@@ -176,6 +176,14 @@ pub fn about(effect: Effect) -> About {
                 damping.axial_time_s > 0.0 || damping.bending_time_s > 0.0 || damping.drag_n_s_m2 > 0.0
             }),
         },
+        Effect::QuadraticDrag => About {
+            adds: "b = -c₂ √(v_n²) v_n e_n, v_n = v·e_n",
+            brings: "a force across at every node",
+            number: "c₂ u1/m, u1 the swing: what a swing loses of itself; present where given",
+            cost: "a root in every node",
+            needs: &[TransverseMotion],
+            presence: Presence::Given(|case, _| case.beam.damping.quadratic_drag_n_s2_m3 > 0.0),
+        },
         Effect::Valves => About {
             adds: "g = o/(o R_half + R), o(t) given",
             brings: "conductances that change in time",
