@@ -1,0 +1,13 @@
+//! Coefficients of a beam section with bladders, from the geometry of one unit cell.
+
+pub mod cell;
+pub mod dense;
+pub mod element;
+pub mod error;
+pub mod estimate;
+pub mod geometry;
+pub mod input;
+pub mod mesh;
+pub mod permeability;
+pub mod level;
+mod sparse;
