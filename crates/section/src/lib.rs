@@ -1,6 +1,7 @@
 //! Coefficients of a beam section with bladders, from the geometry of one unit cell.
 
 pub mod cell;
+pub mod coefficients;
 pub mod dense;
 pub mod element;
 pub mod error;
@@ -11,3 +12,4 @@ pub mod mesh;
 pub mod permeability;
 pub mod level;
 mod sparse;
+pub mod verify;

@@ -17,7 +17,7 @@
 //! where the first term has the cavity's own macroscopic strain A (e + kappa x_c) in it, and pressure p does the work p da: it pushes on
 //! the walls and, through the ends, with p A at the centroid x_c. So the response is reciprocal by construction.
 
-mod respond;
+pub(crate) mod respond;
 mod shear;
 
 use crate::element::poisson;

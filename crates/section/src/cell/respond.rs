@@ -38,13 +38,13 @@ pub struct Response {
     pub asymmetry: f64,
     /// Number of displacement unknowns.
     pub unknowns: usize,
-    pub(super) factor: Factor,
+    pub(crate) factor: Factor,
     /// K^-1 of F's columns and of G's rows.
-    pub(super) fields: Vec<Vec<f64>>,
-    pub(super) sides: Vec<Vec<f64>>,
+    pub(crate) fields: Vec<Vec<f64>>,
+    pub(crate) sides: Vec<Vec<f64>>,
     /// Node to independent node; `usize::MAX` where there is no solid.
-    pub(super) independent: Vec<usize>,
-    pub(super) elements: Vec<([usize; 6], Matrix)>,
+    pub(crate) independent: Vec<usize>,
+    pub(crate) elements: Vec<([usize; 6], Matrix)>,
 }
 
 impl Response {
@@ -209,7 +209,7 @@ fn periodic(cell: &Cell, solid: &[([usize; 6], usize)]) -> Result<Vec<usize>, Er
 }
 
 /// Boundary integral of N_i n over a cavity's wall: its area's derivative by nodal displacements.
-fn walls(cell: &Cell, independent: &[usize], n: usize, of: fn(Part) -> bool) -> Vec<f64> {
+pub(crate) fn walls(cell: &Cell, independent: &[usize], n: usize, of: fn(Part) -> bool) -> Vec<f64> {
     let mut out = vec![0.0; n];
     for ([a, middle, b], _) in cavity_walls(cell, of) {
         let nodes = [a, b, middle].map(|k| cell.mesh.nodes[k]);
