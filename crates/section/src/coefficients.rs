@@ -13,6 +13,7 @@ use crate::cell::{self, Cell};
 use crate::error::Error;
 use crate::estimate;
 use crate::geometry::check::check;
+use crate::geometry::outline::Outline;
 use crate::input::Section;
 use crate::level::Level;
 use crate::mesh::{Fineness, Mesh};
@@ -30,7 +31,10 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { fineness: Fineness::default(), meshes: 3 }
+        Self {
+            fineness: Fineness::default(),
+            meshes: 3,
+        }
     }
 }
 
@@ -149,16 +153,30 @@ impl Section {
         let all: Vec<Numbers> = levels.iter().map(|level| Numbers::new(self, level)).collect();
         let finest = levels.len() - 1;
         Ok(Coefficients {
-            errors: Errors::new(&all),
+            errors: Errors::new(&all, self.order()),
             asymmetry: levels[finest].asymmetry,
             unknowns: levels[finest].unknowns,
             numbers: all[finest].clone(),
         })
     }
 
+    /// The highest order that estimates may rely on.
+    fn order(&self) -> f64 {
+        let regions = self.regions.iter().map(|r| Outline::region(&r.shape, self.pitch_m));
+        let smooth = cell::bladders(self)
+            .into_iter()
+            .flatten()
+            .chain(regions)
+            .all(|o| o.corners().is_empty());
+        if smooth { estimate::SMOOTH } else { estimate::SHARP }
+    }
+
     /// Results on successive meshes, the coarsest first.
     pub fn levels(&self, options: &Options) -> Result<Vec<Level>, Error> {
-        self.meshes(options)?.iter().map(|mesh| Level::new(self, &Cell::new(self, mesh))).collect()
+        self.meshes(options)?
+            .iter()
+            .map(|mesh| Level::new(self, &Cell::new(self, mesh)))
+            .collect()
     }
 
     /// Successive meshes of the cell, the coarsest first.
@@ -228,22 +246,31 @@ impl Numbers {
 }
 
 impl Errors {
-    fn new(all: &[Numbers]) -> Self {
-        let of = |value: &dyn Fn(&Numbers) -> f64| estimate::estimate(&all.iter().map(value).collect::<Vec<_>>()).relative_error;
+    fn new(all: &[Numbers], most: f64) -> Self {
+        let of = |value: &dyn Fn(&Numbers) -> f64| {
+            estimate::estimate(&all.iter().map(value).collect::<Vec<_>>(), most).relative_error
+        };
         let c = &all[all.len() - 1].compliance;
         let entry = |i: usize, j: usize| {
             let scale = (c[i][i] * c[j][j]).sqrt();
-            let error = estimate::error(&all.iter().map(|n| n.compliance[i][j]).collect::<Vec<_>>());
+            let error = estimate::error(&all.iter().map(|n| n.compliance[i][j]).collect::<Vec<_>>(), most);
             if scale > 0.0 { error / scale } else { 0.0 }
         };
-        let other = all.iter().map(|n| n.area_per_other_pressure_m2_per_pa).collect::<Vec<_>>();
+        let other = all
+            .iter()
+            .map(|n| n.area_per_other_pressure_m2_per_pa)
+            .collect::<Vec<_>>();
         let own = all[all.len() - 1].area_per_pressure_m2_per_pa;
         Self {
             compliance: std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))),
             axial_stiffness_factor: of(&|n| n.axial_stiffness_factor),
             bending_stiffness_factor: of(&|n| n.bending_stiffness_factor),
             area_per_pressure_m2_per_pa: of(&|n| n.area_per_pressure_m2_per_pa),
-            area_per_other_pressure_m2_per_pa: if own > 0.0 { estimate::error(&other) / own } else { 0.0 },
+            area_per_other_pressure_m2_per_pa: if own > 0.0 {
+                estimate::error(&other, most) / own
+            } else {
+                0.0
+            },
             area_per_moment_m2_per_n_m: of(&|n| n.area_per_moment_m2_per_n_m),
             area_per_force_m2_per_n: of(&|n| n.area_per_force_m2_per_n),
             slope_per_pressure_rad: of(&|n| n.slope_per_pressure_rad),

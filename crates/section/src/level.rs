@@ -57,12 +57,19 @@ impl Level {
         for i in 0..4 {
             for j in 0..4 {
                 let work = crate::dense::dot(&loads[i], &q[j]);
-                let own = if i >= 2 && j >= 2 { core * response.area_by_pressure[i - 2][j - 2] } else { 0.0 };
+                let own = if i >= 2 && j >= 2 {
+                    core * response.area_by_pressure[i - 2][j - 2]
+                } else {
+                    0.0
+                };
                 c[i][j] = (work + own) / pitch;
             }
         }
         let unlike = |i: usize, j: usize| (c[i][j] - c[j][i]).abs() / (c[i][i] * c[j][j]).sqrt().max(f64::MIN_POSITIVE);
-        let asymmetry = (0..4).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| unlike(i, j)).fold(response.asymmetry, f64::max);
+        let asymmetry = (0..4)
+            .flat_map(|i| (0..i).map(move |j| (i, j)))
+            .map(|(i, j)| unlike(i, j))
+            .fold(response.asymmetry, f64::max);
         let density = |part: Part| match part {
             Part::Solid(m) => (core + side) * cell.materials[m].density_kg_m3 / pitch,
             Part::Upper(m) | Part::Lower(m) => side * cell.materials[m].density_kg_m3 / pitch,
@@ -97,11 +104,17 @@ impl Walls {
         let [pitch, h] = cell.size;
         if !section.regions.is_empty() && section.width_m > section.bladders.length_m {
             let solid = Response::new(cell, Kind::Filled)?;
-            return Ok(Self { stiffness: solid.free_stiffness()?, shear: solid.shear_stiffness(cell)? });
+            return Ok(Self {
+                stiffness: solid.free_stiffness()?,
+                shear: solid.shear_stiffness(cell)?,
+            });
         }
         // One material: uniaxial stress, and the parabola of shear stress.
         let e = section.material.young_modulus_pa;
         let stiffness = [[e * pitch * h, 0.0], [0.0, e * pitch * h.powi(3) / 12.0]];
-        Ok(Self { stiffness, shear: 5.0 / 6.0 * section.material.shear_modulus() * h })
+        Ok(Self {
+            stiffness,
+            shear: 5.0 / 6.0 * section.material.shear_modulus() * h,
+        })
     }
 }

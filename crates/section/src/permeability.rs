@@ -8,7 +8,7 @@
 
 use crate::element::poisson;
 use crate::error::Error;
-use crate::estimate::{Estimate, estimate};
+use crate::estimate::{Estimate, SHARP, SMOOTH, estimate};
 use crate::geometry::outline::Outline;
 use crate::input::{Point, Shape};
 use crate::mesh::{Domain, Fineness, Mesh};
@@ -32,13 +32,23 @@ pub enum Channel {
     },
 }
 
+/// The outer boundary and, of an annulus, the inner one.
+fn outlines(channel: &Channel) -> Vec<Outline> {
+    match channel {
+        Channel::Open(shape) => vec![Outline::shape(shape, [0.0; 2])],
+        Channel::Annulus { inner_m, outer_m } => {
+            [outer_m, inner_m].map(|r| Outline::ellipse([0.0; 2], [*r; 2])).to_vec()
+        }
+    }
+}
+
 /// q1 [m^4] of a channel on each of `levels` meshes, every one four times as fine as the last.
 pub fn levels(channel: &Channel, levels: usize) -> Result<Vec<f64>, Error> {
-    let outlines = match channel {
-        Channel::Open(shape) => vec![Outline::shape(shape, [0.0; 2])],
-        Channel::Annulus { inner_m, outer_m } => [outer_m, inner_m].map(|r| Outline::ellipse([0.0; 2], [*r; 2])).to_vec(),
+    let domain = Domain {
+        outlines: outlines(channel),
+        half_pitch: None,
+        mirrored: false,
     };
-    let domain = Domain { outlines, half_pitch: None, mirrored: false };
     let holes: Vec<Vec<Point>> = domain.outlines[1..].iter().map(Outline::chords).collect();
     let part = |p: Point| (!holes.iter().any(|h| crate::geometry::outline::inside(h, p))).then_some(());
     let mut mesh = Mesh::new(&domain, &Fineness::default(), &part)?;
@@ -55,7 +65,14 @@ pub fn levels(channel: &Channel, levels: usize) -> Result<Vec<f64>, Error> {
 
 /// q1 [m^4] of a channel with its error.
 pub fn permeability(channel: &Channel) -> Result<Estimate, Error> {
-    Ok(estimate(&levels(channel, 3)?))
+    Ok(estimate(
+        &levels(channel, 3)?,
+        if outlines(channel).iter().all(|o| o.corners().is_empty()) {
+            SMOOTH
+        } else {
+            SHARP
+        },
+    ))
 }
 
 type Element<'a> = &'a dyn Fn(&[Point; 6]) -> Option<([[f64; 6]; 6], [f64; 6])>;

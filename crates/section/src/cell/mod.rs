@@ -72,7 +72,11 @@ pub fn mesh(section: &Section, fineness: &Fineness) -> Result<Mesh<Part>, Error>
     let mirrored = section.bladders.lower == Row::Mirrored && section.regions.is_empty();
     let bottom = if mirrored { 0.0 } else { -half };
     let mut outlines = vec![Outline::rectangle([-half_pitch, half_pitch], [bottom, half])];
-    let regions: Vec<Outline> = section.regions.iter().map(|r| Outline::region(&r.shape, section.pitch_m)).collect();
+    let regions: Vec<Outline> = section
+        .regions
+        .iter()
+        .map(|r| Outline::region(&r.shape, section.pitch_m))
+        .collect();
     outlines.extend(rows.iter().take(if mirrored { 1 } else { 2 }).flatten().cloned());
     outlines.extend(regions.iter().cloned());
     let cavities: Vec<Option<Vec<Point>>> = rows.iter().map(|r| r.as_ref().map(Outline::chords)).collect();
@@ -86,7 +90,11 @@ pub fn mesh(section: &Section, fineness: &Fineness) -> Result<Mesh<Part>, Error>
             _ => Part::Solid(material),
         })
     };
-    let domain = Domain { outlines, half_pitch: Some(half_pitch), mirrored };
+    let domain = Domain {
+        outlines,
+        half_pitch: Some(half_pitch),
+        mirrored,
+    };
     let mesh = Mesh::new(&domain, fineness, &part)?;
     let other = |part| match part {
         Part::Upper(k) => Part::Lower(k),
@@ -103,7 +111,11 @@ impl Cell {
     pub fn new(section: &Section, mesh: &Mesh<Part>) -> Self {
         let regions = section.regions.iter().map(|r| r.material);
         let materials = std::iter::once(section.material).chain(regions).collect();
-        Self { mesh: mesh.quadratic(), materials, size: [section.pitch_m, section.height_m] }
+        Self {
+            mesh: mesh.quadratic(),
+            materials,
+            size: [section.pitch_m, section.height_m],
+        }
     }
 
     /// The six nodes of a triangle.
@@ -131,7 +143,14 @@ impl Cell {
 
     /// Permeability q1 [m^4] of the bladders that `of` selects: see [permeability].
     pub fn permeability(&self, of: &dyn Fn(Part) -> bool) -> Result<f64, Error> {
-        let chosen: Vec<[usize; 6]> = self.mesh.triangles.iter().zip(&self.mesh.parts).filter(|(_, p)| of(**p)).map(|(t, _)| *t).collect();
+        let chosen: Vec<[usize; 6]> = self
+            .mesh
+            .triangles
+            .iter()
+            .zip(&self.mesh.parts)
+            .filter(|(_, p)| of(**p))
+            .map(|(t, _)| *t)
+            .collect();
         permeability::flow(&self.mesh.nodes, &chosen, &|nodes| poisson::matrix(nodes))
     }
 }

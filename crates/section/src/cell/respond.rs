@@ -52,7 +52,11 @@ impl Response {
     pub fn new(cell: &Cell, kind: Kind) -> Result<Self, Error> {
         let solid: Vec<([usize; 6], usize)> = solids(cell, kind).collect();
         let independent = periodic(cell, &solid)?;
-        let count = independent.iter().filter(|&&k| k != usize::MAX).max().map_or(0, |m| m + 1);
+        let count = independent
+            .iter()
+            .filter(|&&k| k != usize::MAX)
+            .max()
+            .map_or(0, |m| m + 1);
         let n = 2 * count;
         let mut elements = Vec::with_capacity(solid.len());
         let mut entries = Vec::with_capacity(solid.len() * 78 + 2);
@@ -84,9 +88,15 @@ impl Response {
         let factor = Factor::new(n, &entries)?;
         let mut cavities = [[0.0; 3]; 2];
         if kind == Kind::Hollow {
-            let walls = [walls(cell, &independent, n, Part::is_upper), walls(cell, &independent, n, Part::is_lower)];
+            let walls = [
+                walls(cell, &independent, n, Part::is_upper),
+                walls(cell, &independent, n, Part::is_lower),
+            ];
             sides.extend(walls);
-            cavities = [cell.moments(&|p| f64::from(p.is_upper()))?, cell.moments(&|p| f64::from(p.is_lower()))?];
+            cavities = [
+                cell.moments(&|p| f64::from(p.is_upper()))?,
+                cell.moments(&|p| f64::from(p.is_lower()))?,
+            ];
         } else {
             sides.extend([vec![0.0; n], vec![0.0; n]]);
         }
@@ -95,9 +105,14 @@ impl Response {
             side[1] = 0.0;
         }
         let fields = factor.solve(&sides);
-        let gram: Vec<Vec<f64>> = sides.iter().map(|a| fields.iter().map(|b| dot(a, b)).collect()).collect();
+        let gram: Vec<Vec<f64>> = sides
+            .iter()
+            .map(|a| fields.iter().map(|b| dot(a, b)).collect())
+            .collect();
         let mean = |i: usize, j: usize| (gram[i][j] + gram[j][i]) / 2.0;
-        let unlike = |i: usize, j: usize| (gram[i][j] - gram[j][i]).abs() / (gram[i][i] * gram[j][j]).sqrt().max(f64::MIN_POSITIVE);
+        let unlike = |i: usize, j: usize| {
+            (gram[i][j] - gram[j][i]).abs() / (gram[i][i] * gram[j][j]).sqrt().max(f64::MIN_POSITIVE)
+        };
         let pairs = (0..6).flat_map(|i| (0..i).map(move |j| (i, j)));
         let asymmetry = pairs.map(|(i, j)| unlike(i, j)).fold(0.0, f64::max);
         let stiffness = std::array::from_fn(|i| std::array::from_fn(|j| macroscopic[i][j] - mean(i, j)));
@@ -149,7 +164,13 @@ impl Response {
     pub fn periodic_part(&self, q: [f64; 4], p: [f64; 2]) -> Vec<[f64; 2]> {
         let loads = [-q[0], -q[1], -q[2], -q[3], p[0], p[1]];
         let value = |dof: usize| loads.iter().zip(&self.fields).map(|(l, f)| l * f[dof]).sum::<f64>();
-        let node = |&k: &usize| if k == usize::MAX { [0.0; 2] } else { [value(2 * k), value(2 * k + 1)] };
+        let node = |&k: &usize| {
+            if k == usize::MAX {
+                [0.0; 2]
+            } else {
+                [value(2 * k), value(2 * k + 1)]
+            }
+        };
         self.independent.iter().map(node).collect()
     }
 }
@@ -170,7 +191,11 @@ fn solids(cell: &Cell, kind: Kind) -> impl Iterator<Item = ([usize; 6], usize)> 
         (Part::Solid(m), _) | (Part::Upper(m) | Part::Lower(m), Kind::Filled) => Some(m),
         _ => None,
     };
-    cell.mesh.triangles.iter().zip(&cell.mesh.parts).filter_map(move |(t, &p)| material(p).map(|m| (*t, m)))
+    cell.mesh
+        .triangles
+        .iter()
+        .zip(&cell.mesh.parts)
+        .filter_map(move |(t, &p)| material(p).map(|m| (*t, m)))
 }
 
 /// The twelve unknowns of a triangle.

@@ -64,7 +64,12 @@ pub fn shapes(xi: f64, eta: f64) -> ([f64; 7], [[f64; 2]; 7]) {
 
 /// The seven sites of an element. None when it is folded.
 pub fn sites(nodes: &[Point; 6]) -> Option<[Site; 7]> {
-    let mut all = [Site { place: [0.0; 2], weight: 0.0, shapes: [0.0; 7], slopes: [[0.0; 2]; 7] }; 7];
+    let mut all = [Site {
+        place: [0.0; 2],
+        weight: 0.0,
+        shapes: [0.0; 7],
+        slopes: [[0.0; 2]; 7],
+    }; 7];
     for (site, [xi, eta, w]) in all.iter_mut().zip(RADON) {
         let (n, dn) = shapes(xi, eta);
         let mut j = [[0.0; 2]; 2];
@@ -81,8 +86,18 @@ pub fn sites(nodes: &[Point; 6]) -> Option<[Site; 7]> {
             return None;
         }
         let inverse = [[j[1][1] / det, -j[0][1] / det], [-j[1][0] / det, j[0][0] / det]];
-        let slope = |d: [f64; 2]| [d[0] * inverse[0][0] + d[1] * inverse[1][0], d[0] * inverse[0][1] + d[1] * inverse[1][1]];
-        *site = Site { place, weight: w * det, shapes: n, slopes: dn.map(slope) };
+        let slope = |d: [f64; 2]| {
+            [
+                d[0] * inverse[0][0] + d[1] * inverse[1][0],
+                d[0] * inverse[0][1] + d[1] * inverse[1][1],
+            ]
+        };
+        *site = Site {
+            place,
+            weight: w * det,
+            shapes: n,
+            slopes: dn.map(slope),
+        };
     }
     Some(all)
 }

@@ -64,7 +64,11 @@ pub fn matrix(nodes: &[Point; 6], material: &Material) -> Option<Matrix> {
     let mut volume = [[0.0; 3]; ALL];
     for site in &sites {
         let b = strains(site);
-        let linear = [1.0, (site.place[0] - middle[0]) / scale, (site.place[1] - middle[1]) / scale];
+        let linear = [
+            1.0,
+            (site.place[0] - middle[0]) / scale,
+            (site.place[1] - middle[1]) / scale,
+        ];
         for i in 0..3 {
             for j in 0..3 {
                 mass[i][j] += site.weight * linear[i] * linear[j];
@@ -78,7 +82,12 @@ pub fn matrix(nodes: &[Point; 6], material: &Material) -> Option<Matrix> {
             }
             // 2 mu times the deviator, gamma counted once: it does work on gamma.
             let w = 2.0 * mu * site.weight;
-            let s = [w * (zz - theta / 3.0), w * (xx - theta / 3.0), w * gamma / 2.0, w * (yy - theta / 3.0)];
+            let s = [
+                w * (zz - theta / 3.0),
+                w * (xx - theta / 3.0),
+                w * gamma / 2.0,
+                w * (yy - theta / 3.0),
+            ];
             for j in 0..=i {
                 k[i][j] += s[0] * b[j][0] + s[1] * b[j][1] + s[2] * b[j][2] + s[3] * b[j][3];
             }

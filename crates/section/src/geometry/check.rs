@@ -13,7 +13,10 @@ struct Rules {
 
 impl Rules {
     fn fault(&mut self, place: impl Into<String>, what: impl Into<String>) {
-        self.faults.push(Fault { place: place.into(), what: what.into() });
+        self.faults.push(Fault {
+            place: place.into(),
+            what: what.into(),
+        });
     }
 
     fn positive(&mut self, place: String, value: f64) -> bool {
@@ -37,8 +40,15 @@ impl Rules {
         self.positive(format!("{place}/density_kg_m3"), material.density_kg_m3);
         let nu = material.poisson_ratio;
         if !(nu > -1.0 && nu < 0.5) {
-            let hint = if nu >= 0.5 { "; an incompressible material is well served by 0.4999" } else { "" };
-            self.fault(format!("{place}/poisson_ratio"), format!("must lie above -1 and below 0.5, is {nu}{hint}"));
+            let hint = if nu >= 0.5 {
+                "; an incompressible material is well served by 0.4999"
+            } else {
+                ""
+            };
+            self.fault(
+                format!("{place}/poisson_ratio"),
+                format!("must lie above -1 and below 0.5, is {nu}{hint}"),
+            );
         }
     }
 
@@ -51,10 +61,16 @@ impl Rules {
             return false;
         }
         if let Some((i, j)) = crossing(points) {
-            self.fault(place, format!("the sides from corner {i} and from corner {j} cross or touch"));
+            self.fault(
+                place,
+                format!("the sides from corner {i} and from corner {j} cross or touch"),
+            );
             return false;
         }
-        let extent = points.iter().flat_map(|p| points.iter().map(move |q| (p[0] - q[0]).hypot(p[1] - q[1]))).fold(0.0, f64::max);
+        let extent = points
+            .iter()
+            .flat_map(|p| points.iter().map(move |q| (p[0] - q[0]).hypot(p[1] - q[1])))
+            .fold(0.0, f64::max);
         if signed_area(points).abs() < 1e-9 * extent * extent {
             self.fault(place, "the polygon has no area");
             return false;
@@ -69,7 +85,11 @@ impl Rules {
                 let along = self.positive(format!("{place}/ellipse/along_m"), *along_m);
                 self.positive(format!("{place}/ellipse/high_m"), *high_m) && along
             }
-            Shape::RoundedRectangle { along_m, high_m, fillet_m } => {
+            Shape::RoundedRectangle {
+                along_m,
+                high_m,
+                fillet_m,
+            } => {
                 let along = self.positive(format!("{place}/rounded_rectangle/along_m"), *along_m);
                 let sizes = self.positive(format!("{place}/rounded_rectangle/high_m"), *high_m) && along;
                 let most = along_m.min(*high_m) / 2.0;
@@ -93,7 +113,10 @@ impl Rules {
         let ordered = |r: &[f64; 2]| r[0].is_finite() && r[1].is_finite() && r[0] < r[1];
         let mut range = |name: &str, r: &[f64; 2]| {
             if !ordered(r) {
-                self.fault(format!("{place}/{name}"), format!("must go from a smaller to a larger number, is {r:?}"));
+                self.fault(
+                    format!("{place}/{name}"),
+                    format!("must go from a smaller to a larger number, is {r:?}"),
+                );
             }
             ordered(r)
         };
@@ -116,7 +139,11 @@ impl Rules {
 /// Every rule the section breaks, in the order of its keys.
 pub fn check(section: &Section) -> Vec<Fault> {
     let mut rules = Rules { faults: Vec::new() };
-    let sizes = [("/height_m", section.height_m), ("/width_m", section.width_m), ("/pitch_m", section.pitch_m)];
+    let sizes = [
+        ("/height_m", section.height_m),
+        ("/width_m", section.width_m),
+        ("/pitch_m", section.pitch_m),
+    ];
     let mut good = true;
     for (place, value) in sizes {
         good &= rules.positive(place.to_owned(), value);
@@ -124,17 +151,28 @@ pub fn check(section: &Section) -> Vec<Fault> {
     rules.material("/material", &section.material);
     let length = section.bladders.length_m;
     if rules.positive("/bladders/length_m".to_owned(), length) && length > section.width_m {
-        let what = format!("the bladders are longer, {length} m, than the beam is wide, {} m", section.width_m);
+        let what = format!(
+            "the bladders are longer, {length} m, than the beam is wide, {} m",
+            section.width_m
+        );
         rules.fault("/bladders/length_m", what);
     }
     let mut rows = Vec::new();
     match &section.bladders.upper {
-        Row::Bladder(bladder) => rows.extend(rules.bladder("/bladders/upper", bladder).map(|o| ("/bladders/upper".to_owned(), o))),
+        Row::Bladder(bladder) => rows.extend(
+            rules
+                .bladder("/bladders/upper", bladder)
+                .map(|o| ("/bladders/upper".to_owned(), o)),
+        ),
         Row::Mirrored => rules.fault("/bladders/upper", "only the lower row can be mirrored"),
         Row::None => {}
     }
     match &section.bladders.lower {
-        Row::Bladder(bladder) => rows.extend(rules.bladder("/bladders/lower", bladder).map(|o| ("/bladders/lower".to_owned(), o))),
+        Row::Bladder(bladder) => rows.extend(
+            rules
+                .bladder("/bladders/lower", bladder)
+                .map(|o| ("/bladders/lower".to_owned(), o)),
+        ),
         Row::Mirrored => {
             if let Some((_, upper)) = rows.first() {
                 rows.push(("/bladders/lower".to_owned(), upper.mirrored()));
@@ -161,24 +199,47 @@ fn room(rules: &mut Rules, section: &Section, rows: &[(String, Outline)], region
     for (place, outline) in rows {
         let most = |k: usize| outline.chords().iter().fold(0.0_f64, |m, p| m.max(p[k].abs()));
         if half[0] - most(0) < least {
-            let what = format!("reaches {} m along the beam, its neighbour begins at half the pitch, {} m", most(0), half[0]);
+            let what = format!(
+                "reaches {} m along the beam, its neighbour begins at half the pitch, {} m",
+                most(0),
+                half[0]
+            );
             rules.fault(place, what);
         }
         if half[1] - most(1) < least {
-            rules.fault(place, format!("reaches {} m from the mid-plane, the beam's surface lies at {} m", most(1), half[1]));
+            rules.fault(
+                place,
+                format!(
+                    "reaches {} m from the mid-plane, the beam's surface lies at {} m",
+                    most(1),
+                    half[1]
+                ),
+            );
         }
     }
     if let [(_, upper), (place, lower)] = rows {
         match meeting(upper, lower) {
             gap if gap >= least => {}
-            gap if gap > 0.0 => rules.fault(place, format!("the wall to the upper bladder is {gap} m thick, less than {least} m")),
+            gap if gap > 0.0 => rules.fault(
+                place,
+                format!("the wall to the upper bladder is {gap} m thick, less than {least} m"),
+            ),
             _ => rules.fault(place, "overlaps the upper bladder"),
         }
     }
     for (k, (place, outline)) in regions.iter().enumerate() {
-        let outside = outline.chords().iter().any(|p| (0..2).any(|c| p[c].abs() > half[c] * (1.0 + 1e-9)));
+        let outside = outline
+            .chords()
+            .iter()
+            .any(|p| (0..2).any(|c| p[c].abs() > half[c] * (1.0 + 1e-9)));
         if outside {
-            rules.fault(place, format!("reaches beyond the cell of {} m by {} m", section.pitch_m, section.height_m));
+            rules.fault(
+                place,
+                format!(
+                    "reaches beyond the cell of {} m by {} m",
+                    section.pitch_m, section.height_m
+                ),
+            );
         }
         for (other, row) in rows {
             if meeting_lines(outline, row) < least {
@@ -207,11 +268,21 @@ fn crossing(points: &[Point]) -> Option<(usize, usize)> {
         if neighbours {
             // Neighbours share a corner; they fault when one folds back on the other.
             let (shared, p, q) = if j == i + 1 { (b, a, d) } else { (a, b, c) };
-            let (u, v) = ([p[0] - shared[0], p[1] - shared[1]], [q[0] - shared[0], q[1] - shared[1]]);
+            let (u, v) = (
+                [p[0] - shared[0], p[1] - shared[1]],
+                [q[0] - shared[0], q[1] - shared[1]],
+            );
             let (cross, along) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
             return along > 0.0 && cross.abs() < 1e-9 * along;
         }
-        cross(a, b, c, d) || [distance(a, c, d), distance(b, c, d), distance(c, a, b), distance(d, a, b)].contains(&0.0)
+        cross(a, b, c, d)
+            || [
+                distance(a, c, d),
+                distance(b, c, d),
+                distance(c, a, b),
+                distance(d, a, b),
+            ]
+            .contains(&0.0)
     })
 }
 
@@ -234,7 +305,11 @@ fn meeting_lines(a: &Outline, b: &Outline) -> f64 {
             if cross(p, q, r, s) {
                 return 0.0;
             }
-            least = least.min(distance(p, r, s)).min(distance(q, r, s)).min(distance(r, p, q)).min(distance(s, p, q));
+            least = least
+                .min(distance(p, r, s))
+                .min(distance(q, r, s))
+                .min(distance(r, p, q))
+                .min(distance(s, p, q));
         }
     }
     least
@@ -243,7 +318,11 @@ fn meeting_lines(a: &Outline, b: &Outline) -> f64 {
 /// Distance between two outlines, 0 when they cross or one lies in the other.
 fn meeting(a: &Outline, b: &Outline) -> f64 {
     let (pa, pb) = (a.chords(), b.chords());
-    if inside(&pa, pb[0]) || inside(&pb, pa[0]) { 0.0 } else { meeting_lines(a, b) }
+    if inside(&pa, pb[0]) || inside(&pb, pa[0]) {
+        0.0
+    } else {
+        meeting_lines(a, b)
+    }
 }
 
 /// Whether two regions share more than a border.
@@ -256,7 +335,14 @@ fn overlap(a: &Outline, b: &Outline, slack: f64) -> bool {
     };
     let crossed = sides(&pa).any(|(p, q)| {
         sides(&pb).any(|(r, s)| {
-            let near = [distance(p, r, s), distance(q, r, s), distance(r, p, q), distance(s, p, q)].into_iter().fold(f64::MAX, f64::min);
+            let near = [
+                distance(p, r, s),
+                distance(q, r, s),
+                distance(r, p, q),
+                distance(s, p, q),
+            ]
+            .into_iter()
+            .fold(f64::MAX, f64::min);
             cross(p, q, r, s) && near > slack
         })
     });
@@ -268,10 +354,14 @@ fn within(points: &[Point]) -> Point {
     let mut heights: Vec<f64> = points.iter().map(|p| p[1]).collect();
     heights.sort_by(f64::total_cmp);
     // Between two distinct heights: no corner lies on the line.
-    let gap = heights.windows(2).max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+    let gap = heights
+        .windows(2)
+        .max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
     let x = gap.map_or(0.0, |g| (g[0] + g[1]) / 2.0);
     let hits = sides(points).filter(|(a, b)| (a[1] > x) != (b[1] > x));
-    let mut at: Vec<f64> = hits.map(|(a, b)| a[0] + (x - a[1]) / (b[1] - a[1]) * (b[0] - a[0])).collect();
+    let mut at: Vec<f64> = hits
+        .map(|(a, b)| a[0] + (x - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+        .collect();
     at.sort_by(f64::total_cmp);
     [at.chunks_exact(2).map(|c| (c[0] + c[1]) / 2.0).next().unwrap_or(0.0), x]
 }

@@ -31,7 +31,12 @@ impl Curve {
         match *self {
             // Exact at both ends: neighbours must share them to the last bit.
             Curve::Line { from, to } => [from[0] * (1.0 - t) + to[0] * t, from[1] * (1.0 - t) + to[1] * t],
-            Curve::Arc { center, radii, from, to } => {
+            Curve::Arc {
+                center,
+                radii,
+                from,
+                to,
+            } => {
                 let a = from * (1.0 - t) + to * t;
                 [center[0] + radii[0] * a.cos(), center[1] + radii[1] * a.sin()]
             }
@@ -52,10 +57,21 @@ impl Curve {
     /// Mirrored at the mid-plane, same t.
     pub fn mirrored(&self) -> Self {
         match *self {
-            Curve::Line { from, to } => Curve::Line { from: [from[0], -from[1]], to: [to[0], -to[1]] },
-            Curve::Arc { center, radii, from, to } => {
-                Curve::Arc { center: [center[0], -center[1]], radii, from: -from, to: -to }
-            }
+            Curve::Line { from, to } => Curve::Line {
+                from: [from[0], -from[1]],
+                to: [to[0], -to[1]],
+            },
+            Curve::Arc {
+                center,
+                radii,
+                from,
+                to,
+            } => Curve::Arc {
+                center: [center[0], -center[1]],
+                radii,
+                from: -from,
+                to: -to,
+            },
         }
     }
 

@@ -19,18 +19,36 @@ impl Outline {
             points.reverse();
         }
         let next = points.iter().cycle().skip(1);
-        Self { curves: points.iter().zip(next).map(|(&from, &to)| Curve::Line { from, to }).collect() }
+        Self {
+            curves: points
+                .iter()
+                .zip(next)
+                .map(|(&from, &to)| Curve::Line { from, to })
+                .collect(),
+        }
     }
 
     /// A rectangle between two corners.
     pub fn rectangle(along: [f64; 2], high: [f64; 2]) -> Self {
-        Self::polygon(&[[along[0], high[0]], [along[1], high[0]], [along[1], high[1]], [along[0], high[1]]])
+        Self::polygon(&[
+            [along[0], high[0]],
+            [along[1], high[0]],
+            [along[1], high[1]],
+            [along[0], high[1]],
+        ])
     }
 
     /// An ellipse about a centre, in four quarters.
     pub fn ellipse(center: Point, radii: [f64; 2]) -> Self {
-        let quarter = |k: usize| Curve::Arc { center, radii, from: k as f64 * FRAC_PI_2, to: (k + 1) as f64 * FRAC_PI_2 };
-        Self { curves: (0..4).map(quarter).collect() }
+        let quarter = |k: usize| Curve::Arc {
+            center,
+            radii,
+            from: k as f64 * FRAC_PI_2,
+            to: (k + 1) as f64 * FRAC_PI_2,
+        };
+        Self {
+            curves: (0..4).map(quarter).collect(),
+        }
     }
 
     /// A shape with its origin at a point.
@@ -39,7 +57,11 @@ impl Outline {
         match shape {
             Shape::Circle { radius_m: r } => Self::ellipse(origin, [*r, *r]),
             Shape::Ellipse { along_m, high_m } => Self::ellipse(origin, [along_m / 2.0, high_m / 2.0]),
-            Shape::RoundedRectangle { along_m, high_m, fillet_m } => rounded(origin, along_m / 2.0, high_m / 2.0, *fillet_m),
+            Shape::RoundedRectangle {
+                along_m,
+                high_m,
+                fillet_m,
+            } => rounded(origin, along_m / 2.0, high_m / 2.0, *fillet_m),
             Shape::Polygon { points_m } => {
                 Self::polygon(&points_m.iter().map(|p| [z + p[0], x + p[1]]).collect::<Vec<_>>())
             }
@@ -65,9 +87,21 @@ impl Outline {
     pub fn mirrored(&self) -> Self {
         let back = |c: &Curve| match c.mirrored() {
             Curve::Line { from, to } => Curve::Line { from: to, to: from },
-            Curve::Arc { center, radii, from, to } => Curve::Arc { center, radii, from: to, to: from },
+            Curve::Arc {
+                center,
+                radii,
+                from,
+                to,
+            } => Curve::Arc {
+                center,
+                radii,
+                from: to,
+                to: from,
+            },
         };
-        Self { curves: self.curves.iter().rev().map(back).collect() }
+        Self {
+            curves: self.curves.iter().rev().map(back).collect(),
+        }
     }
 
     /// Corners of a polygon inscribed closely enough to tell inside from outside.
@@ -84,7 +118,10 @@ impl Outline {
         let n = self.curves.len();
         let turn = |k: usize| {
             let (a, b) = (self.curves[(k + n - 1) % n].slope(1.0), self.curves[k].slope(0.0));
-            (self.curves[k].at(0.0), (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]))
+            (
+                self.curves[k].at(0.0),
+                (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]),
+            )
         };
         (0..n).map(turn).filter(|(_, angle)| angle.abs() > 0.05 * PI).collect()
     }
@@ -100,7 +137,12 @@ fn rounded(origin: Point, a: f64, b: f64, fillet: f64) -> Outline {
     for (k, [sz, sx]) in signs.into_iter().enumerate() {
         let center = [z + sz * (a - fillet), x + sx * (b - fillet)];
         let from = k as f64 * FRAC_PI_2;
-        curves.push(Curve::Arc { center, radii: [fillet; 2], from, to: from + FRAC_PI_2 });
+        curves.push(Curve::Arc {
+            center,
+            radii: [fillet; 2],
+            from,
+            to: from + FRAC_PI_2,
+        });
     }
     let arcs = curves.clone();
     let longest = a.max(b);
@@ -118,7 +160,11 @@ fn rounded(origin: Point, a: f64, b: f64, fillet: f64) -> Outline {
 /// Area of a polygon, positive when counter-clockwise.
 pub fn signed_area(points: &[Point]) -> f64 {
     let next = points.iter().cycle().skip(1);
-    points.iter().zip(next).map(|(a, b)| (a[0] * b[1] - a[1] * b[0]) / 2.0).sum()
+    points
+        .iter()
+        .zip(next)
+        .map(|(a, b)| (a[0] * b[1] - a[1] * b[0]) / 2.0)
+        .sum()
 }
 
 /// Whether a point lies inside a polygon.

@@ -59,7 +59,11 @@ impl<T: Copy> Mesh<T> {
                 points.len() - 1
             })
         };
-        let middles = self.triangles.iter().map(|&[a, b, c]| [of(a, b), of(b, c), of(c, a)]).collect();
+        let middles = self
+            .triangles
+            .iter()
+            .map(|&[a, b, c]| [of(a, b), of(b, c), of(c, a)])
+            .collect();
         (points, middles, found)
     }
 
@@ -81,13 +85,22 @@ impl<T: Copy> Mesh<T> {
                 curves.insert(edge(b, m), (curve, to, half));
             }
         }
-        Self { points, triangles, parts, curves }
+        Self {
+            points,
+            triangles,
+            parts,
+            curves,
+        }
     }
 
     /// With nodes in the middles of edges.
     pub fn quadratic(&self) -> Quadratic<T> {
         let (nodes, middles, _) = self.middles();
         let six = |(&[a, b, c], &[ab, bc, ca]): (&[usize; 3], &[usize; 3])| [a, b, c, ab, bc, ca];
-        Quadratic { nodes, triangles: self.triangles.iter().zip(&middles).map(six).collect(), parts: self.parts.clone() }
+        Quadratic {
+            nodes,
+            triangles: self.triangles.iter().zip(&middles).map(six).collect(),
+            parts: self.parts.clone(),
+        }
     }
 }

@@ -35,7 +35,13 @@ pub struct Fineness {
 
 impl Default for Fineness {
     fn default() -> Self {
-        Self { largest: 0.35, corner: 0.03, wall: 1.0, arc: 0.53, growth: 0.6 }
+        Self {
+            largest: 0.35,
+            corner: 0.03,
+            wall: 1.0,
+            arc: 0.53,
+            growth: 0.6,
+        }
     }
 }
 
@@ -57,7 +63,9 @@ struct Source {
 fn extents(outline: &Outline) -> [f64; 2] {
     let points = outline.chords();
     let extent = |k: usize| {
-        let (low, high) = points.iter().fold((f64::MAX, f64::MIN), |(l, h), p| (l.min(p[k]), h.max(p[k])));
+        let (low, high) = points
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(l, h), p| (l.min(p[k]), h.max(p[k])));
         high - low
     };
     [extent(0), extent(1)]
@@ -68,26 +76,45 @@ fn smaller(outline: &Outline) -> f64 {
     a.min(b)
 }
 
-/// All pieces of a domain with their vertices, and the largest size.
-pub fn plan(domain: &Domain, fineness: &Fineness) -> (Vec<Piece>, f64) {
-    let mut outer = smaller(&domain.outlines[0]);
-    if domain.mirrored {
-        let [a, b] = extents(&domain.outlines[0]);
-        outer = a.min(2.0 * b);
-    }
-    let largest = fineness.largest * outer;
-    let sources = sources(domain, fineness);
-    let size = |p: Point| {
+/// The wanted size everywhere.
+pub struct Sizes {
+    sources: Vec<Source>,
+    growth: f64,
+    half_pitch: Option<f64>,
+    /// The largest size.
+    pub largest: f64,
+}
+
+impl Sizes {
+    /// At a point; the same at both faces of a period.
+    pub fn at(&self, p: Point) -> f64 {
         let one = |p: Point| {
-            let near = |s: &Source| s.size + fineness.growth * (p[0] - s.at[0]).hypot(p[1] - s.at[1]);
-            sources.iter().map(near).fold(largest, f64::min)
+            let near = |s: &Source| s.size + self.growth * (p[0] - s.at[0]).hypot(p[1] - s.at[1]);
+            self.sources.iter().map(near).fold(self.largest, f64::min)
         };
-        match domain.half_pitch {
+        match self.half_pitch {
             Some(half) if (p[0].abs() - half).abs() < 1e-9 * half => one(p).min(one([-p[0], p[1]])),
             _ => one(p),
         }
+    }
+}
+
+/// All pieces of a domain with their vertices, and the sizes between them.
+pub fn plan(domain: &Domain, fineness: &Fineness) -> (Vec<Piece>, Sizes) {
+    let [a, b] = extents(&domain.outlines[0]);
+    let outer = if domain.mirrored { a.min(2.0 * b) } else { a.min(b) };
+    let largest = fineness.largest * outer;
+    let sizes = Sizes {
+        sources: sources(domain, fineness),
+        growth: fineness.growth,
+        half_pitch: domain.half_pitch,
+        largest,
     };
-    (split(domain).into_iter().map(|curve| march(curve, &size, fineness.arc)).collect(), largest)
+    let pieces = split(domain)
+        .into_iter()
+        .map(|curve| march(curve, &|p| sizes.at(p), fineness.arc))
+        .collect();
+    (pieces, sizes)
 }
 
 fn sources(domain: &Domain, fineness: &Fineness) -> Vec<Source> {
@@ -97,11 +124,17 @@ fn sources(domain: &Domain, fineness: &Fineness) -> Vec<Source> {
     let single = if inner.is_empty() { &domain.outlines[..] } else { inner };
     for outline in single {
         let length = smaller(outline);
-        sources.extend(outline.corners().into_iter().map(|(at, _)| Source { at, size: fineness.corner * length }));
+        sources.extend(outline.corners().into_iter().map(|(at, _)| Source {
+            at,
+            size: fineness.corner * length,
+        }));
         for curve in &outline.curves {
             if let Curve::Arc { radii, .. } = curve {
                 let size = fineness.arc * radii[0].min(radii[1]);
-                sources.extend((0..=4).map(|k| Source { at: curve.at(f64::from(k) / 4.0), size }));
+                sources.extend((0..=4).map(|k| Source {
+                    at: curve.at(f64::from(k) / 4.0),
+                    size,
+                }));
             }
         }
     }
@@ -115,10 +148,17 @@ fn sources(domain: &Domain, fineness: &Fineness) -> Vec<Source> {
                     let all = other.iter().zip(next).map(|(a, b)| distance(at, *a, *b));
                     all.fold(f64::MAX, f64::min)
                 };
-                let others = chords.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, other)| gap(other));
+                let others = chords
+                    .iter()
+                    .enumerate()
+                    .filter(|(j, _)| *j != i)
+                    .map(|(_, other)| gap(other));
                 let thinnest = others.filter(|&d| d > 1e-6 * smaller(outline)).fold(f64::MAX, f64::min);
                 if thinnest < f64::MAX {
-                    sources.push(Source { at, size: fineness.wall * thinnest });
+                    sources.push(Source {
+                        at,
+                        size: fineness.wall * thinnest,
+                    });
                 }
             }
         }
@@ -133,7 +173,11 @@ fn split(domain: &Domain) -> Vec<Curve> {
     let scale = smaller(&domain.outlines[0]);
     let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * scale;
     if let Some(half) = domain.half_pitch {
-        let faced: Vec<Point> = ends.iter().filter(|p| near(p[0].abs(), half)).map(|p| [-p[0], p[1]]).collect();
+        let faced: Vec<Point> = ends
+            .iter()
+            .filter(|p| near(p[0].abs(), half))
+            .map(|p| [-p[0], p[1]])
+            .collect();
         ends.extend(faced);
     }
     let mut all: Vec<Curve> = Vec::new();
@@ -143,13 +187,17 @@ fn split(domain: &Domain) -> Vec<Curve> {
             continue;
         };
         // Low to high, left to right: both faces of a period, and both sides of a shared edge, march the same way.
-        let (from, to) = if (from[1], from[0]) < (to[1], to[0]) && !near(from[1], to[1]) || near(from[1], to[1]) && from[0] < to[0] {
+        let (from, to) = if (from[1], from[0]) < (to[1], to[0]) && !near(from[1], to[1])
+            || near(from[1], to[1]) && from[0] < to[0]
+        {
             (from, to)
         } else {
             (to, from)
         };
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-        let along = |p: &Point| ((p[0] - from[0]) * (to[0] - from[0]) + (p[1] - from[1]) * (to[1] - from[1])) / (length * length);
+        let along = |p: &Point| {
+            ((p[0] - from[0]) * (to[0] - from[0]) + (p[1] - from[1]) * (to[1] - from[1])) / (length * length)
+        };
         let on = |p: &&Point| {
             let t = along(p);
             t * length > 1e-9 * scale && (1.0 - t) * length > 1e-9 * scale && distance(**p, from, to) < 1e-9 * scale
@@ -159,7 +207,10 @@ fn split(domain: &Domain) -> Vec<Curve> {
         stops.sort_by(|a, b| a.0.total_cmp(&b.0));
         stops.dedup_by(|a, b| (a.0 - b.0).abs() * length < 1e-9 * scale);
         for pair in stops.windows(2) {
-            let line = Curve::Line { from: pair[0].1, to: pair[1].1 };
+            let line = Curve::Line {
+                from: pair[0].1,
+                to: pair[1].1,
+            };
             let same = |c: &Curve| {
                 let close = |p: Point, q: Point| near(p[0], q[0]) && near(p[1], q[1]);
                 matches!(c, Curve::Line { .. }) && close(c.at(0.0), line.at(0.0)) && close(c.at(1.0), line.at(1.0))
@@ -195,5 +246,8 @@ fn march(curve: Curve, size: &dyn Fn(Point) -> f64, arc: f64) -> Piece {
         let i = sum.partition_point(|&s| s < want).clamp(1, n);
         (i as f64 - 1.0 + (want - sum[i - 1]) / (sum[i] - sum[i - 1])) / n as f64
     };
-    Piece { curve, at: (0..=steps).map(place).collect() }
+    Piece {
+        curve,
+        at: (0..=steps).map(place).collect(),
+    }
 }

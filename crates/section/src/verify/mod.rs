@@ -32,19 +32,30 @@ impl Comparison {
     pub fn new(name: impl Into<String>, source: &str, exact: f64, computed: Vec<f64>) -> Self {
         let scale = if exact == 0.0 { 1.0 } else { exact.abs() };
         let errors: Vec<f64> = computed.iter().map(|c| (c - exact).abs() / scale).collect();
-        let order = errors.last_chunk::<2>().filter(|e| e[1] > ROUND_OFF).map(|[a, b]| (a / b).log2());
-        Self { name: name.into(), source: source.to_owned(), exact, computed, order }
+        let order = errors
+            .last_chunk::<2>()
+            .filter(|e| e[1] > ROUND_OFF)
+            .map(|[a, b]| (a / b).log2());
+        Self {
+            name: name.into(),
+            source: source.to_owned(),
+            exact,
+            computed,
+            order,
+        }
     }
 
     /// Relative error on the finest mesh; absolute where the exact value is zero.
     pub fn error(&self) -> f64 {
         let scale = if self.exact == 0.0 { 1.0 } else { self.exact.abs() };
-        self.computed.last().map_or(f64::NAN, |c| (c - self.exact).abs() / scale)
+        self.computed
+            .last()
+            .map_or(f64::NAN, |c| (c - self.exact).abs() / scale)
     }
 
     /// Whether the error estimated from the meshes alone covers the true one.
     pub fn is_covered(&self) -> bool {
-        self.error() <= ROUND_OFF || estimate::estimate(&self.computed).relative_error >= self.error()
+        self.error() <= ROUND_OFF || estimate::estimate(&self.computed, estimate::SMOOTH).relative_error >= self.error()
     }
 }
 

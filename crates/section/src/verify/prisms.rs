@@ -17,13 +17,21 @@ fn solid(nu: f64) -> Section {
         width_m: WIDTH,
         pitch_m: 0.01,
         material: material(YOUNG, nu),
-        bladders: Bladders { length_m: WIDTH, upper: Row::None, lower: Row::None },
+        bladders: Bladders {
+            length_m: WIDTH,
+            upper: Row::None,
+            lower: Row::None,
+        },
         regions: Vec::new(),
     }
 }
 
 fn material(young_modulus_pa: f64, poisson_ratio: f64) -> Material {
-    Material { young_modulus_pa, poisson_ratio, density_kg_m3: 1000.0 }
+    Material {
+        young_modulus_pa,
+        poisson_ratio,
+        density_kg_m3: 1000.0,
+    }
 }
 
 /// Layers from these heights, the last one up to the top, of these moduli.
@@ -38,7 +46,9 @@ impl Layers {
     /// Integral of E x^n over the section.
     fn moment(&self, n: i32) -> f64 {
         let power = n + 1;
-        self.spans().map(|([a, b], e)| WIDTH * e * (b.powi(power) - a.powi(power)) / f64::from(power)).sum()
+        self.spans()
+            .map(|([a, b], e)| WIDTH * e * (b.powi(power) - a.powi(power)) / f64::from(power))
+            .sum()
     }
 
     /// kGA of layers of the same nu: shear stress from equilibrium, its energy by Simpson's rule on a fine grid.
@@ -69,12 +79,32 @@ fn compare_one(name: &str, section: &Section, layers: &Layers, nu: f64) -> Resul
     let det = m0 * m2 - m1 * m1;
     let source = "Saint-Venant";
     let mut rows = vec![
-        Comparison::new(format!("{name}: stretch per force [1/N]"), source, m2 / det, of(&|l| l.compliance[0][0])),
-        Comparison::new(format!("{name}: curvature per moment [1/(N m^2)]"), source, m0 / det, of(&|l| l.compliance[1][1])),
-        Comparison::new(format!("{name}: shear stiffness [N]"), "shear stress by equilibrium", layers.shear(nu), of(&|l| l.shear_stiffness)),
+        Comparison::new(
+            format!("{name}: stretch per force [1/N]"),
+            source,
+            m2 / det,
+            of(&|l| l.compliance[0][0]),
+        ),
+        Comparison::new(
+            format!("{name}: curvature per moment [1/(N m^2)]"),
+            source,
+            m0 / det,
+            of(&|l| l.compliance[1][1]),
+        ),
+        Comparison::new(
+            format!("{name}: shear stiffness [N]"),
+            "shear stress by equilibrium",
+            layers.shear(nu),
+            of(&|l| l.shear_stiffness),
+        ),
     ];
     if m1.abs() > 1e-9 * m0 * HEIGHT {
-        rows.push(Comparison::new(format!("{name}: curvature per force [1/(N m)]"), source, -m1 / det, of(&|l| l.compliance[0][1])));
+        rows.push(Comparison::new(
+            format!("{name}: curvature per force [1/(N m)]"),
+            source,
+            -m1 / det,
+            of(&|l| l.compliance[0][1]),
+        ));
     }
     Ok(rows)
 }
@@ -91,20 +121,41 @@ pub(super) fn compare() -> Result<Vec<Comparison>, Error> {
             let response = Response::new(&Cell::new(&section, &mesh), Kind::Hollow)?;
             lateral.push(response.unit_curvature()?[3]);
         }
-        rows.push(Comparison::new(format!("{name}: anticlastic over axial curvature [1]"), "Saint-Venant", -nu, lateral));
+        rows.push(Comparison::new(
+            format!("{name}: anticlastic over axial curvature [1]"),
+            "Saint-Venant",
+            -nu,
+            lateral,
+        ));
     }
-    let layer = |high_m, e, nu| Region { shape: RegionShape::Layer { high_m }, material: material(e, nu) };
+    let layer = |high_m, e, nu| Region {
+        shape: RegionShape::Layer { high_m },
+        material: material(e, nu),
+    };
     // A stiff skin on both sides of a soft core: a hollow rectangle filled.
     let (nu, skin, core) = (0.4, 0.002, 2e4);
     let sandwich = Layers(vec![(bottom, YOUNG), (bottom + skin, core), (-bottom - skin, YOUNG)]);
-    let filled = Section { regions: vec![layer([bottom + skin, -bottom - skin], core, nu)], ..solid(nu) };
+    let filled = Section {
+        regions: vec![layer([bottom + skin, -bottom - skin], core, nu)],
+        ..solid(nu)
+    };
     rows.extend(compare_one("sandwich, core a hundredth", &filled, &sandwich, nu)?);
     let (nu, stiff) = (0.45, 4e7);
     let two = Layers(vec![(bottom, stiff), (bottom + 0.005, YOUNG)]);
-    let sheet = Section { regions: vec![layer([bottom, bottom + 0.005], stiff, nu)], ..solid(nu) };
+    let sheet = Section {
+        regions: vec![layer([bottom, bottom + 0.005], stiff, nu)],
+        ..solid(nu)
+    };
     rows.extend(compare_one("stiff sheet below", &sheet, &two, nu)?);
     // Side walls solve the filled cell when there are regions.
-    let half = Section { bladders: Bladders { length_m: 0.4 * WIDTH, upper: Row::None, lower: Row::None }, ..sheet };
+    let half = Section {
+        bladders: Bladders {
+            length_m: 0.4 * WIDTH,
+            upper: Row::None,
+            lower: Row::None,
+        },
+        ..sheet
+    };
     rows.extend(compare_one("stiff sheet below, side walls", &half, &two, nu)?);
     rows.extend(patch()?);
     Ok(rows)
@@ -113,17 +164,44 @@ pub(super) fn compare() -> Result<Vec<Comparison>, Error> {
 /// Regions of the same material change the mesh, nothing else.
 fn patch() -> Result<Vec<Comparison>, Error> {
     let nu = 0.49;
-    let same = |shape| Region { shape, material: material(YOUNG, nu) };
+    let same = |shape| Region {
+        shape,
+        material: material(YOUNG, nu),
+    };
     let regions = vec![
-        same(RegionShape::Circle { center_m: [0.001, -0.003], radius_m: 0.0021 }),
-        same(RegionShape::Polygon { points_m: vec![[-0.004, 0.002], [0.003, 0.001], [0.0015, 0.008], [0.001, 0.004]] }),
+        same(RegionShape::Circle {
+            center_m: [0.001, -0.003],
+            radius_m: 0.0021,
+        }),
+        same(RegionShape::Polygon {
+            points_m: vec![[-0.004, 0.002], [0.003, 0.001], [0.0015, 0.008], [0.001, 0.004]],
+        }),
     ];
     let section = Section { regions, ..solid(nu) };
-    let numbers: Vec<Numbers> = section.levels(&Options::default())?.iter().map(|l| Numbers::new(&section, l)).collect();
+    let numbers: Vec<Numbers> = section
+        .levels(&Options::default())?
+        .iter()
+        .map(|l| Numbers::new(&section, l))
+        .collect();
     let of = |value: fn(&Numbers) -> f64| numbers.iter().map(value).collect::<Vec<_>>();
     Ok(vec![
-        Comparison::new("patch test in extension: f_e [1]", "uniform stress", 1.0, of(|n| n.axial_stiffness_factor)),
-        Comparison::new("patch test in bending: f_i [1]", "linear stress", 1.0, of(|n| n.bending_stiffness_factor)),
-        Comparison::new("patch test: coupling of force and curvature [1]", "symmetry", 0.0, of(|n| n.force_curvature_coupling)),
+        Comparison::new(
+            "patch test in extension: f_e [1]",
+            "uniform stress",
+            1.0,
+            of(|n| n.axial_stiffness_factor),
+        ),
+        Comparison::new(
+            "patch test in bending: f_i [1]",
+            "linear stress",
+            1.0,
+            of(|n| n.bending_stiffness_factor),
+        ),
+        Comparison::new(
+            "patch test: coupling of force and curvature [1]",
+            "symmetry",
+            0.0,
+            of(|n| n.force_curvature_coupling),
+        ),
     ])
 }

@@ -26,23 +26,47 @@ pub(super) fn compare() -> Result<Vec<Comparison>, Error> {
 
 fn tube(nu: f64) -> Result<Vec<Comparison>, Error> {
     let young = 2e6;
-    let material = Material { young_modulus_pa: young, poisson_ratio: nu, density_kg_m3: 1000.0 };
+    let material = Material {
+        young_modulus_pa: young,
+        poisson_ratio: nu,
+        density_kg_m3: 1000.0,
+    };
     let rings = [OUTER, INNER].map(|r| Outline::ellipse([0.0; 2], [r; 2]));
     let bore = rings[1].chords();
-    let domain = Domain { outlines: rings.to_vec(), half_pitch: None, mirrored: false };
-    let part = |p| Some(if inside(&bore, p) { Part::Upper(0) } else { Part::Solid(0) });
+    let domain = Domain {
+        outlines: rings.to_vec(),
+        half_pitch: None,
+        mirrored: false,
+    };
+    let part = |p| {
+        Some(if inside(&bore, p) {
+            Part::Upper(0)
+        } else {
+            Part::Solid(0)
+        })
+    };
     let mut mesh = Mesh::new(&domain, &Fineness::default(), &part)?;
     let mut computed = [const { Vec::new() }; 4];
     for level in 0..3 {
         if level > 0 {
             mesh = mesh.refined();
         }
-        let cell = Cell { mesh: mesh.quadratic(), materials: vec![material], size: [2.0 * OUTER, 2.0 * OUTER] };
+        let cell = Cell {
+            mesh: mesh.quadratic(),
+            materials: vec![material],
+            size: [2.0 * OUTER, 2.0 * OUTER],
+        };
         let response = Response::new(&cell, Kind::Hollow)?;
-        let (s, t, r) = (&response.stiffness, &response.area_by_strain[0], response.area_by_pressure[0][0]);
+        let (s, t, r) = (
+            &response.stiffness,
+            &response.area_by_strain[0],
+            response.area_by_pressure[0][0],
+        );
         computed[0].push(r + t[0] * t[0] / s[0][0]);
         // Outside: the solid's whole boundary, less its inside turned outwards.
-        let mut outside = walls(&cell, &response.independent, response.unknowns, |p| matches!(p, Part::Solid(_)));
+        let mut outside = walls(&cell, &response.independent, response.unknowns, |p| {
+            matches!(p, Part::Solid(_))
+        });
         outside.iter_mut().zip(&response.sides[4]).for_each(|(o, i)| *o += i);
         // The held node moves with the faces: see the stretch below. Its own force is the reaction, zero in sum.
         outside[0] = 0.0;
@@ -58,13 +82,20 @@ fn tube(nu: f64) -> Result<Vec<Comparison>, Error> {
     let axial = (1.0 - 2.0 * nu) / young * a / (b - a);
     // With closed ends: plane strain's, and the axial strain's own: the bore narrows by nu times it.
     let closed = bore * ((1.0 - 2.0 * nu) * a + b) + PI * a * (1.0 - 2.0 * nu) * axial;
-    let exact = [bore * ((1.0 - 2.0 * nu) * a + b), -bore * 2.0 * (1.0 - nu) * b, closed, axial];
+    let exact = [
+        bore * ((1.0 - 2.0 * nu) * a + b),
+        -bore * 2.0 * (1.0 - nu) * b,
+        closed,
+        axial,
+    ];
     let names = [
         "area of a tube's bore per inner pressure [m^2/Pa]",
         "area of a tube's bore per outer pressure [m^2/Pa]",
         "volume of a closed tube per length and pressure [m^2/Pa]",
         "axial strain of a closed tube per pressure [1/Pa]",
     ];
-    let row = |((name, exact), computed): ((&str, f64), Vec<f64>)| Comparison::new(format!("{name}, nu {nu}"), "Lame", exact, computed);
+    let row = |((name, exact), computed): ((&str, f64), Vec<f64>)| {
+        Comparison::new(format!("{name}, nu {nu}"), "Lame", exact, computed)
+    };
     Ok(names.into_iter().zip(exact).zip(computed).map(row).collect())
 }
