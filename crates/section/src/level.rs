@@ -94,13 +94,13 @@ impl Level {
 }
 
 /// The side walls beyond the bladders' ends, per unit of their width.
-struct Walls {
-    stiffness: [[f64; 2]; 2],
+pub(crate) struct Walls {
+    pub(crate) stiffness: [[f64; 2]; 2],
     shear: f64,
 }
 
 impl Walls {
-    fn new(section: &Section, cell: &Cell) -> Result<Self, Error> {
+    pub(crate) fn new(section: &Section, cell: &Cell) -> Result<Self, Error> {
         let [pitch, h] = cell.size;
         if !section.regions.is_empty() && section.width_m > section.bladders.length_m {
             let solid = Response::new(cell, Kind::Filled)?;

@@ -32,6 +32,9 @@ pub struct Quadratic<T> {
     pub parts: Vec<T>,
 }
 
+/// Points with middles of edges, each triangle's three middles, and each edge's.
+type Middles = (Vec<Point>, Vec<[usize; 3]>, HashMap<(usize, usize), usize>);
+
 /// An edge's name: the smaller vertex first.
 fn edge(a: usize, b: usize) -> (usize, usize) {
     (a.min(b), a.max(b))
@@ -50,7 +53,7 @@ impl<T: Copy> Mesh<T> {
     }
 
     /// Points with middles of edges, and each triangle's three middles.
-    fn middles(&self) -> (Vec<Point>, Vec<[usize; 3]>, HashMap<(usize, usize), usize>) {
+    fn middles(&self) -> Middles {
         let mut points = self.points.clone();
         let mut found: HashMap<(usize, usize), usize> = HashMap::with_capacity(2 * self.triangles.len());
         let mut of = |a: usize, b: usize| {

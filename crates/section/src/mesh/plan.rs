@@ -37,10 +37,10 @@ impl Default for Fineness {
     fn default() -> Self {
         Self {
             largest: 0.35,
-            corner: 0.03,
+            corner: 0.005,
             wall: 1.0,
             arc: 0.53,
-            growth: 0.6,
+            growth: 0.9,
         }
     }
 }

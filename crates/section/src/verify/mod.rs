@@ -20,7 +20,7 @@ pub struct Comparison {
     pub exact: f64,
     /// Computed on successive meshes, the coarsest first.
     pub computed: Vec<f64>,
-    /// Observed order of the last two errors; None where they are round-off.
+    /// Observed order of the last two errors; None where they are round-off or change sign.
     pub order: Option<f64>,
 }
 
@@ -31,11 +31,11 @@ impl Comparison {
     /// Of a value on successive meshes with an exact one.
     pub fn new(name: impl Into<String>, source: &str, exact: f64, computed: Vec<f64>) -> Self {
         let scale = if exact == 0.0 { 1.0 } else { exact.abs() };
-        let errors: Vec<f64> = computed.iter().map(|c| (c - exact).abs() / scale).collect();
-        let order = errors
-            .last_chunk::<2>()
-            .filter(|e| e[1] > ROUND_OFF)
-            .map(|[a, b]| (a / b).log2());
+        let errors: Vec<f64> = computed.iter().map(|c| (c - exact) / scale).collect();
+        // Errors that change sign on their way show no order.
+        let one_sided = errors.iter().all(|e| e * errors[0] > 0.0);
+        let last = errors.last_chunk::<2>().filter(|e| one_sided && e[1].abs() > ROUND_OFF);
+        let order = last.map(|[a, b]| (a / b).log2());
         Self {
             name: name.into(),
             source: source.to_owned(),

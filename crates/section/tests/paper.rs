@@ -1,0 +1,31 @@
+//! The paper's cell beside the printed coefficients (A.4.1, A.4.2).
+
+use slcbeam_section::paper::{PRINTED, paper_table};
+
+#[test]
+fn the_papers_cell() {
+    let table = paper_table(&[0.45, 0.49], &[0.0, 0.001, 0.0025, 0.0039], &[0.0044, 0.0049, 0.0054]).unwrap();
+    for v in &table.variants {
+        let (nu, fillet, center) = (v.poisson_ratio, v.fillet_m, v.center_m);
+        println!(
+            "nu {nu} fillet {fillet} centre {center}: {:?} misfit {:.3}",
+            v.computed, v.misfit
+        );
+        // Reciprocity leaves the printed slope per pressure out of reach of every shape, by two orders of magnitude.
+        assert!(v.computed[5] > 50.0 * PRINTED[5].high);
+        // The printed permeability is that of a square of 2.6 mm.
+        assert!(v.computed[7] > 50.0 * PRINTED[7].high);
+        // The printed f_e is a secant at 20 % strain; no linear cell is as stiff in extension.
+        assert!(v.computed[0] < PRINTED[0].low);
+    }
+    let best = &table.variants[table.best];
+    println!("best {best:?}");
+    assert_eq!((best.fillet_m, best.center_m), (0.0025, 0.0049));
+    assert!((best.computed[2] / PRINTED[2].low - 1.0).abs() < 0.02);
+    assert!((best.computed[1] / PRINTED[1].low - 1.0).abs() < 0.10);
+    for k in [3, 4] {
+        assert!((PRINTED[k].low..=PRINTED[k].high).contains(&best.computed[k]));
+    }
+    assert!((table.tube_radius_m - 1.144e-3).abs() < 1e-6);
+    assert!((table.square_side_m - 2.577e-3).abs() < 1e-6);
+}
