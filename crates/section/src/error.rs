@@ -30,15 +30,11 @@ pub enum Error {
     #[error("the stiffness matrix of the cell is not positive definite")]
     Singular,
     /// Newton's iteration on the cell at finite strain did not converge.
-    #[error(
-        "no equilibrium of the cell was found at load factor {factor} after {iterations} iterations, residual {residual:e}"
-    )]
+    #[error("no equilibrium of the cell was found at load factor {factor} after {iterations} iterations")]
     Equilibrium {
         /// The part of the load that was reached, 0 to 1.
         factor: f64,
         /// Iterations made.
         iterations: usize,
-        /// Force residual relative to the load.
-        residual: f64,
     },
 }

@@ -16,6 +16,7 @@
 //! | [element] | shapes; stiffness without locking [S1] [S2]; the Laplacian |
 //! | [cell] | one cell's response to stretch, curvature, lateral strain and pressures [L1] to [L4]; shear [L5] to [L7] |
 //! | [level], [coefficients] | compliance of the whole width [C1] [C2]; the model's numbers [K1] to [K3] with errors [R1] |
+//! | [finite] | the cell at finite strain: an energy over stretch, curvature and pressures [F1] to [F5] |
 //! | [permeability], [picture] | channels [Q1]; deformed cells |
 //! | [verify], [paper] | exact results beside computed ones; the printed coefficients beside the paper's cell |
 
@@ -25,6 +26,7 @@ pub mod dense;
 pub mod element;
 pub mod error;
 pub mod estimate;
+pub mod finite;
 pub mod geometry;
 pub mod input;
 pub mod level;

@@ -186,7 +186,7 @@ impl Part {
 }
 
 /// The triangles that carry load, with their materials.
-fn solids(cell: &Cell, kind: Kind) -> impl Iterator<Item = ([usize; 6], usize)> {
+pub(crate) fn solids(cell: &Cell, kind: Kind) -> impl Iterator<Item = ([usize; 6], usize)> {
     let material = move |part: Part| match (part, kind) {
         (Part::Solid(m), _) | (Part::Upper(m) | Part::Lower(m), Kind::Filled) => Some(m),
         _ => None,
@@ -199,12 +199,12 @@ fn solids(cell: &Cell, kind: Kind) -> impl Iterator<Item = ([usize; 6], usize)> 
 }
 
 /// The twelve unknowns of a triangle.
-pub(super) fn dofs(triangle: &[usize; 6], independent: &[usize]) -> [usize; 12] {
+pub(crate) fn dofs(triangle: &[usize; 6], independent: &[usize]) -> [usize; 12] {
     std::array::from_fn(|i| 2 * independent[triangle[i / 2]] + i % 2)
 }
 
 /// Numbers the nodes of the solid; a node on the right face takes the number of its fellow on the left.
-fn periodic(cell: &Cell, solid: &[([usize; 6], usize)]) -> Result<Vec<usize>, Error> {
+pub(crate) fn periodic(cell: &Cell, solid: &[([usize; 6], usize)]) -> Result<Vec<usize>, Error> {
     let [pitch, height] = cell.size;
     let nodes = &cell.mesh.nodes;
     let mut used = vec![false; nodes.len()];
@@ -221,12 +221,9 @@ fn periodic(cell: &Cell, solid: &[([usize; 6], usize)]) -> Result<Vec<usize>, Er
         return Err(Error::Mesh("the two faces of the period do not match".to_owned()));
     }
     let mut independent = vec![usize::MAX; nodes.len()];
-    let mut next = 0;
     let fellow: HashMap<usize, usize> = right.iter().copied().zip(left.iter().copied()).collect();
-    for k in (0..nodes.len()).filter(|k| used[*k] && !fellow.contains_key(k)) {
-        independent[k] = next;
-        next += 1;
-    }
+    let own = (0..nodes.len()).filter(|k| used[*k] && !fellow.contains_key(k));
+    own.enumerate().for_each(|(number, k)| independent[k] = number);
     for (right, left) in fellow {
         independent[right] = independent[left];
     }

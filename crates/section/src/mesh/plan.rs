@@ -173,6 +173,8 @@ fn split(domain: &Domain) -> Vec<Curve> {
     let scale = smaller(&domain.outlines[0]);
     let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * scale;
     if let Some(half) = domain.half_pitch {
+        // The mid-plane on the faces: there the stretch of the beam is measured at finite strain.
+        ends.push([half, 0.0]);
         let faced: Vec<Point> = ends
             .iter()
             .filter(|p| near(p[0].abs(), half))
