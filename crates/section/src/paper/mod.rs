@@ -4,12 +4,16 @@
 //! mid-plane, its fillets, or Poisson's ratio. Its bladders' walls allow a centre between 3.9 and 6.9 mm. Its plus and minus compliances
 //! are secants of large loads; a linear cell has one number between them.
 
+mod secants;
+
 use crate::coefficients::{Numbers, Options};
 use crate::error::Error;
 use crate::input::{Bladder, Bladders, Material, Row, Section, Shape};
 use crate::permeability::{Channel, permeability};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+pub use secants::{Experiment, Secants};
 
 /// What the paper prints: a value, or a range between its plus and minus secants.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
