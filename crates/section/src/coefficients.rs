@@ -12,6 +12,7 @@
 use crate::cell::{self, Cell};
 use crate::error::Error;
 use crate::estimate;
+use crate::finite::{FiniteCell, Law};
 use crate::geometry::check::check;
 use crate::geometry::outline::Outline;
 use crate::input::Section;
@@ -177,6 +178,15 @@ impl Section {
             .iter()
             .map(|mesh| Level::new(self, &Cell::new(self, mesh)))
             .collect()
+    }
+
+    /// The cell at finite strain on the last of the meshes.
+    pub fn finite(&self, law: Law, options: &Options) -> Result<FiniteCell, Error> {
+        let mesh = self
+            .meshes(options)?
+            .pop()
+            .ok_or_else(|| Error::Mesh("no mesh was asked for".to_owned()))?;
+        FiniteCell::new(self, Cell::new(self, &mesh), law)
     }
 
     /// Successive meshes of the cell, the coarsest first.

@@ -35,4 +35,5 @@ pub mod paper;
 pub mod permeability;
 pub mod picture;
 mod sparse;
+pub mod three;
 pub mod verify;
