@@ -117,6 +117,12 @@ pub fn plan(domain: &Domain, fineness: &Fineness) -> (Vec<Piece>, Sizes) {
     (pieces, sizes)
 }
 
+/// Relative size at a corner: the full refinement from a right angle on, less at blunter corners, whose singularity is weaker.
+fn blunt(corner: f64, turn: f64) -> f64 {
+    let sharp = (turn.abs() / std::f64::consts::FRAC_PI_2).min(1.0);
+    corner.powf(sharp) * 0.2_f64.powf(1.0 - sharp)
+}
+
 fn sources(domain: &Domain, fineness: &Fineness) -> Vec<Source> {
     let mut sources = Vec::new();
     let inner = &domain.outlines[1..];
@@ -124,9 +130,9 @@ fn sources(domain: &Domain, fineness: &Fineness) -> Vec<Source> {
     let single = if inner.is_empty() { &domain.outlines[..] } else { inner };
     for outline in single {
         let length = smaller(outline);
-        sources.extend(outline.corners().into_iter().map(|(at, _)| Source {
+        sources.extend(outline.corners().into_iter().map(|(at, turn)| Source {
             at,
-            size: fineness.corner * length,
+            size: blunt(fineness.corner, turn) * length,
         }));
         for curve in &outline.curves {
             if let Curve::Arc { radii, .. } = curve {

@@ -64,5 +64,6 @@ pub fn verify() -> Result<Vec<Comparison>, Error> {
     let mut all = prisms::compare()?;
     all.extend(tube::compare()?);
     all.extend(channels::compare()?);
+    all.extend(prisms::others()?);
     Ok(all)
 }

@@ -4,8 +4,10 @@ use super::Comparison;
 use crate::cell::{Cell, Kind, Response};
 use crate::coefficients::{Numbers, Options};
 use crate::error::Error;
+use crate::finite::{Drive, Law};
 use crate::input::{Bladders, Material, Region, RegionShape, Row, Section};
 use crate::level::Level;
+use crate::mesh::Fineness;
 
 const HEIGHT: f64 = 0.02;
 const WIDTH: f64 = 0.05;
@@ -204,4 +206,64 @@ fn patch() -> Result<Vec<Comparison>, Error> {
             of(|n| n.force_curvature_coupling),
         ),
     ])
+}
+
+/// Blocks at finite strain, and in three dimensions.
+pub(super) fn others() -> Result<Vec<Comparison>, Error> {
+    let mut rows = Vec::new();
+    let nu = 0.49;
+    let section = solid(nu);
+    let (mu, bulk, area) = (
+        section.material.shear_modulus(),
+        section.material.bulk_modulus(),
+        WIDTH * HEIGHT,
+    );
+    for (name, law) in [
+        ("neo-Hookean", Law::NeoHookean),
+        ("Mooney-Rivlin, half", Law::MooneyRivlin { second: 0.5 }),
+        ("Saint-Venant-Kirchhoff", Law::SaintVenantKirchhoff),
+    ] {
+        let stress = law.bar(mu, bulk, 1.3).ok_or(Error::Singular)?[1];
+        let force = |meshes| {
+            let cell = section.finite(
+                law,
+                &Options {
+                    meshes,
+                    ..Options::default()
+                },
+            )?;
+            Ok(cell.equilibrium(Drive::Strain([0.3, 0.0]), [0.0; 2])?.resultants[0])
+        };
+        let computed = (1..=3).map(force).collect::<Result<Vec<_>, Error>>()?;
+        rows.push(Comparison::new(
+            format!("block stretched by 30 %, {name}: force [N]"),
+            "uniaxial stress",
+            area * stress,
+            computed,
+        ));
+    }
+    let section = Section {
+        bladders: Bladders {
+            length_m: 0.8 * WIDTH,
+            upper: Row::None,
+            lower: Row::None,
+        },
+        ..solid(nu)
+    };
+    let mut computed = [Vec::new(), Vec::new()];
+    for layers in 1..=3 {
+        let (c, _) = section.spatial(&Fineness::default(), layers)?;
+        (0..2).for_each(|k| computed[k].push(c[k][k]));
+    }
+    let exact = [1.0 / (YOUNG * area), 12.0 / (YOUNG * area * HEIGHT * HEIGHT)];
+    let names = ["stretch per force [1/N]", "curvature per moment [1/(N m^2)]"];
+    for ((name, exact), computed) in names.into_iter().zip(exact).zip(computed) {
+        rows.push(Comparison::new(
+            format!("block in three dimensions: {name}"),
+            "Saint-Venant",
+            exact,
+            computed,
+        ));
+    }
+    Ok(rows)
 }
