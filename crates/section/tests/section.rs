@@ -286,3 +286,79 @@ proptest! {
         prop_assert!(c.numbers.axial_stiffness_factor > 0.0);
     }
 }
+
+#[test]
+fn regions_of_the_same_material_change_nothing() {
+    let round = |center, radius_m| Some((center, Shape::Circle { radius_m }));
+    let plain = with_shapes(0.49, round(0.0054, 0.0038), round(-0.0054, 0.0038));
+    let same = |shape| Region {
+        shape,
+        material: plain.material,
+    };
+    let regions = vec![
+        // Around a bladder; on one face of the period only; a fibre.
+        same(RegionShape::Circle {
+            center_m: [0.0, 0.0054],
+            radius_m: 0.0044,
+        }),
+        same(RegionShape::Rectangle {
+            along_m: [-0.005, -0.002],
+            high_m: [-0.0004, 0.0004],
+        }),
+        same(RegionShape::Circle {
+            center_m: [0.002, 0.0],
+            radius_m: 0.0003,
+        }),
+        same(RegionShape::Layer {
+            high_m: [-0.0108, -0.0102],
+        }),
+    ];
+    let divided = Section {
+        regions,
+        ..plain.clone()
+    };
+    assert_eq!(divided.faults(), vec![]);
+    let (a, b) = (solve(&plain), solve(&divided));
+    for i in 0..4 {
+        for j in 0..4 {
+            let (x, y) = (&a.numbers.compliance, &b.numbers.compliance);
+            let error = a.errors.compliance[i][j] + b.errors.compliance[i][j];
+            // Twice the errors of both, and round-off where an entry vanishes by symmetry.
+            assert!(
+                (x[i][j] - y[i][j]).abs() < (2.0 * error + 1e-9) * (x[i][i] * x[j][j]).sqrt(),
+                "{i} {j}"
+            );
+        }
+    }
+    let close = |x: f64, y: f64| assert!((x / y - 1.0).abs() < 1e-3, "{x} {y}");
+    close(a.numbers.shear_stiffness_n, b.numbers.shear_stiffness_n);
+    close(a.numbers.solid_mass_kg_per_m, b.numbers.solid_mass_kg_per_m);
+    close(a.numbers.permeability_m4, b.numbers.permeability_m4);
+}
+
+#[test]
+fn a_stiff_liner_around_a_bladder_holds_it() {
+    let plain = paper(0.49, 0.001);
+    let mut lined = with_shapes(
+        0.49,
+        Some((0.0053, Shape::Circle { radius_m: 0.0038 })),
+        Some((-0.0053, Shape::Circle { radius_m: 0.0038 })),
+    );
+    let material = Material {
+        young_modulus_pa: 2e9,
+        ..plain.material
+    };
+    let free = solve(&lined).numbers.upper.unwrap().area_per_pressure_m2_per_pa;
+    lined.regions = vec![Region {
+        shape: RegionShape::Circle {
+            center_m: [0.0, 0.0053],
+            radius_m: 0.0041,
+        },
+        material,
+    }];
+    let c = solve(&lined).numbers;
+    assert!(c.upper.unwrap().area_per_pressure_m2_per_pa < 0.05 * free);
+    assert!(c.lower.unwrap().area_per_pressure_m2_per_pa > 0.7 * free);
+    // The upper side is the stiffer now: a pull stretches it less.
+    assert!(c.compliance[0][1] < 0.0);
+}
