@@ -20,7 +20,11 @@ fn the_papers_cell() {
         assert!(v.computed[0] < PRINTED[0].low);
     }
     let best = &table.variants[table.best];
-    println!("best {best:?}");
+    println!("best {best:?}, in three dimensions {:?}", table.spatial);
+    // The plane cell's own error, measured: 2 % in stiffness, 11 % in areas and what follows from them.
+    for (k, (plane, spatial)) in best.computed.iter().zip(table.spatial).enumerate() {
+        assert!((plane / spatial - 1.0).abs() < if k < 2 { 0.02 } else { 0.11 });
+    }
     assert_eq!((best.fillet_m, best.center_m), (0.0025, 0.0049));
     assert!((best.computed[2] / PRINTED[2].low - 1.0).abs() < 0.02);
     assert!((best.computed[1] / PRINTED[1].low - 1.0).abs() < 0.10);

@@ -362,3 +362,38 @@ fn a_stiff_liner_around_a_bladder_holds_it() {
     // The upper side is the stiffer now: a pull stretches it less.
     assert!(c.compliance[0][1] < 0.0);
 }
+
+#[test]
+fn a_cell_of_two_pitches_is_as_stiff_in_shear_as_one() {
+    // Rods across the beam, stiff or soft: [L5] to [L7] must not depend on how many of them make a cell.
+    let with_rods = |young_modulus_pa: f64, count: i32| {
+        let mut section = with_shapes(0.4, None, None);
+        section.bladders.lower = Row::None;
+        section.bladders.length_m = section.width_m;
+        let material = Material {
+            young_modulus_pa,
+            ..section.material
+        };
+        let pitch = section.pitch_m;
+        section.pitch_m *= f64::from(count);
+        let rod = |k: i32| {
+            let along = (f64::from(k) - f64::from(count - 1) / 2.0) * pitch;
+            let shape = |high| RegionShape::Circle {
+                center_m: [along, high],
+                radius_m: 0.003,
+            };
+            [0.005, -0.006].map(|high| Region {
+                shape: shape(high),
+                material,
+            })
+        };
+        section.regions = (0..count).flat_map(rod).collect();
+        solve(&section)
+    };
+    for young in [1e8, 1e3] {
+        let (one, two) = (with_rods(young, 1), with_rods(young, 2));
+        let error = one.errors.shear_stiffness_n + two.errors.shear_stiffness_n;
+        let (a, b) = (one.numbers.shear_stiffness_n, two.numbers.shear_stiffness_n);
+        assert!((a / b - 1.0).abs() < error, "{a} {b} {error:e}");
+    }
+}

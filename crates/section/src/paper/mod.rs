@@ -102,6 +102,8 @@ pub struct PaperTable {
     pub variants: Vec<Variant>,
     /// Place of the one with the smallest misfit.
     pub best: usize,
+    /// Values of that one in three dimensions, the first seven of [PRINTED].
+    pub spatial: [f64; 7],
     /// Radius of a round tube with the printed q1c = 6.72e-13 m^4 [m]: the paper's is 1 mm.
     pub tube_radius_m: f64,
     /// Side of a square bladder with the printed q1b = 1.55e-12 m^4 [m]: the paper's is 7.8 mm.
@@ -146,6 +148,24 @@ fn values(n: &Numbers) -> [f64; 8] {
     ]
 }
 
+/// The first seven of [PRINTED] from a compliance [K1] to [K3] of mirrored rows.
+fn spread(section: &Section, c: &[[f64; 4]; 4]) -> [f64; 7] {
+    let (e, w, h) = (section.material.young_modulus_pa, section.width_m, section.height_m);
+    let length = section.bladders.length_m;
+    let per_cell = length / section.pitch_m;
+    let [pressure, moment, force] = [c[2][2], c[1][2], c[0][2]].map(|entry| entry / per_cell);
+    let factors = [1.0 / (c[0][0] * e * w * h), 12.0 / (c[1][1] * e * w * h.powi(3))];
+    [
+        factors[0],
+        factors[1],
+        pressure,
+        moment,
+        force,
+        length * e * moment,
+        length * e * force,
+    ]
+}
+
 /// Computes the table over these ratios, fillets and heights.
 pub fn paper_table(ratios: &[f64], fillets_m: &[f64], centers_m: &[f64]) -> Result<PaperTable, Error> {
     let options = Options {
@@ -179,6 +199,9 @@ pub fn paper_table(ratios: &[f64], fillets_m: &[f64], centers_m: &[f64]) -> Resu
     let best = (0..variants.len())
         .min_by(|&a, &b| variants[a].misfit.total_cmp(&variants[b].misfit))
         .unwrap_or(0);
+    let chosen = &variants[best];
+    let section = section(chosen.poisson_ratio, chosen.fillet_m, chosen.center_m);
+    let spatial = spread(&section, &section.three_dimensional()?.compliance);
     // q1 goes with the fourth power of a shape's size.
     let unit = |shape| permeability(&Channel::Open(shape)).map(|q| q.value);
     let square = unit(Shape::RoundedRectangle {
@@ -190,6 +213,7 @@ pub fn paper_table(ratios: &[f64], fillets_m: &[f64], centers_m: &[f64]) -> Resu
     Ok(PaperTable {
         variants,
         best,
+        spatial,
         tube_radius_m: (6.72e-13 / round).powf(0.25),
         square_side_m: (1.55e-12 / square).powf(0.25),
     })
