@@ -1,0 +1,5 @@
+//! Outlines of bladders and regions, and the rules they must keep.
+
+pub mod check;
+pub mod curve;
+pub mod outline;

@@ -1,0 +1,101 @@
+//! A thick-walled tube across the beam: Lame's solution in plane strain and with closed ends.
+//!
+//! The tube stands in a cell as long as its diameter, so that the two faces of the period are one node each; the cell's stretch is free.
+//! That holds the tube against turning and loads it with nothing.
+
+use super::Comparison;
+use crate::cell::respond::walls;
+use crate::cell::{Cell, Kind, Part, Response};
+use crate::dense::{dot, solve};
+use crate::error::Error;
+use crate::geometry::outline::{Outline, inside};
+use crate::input::Material;
+use crate::mesh::{Domain, Fineness, Mesh};
+use std::f64::consts::PI;
+
+const INNER: f64 = 2e-3;
+const OUTER: f64 = 5e-3;
+
+pub(super) fn compare() -> Result<Vec<Comparison>, Error> {
+    let mut rows = Vec::new();
+    for nu in [0.3, 0.49, 0.4999] {
+        rows.extend(tube(nu)?);
+    }
+    Ok(rows)
+}
+
+fn tube(nu: f64) -> Result<Vec<Comparison>, Error> {
+    let young = 2e6;
+    let material = Material {
+        young_modulus_pa: young,
+        poisson_ratio: nu,
+        density_kg_m3: 1000.0,
+    };
+    let rings = [OUTER, INNER].map(|r| Outline::ellipse([0.0; 2], [r; 2]));
+    let bore = rings[1].chords();
+    let domain = Domain {
+        outlines: rings.to_vec(),
+        half_pitch: None,
+        mirrored: false,
+    };
+    let part = |p| {
+        Some(if inside(&bore, p) {
+            Part::Upper(0)
+        } else {
+            Part::Solid(0)
+        })
+    };
+    let mut mesh = Mesh::new(&domain, &Fineness::default(), &part)?;
+    let mut computed = [const { Vec::new() }; 4];
+    for level in 0..3 {
+        if level > 0 {
+            mesh = mesh.refined();
+        }
+        let cell = Cell {
+            mesh: mesh.quadratic(),
+            materials: vec![material],
+            size: [2.0 * OUTER, 2.0 * OUTER],
+        };
+        let response = Response::new(&cell, Kind::Hollow)?;
+        let (s, t, r) = (
+            &response.stiffness,
+            &response.area_by_strain[0],
+            response.area_by_pressure[0][0],
+        );
+        computed[0].push(r + t[0] * t[0] / s[0][0]);
+        // Outside: the solid's whole boundary, less its inside turned outwards.
+        let mut outside = walls(&cell, &response.independent, response.unknowns, |p| {
+            matches!(p, Part::Solid(_))
+        });
+        outside.iter_mut().zip(&response.sides[4]).for_each(|(o, i)| *o += i);
+        // The held node moves with the faces: see the stretch below. Its own force is the reaction, zero in sum.
+        outside[0] = 0.0;
+        outside[1] = 0.0;
+        let macroscopic = OUTER * OUTER * PI - dot(&outside, &response.fields[0]);
+        computed[1].push(-dot(&outside, &response.fields[4]) - macroscopic * t[0] / s[0][0]);
+        let q = solve([[s[0][0], s[0][2]], [s[2][0], s[2][2]]], [t[0], t[2]]).ok_or(Error::Singular)?;
+        computed[2].push(r + t[0] * q[0] + t[2] * q[1]);
+        computed[3].push(q[1]);
+    }
+    let (a, b) = (INNER * INNER, OUTER * OUTER);
+    let bore = 2.0 * PI * a * (1.0 + nu) / young / (b - a);
+    let axial = (1.0 - 2.0 * nu) / young * a / (b - a);
+    // With closed ends: plane strain's, and the axial strain's own: the bore narrows by nu times it.
+    let closed = bore * ((1.0 - 2.0 * nu) * a + b) + PI * a * (1.0 - 2.0 * nu) * axial;
+    let exact = [
+        bore * ((1.0 - 2.0 * nu) * a + b),
+        -bore * 2.0 * (1.0 - nu) * b,
+        closed,
+        axial,
+    ];
+    let names = [
+        "area of a tube's bore per inner pressure [m^2/Pa]",
+        "area of a tube's bore per outer pressure [m^2/Pa]",
+        "volume of a closed tube per length and pressure [m^2/Pa]",
+        "axial strain of a closed tube per pressure [1/Pa]",
+    ];
+    let row = |((name, exact), computed): ((&str, f64), Vec<f64>)| {
+        Comparison::new(format!("{name}, nu {nu}"), "Lame", exact, computed)
+    };
+    Ok(names.into_iter().zip(exact).zip(computed).map(row).collect())
+}
