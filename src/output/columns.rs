@@ -26,21 +26,3 @@ pub fn aligned<L: AsRef<[String]>>(lines: &[L], left: &[usize]) -> String {
     }
     text
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Goal: columns stand below each other whatever the cells hold, and nothing stands behind the last.
-    #[test]
-    fn cells_stand_below_each_other() {
-        let lines = [["", "name", "size"], ["", "a", "12.5 µm"], ["", "双 u₁", "3"]].map(|l| l.map(String::from));
-        let text = aligned(&lines, &[1]);
-        assert_eq!(text, "  name      size\n  a      12.5 µm\n  双 u₁        3\n");
-        assert_eq!(aligned::<Vec<String>>(&[], &[]), "");
-        assert_eq!(
-            aligned(&[vec!["a".into()], vec!["b".into(), "c".into()]], &[]),
-            "a\nb  c\n"
-        );
-    }
-}
