@@ -2,6 +2,7 @@
 
 #[path = "../common/chance.rs"]
 mod chance;
+mod estimates;
 mod scenes;
 
 use std::path::Path;

@@ -320,6 +320,3 @@ pub fn worst(estimates: &BTreeMap<String, Estimate>) -> f64 {
 fn largest(all: impl Iterator<Item = f64>) -> f64 {
     all.fold(0.0, |m, x| m.max(if x.is_nan() { f64::INFINITY } else { x }))
 }
-
-#[cfg(test)]
-mod tests;
