@@ -45,12 +45,7 @@ pub fn draw(data: &LoadPath) -> Option<String> {
     Some(picture(sheet, bottom + 30.0, |canvas| {
         title(canvas, LEFT, &format!("{} · equilibria", data.case), &data.about);
         for (k, curve) in curves.iter().enumerate() {
-            let place = Place {
-                left: LEFT + k as f64 * (WIDTH + GAP),
-                top: TOP,
-                width: WIDTH,
-                height: HEIGHT,
-            };
+            let place = Place::new(LEFT + k as f64 * (WIDTH + GAP), TOP, WIDTH, HEIGHT);
             over_displacement(canvas, place, data, curve);
         }
         if let Some(shapes) = shapes {
@@ -71,10 +66,7 @@ fn over_displacement(canvas: &mut Canvas, place: Place, data: &LoadPath, curve: 
     for (k, pair) in curve.points.windows(2).enumerate() {
         let mut stroke = Stroke::solid(PALETTE[0], 1.8);
         if !data.stable[k] || !data.stable[k + 1] {
-            stroke = Stroke {
-                dash: Some((3.0, 3.0)),
-                ..Stroke::solid(PALETTE[1], 1.8)
-            };
+            stroke = Stroke::dashed(PALETTE[1], 1.8, (3.0, 3.0));
         }
         panel.curve(canvas, pair.iter().map(|p| (p.1, p.0)), stroke);
     }
@@ -122,12 +114,7 @@ impl Shapes {
     }
 
     fn draw(self, canvas: &mut Canvas, data: &LoadPath, top: f64) {
-        let place = Place {
-            left: LEFT,
-            top,
-            width: self.width,
-            height: self.height,
-        };
+        let place = Place::new(LEFT, top, self.width, self.height);
         let panel = Panel {
             place,
             x: self.z,

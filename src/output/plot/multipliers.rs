@@ -41,12 +41,7 @@ pub fn draw(data: &Multipliers) -> Option<String> {
     let first = data.dots.first()?;
     let reach = 1.15 * first.re.hypot(first.im).max(1.0);
     let panel = Panel {
-        place: Place {
-            left: LEFT,
-            top: TOP,
-            width: SIDE,
-            height: SIDE,
-        },
+        place: Place::new(LEFT, TOP, SIDE, SIDE),
         x: Scale::exact(-reach, reach, "1", 6),
         y: Scale::exact(-reach, reach, "1", 6),
     };

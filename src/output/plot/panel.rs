@@ -26,6 +26,16 @@ pub struct Place {
 }
 
 impl Place {
+    /// From its upper left corner, width and height.
+    pub fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
+        Self {
+            left,
+            top,
+            width,
+            height,
+        }
+    }
+
     /// Right edge.
     pub fn right(&self) -> f64 {
         self.left + self.width

@@ -66,12 +66,7 @@ pub fn draw(data: &Tongue) -> Option<String> {
         title(canvas, 16.0, &format!("{} · shaken along its axis", data.case), about);
         for (k, sheet) in data.panels.iter().enumerate() {
             let panel = Panel {
-                place: Place {
-                    left: LEFT + k as f64 * (WIDTH + GAP),
-                    top: TOP,
-                    width: WIDTH,
-                    height: HEIGHT,
-                },
+                place: Place::new(LEFT + k as f64 * (WIDTH + GAP), TOP, WIDTH, HEIGHT),
                 x: Scale::exact(first - half_x, last + half_x, "Hz", 6),
                 y: Scale::exact(low - half_y, high + half_y, "m", 6),
             };
@@ -113,13 +108,7 @@ fn overlay(canvas: &mut Canvas, panel: &Panel, data: &Tongue) {
             .iter()
             .zip(onset)
             .map(|(f, a)| panel.at((*f, inside(*a))));
-        canvas.line(
-            &points.collect::<Vec<_>>(),
-            Stroke {
-                dash: Some((5.0, 3.0)),
-                ..Stroke::solid(INK, 1.4)
-            },
-        );
+        canvas.line(&points.collect::<Vec<_>>(), Stroke::dashed(INK, 1.4, (5.0, 3.0)));
     }
     let (x, y) = panel.at(data.own);
     let place = panel.place;
