@@ -247,11 +247,8 @@ impl Follower<'_> {
                 0.35
             };
             if step < SHORTEST {
-                let astray = || KinsolFailure {
-                    code: 0,
-                    what: "what is found lies far from what was predicted, however short the step".into(),
-                    worst: None,
-                };
+                let what = "what is found lies far from what was predicted, however short the step";
+                let astray = || KinsolFailure::own(what);
                 return Err(self.fail(&solved.err().unwrap_or_else(astray), last[n]));
             }
         }
