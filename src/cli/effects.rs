@@ -3,10 +3,10 @@
 use std::io::IsTerminal as _;
 use std::process::ExitCode;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::ProgressBar;
 
 use super::arguments::EffectsArguments;
-use super::{size, terminal};
+use super::{line, size, terminal};
 use crate::case::schema::Effects;
 use crate::case::{self, Case};
 use crate::discrete::System;
@@ -37,16 +37,12 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
     files::write(&mut folder, &found, &shown)?;
     report::complete(&folder, &case)?;
     let written = if asked.write { Some(write(&case, &found)?) } else { None };
-    if asked.json {
-        super::print(&files::json(&found))?;
-    } else {
-        let written = written.map_or(String::new(), |words| format!("{words}\n"));
+    let words = || {
+        let written = written.map_or(String::new(), |words| format!("\n{words}"));
         let (table, sentence) = (files::table(&found, &shown), files::sentence(&found));
-        super::print(&format!(
-            "{table}\n{sentence}\n\n{written}files in {}\n",
-            folder.dir().display()
-        ))?;
-    }
+        format!("{table}\n{sentence}\n{written}")
+    };
+    super::tell(asked.json, folder.dir(), || files::json(&found), words)?;
     Ok(if found.full.summary.is_none() {
         ExitCode::from(4)
     } else {
@@ -86,15 +82,8 @@ struct Progress {
 impl Progress {
     fn new(quiet: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
-        let bar = || {
-            let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-            if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
-                bar.set_style(style);
-            }
-            bar
-        };
         Self {
-            bar: (terminal && !quiet).then(bar),
+            bar: (terminal && !quiet).then(|| line::line(false)),
             lines: !terminal && !quiet,
         }
     }

@@ -77,15 +77,8 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         files::write(&mut folder, &found)?;
         report::complete(&folder, case)?;
     }
-    if asked.json {
-        super::print(&files::json(&found))?;
-    } else {
-        super::print(&format!(
-            "{}\nfiles in {}\n",
-            files::words(&found),
-            folder.dir().display()
-        ))?;
-    }
+    let (text, words) = (|| files::json(&found), || files::words(&found));
+    super::tell(asked.json, folder.dir(), text, words)?;
     match path.fault {
         None => Ok(ExitCode::SUCCESS),
         Some(fault) => {

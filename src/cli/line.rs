@@ -8,10 +8,16 @@ use crate::study::refine;
 /// The line; nothing is shown where it was asked to be quiet, or where there is no terminal.
 pub fn line(quiet: bool) -> ProgressBar {
     if quiet {
-        return ProgressBar::hidden();
+        ProgressBar::hidden()
+    } else {
+        styled("{spinner} {wide_msg}")
     }
+}
+
+/// A bar that looks like a template, on a terminal.
+pub fn styled(template: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
+    if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
     bar

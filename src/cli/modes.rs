@@ -69,15 +69,8 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     };
     files::write(&mut folder, &report)?;
     report::complete(&folder, case)?;
-    if asked.json {
-        super::print(&files::json(&report))?;
-    } else {
-        let (table, sentences) = (files::table(&report), report.sentences());
-        super::print(&format!(
-            "{table}\n{sentences}\n\nfiles in {}\n",
-            folder.dir().display()
-        ))?;
-    }
+    let words = || format!("{}\n{}\n", files::table(&report), report.sentences());
+    super::tell(asked.json, folder.dir(), || files::json(&report), words)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -5,10 +5,10 @@ use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::ProgressBar;
 
 use super::arguments::StudyArguments;
-use super::{size, terminal};
+use super::{line, size, terminal};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::kind::Kind;
@@ -37,18 +37,11 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
     progress.done();
     files::write(&mut folder, &found)?;
     report::complete(&folder, case)?;
-    if asked.json {
-        super::print(&files::json(&found))?;
-    } else {
+    let words = || {
         let notes: String = found.notes.iter().map(|n| format!("note: {n}\n")).collect();
-        let text = format!(
-            "{}\n{notes}{}\n\nfiles in {}\n",
-            files::table(&found),
-            files::sentence(&found),
-            folder.dir().display()
-        );
-        super::print(&text)?;
-    }
+        format!("{}\n{notes}{}\n", files::table(&found), files::sentence(&found))
+    };
+    super::tell(asked.json, folder.dir(), || files::json(&found), words)?;
     Ok(if found.references.is_empty() {
         ExitCode::from(4)
     } else {
@@ -87,10 +80,7 @@ impl Progress {
     fn new(quiet: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let bar = (terminal && !quiet).then(|| {
-            let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-            if let Ok(style) = ProgressStyle::with_template("{pos}/{len} {wide_bar:.blue/dim} {msg}") {
-                bar.set_style(style);
-            }
+            let bar = line::styled("{pos}/{len} {wide_bar:.blue/dim} {msg}");
             bar.enable_steady_tick(Duration::from_millis(200));
             bar
         });
