@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use slcbeam::case::{self, Case};
-use slcbeam::run::floors::Floors;
+use slcbeam::run::floors::{Floors, NOTHING};
 use slcbeam::run::summary::{Judged, Quantity, Status, Summary};
+use slcbeam::study::counted::counted;
 use slcbeam::study::refine::{Number, Numbers, refine, warning};
 use slcbeam::study::target::estimates::{At, Runs, UNSEEN, Way, worst};
 
@@ -194,4 +195,45 @@ fn numbers_are_refined_until_their_estimates_do() {
     };
     let (_, found) = refine(&beam("1e9", r#""free""#), 1e-3, false, &mut jumps).unwrap();
     assert!(!found.reached && warning(&found).unwrap().contains("W012"));
+}
+
+/// Goal: what a beam of a metre does by round-off alone does not count, with nothing larger beside it: angles of 1e-19 at
+/// ends that are clamped, 3e-18 J where a millijoule is stored, and an efficiency made of that. What is small because the
+/// case does little, a picometre expected and found, counts; so does what is no number.
+#[test]
+fn round_off_does_not_count() {
+    let names = |expected_m: f64, energy: f64, all: &[(&str, f64)]| -> Vec<String> {
+        let floors = Floors {
+            length: 1.0,
+            displacement: 1e-9_f64.min(NOTHING * expected_m),
+            pressure: 1e-3,
+            ..Floors::default()
+        };
+        let quantity = |last| Quantity {
+            last: Some(last),
+            ..Quantity::default()
+        };
+        let all = all
+            .iter()
+            .map(|(name, last)| (name.to_string(), quantity(*last)))
+            .collect();
+        let mut summary = finished(0.0);
+        summary.quantities = all;
+        summary.balances.energy_j = [("stored".to_string(), energy)].into();
+        counted(&summary, &floors).map(|(name, _)| name.clone()).collect()
+    };
+    let clamped = [("tip_u1_m", 0.0), ("tip_angle_rad", 1e-19), ("max_pressure_pa", 1e-9)];
+    assert!(names(1e-3, 1e-3, &clamped).is_empty());
+    let energies = [
+        ("input_energy_j", 3e-18),
+        ("harvested_energy_j", 1e-18),
+        ("efficiency", 0.3),
+    ];
+    assert!(names(1e-3, 1e-3, &energies).is_empty());
+    assert_eq!(names(1e-3, 3e-18, &energies).len(), 3);
+    assert_eq!(
+        names(1e-12, 0.0, &[("tip_u1_m", 1e-12), ("tip_angle_rad", 1e-19)]),
+        ["tip_u1_m"]
+    );
+    assert_eq!(names(1e-3, 0.0, &[("tip_u1_m", f64::NAN)]), ["tip_u1_m"]);
 }

@@ -3,6 +3,7 @@
 #[path = "../common/chance.rs"]
 mod chance;
 mod estimates;
+mod models;
 mod scenes;
 
 use std::path::Path;
