@@ -81,11 +81,7 @@ pub fn draw(data: &Deflection) -> Option<String> {
         }
         if let Some(shape) = shape {
             let place = Place::new(LEFT, last + 62.0, WIDTH, shape.height);
-            let panel = Panel {
-                place,
-                x: shape.z,
-                y: shape.x,
-            };
+            let panel = Panel::new(place, shape.z, shape.x);
             let curves = data.u1.iter().zip(&data.u3).map(|(u1, u3)| {
                 let z = data.theta.iter().zip(u3).map(|(t, u)| t + u);
                 z.zip(u1.iter().copied())

@@ -57,11 +57,11 @@ pub fn draw(data: &LoadPath) -> Option<String> {
 /// Share of the loads over one quantity: unbroken where stable.
 fn over_displacement(canvas: &mut Canvas, place: Place, data: &LoadPath, curve: &Curve) {
     let values = || curve.points.iter().map(|p| p.1);
-    let panel = Panel {
+    let panel = Panel::new(
         place,
-        x: Scale::around(extent(values()), 0.0, &curve.unit, 4),
-        y: Scale::around(extent(data.shares.iter().copied()), 0.0, "1", 6),
-    };
+        Scale::around(extent(values()), 0.0, &curve.unit, 4),
+        Scale::around(extent(data.shares.iter().copied()), 0.0, "1", 6),
+    );
     panel.grid(canvas);
     for (k, pair) in curve.points.windows(2).enumerate() {
         let mut stroke = Stroke::solid(PALETTE[0], 1.8);
@@ -115,11 +115,7 @@ impl Shapes {
 
     fn draw(self, canvas: &mut Canvas, data: &LoadPath, top: f64) {
         let place = Place::new(LEFT, top, self.width, self.height);
-        let panel = Panel {
-            place,
-            x: self.z,
-            y: self.x,
-        };
+        let panel = Panel::new(place, self.z, self.x);
         let order: Vec<f64> = data.shapes.iter().map(|s| s.0 as f64).collect();
         let curves = data
             .shapes

@@ -59,6 +59,11 @@ pub struct Panel {
 }
 
 impl Panel {
+    /// Axes at a place.
+    pub fn new(place: Place, x: Scale, y: Scale) -> Self {
+        Self { place, x, y }
+    }
+
     /// Point on the sheet of a pair of values.
     pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let p = self.place;

@@ -93,6 +93,13 @@ pub struct Number {
     pub size: f64,
 }
 
+impl Number {
+    /// A number, and what would be large.
+    pub fn new(value: f64, size: f64) -> Self {
+        Self { value, size }
+    }
+}
+
 /// Numbers by name.
 pub type Numbers = BTreeMap<String, Number>;
 

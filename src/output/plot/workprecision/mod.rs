@@ -99,11 +99,7 @@ pub fn draw(data: &WorkPrecision) -> Option<String> {
     let y = decades(times, OFF, |n| trimmed(&quantity(10_f64.powi(n), "s", 3)));
     let x = |errors: Option<(f64, f64)>| Some(decades(errors?, 0.0, |n| format!("10{}", superscript(n))));
     let place = Place::new(LEFT, TOP, WIDTH, HEIGHT);
-    let total = Panel {
-        place,
-        x: x(extent(markers().map(|m| m.error.log10())))?,
-        y: y.clone(),
-    };
+    let total = Panel::new(place, x(extent(markers().map(|m| m.error.log10())))?, y.clone());
     let sheet = Sheet {
         panel: total,
         data,
