@@ -2,6 +2,12 @@
 
 use textwrap::core::display_width;
 
+/// Cells that stand between bars in a text: `name | size`.
+pub fn cells<const N: usize>(row: &str) -> [&str; N] {
+    let mut cells = row.split('|').map(str::trim);
+    [(); N].map(|()| cells.next().unwrap_or_default())
+}
+
 /// A line a row, columns two blanks apart and as wide as their widest cell; cells stand on the right except in the columns of `left`.
 /// An empty first column indents.
 pub fn aligned<L: AsRef<[String]>>(lines: &[L], left: &[usize]) -> String {

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use crate::case::Case;
 use crate::case::schema::Effect;
 use crate::model::{Model, characteristic};
+use crate::output::columns::cells;
 use crate::output::numbers::{count, duration, pretty_unit, significant};
 use crate::run::summary::Summary;
 
@@ -47,10 +48,6 @@ slowest_time_of_network_ | s | slowest time in which pressures of a network beco
 
 /// Rows of the table: name, unit, meaning.
 fn known() -> impl Iterator<Item = [&'static str; 3]> {
-    let cells = |row: &'static str| {
-        let mut cells = row.split(" | ");
-        [(); 3].map(|()| cells.next().unwrap_or_default())
-    };
     CHARACTERISTIC.lines().map(cells)
 }
 
