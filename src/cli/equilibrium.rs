@@ -22,11 +22,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let at_s = asked.at.unwrap_or(case.time.end_s);
     let system = equilibrium::system(case, at_s)?;
     let options = options(asked, at_s)?;
-    let parameters: Vec<Parameter> = asked
-        .sensitivity
-        .iter()
-        .map(|pointer| Parameter::find(case, pointer))
-        .collect::<Result<_>>()?;
+    let parameters = Parameter::all(case, &asked.sensitivity)?;
     let mut folder = asked.place.claim(case, Kind::Equilibrium)?;
     let begin = Instant::now();
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;

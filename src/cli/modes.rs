@@ -50,11 +50,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         Some(at) => (modes::at_equilibrium(case, at)?, About::Equilibrium),
         None => (modes::linearise(case, 0.0, None)?, About::Start),
     };
-    let parameters: Vec<Parameter> = asked
-        .sensitivity
-        .iter()
-        .map(|pointer| Parameter::find(case, pointer))
-        .collect::<Result<_>>()?;
+    let parameters = Parameter::all(case, &asked.sensitivity)?;
     let mut found = modes::of(about, &plan)?;
     modes::compare_meshes(case, asked.at, &plan, &mut found);
     let sensitivities = modes::differentiate(case, asked.at, &found.about, &found.modes, &parameters)?;
