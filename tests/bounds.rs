@@ -300,3 +300,39 @@ fn bounds_cost_little() {
         time(&text, 1.0, 5.0);
     }
 }
+
+/// Goal: where no stretch has a time scale of its own, the signal keeps its value to the last digit; the least of the scales is that
+/// of the whole run, as without stretches.
+#[test]
+fn nothing_happens_between_stretches() {
+    let pulse = r#"{"product": [{"sigmoid": {"amplitude": 2, "steepness_per_s": 1e5, "midpoint_s": 3}},
+        {"sum": [1, {"sigmoid": {"amplitude": -1, "steepness_per_s": 2e4, "midpoint_s": 3.5}}]}]}"#;
+    let power = format!(r#"{{"polynomial": {{"coefficients": [{}1]}}}}"#, "0,".repeat(60));
+    let table = r#"{"table": {"times_s": [2, 3, 3.001, 3.002, 4], "values": [1, 0, 5, 0, 1]}}"#;
+    let burst = r#"{"product": [{"sine": {"amplitude": 1, "frequency_hz": 1e4}},
+        {"ramp": {"to": 1, "start_s": 3, "duration_s": 0.01}},
+        {"sum": [1, {"ramp": {"to": -1, "start_s": 3.1, "duration_s": 0.01}}]}]}"#;
+    for text in [pulse, &power, table, burst] {
+        let signal = signal(text);
+        let (end, mut from) = (if text == power { 1.0 } else { 10.0 }, 0.0);
+        let all = signal.stretches(end);
+        let size = signal.largest(end).value;
+        let mut quiet = 0.0;
+        for stretch in &all {
+            let range = signal.range(from, stretch.to);
+            if stretch.scale == f64::INFINITY {
+                assert!(range.high - range.low <= 1e-14 * size, "{text}: {from} to {stretch:?}");
+                quiet += stretch.to - from;
+            }
+            from = stretch.to;
+        }
+        assert_eq!(from, end);
+        assert!(quiet > 0.4 * end, "{text}: {all:?}");
+        let least = all.iter().map(|s| s.scale).fold(f64::INFINITY, f64::min);
+        let whole = signal.shortest_unmarked_time_s(end).expect("it changes");
+        assert!(
+            least >= whole * (1.0 - 1e-12) && least <= 2.0 * whole,
+            "{text}: {least} {whole}"
+        );
+    }
+}

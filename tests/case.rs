@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use serde_json::json;
 use slcbeam::case::schema::{Case, MaxOrder};
-use slcbeam::case::{self, Rotation, Translation};
+use slcbeam::case::{self, Places, Rotation, Translation, meanings, rewrite};
 use slcbeam::error::Error;
 use slcbeam::functions;
 
@@ -188,4 +189,69 @@ fn the_cases_of_the_figures_share_the_papers_beam() {
         );
         assert_eq!(case.formulation, slcbeam::case::schema::Formulation::Published);
     }
+}
+
+#[test]
+fn a_value_is_replaced_or_added_and_nothing_else_changes() {
+    let off = json!({"asymmetry": "off", "flow": "on"});
+    let new = r#""effects": {"asymmetry": "off", "flow": "on"}"#;
+    let cases = [
+        (
+            "{\n  \"a\": 1,\n\t\"b\":  [1,\n 2]\n}\n",
+            format!("{{\n  \"a\": 1,\n\t\"b\":  [1,\n 2],\n\t{new}\n}}\n"),
+        ),
+        ("{\r\n  \"a\": 1\r\n}", format!("{{\r\n  \"a\": 1,\r\n  {new}\r\n}}")),
+        (
+            "{\"a\": {\"effects\": 2}}",
+            format!("{{\"a\": {{\"effects\": 2}}, {new}}}"),
+        ),
+        (
+            "{\"effects\": {\"flow\": [ ]} , \"ä\": 1e5}",
+            format!("{{{new} , \"ä\": 1e5}}"),
+        ),
+        ("{ }", format!("{{ {new}}}")),
+    ];
+    for (before, after) in cases {
+        assert_eq!(rewrite(before, "effects", &off).as_deref(), Some(&*after));
+    }
+    assert_eq!(rewrite("[1]", "effects", &off), None);
+}
+
+/// Goal: an editor explains every key and word; what is measured says in which unit.
+#[test]
+fn every_key_says_what_it_means() {
+    let silent: Vec<String> = meanings()
+        .into_iter()
+        .filter(|m| m.meaning.len() < 4)
+        .map(|m| m.place)
+        .collect();
+    assert!(silent.is_empty(), "no meaning: {silent:?}");
+    let suffixes = ["_m", "_s", "_pa", "_hz", "_rad", "_m4", "_kg_m3", "_m2_per_pa"];
+    let unitless: Vec<String> = meanings()
+        .into_iter()
+        .filter(|m| suffixes.iter().any(|s| m.name.ends_with(s)) && !m.meaning.contains('['))
+        .map(|m| format!("{}: {}", m.place, m.meaning))
+        .collect();
+    assert!(unitless.is_empty(), "no unit: {unitless:#?}");
+}
+
+/// Goal: in whatever order bytes are asked for, each has its line and column.
+#[test]
+fn places_do_not_depend_on_what_was_asked_before() {
+    let text = "ab\nä\n\nlast";
+    let mut places = Places::new(text);
+    let all: Vec<_> = [0, 1, 3, 5, 7, 8, 100, 3, 6, 4].map(|at| places.of(at)).into();
+    let wanted = [
+        (1, 1),
+        (1, 2),
+        (2, 1),
+        (2, 2),
+        (4, 1),
+        (4, 2),
+        (4, 5),
+        (2, 1),
+        (3, 1),
+        (2, 1),
+    ];
+    assert_eq!(all, wanted);
 }

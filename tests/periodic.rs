@@ -1,6 +1,9 @@
 //! Steady cycles found by shooting.
 
 use slcbeam::case::{self, Case};
+use slcbeam::functions::Signal;
+use slcbeam::functions::signals::Sine;
+use slcbeam::run::drive::{common_period, settled};
 use slcbeam::run::dynamics;
 use slcbeam::run::floquet::{self, Stability};
 use slcbeam::run::periodic::{Scene, record, settle, shoot};
@@ -212,4 +215,31 @@ fn saving_over_transients() {
         "all: cycles {} steps, {:.1} s; runs of 2 s {} steps, {:.1} s; runs to 1 % {:.0} s",
         sums[0], sums[1], sums[2], sums[3], sums[4]
     );
+}
+
+#[test]
+fn frequencies_in_small_ratios_have_a_common_period() {
+    assert_eq!(common_period(&[20.0]), Some(0.05));
+    assert_eq!(common_period(&[2.0, 3.0]), Some(1.0));
+    assert_eq!(common_period(&[1.5, 4.5, 2.5]), Some(2.0));
+    assert_eq!(common_period(&[1.0, std::f64::consts::SQRT_2]), None);
+}
+
+#[test]
+fn what_starts_smoothly_goes_on_without_its_start() {
+    let started = Signal::Sum(vec![
+        Signal::Sine(Sine {
+            amplitude: 2.0,
+            frequency_hz: 3.0,
+            phase_rad: 0.4,
+            ramp_cycles: 2.0,
+        }),
+        Signal::Constant(1.0),
+    ]);
+    let settled = settled(&started);
+    // after the start both are the same formula
+    for t in [2.0 / 3.0, 1.0, 7.3] {
+        assert_eq!(settled.value(t), started.value(t));
+    }
+    assert_ne!(settled.value(0.1), started.value(0.1));
 }

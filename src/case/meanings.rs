@@ -70,26 +70,3 @@ fn objects(inner: &Value) -> Vec<String> {
         .filter_map(|one| one["$ref"].as_str()?.rsplit('/').next().map(str::to_owned))
         .collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Goal: an editor explains every key and word; what is measured says in which unit.
-    #[test]
-    fn every_key_says_what_it_means() {
-        let silent: Vec<String> = meanings()
-            .into_iter()
-            .filter(|m| m.meaning.len() < 4)
-            .map(|m| m.place)
-            .collect();
-        assert!(silent.is_empty(), "no meaning: {silent:?}");
-        let suffixes = ["_m", "_s", "_pa", "_hz", "_rad", "_m4", "_kg_m3", "_m2_per_pa"];
-        let unitless: Vec<String> = meanings()
-            .into_iter()
-            .filter(|m| suffixes.iter().any(|s| m.name.ends_with(s)) && !m.meaning.contains('['))
-            .map(|m| format!("{}: {}", m.place, m.meaning))
-            .collect();
-        assert!(unitless.is_empty(), "no unit: {unitless:#?}");
-    }
-}

@@ -61,6 +61,11 @@ impl Parameter {
         }
     }
 
+    /// The numbers at pointers, each as [`Parameter::find`].
+    pub fn all(case: &Case, pointers: &[String]) -> Result<Vec<Self>> {
+        pointers.iter().map(|pointer| Self::find(case, pointer)).collect()
+    }
+
     /// The case with another value of the parameter.
     ///
     /// # Errors

@@ -54,29 +54,3 @@ pub(super) fn floor(text: &str, mut at: usize) -> usize {
     }
     at
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Goal: in whatever order bytes are asked for, each has its line and column.
-    #[test]
-    fn places_do_not_depend_on_what_was_asked_before() {
-        let text = "ab\nä\n\nlast";
-        let mut places = Places::new(text);
-        let all: Vec<_> = [0, 1, 3, 5, 7, 8, 100, 3, 6, 4].map(|at| places.of(at)).into();
-        let wanted = [
-            (1, 1),
-            (1, 2),
-            (2, 1),
-            (2, 2),
-            (4, 1),
-            (4, 2),
-            (4, 5),
-            (2, 1),
-            (3, 1),
-            (2, 1),
-        ];
-        assert_eq!(all, wanted);
-    }
-}

@@ -49,35 +49,3 @@ pub fn spaced(value: &Value) -> String {
         other => other.to_string(),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    #[test]
-    fn a_value_is_replaced_or_added_and_nothing_else_changes() {
-        let off = json!({"asymmetry": "off", "flow": "on"});
-        let new = r#""effects": {"asymmetry": "off", "flow": "on"}"#;
-        let cases = [
-            (
-                "{\n  \"a\": 1,\n\t\"b\":  [1,\n 2]\n}\n",
-                format!("{{\n  \"a\": 1,\n\t\"b\":  [1,\n 2],\n\t{new}\n}}\n"),
-            ),
-            ("{\r\n  \"a\": 1\r\n}", format!("{{\r\n  \"a\": 1,\r\n  {new}\r\n}}")),
-            (
-                "{\"a\": {\"effects\": 2}}",
-                format!("{{\"a\": {{\"effects\": 2}}, {new}}}"),
-            ),
-            (
-                "{\"effects\": {\"flow\": [ ]} , \"ä\": 1e5}",
-                format!("{{{new} , \"ä\": 1e5}}"),
-            ),
-            ("{ }", format!("{{ {new}}}")),
-        ];
-        for (before, after) in cases {
-            assert_eq!(rewrite(before, "effects", &off).as_deref(), Some(&*after));
-        }
-        assert_eq!(rewrite("[1]", "effects", &off), None);
-    }
-}

@@ -1,12 +1,10 @@
 //! `slcbeam effects`: what each effect does to a case, and which of them it should leave out.
 
-use std::io::IsTerminal as _;
 use std::process::ExitCode;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
 use super::arguments::EffectsArguments;
-use super::{size, terminal};
+use super::line::Shown;
+use super::{line, size, terminal};
 use crate::case::schema::Effects;
 use crate::case::{self, Case};
 use crate::discrete::System;
@@ -29,29 +27,21 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
         budget_s: super::study::seconds(&asked.budget)?,
     };
     let mut folder = asked.place.claim(&case, Kind::Effects)?;
-    let progress = Progress::new(asked.quiet);
-    let found = ablate(&case, plan, asked.measure.as_deref(), &|event| progress.show(event));
-    progress.done();
+    let progress = Shown::new(asked.quiet, line::PLAIN);
+    let found = ablate(&case, plan, asked.measure.as_deref(), &|event| show(&progress, event));
+    drop(progress);
     let found = found?;
     let shown = files::Shown::choose(&found, asked.measure.as_deref());
     files::write(&mut folder, &found, &shown)?;
     report::complete(&folder, &case)?;
     let written = if asked.write { Some(write(&case, &found)?) } else { None };
-    if asked.json {
-        super::print(&files::json(&found))?;
-    } else {
-        let written = written.map_or(String::new(), |words| format!("{words}\n"));
+    let words = || {
+        let written = written.map_or(String::new(), |words| format!("\n{words}"));
         let (table, sentence) = (files::table(&found, &shown), files::sentence(&found));
-        super::print(&format!(
-            "{table}\n{sentence}\n\n{written}files in {}\n",
-            folder.dir().display()
-        ))?;
-    }
-    Ok(if found.full.summary.is_none() {
-        ExitCode::from(4)
-    } else {
-        ExitCode::SUCCESS
-    })
+        format!("{table}\n{sentence}\n{written}")
+    };
+    super::tell(asked.json, folder.dir(), || files::json(&found), words)?;
+    Ok(ExitCode::from(if found.full.summary.is_none() { 4 } else { 0 }))
 }
 
 /// Writes what is recommended into the case file, which must still be read as a case with just that choice; says what was done.
@@ -77,41 +67,13 @@ fn write(case: &Case, found: &Ablation) -> Result<String> {
     Ok(format!("written into {}", path.display()))
 }
 
-/// A line on a terminal, one a model elsewhere.
-struct Progress {
-    bar: Option<ProgressBar>,
-    lines: bool,
-}
-
-impl Progress {
-    fn new(quiet: bool) -> Self {
-        let terminal = std::io::stderr().is_terminal();
-        let bar = || {
-            let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-            if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
-                bar.set_style(style);
-            }
-            bar
-        };
-        Self {
-            bar: (terminal && !quiet).then(bar),
-            lines: !terminal && !quiet,
-        }
-    }
-
-    fn show(&self, event: &Event) {
-        let spent = format!("{} of {} used", duration(event.spent_s), duration(event.budget_s));
-        if let Some(bar) = &self.bar {
-            bar.set_message(format!("{} · {spent}", event.what));
-            bar.tick();
-        } else if self.lines && !event.what.ends_with("again") {
-            terminal::tell(&format!("{}; {spent}", event.what));
-        }
-    }
-
-    fn done(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
+/// Shows a line on a terminal, one a model elsewhere.
+fn show(shown: &Shown, event: &Event) {
+    let spent = format!("{} of {} used", duration(event.spent_s), duration(event.budget_s));
+    if let Some(bar) = &shown.bar {
+        bar.set_message(format!("{} · {spent}", event.what));
+        bar.tick();
+    } else if shown.lines && !event.what.ends_with("again") {
+        terminal::tell(&format!("{}; {spent}", event.what));
     }
 }

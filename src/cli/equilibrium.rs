@@ -22,11 +22,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let at_s = asked.at.unwrap_or(case.time.end_s);
     let system = equilibrium::system(case, at_s)?;
     let options = options(asked, at_s)?;
-    let parameters: Vec<Parameter> = asked
-        .sensitivity
-        .iter()
-        .map(|pointer| Parameter::find(case, pointer))
-        .collect::<Result<_>>()?;
+    let parameters = Parameter::all(case, &asked.sensitivity)?;
     let mut folder = asked.place.claim(case, Kind::Equilibrium)?;
     let begin = Instant::now();
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
@@ -77,15 +73,8 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         files::write(&mut folder, &found)?;
         report::complete(&folder, case)?;
     }
-    if asked.json {
-        super::print(&files::json(&found))?;
-    } else {
-        super::print(&format!(
-            "{}\nfiles in {}\n",
-            files::words(&found),
-            folder.dir().display()
-        ))?;
-    }
+    let (text, words) = (|| files::json(&found), || files::words(&found));
+    super::tell(asked.json, folder.dir(), text, words)?;
     match path.fault {
         None => Ok(ExitCode::SUCCESS),
         Some(fault) => {

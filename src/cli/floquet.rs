@@ -71,15 +71,8 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     };
     files::write(&mut folder, &found)?;
     report::complete(&folder, case)?;
-    if asked.json {
-        super::print(&results::text(&found))?;
-    } else {
-        super::print(&format!(
-            "{}\nfiles in {}\n",
-            files::words(&found),
-            folder.dir().display()
-        ))?;
-    }
+    let (text, words) = (|| results::text(&found), || files::words(&found));
+    super::tell(asked.json, folder.dir(), text, words)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -100,16 +93,8 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
     let found = found?;
     files::write_map(&mut folder, &found)?;
     report::complete(&folder, case)?;
-    if asked.json {
-        super::print(&results::text(&found))?;
-    } else {
-        let told = line::warnings(&found.warnings);
-        super::print(&format!(
-            "{}{told}\nfiles in {}\n",
-            files::map_words(&found),
-            folder.dir().display()
-        ))?;
-    }
+    let words = || files::map_words(&found) + &line::warnings(&found.warnings);
+    super::tell(asked.json, folder.dir(), || results::text(&found), words)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,20 +1,54 @@
 //! A line on a terminal that says how far something is; numbers of the command line.
 
+use std::io::IsTerminal as _;
+
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::error::{Error, Result};
 use crate::study::refine;
 
+/// A line that moves.
+pub const PLAIN: &str = "{spinner} {wide_msg}";
+
 /// The line; nothing is shown where it was asked to be quiet, or where there is no terminal.
 pub fn line(quiet: bool) -> ProgressBar {
-    if quiet {
-        return ProgressBar::hidden();
-    }
+    if quiet { ProgressBar::hidden() } else { styled(PLAIN) }
+}
+
+/// A bar that looks like a template, on a terminal.
+pub fn styled(template: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
+    if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
     bar
+}
+
+/// How far something long is: a bar on a terminal, lines elsewhere, nothing where it was asked to be quiet.
+pub struct Shown {
+    /// The bar.
+    pub bar: Option<ProgressBar>,
+    /// Whether to tell lines.
+    pub lines: bool,
+}
+
+impl Shown {
+    /// With a bar that looks like a template.
+    pub fn new(quiet: bool, template: &str) -> Self {
+        let terminal = std::io::stderr().is_terminal();
+        Self {
+            bar: (terminal && !quiet).then(|| styled(template)),
+            lines: !terminal && !quiet,
+        }
+    }
+}
+
+impl Drop for Shown {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
 }
 
 /// A time span [s] that a clock can wait for.

@@ -26,6 +26,7 @@ pub mod summary_box;
 mod terminal;
 mod verify;
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -91,7 +92,16 @@ fn print(text: &str) -> Result<()> {
     print_painted(&visible(text))
 }
 
-/// The same for text with the program's own colours, in which all that is not the program's is visible already.
+/// Prints a result: as JSON, or in words and where its files are.
+fn tell(json: bool, dir: &Path, text: impl FnOnce() -> String, words: impl FnOnce() -> String) -> Result<()> {
+    if json {
+        print(&text())
+    } else {
+        print(&format!("{}\nfiles in {}\n", words(), dir.display()))
+    }
+}
+
+/// [`print`] for text with the program's own colours, in which all that is not the program's is visible already.
 fn print_painted(text: &str) -> Result<()> {
     use std::io::Write as _;
     let mut out = std::io::stdout().lock();

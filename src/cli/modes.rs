@@ -50,11 +50,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         Some(at) => (modes::at_equilibrium(case, at)?, About::Equilibrium),
         None => (modes::linearise(case, 0.0, None)?, About::Start),
     };
-    let parameters: Vec<Parameter> = asked
-        .sensitivity
-        .iter()
-        .map(|pointer| Parameter::find(case, pointer))
-        .collect::<Result<_>>()?;
+    let parameters = Parameter::all(case, &asked.sensitivity)?;
     let mut found = modes::of(about, &plan)?;
     modes::compare_meshes(case, asked.at, &plan, &mut found);
     let sensitivities = modes::differentiate(case, asked.at, &found.about, &found.modes, &parameters)?;
@@ -69,15 +65,8 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     };
     files::write(&mut folder, &report)?;
     report::complete(&folder, case)?;
-    if asked.json {
-        super::print(&files::json(&report))?;
-    } else {
-        let (table, sentences) = (files::table(&report), report.sentences());
-        super::print(&format!(
-            "{table}\n{sentences}\n\nfiles in {}\n",
-            folder.dir().display()
-        ))?;
-    }
+    let words = || format!("{}\n{}\n", files::table(&report), report.sentences());
+    super::tell(asked.json, folder.dir(), || files::json(&report), words)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -96,13 +96,12 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     finished.folder().write(files::CYCLE, text.as_bytes())?;
     report::write(&out, None)?;
     finished.close()?;
-    if asked.json {
-        super::print(&text)?;
-    } else {
+    let words = || {
         let figures = files::figures(&outcome.summary);
         let (search, words) = (files::search(&told.cycle), stability::words(&told));
-        super::print(&format!("{words}\n{figures}{search}\nfiles in {}\n", out.display()))?;
-    }
+        format!("{words}\n{figures}{search}")
+    };
+    super::tell(asked.json, &out, || text, words)?;
     Ok(match outcome.fault {
         None => ExitCode::SUCCESS,
         Some(fault) => {
@@ -132,16 +131,8 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     let found = found?;
     files::write(&mut folder, &found)?;
     report::complete(&folder, &first)?;
-    if asked.json {
-        super::print(&results::text(&found))?;
-    } else {
-        let told = line::warnings(&found.warnings);
-        super::print(&format!(
-            "{}{told}\nfiles in {}\n",
-            files::words(&found),
-            folder.dir().display()
-        ))?;
-    }
+    let words = || files::words(&found) + &line::warnings(&found.warnings);
+    super::tell(asked.json, folder.dir(), || results::text(&found), words)?;
     Ok(ExitCode::from(if found.members.is_empty() { 4 } else { 0 }))
 }
 

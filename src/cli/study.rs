@@ -1,13 +1,11 @@
 //! `slcbeam study`: what accuracy costs.
 
-use std::io::IsTerminal as _;
 use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
 use super::arguments::StudyArguments;
+use super::line::Shown;
 use super::{size, terminal};
 use crate::discrete::System;
 use crate::error::{Error, Result};
@@ -34,26 +32,15 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
     let mut folder = asked.place.claim(case, Kind::Study)?;
     let progress = Progress::new(asked.quiet);
     let found = run_study(case, plan, asked.measure.as_deref(), &|event| progress.show(event))?;
-    progress.done();
+    drop(progress);
     files::write(&mut folder, &found)?;
     report::complete(&folder, case)?;
-    if asked.json {
-        super::print(&files::json(&found))?;
-    } else {
+    let words = || {
         let notes: String = found.notes.iter().map(|n| format!("note: {n}\n")).collect();
-        let text = format!(
-            "{}\n{notes}{}\n\nfiles in {}\n",
-            files::table(&found),
-            files::sentence(&found),
-            folder.dir().display()
-        );
-        super::print(&text)?;
-    }
-    Ok(if found.references.is_empty() {
-        ExitCode::from(4)
-    } else {
-        ExitCode::SUCCESS
-    })
+        format!("{}\n{notes}{}\n", files::table(&found), files::sentence(&found))
+    };
+    super::tell(asked.json, folder.dir(), || files::json(&found), words)?;
+    Ok(ExitCode::from(if found.references.is_empty() { 4 } else { 0 }))
 }
 
 /// `120`, `120s`, `2m`, `1h` in seconds.
@@ -78,27 +65,18 @@ pub fn seconds(text: &str) -> Result<f64> {
 
 /// A bar on a terminal, a line a mesh and method elsewhere.
 struct Progress {
-    bar: Option<ProgressBar>,
-    lines: bool,
+    shown: Shown,
     last: Mutex<Option<(usize, Scheme, Role)>>,
 }
 
 impl Progress {
     fn new(quiet: bool) -> Self {
-        let terminal = std::io::stderr().is_terminal();
-        let bar = (terminal && !quiet).then(|| {
-            let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-            if let Ok(style) = ProgressStyle::with_template("{pos}/{len} {wide_bar:.blue/dim} {msg}") {
-                bar.set_style(style);
-            }
+        let shown = Shown::new(quiet, "{pos}/{len} {wide_bar:.blue/dim} {msg}");
+        if let Some(bar) = &shown.bar {
             bar.enable_steady_tick(Duration::from_millis(200));
-            bar
-        });
-        Self {
-            bar,
-            lines: !terminal && !quiet,
-            last: Mutex::new(None),
         }
+        let last = Mutex::new(None);
+        Self { shown, last }
     }
 
     fn show(&self, event: &Event) {
@@ -111,14 +89,14 @@ impl Progress {
             .expected
             .map_or(String::new(), |cost| format!(", about {}", duration(cost)));
         let spent = format!("{} of {} used", duration(event.spent), duration(event.budget.size()));
-        if let Some(bar) = &self.bar {
+        if let Some(bar) = &self.shown.bar {
             bar.set_length(event.of as u64);
             bar.set_position(event.done as u64);
             bar.set_message(format!(
                 "{what}{} cells, {}, rtol {:e}{expected} · {spent}",
                 s.cells, s.scheme, s.rtol
             ));
-        } else if self.lines {
+        } else if self.shown.lines {
             let now = Some((s.cells, s.scheme, event.role));
             let mut last = self.last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             if *last != now {
@@ -129,12 +107,6 @@ impl Progress {
                     s.cells, s.scheme
                 ));
             }
-        }
-    }
-
-    fn done(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
         }
     }
 }

@@ -4,12 +4,12 @@ use std::fmt::Write as _;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::Value;
 
 use super::arguments::VerifyArguments;
+use super::line;
 use crate::error::Result;
-use crate::output::columns::aligned;
+use crate::output::columns::{aligned, cells};
 use crate::output::numbers::significant;
 use crate::results;
 use crate::results::verify::{Figure, Row};
@@ -21,7 +21,9 @@ pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
         Some(name) => verify::choose(verify::rows(), name)?,
         None => verify::rows(),
     };
-    let bar = bar(rows.len());
+    let bar = line::styled("{pos}/{len} {wide_bar} {msg}");
+    bar.set_length(rows.len() as u64);
+    bar.enable_steady_tick(Duration::from_millis(200));
     let rows: Vec<Row> = rows
         .iter()
         .map(|row| {
@@ -44,36 +46,10 @@ fn exit_code(rows: &[Row]) -> u8 {
     if rows.iter().all(|row| row.passed) { 0 } else { 4 }
 }
 
-/// On a terminal alone.
-fn bar(rows: usize) -> ProgressBar {
-    use std::io::IsTerminal as _;
-    let target = if std::io::stderr().is_terminal() {
-        ProgressDrawTarget::stderr()
-    } else {
-        ProgressDrawTarget::hidden()
-    };
-    let bar = ProgressBar::with_draw_target(Some(rows as u64), target);
-    if let Ok(style) = ProgressStyle::with_template("{pos}/{len} {wide_bar} {msg}") {
-        bar.set_style(style);
-    }
-    bar.enable_steady_tick(Duration::from_millis(200));
-    bar
-}
-
-const HEADINGS: [&str; 9] = [
-    "name",
-    "quantity",
-    "computed",
-    "exact",
-    "error",
-    "tolerance",
-    "order",
-    "limit",
-    "verdict",
-];
+const HEADINGS: &str = "name | quantity | computed | exact | error | tolerance | order | limit | verdict";
 
 fn table(rows: &[Row]) -> String {
-    let mut lines = vec![HEADINGS.map(String::from)];
+    let mut lines = vec![cells::<9>(HEADINGS).map(String::from)];
     for row in rows {
         lines.extend(row.figures.iter().flatten().map(|figure| line(row, figure)));
         if let Some(failure) = &row.failure {

@@ -18,9 +18,7 @@ impl Jet {
     pub fn constant(value: f64) -> Self {
         Self {
             value,
-            rate: 0.0,
-            acceleration: 0.0,
-            jerk: 0.0,
+            ..Self::default()
         }
     }
 

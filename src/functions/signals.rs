@@ -133,7 +133,7 @@ pub struct Table {
 }
 
 /// A curve through points: either `times_s` and `values`, or a CSV file with a heading for each column.
-#[derive(Clone, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Table")]
 pub(super) struct TableText {
@@ -182,11 +182,8 @@ impl From<Table> for TableText {
         Self {
             times_s,
             values,
-            csv: None,
-            time_column: None,
-            value_column: None,
-            checksum: None,
             interpolation,
+            ..Self::default()
         }
     }
 }

@@ -4,6 +4,10 @@
 //! function of the beginning. The equations of the stages, differentiated, carry disturbances along: with the factors of
 //! every stage at hand that costs one solve a stage and disturbance.
 
+use std::ops::AddAssign;
+
+use serde::{Deserialize, Serialize};
+
 use super::equations::{Equations, Obstacle};
 use super::stages::add;
 use super::tableau::{Method, Tableau};
@@ -36,8 +40,16 @@ pub struct StepError {
     pub what: String,
 }
 
-/// What has been done.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+impl StepError {
+    /// What happened at a time [s].
+    pub fn new(time: f64, what: impl Into<String>) -> Self {
+        let what = what.into();
+        Self { time, what }
+    }
+}
+
+/// What has been done, by one march or by several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StepMapWork {
     /// Steps.
     pub steps: u64,
@@ -51,6 +63,17 @@ pub struct StepMapWork {
     pub linear_solves: u64,
     /// Disturbances carried over the whole march.
     pub disturbances: u64,
+}
+
+impl AddAssign for StepMapWork {
+    fn add_assign(&mut self, other: Self) {
+        self.steps += other.steps;
+        self.residual_evaluations += other.residual_evaluations;
+        self.jacobian_evaluations += other.jacobian_evaluations;
+        self.factorizations += other.factorizations;
+        self.linear_solves += other.linear_solves;
+        self.disturbances += other.disturbances;
+    }
 }
 
 /// The matrix of one stage.
@@ -87,19 +110,13 @@ impl<D: Dae> StepMap<D> {
         let count = 1 + (times.len() - 1) * (tableau.stages - 1);
         let room = count as f64 * (BYTES * dae.pattern().entries() as f64);
         if room > MOST_ROOM {
-            return Err(StepError {
-                time: times[0],
-                what: format!(
-                    "the factors of all {count} stages would take {:.0} GB; a coarser mesh takes less",
-                    1e-9 * room
-                ),
-            });
+            let size = 1e-9 * room;
+            let what = format!("the factors of all {count} stages would take {size:.0} GB; a coarser mesh takes less");
+            return Err(StepError::new(times[0], what));
         }
         let slots = (0..count).map(|_| {
-            let klu = Klu::new(dae.pattern()).map_err(|fault| StepError {
-                time: times[0],
-                what: format!("KLU cannot analyse the matrix: {fault:?}"),
-            })?;
+            let klu = Klu::new(dae.pattern())
+                .map_err(|fault| StepError::new(times[0], format!("KLU cannot analyse the matrix: {fault:?}")))?;
             Ok(Slot {
                 of_y: vec![0.0; klu.entries()],
                 klu,
@@ -149,12 +166,8 @@ impl<D: Dae> StepMap<D> {
     /// When no consistent start is found or a stage has no solution: `y` and `yp` are then of no use.
     pub fn go(&mut self, y: &mut [f64], yp: &mut [f64]) -> Result<(), StepError> {
         let t0 = self.times[0];
-        consistent_start(&mut self.equations.dae, t0, y, yp, &StartOptions::default()).map_err(|failure| {
-            StepError {
-                time: t0,
-                what: failure.to_string(),
-            }
-        })?;
+        consistent_start(&mut self.equations.dae, t0, y, yp, &StartOptions::default())
+            .map_err(|failure| StepError::new(t0, failure.to_string()))?;
         self.linearise_start(t0, y, yp)?;
         let s = self.tableau.stages;
         let mut x: Vec<Vec<f64>> = vec![vec![0.0; y.len()]; s];
@@ -265,10 +278,9 @@ impl<D: Dae> StepMap<D> {
     fn take_factors(&mut self, slot: usize, t: f64) -> Result<(), StepError> {
         self.work.factorizations += 1;
         let slot = &mut self.slots[slot];
-        slot.klu.factor(&self.values).map_err(|fault| StepError {
-            time: t,
-            what: format!("the matrix of a stage cannot be factored: {fault:?}"),
-        })?;
+        slot.klu
+            .factor(&self.values)
+            .map_err(|fault| StepError::new(t, format!("the matrix of a stage cannot be factored: {fault:?}")))?;
         slot.factored = true;
         Ok(())
     }

@@ -248,8 +248,7 @@ impl RawFile {
             file.seek(SeekFrom::Start(8 * start))?;
             let mut bytes = vec![0; 8 * len];
             file.read_exact(&mut bytes)?;
-            let double = |b: &[u8]| b.iter().rev().fold(0u64, |bits, &b| bits << 8 | u64::from(b));
-            Ok(bytes.chunks_exact(8).map(|b| f64::from_bits(double(b))).collect())
+            Ok(bytes.as_chunks().0.iter().map(|b| f64::from_le_bytes(*b)).collect())
         };
         get().map_err(|e| fault("read", &self.path, e))
     }

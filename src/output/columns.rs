@@ -2,6 +2,12 @@
 
 use textwrap::core::display_width;
 
+/// Cells that stand between bars in a text: `name | size`.
+pub fn cells<const N: usize>(row: &str) -> [&str; N] {
+    let mut cells = row.split('|').map(str::trim);
+    [(); N].map(|()| cells.next().unwrap_or_default())
+}
+
 /// A line a row, columns two blanks apart and as wide as their widest cell; cells stand on the right except in the columns of `left`.
 /// An empty first column indents.
 pub fn aligned<L: AsRef<[String]>>(lines: &[L], left: &[usize]) -> String {
@@ -25,22 +31,4 @@ pub fn aligned<L: AsRef<[String]>>(lines: &[L], left: &[usize]) -> String {
         text.push('\n');
     }
     text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Goal: columns stand below each other whatever the cells hold, and nothing stands behind the last.
-    #[test]
-    fn cells_stand_below_each_other() {
-        let lines = [["", "name", "size"], ["", "a", "12.5 µm"], ["", "双 u₁", "3"]].map(|l| l.map(String::from));
-        let text = aligned(&lines, &[1]);
-        assert_eq!(text, "  name      size\n  a      12.5 µm\n  双 u₁        3\n");
-        assert_eq!(aligned::<Vec<String>>(&[], &[]), "");
-        assert_eq!(
-            aligned(&[vec!["a".into()], vec!["b".into(), "c".into()]], &[]),
-            "a\nb  c\n"
-        );
-    }
 }

@@ -261,39 +261,3 @@ fn split_name(heading: &str) -> (String, String) {
         None => (heading.trim().to_string(), "1".to_string()),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_extreme_is_lost_and_memory_is_bounded() {
-        let names = vec![("t".to_string(), "s".to_string()), ("y".to_string(), "m".to_string())];
-        let mut envelope = Envelope::new(names, 101);
-        for k in 0..12_345 {
-            let y = if k == 7_777 { 5.0 } else { (f64::from(k) * 0.7).sin() };
-            envelope.push(&[f64::from(k), y]);
-        }
-        let points = envelope.points(1);
-        assert!(points.len() <= 202, "{}", points.len());
-        assert!(points.contains(&(7777.0, 5.0)));
-        assert!(points.windows(2).all(|w| w[0].0 < w[1].0), "in order of time");
-        assert_eq!(envelope.points(0).last(), Some(&(12_344.0, 12_344.0)));
-        let columns = envelope.columns();
-        assert!(columns[0].len() <= 202 && columns[0].len() == columns[1].len());
-        assert!(columns[0].windows(2).all(|w| w[0] < w[1]), "in order of time");
-        assert!(columns[1].contains(&5.0));
-    }
-
-    #[test]
-    fn a_short_history_is_kept_as_it_is() {
-        let names = vec![("t".to_string(), "s".to_string()), ("y".to_string(), "m".to_string())];
-        let mut envelope = Envelope::new(names, 100);
-        envelope.push(&[0.0, 1.0]);
-        envelope.push(&[1.0, f64::NAN]);
-        envelope.push(&[2.0, 1.0]);
-        let points = envelope.points(1);
-        assert_eq!(points.len(), 3);
-        assert!(points[1].1.is_nan());
-    }
-}

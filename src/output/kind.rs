@@ -43,48 +43,34 @@ impl Kind {
         Self::Sweep,
     ];
 
+    /// Name in the page, command, and sign.
+    fn told(self) -> [&'static str; 3] {
+        match self {
+            Self::Run => ["run", "run", SUMMARY],
+            Self::Equilibrium => ["equilibrium", "equilibrium", "equilibrium.json"],
+            Self::Modes => ["modes", "modes", "modes.json"],
+            Self::Study => ["study", "study", "study.json"],
+            Self::Effects => ["effects", "effects", "effects.json"],
+            Self::Floquet => ["floquet", "floquet", "floquet.json"],
+            Self::Map => ["map", "floquet --map", "map.json"],
+            Self::Cycle => ["run", "periodic", "cycle.json"],
+            Self::Sweep => ["sweep", "periodic --sweep", "sweep.json"],
+        }
+    }
+
     /// Name in the page.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Run | Self::Cycle => "run",
-            Self::Equilibrium => "equilibrium",
-            Self::Modes => "modes",
-            Self::Study => "study",
-            Self::Effects => "effects",
-            Self::Floquet => "floquet",
-            Self::Map => "map",
-            Self::Sweep => "sweep",
-        }
+        self.told()[0]
     }
 
     /// The command, as it is typed.
     pub fn command(self) -> &'static str {
-        match self {
-            Self::Run => "run",
-            Self::Equilibrium => "equilibrium",
-            Self::Modes => "modes",
-            Self::Study => "study",
-            Self::Effects => "effects",
-            Self::Floquet => "floquet",
-            Self::Map => "floquet --map",
-            Self::Cycle => "periodic",
-            Self::Sweep => "periodic --sweep",
-        }
+        self.told()[1]
     }
 
     /// The file that tells it; it is written last.
     pub fn sign(self) -> &'static str {
-        match self {
-            Self::Run => SUMMARY,
-            Self::Equilibrium => "equilibrium.json",
-            Self::Modes => "modes.json",
-            Self::Study => "study.json",
-            Self::Effects => "effects.json",
-            Self::Floquet => "floquet.json",
-            Self::Map => "map.json",
-            Self::Cycle => "cycle.json",
-            Self::Sweep => "sweep.json",
-        }
+        self.told()[2]
     }
 
     /// All files that the command writes itself, the sign first; case and page come besides.

@@ -145,9 +145,8 @@ impl Rows<'_> {
         if !self.pass()? {
             return Ok(false);
         }
-        let double = |b: &[u8]| b.iter().rev().fold(0_u64, |bits, &b| bits << 8 | u64::from(b));
         row.clear();
-        row.extend(self.bytes.chunks_exact(8).map(|b| f64::from_bits(double(b))));
+        row.extend(self.bytes.as_chunks().0.iter().map(|b| f64::from_le_bytes(*b)));
         Ok(true)
     }
 

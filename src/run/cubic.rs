@@ -62,36 +62,3 @@ pub fn integral(from: f64, f: impl Fn(f64) -> f64) -> f64 {
     let width = 1.0 - from;
     GAUSS.iter().map(|(x, w)| width * w * f(from + width * x)).sum()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_quarter_of_a_sine_between_its_ends() {
-        let (a, b) = (0.3_f64, 2.4_f64);
-        let cubic = Cubic::new([a.sin(), a.cos()], [b.sin(), b.cos()], b - a);
-        let turns: Vec<f64> = cubic.turns().collect();
-        assert_eq!(turns.len(), 1);
-        assert!((cubic.at(turns[0]) - 1.0).abs() < 0.06, "{}", cubic.at(turns[0]));
-        let crossing = a + (b - a) * cubic.crosses(0.6, turns[0]);
-        assert!((crossing.sin() - 0.6).abs() < 0.06, "{crossing}");
-    }
-
-    #[test]
-    fn squares_of_cubics_are_integrated_exactly() {
-        let f = |x: f64| (1.0 - 2.0 * x + 3.0 * x * x - x * x * x).powi(2);
-        // by hand: coefficients of the square over powers
-        let square = [1.0, -4.0, 10.0, -14.0, 13.0, -6.0, 1.0];
-        let primitive = |x: f64| -> f64 {
-            square
-                .iter()
-                .enumerate()
-                .map(|(k, c)| c * x.powi(k as i32 + 1) / (k as f64 + 1.0))
-                .sum()
-        };
-        for from in [0.0, 0.25, 0.9] {
-            assert!((integral(from, f) - (primitive(1.0) - primitive(from))).abs() < 1e-14);
-        }
-    }
-}

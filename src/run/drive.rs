@@ -109,7 +109,7 @@ fn collect(signal: &Signal, out: &mut Vec<f64>) {
 }
 
 /// The shortest time [s] that is a whole number of cycles of every frequency [Hz].
-fn common_period(frequencies: &[f64]) -> Option<f64> {
+pub fn common_period(frequencies: &[f64]) -> Option<f64> {
     let slowest = frequencies.iter().copied().fold(f64::INFINITY, f64::min);
     (1..=MOST_CYCLES).map(f64::from).find_map(|cycles| {
         let whole = |f: &f64| {
@@ -118,36 +118,4 @@ fn common_period(frequencies: &[f64]) -> Option<f64> {
         };
         frequencies.iter().all(whole).then_some(cycles / slowest)
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frequencies_in_small_ratios_have_a_common_period() {
-        assert_eq!(common_period(&[20.0]), Some(0.05));
-        assert_eq!(common_period(&[2.0, 3.0]), Some(1.0));
-        assert_eq!(common_period(&[1.5, 4.5, 2.5]), Some(2.0));
-        assert_eq!(common_period(&[1.0, std::f64::consts::SQRT_2]), None);
-    }
-
-    #[test]
-    fn what_starts_smoothly_goes_on_without_its_start() {
-        let started = Signal::Sum(vec![
-            Signal::Sine(Sine {
-                amplitude: 2.0,
-                frequency_hz: 3.0,
-                phase_rad: 0.4,
-                ramp_cycles: 2.0,
-            }),
-            Signal::Constant(1.0),
-        ]);
-        let settled = settled(&started);
-        // after the start both are the same formula
-        for t in [2.0 / 3.0, 1.0, 7.3] {
-            assert_eq!(settled.value(t), started.value(t));
-        }
-        assert_ne!(settled.value(0.1), started.value(0.1));
-    }
 }

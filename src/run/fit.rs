@@ -40,32 +40,3 @@ fn line(points: &[(f64, f64)], weight: impl Fn(f64) -> f64) -> Option<(f64, f64,
     let std = mean(&|p| (p.0 - mt) * (p.1 - md));
     (stt > 0.0 && sdd > 0.0).then(|| (md - std / stt * mt, std / stt, std * std / (stt * sdd)))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn series(law: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-        // ripples of a few per cent, as the largest values in windows have them
-        let ripple = |k: usize| 1.0 + 0.04 * ((k * 7919) as f64).sin();
-        (4..16)
-            .map(|k| (k as f64 + 0.5, law(k as f64 + 0.5) * ripple(k)))
-            .collect()
-    }
-
-    /// Goal: ramps, beats that rise in proportion to time and accelerated motion are no exponentials; exponentials are, from a
-    /// factor of 3 over the span on.
-    #[test]
-    fn ramps_and_powers_are_no_exponentials() {
-        for power in [0.5, 1.0, 1.5, 2.0, 3.0] {
-            assert!(!is_exponential(&series(|t| 1e-3 * t.powf(power))), "power {power}");
-        }
-        assert!(!is_exponential(&series(|t| 1e-3 * (t - 3.0))));
-        for rate in [0.1, 0.3, 1.0, 3.0] {
-            let points = series(|t| 1e-6 * (rate * t).exp());
-            assert!(is_exponential(&points), "rate {rate}");
-            let (found, _) = exponential(&points).unwrap();
-            assert!((found / rate - 1.0).abs() < 0.1, "{found} {rate}");
-        }
-    }
-}

@@ -22,21 +22,15 @@ pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
     let closest = 1e-9 * end;
     let mut switches = Vec::new();
     model.each_signal(|s| s.breaks(&mut switches));
-    let mut all: Vec<Stop> = switches
-        .into_iter()
-        .map(|t| Stop {
-            t,
-            switches: true,
-            checkpoint: false,
-        })
-        .collect();
+    let stop = |t, [switches, checkpoint]: [bool; 2]| Stop {
+        t,
+        switches,
+        checkpoint,
+    };
+    let mut all: Vec<Stop> = switches.into_iter().map(|t| stop(t, [true, false])).collect();
     if let Some(interval) = case.time.checkpoint_interval_s {
         let count = (end / interval).ceil() as u64;
-        all.extend((1..count).map(|k| Stop {
-            t: k as f64 * interval,
-            switches: false,
-            checkpoint: true,
-        }));
+        all.extend((1..count).map(|k| stop(k as f64 * interval, [false, true])));
     }
     all.retain(|s| s.t > closest && s.t < end - closest);
     all.sort_by(|a, b| a.t.total_cmp(&b.t));
@@ -48,11 +42,7 @@ pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
         }
         same
     });
-    all.push(Stop {
-        t: end,
-        switches: false,
-        checkpoint: false,
-    });
+    all.push(stop(end, [false; 2]));
     all
 }
 

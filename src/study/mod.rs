@@ -2,7 +2,7 @@
 
 pub mod accuracy;
 pub mod compare;
-mod counted;
+pub mod counted;
 pub mod effects;
 pub mod refine;
 pub mod stability;

@@ -89,6 +89,19 @@ impl<D: Dae> Bridge<D> {
     }
 }
 
+/// The bridge that user data points to, and two vectors that are only read.
+///
+/// # Safety
+/// The bridge is borrowed by nobody else while C runs; the vectors are living serial ones, which nobody writes to meanwhile.
+pub(super) unsafe fn seen<'v, D>(
+    data: *mut c_void,
+    y: N_Vector,
+    yp: N_Vector,
+) -> (&'v mut Bridge<D>, &'v [f64], &'v [f64]) {
+    // SAFETY: by contract.
+    unsafe { (&mut *data.cast::<Bridge<D>>(), entries(y), entries(yp)) }
+}
+
 /// `IDAResFn` with a [`Bridge`] as user data.
 pub(super) unsafe extern "C" fn residual<D: Dae>(
     t: f64,
@@ -98,14 +111,7 @@ pub(super) unsafe extern "C" fn residual<D: Dae>(
     data: *mut c_void,
 ) -> c_int {
     // SAFETY: user data is the bridge, borrowed by nobody else while C runs; the vectors are different serial ones.
-    let (bridge, y, yp, out) = unsafe {
-        (
-            &mut *data.cast::<Bridge<D>>(),
-            entries(y),
-            entries(yp),
-            entries_mut(out),
-        )
-    };
+    let ((bridge, y, yp), out) = unsafe { (seen::<D>(data, y, yp), entries_mut(out)) };
     let begin = Instant::now();
     let code = bridge.call(|dae| {
         dae.residual(t, y, yp, out)?;
@@ -139,14 +145,7 @@ pub(super) unsafe extern "C" fn jacobian<D: Dae>(
 ) -> c_int {
     // SAFETY: user data is the bridge and the matrix holds the linear system, both borrowed by nobody else while C
     // runs; the vectors are only read.
-    let (bridge, y, yp, system) = unsafe {
-        (
-            &mut *data.cast::<Bridge<D>>(),
-            entries(y),
-            entries(yp),
-            system_of(matrix),
-        )
-    };
+    let ((bridge, y, yp), system) = unsafe { (seen::<D>(data, y, yp), system_of(matrix)) };
     let begin = Instant::now();
     let code = bridge.call(|dae| {
         dae.jacobian(t, y, yp, Seeds::Step { cj }, &mut system.values)?;

@@ -4,9 +4,9 @@ use std::ffi::{c_int, c_void};
 
 use sundials_sys as s;
 
-use super::callbacks::Bridge;
+use super::callbacks::seen;
 use super::ida::Ida;
-use super::vector::{Vector, entries, entries_mut};
+use super::vector::{Vector, entries_mut};
 use crate::dae::Dae;
 use crate::integrate::IntegrationFailure;
 
@@ -19,14 +19,7 @@ pub(super) unsafe extern "C" fn integrands<D: Dae>(
     data: *mut c_void,
 ) -> c_int {
     // SAFETY: user data is the bridge, borrowed by nobody else while C runs; the vectors are different serial ones.
-    let (bridge, y, yp, out) = unsafe {
-        (
-            &mut *data.cast::<Bridge<D>>(),
-            entries(y),
-            entries(yp),
-            entries_mut(out),
-        )
-    };
+    let ((bridge, y, yp), out) = unsafe { (seen::<D>(data, y, yp), entries_mut(out)) };
     let begin = std::time::Instant::now();
     let code = bridge.call(|dae| dae.integrands(t, y, yp, out));
     bridge.integrand_wall += begin.elapsed();

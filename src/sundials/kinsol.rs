@@ -71,6 +71,14 @@ pub struct KinsolFailure {
     pub worst: Option<String>,
 }
 
+impl KinsolFailure {
+    /// One that is not KINSOL's, of no unknown.
+    pub fn own(what: impl Into<String>) -> Self {
+        let (code, what, worst) = (0, what.into(), None);
+        Self { code, what, worst }
+    }
+}
+
 impl fmt::Display for KinsolFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.what)?;
@@ -121,11 +129,7 @@ impl<D: Dae> Kinsol<D> {
     /// A solver of these equations.
     pub fn new(dae: D) -> Result<Self, KinsolFailure> {
         let n = dae.len();
-        let refuse = |what: String| KinsolFailure {
-            code: 0,
-            what,
-            worst: None,
-        };
+        let refuse = KinsolFailure::own;
         let zeros = vec![0.0; n];
         let klu = request::admit(&dae, [&zeros, &zeros], Ok(())).map_err(refuse)?;
         let context = Context::new().map_err(refuse)?;
@@ -297,11 +301,7 @@ impl<D: Dae> Kinsol<D> {
         }
         match self.fixed.get_mut().bridge.stop.take() {
             Some(Stop::Panic(panic)) => std::panic::resume_unwind(panic),
-            Some(Stop::Fatal(what)) => Err(KinsolFailure {
-                code: 0,
-                what,
-                worst: None,
-            }),
+            Some(Stop::Fatal(what)) => Err(KinsolFailure::own(what)),
             None => Ok(()),
         }
     }

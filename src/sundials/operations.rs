@@ -251,55 +251,21 @@ mod tests {
         for n in [1, 5, 8, 63, 64, 65, 200] {
             // (x, y, z) as positions in the trio: distinct, z = x, z = y, x = y, all the same
             for [x, y, z] in [[0, 1, 2], [0, 1, 0], [0, 1, 1], [0, 0, 2], [0, 0, 0]] {
-                let operations: [&dyn Fn([N_Vector; 3]) -> f64; 18] = [
-                    &|[x, y, z]| unsafe {
-                        s::N_VLinearSum(0.7, x, -1.3, y, z);
-                        0.0
-                    },
-                    &|[x, y, z]| unsafe {
-                        s::N_VLinearSum(1.0, x, 1.0, y, z);
-                        0.0
-                    },
-                    &|[x, y, z]| unsafe {
-                        s::N_VLinearSum(-1.0, x, 1.0, y, z);
-                        0.0
-                    },
-                    &|[x, y, z]| unsafe {
-                        s::N_VLinearSum(1.0, x, 0.1, y, z);
-                        0.0
-                    },
-                    &|[x, y, z]| unsafe {
-                        s::N_VProd(x, y, z);
-                        0.0
-                    },
-                    &|[x, y, z]| unsafe {
-                        s::N_VDiv(x, y, z);
-                        0.0
-                    },
-                    &|[x, _, z]| unsafe {
-                        s::N_VScale(1.0, x, z);
-                        0.0
-                    },
-                    &|[x, _, z]| unsafe {
-                        s::N_VScale(-0.4, x, z);
-                        0.0
-                    },
-                    &|[x, _, z]| unsafe {
-                        s::N_VAbs(x, z);
-                        0.0
-                    },
-                    &|[x, _, z]| unsafe {
-                        s::N_VInv(x, z);
-                        0.0
-                    },
-                    &|[x, _, z]| unsafe {
-                        s::N_VAddConst(x, 2.5, z);
-                        0.0
-                    },
-                    &|[_, _, z]| unsafe {
-                        s::N_VConst(2.5, z);
-                        0.0
-                    },
+                let fills: [&dyn Fn([N_Vector; 3]); 12] = [
+                    &|[x, y, z]| unsafe { s::N_VLinearSum(0.7, x, -1.3, y, z) },
+                    &|[x, y, z]| unsafe { s::N_VLinearSum(1.0, x, 1.0, y, z) },
+                    &|[x, y, z]| unsafe { s::N_VLinearSum(-1.0, x, 1.0, y, z) },
+                    &|[x, y, z]| unsafe { s::N_VLinearSum(1.0, x, 0.1, y, z) },
+                    &|[x, y, z]| unsafe { s::N_VProd(x, y, z) },
+                    &|[x, y, z]| unsafe { s::N_VDiv(x, y, z) },
+                    &|[x, _, z]| unsafe { s::N_VScale(1.0, x, z) },
+                    &|[x, _, z]| unsafe { s::N_VScale(-0.4, x, z) },
+                    &|[x, _, z]| unsafe { s::N_VAbs(x, z) },
+                    &|[x, _, z]| unsafe { s::N_VInv(x, z) },
+                    &|[x, _, z]| unsafe { s::N_VAddConst(x, 2.5, z) },
+                    &|[_, _, z]| unsafe { s::N_VConst(2.5, z) },
+                ];
+                let reductions: [&dyn Fn([N_Vector; 3]) -> f64; 6] = [
                     &|[x, y, _]| unsafe { s::N_VDotProd(x, y) },
                     &|[x, y, _]| unsafe { s::N_VWrmsNorm(x, y) },
                     &|[x, y, z]| unsafe { s::N_VWrmsNormMask(x, y, z) },
@@ -312,7 +278,14 @@ mod tests {
                         s::N_VLinearCombination(count, [0.3, 0.9].as_mut_ptr(), vectors.as_mut_ptr(), z).into()
                     },
                 ];
-                for (number, operation) in operations.iter().enumerate() {
+                let fills = fills.iter().map(|fill| -> Box<dyn Fn([N_Vector; 3]) -> f64 + '_> {
+                    Box::new(|vectors| {
+                        fill(vectors);
+                        0.0
+                    })
+                });
+                let operations = fills.chain(reductions.iter().map(|reduce| Box::new(reduce) as Box<_>));
+                for (number, operation) in operations.enumerate() {
                     let (own, stock) = (trio(n, &context, false), trio(n, &context, true));
                     let (a, b) = (
                         operation([own[x].raw(), own[y].raw(), own[z].raw()]),

@@ -4,7 +4,7 @@ use std::ffi::{c_int, c_void};
 
 use sundials_sys as s;
 
-use super::callbacks::Bridge;
+use super::callbacks::seen;
 use super::ida::Ida;
 use super::vector::{Vector, entries, entries_mut};
 use crate::dae::{Dae, Fault};
@@ -93,16 +93,11 @@ unsafe extern "C" fn residuals<D: Dae>(
     let count = count as usize;
     // SAFETY: user data is the bridge, borrowed by nobody else while C runs; the arrays hold `count` vectors each, and those
     // of `out` are other ones than all that are read.
-    let (bridge, y, yp, along, along_rates, mut out) = unsafe {
-        (
-            &mut *data.cast::<Bridge<D>>(),
-            entries(y),
-            entries(yp),
-            slices(along, count),
-            slices(along_rates, count),
-            slices_mut(out, count),
-        )
-    };
+    let (bridge, y, yp) = unsafe { seen::<D>(data, y, yp) };
+    // SAFETY: as above.
+    let (along, along_rates) = unsafe { (slices(along, count), slices(along_rates, count)) };
+    // SAFETY: as above.
+    let mut out = unsafe { slices_mut(out, count) };
     let begin = std::time::Instant::now();
     let mut slopes = std::mem::take(&mut bridge.slopes);
     let code = bridge.call(|dae| {
@@ -140,16 +135,11 @@ unsafe extern "C" fn integrands<D: Dae>(
 ) -> c_int {
     let count = count as usize;
     // SAFETY: as in `residuals`.
-    let (bridge, y, yp, along, along_rates, mut out) = unsafe {
-        (
-            &mut *data.cast::<Bridge<D>>(),
-            entries(y),
-            entries(yp),
-            slices(along, count),
-            slices(along_rates, count),
-            slices_mut(out, count),
-        )
-    };
+    let (bridge, y, yp) = unsafe { seen::<D>(data, y, yp) };
+    // SAFETY: as above.
+    let (along, along_rates) = unsafe { (slices(along, count), slices(along_rates, count)) };
+    // SAFETY: as above.
+    let mut out = unsafe { slices_mut(out, count) };
     let begin = std::time::Instant::now();
     let code = bridge.call(|dae| {
         for (k, out) in out.iter_mut().enumerate() {

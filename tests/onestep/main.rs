@@ -6,3 +6,4 @@ mod orders;
 #[path = "../sundials/problems.rs"]
 mod problems;
 mod stepping;
+mod tableau;

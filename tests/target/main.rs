@@ -2,6 +2,8 @@
 
 #[path = "../common/chance.rs"]
 mod chance;
+mod estimates;
+mod models;
 mod scenes;
 
 use std::path::Path;

@@ -2,6 +2,7 @@
 
 mod balances;
 mod common;
+mod energies;
 mod growth;
 mod motion;
 mod range;

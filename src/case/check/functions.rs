@@ -130,20 +130,11 @@ fn signal_parts(pointer: &str, signal: &Signal, faults: &mut Faults) {
             faults.push(fault.hint("for a jump take a ramp of duration 0, which the integrator stops at"));
         }
         Signal::Table(table) if !table.is_sound() => {
-            table_fault(
-                &child(pointer, "table"),
-                "times_s",
-                &table.times_s,
-                &table.values,
-                faults,
-            );
+            let at = child(pointer, "table");
+            table_fault(&at, "times_s", &table.times_s, &table.values, faults);
         }
         Signal::Sum(parts) | Signal::Product(parts) => {
-            let name = if matches!(signal, Signal::Sum(_)) {
-                "sum"
-            } else {
-                "product"
-            };
+            let name = sum_or_product(matches!(signal, Signal::Sum(_)));
             for (i, part) in parts.iter().enumerate() {
                 signal_parts(&format!("{pointer}/{name}/{i}"), part, faults);
             }
@@ -155,26 +146,21 @@ fn signal_parts(pointer: &str, signal: &Signal, faults: &mut Faults) {
 fn profile_tables(pointer: &str, profile: &Profile, faults: &mut Faults) {
     match profile {
         Profile::Table(table) if !table.is_sound() => {
-            table_fault(
-                &child(pointer, "table"),
-                "positions",
-                &table.positions,
-                &table.values,
-                faults,
-            );
+            let at = child(pointer, "table");
+            table_fault(&at, "positions", &table.positions, &table.values, faults);
         }
         Profile::Sum(parts) | Profile::Product(parts) => {
-            let name = if matches!(profile, Profile::Sum(_)) {
-                "sum"
-            } else {
-                "product"
-            };
+            let name = sum_or_product(matches!(profile, Profile::Sum(_)));
             for (i, part) in parts.iter().enumerate() {
                 profile_tables(&format!("{pointer}/{name}/{i}"), part, faults);
             }
         }
         _ => {}
     }
+}
+
+fn sum_or_product(sum: bool) -> &'static str {
+    if sum { "sum" } else { "product" }
 }
 
 fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mut Faults) {

@@ -15,84 +15,30 @@ struct Range {
     hint: &'static str,
 }
 
-const BEAM_LENGTH: Range = Range {
-    low: 1e-6,
-    high: 1e3,
-    unit: "m",
-    hint: MILLIMETRES,
-};
-const SECTION: Range = Range {
-    low: 1e-7,
-    high: 10.0,
-    unit: "m",
-    hint: MILLIMETRES,
-};
-const BLADDER: Range = Range {
-    low: 1e-8,
-    high: 10.0,
-    unit: "m",
-    hint: MILLIMETRES,
-};
-const TUBE_LENGTH: Range = Range {
-    low: 1e-7,
-    high: 1e3,
-    unit: "m",
-    hint: MILLIMETRES,
-};
-const RADIUS: Range = Range {
-    low: 1e-9,
-    high: 0.5,
-    unit: "m",
-    hint: MILLIMETRES,
-};
-const MODULUS: Range = Range {
-    low: 1e2,
-    high: 1e13,
-    unit: "Pa",
-    hint: "moduli are in Pa; is this in MPa or GPa?",
-};
-const SOLID_DENSITY: Range = Range {
-    low: 0.1,
-    high: 3e4,
-    unit: "kg/m^3",
-    hint: "is this in g/cm^3?",
-};
-const FLUID_DENSITY: Range = Range {
-    low: 0.0,
-    high: 3e4,
-    unit: "kg/m^3",
-    hint: "densities are in kg/m^3",
-};
-const VISCOSITY: Range = Range {
-    low: 1e-7,
-    high: 1e5,
-    unit: "Pa s",
-    hint: "is this in mPa s? water has 1e-3 Pa s",
-};
-const PERMEABILITY: Range = Range {
-    low: 1e-36,
-    high: 10.0,
-    unit: "m^4",
-    hint: "a circle has pi r^4/8, r in metres",
-};
-const SOFTNESS: Range = Range {
-    low: 1e-25,
-    high: 1e-3,
-    unit: "m^2/Pa",
-    hint: "area in m^2 per pressure in Pa; is this per MPa or in mm^2?",
-};
-const FACTOR: Range = Range {
-    low: 1e-6,
-    high: 1e3,
-    unit: "1",
-    hint: "a ratio to the full section, near 1",
-};
-const DURATION: Range = Range {
-    low: 1e-9,
-    high: 1e7,
-    unit: "s",
-    hint: "times are in seconds",
-};
+impl Range {
+    const fn new(low: f64, high: f64, unit: &'static str, hint: &'static str) -> Self {
+        Self { low, high, unit, hint }
+    }
+}
+
+const BEAM_LENGTH: Range = Range::new(1e-6, 1e3, "m", MILLIMETRES);
+const SECTION: Range = Range::new(1e-7, 10.0, "m", MILLIMETRES);
+const BLADDER: Range = Range::new(1e-8, 10.0, "m", MILLIMETRES);
+const TUBE_LENGTH: Range = Range::new(1e-7, 1e3, "m", MILLIMETRES);
+const RADIUS: Range = Range::new(1e-9, 0.5, "m", MILLIMETRES);
+const MODULUS: Range = Range::new(1e2, 1e13, "Pa", "moduli are in Pa; is this in MPa or GPa?");
+const SOLID_DENSITY: Range = Range::new(0.1, 3e4, "kg/m^3", "is this in g/cm^3?");
+const FLUID_DENSITY: Range = Range::new(0.0, 3e4, "kg/m^3", "densities are in kg/m^3");
+const VISCOSITY: Range = Range::new(1e-7, 1e5, "Pa s", "is this in mPa s? water has 1e-3 Pa s");
+const PERMEABILITY: Range = Range::new(1e-36, 10.0, "m^4", "a circle has pi r^4/8, r in metres");
+const SOFTNESS: Range = Range::new(
+    1e-25,
+    1e-3,
+    "m^2/Pa",
+    "area in m^2 per pressure in Pa; is this per MPa or in mm^2?",
+);
+const FACTOR: Range = Range::new(1e-6, 1e3, "1", "a ratio to the full section, near 1");
+const DURATION: Range = Range::new(1e-9, 1e7, "s", "times are in seconds");
 
 /// Longest beam, in heights: dry, and with bladders, which cover a good part of it.
 const MOST_SLENDER: [f64; 2] = [1e5, 4e3];

@@ -294,6 +294,3 @@ fn spent(summary: &Summary) -> Option<String> {
     let share = |(name, s): (&str, f64)| hold(format!("{name} {:.0} %", 100.0 * s / w.total));
     Some(shares.map(share).join(BETWEEN))
 }
-
-#[cfg(test)]
-mod tests;

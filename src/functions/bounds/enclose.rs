@@ -20,16 +20,8 @@ impl Bounded for Signal {
             Self::Ramp(ramp) => ramp.span(from, to),
             Self::Polynomial(polynomial) => polynomial.span(from, to),
             Self::Table(table) => table.curve.span(from, to),
-            Self::Sum(terms) => terms
-                .iter()
-                .map(|term| term.span(from, to))
-                .reduce(|a, b| a + b)
-                .unwrap_or(Span::at(Jet::default())),
-            Self::Product(factors) => factors
-                .iter()
-                .map(|factor| factor.span(from, to))
-                .reduce(|a, b| a * b)
-                .unwrap_or(Span::at(Jet::constant(1.0))),
+            Self::Sum(terms) => Span::sum(terms.iter().map(|term| term.span(from, to))),
+            Self::Product(factors) => Span::product(factors.iter().map(|factor| factor.span(from, to))),
         }
     }
 

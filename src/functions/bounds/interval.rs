@@ -107,6 +107,16 @@ impl Span {
     /// Holds nothing.
     pub const EMPTY: Self = Self([Interval::EMPTY; 4]);
 
+    /// Of a sum.
+    pub fn sum(terms: impl Iterator<Item = Self>) -> Self {
+        terms.reduce(|a, b| a + b).unwrap_or(Self::at(Jet::default()))
+    }
+
+    /// Of a product.
+    pub fn product(factors: impl Iterator<Item = Self>) -> Self {
+        factors.reduce(|a, b| a * b).unwrap_or(Self::at(Jet::constant(1.0)))
+    }
+
     /// One instant.
     pub fn at(jet: Jet) -> Self {
         Self([jet.value, jet.rate, jet.acceleration, jet.jerk].map(Interval::point))

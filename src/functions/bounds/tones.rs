@@ -181,7 +181,7 @@ impl Bounded for Envelope<'_> {
             Factor::Given(signal) => signal.span(from, to),
             Factor::Start(ramp) => ramp.span(from, to),
         });
-        spans.reduce(|a, b| a * b).unwrap_or(Span::at(Jet::constant(1.0)))
+        Span::product(spans)
     }
 
     fn is_elementary(&self) -> bool {

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use super::columns::aligned;
+use super::columns::{aligned, cells};
 use super::folder::ResultFolder;
 use super::numbers::{shortest, significant};
 use super::plot::multipliers::{self, Dot, Multipliers};
@@ -45,15 +45,7 @@ pub fn words(found: &Cycle) -> String {
         significant(*period_s, 6),
         found.cycle.steps_per_period
     );
-    let headings = [
-        "",
-        "multiplier",
-        "modulus",
-        "growth [1/s]",
-        "frequency [Hz]",
-        "by steps [1/s]",
-        "part",
-    ];
+    let headings = cells::<7>(" | multiplier | modulus | growth [1/s] | frequency [Hz] | by steps [1/s] | part");
     let mut lines = vec![headings.map(String::from)];
     lines.extend(multipliers.iter().map(|m| {
         [

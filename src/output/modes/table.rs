@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{Report, moves};
-use crate::output::columns::aligned;
+use crate::output::columns::{aligned, cells};
 use crate::output::numbers::{percent, quantity, significant};
 use crate::output::records::{self, number};
 use crate::run::modes::{Limit, Mode};
@@ -11,19 +11,7 @@ use crate::run::modes::{Limit, Mode};
 /// Digits shown at most.
 const DIGITS: f64 = 6.0;
 
-const HEADINGS: [&str; 11] = [
-    "",
-    "mode",
-    "moves",
-    "frequency",
-    "mesh error",
-    "damping ratio",
-    "growth rate",
-    "its mesh error",
-    "time constant",
-    "undrained",
-    "drained",
-];
+const HEADINGS: &str = " | mode | moves | frequency | mesh error | damping ratio | growth rate | its mesh error | time constant | undrained | drained";
 
 /// The table, with what it is about above and how to read it below.
 pub fn table(report: &Report) -> String {
@@ -43,10 +31,10 @@ pub fn table(report: &Report) -> String {
         found.factorizations,
         found.solves
     );
-    let mut lines = vec![HEADINGS.map(String::from)];
+    let mut lines = vec![cells::<11>(HEADINGS).map(String::from)];
     lines.extend(found.modes.iter().enumerate().map(|(k, mode)| line(k + 1, mode)));
     // a column of which no mode has anything says nothing
-    let shown: Vec<usize> = (0..HEADINGS.len())
+    let shown: Vec<usize> = (0..lines[0].len())
         .filter(|&k| k == 0 || lines[1..].iter().any(|l| !l[k].is_empty()))
         .collect();
     let lines: Vec<Vec<String>> = lines

@@ -71,12 +71,7 @@ pub fn draw(data: &AblationBars) -> Option<String> {
     let every = if hi - lo > 8.0 { 2 } else { 1 };
     let ticks = (lo as i32..=hi as i32).filter(|n| n.rem_euclid(every) == 0);
     let height = PITCH * data.bars.len() as f64;
-    let place = Place {
-        left: LEFT,
-        top: TOP,
-        width: WIDTH,
-        height,
-    };
+    let place = Place::new(LEFT, TOP, WIDTH, height);
     let none = |lo: f64, hi: f64| Scale {
         lo,
         hi,
@@ -134,10 +129,7 @@ pub fn draw(data: &AblationBars) -> Option<String> {
         let tolerance = changes.at((data.tolerance.log10(), 0.0)).0;
         canvas.line(
             &[(tolerance, place.top - 6.0), (tolerance, place.bottom())],
-            Stroke {
-                dash: Some((5.0, 3.0)),
-                ..Stroke::solid(INK, 1.2)
-            },
+            Stroke::dashed(INK, 1.2, (5.0, 3.0)),
         );
         let small = Words::new(10.0, Anchor::Centre).coloured(FAINT_INK);
         canvas.text(
@@ -182,7 +174,7 @@ fn row(canvas: &mut Canvas, changes: &Panel, work: &Panel, bar: &Bar, y: f64) {
         ),
     }
     if let Some(largest) = bar.largest.filter(|x| *x > 0.0) {
-        ring(canvas, (at(largest), y));
+        canvas.ring((at(largest), y), 4.0, Stroke::solid(INK, 1.2));
     }
     if bar.work.is_finite() {
         let end = work.at((bar.work.min(work.x.hi), 0.0)).0;
@@ -195,14 +187,6 @@ fn row(canvas: &mut Canvas, changes: &Panel, work: &Panel, bar: &Bar, y: f64) {
         &[(place.left, lower), (work.place.right(), lower)],
         Stroke::solid(GRID, 0.5),
     );
-}
-
-fn ring(canvas: &mut Canvas, (x, y): (f64, f64)) {
-    let points: Vec<_> = (0..=16)
-        .map(|k| f64::from(k) * std::f64::consts::TAU / 16.0)
-        .map(|angle| (x + 4.0 * angle.cos(), y + 4.0 * angle.sin()))
-        .collect();
-    canvas.line(&points, Stroke::solid(INK, 1.2));
 }
 
 fn colour(verdict: Option<Verdict>) -> Colour {

@@ -33,6 +33,14 @@ impl Stroke {
             dash: None,
         }
     }
+
+    /// A dashed one: lengths of dash and gap in points.
+    pub fn dashed(colour: Colour, width: f64, dash: (f64, f64)) -> Self {
+        Self {
+            dash: Some(dash),
+            ..Self::solid(colour, width)
+        }
+    }
 }
 
 /// Which point of a text is given.
@@ -151,6 +159,13 @@ impl Canvas {
     /// The outline of a rectangle.
     pub fn frame(&mut self, a: (f64, f64), b: (f64, f64), stroke: Stroke) {
         self.line(&[a, (b.0, a.1), b, (a.0, b.1), a], stroke);
+    }
+
+    /// An open ring about a point.
+    pub fn ring(&mut self, (x, y): (f64, f64), radius: f64, stroke: Stroke) {
+        let angles = (0..=16).map(|k| f64::from(k) * std::f64::consts::TAU / 16.0);
+        let points = angles.map(|angle| (x + radius * angle.cos(), y + radius * angle.sin()));
+        self.line(&points.collect::<Vec<_>>(), stroke);
     }
 
     /// Words at a point.

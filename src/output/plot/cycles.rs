@@ -1,6 +1,6 @@
 //! `sweep.svg`: cycles along a parameter, a panel a quantity; open rings: cycles that are not stable.
 
-use super::canvas::{Canvas, Stroke, picture};
+use super::canvas::{Stroke, picture};
 use super::colour::Colour;
 use super::extent;
 use super::panel::{Panel, Place, title};
@@ -63,12 +63,7 @@ pub fn draw(data: &Cycles) -> Option<String> {
         title(canvas, 16.0, &format!("{} · steady cycles", data.case), about);
         for (k, quantity) in data.quantities.iter().enumerate() {
             let panel = Panel {
-                place: Place {
-                    left: LEFT,
-                    top: TOP + k as f64 * (HEIGHT + GAP),
-                    width: WIDTH,
-                    height: HEIGHT,
-                },
+                place: Place::new(LEFT, TOP + k as f64 * (HEIGHT + GAP), WIDTH, HEIGHT),
                 x: x.clone(),
                 y: Scale::around(
                     extent(quantity.values.iter().copied().chain([0.0])),
@@ -81,18 +76,11 @@ pub fn draw(data: &Cycles) -> Option<String> {
             let points = xs.iter().copied().zip(quantity.values.iter().copied());
             panel.curve(canvas, points.clone(), Stroke::solid(LINE, 1.4));
             for (point, stable) in points.zip(&data.stable) {
-                ring(canvas, panel.at(point), if *stable { LINE } else { WARNING });
+                let colour = if *stable { LINE } else { WARNING };
+                canvas.ring(panel.at(point), 3.4, Stroke::solid(colour, 1.4));
             }
             let last = k + 1 == data.quantities.len();
             panel.axes(canvas, last.then_some(data.pointer.as_str()), &quantity.name);
         }
     }))
-}
-
-fn ring(canvas: &mut Canvas, (x, y): (f64, f64), colour: Colour) {
-    let points: Vec<_> = (0..=16)
-        .map(|k| f64::from(k) * std::f64::consts::TAU / 16.0)
-        .map(|angle| (x + 3.4 * angle.cos(), y + 3.4 * angle.sin()))
-        .collect();
-    canvas.line(&points, Stroke::solid(colour, 1.4));
 }

@@ -72,12 +72,7 @@ pub fn draw(data: &Deflection) -> Option<String> {
         );
         for (k, (name, u, y)) in panels.into_iter().filter(|(_, u, _)| !u.is_empty()).enumerate() {
             let top = TOP + k as f64 * (HEIGHT + GAP);
-            let place = Place {
-                left: LEFT,
-                top,
-                width: WIDTH,
-                height: HEIGHT,
-            };
+            let place = Place::new(LEFT, top, WIDTH, HEIGHT);
             let panel = Panel { place, x: x.clone(), y };
             let curves = u.iter().map(|u| data.theta.iter().copied().zip(u.iter().copied()));
             draw_over_time(canvas, &panel, &data.times, curves);
@@ -85,17 +80,8 @@ pub fn draw(data: &Deflection) -> Option<String> {
             panel.axes(canvas, x_name, name);
         }
         if let Some(shape) = shape {
-            let place = Place {
-                left: LEFT,
-                top: last + 62.0,
-                width: WIDTH,
-                height: shape.height,
-            };
-            let panel = Panel {
-                place,
-                x: shape.z,
-                y: shape.x,
-            };
+            let place = Place::new(LEFT, last + 62.0, WIDTH, shape.height);
+            let panel = Panel::new(place, shape.z, shape.x);
             let curves = data.u1.iter().zip(&data.u3).map(|(u1, u3)| {
                 let z = data.theta.iter().zip(u3).map(|(t, u)| t + u);
                 z.zip(u1.iter().copied())
@@ -103,12 +89,7 @@ pub fn draw(data: &Deflection) -> Option<String> {
             draw_over_time(canvas, &panel, &data.times, curves);
             panel.axes(canvas, Some("shape: z = θ + u₃"), "x = u₁");
         }
-        let bar = Place {
-            left: LEFT + WIDTH + 26.0,
-            top: TOP + 8.0,
-            width: 15.0,
-            height: last - TOP - 8.0,
-        };
+        let bar = Place::new(LEFT + WIDTH + 26.0, TOP + 8.0, 15.0, last - TOP - 8.0);
         time_bar(canvas, bar, from, to);
     }))
 }

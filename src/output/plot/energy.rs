@@ -56,12 +56,7 @@ pub fn draw(data: &Energy) -> Option<String> {
     Some(picture(SHEET, bottom + 48.0, |canvas| {
         let about = "stored energies (solid), cumulative works and losses (dashed)";
         title(canvas, LEFT, &format!("{} · energy", data.case), about);
-        let place = Place {
-            left: LEFT,
-            top: TOP,
-            width: WIDTH,
-            height: HEIGHT,
-        };
+        let place = Place::new(LEFT, TOP, WIDTH, HEIGHT);
         let y = Scale::around(
             extent(lines.iter().flat_map(|c| c.points.iter().map(|p| p.1))),
             1e-15,
@@ -76,12 +71,7 @@ pub fn draw(data: &Energy) -> Option<String> {
         }
         panel.axes(canvas, residual.is_none().then_some("time t"), "energy");
         if let Some(residual) = residual {
-            let place = Place {
-                left: LEFT,
-                top: last + GAP,
-                width: WIDTH,
-                height: RESIDUAL_HEIGHT,
-            };
+            let place = Place::new(LEFT, last + GAP, WIDTH, RESIDUAL_HEIGHT);
             draw_residual(canvas, place, x, residual, largest);
         }
     }))

@@ -66,12 +66,7 @@ pub fn draw(data: &History) -> Option<String> {
         );
         for (k, curves) in shown.iter().enumerate() {
             let top = TOP + k as f64 * (HEIGHT + GAP);
-            let place = Place {
-                left: LEFT,
-                top,
-                width: WIDTH,
-                height: HEIGHT,
-            };
+            let place = Place::new(LEFT, top, WIDTH, HEIGHT);
             let values = curves.iter().flat_map(|c| c.points.iter().map(|p| p.1));
             let y = Scale::around(extent(values), floor(&curves[0].unit), &curves[0].unit, 4);
             let panel = Panel { place, x: x.clone(), y };

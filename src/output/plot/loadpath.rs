@@ -45,12 +45,7 @@ pub fn draw(data: &LoadPath) -> Option<String> {
     Some(picture(sheet, bottom + 30.0, |canvas| {
         title(canvas, LEFT, &format!("{} · equilibria", data.case), &data.about);
         for (k, curve) in curves.iter().enumerate() {
-            let place = Place {
-                left: LEFT + k as f64 * (WIDTH + GAP),
-                top: TOP,
-                width: WIDTH,
-                height: HEIGHT,
-            };
+            let place = Place::new(LEFT + k as f64 * (WIDTH + GAP), TOP, WIDTH, HEIGHT);
             over_displacement(canvas, place, data, curve);
         }
         if let Some(shapes) = shapes {
@@ -62,19 +57,16 @@ pub fn draw(data: &LoadPath) -> Option<String> {
 /// Share of the loads over one quantity: unbroken where stable.
 fn over_displacement(canvas: &mut Canvas, place: Place, data: &LoadPath, curve: &Curve) {
     let values = || curve.points.iter().map(|p| p.1);
-    let panel = Panel {
+    let panel = Panel::new(
         place,
-        x: Scale::around(extent(values()), 0.0, &curve.unit, 4),
-        y: Scale::around(extent(data.shares.iter().copied()), 0.0, "1", 6),
-    };
+        Scale::around(extent(values()), 0.0, &curve.unit, 4),
+        Scale::around(extent(data.shares.iter().copied()), 0.0, "1", 6),
+    );
     panel.grid(canvas);
     for (k, pair) in curve.points.windows(2).enumerate() {
         let mut stroke = Stroke::solid(PALETTE[0], 1.8);
         if !data.stable[k] || !data.stable[k + 1] {
-            stroke = Stroke {
-                dash: Some((3.0, 3.0)),
-                ..Stroke::solid(PALETTE[1], 1.8)
-            };
+            stroke = Stroke::dashed(PALETTE[1], 1.8, (3.0, 3.0));
         }
         panel.curve(canvas, pair.iter().map(|p| (p.1, p.0)), stroke);
     }
@@ -122,17 +114,8 @@ impl Shapes {
     }
 
     fn draw(self, canvas: &mut Canvas, data: &LoadPath, top: f64) {
-        let place = Place {
-            left: LEFT,
-            top,
-            width: self.width,
-            height: self.height,
-        };
-        let panel = Panel {
-            place,
-            x: self.z,
-            y: self.x,
-        };
+        let place = Place::new(LEFT, top, self.width, self.height);
+        let panel = Panel::new(place, self.z, self.x);
         let order: Vec<f64> = data.shapes.iter().map(|s| s.0 as f64).collect();
         let curves = data
             .shapes

@@ -73,12 +73,7 @@ pub fn draw(data: &ModeShapes) -> Option<String> {
         }
         for (k, mode) in shown.iter().enumerate() {
             let last = k + 1 == shown.len();
-            let place = Place {
-                left: LEFT,
-                top: TOP + 14.0 + k as f64 * (HEIGHT + GAP),
-                width: WIDTH,
-                height: HEIGHT,
-            };
+            let place = Place::new(LEFT, TOP + 14.0 + k as f64 * (HEIGHT + GAP), WIDTH, HEIGHT);
             let words = Words {
                 bold: true,
                 ..Words::new(12.0, Anchor::Left).coloured(if mode.grows { UNSTABLE } else { INK })
@@ -127,10 +122,7 @@ fn curves(
     let panel = Panel { place, x, y };
     panel.grid(canvas);
     for ((x, y), colour) in lines.into_iter().zip(PALETTE) {
-        let behind = Stroke {
-            dash: Some((4.0, 3.0)),
-            ..Stroke::solid(colour, 1.1)
-        };
+        let behind = Stroke::dashed(colour, 1.1, (4.0, 3.0));
         // what is in phase throughout has no second part to show
         if y.iter().any(|y| y.im.abs() > 1e-3 * size) {
             panel.curve(canvas, x.iter().copied().zip(y.iter().map(|y| y.im)), behind);

@@ -40,16 +40,11 @@ const NAMED: usize = 6;
 pub fn draw(data: &Multipliers) -> Option<String> {
     let first = data.dots.first()?;
     let reach = 1.15 * first.re.hypot(first.im).max(1.0);
-    let panel = Panel {
-        place: Place {
-            left: LEFT,
-            top: TOP,
-            width: SIDE,
-            height: SIDE,
-        },
-        x: Scale::exact(-reach, reach, "1", 6),
-        y: Scale::exact(-reach, reach, "1", 6),
-    };
+    let panel = Panel::new(
+        Place::new(LEFT, TOP, SIDE, SIDE),
+        Scale::exact(-reach, reach, "1", 6),
+        Scale::exact(-reach, reach, "1", 6),
+    );
     Some(picture(LEFT + SIDE + 250.0, TOP + SIDE + 52.0, |canvas| {
         title(
             canvas,

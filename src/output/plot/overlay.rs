@@ -53,12 +53,7 @@ pub fn draw(data: &Overlay) -> Option<String> {
         for (k, pair) in data.pairs.iter().enumerate() {
             let top = TOP + k as f64 * (HEIGHT + NEAR + BELOW + GAP);
             let last = k + 1 == data.pairs.len();
-            let place = Place {
-                left: LEFT,
-                top,
-                width: WIDTH,
-                height: HEIGHT,
-            };
+            let place = Place::new(LEFT, top, WIDTH, HEIGHT);
             let both = [
                 (&pair.a, Stroke::solid(PALETTE[0], 2.2)),
                 (&pair.b, Stroke::solid(PALETTE[1], 1.1)),

@@ -26,6 +26,16 @@ pub struct Place {
 }
 
 impl Place {
+    /// From its upper left corner, width and height.
+    pub fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
+        Self {
+            left,
+            top,
+            width,
+            height,
+        }
+    }
+
     /// Right edge.
     pub fn right(&self) -> f64 {
         self.left + self.width
@@ -49,6 +59,11 @@ pub struct Panel {
 }
 
 impl Panel {
+    /// Axes at a place.
+    pub fn new(place: Place, x: Scale, y: Scale) -> Self {
+        Self { place, x, y }
+    }
+
     /// Point on the sheet of a pair of values.
     pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let p = self.place;

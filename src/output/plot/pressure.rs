@@ -47,12 +47,7 @@ pub fn draw(data: &Pressure) -> Option<String> {
     let margin = 0.5 * least_step(&data.x_f).unwrap_or(1.0);
     let (lo, hi) = extent(data.x_f.iter().copied())?;
     let x = Scale::exact(lo - margin, hi + margin, "1", 10);
-    let place = Place {
-        left: LEFT,
-        top: TOP,
-        width: WIDTH,
-        height: HEIGHT,
-    };
+    let place = Place::new(LEFT, TOP, WIDTH, HEIGHT);
     let panel = Panel { place, x, y };
     Some(picture(SHEET, TOP + HEIGHT + 72.0, |canvas| {
         title(
@@ -70,11 +65,7 @@ pub fn draw(data: &Pressure) -> Option<String> {
         for pair in networks.windows(2) {
             let middle = 0.5 * (data.x_f[pair[0].1 - 1] + data.x_f[pair[1].0]);
             let at = panel.at((middle, panel.y.lo)).0;
-            let dashed = Stroke {
-                colour: DIVIDE,
-                width: 1.0,
-                dash: Some((5.0, 4.0)),
-            };
+            let dashed = Stroke::dashed(DIVIDE, 1.0, (5.0, 4.0));
             canvas.line(&[(at, TOP), (at, TOP + HEIGHT)], dashed);
         }
         let shifted = Panel {
@@ -86,12 +77,7 @@ pub fn draw(data: &Pressure) -> Option<String> {
         };
         shifted.axes(canvas, None, "pressure p");
         labels(canvas, &panel, data, &bladders);
-        let bar = Place {
-            left: LEFT + WIDTH + 26.0,
-            top: TOP + 8.0,
-            width: 15.0,
-            height: HEIGHT - 8.0,
-        };
+        let bar = Place::new(LEFT + WIDTH + 26.0, TOP + 8.0, 15.0, HEIGHT - 8.0);
         time_bar(canvas, bar, from, to);
     }))
 }

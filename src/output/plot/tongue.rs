@@ -65,16 +65,11 @@ pub fn draw(data: &Tongue) -> Option<String> {
         let about = "growth rate of the largest disturbance; dashed: principal tongue of Mathieu's equation, first mode, dry; ring: the case";
         title(canvas, 16.0, &format!("{} · shaken along its axis", data.case), about);
         for (k, sheet) in data.panels.iter().enumerate() {
-            let panel = Panel {
-                place: Place {
-                    left: LEFT + k as f64 * (WIDTH + GAP),
-                    top: TOP,
-                    width: WIDTH,
-                    height: HEIGHT,
-                },
-                x: Scale::exact(first - half_x, last + half_x, "Hz", 6),
-                y: Scale::exact(low - half_y, high + half_y, "m", 6),
-            };
+            let panel = Panel::new(
+                Place::new(LEFT + k as f64 * (WIDTH + GAP), TOP, WIDTH, HEIGHT),
+                Scale::exact(first - half_x, last + half_x, "Hz", 6),
+                Scale::exact(low - half_y, high + half_y, "m", 6),
+            );
             cells(canvas, &panel, data, sheet, (half_x, half_y), most);
             overlay(canvas, &panel, data);
             let mut axes = panel.clone();
@@ -113,13 +108,7 @@ fn overlay(canvas: &mut Canvas, panel: &Panel, data: &Tongue) {
             .iter()
             .zip(onset)
             .map(|(f, a)| panel.at((*f, inside(*a))));
-        canvas.line(
-            &points.collect::<Vec<_>>(),
-            Stroke {
-                dash: Some((5.0, 3.0)),
-                ..Stroke::solid(INK, 1.4)
-            },
-        );
+        canvas.line(&points.collect::<Vec<_>>(), Stroke::dashed(INK, 1.4, (5.0, 3.0)));
     }
     let (x, y) = panel.at(data.own);
     let place = panel.place;

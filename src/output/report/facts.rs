@@ -7,120 +7,49 @@ use serde_json::{Value, json};
 use crate::case::Case;
 use crate::case::schema::Effect;
 use crate::model::{Model, characteristic};
+use crate::output::columns::cells;
 use crate::output::numbers::{count, duration, pretty_unit, significant};
 use crate::run::summary::Summary;
 
 /// Characteristic numbers: name, unit, meaning. Those of networks are matched by the start of their names.
-const CHARACTERISTIC: [(&str, &str, &str); 32] = [
-    (
-        "area_change_estimate",
-        "1",
-        "how far pressure is expected to close a bladder, as a share of its cross-section",
-    ),
-    (
-        "axial_stiffness_n",
-        "N",
-        "force that would double the beam's length, EA",
-    ),
-    ("base_acceleration_m_s2", "m/s^2", "acceleration of the shaken root"),
-    ("bending_stiffness_n_m2", "N m^2", "resistance to bending, EI"),
-    (
-        "bladder_compliance_m3_pa",
-        "m^3/Pa",
-        "volume that a bladder takes up per pressure",
-    ),
-    ("bladder_fill", "1", "share of the beam's length that bladders take up"),
-    (
-        "bladder_resistance_pa_s_m3",
-        "Pa s/m^3",
-        "pressure drop along a bladder per flow",
-    ),
-    (
-        "bladder_tube_time_s",
-        "s",
-        "time in which a bladder empties through its tube",
-    ),
-    ("euler_load_n", "N", "compression under which the beam buckles (Euler)"),
-    (
-        "f_u",
-        "1",
-        "how fast the drive is for the fluid: forcing frequency times fluid time",
-    ),
-    (
-        "first_axial_frequency_hz",
-        "Hz",
-        "lowest frequency of waves along the beam",
-    ),
-    ("first_bending_frequency_hz", "Hz", "lowest frequency of bending"),
-    ("force_scale_n", "N", "force that is expected in the beam"),
-    ("forcing_frequency_hz", "Hz", "frequency of the drive"),
-    (
-        "gyration_radius_squared_m2",
-        "m^2",
-        "squared radius of gyration of a section, y11",
-    ),
-    (
-        "inertial_compression_n_m",
-        "N/m",
-        "load along the beam by shaking its root",
-    ),
-    (
-        "largest_strain_estimate",
-        "1",
-        "strain that is expected; the model wants it small",
-    ),
-    ("mass_factor", "1", "mass over that of a solid beam of the same size"),
-    ("mass_per_length_kg_m", "kg/m", "mass per length, m"),
-    (
-        "mathieu_frequency_ratio",
-        "1",
-        "drive over twice the first bending frequency; near 1 shaking along makes bending grow",
-    ),
-    (
-        "mathieu_growth_bound_per_s",
-        "1/s",
-        "bound of that growth, on the safe side; damping that exceeds it keeps the beam straight",
-    ),
-    (
-        "mathieu_growth_rate_per_s",
-        "1/s",
-        "growth of the first bending mode by shaking along, without fluid; 0 is stable",
-    ),
-    (
-        "mathieu_modulation",
-        "1",
-        "how strongly shaking along changes the bending stiffness",
-    ),
-    (
-        "reynolds_estimate",
-        "1",
-        "inertia over viscosity in the tubes; creeping flow needs it small",
-    ),
-    (
-        "self_weight_buckling_load_n_m",
-        "N/m",
-        "load along the beam under which it buckles",
-    ),
-    ("slenderness", "1", "length over height"),
-    ("t_f_s", "s", "time scale of the fluid, t_f*"),
-    ("t_s_over_t_f", "1", "time of the solid over that of the fluid"),
-    ("t_s_s", "s", "time scale of the solid, t_s*"),
-    (
-        "tube_resistance_pa_s_m3",
-        "Pa s/m^3",
-        "pressure drop along a tube per flow",
-    ),
-    (
-        "womersley",
-        "1",
-        "tube radius over the reach of viscosity in a cycle; the model wants it below 1",
-    ),
-    (
-        "slowest_time_of_network_",
-        "s",
-        "slowest time in which pressures of a network become equal",
-    ),
-];
+const CHARACTERISTIC: &str = "\
+area_change_estimate | 1 | how far pressure is expected to close a bladder, as a share of its cross-section
+axial_stiffness_n | N | force that would double the beam's length, EA
+base_acceleration_m_s2 | m/s^2 | acceleration of the shaken root
+bending_stiffness_n_m2 | N m^2 | resistance to bending, EI
+bladder_compliance_m3_pa | m^3/Pa | volume that a bladder takes up per pressure
+bladder_fill | 1 | share of the beam's length that bladders take up
+bladder_resistance_pa_s_m3 | Pa s/m^3 | pressure drop along a bladder per flow
+bladder_tube_time_s | s | time in which a bladder empties through its tube
+euler_load_n | N | compression under which the beam buckles (Euler)
+f_u | 1 | how fast the drive is for the fluid: forcing frequency times fluid time
+first_axial_frequency_hz | Hz | lowest frequency of waves along the beam
+first_bending_frequency_hz | Hz | lowest frequency of bending
+force_scale_n | N | force that is expected in the beam
+forcing_frequency_hz | Hz | frequency of the drive
+gyration_radius_squared_m2 | m^2 | squared radius of gyration of a section, y11
+inertial_compression_n_m | N/m | load along the beam by shaking its root
+largest_strain_estimate | 1 | strain that is expected; the model wants it small
+mass_factor | 1 | mass over that of a solid beam of the same size
+mass_per_length_kg_m | kg/m | mass per length, m
+mathieu_frequency_ratio | 1 | drive over twice the first bending frequency; near 1 shaking along makes bending grow
+mathieu_growth_bound_per_s | 1/s | bound of that growth, on the safe side; damping that exceeds it keeps the beam straight
+mathieu_growth_rate_per_s | 1/s | growth of the first bending mode by shaking along, without fluid; 0 is stable
+mathieu_modulation | 1 | how strongly shaking along changes the bending stiffness
+reynolds_estimate | 1 | inertia over viscosity in the tubes; creeping flow needs it small
+self_weight_buckling_load_n_m | N/m | load along the beam under which it buckles
+slenderness | 1 | length over height
+t_f_s | s | time scale of the fluid, t_f*
+t_s_over_t_f | 1 | time of the solid over that of the fluid
+t_s_s | s | time scale of the solid, t_s*
+tube_resistance_pa_s_m3 | Pa s/m^3 | pressure drop along a tube per flow
+womersley | 1 | tube radius over the reach of viscosity in a cycle; the model wants it below 1
+slowest_time_of_network_ | s | slowest time in which pressures of a network become equal";
+
+/// Rows of the table: name, unit, meaning.
+fn known() -> impl Iterator<Item = [&'static str; 3]> {
+    CHARACTERISTIC.lines().map(cells)
+}
 
 /// Characteristic numbers of a case that was not run; none where it has no model.
 pub fn characteristic_of(case: &Case) -> Vec<Value> {
@@ -130,10 +59,8 @@ pub fn characteristic_of(case: &Case) -> Vec<Value> {
 /// Rows: name, value, meaning.
 pub fn characteristic(numbers: &BTreeMap<String, f64>) -> Vec<Value> {
     let row = |(name, value): (&String, &f64)| {
-        let known = CHARACTERISTIC
-            .iter()
-            .find(|(key, ..)| name == key || key.ends_with('_') && name.starts_with(key));
-        let (unit, about) = known.map_or(("1", ""), |(_, unit, about)| (*unit, *about));
+        let known = known().find(|[key, ..]| name == key || key.ends_with('_') && name.starts_with(key));
+        let [_, unit, about] = known.unwrap_or(["", "1", ""]);
         let text = format!("{} {}", significant(*value, 4), pretty_unit(unit));
         json!({"name": name, "value": text.trim_end(), "about": about})
     };
@@ -235,7 +162,7 @@ mod tests {
                 None => name,
             })
             .collect();
-        let described = CHARACTERISTIC.iter().map(|(name, ..)| (*name).to_string()).collect();
+        let described = known().map(|[name, ..]| name.to_string()).collect();
         assert_eq!(there, described);
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::words::spoken;
-use crate::output::columns::aligned;
+use crate::output::columns::{aligned, cells};
 use crate::output::numbers::significant;
 use crate::output::records::{self, number};
 use crate::study::accuracy::Study;
@@ -11,21 +11,8 @@ use crate::study::accuracy::plan::fluid_cells;
 use crate::study::accuracy::study::Point;
 use crate::study::accuracy::trial::{Ending, Role};
 
-const HEADINGS: [&str; 13] = [
-    "cells",
-    "method",
-    "rtol",
-    "time",
-    "median",
-    "steps",
-    "residuals",
-    "factor.",
-    "failed",
-    "in time",
-    "in space",
-    "total",
-    "",
-];
+const HEADINGS: &str =
+    "cells | method | rtol | time | median | steps | residuals | factor. | failed | in time | in space | total | ";
 
 /// The table of points in the headline's measure, then references, then what each measure's limit is worth.
 pub fn table(study: &Study) -> String {
@@ -44,7 +31,7 @@ pub fn table(study: &Study) -> String {
         significant(measure.size.max, 3),
         measure.unit
     );
-    let mut lines = vec![HEADINGS.map(String::from)];
+    let mut lines = vec![cells::<13>(HEADINGS).map(String::from)];
     let mut unfinished = vec![];
     for (k, point) in study
         .points
@@ -139,14 +126,7 @@ fn references(study: &Study) -> String {
 
 /// What is known of each measure: order in space, own error of the limit.
 fn limits(study: &Study) -> String {
-    let headings = [
-        "limit of each measure",
-        "order",
-        "limit by",
-        "own error",
-        "of it in space",
-        "size",
-    ];
+    let headings = cells::<6>("limit of each measure | order | limit by | own error | of it in space | size");
     let mut lines = vec![headings.map(String::from)];
     lines.extend(study.measures.iter().map(|m| {
         [

@@ -23,30 +23,32 @@ pub(super) fn fault(failure: &IntegrationFailure) -> SolverFault {
     }
 }
 
-pub(super) fn beyond(t: f64, what: String) -> SolverFault {
+/// A fault at a time, with what it is, its likely cause and what to try.
+fn at(t: f64, code: Code, [what, cause, hint]: [&str; 3]) -> SolverFault {
     SolverFault {
-        code: Code::OutOfRange,
+        code,
         at: At::Time(t),
-        what,
+        what: what.into(),
         unknown: None,
-        cause: Some(
-            "loads, pressures or flows beyond what the model describes, or a motion that grows without bounds".into(),
-        ),
-        hint: Some(
-            "results stand up to this time; look at the fields before it, at the units of loads and flows".into(),
-        ),
+        cause: Some(cause.into()),
+        hint: Some(hint.into()),
     }
 }
 
+pub(super) fn beyond(t: f64, what: String) -> SolverFault {
+    let cause = "loads, pressures or flows beyond what the model describes, or a motion that grows without bounds";
+    let hint = "results stand up to this time; look at the fields before it, at the units of loads and flows";
+    at(t, Code::OutOfRange, [&what, cause, hint])
+}
+
 pub(super) fn too_many_steps(t: f64, step: f64) -> SolverFault {
-    SolverFault {
-        code: Code::Steps,
-        at: At::Time(t),
-        what: format!("the number of steps allowed is used up at t = {t:.6} s, with steps of {step:.2e} s"),
-        unknown: None,
-        cause: Some("fast waves that the tolerance asks to follow".into()),
-        hint: Some("raise /solver/max_steps, or loosen /solver/rtol".into()),
-    }
+    let what = format!("the number of steps allowed is used up at t = {t:.6} s, with steps of {step:.2e} s");
+    let cause = "fast waves that the tolerance asks to follow";
+    at(
+        t,
+        Code::Steps,
+        [&what, cause, "raise /solver/max_steps, or loosen /solver/rtol"],
+    )
 }
 
 pub(super) fn inconsistent(t: f64, failure: &StartFailure) -> SolverFault {
@@ -64,26 +66,15 @@ pub(super) fn inconsistent(t: f64, failure: &StartFailure) -> SolverFault {
         )
     };
     SolverFault {
-        code: Code::NoStart,
-        at: At::Time(t),
-        what: format!("{what}: {}", failure.what),
         unknown: failure.worst.as_ref().map(|(_, name)| name.clone()),
-        cause: Some(cause.into()),
-        hint: Some(hint.into()),
+        ..at(t, Code::NoStart, [&format!("{what}: {}", failure.what), cause, hint])
     }
 }
 
 pub(super) fn stalled(t: f64, step: f64) -> SolverFault {
-    SolverFault {
-        code: Code::Stalled,
-        at: At::Time(t),
-        what: format!(
-            "no progress: {STALL_STEPS} steps have hardly moved the time on from t = {t:.9} s (step {step:.2e} s)"
-        ),
-        unknown: None,
-        cause: Some(
-            "the solution changes ever faster towards this time: a closing bladder, an instability, a jump".into(),
-        ),
-        hint: Some("look at the fields just before this time; damping or a smoother signal may help".into()),
-    }
+    let what =
+        format!("no progress: {STALL_STEPS} steps have hardly moved the time on from t = {t:.9} s (step {step:.2e} s)");
+    let cause = "the solution changes ever faster towards this time: a closing bladder, an instability, a jump";
+    let hint = "look at the fields just before this time; damping or a smoother signal may help";
+    at(t, Code::Stalled, [&what, cause, hint])
 }

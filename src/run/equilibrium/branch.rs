@@ -54,11 +54,7 @@ impl Follower<'_> {
             self.path.rejected += 1;
             step *= 0.5;
             if step < NEAR {
-                let none = || KinsolFailure {
-                    code: 0,
-                    what: "the path that crosses here is not found".into(),
-                    worst: None,
-                };
+                let none = || KinsolFailure::own("the path that crosses here is not found");
                 return Err(self.fail(&solved.err().unwrap_or_else(none), share));
             }
         }

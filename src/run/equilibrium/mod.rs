@@ -61,7 +61,7 @@ impl Options {
 }
 
 /// A load path, as far as it was followed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Path {
     /// Its states, from rest on.
     pub states: Vec<State>,

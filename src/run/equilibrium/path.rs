@@ -9,7 +9,7 @@ use crate::case::schema::Case;
 use crate::discrete::System;
 use crate::error::{self, At, Code, SolverFault};
 use crate::run::record::Control;
-use crate::sundials::{Kinsol, KinsolFailure, KinsolOptions, Solution};
+use crate::sundials::{Kinsol, KinsolFailure, KinsolOptions};
 
 /// Longest step, in lengths of the beam and shares of the load.
 const LONGEST: f64 = 0.5;
@@ -50,13 +50,7 @@ pub(super) fn follow_of(
     watch: &mut dyn FnMut(&State) -> Control,
 ) -> Path {
     let (statics, y) = rest(case, system);
-    let mut path = Path {
-        states: vec![],
-        events: vec![],
-        work: Solution::default(),
-        rejected: 0,
-        fault: None,
-    };
+    let mut path = Path::default();
     if let Some(inflow) = statics.fed() {
         let what =
             format!("there is no equilibrium: a closed network takes in {inflow:.3e} m^3/s which nothing lets out");
@@ -247,11 +241,8 @@ impl Follower<'_> {
                 0.35
             };
             if step < SHORTEST {
-                let astray = || KinsolFailure {
-                    code: 0,
-                    what: "what is found lies far from what was predicted, however short the step".into(),
-                    worst: None,
-                };
+                let what = "what is found lies far from what was predicted, however short the step";
+                let astray = || KinsolFailure::own(what);
                 return Err(self.fail(&solved.err().unwrap_or_else(astray), last[n]));
             }
         }

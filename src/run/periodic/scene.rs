@@ -5,7 +5,7 @@ use crate::case::schema::{Case, Choice, Effects};
 use crate::dae::BeamDae;
 use crate::discrete::{System, start};
 use crate::error::{At, Code, Error, Result, SolverFault};
-use crate::integrate::{Absolute, StartOptions, consistent_start};
+use crate::integrate::{Absolute, IntegrationFailure, StartOptions, consistent_start};
 use crate::model::Model;
 use crate::onestep::step_map::StepError;
 use crate::onestep::{Method, OneStep, OneStepOptions, StepMap};
@@ -78,10 +78,8 @@ impl Scene {
     pub fn map(&self, dae: BeamDae, y: &[f64]) -> std::result::Result<StepMap<BeamDae>, StepError> {
         let end = self.drive.period;
         let (mut dae, mut y, mut yp) = (dae, y.to_vec(), vec![0.0; y.len()]);
-        consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default()).map_err(|failure| StepError {
-            time: 0.0,
-            what: failure.to_string(),
-        })?;
+        consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default())
+            .map_err(|failure| StepError::new(0.0, failure.to_string()))?;
         let options = OneStepOptions {
             method: self.method,
             relative: self.rtol,
@@ -89,19 +87,14 @@ impl Scene {
             max_step: Some(end / LEAST_STEPS),
             ..OneStepOptions::default()
         };
-        let error = |failure: Box<crate::integrate::IntegrationFailure>| StepError {
-            time: failure.time,
-            what: failure.to_string(),
-        };
+        let error = |failure: Box<IntegrationFailure>| StepError::new(failure.time, failure.to_string());
         let mut solver = OneStep::new(dae, 0.0, &y, &yp, &options).map_err(error)?;
         let mut times = vec![0.0];
         while solver.time() < end {
             times.push(solver.step(end).map_err(error)?.time);
             if times.len() > MOST_STEPS {
-                return Err(StepError {
-                    time: solver.time(),
-                    what: format!("the motion asks for more than {MOST_STEPS} steps a period"),
-                });
+                let what = format!("the motion asks for more than {MOST_STEPS} steps a period");
+                return Err(StepError::new(solver.time(), what));
             }
         }
         StepMap::new(solver.into_dae(), self.method, times)

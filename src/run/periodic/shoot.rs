@@ -50,36 +50,7 @@ pub struct Search {
     /// Steps of the period map.
     pub steps_per_period: usize,
     /// Work of all.
-    pub work: Total,
-}
-
-/// Work of several marches.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Total {
-    /// Steps.
-    pub steps: u64,
-    /// Residuals.
-    pub residual_evaluations: u64,
-    /// Jacobians.
-    pub jacobian_evaluations: u64,
-    /// Factorisations.
-    pub factorizations: u64,
-    /// Linear solves.
-    pub linear_solves: u64,
-    /// Disturbances carried over a period.
-    pub disturbances: u64,
-}
-
-impl Total {
-    /// Adds the work of a march.
-    pub fn add(&mut self, work: StepMapWork) {
-        self.steps += work.steps;
-        self.residual_evaluations += work.residual_evaluations;
-        self.jacobian_evaluations += work.jacobian_evaluations;
-        self.factorizations += work.factorizations;
-        self.linear_solves += work.linear_solves;
-        self.disturbances += work.disturbances;
-    }
+    pub work: StepMapWork,
 }
 
 /// `[E37]` Finds a cycle from a state near one, `None`: from the start of the case.
@@ -113,7 +84,7 @@ fn go_on(scene: &Scene, mut y: Vec<f64>, periods: usize, search: &mut Search) ->
         let mut yp = vec![0.0; y.len()];
         let gone = march.go(&mut y, &mut yp);
         search.periods += 1;
-        search.work.add(march.work());
+        search.work += march.work();
         gone?;
         dae = march.into_dae();
     }
@@ -141,12 +112,12 @@ fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Result<Cycle,
         if correction <= FOUND && fresh {
             (search.correction, search.residual) = (correction, size);
             search.steps_per_period = march.times().len() - 1;
-            search.work.add(march.work());
+            search.work += march.work();
             return finish(scene, march, y, search);
         }
         if !fresh && correction <= NEAR {
             move_by(&mut y, &step, 1.0);
-            search.work.add(march.work());
+            search.work += march.work();
             march = scene.map(march.into_dae(), &y)?;
             fresh = true;
             back = depart(scene, &mut march, &y, search)?;
@@ -175,10 +146,7 @@ fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Result<Cycle,
 }
 
 fn lost(how: String) -> StepError {
-    StepError {
-        time: 0.0,
-        what: format!("no cycle was found: {how}"),
-    }
+    StepError::new(0.0, format!("no cycle was found: {how}"))
 }
 
 fn move_by(y: &mut [f64], step: &[f64], part: f64) {
@@ -198,10 +166,8 @@ fn depart(scene: &Scene, march: &mut StepMap<BeamDae>, y: &[f64], search: &mut S
 fn finish(scene: &Scene, march: StepMap<BeamDae>, mut y: Vec<f64>, search: &Search) -> Result<Cycle, StepError> {
     let mut yp = vec![0.0; y.len()];
     let mut dae = scene.dae();
-    consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default()).map_err(|failure| StepError {
-        time: 0.0,
-        what: failure.to_string(),
-    })?;
+    consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default())
+        .map_err(|failure| StepError::new(0.0, failure.to_string()))?;
     Ok(Cycle {
         y,
         yp,

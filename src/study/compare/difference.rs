@@ -169,6 +169,7 @@ fn shared(a: &[f64], b: &[f64]) -> (Vec<f64>, bool) {
 }
 
 /// Collects a difference over instants.
+#[derive(Default)]
 struct Sum {
     squares: [f64; 3],
     largest: [f64; 3],
@@ -178,16 +179,6 @@ struct Sum {
 }
 
 impl Sum {
-    fn new() -> Self {
-        Self {
-            squares: [0.0; 3],
-            largest: [0.0; 3],
-            count: 0,
-            at: 0.0,
-            place: 0,
-        }
-    }
-
     fn take(&mut self, t: f64, a: &[f64], b: &[f64]) {
         for (k, (&a, &b)) in a.iter().zip(b).enumerate() {
             let off = (a - b).abs();
@@ -229,7 +220,7 @@ fn history((a, of_a): (&Recording, &Series), (b, of_b): (&Recording, &Series)) -
     if times.is_empty() {
         return None;
     }
-    let mut sum = Sum::new();
+    let mut sum = Sum::default();
     let mut exact = true;
     for &t in &times {
         let mut at = |times: &[f64], series: &Series| {
@@ -259,7 +250,7 @@ fn field((a, of_a): (&Recording, &Array), (b, of_b): (&Recording, &Array)) -> Re
         return Err("the networks are not the same");
     }
     let coarse = if at_a.x.len() <= at_b.x.len() { &at_a } else { &at_b };
-    let mut sum = Sum::new();
+    let mut sum = Sum::default();
     let mut exact = true;
     for &t in &times {
         exact &= cubic(&a.field_times, t).is_exact() && cubic(&b.field_times, t).is_exact();

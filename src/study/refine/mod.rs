@@ -93,6 +93,13 @@ pub struct Number {
     pub size: f64,
 }
 
+impl Number {
+    /// A number, and what would be large.
+    pub fn new(value: f64, size: f64) -> Self {
+        Self { value, size }
+    }
+}
+
 /// Numbers by name.
 pub type Numbers = BTreeMap<String, Number>;
 
@@ -339,54 +346,4 @@ fn largest(estimates: &BTreeMap<String, Estimate>) -> f64 {
 /// The largest of errors, without bounds where one is not known.
 fn most(errors: impl Iterator<Item = Option<f64>>) -> f64 {
     errors.map(|e| e.unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn case() -> Case {
-        serde_json::from_str(
-            r#"{"name": "x", "beam": {"length_m": 1, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1e9,
-                "density_kg_m3": 1e3}, "ends": {"root": "clamped", "tip": "free"}, "time": {"end_s": 1}}"#,
-        )
-        .unwrap()
-    }
-
-    /// A number with errors of order 2 in space and 4/5 in the tolerance, of one sign: reached, and the estimate is no less than the truth and no
-    /// more than three times it. One that goes on to jump is said not to be reached.
-    #[test]
-    fn numbers_are_refined_until_their_estimates_do() {
-        let value = |case: &Case| {
-            let h = 1.0 / case.mesh.cells_per_segment as f64;
-            1.0 + 0.7 * h * h + 3.0 * case.solver.rtol.powf(0.8)
-        };
-        let mut compute = |case: &Case| {
-            let number = Number {
-                value: value(case),
-                size: 0.0,
-            };
-            Ok(Numbers::from([("x".to_string(), number)]))
-        };
-        let (chosen, found) = refine(&case(), 1e-3, true, &mut compute).unwrap();
-        let (error, total) = ((value(&chosen) - 1.0).abs(), found.quantities["x"].total.unwrap());
-        assert!(
-            found.reached && error <= total && total < 3.0 * error,
-            "{error:e} {total:e}"
-        );
-        assert_eq!(warning(&found), None);
-        let mut sign = 1.0;
-        let mut jumps = |_: &Case| {
-            sign = -sign;
-            Ok(Numbers::from([(
-                "x".to_string(),
-                Number {
-                    value: 2.0 + sign,
-                    size: 0.0,
-                },
-            )]))
-        };
-        let (_, found) = refine(&case(), 1e-3, false, &mut jumps).unwrap();
-        assert!(!found.reached && warning(&found).unwrap().contains("W012"));
-    }
 }

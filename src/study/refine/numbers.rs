@@ -59,10 +59,7 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
     };
     let number = |unit: &'static str, value: f64| {
         let (unit, factor) = alike(unit);
-        Number {
-            value,
-            size: (NOTHING * largest(unit)).max(floor(unit)) / factor,
-        }
+        Number::new(value, (NOTHING * largest(unit)).max(floor(unit)) / factor)
     };
     Ok(all().map(|(c, x)| (c.name.clone(), number(c.unit, *x))).collect())
 }
@@ -88,10 +85,7 @@ pub fn of_modes(case: &Case, at_rest_under: Option<f64>, plan: &Plan) -> Result<
         if let Some(value) = mode.frequency_hz() {
             all.insert(format!("{name}_frequency_hz"), Number { value, size: 0.0 });
         }
-        let growth = Number {
-            value: mode.s.re,
-            size: DAMPING * mode.s.norm(),
-        };
+        let growth = Number::new(mode.s.re, DAMPING * mode.s.norm());
         all.insert(format!("{name}_growth_per_s"), growth);
     }
     Ok(all)
@@ -183,10 +177,10 @@ pub fn of_growth(case: &Case, period: Option<f64>, count: usize) -> Result<Numbe
 pub fn of_stability(found: &Floquet) -> Numbers {
     let mut all = of_floquet(found);
     for (k, m) in found.multipliers.iter().enumerate().filter(|(_, m)| m.modulus > GONE) {
-        let growth = Number {
-            value: m.growth_per_s,
-            size: DAMPING * m.growth_per_s.hypot(std::f64::consts::TAU * m.frequency_hz),
-        };
+        let growth = Number::new(
+            m.growth_per_s,
+            DAMPING * m.growth_per_s.hypot(std::f64::consts::TAU * m.frequency_hz),
+        );
         all.insert(format!("multiplier_{}.growth_per_s", k + 1), growth);
     }
     all
@@ -201,13 +195,7 @@ fn of_floquet(found: &Floquet) -> Numbers {
         let count = counts.entry(part.clone()).or_insert(0);
         *count += 1;
         let name = if *count == 1 { part } else { format!("{part}_{count}") };
-        all.insert(
-            format!("{name}.modulus"),
-            Number {
-                value: m.modulus,
-                size: 1.0,
-            },
-        );
+        all.insert(format!("{name}.modulus"), Number::new(m.modulus, 1.0));
     }
     all
 }

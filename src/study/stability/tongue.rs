@@ -32,7 +32,7 @@ pub struct Plan {
 }
 
 /// One point of a sheet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Growth rate of the largest multiplier [1/s]; none where no cycle was found.
     pub growth_per_s: Option<f64>,
@@ -187,10 +187,8 @@ fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64
                     }
                 }
                 Err(impasse) => Point {
-                    growth_per_s: None,
-                    multiplier: None,
                     words: impasse.what,
-                    stability: None,
+                    ..Point::default()
                 },
             })
         })

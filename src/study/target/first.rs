@@ -7,7 +7,7 @@ use crate::study::accuracy::plan;
 
 /// Cells a segment to begin with where nothing asks for more, and with bladders, so that half of them have fewer cells along a
 /// bladder as well.
-const LEAST: usize = 2;
+pub const LEAST: usize = 2;
 const LEAST_WET: usize = 4;
 /// Cells of the whole beam: two meshes of fewer may agree by chance about what neither has.
 const LEAST_IN_ALL: usize = 8;
@@ -25,30 +25,4 @@ pub fn least_cells(case: &Case) -> Result<usize> {
     let least = least.max(LEAST_IN_ALL.div_ceil(system.mesh.segments));
     let cells = both.unwrap_or(MOST).next_power_of_two();
     Ok(cells.clamp(least.next_power_of_two(), MOST))
-}
-
-#[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use super::*;
-
-    /// Goal: a pad of a hundredth of the length beside a broad load is right on any mesh; twenty waves over ten segments want
-    /// cells to swing in.
-    #[test]
-    fn a_search_begins_where_shapes_are_resolved() {
-        let with = |profile: &str| {
-            let text = format!(
-                r#"{{"name": "first", "beam": {{"length_m": 0.1, "height_m": 0.02, "width_m": 0.05, "young_modulus_pa": 2e6,
-                "density_kg_m3": 950}}, "ends": {{"root": "clamped", "tip": "free"}}, "time": {{"end_s": 1}},
-                "loads": [{{"force_x_n_m": {{"signal": 5, "profile": {profile}}}}}]}}"#
-            );
-            let case = crate::case::parse(&text, Path::new("first.json"), Path::new("."), &[]);
-            least_cells(&case.expect("a case")).expect("a system")
-        };
-        let pad = r#"{"sum": [1, {"table": {"positions": [0, 0.524, 0.525, 0.535, 0.536, 1], "values": [0, 0, -12, -12, 0, 0],
-            "interpolation": "linear"}}]}"#;
-        assert_eq!(with(pad), LEAST);
-        assert!(with(r#"{"cosine": {"waves": 20}}"#) >= 8);
-    }
 }

@@ -10,9 +10,9 @@
 //! ```
 
 pub mod estimates;
-mod first;
+pub mod first;
 mod left_out;
-mod models;
+pub mod models;
 mod search;
 mod verdict;
 

@@ -98,17 +98,8 @@ pub fn draw(data: &WorkPrecision) -> Option<String> {
     let times = extent(markers().flat_map(|m| [m.least_s.log10(), m.median_s.log10()]))?;
     let y = decades(times, OFF, |n| trimmed(&quantity(10_f64.powi(n), "s", 3)));
     let x = |errors: Option<(f64, f64)>| Some(decades(errors?, 0.0, |n| format!("10{}", superscript(n))));
-    let place = Place {
-        left: LEFT,
-        top: TOP,
-        width: WIDTH,
-        height: HEIGHT,
-    };
-    let total = Panel {
-        place,
-        x: x(extent(markers().map(|m| m.error.log10())))?,
-        y: y.clone(),
-    };
+    let place = Place::new(LEFT, TOP, WIDTH, HEIGHT);
+    let total = Panel::new(place, x(extent(markers().map(|m| m.error.log10())))?, y.clone());
     let sheet = Sheet {
         panel: total,
         data,
@@ -241,13 +232,7 @@ impl Sheet<'_> {
                 .map(|b| self.at(b.error, b.seconds))
                 .collect();
             any |= !points.is_empty();
-            canvas.line(
-                &points,
-                Stroke {
-                    dash: Some((2.0, 4.0)),
-                    ..Stroke::solid(FAINT_INK, 1.0)
-                },
-            );
+            canvas.line(&points, Stroke::dashed(FAINT_INK, 1.0, (2.0, 4.0)));
             for p in points {
                 cross(canvas, p);
             }

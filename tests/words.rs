@@ -1,5 +1,56 @@
-use super::*;
-use crate::run::summary::{Balances, Counters, WallTimes};
+//! How numbers, tables and a run in a glance read.
+
+use std::path::Path;
+
+use slcbeam::cli::summary_box::render;
+use slcbeam::output::columns::aligned;
+use slcbeam::output::numbers::{count, duration, quantity, shortest, trimmed};
+use slcbeam::run::summary::{Balances, Counters, Quantity, Status, Summary, WallTimes};
+
+#[test]
+fn quantities_read_well() {
+    assert_eq!(quantity(0.0123, "m", 3), "12.3 mm");
+    assert_eq!(quantity(-4070.0, "Pa", 3), "−4.07 kPa");
+    assert_eq!(quantity(1e-3, "s", 3), "1.00 ms");
+    assert_eq!(quantity(0.0, "J", 3), "0 J");
+    assert_eq!(quantity(f64::NAN, "J", 3), "–");
+    assert_eq!(quantity(2.5e-7, "m^3/s", 2), "250·10⁻⁹ m³/s");
+    assert_eq!(quantity(0.25, "1", 2), "0.25");
+    assert_eq!(trimmed("450.0 ms"), "450 ms");
+    assert_eq!(trimmed("400"), "400");
+}
+
+#[test]
+fn durations_and_counts_read_well() {
+    assert_eq!(duration(0.85), "850 ms");
+    assert_eq!(duration(200.0), "3 min 20 s");
+    assert_eq!(duration(7500.0), "2 h 05 min");
+    assert_eq!(duration(f64::INFINITY), "–");
+    assert_eq!(count(1234567), "1 234 567");
+    assert_eq!(count(123), "123");
+}
+
+#[test]
+fn shortest_reads_back_as_the_same_number() {
+    for x in [0.0, -0.0, 0.1, 1e-300, -2.5e22, 1.0 / 3.0, f64::MIN_POSITIVE] {
+        let back: f64 = shortest(x).parse().expect("a number");
+        assert_eq!(back.to_bits(), x.to_bits(), "{}", shortest(x));
+        assert!(shortest(x).len() < 26);
+    }
+}
+
+/// Goal: columns stand below each other whatever the cells hold, and nothing stands behind the last.
+#[test]
+fn cells_stand_below_each_other() {
+    let lines = [["", "name", "size"], ["", "a", "12.5 µm"], ["", "双 u₁", "3"]].map(|l| l.map(String::from));
+    let text = aligned(&lines, &[1]);
+    assert_eq!(text, "  name      size\n  a      12.5 µm\n  双 u₁        3\n");
+    assert_eq!(aligned::<Vec<String>>(&[], &[]), "");
+    assert_eq!(
+        aligned(&[vec!["a".into()], vec!["b".into(), "c".into()]], &[]),
+        "a\nb  c\n"
+    );
+}
 
 fn summary(status: Status) -> Summary {
     let quantity = |max| Quantity {

@@ -62,7 +62,7 @@ pub enum Way {
 }
 
 /// Runs of one case, and by which of their figures they are judged.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct Runs {
     all: BTreeMap<(Way, At), Looked>,
     /// Of meshes, in cells a segment: whether they leave out so much of a shape that no order of differences is to be seen on them.
@@ -87,11 +87,8 @@ impl Runs {
     /// None yet, of a case with these sizes of round-off.
     pub fn new(floors: Floors) -> Self {
         Self {
-            all: BTreeMap::new(),
-            unresolved: BTreeMap::new(),
             floors,
-            judged_by: Judged::default(),
-            lost: None,
+            ..Self::default()
         }
     }
 
@@ -320,6 +317,3 @@ pub fn worst(estimates: &BTreeMap<String, Estimate>) -> f64 {
 fn largest(all: impl Iterator<Item = f64>) -> f64 {
     all.fold(0.0, |m, x| m.max(if x.is_nan() { f64::INFINITY } else { x }))
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,0 +1,61 @@
+//! The models and meshes of candidates: what the full case has, what resolves the loads.
+
+use std::path::Path;
+
+use slcbeam::case::Case;
+use slcbeam::case::schema::Effect;
+use slcbeam::discrete::System;
+use slcbeam::study::effects::choices::effects;
+use slcbeam::study::target::first::{LEAST, least_cells};
+use slcbeam::study::target::models::{full, more, tighter};
+
+fn case(more: &str) -> Case {
+    let text = format!(
+        r#"{{"name": "x", "beam": {{"length_m": 1, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1e8,
+        "density_kg_m3": 1000}}, "ends": {{"root": "clamped", "tip": {{"free": {{"force_x_n":
+        {{"ramp": {{"to": 1e-4, "duration_s": 100}}}}}}}}}}, "time": {{"end_s": 100}}{more}}}"#
+    );
+    let path = std::path::Path::new("x.json");
+    match slcbeam::case::parse(&text, path, path, &[]) {
+        Ok(case) => case,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Goal: a slow, small motion leaves out inertia and finite rotations, and the full case has both; what the case names off
+/// stays off; of a full case nothing is left out.
+#[test]
+fn the_full_case_has_what_was_left_to_the_program() {
+    let full = |case: &Case| full(case).expect("effects");
+    let found = full(&case("")).expect("something left out");
+    assert!(found.left_out.contains(&Effect::SolidInertia), "{:?}", found.left_out);
+    assert!(found.left_out.contains(&Effect::FiniteRotation), "{:?}", found.left_out);
+    assert!(System::new(&found.case).is_ok());
+    assert!(full(&found.case).is_none());
+    let off = full(&case(r#", "effects": {"solid_inertia": "off"}"#)).expect("something left out");
+    assert!(!off.left_out.contains(&Effect::SolidInertia), "{:?}", off.left_out);
+    assert!(full(&case(r#", "effects": "full""#)).is_none());
+    for tighter in tighter(&case(""), &found).expect("effects") {
+        let effects = |case: &Case| effects(case).expect("effects");
+        assert!(!more(&effects(&case("")), &effects(&tighter)).is_empty());
+    }
+}
+
+/// Goal: a pad of a hundredth of the length beside a broad load is right on any mesh; twenty waves over ten segments want
+/// cells to swing in.
+#[test]
+fn a_search_begins_where_shapes_are_resolved() {
+    let with = |profile: &str| {
+        let text = format!(
+            r#"{{"name": "first", "beam": {{"length_m": 0.1, "height_m": 0.02, "width_m": 0.05, "young_modulus_pa": 2e6,
+            "density_kg_m3": 950}}, "ends": {{"root": "clamped", "tip": "free"}}, "time": {{"end_s": 1}},
+            "loads": [{{"force_x_n_m": {{"signal": 5, "profile": {profile}}}}}]}}"#
+        );
+        let case = slcbeam::case::parse(&text, Path::new("first.json"), Path::new("."), &[]);
+        least_cells(&case.expect("a case")).expect("a system")
+    };
+    let pad = r#"{"sum": [1, {"table": {"positions": [0, 0.524, 0.525, 0.535, 0.536, 1], "values": [0, 0, -12, -12, 0, 0],
+        "interpolation": "linear"}}]}"#;
+    assert_eq!(with(pad), LEAST);
+    assert!(with(r#"{"cosine": {"waves": 20}}"#) >= 8);
+}
