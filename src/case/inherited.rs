@@ -1,8 +1,8 @@
-//! Coefficients of a preset in a case whose beam is another one.
+//! Coefficients of a preset in a case whose beam is another one, and of a plane cell where bladders are short.
 
 use serde_json::Value;
 
-use super::origins::Origin;
+use super::origins::{Origin, PLANE};
 use super::presets::Preset;
 use super::schema::Case;
 use crate::error::Code;
@@ -105,10 +105,29 @@ const PARTS: [Part; 3] = [
     },
 ];
 
-/// Warnings about coefficients that the case takes from its preset while it changes what they belong to.
+/// Warnings about coefficients that the case takes from its preset while it changes what they belong to, and about those of a plane cell.
 pub fn warnings(case: &Case) -> Vec<String> {
     let mine = of_case(case);
-    PARTS.iter().filter_map(|part| warning(case, &mine, part)).collect()
+    let parts = PARTS.iter().filter_map(|part| warning(case, &mine, part));
+    parts.chain(plane_cell(case)).collect()
+}
+
+/// What the ends of bladders take off areas per moment, over their size over their length: measured with sections of the paper's and others.
+const ENDS: f64 = 0.5;
+/// Part above which that is told.
+const TOLD: f64 = 0.05;
+
+fn plane_cell(case: &Case) -> Option<String> {
+    let bladders = case.bladders.as_ref()?;
+    let of_plane = case.origins.get("/bladders/area_per_moment_m2_per_n_m/opening")? == Origin::Computed(PLANE);
+    let off = ENDS * bladders.height_m.max(bladders.width_m) / bladders.length_m;
+    (of_plane && off > TOLD).then(|| {
+        Code::PlaneCell.warning(format!(
+            "coefficients of a plane cell leave out the ends of bladders: areas per moment and force are about {:.0} % too large; \
+             \"three_d\": true in /section",
+            100.0 * off
+        ))
+    })
 }
 
 fn warning(case: &Case, mine: &Sizes, part: &Part) -> Option<String> {

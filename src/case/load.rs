@@ -10,7 +10,7 @@ use super::faults::{Faults, Source, sort};
 use super::origins::Origins;
 use super::schema::Case;
 use super::wording::nearest;
-use super::{check, counts, parse as json, presets, schema_json, sets, tables, validate};
+use super::{check, counts, parse as json, presets, schema_json, section, sets, tables, validate};
 use crate::error::{Code, Error, Result, Violation};
 
 /// Largest case file that is read.
@@ -31,6 +31,14 @@ fn bounded(from: impl Read) -> std::io::Result<Vec<u8>> {
 /// # Errors
 /// [`Error::Usage`] when the file cannot be read or an argument makes no sense, [`Error::Case`] with all faults.
 pub fn load(path: &Path, sets: &[String]) -> Result<Case> {
+    parse(&text(path)?, path, path.parent().unwrap_or(Path::new("")), sets)
+}
+
+/// The text of a file, or of standard input under the name `-`.
+///
+/// # Errors
+/// [`Error::Usage`] when it cannot be read, [`Error::Case`] when it is too large or no UTF-8.
+pub fn text(path: &Path) -> Result<String> {
     let unreadable = |e| {
         let meant = nearest_file(path).map_or_else(String::new, |name| format!("; did you mean {}?", name.display()));
         Error::Usage(format!("cannot read the case {}: {e}{meant}", path.display()))
@@ -50,11 +58,7 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Case> {
         let fault = Violation::new(Code::Text, "", what).allowed("case files of up to 64 MB");
         return Err(Source::of(path, "").error(vec![fault]));
     }
-    let text = match String::from_utf8(bytes) {
-        Ok(text) => text,
-        Err(e) => return Err(not_utf8(path, e.as_bytes(), e.utf8_error().valid_up_to())),
-    };
-    parse(&text, path, path.parent().unwrap_or(Path::new("")), sets)
+    String::from_utf8(bytes).map_err(|e| not_utf8(path, e.as_bytes(), e.utf8_error().valid_up_to()))
 }
 
 /// The case in the same folder that is named most alike.
@@ -89,12 +93,13 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         ..source
     };
     let own = value.clone();
+    let mut faults = Faults::default();
+    let computed = section::apply(&mut value, &mut faults);
     presets::apply(&mut value, &source.sets);
     // Numbers that are none have their fault already; `null` stands for them.
     let told = violations.iter().map(|v| v.pointer.clone());
     let told: Vec<String> = told.filter(|p| value.pointer(p).is_some_and(Value::is_null)).collect();
 
-    let mut faults = Faults::default();
     validate::validate(&value, &schema_json::CASE, &mut faults);
     faults.drop_below(&told);
     // `null` from the command line leaves out what could stand there.
@@ -104,12 +109,13 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         .collect();
     faults.drop_below(&cleared);
     cleared.iter().for_each(|pointer| sets::remove(&mut value, pointer));
+    section::remove(&mut value);
     let case = match value.is_object() {
         true => build(value.clone(), base, &mut faults, violations.is_empty()),
         false => None,
     };
     let case = case.map(|case| Case {
-        origins: Origins::of(&own, &value, &source.sets, case.preset),
+        origins: Origins::of(&own, &value, &source.sets, case.preset, &computed),
         ..case
     });
     violations.extend(faults.placed(&source));

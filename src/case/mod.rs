@@ -22,6 +22,7 @@ mod render;
 mod rewrite;
 pub mod schema;
 mod schema_json;
+pub mod section;
 mod sets;
 mod tables;
 mod validate;
@@ -31,7 +32,7 @@ mod written;
 
 pub use ends::{Follower, ResolvedEnd, Rotation, Translation};
 pub use faults::Source;
-pub use load::{load, parse};
+pub use load::{load, parse, text};
 pub use meanings::{Meaning, meanings};
 pub use origins::{Origin, Origins};
 pub use places::Places;

@@ -46,6 +46,11 @@ impl PartialEq for Origins {
     }
 }
 
+/// Computed from a section by its plane cell.
+pub(super) const PLANE: &str = "section";
+/// Computed from a section by its cell in three dimensions.
+const IN_SPACE: &str = "section in 3-D";
+
 /// Coefficients of the section: those that follow from its sizes and material and that the program takes as given.
 const COEFFICIENTS: [&str; 12] = [
     "/beam/axial_stiffness_factor",
@@ -64,7 +69,15 @@ const COEFFICIENTS: [&str; 12] = [
 
 impl Origins {
     /// Origins in a case that read `own` with the arguments `sets` in it, and `whole` with its preset filled in.
-    pub(super) fn of(own: &Value, whole: &Value, sets: &[SetValue], preset: Option<Preset>) -> Self {
+    ///
+    /// `computed` are the pointers of what its section gave.
+    pub(super) fn of(
+        own: &Value,
+        whole: &Value,
+        sets: &[SetValue],
+        preset: Option<Preset>,
+        computed: &[String],
+    ) -> Self {
         let single = whole.pointer("/network/tubes").and_then(Value::as_array);
         let single = (0..single.map_or(0, Vec::len)).map(|i| format!("/network/tubes/{i}/permeability_m4"));
         let pointers = COEFFICIENTS.into_iter().map(str::to_owned).chain(single);
@@ -74,6 +87,10 @@ impl Origins {
             let set = || sets.iter().any(|s| s.node.is_some() && is_below(&pointer, &s.pointer));
             let origin = match (whole.pointer(&pointer), own.pointer(&pointer), preset) {
                 (None, ..) => absent(whole, &pointer)?,
+                _ if computed.contains(&pointer) => Origin::Computed(match own.pointer("/section/three_d") {
+                    Some(Value::Bool(true)) => IN_SPACE,
+                    _ => PLANE,
+                }),
                 (_, Some(_), _) if set() => Origin::Set,
                 (_, Some(_), _) => Origin::Case,
                 (_, None, Some(preset)) => Origin::Preset(preset),

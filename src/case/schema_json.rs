@@ -36,7 +36,7 @@ pub fn schema_json() -> Value {
         .into_iter()
         .partition(|key| SECTIONS.iter().any(|s| key == s));
     schema["required"] = needed.into();
-    schema["if"] = json!({"required": ["preset"]});
+    schema["if"] = json!({"anyOf": [{"required": ["preset"]}, {"required": ["section"]}]});
     schema["else"]["required"] = from_preset.into();
     for (name, part) in parts {
         schema["$defs"][name] = part;
@@ -91,6 +91,17 @@ fn remarks(schema: &mut Value) {
 }
 
 /// The schema of a case whose preset is filled in and whose remarks are gone, made once.
+/// The schema of a section that stands alone, or of the one in a case, and where it stands.
+pub(super) fn section(of_case: bool) -> (Value, &'static str) {
+    let section = json!({"$ref": "#/$defs/Section"});
+    let mut schema = match of_case {
+        true => json!({"type": "object", "properties": {"section": section}}),
+        false => section,
+    };
+    schema["$defs"] = CASE["$defs"].clone();
+    (schema, if of_case { "/section" } else { "" })
+}
+
 pub(super) static CASE: LazyLock<Value> = LazyLock::new(|| {
     let settings = SchemaSettings::draft2020_12();
     let mut schema = settings.into_generator().into_root_schema_for::<Case>();

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod check;
+mod coefficients;
 mod compare;
 mod completions;
 mod effects;
@@ -69,6 +70,7 @@ fn act(command: &Command) -> Result<ExitCode> {
     match command {
         Command::Run(asked) => run::run(asked),
         Command::Check(asked) => check::check(asked),
+        Command::Coefficients(asked) => coefficients::coefficients(asked),
         Command::Equilibrium(asked) => equilibrium::equilibrium(asked),
         Command::Study(asked) => study::study(asked),
         Command::Effects(asked) => effects::effects(asked),

@@ -81,6 +81,7 @@ codes! {
     PortFlow = "W019", "Flow through ports that does not follow its law.";
     EnergyFigure = "W020", "A figure of energy that its balance does not carry.";
     ErrorEstimate = "W021", "An error that may be larger than it seems.";
+    PlaneCell = "W022", "Coefficients that leave out the ends of bladders.";
 }
 
 impl Code {

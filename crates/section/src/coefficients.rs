@@ -18,6 +18,7 @@ use crate::geometry::outline::Outline;
 use crate::input::Section;
 use crate::level::Level;
 use crate::mesh::{Fineness, Mesh};
+use crate::three::Spatial;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -153,12 +154,16 @@ impl Section {
         let levels = self.levels(options)?;
         let all: Vec<Numbers> = levels.iter().map(|level| Numbers::new(self, level)).collect();
         let finest = levels.len() - 1;
-        Ok(Coefficients {
+        let plane = Coefficients {
             errors: Errors::new(&all, self.order()),
             asymmetry: levels[finest].asymmetry,
             unknowns: levels[finest].unknowns,
             numbers: all[finest].clone(),
-        })
+        };
+        match self.three_d {
+            false => Ok(plane),
+            true => Ok(plane.in_space(self, &levels[finest], &self.three_dimensional()?)),
+        }
     }
 
     /// The highest order that estimates may rely on.
@@ -200,6 +205,41 @@ impl Section {
             meshes.extend(meshes.last().map(Mesh::refined));
         }
         Ok(meshes)
+    }
+}
+
+impl Coefficients {
+    /// What follows from compliance taken from the cell in three dimensions.
+    fn in_space(self, section: &Section, plane: &Level, spatial: &Spatial) -> Self {
+        let level = Level {
+            compliance: spatial.compliance,
+            ..plane.clone()
+        };
+        let c = &spatial.compliance;
+        // of an entry, relative to itself
+        let error = |i: usize, j: usize| match c[i][j].abs() {
+            0.0 => 0.0,
+            size => spatial.errors[i][j] * (c[i][i] * c[j][j]).sqrt() / size,
+        };
+        let rows = [2, 3].into_iter().filter(|&k| c[k][k] > 0.0);
+        let worst = |i: usize| rows.clone().map(|k| error(i, k)).fold(0.0, f64::max);
+        Self {
+            numbers: Numbers::new(section, &level),
+            errors: Errors {
+                compliance: spatial.errors,
+                axial_stiffness_factor: error(0, 0),
+                bending_stiffness_factor: error(1, 1),
+                area_per_pressure_m2_per_pa: rows.clone().map(|k| error(k, k)).fold(0.0, f64::max),
+                area_per_other_pressure_m2_per_pa: spatial.errors[2][3],
+                area_per_moment_m2_per_n_m: worst(1),
+                area_per_force_m2_per_n: worst(0),
+                slope_per_pressure_rad: worst(1),
+                length_per_pressure_m: worst(0),
+                ..self.errors
+            },
+            asymmetry: self.asymmetry,
+            unknowns: spatial.unknowns,
+        }
     }
 }
 

@@ -26,6 +26,9 @@ pub struct Section {
     /// Parts of the cell made of another material: a skin, a stiff sheet, a fibre. None may overlap another or cross a bladder's wall.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub regions: Vec<Region>,
+    /// Whether the cell is solved in three dimensions, with the ends of bladders and side walls that bend: a second or more instead of a tenth.
+    #[serde(default)]
+    pub three_d: bool,
 }
 
 /// An isotropic elastic material.
@@ -55,6 +58,7 @@ impl Material {
 /// The two rows of bladders: prisms across the beam's width, sealed at both ends by the side walls.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "SectionBladders")]
 pub struct Bladders {
     /// Length across the width, l_b [m], at most the beam's width.
     pub length_m: f64,
@@ -62,6 +66,24 @@ pub struct Bladders {
     pub upper: Row,
     /// The row on the -x side.
     pub lower: Row,
+}
+
+impl Bladders {
+    /// Length of a bladder along the beam [m]; 0 where there are none.
+    pub fn along(&self) -> f64 {
+        let row = [&self.upper, &self.lower].into_iter().find_map(|row| match row {
+            Row::Bladder(bladder) => Some(bladder),
+            Row::None | Row::Mirrored => None,
+        });
+        row.map_or(0.0, |bladder| match &bladder.shape {
+            Shape::Circle { radius_m } => 2.0 * radius_m,
+            Shape::Ellipse { along_m, .. } | Shape::RoundedRectangle { along_m, .. } => *along_m,
+            Shape::Polygon { points_m } => {
+                let along = || points_m.iter().map(|[along, _]| *along);
+                along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+            }
+        })
+    }
 }
 
 /// One row: a bladder in every pitch, none, or (lower only) the upper one mirrored at the mid-plane.
@@ -78,6 +100,7 @@ pub enum Row {
 /// A bladder's cross-section in the cell's plane.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "SectionBladder")]
 pub struct Bladder {
     /// Height of the shape's origin above the mid-plane [m].
     pub center_m: f64,
@@ -195,7 +218,7 @@ impl<'de> Deserialize<'de> for Row {
 
 impl JsonSchema for Row {
     fn schema_name() -> std::borrow::Cow<'static, str> {
-        "Row".into()
+        "SectionRow".into()
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use slcbeam_section::input::Section;
 
 use crate::case::faults::Source;
 use crate::case::origins::Origins;
@@ -44,6 +45,10 @@ pub struct Case {
     /// there, and `"fluid": null, "bladders": null, "tubes": null` leave them out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub preset: Option<Preset>,
+    /// The beam's section by its geometry: what the case does not give of sizes, material and coefficients in `beam` and `bladders`
+    /// is computed from one unit cell, by finite elements; `slcbeam coefficients` has the numbers with their errors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub section: Option<Section>,
     /// The solid.
     pub beam: Beam,
     /// The fluid that fills bladders and tubes. Absent together with `bladders`: a dry beam.

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::coefficients::CoefficientsArguments;
 use super::completions::CompletionsArguments;
 use super::explain::ExplainArguments;
 use super::export::ExportArguments;
@@ -31,6 +32,8 @@ pub enum Command {
     Run(RunArguments),
     /// Validate a case; print characteristic numbers, coupling audit and chosen effects; write nothing
     Check(CheckArguments),
+    /// Compute the coefficients of a section from its geometry, with errors
+    Coefficients(CoefficientsArguments),
     /// Find the static equilibrium under the loads of one instant, along the path from rest
     Equilibrium(EquilibriumArguments),
     /// Find what accuracy costs: time against error over tolerances, meshes and orders
@@ -69,6 +72,7 @@ impl Command {
         match self {
             Self::Run(a) => a.json,
             Self::Check(a) => a.json,
+            Self::Coefficients(a) => a.json,
             Self::Equilibrium(a) => a.json,
             Self::Study(a) => a.json,
             Self::Effects(a) => a.json,

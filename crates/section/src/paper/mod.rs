@@ -132,6 +132,7 @@ pub fn section(poisson_ratio: f64, fillet_m: f64, center_m: f64) -> Section {
             lower: Row::Mirrored,
         },
         regions: Vec::new(),
+        three_d: false,
     }
 }
 

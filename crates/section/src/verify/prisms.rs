@@ -25,6 +25,7 @@ fn solid(nu: f64) -> Section {
             lower: Row::None,
         },
         regions: Vec::new(),
+        three_d: false,
     }
 }
 

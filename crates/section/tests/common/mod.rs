@@ -33,5 +33,6 @@ pub fn with_shapes(nu: f64, upper: Option<(f64, Shape)>, lower: Option<(f64, Sha
             lower: row(lower, Row::Mirrored),
         },
         regions: Vec::new(),
+        three_d: false,
     }
 }
