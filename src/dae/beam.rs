@@ -339,7 +339,7 @@ impl Dae for BeamDae {
     }
 
     fn integrals(&self) -> usize {
-        ledger::flow_count(&self.system)
+        ledger::rate_count(&self.system)
     }
 
     fn integrands(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Fault> {

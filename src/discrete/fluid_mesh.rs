@@ -79,7 +79,7 @@ pub struct FluidMesh {
     pub sources: Vec<MeshSource>,
     /// Bridges of check valves.
     pub bridges: Vec<MeshBridge>,
-    /// Volume change of each pool at the start [m^3].
+    /// Volume change of each lumped network at the start [m^3].
     pub volume_at_start: Vec<f64>,
     /// Area change of each cell at the start, where it stays that [m^2].
     pub area_at_start: Vec<f64>,
@@ -94,7 +94,7 @@ impl FluidMesh {
         let conductance = network.bladder_mobility / ds;
         let half = 0.5 / conductance;
         let flows = |bladder: usize| wet.storage[bladder] == Storage::Flowing;
-        let pooled = |component: usize| wet.pools.iter().any(|pool| pool.component == component);
+        let pooled = |component: usize| wet.lumped.iter().any(|lumped| lumped.component == component);
         let flowing: Vec<usize> = (0..bladders).filter(|&b| flows(b)).collect();
         let junctions: Vec<usize> = (0..network.junctions.len())
             .filter(|&j| wet.flows && !pooled(network.component_of_junction[j]))
@@ -142,12 +142,12 @@ impl FluidMesh {
             sources: sources.collect(),
             bridges: bridges.collect(),
             junctions: junctions.clone(),
-            volume_at_start: vec![0.0; wet.pools.len()],
+            volume_at_start: vec![0.0; wet.lumped.len()],
             area_at_start: vec![0.0; bladders * cells_per_bladder],
         }
     }
 
-    /// Keeps the volumes of the start, in bladders and pools that keep theirs. The start may have been made with other cells along
+    /// Keeps the volumes of the start, in bladders and lumped networks that keep theirs. The start may have been made with other cells along
     /// each bladder than these: what is kept are means.
     pub fn keep(&mut self, areas: &[f64], wet: &Wet) {
         let given = areas.len() / self.bladders;
@@ -159,8 +159,8 @@ impl FluidMesh {
                 self.area_at_start[cells].fill(mean(bladder));
             }
         }
-        for (volume, pool) in self.volume_at_start.iter_mut().zip(&wet.pools) {
-            *volume = pool.bladders.iter().map(|&bladder| mean(bladder)).sum::<f64>() * length;
+        for (volume, lumped) in self.volume_at_start.iter_mut().zip(&wet.lumped) {
+            *volume = lumped.bladders.iter().map(|&bladder| mean(bladder)).sum::<f64>() * length;
         }
     }
 

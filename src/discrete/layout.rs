@@ -9,7 +9,7 @@ use super::{FluidMesh, Mesh};
 use crate::case::Translation;
 use crate::case::schema::Effect;
 use crate::case::wiring::bladder_label;
-use crate::model::{Kinematics, Model, PoolKind, Wet};
+use crate::model::{Kinematics, LumpedKind, Model, Wet};
 
 /// Blocks of unknowns, in this order; what each unknown is.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,10 +63,10 @@ pub struct Network {
     pub junction: Range<usize>,
     /// Pressure drops of turbines behind real rectifiers.
     pub bridge: Range<usize>,
-    /// Pressure of each pool, where it is unknown.
-    pub pool_pressure: Vec<Option<usize>>,
-    /// Volume of each pool, where it is unknown.
-    pub pool_volume: Vec<Option<usize>>,
+    /// Pressure of each lumped network, where it is unknown.
+    pub lumped_pressure: Vec<Option<usize>>,
+    /// Volume of each lumped network, where it is unknown.
+    pub lumped_volume: Vec<Option<usize>>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +76,7 @@ enum Name {
     Area(usize, usize),
     Junction(usize),
     Bridge(usize),
-    Pool(&'static str, usize),
+    LumpedNetwork(&'static str, usize),
 }
 
 impl Line {
@@ -133,7 +133,7 @@ impl Layout {
             Name::Segment(what, segment) => format!("{what} of segment {}", segment + 1),
             Name::Area(b, cell) => format!("area change [m^2] of bladder {}, cell {}", bladder(b), cell + 1),
             Name::Junction(j) => format!("pressure [Pa] of junction {}", j + 1),
-            Name::Pool(what, component) => format!("{what} of network {}", component + 1),
+            Name::LumpedNetwork(what, component) => format!("{what} of network {}", component + 1),
             Name::Bridge(k) => format!("pressure drop [Pa] of turbine behind rectifier {}", k + 1),
         }
     }
@@ -213,22 +213,22 @@ impl Network {
                 build.push(Name::Bridge(bridge.number), s.pressure, s.pressure * conductance, false);
             }
         });
-        let (mut pool_pressure, mut pool_volume) = (vec![], vec![]);
-        for pool in &wet.pools {
-            let volume = stored * wet.bladder_length * pool.bladders.len() as f64;
-            let name = |what| Name::Pool(what, pool.component);
-            let closed = pool.kind == PoolKind::Closed;
-            let fed = matches!(pool.kind, PoolKind::Fed(_));
-            pool_pressure.push((closed || fed).then(|| build.push(name("pressure [Pa]"), s.pressure, volume, false)));
+        let (mut lumped_pressure, mut lumped_volume) = (vec![], vec![]);
+        for lumped in &wet.lumped {
+            let volume = stored * wet.bladder_length * lumped.bladders.len() as f64;
+            let name = |what| Name::LumpedNetwork(what, lumped.component);
+            let closed = lumped.kind == LumpedKind::Closed;
+            let fed = matches!(lumped.kind, LumpedKind::Fed(_));
+            lumped_pressure.push((closed || fed).then(|| build.push(name("pressure [Pa]"), s.pressure, volume, false)));
             let rate = volume * s.frequency;
-            pool_volume.push(fed.then(|| build.push(name("volume change [m^3]"), volume, rate, true)));
+            lumped_volume.push(fed.then(|| build.push(name("volume change [m^3]"), volume, rate, true)));
         }
         Self {
             area,
             junction,
             bridge,
-            pool_pressure,
-            pool_volume,
+            lumped_pressure,
+            lumped_volume,
         }
     }
 }

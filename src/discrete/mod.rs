@@ -104,7 +104,7 @@ impl System {
         if let Some(wet) = &mut model.wet {
             wet.flows = true;
             wet.storage.fill(Storage::Flowing);
-            wet.pools.clear();
+            wet.lumped.clear();
         }
         start::areas(&Self::of(case, model), case)
     }

@@ -65,13 +65,13 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64]) {
             pressure[fluid.cells_of(bladder)].copy_from_slice(&means);
         }
     }
-    for (k, pool) in wet.pools.iter().enumerate() {
-        if let Some(unknown) = l.network.pool_pressure[k] {
-            let cells = pool.bladders.iter().flat_map(|&b| fluid.cells_of(b));
+    for (k, lumped) in wet.lumped.iter().enumerate() {
+        if let Some(unknown) = l.network.lumped_pressure[k] {
+            let cells = lumped.bladders.iter().flat_map(|&b| fluid.cells_of(b));
             y[unknown] =
-                cells.map(|c| pressure[c]).sum::<f64>() / (pool.bladders.len() * fluid.cells_per_bladder) as f64;
+                cells.map(|c| pressure[c]).sum::<f64>() / (lumped.bladders.len() * fluid.cells_per_bladder) as f64;
         }
-        if let Some(unknown) = l.network.pool_volume[k] {
+        if let Some(unknown) = l.network.lumped_volume[k] {
             y[unknown] = fluid.volume_at_start[k];
         }
     }

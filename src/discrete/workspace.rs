@@ -97,10 +97,10 @@ pub struct Fluid<T> {
     pub mean_pressure: Vec<T>,
     /// Pressures of junctions [Pa].
     pub junction: Vec<T>,
-    /// Pressures of pools [Pa].
-    pub pool: Vec<T>,
+    /// Pressures of lumped networks [Pa].
+    pub lumped: Vec<T>,
     /// Their rates [Pa/s]; for the balances.
-    pub pool_rate: Vec<T>,
+    pub lumped_rate: Vec<T>,
     /// Turbine drops behind real rectifiers [Pa].
     pub bridge: Vec<T>,
     /// Net inflow of each cell [m^3/s].
@@ -147,7 +147,7 @@ impl<T: Scalar> Workspace<T> {
         let (cells, bladders) = fluid.map_or((0, 0), |f| (f.cells, f.bladders));
         let (junctions, bridges) = fluid.map_or((0, 0), |f| (f.junctions.len(), f.bridges.len()));
         let components = system.model.wet.as_ref().map_or(0, |w| w.network.components);
-        let pools = fluid.map_or(0, |f| f.volume_at_start.len());
+        let lumped = fluid.map_or(0, |f| f.volume_at_start.len());
         // What is the same at all times is set here, and stays.
         let kept = fluid.map_or(&[][..], |f| &f.area_at_start);
         Self {
@@ -188,8 +188,8 @@ impl<T: Scalar> Workspace<T> {
                 pressure: zeros(cells),
                 mean_pressure: zeros(bladders),
                 junction: zeros(junctions),
-                pool: zeros(pools),
-                pool_rate: zeros(pools),
+                lumped: zeros(lumped),
+                lumped_rate: zeros(lumped),
                 bridge: zeros(bridges),
                 inflow: zeros(cells),
                 junction_inflow: zeros(junctions),

@@ -32,7 +32,7 @@ pub use kinematics::Kinematics;
 pub use loads::Load;
 pub use network::Network;
 pub use scales::Scales;
-pub use storage::{Pool, PoolKind, Storage};
+pub use storage::{LumpedKind, LumpedNetwork, Storage};
 
 /// The bladders and what they are filled with and joined by.
 #[derive(Clone, Debug)]
@@ -56,7 +56,7 @@ pub struct Wet {
     /// How each bladder stores fluid.
     pub storage: Vec<Storage>,
     /// Bladders that share a pressure.
-    pub pools: Vec<Pool>,
+    pub lumped: Vec<LumpedNetwork>,
     /// Whether something depends on mean moments: they are unknowns then.
     pub takes_moments: bool,
     /// Whether something depends on mean forces.
@@ -81,7 +81,7 @@ impl Wet {
     /// The whole coupling of a case's bladders.
     fn new(case: &Case, bladders: &Bladders, section: &Section, network: Network, effects: &EffectSet) -> Self {
         let area = AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry));
-        let (storage, pools) = storage::of_bladders(case, &network, effects);
+        let (storage, lumped) = storage::of_bladders(case, &network, effects);
         Self {
             per_row: bladders.per_row,
             bladder_length: bladders.length_m,
@@ -92,7 +92,7 @@ impl Wet {
             network,
             flows: effects.has(Effect::Flow),
             storage,
-            pools,
+            lumped,
             takes_moments: true,
             takes_forces: true,
         }

@@ -11,7 +11,7 @@ use crate::case::wiring::bladder_index;
 /// ```text
 /// flowing   Δs da/dt = inflow of each cell       p = (a - R A_M(Mbar) - A_N(Nbar))/a_p
 /// kept      a = a0, what it was at the start     p = (a0 - R A_M(Mbar) - A_N(Nbar))/a_p
-/// shared    a = a_p p + R A_M(Mbar) + A_N(Nbar)  p that of its pool, [E25]
+/// shared    a = a_p p + R A_M(Mbar) + A_N(Nbar)  p that of its lumped network, [E25]
 /// ```
 ///
 /// A sealed bladder whose pressure is uniform at the start stays so: "kept" is exact for it. For bladders that are joined
@@ -22,7 +22,7 @@ pub enum Storage {
     Flowing,
     /// Its volume is what it was at the start: no unknown.
     Kept,
-    /// Its pressure is that of a pool; which.
+    /// Its pressure is that of a lumped network; which.
     Shared(usize),
 }
 
@@ -34,18 +34,18 @@ pub enum Storage {
 /// fed      l_b Σ_j (a_p p + R A_M + A_N) = V,  dV/dt = Σ q           p and V
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pool {
+pub struct LumpedNetwork {
     /// Component of the network.
     pub component: usize,
     /// Its bladders.
     pub bladders: Vec<usize>,
     /// What decides its pressure.
-    pub kind: PoolKind,
+    pub kind: LumpedKind,
 }
 
-/// What decides the pressure of a pool.
+/// What decides the pressure of a lumped network.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum PoolKind {
+pub enum LumpedKind {
     /// Its volume, which is what it was at the start.
     Closed,
     /// A port; number among the network's ports.
@@ -54,8 +54,8 @@ pub enum PoolKind {
     Fed(Vec<usize>),
 }
 
-impl Pool {
-    /// A component of the network as a pool; or why it cannot be one.
+impl LumpedNetwork {
+    /// A component of the network as a lumped network; or why it cannot be one.
     pub fn new(network: &Network, component: usize) -> Result<Self, String> {
         let inside = |node: Node| network.component_of(node) == Some(component);
         let touches = |(from, to): (Node, Node)| inside(from) || inside(to);
@@ -90,16 +90,16 @@ impl Pool {
             component,
             bladders: bladders.collect(),
             kind: match (ports.first(), sources.is_empty()) {
-                (Some(&port), _) => PoolKind::Port(port),
-                (None, true) => PoolKind::Closed,
-                (None, false) => PoolKind::Fed(sources),
+                (Some(&port), _) => LumpedKind::Port(port),
+                (None, true) => LumpedKind::Closed,
+                (None, false) => LumpedKind::Fed(sources),
             },
         })
     }
 }
 
-/// Storage of every bladder, and the pools that some share.
-pub fn of_bladders(case: &Case, network: &Network, effects: &EffectSet) -> (Vec<Storage>, Vec<Pool>) {
+/// Storage of every bladder, and the lumped networks that some share.
+pub fn of_bladders(case: &Case, network: &Network, effects: &EffectSet) -> (Vec<Storage>, Vec<LumpedNetwork>) {
     let per_row = network.component_of_bladder.len() / 2;
     let uneven = |bladder: usize| {
         case.start.pressures.iter().any(|start| {
@@ -118,16 +118,15 @@ pub fn of_bladders(case: &Case, network: &Network, effects: &EffectSet) -> (Vec<
             }
         })
         .collect();
-    let mut pools = vec![];
+    let mut lumped = vec![];
     if effects.has(Effect::Flow) && !effects.has(Effect::NetworkPressureDifferences) {
-        for pool in (0..network.components).filter_map(|c| Pool::new(network, c).ok()) {
-            if pool.bladders.iter().any(|&b| storage[b] == Storage::Flowing) {
-                pool.bladders
-                    .iter()
-                    .for_each(|&b| storage[b] = Storage::Shared(pools.len()));
-                pools.push(pool);
+        for one in (0..network.components).filter_map(|c| LumpedNetwork::new(network, c).ok()) {
+            if one.bladders.iter().any(|&b| storage[b] == Storage::Flowing) {
+                let shared = Storage::Shared(lumped.len());
+                one.bladders.iter().for_each(|&b| storage[b] = shared);
+                lumped.push(one);
             }
         }
     }
-    (storage, pools)
+    (storage, lumped)
 }

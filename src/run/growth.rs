@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fit;
 use crate::discrete::TimeData;
-use crate::discrete::ledger::Flow;
+use crate::discrete::ledger::EnergyRate;
 use crate::model::Model;
 use crate::model::characteristic::Mathieu;
 use crate::numerics::Planar;
@@ -127,10 +127,10 @@ impl Growth {
         w.samples += 1;
         if t >= w.t {
             w.t = t;
-            w.reciprocity = integrals[Flow::Reciprocity as usize];
-            w.formulation = integrals[Flow::Formulation as usize];
+            w.reciprocity = integrals[EnergyRate::Reciprocity as usize];
+            w.formulation = integrals[EnergyRate::Formulation as usize];
             w.residual = residual;
-            w.work = [Flow::Loads, Flow::Ends, Flow::Ports]
+            w.work = [EnergyRate::Loads, EnergyRate::Ends, EnergyRate::Ports]
                 .map(|f| integrals[f as usize].abs())
                 .iter()
                 .sum();

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::floors::Floors;
 use crate::discrete::ledger::EnergyBalance;
-use crate::discrete::ledger::{self, Flow, Invariants};
+use crate::discrete::ledger::{self, EnergyRate, Invariants};
 use crate::discrete::{State, System, TimeData};
 use crate::error::Code;
 
@@ -68,7 +68,7 @@ impl Residuals {
         integrals: &[f64],
     ) {
         self.energy = self.energy.max(balance.residual.abs());
-        let put_in = [Flow::Loads, Flow::Ends, Flow::Ports].map(|f| integrals[f as usize].abs());
+        let put_in = [EnergyRate::Loads, EnergyRate::Ends, EnergyRate::Ports].map(|f| integrals[f as usize].abs());
         let stored = balance.stored.total().abs();
         self.energy_seen = put_in.into_iter().fold(self.energy_seen.max(stored), f64::max);
         for c in 0..invariants.volumes.len() {
@@ -95,13 +95,13 @@ impl Residuals {
         let carried = (2.0 * mass * self.energy_seen).sqrt();
         self.momentum_seen = self.momentum_seen.max(carried);
         self.angular_seen = self.angular_seen.max(carried * model.length);
-        for (k, flow) in [Flow::ImpulseX, Flow::ImpulseZ].into_iter().enumerate() {
+        for (k, flow) in [EnergyRate::ImpulseX, EnergyRate::ImpulseZ].into_iter().enumerate() {
             let gained = integrals[flow as usize];
             let lost = invariants.momentum[k] - first.momentum[k] - gained;
             self.momentum = self.momentum.max(lost.abs());
             self.momentum_seen = self.momentum_seen.max(invariants.momentum[k].abs()).max(gained.abs());
         }
-        let gained = integrals[Flow::AngularImpulse as usize];
+        let gained = integrals[EnergyRate::AngularImpulse as usize];
         let lost = invariants.angular_momentum - first.angular_momentum - gained;
         self.angular = self.angular.max(lost.abs());
         self.angular_seen = self

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{FLOWS, Flow, add};
+use super::{ENERGY_RATES, EnergyRate, add};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
 use crate::discrete::residual::fluid::{bridge_drops, pressure_at};
@@ -11,9 +11,9 @@ use crate::discrete::residual::small;
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
 use crate::model::bladder::{kink_curvature, kink_slope};
 use crate::model::network::{LinkKind, Node};
-use crate::model::{AreaLaw, Coupling, Pool, PoolKind, ROWS, Storage, Wet};
+use crate::model::{AreaLaw, Coupling, LumpedKind, LumpedNetwork, ROWS, Storage, Wet};
 
-/// What no equation needs but the balances: means, rates of pools' pressures and of their bladders' areas.
+/// What no equation needs but the balances: means, rates of lumped networks' pressures and of their bladders' areas.
 pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -33,15 +33,15 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
             None => rate(&own.mean_force),
         };
     }
-    for (k, pool) in wet.pools.iter().enumerate() {
-        w.fluid.pool_rate[k] = match (&pool.kind, system.layout.network.pool_pressure[k]) {
-            (PoolKind::Port(port), _) => now.port_pressure_rate[*port],
+    for (k, lumped) in wet.lumped.iter().enumerate() {
+        w.fluid.lumped_rate[k] = match (&lumped.kind, system.layout.network.lumped_pressure[k]) {
+            (LumpedKind::Port(port), _) => now.port_pressure_rate[*port],
             (_, Some(unknown)) => yp[unknown],
             _ => 0.0,
         };
-        for &bladder in &pool.bladders {
+        for &bladder in &lumped.bladders {
             let rate = imposed_rate(wet, w, bladder);
-            w.fluid.area_rate[fluid.cells_of(bladder)].fill(wet.area.per_pressure * w.fluid.pool_rate[k] + rate);
+            w.fluid.area_rate[fluid.cells_of(bladder)].fill(wet.area.per_pressure * w.fluid.lumped_rate[k] + rate);
         }
     }
 }
@@ -57,7 +57,7 @@ fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
 pub fn pressure_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usize) -> f64 {
     let bladder = cell / fluid.cells_per_bladder;
     match wet.storage[bladder] {
-        Storage::Shared(pool) => w.fluid.pool_rate[pool],
+        Storage::Shared(lumped) => w.fluid.lumped_rate[lumped],
         Storage::Flowing | Storage::Kept => {
             (w.fluid.area_rate[cell] - imposed_rate(wet, w, bladder)) / wet.area.per_pressure
         }
@@ -105,7 +105,7 @@ pub fn rates<'a>(
             let (stretch, curvature) = s.strain_rates(&wet.coupling, &wet.strains);
             let (stretch_0, curvature_0) = s.strain_rates(&reciprocal, &wet.area);
             let power = s.force * (stretch_0 - stretch) + s.moment * (curvature_0 - curvature);
-            add(out, Flow::Reciprocity, system.mesh.segment_length * power);
+            add(out, EnergyRate::Reciprocity, system.mesh.segment_length * power);
         }
     }
     move |w, node| {
@@ -136,7 +136,7 @@ impl SegmentRates {
         for (k, bladder) in wet.pair(j).into_iter().enumerate() {
             pressure[k] = w.fluid.mean_pressure[bladder];
             pressure_rate[k] = match wet.storage[bladder] {
-                Storage::Shared(pool) => w.fluid.pool_rate[pool],
+                Storage::Shared(lumped) => w.fluid.lumped_rate[lumped],
                 Storage::Flowing | Storage::Kept => {
                     let cells = system.fluid.as_ref().map_or(0..0, |f| f.cells_of(bladder));
                     let count = cells.len() as f64;
@@ -195,7 +195,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     for &bladder in &fluid.flowing {
         for cell in bladder * k + 1..(bladder + 1) * k {
             let drop = w.fluid.pressure[cell - 1] - w.fluid.pressure[cell];
-            add(out, Flow::Bladders, fluid.conductance * drop * drop);
+            add(out, EnergyRate::Bladders, fluid.conductance * drop * drop);
         }
     }
     let component = |place: Place| match place {
@@ -210,22 +210,22 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     // port.
     let leave = |component: usize, [outward, by_law, noise]: [f64; 3], out: &mut [f64]| {
         if let Some(open) = network.open.iter().position(|&c| c == component) {
-            out[FLOWS.len() + 2 * open] += outward;
-            out[FLOWS.len() + 2 * open + 1] += outward.abs();
-            out[FLOWS.len() + 2 * (count + open)] += by_law;
-            out[FLOWS.len() + 2 * (count + open) + 1] += noise;
+            out[ENERGY_RATES.len() + 2 * open] += outward;
+            out[ENERGY_RATES.len() + 2 * open + 1] += outward.abs();
+            out[ENERGY_RATES.len() + 2 * (count + open)] += by_law;
+            out[ENERGY_RATES.len() + 2 * (count + open) + 1] += noise;
         }
     };
-    for (k, pool) in wet.pools.iter().enumerate() {
-        let (power, outward) = pool_ports(fluid, now, w, k, pool);
-        add(out, Flow::Ports, power);
-        leave(pool.component, [outward, outward, 0.0], out);
+    for (k, lumped) in wet.lumped.iter().enumerate() {
+        let (power, outward) = lumped_ports(fluid, now, w, k, lumped);
+        add(out, EnergyRate::Ports, power);
+        leave(lumped.component, [outward, outward, 0.0], out);
     }
     let cross = |from: Place, to: Place, [q, by_law, noise]: [f64; 3], out: &mut [f64]| {
         for (place, sign) in [(from, 1.0), (to, -1.0)] {
             let outward = sign * q;
             match (place, component(place)) {
-                (Place::Port(p), _) => add(out, Flow::Ports, now.port_pressure[p] * outward),
+                (Place::Port(p), _) => add(out, EnergyRate::Ports, now.port_pressure[p] * outward),
                 (_, Some(c)) if component(from) != component(to) => leave(c, [outward, sign * by_law, noise], out),
                 _ => {}
             }
@@ -235,14 +235,14 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         let drop = pressure_at(link.from, now, w) - pressure_at(link.to, now, w);
         let q = conductance * drop;
         let in_halves = q * q * link.half_cells;
-        add(out, Flow::Bladders, in_halves);
+        add(out, EnergyRate::Bladders, in_halves);
         let rest = q * drop - in_halves;
         add(
             out,
             if matches!(link.kind, LinkKind::Turbine(_)) {
-                Flow::Turbines
+                EnergyRate::Turbines
             } else {
-                Flow::Tubes
+                EnergyRate::Tubes
             },
             rest,
         );
@@ -264,8 +264,8 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         } else {
             0.0
         };
-        add(out, Flow::Ports, (pressure_at(place, now, w) + half * q) * q);
-        add(out, Flow::Bladders, half * q * q);
+        add(out, EnergyRate::Ports, (pressure_at(place, now, w) + half * q) * q);
+        add(out, EnergyRate::Bladders, half * q * q);
         if let Some(c) = component(place) {
             leave(c, [-q, -q, 0.0], out);
         }
@@ -275,41 +275,45 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.fluid.bridge[b]);
         let (qf, qb) = (bridge.valve.flow(forward), bridge.valve.flow(backward));
         let conductance = network.turbines[bridge.turbine].conductance;
-        add(out, Flow::Turbines, conductance * w.fluid.bridge[b] * w.fluid.bridge[b]);
-        add(out, Flow::Rectifiers, 2.0 * (qf * forward + qb * backward));
+        add(
+            out,
+            EnergyRate::Turbines,
+            conductance * w.fluid.bridge[b] * w.fluid.bridge[b],
+        );
+        add(out, EnergyRate::Rectifiers, 2.0 * (qf * forward + qb * backward));
         cross(from, to, [qf - qb, qf - qb, 0.0], out);
     }
 }
 
-/// Power and outflow of a pool through its ports, and volume that passes them.
-fn pool_ports(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>, k: usize, pool: &Pool) -> (f64, f64) {
-    let gain = match &pool.kind {
-        PoolKind::Closed => 0.0,
-        PoolKind::Fed(sources) => sources.iter().map(|&s| now.source_flow[s]).sum(),
-        PoolKind::Port(_) => {
-            let cells = pool.bladders.iter().flat_map(|&b| fluid.cells_of(b));
+/// Power and outflow of a lumped network through its ports, and volume that passes them.
+fn lumped_ports(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>, k: usize, lumped: &LumpedNetwork) -> (f64, f64) {
+    let gain = match &lumped.kind {
+        LumpedKind::Closed => 0.0,
+        LumpedKind::Fed(sources) => sources.iter().map(|&s| now.source_flow[s]).sum(),
+        LumpedKind::Port(_) => {
+            let cells = lumped.bladders.iter().flat_map(|&b| fluid.cells_of(b));
             cells.map(|cell| w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds
         }
     };
-    (w.fluid.pool[k] * gain, -gain)
+    (w.fluid.lumped[k] * gain, -gain)
 }
 
-/// Power and outflow of pools with given pressure, whose areas jump where their pressure or the beam does.
-pub fn pools_jump(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
+/// Power and outflow of lumped networks with given pressure, whose areas jump where their pressure or the beam does.
+pub fn lumped_jump(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
     let count = wet.network.open.len();
-    for (k, pool) in wet.pools.iter().enumerate() {
-        if !matches!(pool.kind, PoolKind::Port(_)) {
+    for (k, lumped) in wet.lumped.iter().enumerate() {
+        if !matches!(lumped.kind, LumpedKind::Port(_)) {
             continue;
         }
-        let (power, outward) = pool_ports(fluid, now, w, k, pool);
-        add(out, Flow::Ports, power);
-        if let Some(open) = wet.network.open.iter().position(|&c| c == pool.component) {
-            out[FLOWS.len() + 2 * open] += outward;
-            out[FLOWS.len() + 2 * open + 1] += outward.abs();
-            out[FLOWS.len() + 2 * (count + open)] += outward;
+        let (power, outward) = lumped_ports(fluid, now, w, k, lumped);
+        add(out, EnergyRate::Ports, power);
+        if let Some(open) = wet.network.open.iter().position(|&c| c == lumped.component) {
+            out[ENERGY_RATES.len() + 2 * open] += outward;
+            out[ENERGY_RATES.len() + 2 * open + 1] += outward.abs();
+            out[ENERGY_RATES.len() + 2 * (count + open)] += outward;
         }
     }
 }

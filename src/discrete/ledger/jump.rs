@@ -1,6 +1,6 @@
 //! What is done in no time: work at a switch, where a solid without inertia jumps with its load and ends turn with their moment.
 
-use super::{Flow, add, complete, fluid, solid};
+use super::{EnergyRate, add, complete, fluid, solid};
 use crate::discrete::kick::{self, Nodal};
 use crate::discrete::{System, TimeData, Workspace};
 use crate::functions::signals::Jet;
@@ -29,7 +29,7 @@ pub fn travel(now: &mut TimeData, [before, after]: [&TimeData; 2]) {
     differences(&mut now.statics.mean_rate, &before.statics.mean, &after.statics.mean);
 }
 
-/// Power of everything that does work on a jump, on one of its sides: loads, ends, and ports that give pools their pressure, with
+/// Power of everything that does work on a jump, on one of its sides: loads, ends, and ports that give lumped networks their pressure, with
 /// what the published forms add. Nothing flows and nothing is dissipated in no time.
 ///
 /// `now` and `yp` hold differences as rates, velocities in the workspace are displacements; the mean of both sides is the
@@ -39,8 +39,13 @@ pub fn side(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>,
     let w = &*complete(system, now, yp, w);
     let rates = fluid::rates(system, w, out);
     solid::flows(system, now, rates, w, out);
-    fluid::pools_jump(system, now, w, out);
-    for flow in [Flow::Damping, Flow::ImpulseX, Flow::ImpulseZ, Flow::AngularImpulse] {
+    fluid::lumped_jump(system, now, w, out);
+    for flow in [
+        EnergyRate::Damping,
+        EnergyRate::ImpulseX,
+        EnergyRate::ImpulseZ,
+        EnergyRate::AngularImpulse,
+    ] {
         out[flow as usize] = 0.0;
     }
 }
@@ -81,11 +86,11 @@ pub fn strokes(
         } else {
             carried(system, [before, after], node)
         };
-        add(out, Flow::Ends, work_x + work_z);
-        add(out, Flow::ImpulseX, px);
-        add(out, Flow::ImpulseZ, pz);
+        add(out, EnergyRate::Ends, work_x + work_z);
+        add(out, EnergyRate::ImpulseX, px);
+        add(out, EnergyRate::ImpulseZ, pz);
         let (arm, _) = solid::arms(system, w, node);
-        add(out, Flow::AngularImpulse, arm.z * px - arm.x * pz);
+        add(out, EnergyRate::AngularImpulse, arm.z * px - arm.x * pz);
     }
 }
 

@@ -16,7 +16,7 @@ use super::{State, System, TimeData, Workspace, residual};
 
 /// Rates that are integrated along the run, and what they add up to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Flow {
+pub enum EnergyRate {
     /// Power of distributed loads and given end forces.
     Loads,
     /// Power of driven ends and end moments.
@@ -47,23 +47,23 @@ pub enum Flow {
 
 /// All flows, in the order in which they are stored; outflow and throughput of every open network follow, then of each what its
 /// ports' law gives and how finely that can be known.
-pub const FLOWS: [Flow; 13] = [
-    Flow::Loads,
-    Flow::Ends,
-    Flow::Ports,
-    Flow::Bladders,
-    Flow::Tubes,
-    Flow::Turbines,
-    Flow::Rectifiers,
-    Flow::Damping,
-    Flow::Formulation,
-    Flow::Reciprocity,
-    Flow::ImpulseX,
-    Flow::ImpulseZ,
-    Flow::AngularImpulse,
+pub const ENERGY_RATES: [EnergyRate; 13] = [
+    EnergyRate::Loads,
+    EnergyRate::Ends,
+    EnergyRate::Ports,
+    EnergyRate::Bladders,
+    EnergyRate::Tubes,
+    EnergyRate::Turbines,
+    EnergyRate::Rectifiers,
+    EnergyRate::Damping,
+    EnergyRate::Formulation,
+    EnergyRate::Reciprocity,
+    EnergyRate::ImpulseX,
+    EnergyRate::ImpulseZ,
+    EnergyRate::AngularImpulse,
 ];
 
-impl Flow {
+impl EnergyRate {
     /// Sign with which the flow enters the energy balance; 0 for impulses.
     pub fn energy_sign(self) -> f64 {
         match self {
@@ -116,9 +116,12 @@ pub struct EnergyBalance {
     pub residual: f64,
 }
 
-/// Energy now, less at the start, less all that came in and went out (`integrals` of [`FLOWS`]).
+/// Energy now, less at the start, less all that came in and went out (`integrals` of [`ENERGY_RATES`]).
 pub fn balance(stored: Energies, at_start: f64, integrals: &[f64]) -> EnergyBalance {
-    let passed: f64 = FLOWS.iter().map(|f| f.energy_sign() * integrals[*f as usize]).sum();
+    let passed: f64 = ENERGY_RATES
+        .iter()
+        .map(|f| f.energy_sign() * integrals[*f as usize])
+        .sum();
     EnergyBalance {
         stored,
         residual: stored.total() - at_start - passed,
@@ -126,19 +129,22 @@ pub fn balance(stored: Energies, at_start: f64, integrals: &[f64]) -> EnergyBala
 }
 
 /// Number of integrated rates of a system.
-pub fn flow_count(system: &System) -> usize {
-    FLOWS.len() + 4 * system.model.wet.as_ref().map_or(0, |w| w.network.open.len())
+pub fn rate_count(system: &System) -> usize {
+    ENERGY_RATES.len() + 4 * system.model.wet.as_ref().map_or(0, |w| w.network.open.len())
 }
 
 /// Volume that has left the `open`-th open network through its ports, and volume that has passed them either way [m^3].
 pub fn passed(integrals: &[f64], open: usize) -> (f64, f64) {
-    (integrals[FLOWS.len() + 2 * open], integrals[FLOWS.len() + 2 * open + 1])
+    (
+        integrals[ENERGY_RATES.len() + 2 * open],
+        integrals[ENERGY_RATES.len() + 2 * open + 1],
+    )
 }
 
 /// Volume that has left the `open`-th of `count` open networks by the law of its ports, and the volume that conductances times
 /// pressures would have passed [m^3]: a share of it, the last digits of pressures, is noise.
 pub fn by_law(integrals: &[f64], open: usize, count: usize) -> (f64, f64) {
-    let first = FLOWS.len() + 2 * count + 2 * open;
+    let first = ENERGY_RATES.len() + 2 * count + 2 * open;
     (integrals[first], integrals[first + 1])
 }
 
@@ -187,6 +193,6 @@ pub fn invariants(system: &System, now: &TimeData, w: State) -> Invariants {
 }
 
 /// Adds `value` to a flow.
-fn add(out: &mut [f64], flow: Flow, value: f64) {
+fn add(out: &mut [f64], flow: EnergyRate, value: f64) {
     out[flow as usize] += value;
 }

@@ -1,6 +1,6 @@
 //! The beam's part of the balances.
 
-use super::{Energies, Flow, add};
+use super::{Energies, EnergyRate, add};
 use crate::case::schema::Effect;
 use crate::discrete::residual::rows::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
@@ -36,23 +36,27 @@ pub fn flows(
         let left = if i > 0 { w.forces.section[i - 1] } else { none };
         let missing = a * inertia - f - right + left;
         if l.inertia && l.lines[1].v.is_none() {
-            add(out, Flow::Ends, -inertia * a.z * (v.z - carried(system, frame, w, i)));
+            add(
+                out,
+                EnergyRate::Ends,
+                -inertia * a.z * (v.z - carried(system, frame, w, i)),
+            );
         }
         for (axis, line) in l.lines.iter().enumerate() {
             if !line.free.contains(&i) {
-                add(out, Flow::Ends, missing[axis] * v[axis]);
+                add(out, EnergyRate::Ends, missing[axis] * v[axis]);
                 f[axis] += missing[axis];
             }
         }
         let (arm, arm_rate) = arms(system, w, i);
-        add(out, Flow::ImpulseX, f.x);
-        add(out, Flow::ImpulseZ, f.z);
+        add(out, EnergyRate::ImpulseX, f.x);
+        add(out, EnergyRate::ImpulseZ, f.z);
         let turning = if l.inertia {
             inertia * (arm_rate.z * v.x - arm_rate.x * carried(system, frame, w, i))
         } else {
             0.0
         };
-        add(out, Flow::AngularImpulse, arm.cross(f) + turning);
+        add(out, EnergyRate::AngularImpulse, arm.cross(f) + turning);
         if system.model.kinematics != Kinematics::Bar {
             bending(system, now, &curvature_rate, w, i, out);
         }
@@ -102,14 +106,18 @@ fn bending(
             None => w.shape.angle_rate[cell] + sign * 0.5 * mesh.h * kappa_rate,
         };
         let moment = w.forces.moment[i] + w.forces.viscous_moment[i];
-        add(out, Flow::Ends, sign * moment * angle_rate);
-        add(out, Flow::AngularImpulse, sign * moment);
+        add(out, EnergyRate::Ends, sign * moment * angle_rate);
+        add(out, EnergyRate::AngularImpulse, sign * moment);
     }
-    add(out, Flow::Damping, length * w.forces.viscous_moment[i] * kappa_rate);
+    add(
+        out,
+        EnergyRate::Damping,
+        length * w.forces.viscous_moment[i] * kappa_rate,
+    );
     if published {
         // d/dt (λ κ - κ)
         let excess_rate = (stretch - 1.0) * kappa_rate + w.shape.kappa[i] * stretch_rate;
-        add(out, Flow::Formulation, length * w.forces.moment[i] * excess_rate);
+        add(out, EnergyRate::Formulation, length * w.forces.moment[i] * excess_rate);
     }
 }
 
@@ -120,20 +128,20 @@ fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, o
     for c in 0..system.mesh.cells {
         if system.has_moments {
             let couple = couple(system, now, w, c);
-            add(out, Flow::Loads, -h * couple * w.shape.angle_rate[c]);
-            add(out, Flow::AngularImpulse, -h * couple);
+            add(out, EnergyRate::Loads, -h * couple * w.shape.angle_rate[c]);
+            add(out, EnergyRate::AngularImpulse, -h * couple);
         }
         add(
             out,
-            Flow::Damping,
+            EnergyRate::Damping,
             h * w.forces.viscous_normal[c] * w.shape.stretch_rate[c],
         );
         if turned_across(system) {
             let turning = (w.motion.v[c + 1].z - w.motion.v[c].z) * turning_rate(system, w, c);
-            add(out, Flow::AngularImpulse, rotary * turning);
+            add(out, EnergyRate::AngularImpulse, rotary * turning);
         } else if published && system.model.effects.has(Effect::RotaryInertia) {
             let spurious = rotary * w.shape.stretch[c] * w.shape.stretch_rate[c] * w.shape.angle_rate[c].powi(2);
-            add(out, Flow::Formulation, -h * spurious);
+            add(out, EnergyRate::Formulation, -h * spurious);
         }
     }
 }

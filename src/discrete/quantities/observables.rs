@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::look::Look;
 use crate::discrete::System;
-use crate::discrete::ledger::{FLOWS, Flow, passed};
+use crate::discrete::ledger::{ENERGY_RATES, EnergyRate, passed};
 
 /// What a quantity is read off.
 #[derive(Clone, Copy, Debug)]
@@ -89,7 +89,7 @@ fn open(system: &System) -> bool {
 
 /// Volume that all open networks together have taken in [m^3].
 fn injected(integrals: &[f64]) -> f64 {
-    let networks = (integrals.len() - FLOWS.len()) / 4;
+    let networks = (integrals.len() - ENERGY_RATES.len()) / 4;
     -(0..networks).map(|network| passed(integrals, network).0).sum::<f64>()
 }
 
@@ -175,25 +175,25 @@ observables! {
         "elastic energy of bending";
     BladderEnergy: "bladder_energy" ["J"], "bladder energy", "bladder energy", Stored, Studied, always, Read::State(|look| look.stored.bladders),
         "energy stored in the bladders";
-    WorkLoads: "work_loads" ["J"], "work of loads", "work of the loads", PutIn, Recorded, always, Read::Integral(|i| i[Flow::Loads as usize]),
+    WorkLoads: "work_loads" ["J"], "work of loads", "work of the loads", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Loads as usize]),
         "work of distributed loads and end forces";
-    WorkEnds: "work_ends" ["J"], "work of ends", "work of the driven ends", PutIn, Recorded, always, Read::Integral(|i| i[Flow::Ends as usize]),
+    WorkEnds: "work_ends" ["J"], "work of ends", "work of the driven ends", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Ends as usize]),
         "work of driven ends and end moments";
-    WorkPorts: "work_ports" ["J"], "work of ports", "work of the ports", PutIn, Recorded, always, Read::Integral(|i| i[Flow::Ports as usize]),
+    WorkPorts: "work_ports" ["J"], "work of ports", "work of the ports", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Ports as usize]),
         "work of pressure and flow ports";
-    DissipatedBladders: "dissipated_bladders" ["J"], "lost in bladders", "lost to flow in the bladders", Lost, Recorded, always, Read::Integral(|i| i[Flow::Bladders as usize]),
+    DissipatedBladders: "dissipated_bladders" ["J"], "lost in bladders", "lost to flow in the bladders", Lost, Recorded, always, Read::Integral(|i| i[EnergyRate::Bladders as usize]),
         "dissipated by flow in the bladders";
-    DissipatedTubes: "dissipated_tubes" ["J"], "lost in tubes", "lost to flow in the tubes", Lost, Recorded, always, Read::Integral(|i| i[Flow::Tubes as usize]),
+    DissipatedTubes: "dissipated_tubes" ["J"], "lost in tubes", "lost to flow in the tubes", Lost, Recorded, always, Read::Integral(|i| i[EnergyRate::Tubes as usize]),
         "dissipated by flow in the tubes";
-    Harvested: "harvested" ["J"], "harvested", "harvested by the turbines", Harvested, Studied, always, Read::Integral(|i| i[Flow::Turbines as usize]),
+    Harvested: "harvested" ["J"], "harvested", "harvested by the turbines", Harvested, Studied, always, Read::Integral(|i| i[EnergyRate::Turbines as usize]),
         "harvested by the turbines";
-    DissipatedRectifiers: "dissipated_rectifiers" ["J"], "lost in rectifiers", "lost in check valves", Lost, Recorded, always, Read::Integral(|i| i[Flow::Rectifiers as usize]),
+    DissipatedRectifiers: "dissipated_rectifiers" ["J"], "lost in rectifiers", "lost in check valves", Lost, Recorded, always, Read::Integral(|i| i[EnergyRate::Rectifiers as usize]),
         "dissipated in check valves";
-    DissipatedDamping: "dissipated_damping" ["J"], "lost in damping", "lost to damping", Lost, Recorded, always, Read::Integral(|i| i[Flow::Damping as usize]),
+    DissipatedDamping: "dissipated_damping" ["J"], "lost in damping", "lost to damping", Lost, Recorded, always, Read::Integral(|i| i[EnergyRate::Damping as usize]),
         "dissipated by material damping and drag";
-    WorkFormulation: "work_formulation" ["J"], "published formulation", "added by the published momentum balance", Added, Recorded, always, Read::Integral(|i| i[Flow::Formulation as usize]),
+    WorkFormulation: "work_formulation" ["J"], "published formulation", "added by the published momentum balance", Added, Recorded, always, Read::Integral(|i| i[EnergyRate::Formulation as usize]),
         "energy that the published momentum balance adds";
-    WorkReciprocity: "work_reciprocity" ["J"], "lack of reciprocity", "added by a coupling without reciprocity", Added, Recorded, always, Read::Integral(|i| i[Flow::Reciprocity as usize]),
+    WorkReciprocity: "work_reciprocity" ["J"], "lack of reciprocity", "added by a coupling without reciprocity", Added, Recorded, always, Read::Integral(|i| i[EnergyRate::Reciprocity as usize]),
         "energy that a coupling without reciprocity adds";
     EnergyResidual: "energy_residual" ["J"], "what does not close", "what does not close", Open, Recorded, always, Read::Open,
         "energy now less energy at the start less all of the above: the integrator's error";
@@ -278,8 +278,8 @@ mod tests {
     /// Goal: each energy that flows is in one column, and enters the balance as its group says.
     #[test]
     fn every_energy_that_flows_has_its_column() {
-        for flow in FLOWS.iter().filter(|flow| flow.energy_sign() != 0.0) {
-            let mut one_joule = [0.0; FLOWS.len()];
+        for flow in ENERGY_RATES.iter().filter(|flow| flow.energy_sign() != 0.0) {
+            let mut one_joule = [0.0; ENERGY_RATES.len()];
             one_joule[*flow as usize] = 1.0;
             let has = |one: &&Observable| matches!(one.read(), Read::Integral(of) if one.unit() == "J" && of(&one_joule) == 1.0);
             let own: Vec<_> = Observable::ALL.iter().filter(has).collect();

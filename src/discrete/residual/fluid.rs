@@ -39,8 +39,8 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
                     w.fluid.pressure[cells].fill(p);
                     p
                 }
-                Storage::Shared(pool) => {
-                    let p = w.fluid.pool[pool];
+                Storage::Shared(lumped) => {
+                    let p = w.fluid.lumped[lumped];
                     w.fluid.area[cells.clone()].fill(p * law.per_pressure + imposed);
                     w.fluid.pressure[cells].fill(p);
                     p

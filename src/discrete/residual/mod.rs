@@ -61,7 +61,7 @@ pub fn residual<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
     rows::motion(system, y, yp, r);
     rows::means(system, w, r);
     rows::storage(system, w, r);
-    rows::pools(system, now, y, yp, w, r);
+    rows::lumped(system, now, y, yp, w, r);
     rows::junctions(system, w, r);
     rows::bridges(system, now, w, r);
 }

@@ -3,9 +3,9 @@
 use super::fluid::{bridge_drops, pressure_at};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::MeshBridge;
-use crate::discrete::ledger::Flow;
+use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::{Kinematics, PoolKind};
+use crate::model::{Kinematics, LumpedKind};
 use crate::numerics::{Planar, Scalar};
 
 /// `[E14]` Momentum of each node (A.5), in the conservative form telescoping:
@@ -55,25 +55,25 @@ pub fn outer_forces<T: Scalar>(
     now: &TimeData,
     w: &Workspace<T>,
     node: usize,
-    mut each: impl FnMut(Flow, Planar<T>),
+    mut each: impl FnMut(EnergyRate, Planar<T>),
 ) {
     let (section, length) = (&system.model.section, system.mesh.node_length(node));
     let mut given = Planar::constant(now.force[node] * length);
     if node == 0 || node == system.mesh.nodes - 1 {
         given += end_force(system, now, w, node);
     }
-    each(Flow::Loads, given);
+    each(EnergyRate::Loads, given);
     if system.model.published() {
-        each(Flow::Formulation, published_force(system, w, node));
+        each(EnergyRate::Formulation, published_force(system, w, node));
     }
     if section.drag > 0.0 {
         each(
-            Flow::Damping,
+            EnergyRate::Damping,
             -felt_velocity(system, now, w, node) * (length * section.drag),
         );
     }
     if section.quadratic_drag > 0.0 {
-        each(Flow::Damping, quadratic_drag(system, now, w, node) * length);
+        each(EnergyRate::Damping, quadratic_drag(system, now, w, node) * length);
     }
 }
 
@@ -239,21 +239,21 @@ pub fn storage<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     }
 }
 
-/// Volume of each pool whose pressure is unknown, `[E25]`.
-pub fn pools<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &Workspace<T>, r: &mut [T]) {
+/// Volume of each lumped network whose pressure is unknown, `[E25]`.
+pub fn lumped<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &Workspace<T>, r: &mut [T]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
     let l = &system.layout.network;
-    for (k, pool) in wet.pools.iter().enumerate() {
-        let Some(row) = l.pool_pressure[k] else { continue };
+    for (k, lumped) in wet.lumped.iter().enumerate() {
+        let Some(row) = l.lumped_pressure[k] else { continue };
         let mut areas = T::zero();
-        for &bladder in &pool.bladders {
+        for &bladder in &lumped.bladders {
             areas += w.fluid.area[fluid.cells_of(bladder).start];
         }
         let volume = areas * wet.bladder_length;
-        r[row] = match (&pool.kind, l.pool_volume[k]) {
-            (PoolKind::Fed(sources), Some(unknown)) => {
+        r[row] = match (&lumped.kind, l.lumped_volume[k]) {
+            (LumpedKind::Fed(sources), Some(unknown)) => {
                 let inflow: f64 = sources.iter().map(|&s| now.source_flow[s]).sum();
                 r[unknown] = yp[unknown] - T::constant(inflow);
                 volume - y[unknown]

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::discrete::time_data::Frame;
 use crate::discrete::workspace::Motion;
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::PoolKind;
+use crate::model::LumpedKind;
 use crate::numerics::Scalar;
 
 /// Copies the state into the workspace; what an end prescribes comes from its signal, with exact rates.
@@ -49,9 +49,9 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
         }
         copy(&mut w.fluid.junction, y, &l.network.junction);
         copy(&mut w.fluid.bridge, y, &l.network.bridge);
-        for (k, pool) in wet.pools.iter().enumerate() {
-            w.fluid.pool[k] = match (&pool.kind, l.network.pool_pressure[k]) {
-                (PoolKind::Port(port), _) => T::constant(now.port_pressure[*port]),
+        for (k, lumped) in wet.lumped.iter().enumerate() {
+            w.fluid.lumped[k] = match (&lumped.kind, l.network.lumped_pressure[k]) {
+                (LumpedKind::Port(port), _) => T::constant(now.port_pressure[*port]),
                 (_, Some(unknown)) => y[unknown],
                 _ => T::zero(),
             };

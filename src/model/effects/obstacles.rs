@@ -4,7 +4,7 @@ use crate::case::schema::{Case, Formulation, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::profile::Profile;
 use crate::functions::signals::Signal;
-use crate::model::{Network, Pool};
+use crate::model::{LumpedNetwork, Network};
 
 /// Why an effect must stay, and what to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,6 +124,6 @@ pub fn flow(network: &Network) -> Option<Obstacle> {
 
 /// Every network must be able to have one pressure.
 pub fn network_pressure_differences(network: &Network) -> Option<Obstacle> {
-    let why = (0..network.components).find_map(|component| Pool::new(network, component).err())?;
+    let why = (0..network.components).find_map(|component| LumpedNetwork::new(network, component).err())?;
     obstacle(why, "remove it, or leave network_pressure_differences on")
 }

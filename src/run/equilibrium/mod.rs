@@ -134,7 +134,7 @@ fn growing(case: &Case, mut model: Model, at_s: f64) -> error::Result<System> {
     (section.drag, section.axial_damping_time, section.bending_damping_time) = (0.0, 0.0, 0.0);
     if let Some(wet) = model.wet.as_mut().filter(|wet| wet.flows) {
         wet.storage.fill(Storage::Flowing);
-        wet.pools.clear();
+        wet.lumped.clear();
     }
     System::with(case, model)
 }

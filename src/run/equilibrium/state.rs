@@ -158,13 +158,13 @@ fn fluid(w: &Workspace<f64>, to: &System, z: &mut [f64]) {
     for (k, drop) in w.fluid.bridge.iter().take(fluid.bridges.len()).enumerate() {
         z[l.bridge.start + k] = *drop;
     }
-    for (k, pool) in wet.pools.iter().enumerate() {
-        let of_pool = || pool.bladders.iter().flat_map(|&b| b * cells..(b + 1) * cells);
-        if let Some(unknown) = l.pool_pressure[k] {
-            z[unknown] = of_pool().map(|c| w.fluid.pressure[c]).sum::<f64>() / of_pool().count() as f64;
+    for (k, lumped) in wet.lumped.iter().enumerate() {
+        let of_lumped = || lumped.bladders.iter().flat_map(|&b| b * cells..(b + 1) * cells);
+        if let Some(unknown) = l.lumped_pressure[k] {
+            z[unknown] = of_lumped().map(|c| w.fluid.pressure[c]).sum::<f64>() / of_lumped().count() as f64;
         }
-        if let Some(unknown) = l.pool_volume[k] {
-            z[unknown] = of_pool().map(|c| w.fluid.area[c]).sum::<f64>() * wet.bladder_length / cells as f64;
+        if let Some(unknown) = l.lumped_volume[k] {
+            z[unknown] = of_lumped().map(|c| w.fluid.area[c]).sum::<f64>() * wet.bladder_length / cells as f64;
         }
     }
 }

@@ -48,9 +48,7 @@ impl Near {
 /// q = f/(ω² - Ω²)     Δq/q = 2 δ ω²/(ω² - Ω²)
 /// ```
 pub fn nearest(system: &System) -> Option<Near> {
-    if !system.layout.lines[0].v.is_some() {
-        return None;
-    }
+    system.layout.lines[0].v.as_ref()?;
     let s = &system.model.section;
     let length = system.model.length;
     let unit = (s.bending_stiffness / s.mass_per_length).sqrt() / (length * length);
