@@ -12,14 +12,14 @@ use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{Winsize, tcsetwinsize};
 use serde_json::{Value, json};
 use slcbeam::case::{self, Case, schema_json};
-use slcbeam::error::{CaseFault, Error};
+use slcbeam::error::{CaseError, Error};
 
 fn parsed(text: &str, sets: &[&str]) -> Result<Case, Error> {
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     case::parse(text, Path::new("mine.json"), Path::new(""), &sets)
 }
 
-fn faults(text: &str) -> CaseFault {
+fn faults(text: &str) -> CaseError {
     match parsed(text, &[]) {
         Err(Error::Case(fault)) => *fault,
         other => panic!("{other:?}"),

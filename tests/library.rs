@@ -6,7 +6,7 @@ use std::process::Command;
 use serde_json::{Value, json};
 use slcbeam::case::{self, Case};
 use slcbeam::discrete::System;
-use slcbeam::error::{CaseFault, Error};
+use slcbeam::error::{CaseError, Error};
 use slcbeam::run::dynamics;
 use slcbeam::run::equilibrium;
 use slcbeam::run::periodic::scene;
@@ -47,7 +47,7 @@ fn load(file: &str, sets: &[&str]) -> Case {
     case::load(Path::new(file), &sets).expect("a valid text")
 }
 
-fn fault<T>(result: Result<T, Error>) -> Box<CaseFault> {
+fn fault<T>(result: Result<T, Error>) -> Box<CaseError> {
     match result {
         Err(Error::Case(fault)) => fault,
         Err(other) => panic!("{other}"),
@@ -56,7 +56,7 @@ fn fault<T>(result: Result<T, Error>) -> Box<CaseFault> {
 }
 
 /// What the program says of each fault, from the library's.
-fn told(fault: &CaseFault) -> Value {
+fn told(fault: &CaseError) -> Value {
     let told = fault.violations.iter().map(|v| {
         json!({"code": v.code.id(), "what": v.what, "pointer": v.pointer, "set": v.set, "allowed": v.allowed, "hint": v.hint})
     });

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::faults::Faults;
+use super::faults::Violations;
 use crate::error::{Code, Violation};
 
 /// Bounds from this on say how much is looked at; smaller ones are rules about meaning.
@@ -23,7 +23,7 @@ pub(super) fn overfull(pointer: &str, count: u64, most: u64) -> Violation {
 }
 
 /// Adds a fault where sums and products have more terms together than are looked at.
-pub(super) fn check(value: &Value, faults: &mut Faults) {
+pub(super) fn check(value: &Value, faults: &mut Violations) {
     let count = terms(value);
     if count > MOST_TERMS {
         let what = format!("sums and products of {count} terms in all");

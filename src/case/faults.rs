@@ -1,4 +1,4 @@
-//! Faults as they are collected: by pointer first, placed in the text at the end.
+//! Violations as they are collected: by pointer first, placed in the text at the end.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::locate::{Node, Place, tokens};
-use crate::error::{CaseFault, Code, Error, Violation};
+use crate::error::{CaseError, Code, Error, Violation};
 
 /// What a fault points at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +17,7 @@ enum Mark {
 
 /// All faults found so far.
 #[derive(Debug, Default)]
-pub struct Faults {
+pub struct Violations {
     list: Vec<(Violation, Mark)>,
     /// Those found after so many that nobody reads them: counted, not kept.
     more: usize,
@@ -25,7 +25,7 @@ pub struct Faults {
     overfull: bool,
 }
 
-impl Faults {
+impl Violations {
     /// Adds a fault in a value.
     pub fn push(&mut self, violation: Violation) {
         self.keep(violation, Mark::Value);
@@ -125,7 +125,7 @@ impl Faults {
     }
 }
 
-/// Faults that are told at once.
+/// Violations that are told at once.
 const MOST: usize = 1000;
 
 /// Orders faults as the text does; those in `--set` arguments behind them, and what has no place last.
@@ -188,7 +188,7 @@ impl Source {
 
     /// The error that reports faults which have their places.
     pub fn error(&self, violations: Vec<Violation>) -> Error {
-        Error::Case(Box::new(CaseFault {
+        Error::Case(Box::new(CaseError {
             path: self.path.clone(),
             text: self.text.clone(),
             violations,

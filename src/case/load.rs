@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::faults::{Faults, Source, sort};
+use super::faults::{Source, Violations, sort};
 use super::origins::Origins;
 use super::schema::Case;
 use super::wording::nearest;
@@ -93,7 +93,7 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         ..source
     };
     let own = value.clone();
-    let mut faults = Faults::default();
+    let mut faults = Violations::default();
     let computed = section::apply(&mut value, &mut faults);
     presets::apply(&mut value, &source.sets);
     // Numbers that are none have their fault already; `null` stands for them.
@@ -133,7 +133,7 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
 
 /// The case, with the rules checked as far as its structure allows: unknown keys are left out, and a section that
 /// cannot be read stands aside while the others are looked at, so that one run tells all faults.
-fn build(mut value: Value, base: &Path, faults: &mut Faults, sound: bool) -> Option<Case> {
+fn build(mut value: Value, base: &Path, faults: &mut Violations, sound: bool) -> Option<Case> {
     faults.remove_unknown_keys(&mut value);
     if !faults.is_overfull() {
         counts::check(&value, faults);

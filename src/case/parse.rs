@@ -9,10 +9,10 @@ use crate::error::{Code, Violation};
 
 /// Deepest nesting that is read; a case needs about ten.
 pub(super) const DEEPEST: usize = 100;
-/// Faults after which nothing more is collected.
+/// Violations after which nothing more is collected.
 const MOST_FAULTS: usize = 100;
 
-/// Reads one JSON value. Faults that leave the structure readable (numbers that are not finite, keys given twice)
+/// Reads one JSON value. Violations that leave the structure readable (numbers that are not finite, keys given twice)
 /// come with a value, others without. Members whose key begins with `//` are remarks and left out.
 pub fn parse(text: &str) -> (Option<Node>, Vec<Violation>) {
     let mut parser = Parser {

@@ -1,4 +1,4 @@
-//! Faults as text: what, where with the line and a caret, what is allowed, what was probably meant, what to do.
+//! Violations as text: what, where with the line and a caret, what is allowed, what was probably meant, what to do.
 
 use std::fmt::Write;
 use std::ops::Range;
@@ -6,9 +6,9 @@ use std::ops::Range;
 use textwrap::{Options, WordSplitter};
 
 use super::places::{Places, floor};
-use crate::error::{CaseFault, Violation, is_hidden, visible};
+use crate::error::{CaseError, Violation, is_hidden, visible};
 
-/// Faults that are shown in full.
+/// Violations that are shown in full.
 const SHOWN: usize = 50;
 
 /// Escape sequences, or none.
@@ -34,7 +34,7 @@ impl Paint {
 }
 
 /// All faults of a case, for a terminal of `width` columns.
-pub fn render(fault: &CaseFault, colour: bool, width: usize) -> String {
+pub fn render(fault: &CaseError, colour: bool, width: usize) -> String {
     let paint = Paint(colour);
     let width = width.clamp(40, 400);
     let mut out = String::new();
@@ -58,7 +58,7 @@ pub fn render(fault: &CaseFault, colour: bool, width: usize) -> String {
     out
 }
 
-fn one(fault: &CaseFault, violation: &Violation, places: &mut Places, paint: &Paint, width: usize, out: &mut String) {
+fn one(fault: &CaseError, violation: &Violation, places: &mut Places, paint: &Paint, width: usize, out: &mut String) {
     let label = format!("fault[{}]:", violation.code.id());
     let _ = writeln!(
         out,

@@ -8,7 +8,7 @@ use slcbeam_section::coefficients::{Coefficients, Options};
 use slcbeam_section::error::Error;
 use slcbeam_section::input::Section;
 
-use super::faults::{Faults, Source};
+use super::faults::{Source, Violations};
 use super::presets::Preset;
 use super::schema_json;
 use crate::error::{Code, Result, Violation};
@@ -52,7 +52,7 @@ pub fn coefficients(section: &Section) -> std::result::Result<Coefficients, Vec<
 /// Puts the numbers of `/section` where a case has them; what stands there already stays. Returns the pointers of those put in.
 ///
 /// Where the section cannot be computed the numbers of a preset stand in, so that the rest of the case can be looked at.
-pub(super) fn apply(case: &mut Value, faults: &mut Faults) -> Vec<String> {
+pub(super) fn apply(case: &mut Value, faults: &mut Violations) -> Vec<String> {
     let Some(given) = case.get(KEY).filter(|given| given.is_object()) else {
         return vec![];
     };
@@ -273,7 +273,7 @@ pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Section> {
     };
     let of_case = value.get(KEY).is_some();
     let (schema, at) = schema_json::section(of_case);
-    let mut faults = Faults::default();
+    let mut faults = Violations::default();
     super::validate::validate(&value, &schema, &mut faults);
     let section = value
         .pointer(at)

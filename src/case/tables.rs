@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
-use super::faults::Faults;
+use super::faults::Violations;
 use super::locate::child;
 use super::wording::nearest;
 use super::written::checksum;
@@ -17,7 +17,7 @@ const LARGEST: u64 = 64 << 20;
 const LARGEST_WRITTEN: u64 = 4 * LARGEST;
 
 /// Replaces `csv` and its columns by `times_s` and `values` in every table below `value`.
-pub fn resolve(value: &mut Value, base: &Path, pointer: &str, faults: &mut Faults) {
+pub fn resolve(value: &mut Value, base: &Path, pointer: &str, faults: &mut Violations) {
     match value {
         Value::Array(items) => {
             for (i, item) in items.iter_mut().enumerate() {

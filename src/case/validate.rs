@@ -7,20 +7,20 @@
 use serde_json::{Map, Value};
 
 use super::counts;
-use super::faults::Faults;
+use super::faults::Violations;
 use super::locate::child;
 use super::numbers;
 use super::wording::{found, found_text, nearest, quoted, short};
 use crate::error::{Code, Violation};
 
 /// Compares a value with a schema.
-pub fn validate(value: &Value, schema: &Value, faults: &mut Faults) {
+pub fn validate(value: &Value, schema: &Value, faults: &mut Violations) {
     Walk { root: schema, faults }.check(value, schema, "");
 }
 
 struct Walk<'a> {
     root: &'a Value,
-    faults: &'a mut Faults,
+    faults: &'a mut Violations,
 }
 
 impl<'a> Walk<'a> {

@@ -1,7 +1,7 @@
 //! The network of a case, resolved: every number, end and name is a point, every tube has a size, every port gives one thing.
 
 use super::check;
-use super::faults::Faults;
+use super::faults::Violations;
 use super::schema::{BladderEnd, Case, CrossSection, TubeDefaults, Turbine};
 use crate::error::Result;
 use crate::functions::Signal;
@@ -95,7 +95,7 @@ impl<'a> Wiring<'a> {
     /// # Errors
     /// [`Error::Case`](crate::error::Error::Case) with everything that leads nowhere, as the check of the case tells it.
     pub fn of(case: &'a Case) -> Result<Self> {
-        let mut faults = Faults::default();
+        let mut faults = Violations::default();
         let wiring = check::network::resolve(case, &mut faults).0;
         match faults.is_empty() {
             true => Ok(wiring),

@@ -5,7 +5,7 @@ use std::io::{IsTerminal as _, Write as _};
 use serde_json::{Value, json};
 
 use crate::case::{self, Places};
-use crate::error::{At, Code, Error, SolverFault, Violation, visible};
+use crate::error::{At, Code, Error, SolverError, Violation, visible};
 
 /// Whether standard output wants colour: a terminal, and `NO_COLOR` not set.
 pub fn colour_out() -> bool {
@@ -90,7 +90,7 @@ pub fn answer(answer: &clap::Error) {
 }
 
 /// A failed run in words.
-pub fn diagnosis(fault: &SolverFault) -> String {
+pub fn diagnosis(fault: &SolverError) -> String {
     // modes and equilibria belong to an instant and do not run
     let failed = match (fault.code, fault.at) {
         (Code::NoModes | Code::NoEquilibrium, _) => String::new(),
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn only_runs_fail_at_a_time() {
         let words = |code| {
-            diagnosis(&SolverFault {
+            diagnosis(&SolverError {
                 code,
                 at: At::Time(0.25),
                 what: "no such thing".into(),

@@ -1,6 +1,6 @@
 //! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
 
-use super::{Dae, Fault, Pattern, PerturbedSystems, Seeds, trace};
+use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds, trace};
 use crate::discrete::layout::Line;
 use crate::discrete::{State, System, TimeData, Workspace, kick, ledger, residual, start};
 use crate::functions::signals::Clock;
@@ -249,7 +249,7 @@ impl Dae for BeamDae {
         &self.pattern
     }
 
-    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError> {
         self.unscale(t, y, yp);
         let b = &mut self.plain;
         residual::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
@@ -259,7 +259,14 @@ impl Dae for BeamDae {
         Ok(())
     }
 
-    fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        seeds: Seeds<'_>,
+        values: &mut [f64],
+    ) -> Result<(), EvaluationError> {
         self.unscale(t, y, yp);
         let scales = &self.system.layout.scales;
         let rows = &self.system.layout.row_scales;
@@ -295,7 +302,7 @@ impl Dae for BeamDae {
         yp: &[f64],
         [dy, dyp]: [&[&[f64]]; 2],
         out: &mut [&mut [f64]],
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationError> {
         self.unscale(t, y, yp);
         let scales = &self.system.layout.scales;
         let rows = &self.system.layout.row_scales;
@@ -322,7 +329,14 @@ impl Dae for BeamDae {
         self.perturbed.len()
     }
 
-    fn parameter_derivative(&mut self, k: usize, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Fault> {
+    fn parameter_derivative(
+        &mut self,
+        k: usize,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), EvaluationError> {
         self.perturbed[k].derivative(out, |_, beam, out| beam.residual(t, y, yp, out))
     }
 
@@ -333,7 +347,7 @@ impl Dae for BeamDae {
         state: [&[f64]; 2],
         along: [&[f64]; 2],
         out: &mut [f64],
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationError> {
         self.read_slope(k, t, state, along, out, ledger::flows);
         Ok(())
     }
@@ -342,7 +356,7 @@ impl Dae for BeamDae {
         ledger::rate_count(&self.system)
     }
 
-    fn integrands(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Fault> {
+    fn integrands(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), EvaluationError> {
         self.unscale(t, y, yp);
         let b = &mut self.plain;
         residual::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);

@@ -13,7 +13,7 @@ use crate::sparse::Pattern;
 
 /// Why an evaluation could not be done.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Fault {
+pub enum EvaluationError {
     /// A shorter step may succeed: the solver may try again.
     Recoverable(String),
     /// No step can succeed.
@@ -49,10 +49,17 @@ pub trait Dae {
     fn pattern(&self) -> &Pattern;
 
     /// Writes `F(t, y, y')` into `residual`. All slices have length `len`. Allocates nothing.
-    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Fault>;
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError>;
 
     /// Writes the entries of the Jacobian in the order of [`Dae::pattern`] into `values`. Allocates nothing.
-    fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault>;
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        seeds: Seeds<'_>,
+        values: &mut [f64],
+    ) -> Result<(), EvaluationError>;
 
     /// Number of integrals that the solver carries along without feedback, `I' = g(t, y, y')`.
     fn integrals(&self) -> usize {
@@ -60,7 +67,7 @@ pub trait Dae {
     }
 
     /// Writes the integrands `g(t, y, y')`; `out` has length [`Dae::integrals`]. Allocates nothing.
-    fn integrands(&mut self, _t: f64, _y: &[f64], _yp: &[f64], _out: &mut [f64]) -> Result<(), Fault> {
+    fn integrands(&mut self, _t: f64, _y: &[f64], _yp: &[f64], _out: &mut [f64]) -> Result<(), EvaluationError> {
         Ok(())
     }
 
@@ -73,7 +80,7 @@ pub trait Dae {
         yp: &[f64],
         [dy, dyp]: [&[&[f64]]; 2],
         out: &mut [&mut [f64]],
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationError> {
         let mut values = vec![0.0; self.pattern().rows.len()];
         for ((dy, dyp), out) in dy.iter().zip(dyp).zip(out) {
             self.jacobian(t, y, yp, Seeds::Columns { y: dy, yp: dyp }, &mut values)?;
@@ -98,7 +105,7 @@ pub trait Dae {
         _y: &[f64],
         _yp: &[f64],
         out: &mut [f64],
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationError> {
         out.fill(0.0);
         Ok(())
     }
@@ -112,7 +119,7 @@ pub trait Dae {
         _state: [&[f64]; 2],
         _along: [&[f64]; 2],
         out: &mut [f64],
-    ) -> Result<(), Fault> {
+    ) -> Result<(), EvaluationError> {
         out.fill(0.0);
         Ok(())
     }

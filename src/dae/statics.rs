@@ -1,6 +1,6 @@
 //! Equilibrium as a system without derivatives: what a beam at rest obeys, with the share of its loads as "time".
 
-use super::{BeamDae, Dae, Fault, Pattern, Seeds};
+use super::{BeamDae, Dae, EvaluationError, Pattern, Seeds};
 use crate::discrete::System;
 use crate::discrete::fluid_mesh::{FluidMesh, Place};
 
@@ -208,7 +208,7 @@ impl Dae for StaticBeam {
         &self.pattern
     }
 
-    fn residual(&mut self, t: f64, y: &[f64], _: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+    fn residual(&mut self, t: f64, y: &[f64], _: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError> {
         self.beam.residual(t, y, &self.zeros, residual)?;
         for closed in &self.closed {
             let sum: f64 = closed.cells.iter().map(|&c| y[c]).sum();
@@ -220,7 +220,14 @@ impl Dae for StaticBeam {
         Ok(())
     }
 
-    fn jacobian(&mut self, t: f64, y: &[f64], _: &[f64], _: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        _: &[f64],
+        _: Seeds<'_>,
+        values: &mut [f64],
+    ) -> Result<(), EvaluationError> {
         let seeds = Seeds::Step { cj: 0.0 };
         self.beam.jacobian(t, y, &self.zeros, seeds, &mut self.beam_values)?;
         for (value, from) in values.iter_mut().zip(&self.from) {

@@ -64,7 +64,7 @@ impl Violation {
 
 /// A case that cannot be used, with all its faults and the text they point into.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CaseFault {
+pub struct CaseError {
     /// Where the text came from.
     pub path: PathBuf,
     /// The text.
@@ -94,7 +94,7 @@ impl At {
 
 /// A run that could not go on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SolverFault {
+pub struct SolverError {
     /// Its number.
     pub code: Code,
     /// Up to where results stand.
@@ -117,10 +117,10 @@ pub enum Error {
     Usage(String),
     /// The case is not valid (exit code 3).
     #[error("{} fault(s) in {}", .0.violations.len(), .0.path.display())]
-    Case(Box<CaseFault>),
+    Case(Box<CaseError>),
     /// The solver could not go on (exit code 4).
     #[error("{}", .0.what)]
-    Solver(Box<SolverFault>),
+    Solver(Box<SolverError>),
     /// A file could not be read or written (exit code 5).
     #[error("cannot {action} {}: {source}", .path.display())]
     Output {

@@ -17,7 +17,7 @@ pub struct Worst {
 
 /// A step that could not be done, or a request that cannot be met.
 #[derive(Clone, Debug, PartialEq)]
-pub struct IntegrationFailure {
+pub struct IntegrationError {
     /// IDA's code, negative; 0 when the failure is not IDA's.
     pub code: i32,
     /// What the code means.
@@ -40,7 +40,7 @@ pub struct IntegrationFailure {
     pub singular: Option<String>,
 }
 
-impl IntegrationFailure {
+impl IntegrationError {
     /// A request that cannot be met, at time `time` [s].
     pub(crate) fn request(message: String, time: f64) -> Box<Self> {
         Box::new(Self {
@@ -58,7 +58,7 @@ impl IntegrationFailure {
     }
 }
 
-impl fmt::Display for IntegrationFailure {
+impl fmt::Display for IntegrationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(fatal) = &self.fatal {
             return f.write_str(fatal);
@@ -87,7 +87,7 @@ impl fmt::Display for IntegrationFailure {
     }
 }
 
-impl std::error::Error for IntegrationFailure {}
+impl std::error::Error for IntegrationError {}
 
 /// Says which derivative is not finite; `entry` is a position in the pattern.
 pub(crate) fn not_finite<D: Dae>(dae: &D, entry: usize, t: f64) -> String {

@@ -17,7 +17,7 @@ pub mod tolerances;
 
 pub use counters::{Counters, Wall};
 pub(crate) use failure::not_finite;
-pub use failure::{IntegrationFailure, Worst};
+pub use failure::{IntegrationError, Worst};
 pub use sensitivity_start::consistent_sensitivities;
-pub use start::{Start, StartFailure, StartOptions, consistent_start};
+pub use start::{Start, StartError, StartOptions, consistent_start};
 pub use tolerances::Absolute;

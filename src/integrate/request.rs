@@ -1,8 +1,8 @@
 //! What every integrator checks before it begins, and before a step.
 
-use super::failure::IntegrationFailure;
+use super::failure::IntegrationError;
 use crate::dae::Dae;
-use crate::sparse::{Klu, KluFault};
+use crate::sparse::{Klu, KluError};
 
 /// The factors to be of a system that fits its values `[y, y']` and whose `options` were found good; else what is wrong.
 pub(crate) fn admit<D: Dae>(dae: &D, values: [&[f64]; 2], options: Result<(), String>) -> Result<Klu, String> {
@@ -16,17 +16,17 @@ pub(crate) fn admit<D: Dae>(dae: &D, values: [&[f64]; 2], options: Result<(), St
     }
     options?;
     Klu::new(dae.pattern()).map_err(|fault| match fault {
-        KluFault::Singular { column } => format!("no equation can be solved for {}", dae.name(column)),
-        KluFault::Package { status } => format!("KLU cannot analyse the pattern (status {status})"),
+        KluError::Singular { column } => format!("no equation can be solved for {}", dae.name(column)),
+        KluError::Package { status } => format!("KLU cannot analyse the pattern (status {status})"),
     })
 }
 
 /// Whether a stop time [s] is reached, round-off included; one that lies behind is refused.
-pub(crate) fn reached(time: f64, stop: f64) -> Result<bool, Box<IntegrationFailure>> {
+pub(crate) fn reached(time: f64, stop: f64) -> Result<bool, Box<IntegrationError>> {
     let round_off = 100.0 * f64::EPSILON * (time.abs() + stop.abs());
     if stop.is_nan() || stop < time - round_off {
         let message = format!("the stop time {stop:e} s lies behind");
-        return Err(IntegrationFailure::request(message, time));
+        return Err(IntegrationError::request(message, time));
     }
     Ok(stop - time <= round_off)
 }

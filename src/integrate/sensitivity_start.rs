@@ -1,7 +1,7 @@
 //! Consistent initial values of sensitivities: one linear system, with the matrix of a consistent start.
 
-use crate::dae::{Dae, Fault, Seeds};
-use crate::sparse::{Klu, KluFault};
+use crate::dae::{Dae, EvaluationError, Seeds};
+use crate::sparse::{Klu, KluError};
 
 /// Solves `F_y s + F_y' s' + ∂F/∂σₖ = 0` ([E41]) for the sensitivities of algebraic unknowns and the rates of
 /// those of differential ones, for every parameter k of the equations; `(y, yp)` is consistent.
@@ -59,15 +59,15 @@ pub fn consistent_sensitivities<D: Dae>(
     Ok(())
 }
 
-fn text(fault: Fault) -> String {
+fn text(fault: EvaluationError) -> String {
     match fault {
-        Fault::Recoverable(what) | Fault::Fatal(what) => what,
+        EvaluationError::Recoverable(what) | EvaluationError::Fatal(what) => what,
     }
 }
 
-fn no_factors<D: Dae>(dae: &D, fault: KluFault) -> String {
+fn no_factors<D: Dae>(dae: &D, fault: KluError) -> String {
     match fault {
-        KluFault::Singular { column } => format!("no equation is left to determine {}", dae.name(column)),
-        KluFault::Package { status } => format!("KLU cannot go on (status {status})"),
+        KluError::Singular { column } => format!("no equation is left to determine {}", dae.name(column)),
+        KluError::Package { status } => format!("KLU cannot go on (status {status})"),
     }
 }

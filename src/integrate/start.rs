@@ -3,9 +3,9 @@
 use std::fmt;
 
 use super::not_finite;
-use crate::dae::{Dae, Fault, Seeds};
+use crate::dae::{Dae, EvaluationError, Seeds};
 use crate::numerics::kernels;
-use crate::sparse::{Klu, KluFault};
+use crate::sparse::{Klu, KluError};
 
 /// Settings of [`consistent_start`].
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +43,7 @@ pub struct Start {
 
 /// Why no consistent values were found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StartFailure {
+pub struct StartError {
     /// What happened.
     pub what: String,
     /// Unknown that is worst, by position and name.
@@ -52,7 +52,7 @@ pub struct StartFailure {
     pub iterations: u16,
 }
 
-impl fmt::Display for StartFailure {
+impl fmt::Display for StartError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "no consistent start: {}", self.what)?;
         match &self.worst {
@@ -62,7 +62,7 @@ impl fmt::Display for StartFailure {
     }
 }
 
-impl std::error::Error for StartFailure {}
+impl std::error::Error for StartError {}
 
 /// Solves `F(t, y, y') = 0` for the algebraic unknowns and the derivatives of the differential ones.
 ///
@@ -78,7 +78,7 @@ pub fn consistent_start<D: Dae>(
     y: &mut [f64],
     yp: &mut [f64],
     options: &StartOptions,
-) -> Result<Start, StartFailure> {
+) -> Result<Start, StartError> {
     Newton::new(dae, t, y, yp)?.solve(options)
 }
 
@@ -105,7 +105,7 @@ struct Newton<'a, D: Dae> {
 }
 
 impl<'a, D: Dae> Newton<'a, D> {
-    fn new(dae: &'a mut D, t: f64, y: &'a mut [f64], yp: &'a mut [f64]) -> Result<Self, StartFailure> {
+    fn new(dae: &'a mut D, t: f64, y: &'a mut [f64], yp: &'a mut [f64]) -> Result<Self, StartError> {
         let n = dae.len();
         assert!(y.len() == n && yp.len() == n, "values of another system");
         let differential = dae.differential().to_vec();
@@ -132,7 +132,7 @@ impl<'a, D: Dae> Newton<'a, D> {
         })
     }
 
-    fn solve(mut self, options: &StartOptions) -> Result<Start, StartFailure> {
+    fn solve(mut self, options: &StartOptions) -> Result<Start, StartError> {
         self.evaluate().map_err(|fault| self.give_up(text(fault), None))?;
         let mut damping: f64 = 1.0;
         let mut last = f64::INFINITY;
@@ -159,7 +159,7 @@ impl<'a, D: Dae> Newton<'a, D> {
         size: f64,
         first: f64,
         options: &StartOptions,
-    ) -> Result<f64, StartFailure> {
+    ) -> Result<f64, StartError> {
         let from = self.unknowns();
         let mut damping = first;
         let mut fault = None;
@@ -175,8 +175,8 @@ impl<'a, D: Dae> Newton<'a, D> {
                         return Ok(damping);
                     }
                 }
-                Err(Fault::Fatal(what)) => return Err(self.give_up(what, None)),
-                Err(Fault::Recoverable(what)) => fault = Some(what),
+                Err(EvaluationError::Fatal(what)) => return Err(self.give_up(what, None)),
+                Err(EvaluationError::Recoverable(what)) => fault = Some(what),
             }
             damping *= 0.5;
             if damping < options.smallest_damping {
@@ -189,7 +189,7 @@ impl<'a, D: Dae> Newton<'a, D> {
     }
 
     /// Takes the last correction too and reports.
-    fn finish(mut self, correction: &[f64], size: f64) -> Result<Start, StartFailure> {
+    fn finish(mut self, correction: &[f64], size: f64) -> Result<Start, StartError> {
         let from = self.unknowns();
         let before = kernels::max_abs(&self.residual);
         self.go(&from, correction, 1.0);
@@ -207,12 +207,12 @@ impl<'a, D: Dae> Newton<'a, D> {
         })
     }
 
-    fn evaluate(&mut self) -> Result<(), Fault> {
+    fn evaluate(&mut self) -> Result<(), EvaluationError> {
         self.residuals += 1;
         self.dae.residual(self.t, self.y, self.yp, &mut self.residual)?;
         match kernels::first_not_finite(&self.residual) {
             None => Ok(()),
-            Some(i) => Err(Fault::Recoverable(format!(
+            Some(i) => Err(EvaluationError::Recoverable(format!(
                 "the equation of {} gives {}",
                 self.dae.name(i),
                 self.residual[i]
@@ -221,7 +221,7 @@ impl<'a, D: Dae> Newton<'a, D> {
     }
 
     /// Newton's correction, to be subtracted: `J dz = F`.
-    fn correction(&mut self) -> Result<Vec<f64>, StartFailure> {
+    fn correction(&mut self) -> Result<Vec<f64>, StartError> {
         let seeds = Seeds::Columns {
             y: &self.y_seeds,
             yp: &self.yp_seeds,
@@ -249,7 +249,7 @@ impl<'a, D: Dae> Newton<'a, D> {
     /// ```text
     /// J dz = 16 ε |∂F/∂y| |y|
     /// ```
-    fn round_off(&mut self) -> Result<f64, StartFailure> {
+    fn round_off(&mut self) -> Result<f64, StartError> {
         let n = self.y.len();
         let (one, zero) = (vec![1.0; n], vec![0.0; n]);
         let seeds = Seeds::Columns { y: &one, yp: &zero };
@@ -305,9 +305,9 @@ impl<'a, D: Dae> Newton<'a, D> {
         (kernels::weighted_square(correction, &weights) / from.len() as f64).sqrt()
     }
 
-    fn give_up(&self, what: String, worst: Option<usize>) -> StartFailure {
+    fn give_up(&self, what: String, worst: Option<usize>) -> StartError {
         let worst = worst.map(|i| (i, self.name(i)));
-        StartFailure {
+        StartError {
             what,
             worst,
             iterations: self.iterations,
@@ -332,20 +332,20 @@ fn largest(x: &[f64]) -> Option<usize> {
         .map(|(i, _)| i)
 }
 
-fn text(fault: Fault) -> String {
+fn text(fault: EvaluationError) -> String {
     match fault {
-        Fault::Recoverable(what) | Fault::Fatal(what) => what,
+        EvaluationError::Recoverable(what) | EvaluationError::Fatal(what) => what,
     }
 }
 
-fn singular<D: Dae>(dae: &D, fault: KluFault, iterations: u16) -> StartFailure {
+fn singular<D: Dae>(dae: &D, fault: KluError, iterations: u16) -> StartError {
     match fault {
-        KluFault::Singular { column } => StartFailure {
+        KluError::Singular { column } => StartError {
             what: "no equation is left to determine an unknown".to_owned(),
             worst: Some((column, dae.name(column))),
             iterations,
         },
-        KluFault::Package { status } => StartFailure {
+        KluError::Package { status } => StartError {
             what: format!("KLU cannot go on (status {status})"),
             worst: None,
             iterations,

@@ -3,12 +3,12 @@
 //! Differential unknowns: Hermite's cubic through values and rates at both ends. Algebraic unknowns: the polynomial through
 //! the stages [`super::Tableau::nodes`]. Integrals: `h Σ bᵢ g(tᵢ, Yᵢ, Kᵢ)` from step to step, inside by Hermite's cubic.
 
-use super::equations::Obstacle;
+use super::equations::StageError;
 use super::integrator::OneStep;
 use super::polynomial;
 use super::stages::{Stages, add};
 use crate::dae::Dae;
-use crate::integrate::IntegrationFailure;
+use crate::integrate::IntegrationError;
 
 /// Integrals at both ends of the last step, with their integrands.
 #[derive(Clone, Debug)]
@@ -55,11 +55,11 @@ impl<D: Dae> OneStep<D> {
     /// Derivative number `k`, 0 or 1, of the unknowns at a time [s] within the last step.
     ///
     /// Panics when `out` has another length than the unknowns.
-    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IntegrationFailure>> {
+    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         let x = self.place(time)?;
         if k > 1 {
             let message = format!("derivative {k} of the unknowns is not available");
-            return Err(IntegrationFailure::request(message, self.time));
+            return Err(IntegrationError::request(message, self.time));
         }
         assert_eq!(out.len(), self.mask.len(), "values of another system");
         let Stages { h, x: stages, y, .. } = &self.last;
@@ -77,7 +77,7 @@ impl<D: Dae> OneStep<D> {
 
     /// The integrals `∫ g dt` since the last restart: at the present time, or at a time [s] within the last step. `out` has
     /// length `dae.integrals()`.
-    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationFailure>> {
+    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         let Integrals { total, rate, .. } = &self.integrals;
         match time {
             Some(time) if self.last.h > 0.0 => {
@@ -94,7 +94,7 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Place of a time within the last step, 0 to 1.
-    fn place(&self, time: f64) -> Result<f64, Box<IntegrationFailure>> {
+    fn place(&self, time: f64) -> Result<f64, Box<IntegrationError>> {
         let Stages { t, h, .. } = self.last;
         let x = (time - t) / h;
         let round_off = 100.0 * f64::EPSILON * (time.abs() + self.time.abs()) / h;
@@ -106,7 +106,7 @@ impl<D: Dae> OneStep<D> {
         } else {
             "nothing can be interpolated before the first step".to_owned()
         };
-        Err(IntegrationFailure::request(message, self.time))
+        Err(IntegrationError::request(message, self.time))
     }
 
     /// Puts in the values of algebraic unknowns at a place in a step, or their rates [1/s].
@@ -136,13 +136,13 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Carries the integrals over the present step, which ends at `t1` [s].
-    pub(super) fn integrate(&mut self, t1: f64) -> Result<(), Obstacle> {
+    pub(super) fn integrate(&mut self, t1: f64) -> Result<(), StageError> {
         if self.integrals.sum.is_empty() {
             return Ok(());
         }
         let (h, b, s) = (self.now.h, self.tableau.b(), self.tableau.stages);
         let mut yp = std::mem::take(&mut self.work.yp);
-        let done: Result<(), Obstacle> = (0..s).filter(|&i| b[i] != 0.0).try_for_each(|i| {
+        let done: Result<(), StageError> = (0..s).filter(|&i| b[i] != 0.0).try_for_each(|i| {
             let g = &mut self.integrals;
             if i == 0 && g.known {
                 g.sum.fill(0.0);

@@ -2,13 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use crate::dae::{Dae, Fault, Seeds};
+use crate::dae::{Dae, EvaluationError, Seeds};
 use crate::integrate::not_finite;
 use crate::numerics::kernels;
 
 /// Why an attempt at a step was given up.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Obstacle {
+pub(super) enum StageError {
     /// Newton's iteration does not converge.
     Newton,
     /// No pivot is left in a column.
@@ -19,11 +19,11 @@ pub(super) enum Obstacle {
     Fatal(String),
 }
 
-impl From<Fault> for Obstacle {
-    fn from(fault: Fault) -> Self {
+impl From<EvaluationError> for StageError {
+    fn from(fault: EvaluationError) -> Self {
         match fault {
-            Fault::Recoverable(what) => Self::Recoverable(what),
-            Fault::Fatal(what) => Self::Fatal(what),
+            EvaluationError::Recoverable(what) => Self::Recoverable(what),
+            EvaluationError::Fatal(what) => Self::Fatal(what),
         }
     }
 }
@@ -51,7 +51,7 @@ impl<D: Dae> Equations<D> {
     }
 
     /// `F(t, y, y')`; finite, or an obstacle that names the equation.
-    pub fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Obstacle> {
+    pub fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), StageError> {
         let begin = Instant::now();
         let done = self.dae.residual(t, y, yp, out);
         self.residuals += 1;
@@ -60,7 +60,7 @@ impl<D: Dae> Equations<D> {
         done?;
         match finite {
             None => Ok(()),
-            Some(i) => Err(Obstacle::Recoverable(format!(
+            Some(i) => Err(StageError::Recoverable(format!(
                 "the equation of {} gives {} at t = {t:.6e} s",
                 self.dae.name(i),
                 out[i]
@@ -69,7 +69,7 @@ impl<D: Dae> Equations<D> {
     }
 
     /// `∂F/∂y + cj ∂F/∂y'` in the order of the pattern.
-    pub fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], cj: f64, values: &mut [f64]) -> Result<(), Obstacle> {
+    pub fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], cj: f64, values: &mut [f64]) -> Result<(), StageError> {
         let begin = Instant::now();
         let done = self.dae.jacobian(t, y, yp, Seeds::Step { cj }, values);
         self.jacobians += 1;
@@ -78,12 +78,12 @@ impl<D: Dae> Equations<D> {
         done?;
         match finite {
             None => Ok(()),
-            Some(entry) => Err(Obstacle::Recoverable(not_finite(&self.dae, entry, t))),
+            Some(entry) => Err(StageError::Recoverable(not_finite(&self.dae, entry, t))),
         }
     }
 
     /// Integrands of the integrals carried along.
-    pub fn integrands(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Obstacle> {
+    pub fn integrands(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), StageError> {
         let begin = Instant::now();
         let done = self.dae.integrands(t, y, yp, out);
         self.integrand_wall += begin.elapsed();

@@ -2,13 +2,13 @@
 
 use super::control::Control;
 use super::dense::Integrals;
-use super::equations::{Equations, Obstacle};
+use super::equations::{Equations, StageError};
 use super::matrix::Matrix;
 use super::options::OneStepOptions;
 use super::stages::{Stages, Work};
 use super::tableau::Tableau;
 use crate::dae::Dae;
-use crate::integrate::{Counters, IntegrationFailure, Wall, Worst, request};
+use crate::integrate::{Counters, IntegrationError, Wall, Worst, request};
 use crate::numerics::kernels;
 use crate::sundials::Step;
 
@@ -45,10 +45,10 @@ impl<D: Dae> OneStep<D> {
         y0: &[f64],
         yp0: &[f64],
         options: &OneStepOptions,
-    ) -> Result<Self, Box<IntegrationFailure>> {
+    ) -> Result<Self, Box<IntegrationError>> {
         let n = dae.len();
         let klu = request::admit(&dae, [y0, yp0], options.check(n))
-            .map_err(|message| IntegrationFailure::request(message, t0))?;
+            .map_err(|message| IntegrationError::request(message, t0))?;
         let tableau = options.method.tableau();
         let order = options.method.order();
         let differential = dae.differential();
@@ -81,7 +81,7 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Takes up a state, without a past.
-    fn begin(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationFailure>> {
+    fn begin(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         self.matrix.forget();
         self.integrals.restart();
         self.time = t;
@@ -96,13 +96,13 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Weights of the error norm at the present state.
-    fn weigh(&mut self) -> Result<(), Box<IntegrationFailure>> {
+    fn weigh(&mut self) -> Result<(), Box<IntegrationError>> {
         let (y, relative) = (&self.now.y[0], self.options.relative);
         if kernels::error_weights(y, relative, &self.absolute, &mut self.work.weights) {
             return Ok(());
         }
         let message = "an error weight is not positive and finite".to_owned();
-        Err(IntegrationFailure::request(message, self.time))
+        Err(IntegrationError::request(message, self.time))
     }
 
     /// Largest step [s] from now on.
@@ -111,7 +111,7 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// One accepted step, which does not pass `stop` [s]. A stop closer than round-off counts as reached.
-    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationFailure>> {
+    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationError>> {
         let order = self.options.method.order();
         if request::reached(self.time, stop)? {
             self.time = stop;
@@ -152,11 +152,11 @@ impl<D: Dae> OneStep<D> {
                     self.counters.error_test_failures += 1;
                     self.control.rejected(h, error);
                 }
-                Err(Obstacle::Fatal(what)) => {
+                Err(StageError::Fatal(what)) => {
                     return Err(self.failure("the equations could not be evaluated", h, Some(what)));
                 }
                 Err(obstacle) => {
-                    if let Obstacle::Recoverable(what) = obstacle {
+                    if let StageError::Recoverable(what) = obstacle {
                         self.recoverable = Some(what);
                     }
                     self.counters.newton_failures += 1;
@@ -173,7 +173,7 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// The step tried becomes the last one, and its end the present.
-    fn accept(&mut self, h: f64, t1: f64, error: f64) -> Result<(), Box<IntegrationFailure>> {
+    fn accept(&mut self, h: f64, t1: f64, error: f64) -> Result<(), Box<IntegrationError>> {
         let mut yp = std::mem::take(&mut self.yp);
         let end = self.tableau.stages - 1;
         self.rates(end, &mut yp);
@@ -208,10 +208,10 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Everything known about a failure.
-    fn failure(&self, meaning: &'static str, step: f64, fatal: Option<String>) -> Box<IntegrationFailure> {
+    fn failure(&self, meaning: &'static str, step: f64, fatal: Option<String>) -> Box<IntegrationError> {
         let ratios = self.work.r.iter().zip(&self.work.weights).map(|(r, w)| (r * w).abs());
         let worst = ratios.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        Box::new(IntegrationFailure {
+        Box::new(IntegrationError {
             code: 0,
             meaning,
             fatal,
@@ -253,7 +253,7 @@ impl<D: Dae> OneStep<D> {
     /// a new integrator from the same values would do the same bit for bit. Integrals start at zero.
     ///
     /// Panics when a slice has another length than the unknowns.
-    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationFailure>> {
+    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         self.counters.restarts += 1;
         self.begin(t, y, yp)
     }

@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use super::equations::{Equations, Obstacle};
+use super::equations::{Equations, StageError};
 use crate::dae::Dae;
-use crate::sparse::{Klu, KluFault};
+use crate::sparse::{Klu, KluError};
 
 /// Contraction that is assumed before one is measured: corrections are then taken for what is left.
 const UNKNOWN_RATE: f64 = 0.5;
@@ -67,7 +67,7 @@ impl Matrix {
         (t, y, yp): (f64, &[f64], &[f64]),
         cj: f64,
         band: f64,
-    ) -> Result<(), Obstacle> {
+    ) -> Result<(), StageError> {
         if !self.stale && (cj / self.cj - 1.0).abs() <= band {
             return Ok(());
         }
@@ -82,11 +82,11 @@ impl Matrix {
                 self.singular = None;
                 Ok(())
             }
-            Err(KluFault::Singular { column }) => {
+            Err(KluError::Singular { column }) => {
                 self.singular = Some(column);
-                Err(Obstacle::Singular(column))
+                Err(StageError::Singular(column))
             }
-            Err(KluFault::Package { status }) => Err(Obstacle::Fatal(format!("KLU cannot go on (status {status})"))),
+            Err(KluError::Package { status }) => Err(StageError::Fatal(format!("KLU cannot go on (status {status})"))),
         }
     }
 

@@ -4,7 +4,7 @@
 //! that the stages before give, `Y = base + s x`, `s = h γ` or 1. A correction `δ` of `Y` is one of `δ/s` of `x`, so that rates
 //! are never differences of values.
 
-use super::equations::Obstacle;
+use super::equations::StageError;
 use super::integrator::OneStep;
 use super::polynomial;
 use crate::dae::Dae;
@@ -87,7 +87,7 @@ fn norm(v: &[f64], weights: &[f64]) -> f64 {
 
 impl<D: Dae> OneStep<D> {
     /// Tries a step of size `h` that ends at `t1` [s]; returns its error relative to the tolerance.
-    pub(super) fn attempt(&mut self, h: f64, t1: f64) -> Result<f64, Obstacle> {
+    pub(super) fn attempt(&mut self, h: f64, t1: f64) -> Result<f64, StageError> {
         self.matrix.begin();
         (self.now.t, self.now.h) = (self.time, h);
         let cj = 1.0 / (h * self.tableau.gamma());
@@ -103,7 +103,7 @@ impl<D: Dae> OneStep<D> {
             self.predict(i);
             match self.newton(i, t, cj) {
                 // what failed with old factors is tried with new ones
-                Err(Obstacle::Newton | Obstacle::Recoverable(_)) if !self.matrix.fresh => {
+                Err(StageError::Newton | StageError::Recoverable(_)) if !self.matrix.fresh => {
                     self.matrix.stale = true;
                     self.predict(i);
                     self.newton(i, t, cj)?;
@@ -158,7 +158,7 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Solves stage `i` at time `t` [s] from its prediction.
-    fn newton(&mut self, i: usize, t: f64, cj: f64) -> Result<(), Obstacle> {
+    fn newton(&mut self, i: usize, t: f64, cj: f64) -> Result<(), StageError> {
         self.update(i);
         let state = (t, self.now.y[i].as_slice(), self.work.yp.as_slice());
         self.matrix
@@ -178,7 +178,7 @@ impl<D: Dae> OneStep<D> {
             self.update(i);
             let size = norm(&self.work.r, &self.work.weights);
             if !size.is_finite() {
-                return Err(Obstacle::Newton);
+                return Err(StageError::Newton);
             }
             if let Some(before) = before {
                 let rate = size / before;
@@ -190,7 +190,7 @@ impl<D: Dae> OneStep<D> {
                 }
                 let left = (ITERATIONS - 1 - iteration) as i32;
                 if rate > DIVERGING || rate.powi(left) * size * rate / (1.0 - rate) > tolerance {
-                    return Err(Obstacle::Newton);
+                    return Err(StageError::Newton);
                 }
             }
             let rate = self.matrix.rate;
@@ -202,7 +202,7 @@ impl<D: Dae> OneStep<D> {
             }
             before = Some(size);
         }
-        Err(Obstacle::Newton)
+        Err(StageError::Newton)
     }
 
     /// Values and rates of stage `i` from its own unknowns.
@@ -223,7 +223,7 @@ impl<D: Dae> OneStep<D> {
     /// once more, `(∂F/∂y + cj ∂F/∂y') err = cj ∂F/∂y' e`, it is what the method would do to a disturbance `e` (Shampine;
     /// Hairer & Wanner IV.8): `(1 - h γ λ)⁻¹ e`. The right-hand side is a residual with the rates moved by `cj e`. Algebraic
     /// unknowns have the error that the differential ones bring them, and count.
-    fn estimate(&mut self, t1: f64, cj: f64) -> Result<f64, Obstacle> {
+    fn estimate(&mut self, t1: f64, cj: f64) -> Result<f64, StageError> {
         let s = self.tableau.stages;
         let (b, gamma) = (self.tableau.b(), self.tableau.gamma());
         let yp = &mut self.work.yp;
@@ -242,7 +242,7 @@ impl<D: Dae> OneStep<D> {
         if error.is_finite() {
             Ok(error)
         } else {
-            Err(Obstacle::Newton)
+            Err(StageError::Newton)
         }
     }
 }

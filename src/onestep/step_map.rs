@@ -8,7 +8,7 @@ use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 
-use super::equations::{Equations, Obstacle};
+use super::equations::{Equations, StageError};
 use super::stages::add;
 use super::tableau::{Method, Tableau};
 use crate::dae::{Dae, Seeds};
@@ -374,11 +374,11 @@ impl<D: Dae> StepMap<D> {
     }
 }
 
-fn error(time: f64, obstacle: Obstacle) -> StepError {
+fn error(time: f64, obstacle: StageError) -> StepError {
     let what = match obstacle {
-        Obstacle::Newton => "Newton's iteration does not converge".into(),
-        Obstacle::Singular(column) => format!("the matrix has no pivot in column {column}"),
-        Obstacle::Recoverable(what) | Obstacle::Fatal(what) => what,
+        StageError::Newton => "Newton's iteration does not converge".into(),
+        StageError::Singular(column) => format!("the matrix has no pivot in column {column}"),
+        StageError::Recoverable(what) | StageError::Fatal(what) => what,
     };
     StepError { time, what }
 }

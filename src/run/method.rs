@@ -4,7 +4,7 @@ use super::order::{self, OrderChoice};
 use crate::case::schema::{self, Case, MaxOrder};
 use crate::dae::Dae;
 use crate::discrete::System;
-use crate::integrate::{Absolute, Counters, IntegrationFailure, Wall};
+use crate::integrate::{Absolute, Counters, IntegrationError, Wall};
 use crate::onestep::{Method, OneStep, OneStepOptions};
 use crate::sundials::IdaOptions;
 use crate::sundials::{Ida, Step};
@@ -173,7 +173,7 @@ macro_rules! either {
 
 impl<D: Dae> Integrator<D> {
     /// An integrator at time `t0` [s] with consistent values and derivatives.
-    pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &Options) -> Result<Self, Box<IntegrationFailure>> {
+    pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &Options) -> Result<Self, Box<IntegrationError>> {
         match options {
             Options::Ida(options) => Ida::new(dae, t0, y0, yp0, options).map(Self::Ida),
             Options::OneStep(options) => OneStep::new(dae, t0, y0, yp0, options).map(Self::OneStep),
@@ -181,12 +181,12 @@ impl<D: Dae> Integrator<D> {
     }
 
     /// One accepted step, which does not pass `stop` [s].
-    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationFailure>> {
+    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationError>> {
         either!(self, one => one.step(stop))
     }
 
     /// Largest step [s] from now on; what has been learned of the motion is kept.
-    pub fn limit(&mut self, largest: f64) -> Result<(), Box<IntegrationFailure>> {
+    pub fn limit(&mut self, largest: f64) -> Result<(), Box<IntegrationError>> {
         match self {
             Self::Ida(ida) => ida.limit(largest),
             Self::OneStep(one) => {
@@ -217,17 +217,17 @@ impl<D: Dae> Integrator<D> {
     }
 
     /// Derivative number `k` of the unknowns at a time [s] within the last step.
-    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IntegrationFailure>> {
+    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         either!(self, one => one.interpolate(time, k, out))
     }
 
     /// The integrals since the last restart, at the present time or at one [s] within the last step.
-    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationFailure>> {
+    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         either!(self, one => one.integrals(time, out))
     }
 
     /// Goes on from consistent values at time `t` [s], forgetting the past.
-    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationFailure>> {
+    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         either!(self, one => one.restart(t, y, yp))
     }
 

@@ -12,7 +12,7 @@ pub mod colour;
 pub mod klu;
 pub mod pattern;
 
-pub use klu::{Klu, KluFault, RowScaling};
+pub use klu::{Klu, KluError, RowScaling};
 pub use pattern::Pattern;
 
 /// Version of SuiteSparse, whose KLU it is, as its headers say.

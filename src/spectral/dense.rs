@@ -3,12 +3,12 @@
 use nalgebra::Complex;
 use slcbeam_dense::eigen;
 
-use super::Failure;
+use super::SpectralError;
 use super::krylov::{FINITE, Vectors};
 use super::pencil::Shifted;
 
 /// Eigenvalues and vectors, nearest the shift first.
-pub(super) fn pairs(shifted: &mut Shifted) -> Result<Vectors, Failure> {
+pub(super) fn pairs(shifted: &mut Shifted) -> Result<Vectors, SpectralError> {
     let n = shifted.differential.len();
     let mut columns = vec![vec![Complex::default(); n]; n];
     let mut axis = vec![Complex::default(); n];
@@ -17,7 +17,7 @@ pub(super) fn pairs(shifted: &mut Shifted) -> Result<Vectors, Failure> {
         shifted.apply(&axis, column);
         axis[j] = Complex::default();
     }
-    let mut all = eigen(n, &|i, j| columns[j][i]).ok_or(Failure::Slow {
+    let mut all = eigen(n, &|i, j| columns[j][i]).ok_or(SpectralError::Slow {
         converged: 0,
         restarts: 0,
     })?;

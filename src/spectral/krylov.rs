@@ -12,7 +12,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::pencil::Shifted;
-use super::{Failure, Options, schur};
+use super::{Options, SpectralError, schur};
 
 type C = Complex<f64>;
 /// Eigenvalues with their vectors.
@@ -24,7 +24,7 @@ pub(super) const FINITE: f64 = 1e-14;
 const NEW: f64 = 1e-7;
 
 /// Eigenvalues and vectors, nearest the shift first, and the number of restarts.
-pub(super) fn pairs(shifted: &mut Shifted, count: usize, options: &Options) -> Result<(Vectors, usize), Failure> {
+pub(super) fn pairs(shifted: &mut Shifted, count: usize, options: &Options) -> Result<(Vectors, usize), SpectralError> {
     let n = shifted.differential.len();
     let wanted = count.min(n);
     let size = (2 * wanted + 20).min(n);
@@ -32,7 +32,7 @@ pub(super) fn pairs(shifted: &mut Shifted, count: usize, options: &Options) -> R
     let mut known: Option<Vec<f64>> = None;
     for restarts in 0..=options.max_restarts {
         space.expand(shifted);
-        let slow = |converged| Failure::Slow { converged, restarts };
+        let slow = |converged| SpectralError::Slow { converged, restarts };
         let (q, t) = schur::ordered(space.h.view((0, 0), (size, size)).into_owned()).ok_or(slow(0))?;
         let last = space.h[(size, size - 1)];
         let b: Vec<C> = (0..size).map(|i| last * q[(size - 1, i)]).collect();
@@ -58,7 +58,7 @@ pub(super) fn pairs(shifted: &mut Shifted, count: usize, options: &Options) -> R
             space.restart(&q, &t, &b, kept, false);
         }
     }
-    Err(Failure::Slow {
+    Err(SpectralError::Slow {
         converged: 0,
         restarts: options.max_restarts,
     })

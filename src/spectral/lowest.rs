@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use super::{Failure, pencil::failure};
+use super::{SpectralError, pencil::failure};
 use crate::numerics::krylov;
 use crate::sparse::{Klu, Pattern};
 
@@ -15,10 +15,10 @@ const FOUND: f64 = 1e-4;
 /// Arnoldi's method finds on `√D K⁻¹ √D`. Entries of `k` in the order of the pattern.
 ///
 /// # Errors
-/// [`Failure::Singular`] at an eigenvalue of zero, [`Failure::NotFinite`].
-pub fn lowest(pattern: &Pattern, k: &[f64], d: &[f64]) -> Result<Vec<Complex<f64>>, Failure> {
+/// [`SpectralError::Singular`] at an eigenvalue of zero, [`SpectralError::NotFinite`].
+pub fn lowest(pattern: &Pattern, k: &[f64], d: &[f64]) -> Result<Vec<Complex<f64>>, SpectralError> {
     if k.iter().any(|k| !k.is_finite()) {
-        return Err(Failure::NotFinite);
+        return Err(SpectralError::NotFinite);
     }
     let mut klu = Klu::new(pattern).map_err(failure)?;
     klu.factor(k).map_err(failure)?;
@@ -33,7 +33,7 @@ pub fn lowest(pattern: &Pattern, k: &[f64], d: &[f64]) -> Result<Vec<Complex<f64
     weigh(&mut start);
     let found = krylov::largest(apply, &start, SPACE, 0.0, SPACE);
     if found.iter().any(|of| !of.residual.is_finite()) {
-        return Err(Failure::NotFinite);
+        return Err(SpectralError::NotFinite);
     }
     let settled = found.iter().filter(|of| of.residual < FOUND * of.value.norm());
     // of a complex pair one is told

@@ -113,7 +113,7 @@ pub struct Found {
 
 /// Why no eigenvalues were found.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Failure {
+pub enum SpectralError {
     /// The pencil is singular at the shift and beside it: `A + s B` has no inverse for any s.
     Singular {
         /// Column without pivot.
@@ -135,7 +135,7 @@ pub enum Failure {
     NotFinite,
 }
 
-impl fmt::Display for Failure {
+impl fmt::Display for SpectralError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Singular { .. } => write!(f, "the linearised equations leave an unknown undetermined"),
@@ -148,15 +148,15 @@ impl fmt::Display for Failure {
     }
 }
 
-impl std::error::Error for Failure {}
+impl std::error::Error for SpectralError {}
 
 /// The `count` eigenvalues of a pencil nearest `shift`, or all that there are; every copy of a repeated one counts.
 ///
 /// # Errors
-/// [`Failure`].
-pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Options) -> Result<Found, Failure> {
+/// [`SpectralError`].
+pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Options) -> Result<Found, SpectralError> {
     if !pencil.finite() {
-        return Err(Failure::NotFinite);
+        return Err(SpectralError::NotFinite);
     }
     let mut shifted = pencil::Shifted::new(pencil, shift)?;
     let size = shifted.differential.len();
@@ -167,7 +167,9 @@ pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Opt
         (dense::pairs(&mut shifted)?, 0)
     } else {
         match krylov::pairs(&mut shifted, count, options) {
-            Err(Failure::Slow { restarts, .. }) if size <= AT_LAST_DENSE => (dense::pairs(&mut shifted)?, restarts),
+            Err(SpectralError::Slow { restarts, .. }) if size <= AT_LAST_DENSE => {
+                (dense::pairs(&mut shifted)?, restarts)
+            }
             found => found?,
         }
     };

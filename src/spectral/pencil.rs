@@ -2,9 +2,9 @@
 
 use nalgebra::Complex;
 
-use super::Failure;
+use super::SpectralError;
 use super::exchange::Exchanged;
-use crate::sparse::KluFault;
+use crate::sparse::KluError;
 use crate::sparse::Pattern;
 use crate::sparse::klu::complex::ComplexKlu;
 
@@ -70,7 +70,7 @@ pub(super) struct Shifted<'a> {
 const MOVES: [f64; 4] = [0.0, 1e-7, 1e-5, 1e-3];
 
 impl<'a> Shifted<'a> {
-    pub fn new(pencil: &Pencil<'a>, shift: Complex<f64>) -> Result<Self, Failure> {
+    pub fn new(pencil: &Pencil<'a>, shift: Complex<f64>) -> Result<Self, SpectralError> {
         let n = pencil.pattern.columns();
         let entries = pencil.a.iter().zip(pencil.b);
         let values: Vec<_> = entries.map(|(a, b)| shift * *b + a).collect();
@@ -94,7 +94,7 @@ impl<'a> Shifted<'a> {
     }
 
     /// Makes the factors at `s` or as near to it as there are any; returns where.
-    pub fn factor(&mut self, s: Complex<f64>) -> Result<Complex<f64>, Failure> {
+    pub fn factor(&mut self, s: Complex<f64>) -> Result<Complex<f64>, SpectralError> {
         // a shift of zero has no size of its own: that of A over B stands for it
         let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let size = if s.norm() > 0.0 {
@@ -102,7 +102,7 @@ impl<'a> Shifted<'a> {
         } else {
             largest(self.pencil.a) / largest(self.pencil.b).max(f64::MIN_POSITIVE)
         };
-        let mut last = Failure::Singular { column: 0 };
+        let mut last = SpectralError::Singular { column: 0 };
         for by in MOVES {
             let moved = s + Complex::new(0.8, 0.6) * (by * size);
             for ((value, a), b) in self.values.iter_mut().zip(self.pencil.a).zip(self.pencil.b) {
@@ -151,9 +151,9 @@ impl<'a> Shifted<'a> {
     }
 }
 
-pub(super) fn failure(fault: KluFault) -> Failure {
+pub(super) fn failure(fault: KluError) -> SpectralError {
     match fault {
-        KluFault::Singular { column } => Failure::Singular { column },
-        KluFault::Package { status } => Failure::Package { status },
+        KluError::Singular { column } => SpectralError::Singular { column },
+        KluError::Package { status } => SpectralError::Package { status },
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::Complex;
 
 use super::krylov::unit;
 use super::pencil::Shifted;
-use super::{Failure, Pair};
+use super::{Pair, SpectralError};
 
 type C = Complex<f64>;
 
@@ -21,7 +21,7 @@ const ROUNDINGS: f64 = 4.0;
 ///
 /// With x on the right-hand side y is of the eigenvalue's whole left space, so repeated eigenvalues do no harm; where a
 /// vector is missing, as of rigid motions, `yᴴ B x` is small and the bound as large as the error is.
-pub(super) fn refine(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, Failure> {
+pub(super) fn refine(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, SpectralError> {
     let pencil = shifted.pencil;
     let first = assess(shifted, s, unit(x))?;
     // at a nearly singular matrix solutions are huge: right in direction, and in length of no interest
@@ -35,7 +35,7 @@ pub(super) fn refine(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, Fai
 }
 
 /// The quotient and the bound of a vector.
-fn assess(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, Failure> {
+fn assess(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, SpectralError> {
     let pencil = shifted.pencil;
     shifted.factor(s)?;
     let mut y = x.clone();

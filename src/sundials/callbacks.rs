@@ -12,13 +12,13 @@ use sundials_sys::{N_Vector, SUNMatrix};
 use super::linear_solver::system_of;
 use super::sensitivities::Slopes;
 use super::vector::{entries, entries_mut};
-use crate::dae::{Dae, Fault, Seeds};
+use crate::dae::{Dae, EvaluationError, Seeds};
 use crate::integrate::not_finite;
 use crate::numerics::kernels;
 
 /// What ended an integration from inside a callback.
 pub(super) enum Stop {
-    /// [`Fault::Fatal`].
+    /// [`EvaluationError::Fatal`].
     Fatal(String),
     /// A panic, with its payload.
     Panic(Box<dyn Any + Send>),
@@ -69,15 +69,15 @@ impl<D: Dae> Bridge<D> {
     }
 
     /// Runs the equations: faults and panics become codes and are kept.
-    pub(super) fn call(&mut self, act: impl FnOnce(&mut D) -> Result<(), Fault>) -> c_int {
+    pub(super) fn call(&mut self, act: impl FnOnce(&mut D) -> Result<(), EvaluationError>) -> c_int {
         let dae = &mut self.dae;
         match catch_unwind(AssertUnwindSafe(|| act(dae))) {
             Ok(Ok(())) => 0,
-            Ok(Err(Fault::Recoverable(what))) => {
+            Ok(Err(EvaluationError::Recoverable(what))) => {
                 self.recoverable = Some(what);
                 1
             }
-            Ok(Err(Fault::Fatal(what))) => {
+            Ok(Err(EvaluationError::Fatal(what))) => {
                 self.stop.get_or_insert(Stop::Fatal(what));
                 -1
             }
@@ -117,7 +117,7 @@ pub(super) unsafe extern "C" fn residual<D: Dae>(
         dae.residual(t, y, yp, out)?;
         match kernels::first_not_finite(out) {
             None => Ok(()),
-            Some(i) => Err(Fault::Recoverable(format!(
+            Some(i) => Err(EvaluationError::Recoverable(format!(
                 "the equation of {} gives {} at t = {t:.6e} s",
                 dae.name(i),
                 out[i]
@@ -151,7 +151,7 @@ pub(super) unsafe extern "C" fn jacobian<D: Dae>(
         dae.jacobian(t, y, yp, Seeds::Step { cj }, &mut system.values)?;
         match kernels::first_not_finite(&system.values) {
             None => Ok(()),
-            Some(entry) => Err(Fault::Recoverable(not_finite(dae, entry, t))),
+            Some(entry) => Err(EvaluationError::Recoverable(not_finite(dae, entry, t))),
         }
     });
     bridge.jacobians += 1;

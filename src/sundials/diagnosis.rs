@@ -8,7 +8,7 @@ use sundials_sys as s;
 use super::callbacks::Stop;
 use super::ida::Ida;
 use crate::dae::Dae;
-use crate::integrate::{IntegrationFailure, Worst};
+use crate::integrate::{IntegrationError, Worst};
 
 impl<D: Dae> Ida<D> {
     /// Lets a panic of the equations or of the linear solver go on.
@@ -23,7 +23,7 @@ impl<D: Dae> Ida<D> {
     }
 
     /// Everything known about a failure.
-    pub(super) fn failure(&mut self, code: c_int) -> Box<IntegrationFailure> {
+    pub(super) fn failure(&mut self, code: c_int) -> Box<IntegrationError> {
         let mut step = 0.0;
         // SAFETY: IDA is alive.
         unsafe { s::IDAGetCurrentStep(self.memory.0, &mut step) };
@@ -33,7 +33,7 @@ impl<D: Dae> Ida<D> {
             Some(Stop::Fatal(what)) => Some(what),
             _ => None,
         };
-        Box::new(IntegrationFailure {
+        Box::new(IntegrationError {
             code,
             meaning: meaning(code),
             fatal,

@@ -15,7 +15,7 @@ use super::shared::Shared;
 use super::vector::Vector;
 use crate::case::schema::Method;
 use crate::dae::Dae;
-use crate::integrate::IntegrationFailure;
+use crate::integrate::IntegrationError;
 use crate::integrate::request;
 use crate::integrate::{Counters, Wall};
 
@@ -65,15 +65,9 @@ pub struct Ida<D: Dae> {
 
 impl<D: Dae> Ida<D> {
     /// An integrator at time `t0` [s] with consistent values `y0` and derivatives `yp0`, both of length `dae.len()`.
-    pub fn new(
-        dae: D,
-        t0: f64,
-        y0: &[f64],
-        yp0: &[f64],
-        options: &IdaOptions,
-    ) -> Result<Self, Box<IntegrationFailure>> {
+    pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &IdaOptions) -> Result<Self, Box<IntegrationError>> {
         let n = dae.len();
-        let refuse = |message: String| IntegrationFailure::request(message, t0);
+        let refuse = |message: String| IntegrationError::request(message, t0);
         let klu = request::admit(&dae, [y0, yp0], options.check(n)).map_err(refuse)?;
         let context = Context::new().map_err(refuse)?;
         let vector = |entries: &[f64]| Vector::new(entries, context.raw()).map_err(refuse);
@@ -154,7 +148,7 @@ impl<D: Dae> Ida<D> {
     /// One accepted step, which does not pass `stop` [s]. A stop closer than round-off counts as reached.
     ///
     /// Panics of the equations go on here.
-    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationFailure>> {
+    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationError>> {
         if request::reached(self.time, stop)? {
             self.time = stop;
             return Ok(Step {
@@ -220,10 +214,10 @@ impl<D: Dae> Ida<D> {
     /// Derivative number `k` of the unknowns at a time [s] within the last step, from IDA's own polynomial.
     ///
     /// `k` is at most the order of the last step; panics when `out` has another length than the unknowns.
-    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IntegrationFailure>> {
+    pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         if !self.stepped {
             let message = "nothing can be interpolated before the first step".to_owned();
-            return Err(IntegrationFailure::request(message, self.time));
+            return Err(IntegrationError::request(message, self.time));
         }
         // SAFETY: IDA and the vector are alive.
         let flag = unsafe { s::IDAGetDky(self.memory.0, time, k.into(), self.scratch.raw()) };
@@ -246,7 +240,7 @@ impl<D: Dae> Ida<D> {
     /// short steps.
     ///
     /// Panics when a slice has another length than the unknowns.
-    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationFailure>> {
+    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         let counters = self.counters();
         self.solver.system_mut().klu.forget();
         let reset = self.reset_integrals();
@@ -271,7 +265,7 @@ impl<D: Dae> Ida<D> {
     }
 
     /// Largest step [s] from now on; order and past are kept.
-    pub fn limit(&mut self, largest: f64) -> Result<(), Box<IntegrationFailure>> {
+    pub fn limit(&mut self, largest: f64) -> Result<(), Box<IntegrationError>> {
         if largest == self.largest {
             return Ok(());
         }
@@ -285,7 +279,7 @@ impl<D: Dae> Ida<D> {
     }
 
     /// First step [s] after the next restart; IDA's guess when absent.
-    pub fn set_initial_step(&mut self, step: Option<f64>) -> Result<(), Box<IntegrationFailure>> {
+    pub fn set_initial_step(&mut self, step: Option<f64>) -> Result<(), Box<IntegrationError>> {
         // SAFETY: IDA is alive.
         let flag = unsafe { s::IDASetInitStep(self.memory.0, step.unwrap_or(0.0)) };
         if flag < 0 { Err(self.failure(flag)) } else { Ok(()) }

@@ -8,7 +8,7 @@ use super::callbacks::seen;
 use super::ida::Ida;
 use super::vector::{Vector, entries_mut};
 use crate::dae::Dae;
-use crate::integrate::IntegrationFailure;
+use crate::integrate::IntegrationError;
 
 /// `IDAQuadRhsFn` with a [`Bridge`] as user data.
 pub(super) unsafe extern "C" fn integrands<D: Dae>(
@@ -42,7 +42,7 @@ pub(super) fn begin<D: Dae>(memory: *mut c_void, zeros: Option<&Vector>) -> c_in
 impl<D: Dae> Ida<D> {
     /// The integrals `∫ g dt` since the last restart: at the present time, or at a time [s] within the last
     /// step. `out` has length `dae.integrals()`.
-    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationFailure>> {
+    pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         let Some(quadratures) = &mut self.quadratures else {
             return Ok(());
         };

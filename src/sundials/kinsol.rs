@@ -11,7 +11,7 @@ use super::context::{Context, Messages, keep};
 use super::linear_solver::{LinearSolver, system_of};
 use super::shared::Shared;
 use super::vector::{Vector, entries, entries_mut};
-use crate::dae::{Dae, Fault, Seeds};
+use crate::dae::{Dae, EvaluationError, Seeds};
 use crate::integrate::not_finite;
 use crate::integrate::request;
 use crate::numerics::kernels;
@@ -62,7 +62,7 @@ impl Solution {
 
 /// Why there is no solution.
 #[derive(Clone, Debug, PartialEq)]
-pub struct KinsolFailure {
+pub struct KinsolError {
     /// KINSOL's code, negative; 0 when the failure is not KINSOL's.
     pub code: i32,
     /// What happened, in words.
@@ -71,7 +71,7 @@ pub struct KinsolFailure {
     pub worst: Option<String>,
 }
 
-impl KinsolFailure {
+impl KinsolError {
     /// One that is not KINSOL's, of no unknown.
     pub fn own(what: impl Into<String>) -> Self {
         let (code, what, worst) = (0, what.into(), None);
@@ -79,7 +79,7 @@ impl KinsolFailure {
     }
 }
 
-impl fmt::Display for KinsolFailure {
+impl fmt::Display for KinsolError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.what)?;
         match &self.worst {
@@ -89,7 +89,7 @@ impl fmt::Display for KinsolFailure {
     }
 }
 
-impl std::error::Error for KinsolFailure {}
+impl std::error::Error for KinsolError {}
 
 /// KINSOL's memory, freed before everything it points to.
 struct Memory(*mut c_void);
@@ -127,9 +127,9 @@ const RESIDUAL: f64 = 1e-13;
 
 impl<D: Dae> Kinsol<D> {
     /// A solver of these equations.
-    pub fn new(dae: D) -> Result<Self, KinsolFailure> {
+    pub fn new(dae: D) -> Result<Self, KinsolError> {
         let n = dae.len();
-        let refuse = KinsolFailure::own;
+        let refuse = KinsolError::own;
         let zeros = vec![0.0; n];
         let klu = request::admit(&dae, [&zeros, &zeros], Ok(())).map_err(refuse)?;
         let context = Context::new().map_err(refuse)?;
@@ -163,7 +163,7 @@ impl<D: Dae> Kinsol<D> {
         };
         if let Some(&code) = flags.iter().find(|&&flag| flag != s::KIN_SUCCESS) {
             let what = messages.get().take();
-            return Err(KinsolFailure {
+            return Err(KinsolError {
                 code,
                 what,
                 worst: None,
@@ -202,7 +202,7 @@ impl<D: Dae> Kinsol<D> {
     ///
     /// KINSOL stops when the residual is at round-off, or when its line search sees no decrease, which round-off brings about just
     /// as well; what decides is one more correction: it must be below the tolerance, and it is taken.
-    pub fn solve(&mut self, t: f64, y: &mut [f64], options: &KinsolOptions) -> Result<Solution, KinsolFailure> {
+    pub fn solve(&mut self, t: f64, y: &mut [f64], options: &KinsolOptions) -> Result<Solution, KinsolError> {
         let fixed = self.fixed.get_mut();
         fixed.t = t;
         (fixed.bridge.residuals, fixed.bridge.jacobians) = (0, 0);
@@ -237,7 +237,7 @@ impl<D: Dae> Kinsol<D> {
         let correction = self.correct(t, y)?;
         if correction.0 > options.tolerance {
             let name = self.dae().name(correction.1);
-            return Err(KinsolFailure {
+            return Err(KinsolError {
                 code,
                 what: format!("a correction of {:.1e} is left: {}", correction.0, meaning(code)),
                 worst: Some(name),
@@ -263,7 +263,7 @@ impl<D: Dae> Kinsol<D> {
     }
 
     /// One Newton step from `y`, taken: the correction, largest relative to 1 + |unknown|, and where.
-    fn correct(&mut self, t: f64, y: &mut [f64]) -> Result<(f64, usize), KinsolFailure> {
+    fn correct(&mut self, t: f64, y: &mut [f64]) -> Result<(f64, usize), KinsolError> {
         let fixed = self.fixed.get_mut();
         let (bridge, zeros) = (&mut fixed.bridge, &fixed.zeros);
         let system = self.solver.system_mut();
@@ -275,8 +275,8 @@ impl<D: Dae> Kinsol<D> {
                 .dae
                 .jacobian(t, y, zeros, Seeds::Step { cj: 0.0 }, &mut system.values)
         });
-        let refuse = |what: String, worst: Option<String>| KinsolFailure { code: 0, what, worst };
-        if let Err(Fault::Recoverable(what) | Fault::Fatal(what)) = evaluated {
+        let refuse = |what: String, worst: Option<String>| KinsolError { code: 0, what, worst };
+        if let Err(EvaluationError::Recoverable(what) | EvaluationError::Fatal(what)) = evaluated {
             return Err(refuse(what, None));
         }
         if system.klu.factor(&system.values).is_err() || !system.klu.solve(&mut step) || !kernels::all_finite(&step) {
@@ -295,22 +295,22 @@ impl<D: Dae> Kinsol<D> {
     }
 
     /// Raises what ended the iteration from inside a callback.
-    fn raise(&mut self) -> Result<(), KinsolFailure> {
+    fn raise(&mut self) -> Result<(), KinsolError> {
         if let Some(panic) = self.solver.system_mut().panic.take() {
             std::panic::resume_unwind(panic);
         }
         match self.fixed.get_mut().bridge.stop.take() {
             Some(Stop::Panic(panic)) => std::panic::resume_unwind(panic),
-            Some(Stop::Fatal(what)) => Err(KinsolFailure::own(what)),
+            Some(Stop::Fatal(what)) => Err(KinsolError::own(what)),
             None => Ok(()),
         }
     }
 
-    fn failure(&mut self, code: c_int) -> KinsolFailure {
+    fn failure(&mut self, code: c_int) -> KinsolError {
         self.messages.get().take();
         let singular = self.solver.system().singular;
         let recoverable = self.fixed.get_mut().bridge.recoverable.take();
-        KinsolFailure {
+        KinsolError {
             code,
             what: match (singular, recoverable) {
                 (Some(_), _) => "the matrix is singular: no equation is left to determine an unknown".into(),
@@ -352,7 +352,7 @@ unsafe extern "C" fn residual<D: Dae>(y: N_Vector, out: N_Vector, data: *mut c_v
         dae.residual(t, y, zeros, out)?;
         match kernels::first_not_finite(out) {
             None => Ok(()),
-            Some(i) => Err(Fault::Recoverable(format!(
+            Some(i) => Err(EvaluationError::Recoverable(format!(
                 "the equation of {} gives {}",
                 dae.name(i),
                 out[i]
@@ -378,7 +378,7 @@ unsafe extern "C" fn jacobian<D: Dae>(
         dae.jacobian(t, y, zeros, Seeds::Step { cj: 0.0 }, &mut system.values)?;
         match kernels::first_not_finite(&system.values) {
             None => Ok(()),
-            Some(entry) => Err(Fault::Recoverable(not_finite(dae, entry, t))),
+            Some(entry) => Err(EvaluationError::Recoverable(not_finite(dae, entry, t))),
         }
     })
 }

@@ -14,7 +14,7 @@ use sundials_sys::{N_Vector, SUNContext, SUNLinearSolver, SUNMatrix};
 use super::shared::Shared;
 use super::vector::{entries, entries_mut};
 use crate::numerics::kernels;
-use crate::sparse::{Klu, KluFault};
+use crate::sparse::{Klu, KluError};
 
 /// Matrix values, factors, and what happened to them.
 pub(super) struct LinearSystem {
@@ -138,11 +138,11 @@ unsafe extern "C" fn setup(solver: SUNLinearSolver, _: SUNMatrix) -> c_int {
             system.singular = None;
             0
         }
-        Err(KluFault::Singular { column }) => {
+        Err(KluError::Singular { column }) => {
             system.singular = Some(column);
             s::SUNLS_LUFACT_FAIL as c_int
         }
-        Err(KluFault::Package { .. }) => s::SUNLS_PACKAGE_FAIL_UNREC,
+        Err(KluError::Package { .. }) => s::SUNLS_PACKAGE_FAIL_UNREC,
     };
     // SAFETY: SUNDIALS passes the solver of `LinearSolver::new`.
     unsafe { with_system(solver, factor) }

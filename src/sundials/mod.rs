@@ -34,7 +34,7 @@ mod shared;
 mod vector;
 
 pub use ida::{Ida, Step};
-pub use kinsol::{Kinsol, KinsolFailure, KinsolOptions, Solution};
+pub use kinsol::{Kinsol, KinsolError, KinsolOptions, Solution};
 pub use options::IdaOptions;
 
 /// Version of SUNDIALS as it is loaded.

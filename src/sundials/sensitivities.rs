@@ -7,8 +7,8 @@ use sundials_sys as s;
 use super::callbacks::seen;
 use super::ida::Ida;
 use super::vector::{Vector, entries, entries_mut};
-use crate::dae::{Dae, Fault};
-use crate::integrate::IntegrationFailure;
+use crate::dae::{Dae, EvaluationError};
+use crate::integrate::IntegrationError;
 use crate::numerics::kernels;
 
 /// `∂F/∂σₖ` at one state, kept because a corrector asks for it again and again.
@@ -22,7 +22,7 @@ pub(super) struct Slopes {
 
 impl Slopes {
     /// Evaluates them unless they are those of this state.
-    fn look<D: Dae>(&mut self, dae: &mut D, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Fault> {
+    fn look<D: Dae>(&mut self, dae: &mut D, t: f64, y: &[f64], yp: &[f64]) -> Result<(), EvaluationError> {
         if self.t == t && self.y == y && self.yp == yp {
             return Ok(());
         }
@@ -107,7 +107,7 @@ unsafe extern "C" fn residuals<D: Dae>(
             out.iter_mut().zip(slope).for_each(|(out, slope)| *out += slope);
             if let Some(i) = kernels::first_not_finite(out) {
                 let what = format!("the equation of the sensitivity of {} gives {}", dae.name(i), out[i]);
-                return Err(Fault::Recoverable(what));
+                return Err(EvaluationError::Recoverable(what));
             }
         }
         Ok(())
@@ -167,7 +167,7 @@ impl<D: Dae> Ida<D> {
     /// To be called before the first step.
     ///
     /// Panics when a sensitivity has another length than the unknowns.
-    pub fn carry(&mut self, from: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Box<IntegrationFailure>> {
+    pub fn carry(&mut self, from: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Box<IntegrationError>> {
         let (count, n) = (self.dae().parameters(), self.dae().len());
         let integrals = self.dae().integrals();
         assert!(from.len() == count && rates.len() == count && from.iter().chain(rates).all(|s| s.len() == n));
@@ -175,10 +175,10 @@ impl<D: Dae> Ida<D> {
             return Ok(());
         }
         let time = self.time;
-        let vectors = |all: &[Vec<f64>]| -> Result<Vec<Vector>, Box<IntegrationFailure>> {
+        let vectors = |all: &[Vec<f64>]| -> Result<Vec<Vector>, Box<IntegrationError>> {
             let vector = |entries: &Vec<f64>| Vector::new(entries, self.context.raw());
             let made: Result<_, _> = all.iter().map(vector).collect();
-            made.map_err(|message| IntegrationFailure::request(message, time))
+            made.map_err(|message| IntegrationError::request(message, time))
         };
         let carried = Carried {
             s: vectors(from)?,
@@ -223,7 +223,7 @@ impl<D: Dae> Ida<D> {
     /// Goes on with other sensitivities after [`Ida::restart`]; those of the integrals start at zero.
     ///
     /// Panics when a sensitivity has another length than the unknowns.
-    pub fn carry_on(&mut self, from: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Box<IntegrationFailure>> {
+    pub fn carry_on(&mut self, from: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Box<IntegrationError>> {
         self.bridge.get_mut().slopes.forget();
         let Some(carried) = &mut self.sensitivities else {
             return Ok(());
@@ -249,7 +249,7 @@ impl<D: Dae> Ida<D> {
     /// Sensitivity to parameter k and its rate, at a time [s] within the last step; the first ones before the first step.
     ///
     /// Panics when a slice has another length than the unknowns.
-    pub fn sensitivity(&mut self, k: usize, time: f64, out: [&mut [f64]; 2]) -> Result<(), Box<IntegrationFailure>> {
+    pub fn sensitivity(&mut self, k: usize, time: f64, out: [&mut [f64]; 2]) -> Result<(), Box<IntegrationError>> {
         let Some(carried) = &self.sensitivities else {
             return Ok(());
         };
@@ -271,12 +271,7 @@ impl<D: Dae> Ida<D> {
     /// Sensitivities of the integrals since the last restart to parameter k, at a time [s] within the last step.
     ///
     /// Panics when `out` has another length than the integrals.
-    pub fn integral_sensitivity(
-        &mut self,
-        k: usize,
-        time: f64,
-        out: &mut [f64],
-    ) -> Result<(), Box<IntegrationFailure>> {
+    pub fn integral_sensitivity(&mut self, k: usize, time: f64, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         let Some(vector) = self.sensitivities.as_ref().and_then(|carried| carried.integrals.get(k)) else {
             return Ok(());
         };

@@ -4,13 +4,13 @@
 use std::path::Path;
 
 use slcbeam::case;
-use slcbeam::error::{CaseFault, Error};
+use slcbeam::error::{CaseError, Error};
 
 /// Cases with every number written out, so that each can be made wrong.
 pub const WIRING: &str = include_str!("../data/wiring-2.json");
 pub const TOUR: &str = include_str!("../data/network-tour.json");
 
-pub fn fault_of(text: &str) -> CaseFault {
+pub fn fault_of(text: &str) -> CaseError {
     match case::parse(text, Path::new("bad.json"), Path::new("cases"), &[]) {
         Err(Error::Case(fault)) => *fault,
         Err(error) => panic!("{error}"),

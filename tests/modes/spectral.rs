@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use nalgebra::Complex;
 use slcbeam::run::modes::linearise;
 use slcbeam::sparse::Pattern;
-use slcbeam::spectral::{self, Failure, Found, Options, Pencil};
+use slcbeam::spectral::{self, Found, Options, Pencil, SpectralError};
 use slcbeam_dense::eigen;
 
 use crate::common::{chains, checked};
@@ -152,11 +152,11 @@ fn a_singular_pencil_is_told() {
     };
     let one = Complex::new(1.0, 0.0);
     let failed = spectral::nearest(&pencil, one, 1, &Options::default());
-    assert!(matches!(failed, Err(Failure::Singular { .. })), "{failed:?}");
+    assert!(matches!(failed, Err(SpectralError::Singular { .. })), "{failed:?}");
     let pencil = Pencil {
         a: &[f64::NAN, 1.0, 1.0, 1.0],
         ..pencil
     };
     let failed = spectral::nearest(&pencil, one, 1, &Options::default());
-    assert!(matches!(failed, Err(Failure::NotFinite)), "{failed:?}");
+    assert!(matches!(failed, Err(SpectralError::NotFinite)), "{failed:?}");
 }

@@ -2,13 +2,13 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use slcbeam::dae::Fault;
-use slcbeam::integrate::IntegrationFailure;
+use slcbeam::dae::EvaluationError;
+use slcbeam::integrate::IntegrationError;
 use slcbeam::onestep::{OneStep, OneStepOptions};
 
 use super::problems::{Plain, Residual};
 
-fn solve(residual: Residual) -> Result<OneStep<Plain>, Box<IntegrationFailure>> {
+fn solve(residual: Residual) -> Result<OneStep<Plain>, Box<IntegrationError>> {
     let mut one = OneStep::new(
         Plain::new(&[true], residual),
         0.0,
@@ -27,7 +27,7 @@ fn recoverable_faults_shorten_the_step() {
         f[0] = yp[0] + y[0];
         let far = (y[0] - (-t).exp()).abs() > 1e-4;
         if far {
-            Err(Fault::Recoverable("too far away".into()))
+            Err(EvaluationError::Recoverable("too far away".into()))
         } else {
             Ok(())
         }
@@ -44,7 +44,7 @@ fn persistent_faults_end_with_a_diagnosis() {
     let failure = solve(|t, y, yp, f| {
         f[0] = yp[0] + y[0];
         if t > 1.0 {
-            Err(Fault::Recoverable("closed".into()))
+            Err(EvaluationError::Recoverable("closed".into()))
         } else {
             Ok(())
         }
@@ -116,7 +116,7 @@ fn fatal_faults_and_panics_are_passed_on() {
     let failure = solve(|t, y, yp, f| {
         f[0] = yp[0] + y[0];
         if t > 0.5 {
-            Err(Fault::Fatal("out of the model".into()))
+            Err(EvaluationError::Fatal("out of the model".into()))
         } else {
             Ok(())
         }

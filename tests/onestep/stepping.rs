@@ -1,6 +1,6 @@
 //! Steps, stops, what stands between them, restarts, requests that cannot be met.
 
-use slcbeam::dae::{Dae, Fault, Seeds};
+use slcbeam::dae::{Dae, EvaluationError, Seeds};
 use slcbeam::integrate::Absolute;
 use slcbeam::onestep::{Method, OneStep, OneStepOptions};
 use slcbeam::sparse::Pattern;
@@ -104,11 +104,18 @@ impl Dae for Swing {
     fn pattern(&self) -> &Pattern {
         &self.0
     }
-    fn residual(&mut self, _: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+    fn residual(&mut self, _: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError> {
         residual.copy_from_slice(&[yp[0] - y[1], yp[1] + y[0]]);
         Ok(())
     }
-    fn jacobian(&mut self, _: f64, _: &[f64], _: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+    fn jacobian(
+        &mut self,
+        _: f64,
+        _: &[f64],
+        _: &[f64],
+        seeds: Seeds<'_>,
+        values: &mut [f64],
+    ) -> Result<(), EvaluationError> {
         let (a, b) = match seeds {
             Seeds::Step { cj } => ([1.0; 2], [cj; 2]),
             Seeds::Columns { y, yp } => ([y[0], y[1]], [yp[0], yp[1]]),
@@ -119,7 +126,7 @@ impl Dae for Swing {
     fn integrals(&self) -> usize {
         2
     }
-    fn integrands(&mut self, _: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Fault> {
+    fn integrands(&mut self, _: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), EvaluationError> {
         out.copy_from_slice(&[y[0] * y[0], y[0] * yp[1]]);
         Ok(())
     }
@@ -226,11 +233,18 @@ impl Dae for Instantly {
     fn pattern(&self) -> &Pattern {
         &self.0
     }
-    fn residual(&mut self, _: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+    fn residual(&mut self, _: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError> {
         residual[0] = 1e-19 * yp[0] + y[0] - 1.0;
         Ok(())
     }
-    fn jacobian(&mut self, _: f64, _: &[f64], _: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+    fn jacobian(
+        &mut self,
+        _: f64,
+        _: &[f64],
+        _: &[f64],
+        seeds: Seeds<'_>,
+        values: &mut [f64],
+    ) -> Result<(), EvaluationError> {
         values[0] = match seeds {
             Seeds::Step { cj } => 1.0 + 1e-19 * cj,
             Seeds::Columns { y, yp } => y[0] + 1e-19 * yp[0],

@@ -2,7 +2,7 @@
 
 use slcbeam::case::Case;
 use slcbeam::case::parameter::{CHANGE, Parameter, STEPS};
-use slcbeam::dae::{BeamDae, Dae, Fault, PerturbedSystems, Seeds};
+use slcbeam::dae::{BeamDae, Dae, EvaluationError, PerturbedSystems, Seeds};
 use slcbeam::discrete::{System, start};
 use slcbeam::integrate::{Absolute, StartOptions, consistent_sensitivities, consistent_start};
 use slcbeam::sparse::Pattern;
@@ -72,10 +72,17 @@ impl Dae for Plain {
     fn pattern(&self) -> &Pattern {
         self.0.pattern()
     }
-    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError> {
         self.0.residual(t, y, yp, residual)
     }
-    fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        seeds: Seeds<'_>,
+        values: &mut [f64],
+    ) -> Result<(), EvaluationError> {
         self.0.jacobian(t, y, yp, seeds, values)
     }
     fn name(&self, unknown: usize) -> String {

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use slcbeam::case::{self, Case};
-use slcbeam::error::{Result, SolverFault};
+use slcbeam::error::{Result, SolverError};
 use slcbeam::run::dynamics;
 use slcbeam::run::record::{Control, Header, Memory, Progress, Recorder};
 use slcbeam::run::summary::{Status, Summary};
@@ -90,7 +90,7 @@ pub struct Ran {
     /// Summary.
     pub summary: Summary,
     /// Fault of the solver.
-    pub fault: Option<SolverFault>,
+    pub fault: Option<SolverError>,
     /// What was recorded.
     pub record: Memory,
 }

@@ -2,8 +2,8 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use slcbeam::dae::{Dae, Fault, Seeds};
-use slcbeam::integrate::{Absolute, IntegrationFailure};
+use slcbeam::dae::{Dae, EvaluationError, Seeds};
+use slcbeam::integrate::{Absolute, IntegrationError};
 use slcbeam::sparse::Pattern;
 use slcbeam::sundials::Ida;
 use slcbeam::sundials::IdaOptions;
@@ -18,8 +18,8 @@ struct Decay<R, J> {
 /// Decay with a residual that misbehaves.
 fn decay<R, J>(residual: R, jacobian: J) -> Ida<Decay<R, J>>
 where
-    R: FnMut(f64, f64) -> Result<f64, Fault>,
-    J: FnMut() -> Result<f64, Fault>,
+    R: FnMut(f64, f64) -> Result<f64, EvaluationError>,
+    J: FnMut() -> Result<f64, EvaluationError>,
 {
     let options = IdaOptions {
         relative: 1e-5,
@@ -36,8 +36,8 @@ where
 
 impl<R, J> Dae for Decay<R, J>
 where
-    R: FnMut(f64, f64) -> Result<f64, Fault>,
-    J: FnMut() -> Result<f64, Fault>,
+    R: FnMut(f64, f64) -> Result<f64, EvaluationError>,
+    J: FnMut() -> Result<f64, EvaluationError>,
 {
     fn len(&self) -> usize {
         1
@@ -51,12 +51,19 @@ where
         &self.pattern
     }
 
-    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError> {
         residual[0] = yp[0] + y[0] + (self.residual)(t, y[0])?;
         Ok(())
     }
 
-    fn jacobian(&mut self, _: f64, _: &[f64], _: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+    fn jacobian(
+        &mut self,
+        _: f64,
+        _: &[f64],
+        _: &[f64],
+        seeds: Seeds<'_>,
+        values: &mut [f64],
+    ) -> Result<(), EvaluationError> {
         let factor = (self.jacobian)()?;
         values[0] = match seeds {
             Seeds::Step { cj } => factor * (1.0 + cj),
@@ -71,7 +78,10 @@ where
 }
 
 /// Residuals that are good for a number of calls and then `bad` for ever.
-fn after(calls: u32, bad: impl Fn() -> Result<f64, Fault>) -> impl FnMut(f64, f64) -> Result<f64, Fault> {
+fn after(
+    calls: u32,
+    bad: impl Fn() -> Result<f64, EvaluationError>,
+) -> impl FnMut(f64, f64) -> Result<f64, EvaluationError> {
     let mut call = 0;
     move |_, _| {
         call += 1;
@@ -80,7 +90,7 @@ fn after(calls: u32, bad: impl Fn() -> Result<f64, Fault>) -> impl FnMut(f64, f6
 }
 
 /// Steps to t = 1, at most a thousand of them.
-fn to_one<D: Dae>(ida: &mut Ida<D>) -> Result<f64, Box<IntegrationFailure>> {
+fn to_one<D: Dae>(ida: &mut Ida<D>) -> Result<f64, Box<IntegrationError>> {
     for _ in 0..1000 {
         if ida.step(1.0)?.stopped {
             return Ok(ida.y()[0]);
@@ -98,7 +108,7 @@ fn recoverable_faults_are_recovered_from() {
     let hiccup = move |_: f64, _: f64| {
         calls += 1;
         match calls % 40 {
-            20 => Err(Fault::Recoverable("hiccup".to_owned())),
+            20 => Err(EvaluationError::Recoverable("hiccup".to_owned())),
             30 => Ok(f64::NAN),
             _ => Ok(0.0),
         }
@@ -112,7 +122,7 @@ fn recoverable_faults_are_recovered_from() {
 /// A fault that no step cures ends the run with the last words of the equations and the time reached.
 #[test]
 fn persistent_recoverable_fault_is_told() {
-    let torn = after(60, || Err(Fault::Recoverable("the valve is torn".to_owned())));
+    let torn = after(60, || Err(EvaluationError::Recoverable("the valve is torn".to_owned())));
     let mut ida = decay(torn, || Ok(1.0));
     let failure = to_one(&mut ida).unwrap_err();
     assert_eq!(failure.recoverable.as_deref(), Some("the valve is torn"));
@@ -177,7 +187,7 @@ fn fatal_faults_come_back_word_for_word() {
     let mut ida = decay(
         move |t, _| {
             if t > 0.5 {
-                Err(Fault::Fatal(words.to_owned()))
+                Err(EvaluationError::Fatal(words.to_owned()))
             } else {
                 Ok(0.0)
             }
@@ -187,7 +197,7 @@ fn fatal_faults_come_back_word_for_word() {
     let failure = to_one(&mut ida).unwrap_err();
     assert_eq!(failure.to_string(), words);
     assert_eq!(failure.fatal.as_deref(), Some(words));
-    let mut ida = decay(|_, _| Ok(0.0), move || Err(Fault::Fatal(words.to_owned())));
+    let mut ida = decay(|_, _| Ok(0.0), move || Err(EvaluationError::Fatal(words.to_owned())));
     assert_eq!(to_one(&mut ida).unwrap_err().to_string(), words);
 }
 

@@ -1,7 +1,7 @@
 //! Factors and their guard.
 
 use slcbeam::sparse::Pattern;
-use slcbeam::sparse::{Klu, KluFault, RowScaling};
+use slcbeam::sparse::{Klu, KluError, RowScaling};
 
 /// Dense 2 by 2.
 fn small() -> Pattern {
@@ -40,7 +40,7 @@ fn guard_sees_stale_pivots() {
 fn a_block_of_one_row_that_vanishes_is_singular() {
     let mut klu = Klu::new(&Pattern::from_columns(&[vec![0], vec![1]])).unwrap();
     klu.factor(&[1.0, 2.0]).unwrap();
-    assert_eq!(klu.factor(&[1.0, 0.0]), Err(KluFault::Singular { column: 1 }));
+    assert_eq!(klu.factor(&[1.0, 0.0]), Err(KluError::Singular { column: 1 }));
     klu.factor(&[1.0, 2.0]).unwrap();
 }
 
@@ -50,12 +50,12 @@ fn a_block_of_one_row_that_vanishes_is_singular() {
 #[test]
 fn singular_matrices_name_a_column_and_are_survived() {
     let mut klu = Klu::new(&small()).unwrap();
-    assert_eq!(klu.factor(&[1.0, 1.0, 0.0, 0.0]), Err(KluFault::Singular { column: 1 }));
+    assert_eq!(klu.factor(&[1.0, 1.0, 0.0, 0.0]), Err(KluError::Singular { column: 1 }));
     assert!(!klu.solve(&mut [1.0, 1.0]));
     klu.factor(&[1.0, 0.0, 0.0, 2.0]).unwrap();
     assert!(matches!(
         klu.factor(&[0.0, 0.0, 1.0, 1.0]),
-        Err(KluFault::Singular { .. })
+        Err(KluError::Singular { .. })
     ));
     klu.factor(&[1.0, 0.0, 0.0, 2.0]).unwrap();
     let mut x = [3.0, 8.0];
@@ -63,7 +63,7 @@ fn singular_matrices_name_a_column_and_are_survived() {
     assert_eq!(x, [3.0, 4.0]);
     let empty_column = Pattern::from_columns(&[vec![0, 1], vec![]]);
     let fault = Klu::new(&empty_column).and_then(|mut klu| klu.factor(&[1.0, 1.0]));
-    assert_eq!(fault, Err(KluFault::Singular { column: 1 }));
+    assert_eq!(fault, Err(KluError::Singular { column: 1 }));
 }
 
 /// Row scaling: rows twelve decades apart are solved to rounding, and the condition estimate is the scaled one or larger.

@@ -1,10 +1,10 @@
 //! Small systems with known answers, Jacobians by central differences on a dense pattern.
 
-use slcbeam::dae::{Dae, Fault, Seeds};
+use slcbeam::dae::{Dae, EvaluationError, Seeds};
 use slcbeam::sparse::Pattern;
 
 /// A residual `F(t, y, y')` as a plain function.
-pub type Residual = fn(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Fault>;
+pub type Residual = fn(f64, &[f64], &[f64], &mut [f64]) -> Result<(), EvaluationError>;
 
 /// A system given by its residual alone.
 pub struct Plain {
@@ -39,11 +39,18 @@ impl Dae for Plain {
         &self.pattern
     }
 
-    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError> {
         (self.residual)(t, y, yp, residual)
     }
 
-    fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        seeds: Seeds<'_>,
+        values: &mut [f64],
+    ) -> Result<(), EvaluationError> {
         let n = self.len();
         values.fill(0.0);
         let (mut y, mut yp) = (y.to_vec(), yp.to_vec());

@@ -1,6 +1,6 @@
 //! Steps, stops, interpolation, restarts and requests that cannot be met.
 
-use slcbeam::dae::{Dae, Fault, Seeds};
+use slcbeam::dae::{Dae, EvaluationError, Seeds};
 use slcbeam::integrate::Absolute;
 use slcbeam::sparse::Pattern;
 use slcbeam::sundials::Ida;
@@ -24,12 +24,19 @@ impl Dae for Pendulum {
         &self.pattern
     }
 
-    fn residual(&mut self, _: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+    fn residual(&mut self, _: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError> {
         residual.copy_from_slice(&[yp[0] - y[1], yp[1] + y[0], y[2] - y[0] * y[1]]);
         Ok(())
     }
 
-    fn jacobian(&mut self, _: f64, y: &[f64], _: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+    fn jacobian(
+        &mut self,
+        _: f64,
+        y: &[f64],
+        _: &[f64],
+        seeds: Seeds<'_>,
+        values: &mut [f64],
+    ) -> Result<(), EvaluationError> {
         let (a, b) = match seeds {
             Seeds::Step { cj } => ([1.0; 3], [cj; 3]),
             Seeds::Columns { y, yp } => ([y[0], y[1], y[2]], [yp[0], yp[1], yp[2]]),

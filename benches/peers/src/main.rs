@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use diffsol::{FaerSparseMat, KLU, MatrixCommon, OdeBuilder, OdeSolverMethod};
 use slcbeam::case::{self, Case};
-use slcbeam::dae::{BeamDae, Dae, Fault, Seeds};
+use slcbeam::dae::{BeamDae, Dae, EvaluationError, Seeds};
 use slcbeam::sparse::Pattern;
 use slcbeam::discrete::{System, start};
 use slcbeam::onestep::{Method, OneStepOptions};
@@ -42,11 +42,11 @@ impl Dae for Bare {
     fn pattern(&self) -> &Pattern {
         self.0.pattern()
     }
-    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Result<(), Fault> {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Result<(), EvaluationError> {
         self.0.enter_smooth_interval(t);
         self.0.residual(t, y, yp, r)
     }
-    fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+    fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), EvaluationError> {
         self.0.enter_smooth_interval(t);
         self.0.jacobian(t, y, yp, seeds, values)
     }

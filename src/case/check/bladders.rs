@@ -1,10 +1,10 @@
 //! Bladders: what must come with them, whether they fit, the order of their slopes.
 
-use crate::case::faults::Faults;
+use crate::case::faults::Violations;
 use crate::case::schema::{Bladders, Case};
 use crate::error::{Code, Violation};
 
-pub(super) fn check(case: &Case, faults: &mut Faults) {
+pub(super) fn check(case: &Case, faults: &mut Violations) {
     match (&case.bladders, &case.fluid) {
         (Some(bladders), fluid) => {
             if fluid.is_none() {
@@ -22,7 +22,7 @@ pub(super) fn check(case: &Case, faults: &mut Faults) {
 }
 
 /// What makes sense with bladders only.
-fn dry(case: &Case, faults: &mut Faults) {
+fn dry(case: &Case, faults: &mut Violations) {
     let present = [
         ("/fluid", case.fluid.is_some()),
         ("/tubes", case.tubes.is_some()),
@@ -36,7 +36,7 @@ fn dry(case: &Case, faults: &mut Faults) {
     }
 }
 
-fn fits(case: &Case, bladders: &Bladders, faults: &mut Faults) {
+fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     let beam = &case.beam;
     let mut refuse = |key: &str, what: String, allowed: String| {
         faults.push(Violation::new(Code::Geometry, format!("/bladders/{key}"), what).allowed(allowed));
@@ -91,7 +91,7 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Faults) {
     }
 }
 
-fn slopes(bladders: &Bladders, faults: &mut Faults) {
+fn slopes(bladders: &Bladders, faults: &mut Violations) {
     let (moment, force) = (&bladders.area_per_moment_m2_per_n_m, &bladders.area_per_force_m2_per_n);
     let pairs = [
         (
@@ -123,7 +123,7 @@ fn slopes(bladders: &Bladders, faults: &mut Faults) {
 }
 
 /// A permeability and a cross-section that would give another one.
-pub(super) fn two_permeabilities(pointer: &str, faults: &mut Faults) {
+pub(super) fn two_permeabilities(pointer: &str, faults: &mut Violations) {
     let fault = Violation::new(
         Code::Slopes,
         format!("{pointer}/cross_section"),

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::case::faults::Faults;
+use crate::case::faults::Violations;
 use crate::case::numbers::plain;
 use crate::case::schema::{Case, Coupling};
 use crate::error::{Code, Violation};
@@ -17,7 +17,7 @@ const BEYOND: f64 = 1e5;
 /// a_p ~ h_b w_b/E    aN ~ h_b w_b/(E w_s h_s)    aM ~ h_b w_b/(E w_s h_s²)    ζ' ~ l_b E aN    ψ' ~ l_b E aM
 /// q1 ~ A²/(8π), that of a circle of the same area, which no other shape exceeds
 /// ```
-pub(super) fn check(case: &Case, faults: &mut Faults) {
+pub(super) fn check(case: &Case, faults: &mut Violations) {
     let mut look = |pointer: &str, value: f64, suggested: f64, unit: &str, hint: &str| {
         let largest = BEYOND * suggested;
         if value > largest && largest.is_finite() && !faults.has(pointer) {

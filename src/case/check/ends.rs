@@ -1,6 +1,6 @@
 //! Ends: exactly one of each pair of conditions.
 
-use crate::case::faults::Faults;
+use crate::case::faults::Violations;
 use crate::case::schema::{Case, End, EndConditions};
 use crate::error::{Code, Violation};
 
@@ -11,7 +11,7 @@ const PAIRS: [[&str; 2]; 3] = [
 ];
 const ALLOWED: &str = "exactly one of each pair: u1_m or force_x_n, slope_rad or moment_n_m, u3_m or force_z_n";
 
-pub(super) fn check(case: &Case, faults: &mut Faults) {
+pub(super) fn check(case: &Case, faults: &mut Violations) {
     for (end, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
         let (form, given) = end.form();
         let pointer = format!("/ends/{name}/{form}");
@@ -34,7 +34,7 @@ pub(super) fn check(case: &Case, faults: &mut Faults) {
 }
 
 /// Nothing missing, unless follower forces stand for both dead forces.
-fn complete(name: &str, pointer: &str, given: &EndConditions, keys: &[&str], faults: &mut Faults) {
+fn complete(name: &str, pointer: &str, given: &EndConditions, keys: &[&str], faults: &mut Violations) {
     let follower = ["follower_normal_n", "follower_shear_n"]
         .into_iter()
         .find(|key| keys.contains(key));

@@ -1,6 +1,6 @@
 //! Functions of time and place: tables that make a curve, values in range, no jumps where something moves.
 
-use crate::case::faults::Faults;
+use crate::case::faults::Violations;
 use crate::case::locate::child;
 use crate::case::numbers::plain;
 use crate::case::schema::{Case, ChainEnd};
@@ -22,7 +22,7 @@ enum Role {
     Other,
 }
 
-pub(super) fn check(case: &Case, faults: &mut Faults) {
+pub(super) fn check(case: &Case, faults: &mut Violations) {
     for (pointer, role, signal) in signals(case) {
         let known = faults.count();
         signal_parts(&pointer, signal, faults);
@@ -116,7 +116,7 @@ fn profiles(case: &Case) -> Vec<(String, &Profile)> {
     all
 }
 
-fn signal_parts(pointer: &str, signal: &Signal, faults: &mut Faults) {
+fn signal_parts(pointer: &str, signal: &Signal, faults: &mut Violations) {
     match signal {
         Signal::Sine(sine) if sine.frequency_hz > HIGHEST_FREQUENCY => {
             let what = format!("{} Hz is not a plausible frequency", plain(sine.frequency_hz));
@@ -143,7 +143,7 @@ fn signal_parts(pointer: &str, signal: &Signal, faults: &mut Faults) {
     }
 }
 
-fn profile_tables(pointer: &str, profile: &Profile, faults: &mut Faults) {
+fn profile_tables(pointer: &str, profile: &Profile, faults: &mut Violations) {
     match profile {
         Profile::Table(table) if !table.is_sound() => {
             let at = child(pointer, "table");
@@ -163,7 +163,7 @@ fn sum_or_product(sum: bool) -> &'static str {
     if sum { "sum" } else { "product" }
 }
 
-fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mut Faults) {
+fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mut Violations) {
     let fault = if at.is_empty() {
         Violation::new(Code::Table, pointer, "a table without points").hint(format!("give \"{key}\" and \"values\""))
     } else if at.len() != values.len() {
@@ -181,7 +181,7 @@ fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mu
 
 /// A signal over the run: no jumps where something moves, finite everywhere, openings within their range. By bounds, so that no
 /// pulse passes between two looks.
-fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Faults) {
+fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Violations) {
     let mut last: Option<f64> = None;
     for (start, stop) in signal
         .smooth_intervals(end)

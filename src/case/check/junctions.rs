@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::network::Joined;
-use crate::case::faults::Faults;
+use crate::case::faults::Violations;
 use crate::case::schema::Case;
 use crate::case::wiring::Point;
 use crate::error::{Code, Violation};
@@ -15,7 +15,7 @@ const CLOSED: f64 = 1e-9;
 /// Instants at which the branches are looked at when a valve moves.
 const INSTANTS: usize = 200;
 
-pub(super) fn check(case: &Case, joined: &Joined, faults: &mut Faults) {
+pub(super) fn check(case: &Case, joined: &Joined, faults: &mut Violations) {
     let names = case.network.as_ref().map_or(&[][..], |network| &network.junctions);
     // a name that is declared twice is the first of them
     let first = |name: &String| names.iter().position(|other| other == name).map(Point::Junction);

@@ -12,12 +12,12 @@ mod start;
 mod strength;
 mod time;
 
-use super::faults::Faults;
+use super::faults::Violations;
 use super::schema::Case;
 use crate::error::{Code, Violation};
 
 /// A group of rules.
-type Rule = fn(&Case, &mut Faults);
+type Rule = fn(&Case, &mut Violations);
 
 /// All rules, each with the sections of the case that it compares.
 const RULES: [(Rule, &[&str]); 11] = [
@@ -41,7 +41,7 @@ const RULES: [(Rule, &[&str]); 11] = [
 ];
 
 /// Every rule on one case, but those that compare a broken section with others.
-pub fn check(case: &Case, broken: &[String], faults: &mut Faults) {
+pub fn check(case: &Case, broken: &[String], faults: &mut Violations) {
     for (rule, _) in RULES
         .iter()
         .filter(|(_, reads)| !broken.iter().any(|section| reads.contains(&section.as_str())))
@@ -51,7 +51,7 @@ pub fn check(case: &Case, broken: &[String], faults: &mut Faults) {
 }
 
 /// The name becomes a folder.
-fn name(case: &Case, faults: &mut Faults) {
+fn name(case: &Case, faults: &mut Violations) {
     let good = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     if case.name.is_empty() || case.name.starts_with('.') || !case.name.chars().all(good) {
         let fault = Violation::new(Code::CaseName, "/name", "a name that cannot be that of a folder");

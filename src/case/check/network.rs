@@ -4,14 +4,14 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::bladders::two_permeabilities;
 use super::junctions;
-use crate::case::faults::Faults;
+use crate::case::faults::Violations;
 use crate::case::schema::{self, BladderEnd, Case, ChainEnd, Endpoint, Network, TubeDefaults};
 use crate::case::wiring::{Bore, Given, Point, Port, Tube, Wiring, bladder_index, bladder_label};
 use crate::case::wording::nearest;
 use crate::error::{Code, Violation};
 use crate::functions::signals::Signal;
 
-pub(super) fn check(case: &Case, faults: &mut Faults) {
+pub(super) fn check(case: &Case, faults: &mut Violations) {
     let (_, joined) = resolve(case, faults);
     if !joined.lost {
         junctions::check(case, &joined, faults);
@@ -32,7 +32,7 @@ pub struct Joined<'a> {
 }
 
 /// The network, but for what is a fault.
-pub fn resolve<'a>(case: &'a Case, faults: &mut Faults) -> (Wiring<'a>, Joined<'a>) {
+pub fn resolve<'a>(case: &'a Case, faults: &mut Violations) -> (Wiring<'a>, Joined<'a>) {
     let Some((bladders, network)) = case.bladders.as_ref().zip(case.network.as_ref()) else {
         return Default::default();
     };
@@ -58,7 +58,7 @@ pub fn resolve<'a>(case: &'a Case, faults: &mut Faults) -> (Wiring<'a>, Joined<'
 }
 
 /// The index of a bladder; a fault if there is none.
-pub(super) fn bladder(number: i64, per_row: usize, pointer: &str, faults: &mut Faults) -> Option<usize> {
+pub(super) fn bladder(number: i64, per_row: usize, pointer: &str, faults: &mut Violations) -> Option<usize> {
     let index = bladder_index(number, per_row);
     if index.is_none() {
         let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {number}"));
@@ -90,7 +90,7 @@ struct Rules<'a, 'f> {
     usual: Option<&'a TubeDefaults>,
     per_row: usize,
     joined: Joined<'a>,
-    faults: &'f mut Faults,
+    faults: &'f mut Violations,
 }
 
 impl<'a> Rules<'a, '_> {

@@ -1,6 +1,6 @@
 //! Sizes that no such device has: almost always a unit.
 
-use crate::case::faults::Faults;
+use crate::case::faults::Violations;
 use crate::case::numbers::plain;
 use crate::case::schema::{Case, CrossSection};
 use crate::error::{Code, Violation};
@@ -46,7 +46,7 @@ const MOST_SLENDER: [f64; 2] = [1e5, 4e3];
 const LONGEST_TUBE: f64 = 100.0;
 
 /// Sizes of everything that has a size.
-pub(super) fn sizes(case: &Case, faults: &mut Faults) {
+pub(super) fn sizes(case: &Case, faults: &mut Violations) {
     let mut look = |pointer: &str, value: f64, range: &Range| {
         if !(range.low..=range.high).contains(&value) && !faults.has(pointer) {
             let fault = Violation::new(
@@ -110,7 +110,7 @@ pub(super) fn sizes(case: &Case, faults: &mut Faults) {
 }
 
 /// Lengths that do not go together.
-pub(super) fn proportions(case: &Case, faults: &mut Faults) {
+pub(super) fn proportions(case: &Case, faults: &mut Violations) {
     let beam = &case.beam;
     let slenderness = beam.length_m / beam.height_m;
     let most = MOST_SLENDER[usize::from(case.bladders.is_some())];

@@ -3,21 +3,21 @@
 use std::collections::HashMap;
 
 use crate::case::ends::{Rotation, Translation};
-use crate::case::faults::Faults;
+use crate::case::faults::Violations;
 use crate::case::locate::child;
 use crate::case::schema::{Case, End};
 use crate::error::{Code, Violation};
 use crate::functions::profile::Profile;
 use crate::functions::signals::{Clock, Signal};
 
-pub(super) fn check(case: &Case, faults: &mut Faults) {
+pub(super) fn check(case: &Case, faults: &mut Violations) {
     pressures(case, faults);
     equilibrium(case, faults);
     agreement(&case.ends.root, "root", 0.0, case, faults);
     agreement(&case.ends.tip, "tip", 1.0, case, faults);
 }
 
-fn pressures(case: &Case, faults: &mut Faults) {
+fn pressures(case: &Case, faults: &mut Violations) {
     let Some(bladders) = &case.bladders else {
         return;
     };
@@ -36,7 +36,7 @@ fn pressures(case: &Case, faults: &mut Faults) {
 }
 
 /// Displacements are found, not given; ends stand where the loads' instant has them.
-fn equilibrium(case: &Case, faults: &mut Faults) {
+fn equilibrium(case: &Case, faults: &mut Violations) {
     let Some(start) = &case.start.equilibrium else { return };
     if !start.loads_at_s.is_finite() {
         faults.push(Violation::new(
@@ -54,7 +54,7 @@ fn equilibrium(case: &Case, faults: &mut Faults) {
 }
 
 /// Displacement and slope at an end as the start has them and as the end is driven.
-fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Faults) {
+fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Violations) {
     let (form, given) = end.form();
     let length = case.beam.length_m;
     let resolved = end.resolve();

@@ -1,7 +1,7 @@
 //! Loads, pressures and flows that no such beam bears: almost always a unit.
 
 use super::size::{size_along, size_of, size_of_integral};
-use crate::case::faults::Faults;
+use crate::case::faults::Violations;
 use crate::case::numbers::plain;
 use crate::case::schema::{Bladders, Case, ChainEnd, Load, Rectifier};
 use crate::error::{Code, Violation};
@@ -64,7 +64,7 @@ impl Bounds {
 }
 
 /// Everything that presses, pulls, bends or fills.
-pub(super) fn check(case: &Case, faults: &mut Faults) {
+pub(super) fn check(case: &Case, faults: &mut Violations) {
     let bounds = Bounds::new(case);
     let end = case.time.end_s;
     let mut look = |pointer: String, size: f64, bound: &Bound| {
@@ -127,7 +127,7 @@ pub(super) fn check(case: &Case, faults: &mut Faults) {
 
 /// Flows that fill the bladders within what sound takes across the beam, and those that leave more in them over the run than
 /// ten times Young's modulus presses in, where no port with a pressure lets it out.
-fn flows(case: &Case, bladders: &Bladders, faults: &mut Faults) {
+fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     let (beam, end) = (&case.beam, case.time.end_s);
     let found = inlets(case);
     let volume = bladders.height_m * bladders.width_m * bladders.length_m * 2.0 * bladders.per_row as f64;

@@ -1,6 +1,6 @@
 //! Run and output times.
 
-use crate::case::faults::Faults;
+use crate::case::faults::Violations;
 use crate::case::schema::Case;
 use crate::error::{Code, Violation};
 
@@ -10,7 +10,7 @@ const MOST_ROWS: f64 = 1e7;
 /// Checkpoints at most; each costs a start afresh of the integrator.
 const MOST_CHECKPOINTS: f64 = 1e5;
 
-pub(super) fn check(case: &Case, faults: &mut Faults) {
+pub(super) fn check(case: &Case, faults: &mut Violations) {
     let time = &case.time;
     let mut refuse = |key: &str, what: String, allowed: String| {
         faults.push(Violation::new(Code::Times, format!("/time/{key}"), what).allowed(allowed));

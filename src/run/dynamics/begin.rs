@@ -3,7 +3,7 @@
 use super::{End, Run};
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::System;
-use crate::error::{Result, SolverFault};
+use crate::error::{Result, SolverError};
 use crate::run::checkpoint::Checkpoint;
 use crate::run::equilibrium;
 use crate::run::observe::Observer;
@@ -50,7 +50,7 @@ impl Run<'_> {
         dae: &mut BeamDae,
         from: &Checkpoint,
         before: Option<Before>,
-    ) -> std::result::Result<(), SolverFault> {
+    ) -> std::result::Result<(), SolverError> {
         let (Some(forward), Some(before)) = (&mut self.forward, before) else {
             return Ok(());
         };
@@ -61,7 +61,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    pub(super) fn begin_forward(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverFault> {
+    pub(super) fn begin_forward(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverError> {
         let Some(forward) = &mut self.forward else {
             return Ok(());
         };

@@ -1,11 +1,11 @@
 //! Why a run cannot go on, in words.
 
 use super::pace::STALL_STEPS;
-use crate::error::{At, Code, SolverFault};
-use crate::integrate::{IntegrationFailure, StartFailure};
+use crate::error::{At, Code, SolverError};
+use crate::integrate::{IntegrationError, StartError};
 
-pub(super) fn fault(failure: &IntegrationFailure) -> SolverFault {
-    SolverFault {
+pub(super) fn fault(failure: &IntegrationError) -> SolverError {
+    SolverError {
         code: if failure.singular.is_some() { Code::Singular } else { Code::Integrator },
         at: At::Time(failure.time),
         what: failure.to_string(),
@@ -24,8 +24,8 @@ pub(super) fn fault(failure: &IntegrationFailure) -> SolverFault {
 }
 
 /// A fault at a time, with what it is, its likely cause and what to try.
-fn at(t: f64, code: Code, [what, cause, hint]: [&str; 3]) -> SolverFault {
-    SolverFault {
+fn at(t: f64, code: Code, [what, cause, hint]: [&str; 3]) -> SolverError {
+    SolverError {
         code,
         at: At::Time(t),
         what: what.into(),
@@ -35,13 +35,13 @@ fn at(t: f64, code: Code, [what, cause, hint]: [&str; 3]) -> SolverFault {
     }
 }
 
-pub(super) fn beyond(t: f64, what: String) -> SolverFault {
+pub(super) fn beyond(t: f64, what: String) -> SolverError {
     let cause = "loads, pressures or flows beyond what the model describes, or a motion that grows without bounds";
     let hint = "results stand up to this time; look at the fields before it, at the units of loads and flows";
     at(t, Code::OutOfRange, [&what, cause, hint])
 }
 
-pub(super) fn too_many_steps(t: f64, step: f64) -> SolverFault {
+pub(super) fn too_many_steps(t: f64, step: f64) -> SolverError {
     let what = format!("the number of steps allowed is used up at t = {t:.6} s, with steps of {step:.2e} s");
     let cause = "fast waves that the tolerance asks to follow";
     at(
@@ -51,7 +51,7 @@ pub(super) fn too_many_steps(t: f64, step: f64) -> SolverFault {
     )
 }
 
-pub(super) fn inconsistent(t: f64, failure: &StartFailure) -> SolverFault {
+pub(super) fn inconsistent(t: f64, failure: &StartError) -> SolverError {
     let (what, cause, hint) = if t == 0.0 {
         (
             "no consistent start".to_string(),
@@ -65,13 +65,13 @@ pub(super) fn inconsistent(t: f64, failure: &StartFailure) -> SolverFault {
             "switch more slowly (a ramp with a duration)",
         )
     };
-    SolverFault {
+    SolverError {
         unknown: failure.worst.as_ref().map(|(_, name)| name.clone()),
         ..at(t, Code::NoStart, [&format!("{what}: {}", failure.what), cause, hint])
     }
 }
 
-pub(super) fn stalled(t: f64, step: f64) -> SolverFault {
+pub(super) fn stalled(t: f64, step: f64) -> SolverError {
     let what =
         format!("no progress: {STALL_STEPS} steps have hardly moved the time on from t = {t:.9} s (step {step:.2e} s)");
     let cause = "the solution changes ever faster towards this time: a closing bladder, an instability, a jump";

@@ -26,7 +26,7 @@ use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
 use crate::dae::BeamDae;
 use crate::discrete::{System, start};
-use crate::error::{Result, SolverFault};
+use crate::error::{Result, SolverError};
 use crate::integrate::{StartOptions, consistent_start};
 use crate::model::{audit, characteristic};
 
@@ -36,7 +36,7 @@ pub struct Outcome {
     /// Summary, complete in every case.
     pub summary: Summary,
     /// Why the solver could not go on, when it could not.
-    pub fault: Option<SolverFault>,
+    pub fault: Option<SolverError>,
 }
 
 /// Runs a checked case. A failing solver is an [`Outcome`].
@@ -106,8 +106,8 @@ enum End {
     Finished,
     Stopped(String),
     /// What lies beyond the model.
-    Left(SolverFault),
-    Failed(SolverFault),
+    Left(SolverError),
+    Failed(SolverError),
 }
 
 impl<'a> Run<'a> {

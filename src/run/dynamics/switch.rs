@@ -3,7 +3,7 @@
 use super::Run;
 use super::faults::{fault, inconsistent};
 use crate::dae::BeamDae;
-use crate::error::{Result, SolverFault};
+use crate::error::{Result, SolverError};
 use crate::integrate::{StartOptions, consistent_start};
 use crate::run::checkpoint::{Checkpoint, VERSION};
 use crate::run::method::Integrator;
@@ -14,7 +14,7 @@ use crate::run::summary::Counters;
 
 impl Run<'_> {
     /// Passes a switch: the next smooth branch of every signal, a consistent state, and what is done in no time in between.
-    pub(super) fn switch(&mut self, dae: &mut BeamDae, t: f64, ahead: f64) -> Option<SolverFault> {
+    pub(super) fn switch(&mut self, dae: &mut BeamDae, t: f64, ahead: f64) -> Option<SolverError> {
         let (before, within) = (self.state.clone(), dae.within());
         dae.switch(t, ahead, &mut self.state);
         if let Err(failure) = consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default()) {
@@ -32,7 +32,7 @@ impl Run<'_> {
         stop: usize,
         next: f64,
         recorder: &mut dyn Recorder,
-    ) -> Result<Option<SolverFault>> {
+    ) -> Result<Option<SolverError>> {
         let Stop {
             t,
             switches,

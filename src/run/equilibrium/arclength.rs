@@ -1,6 +1,6 @@
 //! The equations of equilibrium with the load factor as one more unknown.
 
-use crate::dae::{Dae, Fault, Seeds, StaticBeam};
+use crate::dae::{Dae, EvaluationError, Seeds, StaticBeam};
 use crate::sparse::Pattern;
 
 /// `[E30]` A point of the load path: n equations of equilibrium for n unknowns y and the share s of the loads, and one that
@@ -63,7 +63,7 @@ impl Arclength {
     }
 
     /// `∂F/∂s` into `above`.
-    fn by_share(&mut self, y: &[f64], s: f64) -> Result<(), Fault> {
+    fn by_share(&mut self, y: &[f64], s: f64) -> Result<(), EvaluationError> {
         self.statics.residual(s + DIFFERENCE, y, &[], &mut self.above)?;
         self.statics.residual(s - DIFFERENCE, y, &[], &mut self.below)?;
         for (above, below) in self.above.iter_mut().zip(&self.below) {
@@ -86,14 +86,21 @@ impl Dae for Arclength {
         &self.pattern
     }
 
-    fn residual(&mut self, _: f64, y: &[f64], _: &[f64], residual: &mut [f64]) -> Result<(), Fault> {
+    fn residual(&mut self, _: f64, y: &[f64], _: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError> {
         let n = y.len() - 1;
         self.statics.residual(y[n], &y[..n], &[], &mut residual[..n])?;
         residual[n] = self.direction.iter().zip(y).map(|(d, x)| d * x).sum::<f64>() - self.position;
         Ok(())
     }
 
-    fn jacobian(&mut self, _: f64, y: &[f64], _: &[f64], seeds: Seeds<'_>, values: &mut [f64]) -> Result<(), Fault> {
+    fn jacobian(
+        &mut self,
+        _: f64,
+        y: &[f64],
+        _: &[f64],
+        seeds: Seeds<'_>,
+        values: &mut [f64],
+    ) -> Result<(), EvaluationError> {
         let n = y.len() - 1;
         self.statics.jacobian(y[n], &y[..n], &[], seeds, &mut self.inner)?;
         self.by_share(&y[..n], y[n])?;

@@ -4,7 +4,7 @@ use super::path::{End, Follower, NEAR, PATIENCE, Way, difference};
 use super::state::Stability;
 use super::{Event, Kind};
 use crate::numerics::kernels;
-use crate::sundials::KinsolFailure;
+use crate::sundials::KinsolError;
 
 /// First step along the branch, over its size.
 const ASIDE: f64 = 0.02;
@@ -54,7 +54,7 @@ impl Follower<'_> {
             self.path.rejected += 1;
             step *= 0.5;
             if step < NEAR {
-                let none = || KinsolFailure::own("the path that crosses here is not found");
+                let none = || KinsolError::own("the path that crosses here is not found");
                 return Err(self.fail(&solved.err().unwrap_or_else(none), share));
             }
         }

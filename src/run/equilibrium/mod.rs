@@ -24,7 +24,7 @@ mod state;
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, StaticBeam};
 use crate::discrete::{System, TimeData, start};
-use crate::error::{self, At, SolverFault};
+use crate::error::{self, At, SolverError};
 use crate::functions::signals::Polynomial;
 use crate::functions::{Clock, Signal};
 use crate::model::{Model, Storage};
@@ -72,7 +72,7 @@ pub struct Path {
     /// Predictions that had to be shortened.
     pub rejected: u64,
     /// Why the path ends before the share that was asked for, if it does.
-    pub fault: Option<SolverFault>,
+    pub fault: Option<SolverError>,
 }
 
 /// A remarkable point of a path.
@@ -144,7 +144,7 @@ fn growing(case: &Case, mut model: Model, at_s: f64) -> error::Result<System> {
 ///
 /// # Errors
 /// There is no equilibrium, or no way to it from rest.
-pub fn at_start(case: &Case, at_s: f64, dae: &mut BeamDae, y: &[f64]) -> Result<Vec<f64>, SolverFault> {
+pub fn at_start(case: &Case, at_s: f64, dae: &mut BeamDae, y: &[f64]) -> Result<Vec<f64>, SolverError> {
     at_start_watched(case, at_s, dae, y, &mut || Control::Continue)
 }
 
@@ -158,14 +158,14 @@ pub fn at_start_watched(
     dae: &mut BeamDae,
     y: &[f64],
     ask: &mut dyn FnMut() -> Control,
-) -> Result<Vec<f64>, SolverFault> {
+) -> Result<Vec<f64>, SolverError> {
     let at_rest = dae.system().model.at_rest(case);
     let statics = at_rest.and_then(|model| growing(case, model, at_s));
     let statics = statics.map_err(|error| path::fault(0.0, &error.to_string()))?;
     let mut from = BeamDae::new(statics.clone());
     let path = path::follow_of(case, statics, &Options::at(at_s), false, &mut |_| ask());
     if let Some(fault) = path.fault {
-        return Err(SolverFault {
+        return Err(SolverError {
             at: At::Time(0.0),
             what: format!("no equilibrium to start from: {}", fault.what),
             ..fault

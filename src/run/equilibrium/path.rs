@@ -7,9 +7,9 @@ use super::state::{Stability, State};
 use super::{Event, Kind, Options, Path, rest, system};
 use crate::case::schema::Case;
 use crate::discrete::System;
-use crate::error::{self, At, Code, SolverFault};
+use crate::error::{self, At, Code, SolverError};
 use crate::run::record::Control;
-use crate::sundials::{Kinsol, KinsolFailure, KinsolOptions};
+use crate::sundials::{Kinsol, KinsolError, KinsolOptions};
 
 /// Longest step, in lengths of the beam and shares of the load.
 const LONGEST: f64 = 0.5;
@@ -54,7 +54,7 @@ pub(super) fn follow_of(
     if let Some(inflow) = statics.fed() {
         let what =
             format!("there is no equilibrium: a closed network takes in {inflow:.3e} m^3/s which nothing lets out");
-        path.fault = Some(SolverFault {
+        path.fault = Some(SolverError {
             cause: Some("a port of prescribed flow without one of prescribed pressure in the same network".into()),
             hint: Some("open the network by a port with pressure_pa, or let the flows sum to zero".into()),
             ..fault(0.0, &what)
@@ -104,7 +104,7 @@ fn weights(system: &System) -> Vec<f64> {
 }
 
 /// Why a path ends early.
-pub(super) struct End(pub SolverFault);
+pub(super) struct End(pub SolverError);
 
 /// What comes after a step.
 enum Next {
@@ -242,7 +242,7 @@ impl Follower<'_> {
             };
             if step < SHORTEST {
                 let what = "what is found lies far from what was predicted, however short the step";
-                let astray = || KinsolFailure::own(what);
+                let astray = || KinsolError::own(what);
                 return Err(self.fail(&solved.err().unwrap_or_else(astray), last[n]));
             }
         }
@@ -269,7 +269,7 @@ impl Follower<'_> {
     }
 
     /// Solves from a guess; Newton steps done.
-    pub(super) fn solve(&mut self, x: &mut [f64], patience: u32) -> Result<u64, KinsolFailure> {
+    pub(super) fn solve(&mut self, x: &mut [f64], patience: u32) -> Result<u64, KinsolError> {
         let options = KinsolOptions {
             max_iterations: patience,
             ..KinsolOptions::default()
@@ -340,8 +340,8 @@ impl Follower<'_> {
         End(fault(share, &what))
     }
 
-    pub(super) fn fail(&self, failure: &KinsolFailure, share: f64) -> End {
-        End(SolverFault {
+    pub(super) fn fail(&self, failure: &KinsolError, share: f64) -> End {
+        End(SolverError {
             unknown: failure.worst.clone(),
             ..fault(
                 share,
@@ -354,8 +354,8 @@ impl Follower<'_> {
     }
 }
 
-pub(super) fn fault(share: f64, what: &str) -> SolverFault {
-    SolverFault {
+pub(super) fn fault(share: f64, what: &str) -> SolverError {
+    SolverError {
         code: Code::NoEquilibrium,
         at: At::LoadFactor(share),
         what: what.into(),

@@ -1,9 +1,9 @@
 //! The linearisation of a case about a state.
 
 use crate::case::Case;
-use crate::dae::{BeamDae, Dae as _, Fault, Seeds};
+use crate::dae::{BeamDae, Dae as _, EvaluationError, Seeds};
 use crate::discrete::{System, start};
-use crate::error::{At, Code, Error, Result, SolverFault};
+use crate::error::{At, Code, Error, Result, SolverError};
 use crate::functions::signals::Clock;
 use crate::integrate::{StartOptions, consistent_start};
 use crate::model::Model;
@@ -91,7 +91,7 @@ fn about(mut dae: BeamDae, at: f64, mut y: Vec<f64>) -> Result<Linearised> {
     }
     let mut yp = vec![0.0; l.len];
     let fault = |what: String, unknown| {
-        Error::Solver(Box::new(SolverFault {
+        Error::Solver(Box::new(SolverError {
             code: Code::NoStart,
             at: At::Time(at),
             what,
@@ -110,7 +110,7 @@ fn about(mut dae: BeamDae, at: f64, mut y: Vec<f64>) -> Result<Linearised> {
     for (values, (of_y, of_yp)) in parts.iter_mut().zip([(&ones, &zeros), (&zeros, &ones)]) {
         let seeds = Seeds::Columns { y: of_y, yp: of_yp };
         dae.jacobian(at, &y, &yp, seeds, values)
-            .map_err(|(Fault::Recoverable(what) | Fault::Fatal(what))| fault(what, None))?;
+            .map_err(|(EvaluationError::Recoverable(what) | EvaluationError::Fatal(what))| fault(what, None))?;
     }
     let [a, b] = parts;
     Ok(Linearised { dae, at, y, a, b, rate })

@@ -18,9 +18,9 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
-use crate::error::{At, Code, Error, Result, SolverFault};
+use crate::error::{At, Code, Error, Result, SolverError};
 use crate::run::null;
-use crate::spectral::{self, Failure, Options, Pair, Pencil};
+use crate::spectral::{self, Options, Pair, Pencil, SpectralError};
 
 pub use kind::Kind;
 pub use linearise::{Fluid, Linearised, at_equilibrium, linearise};
@@ -317,12 +317,12 @@ fn paired(
     all
 }
 
-fn failed(about: &Linearised, failure: &Failure) -> Error {
+fn failed(about: &Linearised, failure: &SpectralError) -> Error {
     let unknown = match failure {
-        Failure::Singular { column } => Some(about.system().layout.name(*column)),
+        SpectralError::Singular { column } => Some(about.system().layout.name(*column)),
         _ => None,
     };
-    Error::Solver(Box::new(SolverFault {
+    Error::Solver(Box::new(SolverError {
         code: Code::NoModes,
         at: At::Time(about.at),
         what: format!("no modes: {failure}"),

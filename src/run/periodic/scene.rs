@@ -4,8 +4,8 @@ use crate::case::Translation;
 use crate::case::schema::{Case, Choice, Effects};
 use crate::dae::BeamDae;
 use crate::discrete::{System, start};
-use crate::error::{At, Code, Error, Result, SolverFault};
-use crate::integrate::{Absolute, IntegrationFailure, StartOptions, consistent_start};
+use crate::error::{At, Code, Error, Result, SolverError};
+use crate::integrate::{Absolute, IntegrationError, StartOptions, consistent_start};
 use crate::model::Model;
 use crate::onestep::step_map::StepError;
 use crate::onestep::{Method, OneStep, OneStepOptions, StepMap};
@@ -87,7 +87,7 @@ impl Scene {
             max_step: Some(end / LEAST_STEPS),
             ..OneStepOptions::default()
         };
-        let error = |failure: Box<IntegrationFailure>| StepError::new(failure.time, failure.to_string());
+        let error = |failure: Box<IntegrationError>| StepError::new(failure.time, failure.to_string());
         let mut solver = OneStep::new(dae, 0.0, &y, &yp, &options).map_err(error)?;
         let mut times = vec![0.0];
         while solver.time() < end {
@@ -183,7 +183,7 @@ pub fn whole(case: &Case) -> Result<Model> {
 
 /// What happened, as the house says it.
 pub fn fault(error: StepError) -> Error {
-    Error::Solver(Box::new(SolverFault {
+    Error::Solver(Box::new(SolverError {
         code: Code::NoCycle,
         at: At::Time(error.time),
         what: error.what,

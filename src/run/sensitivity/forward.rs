@@ -12,8 +12,8 @@ use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, PerturbedSystems};
 use crate::discrete::quantities::{Extremes, Look, Observable, Read, Row};
 use crate::discrete::{ledger, start};
-use crate::error::{At, Code, Error, Result, SolverFault};
-use crate::integrate::{IntegrationFailure, consistent_sensitivities};
+use crate::error::{At, Code, Error, Result, SolverError};
+use crate::integrate::{IntegrationError, consistent_sensitivities};
 use crate::run::equilibrium;
 use crate::run::schedule::{self, Stop};
 use crate::sundials::Ida;
@@ -116,7 +116,7 @@ impl<'a> Forward<'a> {
     }
 
     /// Sensitivities at t = 0 of the differential unknowns: of the state from which the run starts.
-    pub fn begin(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverFault> {
+    pub fn begin(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverError> {
         self.look(dae, 0);
         for ((perturbed, cases), s) in dae.perturbed_mut().iter_mut().zip(&self.cases).zip(&mut self.s) {
             perturbed.derivative(s, |j, beam, out| {
@@ -134,8 +134,8 @@ impl<'a> Forward<'a> {
     }
 
     /// Completes the sensitivities at a consistent state.
-    pub fn complete(&mut self, dae: &mut BeamDae, t: f64, state: [&[f64]; 2]) -> std::result::Result<(), SolverFault> {
-        consistent_sensitivities(dae, t, state, &mut self.s, &mut self.sp).map_err(|what| SolverFault {
+    pub fn complete(&mut self, dae: &mut BeamDae, t: f64, state: [&[f64]; 2]) -> std::result::Result<(), SolverError> {
+        consistent_sensitivities(dae, t, state, &mut self.s, &mut self.sp).map_err(|what| SolverError {
             code: Code::Singular,
             at: At::Time(t),
             what: format!("no consistent sensitivities at t = {t:.6} s: {what}"),
@@ -146,7 +146,7 @@ impl<'a> Forward<'a> {
     }
 
     /// Hands them to the integrator: at the start of the run, or after a restart.
-    pub fn hand_over(&self, ida: &mut Ida<BeamDae>, again: bool) -> std::result::Result<(), Box<IntegrationFailure>> {
+    pub fn hand_over(&self, ida: &mut Ida<BeamDae>, again: bool) -> std::result::Result<(), Box<IntegrationError>> {
         if again {
             ida.carry_on(&self.s, &self.sp)
         } else {
@@ -160,7 +160,7 @@ impl<'a> Forward<'a> {
         ida: &mut Ida<BeamDae>,
         t: f64,
         integrals: &mut [Vec<f64>],
-    ) -> std::result::Result<(), Box<IntegrationFailure>> {
+    ) -> std::result::Result<(), Box<IntegrationError>> {
         for (k, integrals) in integrals.iter_mut().enumerate() {
             ida.sensitivity(k, t, [&mut self.s[k], &mut self.sp[k]])?;
             ida.integral_sensitivity(k, t, integrals)?;
@@ -177,7 +177,7 @@ impl<'a> Forward<'a> {
         ida: &mut Ida<BeamDae>,
         t: f64,
         [y, yp]: [&[f64]; 2],
-    ) -> std::result::Result<Before, Box<IntegrationFailure>> {
+    ) -> std::result::Result<Before, Box<IntegrationError>> {
         let mut totals = self.carried.clone();
         self.read(ida, t, &mut totals)?;
         self.carried = totals;
@@ -229,7 +229,7 @@ impl<'a> Forward<'a> {
         t: f64,
         before: &Before,
         state: [&[f64]; 2],
-    ) -> std::result::Result<(), SolverFault> {
+    ) -> std::result::Result<(), SolverError> {
         let after = integrands(dae, t, state);
         let differential = dae.differential().to_vec();
         let mut restated = vec![0.0; differential.len()];
@@ -300,7 +300,7 @@ impl<'a> Forward<'a> {
         t: f64,
         [y, yp]: [&[f64]; 2],
         row: &Row,
-    ) -> std::result::Result<&[f64], Box<IntegrationFailure>> {
+    ) -> std::result::Result<&[f64], Box<IntegrationError>> {
         let mut integrals = self.carried.clone();
         self.read(ida, t, &mut integrals)?;
         let dae = ida.dae_mut();

@@ -4,7 +4,7 @@ use std::ptr;
 
 use nalgebra::Complex;
 
-use super::{Analysis, KluFault, RowScaling};
+use super::{Analysis, KluError, RowScaling};
 use crate::sparse::Pattern;
 use crate::sparse::c;
 
@@ -20,7 +20,7 @@ pub struct ComplexKlu {
 
 impl ComplexKlu {
     /// Analyses a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
-    pub fn new(pattern: &Pattern) -> Result<Self, KluFault> {
+    pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
         Ok(Self {
             analysis: Analysis::new(pattern, RowScaling::Max)?,
             numeric: ptr::null_mut(),
@@ -32,7 +32,7 @@ impl ComplexKlu {
     /// Factors the matrix whose entries, in the order of the pattern, are `values`.
     ///
     /// After a fault there are no factors. Panics when the number of values is not that of the pattern.
-    pub fn factor(&mut self, values: &[Complex<f64>]) -> Result<(), KluFault> {
+    pub fn factor(&mut self, values: &[Complex<f64>]) -> Result<(), KluError> {
         assert_eq!(values.len(), self.analysis.rows.len(), "values of another pattern");
         self.free_numeric();
         self.factorizations += 1;

@@ -26,7 +26,7 @@ pub enum RowScaling {
 
 /// Why a matrix could not be factored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum KluFault {
+pub enum KluError {
     /// No pivot is left in this column.
     Singular {
         /// Column of the matrix as given.
@@ -48,7 +48,7 @@ struct Analysis {
 }
 
 impl Analysis {
-    fn new(pattern: &Pattern, scaling: RowScaling) -> Result<Self, KluFault> {
+    fn new(pattern: &Pattern, scaling: RowScaling) -> Result<Self, KluError> {
         let n = pattern.columns();
         // all of it is relied upon by the C code
         let sound = pattern.starts[0] == 0
@@ -56,7 +56,7 @@ impl Analysis {
             && pattern.starts[n] as usize == pattern.rows.len()
             && pattern.rows.iter().all(|&row| row >= 0 && (row as usize) < n);
         if !sound {
-            return Err(KluFault::Package {
+            return Err(KluError::Package {
                 status: c::KLU_INVALID.into(),
             });
         }
@@ -91,16 +91,16 @@ impl Analysis {
     }
 
     /// What KLU last complained about.
-    fn fault(&self) -> KluFault {
+    fn fault(&self) -> KluError {
         let column = self.common.singular_col;
         if self.common.status == i64::from(c::KLU_SINGULAR) {
-            KluFault::Singular {
+            KluError::Singular {
                 column: usize::try_from(column)
                     .unwrap_or(0)
                     .min(self.columns().saturating_sub(1)),
             }
         } else {
-            KluFault::Package {
+            KluError::Package {
                 status: self.common.status,
             }
         }
@@ -134,12 +134,12 @@ pub struct Klu {
 
 impl Klu {
     /// Analyses a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
-    pub fn new(pattern: &Pattern) -> Result<Self, KluFault> {
+    pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
         Self::with_scaling(pattern, RowScaling::Max)
     }
 
     /// Analyses a square pattern.
-    pub fn with_scaling(pattern: &Pattern, scaling: RowScaling) -> Result<Self, KluFault> {
+    pub fn with_scaling(pattern: &Pattern, scaling: RowScaling) -> Result<Self, KluError> {
         Ok(Self {
             analysis: Analysis::new(pattern, scaling)?,
             numeric: ptr::null_mut(),
@@ -163,7 +163,7 @@ impl Klu {
     /// Factors the matrix whose entries, in the order of the pattern, are `values`; with the old pivots while they last.
     ///
     /// After a fault there are no factors. Panics when the number of values is not that of the pattern.
-    pub fn factor(&mut self, values: &[f64]) -> Result<(), KluFault> {
+    pub fn factor(&mut self, values: &[f64]) -> Result<(), KluError> {
         assert_eq!(values.len(), self.entries(), "values of another pattern");
         if !self.numeric.is_null() {
             if self.refactor(values) {
@@ -212,7 +212,7 @@ impl Klu {
     }
 
     /// Factors with pivots chosen for these values.
-    fn factor_anew(&mut self, values: &[f64]) -> Result<(), KluFault> {
+    fn factor_anew(&mut self, values: &[f64]) -> Result<(), KluError> {
         self.free_numeric();
         self.factorizations += 1;
         // SAFETY: pattern and symbolic belong together, values has the pattern's length; KLU only reads them.
