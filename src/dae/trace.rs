@@ -77,64 +77,38 @@ pub fn pattern(system: &System, now: &TimeData) -> Pattern {
     Pattern::from_columns(&columns)
 }
 
-impl Add for Trace {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        self.union(other)
-    }
+/// What depends on both, on one, or on what is added to it.
+macro_rules! operators {
+    ($($Op:ident $op:ident),*; $($Onto:ident $onto:ident),*) => {
+        $(impl $Op for Trace {
+            type Output = Self;
+            fn $op(self, other: Self) -> Self {
+                self.union(other)
+            }
+        }
+        impl $Op<f64> for Trace {
+            type Output = Self;
+            fn $op(self, _: f64) -> Self {
+                self
+            }
+        })*
+        $(impl $Onto for Trace {
+            fn $onto(&mut self, other: Self) {
+                *self = self.union(other);
+            }
+        })*
+    };
 }
-impl Sub for Trace {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self.union(other)
-    }
-}
-impl Mul for Trace {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        self.union(other)
-    }
-}
-impl Div for Trace {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        self.union(other)
-    }
-}
+
+operators!(Add add, Sub sub, Mul mul, Div div; AddAssign add_assign, SubAssign sub_assign);
+
 impl Neg for Trace {
     type Output = Self;
     fn neg(self) -> Self {
         self
     }
 }
-impl Add<f64> for Trace {
-    type Output = Self;
-    fn add(self, _: f64) -> Self {
-        self
-    }
-}
-impl Sub<f64> for Trace {
-    type Output = Self;
-    fn sub(self, _: f64) -> Self {
-        self
-    }
-}
-impl Mul<f64> for Trace {
-    type Output = Self;
-    fn mul(self, _: f64) -> Self {
-        self
-    }
-}
-impl AddAssign for Trace {
-    fn add_assign(&mut self, other: Self) {
-        *self = self.union(other);
-    }
-}
-impl SubAssign for Trace {
-    fn sub_assign(&mut self, other: Self) {
-        *self = self.union(other);
-    }
-}
+
 impl Scalar for Trace {
     fn constant(_: f64) -> Self {
         NOTHING

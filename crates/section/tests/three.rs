@@ -7,7 +7,6 @@ use slcbeam_section::coefficients::Options;
 use slcbeam_section::error::Error;
 use slcbeam_section::input::{Material, Region, RegionShape, Row, Section};
 use slcbeam_section::mesh::Fineness;
-use std::time::Instant;
 
 const COARSE: Fineness = Fineness {
     largest: 0.5,
@@ -91,9 +90,8 @@ fn a_wide_beam_is_that_of_the_plane_cell() {
 
 #[test]
 fn the_plane_cell_is_off_by_a_few_percent_on_the_papers_section() {
-    let start = Instant::now();
     let spatial = paper(0.45, 0.0025).three_dimensional().unwrap();
-    println!("{spatial:#?} in {:?}", start.elapsed());
+    println!("{spatial:#?}");
     let off = &spatial.plane_off;
     // Measured before on the same shape by another program: 2 % for stiffness, 3 to 11 % for couplings.
     assert!(off[0][0].abs() < 0.02 && off[1][1].abs() < 0.02);
@@ -105,7 +103,8 @@ fn the_plane_cell_is_off_by_a_few_percent_on_the_papers_section() {
         "{:?}",
         spatial.errors
     );
-    assert!(cfg!(debug_assertions) || start.elapsed().as_secs_f64() < 20.0);
+    // a second's work
+    assert!((8_000..16_000).contains(&spatial.unknowns), "{}", spatial.unknowns);
 }
 
 #[test]
