@@ -45,7 +45,7 @@ fn a_case_takes_its_numbers_from_its_section() {
     ] {
         assert_eq!(
             case.origins.get(pointer),
-            Some(Origin::Computed("section")),
+            Some(Origin::Computed("section in 3-D")),
             "{pointer}"
         );
     }
@@ -100,6 +100,87 @@ fn sections_that_cannot_be_are_refused_at_their_place() {
         assert!(places.iter().all(|p| p.starts_with("/section/")), "{places:?}");
     }
     assert_eq!(refused(&["/section/heigth_m=0.02"]), ["/section/heigth_m"]);
+    assert_eq!(
+        refused(&["/section/bladders/upper/center_m=-0.0052"]),
+        ["/section/bladders/upper/center_m"]
+    );
+    let nine = refused(&["/bladders={\"per_row\": 9}"]);
+    assert!(nine.contains(&"/bladders/per_row".to_owned()), "{nine:?}");
+    // millimetres, and sizes that no mesh has an end for
+    for size in [
+        "/section/height_m=20",
+        "/section/pitch_m=1000",
+        "/section/pitch_m=1e308",
+    ] {
+        let places = refused(&[size]);
+        assert!(places.iter().any(|p| size.starts_with(p.as_str())), "{size} {places:?}");
+    }
+    assert_eq!(
+        refused(&[&format!("{circle}=1e-9")]),
+        ["/section/bladders/upper", "/section/bladders/lower"]
+    );
+}
+
+/// Goal: whatever is no row, no shape or no polygon is refused, by a case and by `coefficients`: no other beam is simulated in its place.
+#[test]
+fn rows_and_shapes_that_are_none_are_refused() {
+    let rows = ["3", "null", "[1]", "\"mirror\"", "{\"center_m\": 0.005}"];
+    let shapes = [
+        "{}",
+        "null",
+        "3",
+        "\"circle\"",
+        r#"{"cirlce": {"radius_m": 0.001}}"#,
+        r#"{"circle": 0.0028}"#,
+        r#"{"circle": null}"#,
+        r#"{"circle": {"radius_m": 0.001}, "ellipse": {"along_m": 0.001, "high_m": 0.001}}"#,
+        r#"{"polygon": {"points_m": [[0, 0, 0], [0.001, 0], [0, 0.001]]}}"#,
+        r#"{"polygon": {"points_m": [[0], [0.001, 0], [0, 0.001]]}}"#,
+        r#"{"polygon": {"points_m": null}}"#,
+    ];
+    let at = |pointer: &str, values: &[&str]| {
+        values
+            .iter()
+            .map(|v| (pointer.to_owned(), (*v).to_owned()))
+            .collect::<Vec<_>>()
+    };
+    let mut all = at("/section/bladders/lower", &rows);
+    all.extend(at("/section/bladders/upper", &rows));
+    all.extend(at("/section/bladders/upper/shape", &shapes));
+    for (pointer, value) in all {
+        // in the text itself: a `null` by --set leaves a key out
+        let mut case: Value = serde_json::from_str(CASE).unwrap();
+        *case.pointer_mut(&pointer).unwrap() = serde_json::from_str(&value).unwrap();
+        let told = case::parse(&case.to_string(), Path::new("mine.json"), Path::new(""), &[]);
+        let Err(Error::Case(fault)) = told else {
+            panic!("{pointer} = {value} is taken");
+        };
+        let places: Vec<&str> = fault.violations.iter().map(|v| v.pointer.as_str()).collect();
+        assert!(
+            places.iter().all(|p| p.starts_with("/section")),
+            "{pointer} = {value}: {places:?}"
+        );
+        let alone = coefficients(&[], &case["section"]);
+        assert_eq!(alone.status.code(), Some(3), "{pointer} = {value}");
+    }
+}
+
+/// Goal: both ways to the cell in three dimensions have the same numbers, small ones too.
+#[test]
+fn a_number_in_three_dimensions_is_one_number() {
+    let mut section = serde_json::from_str::<Value>(CASE).unwrap()["section"].take();
+    let of = |arguments: &[&str], section: &Value| -> Value {
+        serde_json::from_slice(&coefficients(arguments, section).stdout).unwrap()
+    };
+    let taken = of(&["--json"], &section);
+    section["three_d"] = json!(false);
+    let beside = of(&["--json", "--three-d"], &section);
+    for (key, told) in beside["three_d"].as_object().unwrap() {
+        if let Some(value) = told.get("value").and_then(Value::as_f64) {
+            let other = taken[key].as_f64().unwrap();
+            assert!((value / other - 1.0).abs() < 1e-9, "{key}: {value} {other}");
+        }
+    }
 }
 
 /// Goal: a run with a section closes its balances as one with numbers does; its numbers cannot be differentiated by, and that is said.

@@ -107,6 +107,11 @@ impl Violations {
             .retain(|(fault, _)| !pointers.iter().any(|p| is_below(&fault.pointer, p)));
     }
 
+    /// Whether a fault stands at or below a pointer.
+    pub fn any_below(&self, pointer: &str) -> bool {
+        self.list.iter().any(|(fault, _)| is_below(&fault.pointer, pointer))
+    }
+
     /// All faults with their places, in the order of the text; of very many the first, and how many there are besides.
     pub fn placed(self, source: &Source) -> Vec<Violation> {
         let more = self.more;

@@ -119,7 +119,15 @@ const TOLD: f64 = 0.05;
 
 fn plane_cell(case: &Case) -> Option<String> {
     let bladders = case.bladders.as_ref()?;
-    let of_plane = case.origins.get("/bladders/area_per_moment_m2_per_n_m/opening")? == Origin::Computed(PLANE);
+    let areas = [
+        "/bladders/area_per_moment_m2_per_n_m/opening",
+        "/bladders/area_per_moment_m2_per_n_m/closing",
+        "/bladders/area_per_force_m2_per_n/tension",
+        "/bladders/area_per_force_m2_per_n/compression",
+    ];
+    let plane = |pointer: &str| case.origins.get(pointer) == Some(Origin::Computed(PLANE));
+    // without side walls the ends are open
+    let of_plane = areas.into_iter().any(plane) && bladders.length_m < case.beam.width_m;
     let off = ENDS * bladders.height_m.max(bladders.width_m) / bladders.length_m;
     (of_plane && off > TOLD).then(|| {
         Code::PlaneCell.warning(format!(

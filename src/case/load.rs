@@ -94,7 +94,7 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
     };
     let own = value.clone();
     let mut faults = Violations::default();
-    let computed = section::apply(&mut value, &mut faults);
+    let filled = section::apply(&mut value, &mut faults);
     presets::apply(&mut value, &source.sets);
     // Numbers that are none have their fault already; `null` stands for them.
     let told = violations.iter().map(|v| v.pointer.clone());
@@ -109,11 +109,13 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         .collect();
     faults.drop_below(&cleared);
     cleared.iter().for_each(|pointer| sets::remove(&mut value, pointer));
+    let computed = filled.pointers.clone();
     section::remove(&mut value);
     let case = match value.is_object() {
         true => build(value.clone(), base, &mut faults, violations.is_empty()),
         false => None,
     };
+    filled.tell(&mut faults);
     let case = case.map(|case| Case {
         origins: Origins::of(&own, &value, &source.sets, case.preset, &computed),
         ..case

@@ -5,9 +5,10 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::parse;
+use super::origins::{Origin, PLANE};
 use super::schema::Case;
 use super::wording::nearest;
+use super::{parse, section};
 use crate::error::{Error, Result};
 
 /// Parts of a case that describe what is simulated, not how.
@@ -38,6 +39,14 @@ impl Parameter {
                 "/{part} is not a part of the model; parameters stand under /{}",
                 PARTS.join(", /")
             ));
+        }
+        if pointer.starts_with("/section/") {
+            return usage("the numbers of a section are no parameters of the model; its coefficients are".into());
+        }
+        let computed = |origin: Origin| matches!(origin, Origin::Computed(from) if from.starts_with(PLANE));
+        let origin = case.origins.get("/beam/axial_stiffness_factor");
+        if section::SIZES.contains(&pointer) && origin.is_some_and(computed) {
+            return usage("the section has it: coefficients that are computed from it would not follow".into());
         }
         match resolved.pointer(pointer) {
             Some(Value::Number(number)) if number.is_f64() => {

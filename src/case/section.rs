@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use serde_json::{Value, json};
+use serde_path_to_error::Segment;
 use slcbeam_section::coefficients::{Coefficients, Options};
 use slcbeam_section::error::Error;
 use slcbeam_section::input::Section;
@@ -19,6 +20,10 @@ const KEY: &str = "section";
 const ALIKE: f64 = 1e-3;
 /// Error of a coefficient above which it is not taken.
 const COARSE: f64 = 0.02;
+/// The same of a cell in three dimensions, whose meshes are coarser; the plane one leaves out more.
+const COARSE_IN_SPACE: f64 = 0.06;
+/// Where the number of bladders stands.
+const PER_ROW: &str = "/bladders/per_row";
 /// Sections whose coefficients are kept, for cases that are read again and again.
 const KEPT: usize = 16;
 
@@ -49,24 +54,36 @@ pub fn coefficients(section: &Section) -> std::result::Result<Coefficients, Vec<
     Ok(found)
 }
 
-/// Puts the numbers of `/section` where a case has them; what stands there already stays. Returns the pointers of those put in.
+/// Puts the numbers of `/section` where a case has them; what stands there already stays.
 ///
 /// Where the section cannot be computed the numbers of a preset stand in, so that the rest of the case can be looked at.
-pub(super) fn apply(case: &mut Value, faults: &mut Violations) -> Vec<String> {
+pub(super) fn apply(case: &mut Value, faults: &mut Violations) -> Filled {
     let Some(given) = case.get(KEY).filter(|given| given.is_object()) else {
-        return vec![];
+        return Filled::default();
     };
-    let numbers = match serde_json::from_value::<Section>(without_remarks(given)) {
-        // what is wrong with it is told when the case is looked at
-        Err(_) => stand_in(),
-        Ok(section) => numbers(case, &section).unwrap_or_else(|violations| {
-            for violation in violations {
-                let pointer = format!("/{KEY}{}", violation.pointer);
-                faults.push(Violation { pointer, ..violation });
-            }
+    let mut told = vec![];
+    let numbers = match read(given, &format!("/{KEY}")).map(|section| numbers(case, &section)) {
+        Ok(Ok(numbers)) => numbers,
+        Ok(Err(violations)) => {
+            told.extend(
+                violations
+                    .into_iter()
+                    .map(|violation| match violation.pointer.as_str() {
+                        PER_ROW => violation,
+                        place => Violation {
+                            pointer: format!("/{KEY}{place}"),
+                            ..violation
+                        },
+                    }),
+            );
             stand_in()
-        }),
+        }
+        Err(violation) => {
+            told.push(*violation);
+            stand_in()
+        }
     };
+    let stands_in = !told.is_empty();
     let mut all = vec![];
     for (pointer, number) in numbers {
         if put(case, pointer, &number) {
@@ -74,7 +91,7 @@ pub(super) fn apply(case: &mut Value, faults: &mut Violations) -> Vec<String> {
         } else if SIZES.contains(&pointer)
             && let (Some(given), Some(own)) = (case.pointer(pointer).and_then(Value::as_f64), number.as_f64())
             && (given / own - 1.0).abs() > ROUND_OFF
-            && faults.is_empty()
+            && !stands_in
         {
             let what = format!("{given} beside the section's {own}");
             let hint = "leave it out: the section has it, and its coefficients belong to that";
@@ -82,7 +99,44 @@ pub(super) fn apply(case: &mut Value, faults: &mut Violations) -> Vec<String> {
             faults.push(fault.allowed(own.to_string()).hint(hint));
         }
     }
-    all
+    Filled { pointers: all, told }
+}
+
+/// What a section gave a case.
+#[derive(Default)]
+pub(super) struct Filled {
+    /// Where numbers were put.
+    pub pointers: Vec<String>,
+    /// What is wrong with the section; the numbers are those of a preset then.
+    told: Vec<Violation>,
+}
+
+impl Filled {
+    /// Tells what is wrong with the section, and nothing of numbers that stand in; what the schema has found in the section comes first.
+    pub(super) fn tell(self, faults: &mut Violations) {
+        if self.told.is_empty() {
+            return;
+        }
+        let mut at = self.pointers;
+        at.push("/bladders".into());
+        faults.drop_below(&at);
+        if !faults.any_below(&format!("/{KEY}")) {
+            self.told.into_iter().for_each(|violation| faults.push(violation));
+        }
+    }
+}
+
+/// A section as it is written, at a pointer of its file.
+fn read(value: &Value, at: &str) -> std::result::Result<Section, Box<Violation>> {
+    serde_path_to_error::deserialize(without_remarks(value)).map_err(|error| {
+        let path = error.path().iter().filter_map(|segment| match segment {
+            Segment::Map { key } => Some(key.clone()),
+            Segment::Seq { index } => Some(index.to_string()),
+            _ => None,
+        });
+        let pointer = std::iter::once(at.to_owned()).chain(path).collect::<Vec<_>>().join("/");
+        Box::new(Violation::new(Code::Kind, pointer, error.inner().to_string()))
+    })
 }
 
 /// Takes the section away, whose numbers stand in the case.
@@ -133,7 +187,7 @@ fn stand_in() -> Numbers {
 }
 
 /// What a case may say again but not otherwise.
-const SIZES: [&str; 7] = [
+pub(super) const SIZES: [&str; 7] = [
     "/beam/height_m",
     "/beam/width_m",
     "/beam/young_modulus_pa",
@@ -175,16 +229,23 @@ fn numbers(case: &Value, section: &Section) -> std::result::Result<Numbers, Vec<
         ("permeability_m4", e.permeability_m4),
     ];
     let fault = |pointer: &str, what: String| Violation::new(Code::Range, pointer, what);
-    let coarse = worst.into_iter().filter(|(_, error)| *error > COARSE);
+    let most = if section.three_d { COARSE_IN_SPACE } else { COARSE };
+    let coarse = worst.into_iter().filter(|(_, error)| *error > most);
     let mut faults: Vec<Violation> = coarse
-        .map(|(name, error)| fault("", format!("{name} is known to {:.1} % only", 100.0 * error)).allowed("2 %"))
+        .map(|(name, error)| {
+            fault("", format!("{name} is known to {:.1} % only", 100.0 * error))
+                .allowed(format!("{:.0} %", 100.0 * most))
+        })
         .collect();
     let solid = section.height_m * section.width_m - c.fluid_volume_per_length_m2;
     let beam = [
         section.height_m,
         section.width_m,
         section.material.young_modulus_pa,
-        c.solid_mass_kg_per_m / solid,
+        match section.regions.is_empty() {
+            true => section.material.density_kg_m3,
+            false => c.solid_mass_kg_per_m / solid,
+        },
         c.axial_stiffness_factor,
         c.bending_stiffness_factor,
     ];
@@ -228,7 +289,11 @@ fn numbers(case: &Value, section: &Section) -> std::result::Result<Numbers, Vec<
             all.extend(POINTERS.into_iter().skip(beam.len()).zip(bladders.map(Value::from)));
             match per_row(case, section.pitch_m) {
                 Ok(number) => all.push(("/bladders/per_row", number.into())),
-                Err(what) => faults.push(fault("/pitch_m", what).hint("/beam/length_m is a whole number of pitches")),
+                Err(what) => {
+                    let given = case.pointer(PER_ROW).is_some();
+                    let place = if given { PER_ROW } else { "/pitch_m" };
+                    faults.push(fault(place, what).hint("/beam/length_m is a whole number of pitches"));
+                }
             }
         }
         _ if faults.is_empty() => faults.push(fault("/bladders", "only one row has bladders".into()).hint(ONE_ROW)),
@@ -242,7 +307,7 @@ const ONE_ROW: &str = "a case has two rows alike; `slcbeam coefficients` has the
 /// How many bladders a row has.
 fn per_row(case: &Value, pitch: f64) -> std::result::Result<u64, String> {
     let Some(length) = case.pointer("/beam/length_m").and_then(Value::as_f64) else {
-        return Ok(1);
+        return Ok(1000);
     };
     let count = (length / pitch).round().max(1.0);
     let given = case.pointer("/bladders/per_row").and_then(Value::as_f64);
@@ -272,14 +337,14 @@ pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Section> {
         ..source
     };
     let of_case = value.get(KEY).is_some();
+    if !of_case && value.get("ends").is_some() {
+        let what = "this case has no section: its coefficients are given, or those of its preset";
+        return Err(source.error(vec![Violation::new(Code::Missing, "", what)]));
+    }
     let (schema, at) = schema_json::section(of_case);
     let mut faults = Violations::default();
     super::validate::validate(&value, &schema, &mut faults);
-    let section = value
-        .pointer(at)
-        .map(without_remarks)
-        .map(serde_json::from_value::<Section>);
-    match section {
+    match value.pointer(at).map(|section| read(section, at)) {
         Some(Ok(section)) if faults.is_empty() => {
             for fault in section.faults() {
                 faults.push(Violation::new(Code::Range, format!("{at}{}", fault.place), fault.what));
@@ -288,9 +353,7 @@ pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Section> {
                 return Ok(section);
             }
         }
-        Some(Err(e)) if faults.is_empty() => {
-            faults.push(Violation::new(Code::Text, at, format!("not a section: {e}")));
-        }
+        Some(Err(violation)) if !faults.any_below(at) => faults.push(*violation),
         _ => {}
     }
     Err(source.error(faults.placed(&source)))

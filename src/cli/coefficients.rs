@@ -46,7 +46,10 @@ pub fn coefficients(asked: &CoefficientsArguments) -> Result<ExitCode> {
         let failed = |e: slcbeam_section::error::Error| unsolved(vec![Violation::new(Code::Range, "", e.to_string())]);
         section.three_dimensional().map_err(failed)
     };
-    let spatial = asked.three_d.then(|| three(&section)).transpose()?;
+    // the table is that of the plane cell where the other stands beside it
+    let spatial = (asked.three_d && !section.three_d)
+        .then(|| three(&section))
+        .transpose()?;
     super::print(&match asked.json {
         true => format!("{:#}\n", in_json(&found, spatial.as_ref())?),
         false => in_words(&section, &found, spatial.as_ref())?,
@@ -114,14 +117,11 @@ fn rows(c: &Numbers) -> Vec<Row> {
     ]
 }
 
-/// By how much the plane cell is off, relative, and the value in three dimensions.
-fn in_space(row: &Row, spatial: &Spatial) -> Option<(f64, f64)> {
+/// By how much the plane cell is off, relative, and the value in three dimensions, of a number that the plane cell has.
+fn in_space(row: &Row, plane: &Numbers, spatial: &Spatial) -> Option<(f64, f64)> {
     let (i, j, sense) = row.entry?;
-    let off = spatial.plane_off[i][j];
-    match sense < 0.0 {
-        true => Some(((1.0 + off).recip() - 1.0, row.value * (1.0 + off))),
-        false => Some((off, row.value / (1.0 + off))),
-    }
+    let ratio = (spatial.compliance[i][j] / plane.compliance[i][j]).powf(sense);
+    Some((ratio.recip() - 1.0, row.value * ratio)).filter(|_| ratio.is_finite() && ratio != 0.0)
 }
 
 fn in_json(found: &Coefficients, spatial: Option<&Spatial>) -> Result<Value> {
@@ -133,7 +133,7 @@ fn in_json(found: &Coefficients, spatial: Option<&Spatial>) -> Result<Value> {
     if let Some(spatial) = spatial {
         let rows = rows(&found.numbers);
         let told = rows.iter().filter_map(|row| {
-            let (off, value) = in_space(row, spatial)?;
+            let (off, value) = in_space(row, &found.numbers, spatial)?;
             Some((row.key.to_owned(), json!({"value": value, "plane_off": off})))
         });
         all["three_d"] = told.collect::<Map<_, _>>().into();
@@ -155,7 +155,7 @@ fn in_words(section: &Section, found: &Coefficients, spatial: Option<&Spatial>) 
         let error = errors[row.key].as_f64().map_or("-".into(), |e| format!("{e:.0e}"));
         let mut line = vec![row.key.into(), significant(row.value, 5), row.unit.into(), error];
         if let Some(spatial) = spatial {
-            let told = in_space(row, spatial);
+            let told = in_space(row, &found.numbers, spatial);
             let told = told.map_or(["-".into(), "-".into()], |(off, value)| {
                 [significant(value, 4), format!("{:+.1} %", 100.0 * off)]
             });

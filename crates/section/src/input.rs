@@ -224,8 +224,8 @@ impl JsonSchema for Row {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let bladder = generator.subschema_for::<Bladder>();
         json_schema!({ "oneOf": [
-            { "const": "none", "description": "No bladders." },
-            { "const": "mirrored", "description": "The upper row mirrored at the mid-plane; lower row only." },
+            { "type": "string", "enum": ["none"], "description": "No bladders." },
+            { "type": "string", "enum": ["mirrored"], "description": "The upper row mirrored at the mid-plane; lower row only." },
             bladder
         ] })
     }

@@ -2,4 +2,6 @@
 
 pub mod check;
 pub mod curve;
+mod meeting;
 pub mod outline;
+mod rules;
