@@ -44,9 +44,7 @@ pub fn check(section: &Section) -> Vec<Fault> {
             format!("{} regions, at most {}", section.regions.len(), MOST / 4),
         );
     }
-    if !rules.faults.is_empty() {
-        return rules.faults;
-    }
+    good &= rules.faults.is_empty();
     rules.material("/material", &section.material);
     let length = section.bladders.length_m;
     if rules.positive("/bladders/length_m".to_owned(), length) && length > section.width_m {
@@ -84,7 +82,7 @@ pub fn check(section: &Section) -> Vec<Fault> {
         Row::None | Row::Mirrored => None,
     };
     match (height(&section.bladders.upper), height(&section.bladders.lower)) {
-        (Some(upper), Some(lower)) if upper <= lower => {
+        (Some(upper), Some(lower)) if upper < lower => {
             rules.fault(
                 "/bladders/upper/center_m",
                 format!("{upper} m is not above the lower row's {lower} m"),
