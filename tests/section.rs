@@ -45,7 +45,7 @@ fn a_case_takes_its_numbers_from_its_section() {
     ] {
         assert_eq!(
             case.origins.get(pointer),
-            Some(Origin::Computed("section in 3-D")),
+            Some(Origin::Section { three_d: true }),
             "{pointer}"
         );
     }
@@ -175,6 +175,12 @@ fn a_number_in_three_dimensions_is_one_number() {
     let taken = of(&["--json"], &section);
     section["three_d"] = json!(false);
     let beside = of(&["--json", "--three-d"], &section);
+    section["three_d"] = json!(true);
+    assert_eq!(
+        of(&["--json", "--three-d"], &section),
+        beside,
+        "the plane cell stands beside it"
+    );
     for (key, told) in beside["three_d"].as_object().unwrap() {
         if let Some(value) = told.get("value").and_then(Value::as_f64) {
             let other = taken[key].as_f64().unwrap();

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::origins::{Origin, PLANE};
+use super::origins::Origin;
 use super::presets::Preset;
 use super::schema::Case;
 use crate::error::Code;
@@ -125,7 +125,7 @@ fn plane_cell(case: &Case) -> Option<String> {
         "/bladders/area_per_force_m2_per_n/tension",
         "/bladders/area_per_force_m2_per_n/compression",
     ];
-    let plane = |pointer: &str| case.origins.get(pointer) == Some(Origin::Computed(PLANE));
+    let plane = |pointer: &str| case.origins.get(pointer) == Some(Origin::Section { three_d: false });
     // without side walls the ends are open
     let of_plane = areas.into_iter().any(plane) && bladders.length_m < case.beam.width_m;
     let off = ENDS * bladders.height_m.max(bladders.width_m) / bladders.length_m;

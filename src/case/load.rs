@@ -93,13 +93,17 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         ..source
     };
     let own = value.clone();
-    let mut faults = Violations::default();
-    let filled = section::apply(&mut value, &mut faults);
-    presets::apply(&mut value, &source.sets);
+    let section = section::of(&value);
+    presets::apply(
+        &mut value,
+        &source.sets,
+        section.as_ref().map(|section| section.values.clone()),
+    );
     // Numbers that are none have their fault already; `null` stands for them.
     let told = violations.iter().map(|v| v.pointer.clone());
     let told: Vec<String> = told.filter(|p| value.pointer(p).is_some_and(Value::is_null)).collect();
 
+    let mut faults = Violations::default();
     validate::validate(&value, &schema_json::CASE, &mut faults);
     faults.drop_below(&told);
     // `null` from the command line leaves out what could stand there.
@@ -109,15 +113,14 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         .collect();
     faults.drop_below(&cleared);
     cleared.iter().for_each(|pointer| sets::remove(&mut value, pointer));
-    let computed = filled.pointers.clone();
     section::remove(&mut value);
     let case = match value.is_object() {
         true => build(value.clone(), base, &mut faults, violations.is_empty()),
         false => None,
     };
-    filled.tell(&mut faults);
+    section.iter().for_each(|section| section.tell(&own, &mut faults));
     let case = case.map(|case| Case {
-        origins: Origins::of(&own, &value, &source.sets, case.preset, &computed),
+        origins: Origins::of(&own, &value, &source.sets, case.preset, section.as_ref()),
         ..case
     });
     violations.extend(faults.placed(&source));

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::faults::{SetValue, is_below};
 use super::presets::Preset;
+use super::section::Brought;
 
 /// Where a coefficient comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +20,11 @@ pub enum Origin {
     Set,
     /// Nobody gives it, and a default stands.
     Default,
+    /// The section gives it, by its plane cell or that in three dimensions.
+    Section {
+        /// Whether in three dimensions.
+        three_d: bool,
+    },
     /// It follows from what is named here.
     Computed(&'static str),
 }
@@ -30,6 +36,8 @@ impl fmt::Display for Origin {
             Self::Preset(preset) => write!(f, "preset {}", preset.name()),
             Self::Set => f.write_str("--set"),
             Self::Default => f.write_str("default"),
+            Self::Section { three_d: false } => f.write_str("computed from section"),
+            Self::Section { three_d: true } => f.write_str("computed from section in 3-D"),
             Self::Computed(from) => write!(f, "computed from {from}"),
         }
     }
@@ -45,11 +53,6 @@ impl PartialEq for Origins {
         true
     }
 }
-
-/// Computed from a section by its plane cell.
-pub(super) const PLANE: &str = "section";
-/// Computed from a section by its cell in three dimensions.
-const IN_SPACE: &str = "section in 3-D";
 
 /// Coefficients of the section: those that follow from its sizes and material and that the program takes as given.
 const COEFFICIENTS: [&str; 12] = [
@@ -68,15 +71,13 @@ const COEFFICIENTS: [&str; 12] = [
 ];
 
 impl Origins {
-    /// Origins in a case that read `own` with the arguments `sets` in it, and `whole` with its preset filled in.
-    ///
-    /// `computed` are the pointers of what its section gave.
+    /// Origins in a case that read `own` with the arguments `sets` in it, and `whole` with what its section and its preset bring filled in.
     pub(super) fn of(
         own: &Value,
         whole: &Value,
         sets: &[SetValue],
         preset: Option<Preset>,
-        computed: &[String],
+        of_section: Option<&Brought>,
     ) -> Self {
         let single = whole.pointer("/network/tubes").and_then(Value::as_array);
         let single = (0..single.map_or(0, Vec::len)).map(|i| format!("/network/tubes/{i}/permeability_m4"));
@@ -85,16 +86,16 @@ impl Origins {
             let section = pointer.split('/').nth(1)?;
             whole.get(section)?;
             let set = || sets.iter().any(|s| s.node.is_some() && is_below(&pointer, &s.pointer));
-            let origin = match (whole.pointer(&pointer), own.pointer(&pointer), preset) {
+            let brought = of_section.filter(|s| s.values.pointer(&pointer).is_some());
+            let origin = match (whole.pointer(&pointer), own.pointer(&pointer), brought, preset) {
                 (None, ..) => absent(whole, &pointer)?,
-                _ if computed.contains(&pointer) => Origin::Computed(match own.pointer("/section/three_d") {
-                    Some(Value::Bool(true)) => IN_SPACE,
-                    _ => PLANE,
-                }),
-                (_, Some(_), _) if set() => Origin::Set,
-                (_, Some(_), _) => Origin::Case,
-                (_, None, Some(preset)) => Origin::Preset(preset),
-                (_, None, None) => return None,
+                (_, Some(_), ..) if set() => Origin::Set,
+                (_, Some(_), ..) => Origin::Case,
+                (_, None, Some(brought), _) => Origin::Section {
+                    three_d: brought.three_d,
+                },
+                (_, None, None, Some(preset)) => Origin::Preset(preset),
+                (_, None, None, None) => return None,
             };
             Some((pointer, origin))
         });

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::origins::{Origin, PLANE};
+use super::origins::Origin;
 use super::schema::Case;
 use super::wording::nearest;
 use super::{parse, section};
@@ -43,9 +43,8 @@ impl Parameter {
         if pointer.starts_with("/section/") {
             return usage("the numbers of a section are no parameters of the model; its coefficients are".into());
         }
-        let computed = |origin: Origin| matches!(origin, Origin::Computed(from) if from.starts_with(PLANE));
-        let origin = case.origins.get("/beam/axial_stiffness_factor");
-        if section::SIZES.contains(&pointer) && origin.is_some_and(computed) {
+        let stiffness = case.origins.get("/beam/axial_stiffness_factor");
+        if section::SIZES.contains(&pointer) && matches!(stiffness, Some(Origin::Section { .. })) {
             return usage("the section has it: coefficients that are computed from it would not follow".into());
         }
         match resolved.pointer(pointer) {
@@ -90,7 +89,7 @@ impl Parameter {
 }
 
 /// Pointers of all numbers that are not counts.
-fn numbers(value: &Value, at: String, all: &mut Vec<String>) {
+pub(super) fn numbers(value: &Value, at: String, all: &mut Vec<String>) {
     match value {
         Value::Object(members) => members
             .iter()

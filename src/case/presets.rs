@@ -38,22 +38,24 @@ impl Preset {
     }
 }
 
-/// Fills in what the case leaves to its preset: objects are merged, everything else that the case has stands, and what it
-/// gives as `null` is left out. What the preset brings stays what it is whatever else the case has, so that a number set to
-/// its own value changes nothing; only a cross-section from which a permeability is to follow takes that of the preset away.
-pub fn apply(case: &mut Value, sets: &[SetValue]) {
-    if case.get("preset").is_none() {
+/// Fills in what the case leaves to its section, of which `section` is what it brings, and to its preset, the section first: objects are
+/// merged, everything else that the case has stands, and what it gives as `null` is left out. What they bring stays what it is whatever
+/// else the case has, so that a number set to its own value changes nothing; only a cross-section from which a permeability is to
+/// follow takes theirs away.
+pub fn apply(case: &mut Value, sets: &[SetValue], section: Option<Value>) {
+    // A misspelt name is told when the case is checked; the rest is looked at as if it were right.
+    let preset = case.get("preset").map(|_| Preset::MatiaGatBeam.values());
+    let Some(mut brought) = [section, preset].into_iter().flatten().reduce(|mut nearer, further| {
+        fill(&mut nearer, further);
+        nearer
+    }) else {
         without_nulls(case);
         return;
+    };
+    if case.pointer("/bladders/cross_section").is_some_and(Value::is_object) {
+        sets::remove(&mut brought, "/bladders/permeability_m4");
     }
-    // A misspelt name is told when the case is checked; the rest is looked at as if it were right.
-    let mut preset = Preset::MatiaGatBeam.values();
-    if case.pointer("/bladders/cross_section").is_some_and(Value::is_object)
-        && let Some(values) = preset["bladders"].as_object_mut()
-    {
-        values.shift_remove("permeability_m4");
-    }
-    fill(case, preset);
+    fill(case, brought);
     for (i, set) in sets.iter().enumerate().filter(|(_, set)| set.node.is_none()) {
         let given_again = sets[i + 1..].iter().any(|later| is_below(&later.pointer, &set.pointer));
         if !given_again {
@@ -78,9 +80,9 @@ fn without_nulls(case: &mut Value) {
     }
 }
 
-/// Puts into `value` what only `preset` has; members that are `null` go.
-fn fill(value: &mut Value, preset: Value) {
-    let (Value::Object(own), Value::Object(given)) = (value, preset) else {
+/// Puts into `value` what only `other` has; members that are `null` go.
+fn fill(value: &mut Value, other: Value) {
+    let (Value::Object(own), Value::Object(given)) = (value, other) else {
         return;
     };
     for (key, given) in given {
@@ -105,7 +107,7 @@ mod tests {
     fn what_the_case_has_stands_and_null_leaves_out() {
         let mut case =
             json!({"preset": "matia-gat-beam", "beam": {"length_m": 0.2}, "fluid": null, "tubes": {"radius_m": 2e-3}});
-        apply(&mut case, &[]);
+        apply(&mut case, &[], None);
         assert_eq!(case["beam"]["length_m"], 0.2);
         assert_eq!(case["beam"]["height_m"], 0.0216);
         assert_eq!(case.get("fluid"), None);
@@ -118,7 +120,7 @@ mod tests {
     fn a_permeability_is_computed_where_it_is_null_or_a_section_is_given() {
         let mut case = json!({"preset": "matia-gat-beam", "bladders": {"cross_section": {"circle": {"radius_m": 4e-3}}},
             "tubes": {"permeability_m4": null}, "network": {"tubes": [{"permeability_m4": null}]}});
-        apply(&mut case, &[]);
+        apply(&mut case, &[], None);
         for section in ["bladders", "tubes"] {
             assert_eq!(case[section].get("permeability_m4"), None, "{section}");
         }
@@ -128,7 +130,7 @@ mod tests {
     #[test]
     fn without_a_preset_nothing_changes() {
         let mut case = json!({"beam": {"length_m": 0.2}});
-        apply(&mut case, &[]);
+        apply(&mut case, &[], None);
         assert_eq!(case, json!({"beam": {"length_m": 0.2}}));
     }
 }

@@ -90,7 +90,6 @@ fn remarks(schema: &mut Value) {
     }
 }
 
-/// The schema of a case whose preset is filled in and whose remarks are gone, made once.
 /// The schema of a section that stands alone, or of the one in a case, and where it stands.
 pub(super) fn section(of_case: bool) -> (Value, &'static str) {
     let section = json!({"$ref": "#/$defs/Section"});
@@ -102,6 +101,7 @@ pub(super) fn section(of_case: bool) -> (Value, &'static str) {
     (schema, if of_case { "/section" } else { "" })
 }
 
+/// The schema of a case whose preset is filled in and whose remarks are gone, made once.
 pub(super) static CASE: LazyLock<Value> = LazyLock::new(|| {
     let settings = SchemaSettings::draft2020_12();
     let mut schema = settings.into_generator().into_root_schema_for::<Case>();

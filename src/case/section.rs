@@ -8,14 +8,17 @@ use serde_path_to_error::Segment;
 use slcbeam_section::coefficients::{Coefficients, Options};
 use slcbeam_section::error::Error;
 use slcbeam_section::input::Section;
+use slcbeam_section::three::Spatial;
 
 use super::faults::{Source, Violations};
 use super::presets::Preset;
-use super::schema_json;
+use super::{parameter, schema_json};
 use crate::error::{Code, Result, Violation};
 
 /// Where it stands in a case.
 const KEY: &str = "section";
+/// The same as a pointer.
+const AT: &str = "/section";
 /// Difference of the rows, and coupling of force and curvature, that the model's two alike rows may leave out.
 const ALIKE: f64 = 1e-3;
 /// Error of a coefficient above which it is not taken.
@@ -26,109 +29,112 @@ const COARSE_IN_SPACE: f64 = 0.06;
 const PER_ROW: &str = "/bladders/per_row";
 /// Sections whose coefficients are kept, for cases that are read again and again.
 const KEPT: usize = 16;
-
 /// Relative difference of a size that is given twice.
 const ROUND_OFF: f64 = 1e-9;
+
+/// What a case may say beside its section, but not otherwise.
+pub(super) const SIZES: [&str; 7] = [
+    "/beam/height_m",
+    "/beam/width_m",
+    "/beam/young_modulus_pa",
+    "/beam/density_kg_m3",
+    "/bladders/length_m",
+    "/bladders/width_m",
+    "/bladders/height_m",
+];
 
 static KNOWN: Mutex<Vec<(Section, Coefficients)>> = Mutex::new(vec![]);
 
 /// The coefficients of a section, computed once; [`slcbeam_section`] says how, with errors.
-///
-/// # Errors
-/// Every rule that it breaks with its place in the section, or why its cell has no solution.
-pub fn coefficients(section: &Section) -> std::result::Result<Coefficients, Vec<Violation>> {
+fn coefficients(section: &Section) -> std::result::Result<Coefficients, Error> {
     let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, found)) = known().iter().find(|(of, _)| of == section) {
         return Ok(found.clone());
     }
-    let found = section.coefficients(&Options::default()).map_err(|error| match error {
-        Error::Section(faults) => faults
-            .into_iter()
-            .map(|fault| Violation::new(Code::Range, fault.place, fault.what))
-            .collect(),
-        other => vec![Violation::new(Code::Range, "", other.to_string())],
-    })?;
+    let found = section.coefficients(&Options::default())?;
     let mut known = known();
     known.truncate(KEPT - 1);
     known.insert(0, (section.clone(), found.clone()));
     Ok(found)
 }
 
-/// Puts the numbers of `/section` where a case has them; what stands there already stays.
-///
-/// Where the section cannot be computed the numbers of a preset stand in, so that the rest of the case can be looked at.
-pub(super) fn apply(case: &mut Value, faults: &mut Violations) -> Filled {
-    let Some(given) = case.get(KEY).filter(|given| given.is_object()) else {
-        return Filled::default();
-    };
-    let mut told = vec![];
-    let numbers = match read(given, &format!("/{KEY}")).map(|section| numbers(case, &section)) {
-        Ok(Ok(numbers)) => numbers,
-        Ok(Err(violations)) => {
-            told.extend(
-                violations
-                    .into_iter()
-                    .map(|violation| match violation.pointer.as_str() {
-                        PER_ROW => violation,
-                        place => Violation {
-                            pointer: format!("/{KEY}{place}"),
-                            ..violation
-                        },
-                    }),
-            );
-            stand_in()
-        }
-        Err(violation) => {
-            told.push(*violation);
-            stand_in()
-        }
-    };
-    let stands_in = !told.is_empty();
-    let mut all = vec![];
-    for (pointer, number) in numbers {
-        if put(case, pointer, &number) {
-            all.push(pointer.to_owned());
-        } else if SIZES.contains(&pointer)
-            && let (Some(given), Some(own)) = (case.pointer(pointer).and_then(Value::as_f64), number.as_f64())
-            && (given / own - 1.0).abs() > ROUND_OFF
-            && !stands_in
-        {
-            let what = format!("{given} beside the section's {own}");
-            let hint = "leave it out: the section has it, and its coefficients belong to that";
-            let fault = Violation::new(Code::Range, pointer, what);
-            faults.push(fault.allowed(own.to_string()).hint(hint));
-        }
+/// What is wrong with a section that stands at a pointer.
+fn violations(error: Error, at: &str) -> Vec<Violation> {
+    match error {
+        Error::Section(faults) => faults
+            .into_iter()
+            .map(|fault| Violation::new(Code::Range, format!("{at}{}", fault.place), fault.what))
+            .collect(),
+        other => vec![Violation::new(Code::Range, at, other.to_string())],
     }
-    Filled { pointers: all, told }
 }
 
-/// What a section gave a case.
-#[derive(Default)]
-pub(super) struct Filled {
-    /// Where numbers were put.
-    pub pointers: Vec<String>,
-    /// What is wrong with the section; the numbers are those of a preset then.
+/// What a section brings to its case.
+#[derive(Debug)]
+pub(super) struct Brought {
+    /// Sizes, material and coefficients, as a case has them; those of a preset where the section cannot be computed, so that the rest of
+    /// the case can be looked at.
+    pub values: Value,
+    /// Whether they are those of the cell in three dimensions.
+    pub three_d: bool,
+    stands_in: bool,
     told: Vec<Violation>,
 }
 
-impl Filled {
-    /// Tells what is wrong with the section, and nothing of numbers that stand in; what the schema has found in the section comes first.
-    pub(super) fn tell(self, faults: &mut Violations) {
-        if self.told.is_empty() {
-            return;
+/// What the section of a case brings, if it has one.
+pub(super) fn of(case: &Value) -> Option<Brought> {
+    let given = case.get(KEY).filter(|given| given.is_object())?;
+    let found = read(given, AT).map_err(|violation| vec![*violation]);
+    let found = found.and_then(|section| Ok((values(case, &section)?, section.three_d)));
+    Some(match found {
+        Ok((values, three_d)) => Brought {
+            told: contradictions(case, &values),
+            values,
+            three_d,
+            stands_in: false,
+        },
+        Err(told) => Brought {
+            values: stand_in(),
+            three_d: false,
+            stands_in: true,
+            told,
+        },
+    })
+}
+
+impl Brought {
+    /// Tells what is wrong with the section of a case `own`, and nothing of numbers that stand in for its own; what the schema has found in
+    /// the section comes first.
+    pub(super) fn tell(&self, own: &Value, faults: &mut Violations) {
+        if self.stands_in {
+            let mut at = vec![];
+            parameter::numbers(&self.values, String::new(), &mut at);
+            at.retain(|pointer| own.pointer(pointer).is_none());
+            at.push("/bladders".into());
+            faults.drop_below(&at);
+            if faults.any_below(AT) {
+                return;
+            }
         }
-        let mut at = self.pointers;
-        at.push("/bladders".into());
-        faults.drop_below(&at);
-        if !faults.any_below(&format!("/{KEY}")) {
-            self.told.into_iter().for_each(|violation| faults.push(violation));
-        }
+        self.told.iter().for_each(|violation| faults.push(violation.clone()));
     }
+}
+
+/// Sizes of a case that are not those of its section.
+fn contradictions(case: &Value, values: &Value) -> Vec<Violation> {
+    let number = |of: &Value, pointer: &str| of.pointer(pointer).and_then(Value::as_f64);
+    let told = SIZES.into_iter().filter_map(|pointer| {
+        let (given, own) = (number(case, pointer)?, number(values, pointer)?);
+        let hint = "leave it out: the section has it, and its coefficients belong to that";
+        let fault = || Violation::new(Code::Range, pointer, format!("{given} beside the section's {own}"));
+        ((given / own - 1.0).abs() > ROUND_OFF).then(|| fault().allowed(own.to_string()).hint(hint))
+    });
+    told.collect()
 }
 
 /// A section as it is written, at a pointer of its file.
 fn read(value: &Value, at: &str) -> std::result::Result<Section, Box<Violation>> {
-    serde_path_to_error::deserialize(without_remarks(value)).map_err(|error| {
+    serde_path_to_error::deserialize(value).map_err(|error| {
         let path = error.path().iter().filter_map(|segment| match segment {
             Segment::Map { key } => Some(key.clone()),
             Segment::Seq { index } => Some(index.to_string()),
@@ -146,79 +152,19 @@ pub(super) fn remove(case: &mut Value) {
     }
 }
 
-fn without_remarks(value: &Value) -> Value {
-    match value {
-        Value::Object(members) => members
-            .iter()
-            .filter(|(key, _)| !key.starts_with("//"))
-            .map(|(key, member)| (key.clone(), without_remarks(member)))
-            .collect(),
-        Value::Array(items) => items.iter().map(without_remarks).collect(),
-        other => other.clone(),
+/// What a preset has of what a section brings.
+fn stand_in() -> Value {
+    let mut preset = Preset::MatiaGatBeam.values();
+    if let Some(beam) = preset["beam"].as_object_mut() {
+        beam.shift_remove("length_m");
     }
+    json!({"beam": preset["beam"], "bladders": preset["bladders"]})
 }
 
-/// Whether a number was put where nothing stood.
-fn put(case: &mut Value, pointer: &str, number: &Value) -> bool {
-    let mut at = case;
-    for key in pointer.split('/').skip(1) {
-        if at.is_null() {
-            *at = json!({});
-        }
-        let Some(object) = at.as_object_mut() else {
-            return false;
-        };
-        at = object.entry(key).or_insert(Value::Null);
-    }
-    let absent = at.is_null();
-    if absent {
-        *at = number.clone();
-    }
-    absent
-}
-
-type Numbers = Vec<(&'static str, Value)>;
-
-fn stand_in() -> Numbers {
-    let preset = Preset::MatiaGatBeam.values();
-    let all = POINTERS.into_iter().chain(["/bladders/per_row"]);
-    all.filter_map(|pointer| Some((pointer, preset.pointer(pointer)?.clone())))
-        .collect()
-}
-
-/// What a case may say again but not otherwise.
-pub(super) const SIZES: [&str; 7] = [
-    "/beam/height_m",
-    "/beam/width_m",
-    "/beam/young_modulus_pa",
-    "/beam/density_kg_m3",
-    "/bladders/length_m",
-    "/bladders/width_m",
-    "/bladders/height_m",
-];
-
-const POINTERS: [&str; 15] = [
-    "/beam/height_m",
-    "/beam/width_m",
-    "/beam/young_modulus_pa",
-    "/beam/density_kg_m3",
-    "/beam/axial_stiffness_factor",
-    "/beam/bending_stiffness_factor",
-    "/bladders/length_m",
-    "/bladders/width_m",
-    "/bladders/height_m",
-    "/bladders/permeability_m4",
-    "/bladders/area_per_pressure_m2_per_pa",
-    "/bladders/area_per_moment_m2_per_n_m/opening",
-    "/bladders/area_per_moment_m2_per_n_m/closing",
-    "/bladders/area_per_force_m2_per_n/tension",
-    "/bladders/area_per_force_m2_per_n/compression",
-];
-
-/// What a case takes of a section: the size along the beam of a bladder and the height of a rectangle as large, so that volumes and
+/// What a case takes of its section: the size along the beam of a bladder and the height of a rectangle as large, so that volumes and
 /// masses are right.
-fn numbers(case: &Value, section: &Section) -> std::result::Result<Numbers, Vec<Violation>> {
-    let found = coefficients(section)?;
+fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Violation>> {
+    let found = coefficients(section).map_err(|error| violations(error, AT))?;
     let (c, e) = (&found.numbers, &found.errors);
     let worst = [
         ("axial_stiffness_factor", e.axial_stiffness_factor),
@@ -228,7 +174,7 @@ fn numbers(case: &Value, section: &Section) -> std::result::Result<Numbers, Vec<
         ("area_per_force_m2_per_n", e.area_per_force_m2_per_n),
         ("permeability_m4", e.permeability_m4),
     ];
-    let fault = |pointer: &str, what: String| Violation::new(Code::Range, pointer, what);
+    let fault = |place: &str, what: String| Violation::new(Code::Range, format!("{AT}{place}"), what);
     let most = if section.three_d { COARSE_IN_SPACE } else { COARSE };
     let coarse = worst.into_iter().filter(|(_, error)| *error > most);
     let mut faults: Vec<Violation> = coarse
@@ -238,17 +184,18 @@ fn numbers(case: &Value, section: &Section) -> std::result::Result<Numbers, Vec<
         })
         .collect();
     let solid = section.height_m * section.width_m - c.fluid_volume_per_length_m2;
-    let beam = [
-        section.height_m,
-        section.width_m,
-        section.material.young_modulus_pa,
-        match section.regions.is_empty() {
-            true => section.material.density_kg_m3,
-            false => c.solid_mass_kg_per_m / solid,
-        },
-        c.axial_stiffness_factor,
-        c.bending_stiffness_factor,
-    ];
+    let density = match section.regions.is_empty() {
+        true => section.material.density_kg_m3,
+        false => c.solid_mass_kg_per_m / solid,
+    };
+    let mut values = json!({"beam": {
+        "height_m": section.height_m,
+        "width_m": section.width_m,
+        "young_modulus_pa": section.material.young_modulus_pa,
+        "density_kg_m3": density,
+        "axial_stiffness_factor": c.axial_stiffness_factor,
+        "bending_stiffness_factor": c.bending_stiffness_factor,
+    }});
     if c.force_curvature_coupling.abs() > ALIKE {
         let what = format!(
             "a normal force bends this section (coupling {:.1e})",
@@ -265,7 +212,6 @@ fn numbers(case: &Value, section: &Section) -> std::result::Result<Numbers, Vec<
                 .hint(ONE_ROW),
         );
     }
-    let mut all: Numbers = POINTERS.into_iter().zip(beam.map(Value::from)).collect();
     match (&c.upper, &c.lower) {
         (None, None) => {}
         (Some(upper), Some(lower)) => {
@@ -275,31 +221,31 @@ fn numbers(case: &Value, section: &Section) -> std::result::Result<Numbers, Vec<
                 faults.push(fault("/bladders/lower", what).allowed("\"mirrored\"").hint(ONE_ROW));
             }
             let along = section.bladders.along();
-            let bladders = [
-                section.bladders.length_m,
-                along,
-                upper.area_m2 / along,
-                c.permeability_m4,
-                c.area_per_pressure_m2_per_pa,
-                c.area_per_moment_m2_per_n_m,
-                c.area_per_moment_m2_per_n_m,
-                c.area_per_force_m2_per_n,
-                c.area_per_force_m2_per_n,
-            ];
-            all.extend(POINTERS.into_iter().skip(beam.len()).zip(bladders.map(Value::from)));
+            let (of_moment, of_force) = (c.area_per_moment_m2_per_n_m, c.area_per_force_m2_per_n);
+            values["bladders"] = json!({
+                "length_m": section.bladders.length_m,
+                "width_m": along,
+                "height_m": upper.area_m2 / along,
+                "permeability_m4": c.permeability_m4,
+                "area_per_pressure_m2_per_pa": c.area_per_pressure_m2_per_pa,
+                "area_per_moment_m2_per_n_m": {"opening": of_moment, "closing": of_moment},
+                "area_per_force_m2_per_n": {"tension": of_force, "compression": of_force},
+            });
             match per_row(case, section.pitch_m) {
-                Ok(number) => all.push(("/bladders/per_row", number.into())),
+                Ok(number) => values["bladders"]["per_row"] = number.into(),
                 Err(what) => {
-                    let given = case.pointer(PER_ROW).is_some();
-                    let place = if given { PER_ROW } else { "/pitch_m" };
-                    faults.push(fault(place, what).hint("/beam/length_m is a whole number of pitches"));
+                    let fault = match case.pointer(PER_ROW) {
+                        Some(_) => Violation::new(Code::Range, PER_ROW, what),
+                        None => fault("/pitch_m", what),
+                    };
+                    faults.push(fault.hint("/beam/length_m is a whole number of pitches"));
                 }
             }
         }
         _ if faults.is_empty() => faults.push(fault("/bladders", "only one row has bladders".into()).hint(ONE_ROW)),
         _ => {}
     }
-    if faults.is_empty() { Ok(all) } else { Err(faults) }
+    if faults.is_empty() { Ok(values) } else { Err(faults) }
 }
 
 const ONE_ROW: &str = "a case has two rows alike; `slcbeam coefficients` has the numbers of any section";
@@ -320,11 +266,42 @@ fn per_row(case: &Value, pitch: f64) -> std::result::Result<u64, String> {
     }
 }
 
+/// A section in its file.
+#[derive(Debug)]
+pub struct Written {
+    /// The section.
+    pub section: Section,
+    source: Source,
+    at: &'static str,
+}
+
+impl Written {
+    /// Its coefficients.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Case`] with every rule that it breaks, or why its cell has no solution.
+    pub fn coefficients(&self) -> Result<Coefficients> {
+        self.solved(coefficients(&self.section))
+    }
+
+    /// Its compliance by the cell in three dimensions.
+    ///
+    /// # Errors
+    /// As [`Self::coefficients`].
+    pub fn three_dimensional(&self) -> Result<Spatial> {
+        self.solved(self.section.three_dimensional())
+    }
+
+    fn solved<T>(&self, found: std::result::Result<T, Error>) -> Result<T> {
+        found.map_err(|error| self.source.fault(violations(error, self.at)))
+    }
+}
+
 /// Reads a section from the text of a file that is one, or of a case that has one.
 ///
 /// # Errors
-/// [`crate::error::Error::Case`] with every fault and its place.
-pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Section> {
+/// [`crate::error::Error::Case`] with what cannot be read of it.
+pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Written> {
     let source = Source::of(path, text);
     let (file, violations) = super::parse::parse(text);
     let Some(file) = file.filter(|_| violations.is_empty()) else {
@@ -345,14 +322,7 @@ pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Section> {
     let mut faults = Violations::default();
     super::validate::validate(&value, &schema, &mut faults);
     match value.pointer(at).map(|section| read(section, at)) {
-        Some(Ok(section)) if faults.is_empty() => {
-            for fault in section.faults() {
-                faults.push(Violation::new(Code::Range, format!("{at}{}", fault.place), fault.what));
-            }
-            if faults.is_empty() {
-                return Ok(section);
-            }
-        }
+        Some(Ok(section)) if faults.is_empty() => return Ok(Written { section, source, at }),
         Some(Err(violation)) if !faults.any_below(at) => faults.push(*violation),
         _ => {}
     }

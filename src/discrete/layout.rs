@@ -166,16 +166,17 @@ impl Line {
         let (sizes, rates) = ([s.transverse, s.axial], [s.transverse_rate, s.axial_rate]);
         let forces = [s.transverse_force, s.axial_force].map(|force| force.max(1e-12));
         let free = [across, along];
-        let u = [0, 1].map(|k| {
+        let mut lines = [0, 1].map(|k| {
             let row = if waves[k] { rates[k] } else { forces[k] };
-            build.nodes(["u1 [m]", "u3 [m]"][k], &free[k], sizes[k], row, differential[k])
+            let u = build.nodes(["u1 [m]", "u3 [m]"][k], &free[k], sizes[k], row, differential[k]);
+            let free = free[k].clone();
+            Self { free, u, v: None }
         });
-        let v = [0, 1].map(|k| {
+        for (k, line) in lines.iter_mut().enumerate().filter(|(k, _)| waves[*k]) {
             let acceleration = model.section.mass_per_length * mesh.h * rates[k] * s.frequency;
-            waves[k].then(|| build.nodes(["v1 [m/s]", "v3 [m/s]"][k], &free[k], rates[k], acceleration, true))
-        });
-        let ([free_1, free_3], [u_1, u_3], [v_1, v_3]) = (free, u, v);
-        [(free_1, u_1, v_1), (free_3, u_3, v_3)].map(|(free, u, v)| Self { free, u, v })
+            line.v = Some(build.nodes(["v1 [m/s]", "v3 [m/s]"][k], &line.free, rates[k], acceleration, true));
+        }
+        lines
     }
 }
 

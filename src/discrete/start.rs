@@ -28,7 +28,7 @@ pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
     for (axis, (line, (displacement, velocity))) in l.lines.iter().zip(given).enumerate() {
         let moving = velocity.as_ref().map(|v| shapes::nearest(v, system.mesh.cells));
         for (node, u, v) in line.unknowns() {
-            let frame = now.frame(axis).map_or(Default::default(), |f| f.at(node as f64 / last));
+            let frame = now.carried(axis, node as f64 / last);
             y[u] = at(displacement, node) - frame.value;
             if let Some(v) = v {
                 y[v] = moving.as_ref().map_or(0.0, |v| v[node]) - frame.rate;

@@ -154,6 +154,12 @@ impl TimeData {
         Frame::through(self.ends[0].u[axis], self.ends[1].u[axis])
     }
 
+    /// How the frame across (0) or along (1) moves at a share of the length, 0 at the root and 1 at the tip; at rest where no end is driven.
+    #[inline]
+    pub fn carried(&self, axis: usize, share: f64) -> Jet {
+        self.frame(axis).map_or_else(Jet::default, |frame| frame.at(share))
+    }
+
     /// Evaluates every signal at `clock`, unless that is where it stands already.
     pub fn update(&mut self, system: &System, clock: Clock) {
         if self.clock == Some(clock) {

@@ -45,6 +45,12 @@ impl<T: Scalar> Planar<T> {
         Self::new(-self.z, self.x)
     }
 
+    /// `factor` times this.
+    #[inline(always)]
+    pub fn times(self, factor: T) -> Self {
+        Self::new(self.x * factor, self.z * factor)
+    }
+
     /// Scalar product.
     #[inline(always)]
     pub fn dot(self, other: Self) -> T {
@@ -130,13 +136,5 @@ impl<T: Scalar> SubAssign for Planar<T> {
     fn sub_assign(&mut self, other: Self) {
         self.x -= other.x;
         self.z -= other.z;
-    }
-}
-
-impl<T: Scalar> Planar<T> {
-    /// `factor` times this.
-    #[inline(always)]
-    pub fn times(self, factor: T) -> Self {
-        Self::new(self.x * factor, self.z * factor)
     }
 }

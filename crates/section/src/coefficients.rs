@@ -162,7 +162,7 @@ impl Section {
         };
         match self.three_d {
             false => Ok(plane),
-            true => Ok(plane.in_space(self, &levels[finest], &self.three_dimensional()?)),
+            true => Ok(plane.in_space(self, &levels[finest], &self.beside(&levels[finest])?)),
         }
     }
 
@@ -222,19 +222,20 @@ impl Coefficients {
             size => spatial.errors[i][j] * (c[i][i] * c[j][j]).sqrt() / size,
         };
         let rows = [2, 3].into_iter().filter(|&k| c[k][k] > 0.0);
-        let worst = |i: usize| rows.clone().map(|k| error(i, k)).fold(0.0, f64::max);
+        let worst = |of: &dyn Fn(usize) -> f64| rows.clone().map(of).fold(0.0, f64::max);
+        let (of_moment, of_force) = (worst(&|k| error(1, k)), worst(&|k| error(0, k)));
         Self {
             numbers: Numbers::new(section, &level),
             errors: Errors {
                 compliance: spatial.errors,
                 axial_stiffness_factor: error(0, 0),
                 bending_stiffness_factor: error(1, 1),
-                area_per_pressure_m2_per_pa: rows.clone().map(|k| error(k, k)).fold(0.0, f64::max),
+                area_per_pressure_m2_per_pa: worst(&|k| error(k, k)),
                 area_per_other_pressure_m2_per_pa: spatial.errors[2][3],
-                area_per_moment_m2_per_n_m: worst(1),
-                area_per_force_m2_per_n: worst(0),
-                slope_per_pressure_rad: worst(1),
-                length_per_pressure_m: worst(0),
+                area_per_moment_m2_per_n_m: of_moment,
+                area_per_force_m2_per_n: of_force,
+                slope_per_pressure_rad: of_moment,
+                length_per_pressure_m: of_force,
                 ..self.errors
             },
             asymmetry: self.asymmetry,

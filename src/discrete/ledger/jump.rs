@@ -98,8 +98,6 @@ pub fn strokes(
 fn carried(system: &System, sides: [&TimeData; 2], node: usize) -> (f64, f64) {
     let mass = system.model.section.mass_per_length * system.mesh.node_length(node);
     let share = node as f64 / (system.mesh.nodes - 1) as f64;
-    match sides.map(|now| now.frame(1).map(|frame| frame.at(share).rate)) {
-        [Some(from), Some(to)] => (mass * (to - from), 0.5 * mass * (to * to - from * from)),
-        _ => (0.0, 0.0),
-    }
+    let [from, to] = sides.map(|now| now.carried(1, share).rate);
+    (mass * (to - from), 0.5 * mass * (to * to - from * from))
 }

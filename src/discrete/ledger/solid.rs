@@ -4,7 +4,6 @@ use super::{Energies, EnergyRate, add};
 use crate::case::schema::Effect;
 use crate::discrete::residual::rows::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
-use crate::discrete::time_data::Frame;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::model::Kinematics;
 use crate::numerics::Planar;
@@ -20,7 +19,6 @@ pub fn flows(
     let (mesh, section, l) = (&system.mesh, &system.model.section, &system.layout);
     let last = mesh.nodes - 1;
     let published = system.model.published();
-    let frame = now.frame(1);
     for i in 0..=last {
         let length = mesh.node_length(i);
         let (v, a) = (w.motion.v[i], w.motion.a[i]);
@@ -39,7 +37,7 @@ pub fn flows(
             add(
                 out,
                 EnergyRate::Ends,
-                -inertia * a.z * (v.z - carried(system, frame, w, i)),
+                -inertia * a.z * (v.z - carried(system, now, w, i)),
             );
         }
         for (axis, line) in l.lines.iter().enumerate() {
@@ -52,7 +50,7 @@ pub fn flows(
         add(out, EnergyRate::ImpulseX, f.x);
         add(out, EnergyRate::ImpulseZ, f.z);
         let turning = if l.inertia {
-            inertia * (arm_rate.z * v.x - arm_rate.x * carried(system, frame, w, i))
+            inertia * (arm_rate.z * v.x - arm_rate.x * carried(system, now, w, i))
         } else {
             0.0
         };
@@ -147,12 +145,12 @@ fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, o
 }
 
 /// Velocity along with which a node carries its mass: its own, without axial inertia that of the frame, `[E27]`.
-fn carried(system: &System, frame: Option<Frame>, w: &Workspace<f64>, node: usize) -> f64 {
+fn carried(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> f64 {
     if system.layout.lines[1].v.is_some() {
         return w.motion.v[node].z;
     }
     let share = node as f64 / (system.mesh.nodes - 1) as f64;
-    frame.map_or(0.0, |frame| frame.at(share).rate)
+    now.carried(1, share).rate
 }
 
 /// Whether sections turn finitely but have the rotary inertia of `[E27]`.
@@ -174,11 +172,10 @@ fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
 pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies {
     let (mesh, section) = (&system.mesh, &system.model.section);
     let mut e = Energies::default();
-    let frame = now.frame(1);
     for i in 0..mesh.nodes {
         let length = mesh.node_length(i);
         if system.layout.inertia {
-            let along = carried(system, frame, w, i);
+            let along = carried(system, now, w, i);
             e.kinetic += 0.5 * section.mass_per_length * length * (w.motion.v[i].x * w.motion.v[i].x + along * along);
         }
         e.bending += 0.5 * length * w.forces.moment[i] * w.forces.moment[i] / section.bending_stiffness;
@@ -227,9 +224,8 @@ pub fn momenta(system: &System, now: &TimeData, w: &Workspace<f64>) -> (Planar<f
     if !system.layout.inertia {
         return (momentum, angular);
     }
-    let frame = now.frame(1);
     for i in 0..mesh.nodes {
-        let along = carried(system, frame, w, i);
+        let along = carried(system, now, w, i);
         let mass = section.mass_per_length * mesh.node_length(i);
         let own = Planar {
             z: along,

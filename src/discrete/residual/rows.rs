@@ -107,8 +107,7 @@ fn felt_velocity<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, n
         return own;
     }
     let share = node as f64 / (system.mesh.nodes - 1) as f64;
-    let along = now.frame(1).map_or(0.0, |frame| frame.at(share).rate);
-    Planar::new(own.x, T::constant(along))
+    Planar::new(own.x, T::constant(now.carried(1, share).rate))
 }
 
 /// Force given at an end node: dead, plus follower section forces `N e_t + V e_n` at the end's angle (A.53, A.54),

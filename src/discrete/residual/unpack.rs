@@ -67,8 +67,7 @@ pub fn complete_velocities<T: Scalar>(system: &System, now: &TimeData, yp: &[T],
     }
     let last = (system.mesh.nodes - 1) as f64;
     for (node, u, _) in along.unknowns() {
-        let frame = now.frame(1).map_or(0.0, |frame| frame.at(node as f64 / last).rate);
-        w.motion.v[node].z = yp[u] + frame;
+        w.motion.v[node].z = yp[u] + now.carried(1, node as f64 / last).rate;
     }
 }
 

@@ -63,9 +63,9 @@ impl Natural {
         let h = system.mesh.h;
         let parts: [fn(f64) -> f64; 2] = [f64::sin, f64::cos];
         for (axis, line) in l.lines.iter().enumerate() {
-            let (frame, free) = (now.frame(axis), &line.free);
+            let free = &line.free;
             let rest = |node: usize| if axis == 1 { h * node as f64 } else { 0.0 };
-            let carried = |node: usize| frame.map_or(0.0, |f| f.at(node as f64 / cells as f64).value);
+            let carried = |node: usize| now.carried(axis, node as f64 / cells as f64).value;
             let mut u = Vec::with_capacity(self.nodes);
             let mut at = if free.contains(&0) { z[axis] } else { carried(0) };
             u.push(at);
@@ -92,7 +92,7 @@ impl Natural {
         let l = &system.layout;
         let last = (self.nodes - 1) as f64;
         let [across, mut along] = [0, 1].map(|axis| {
-            let carried = |node: usize| now.frame(axis).map_or(0.0, |f| f.at(node as f64 / last).value);
+            let carried = |node: usize| now.carried(axis, node as f64 / last).value;
             let mut all: Vec<f64> = (0..self.nodes).map(carried).collect();
             for (node, unknown, _) in l.lines[axis].unknowns() {
                 all[node] += x[unknown] * l.scales[unknown];

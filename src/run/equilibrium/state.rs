@@ -125,8 +125,7 @@ fn displacements(w: &Workspace<f64>, to: &System, now: &TimeData, z: &mut [f64])
     let last = (to.mesh.nodes - 1) as f64;
     for (axis, line) in l.lines.iter().enumerate() {
         for (node, unknown, _) in line.unknowns() {
-            let carried = now.frame(axis).map_or(0.0, |f| f.at(node as f64 / last).value);
-            z[unknown] = w.motion.u[node][axis] - carried;
+            z[unknown] = w.motion.u[node][axis] - now.carried(axis, node as f64 / last).value;
         }
     }
 }

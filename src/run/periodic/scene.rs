@@ -205,8 +205,7 @@ fn guess(system: &System, case: &Case) -> Vec<f64> {
     let last = (system.mesh.nodes - 1) as f64;
     for (axis, line) in l.lines.iter().enumerate() {
         for (node, u, v) in line.unknowns() {
-            let frame = now.frame(axis).map_or(Default::default(), |f| f.at(node as f64 / last));
-            y[u] += frame.value / l.scales[u];
+            y[u] += now.carried(axis, node as f64 / last).value / l.scales[u];
             if let Some(v) = v {
                 y[v] = 0.0;
             }

@@ -19,6 +19,7 @@ use crate::dense::{dot, solve};
 use crate::element::{GAUSS, shapes, sites};
 use crate::error::{Error, Fault};
 use crate::input::Section;
+use crate::level::Level;
 use crate::mesh::Fineness;
 use crate::sparse::Factor;
 use element::{ROWS, matrix};
@@ -42,6 +43,12 @@ pub struct Spatial {
 impl Section {
     /// Compliance of the three-dimensional cell, from two meshes. The section needs side walls: bladders shorter than its width.
     pub fn three_dimensional(&self) -> Result<Spatial, Error> {
+        let mesh = self.meshes(&Options::default())?.pop().ok_or(Error::Singular)?;
+        self.beside(&Level::new(self, &Cell::new(self, &mesh))?)
+    }
+
+    /// The same beside the finest level of the plane cell.
+    pub(crate) fn beside(&self, plane: &Level) -> Result<Spatial, Error> {
         let coarse = Fineness {
             largest: 0.5,
             corner: 0.03,
@@ -55,11 +62,7 @@ impl Section {
         };
         let (before, _) = self.spatial(&coarse, 3)?;
         let (compliance, unknowns) = self.spatial(&fine, 4)?;
-        let plane = self
-            .levels(&Options::default())?
-            .pop()
-            .ok_or(Error::Singular)?
-            .compliance;
+        let plane = &plane.compliance;
         let over = |f: &dyn Fn(usize, usize) -> f64| -> [[f64; 4]; 4] {
             std::array::from_fn(|i| std::array::from_fn(|j| f(i, j)))
         };
