@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use serde_path_to_error::Segment;
 use slcbeam_section::coefficients::{Coefficients, Options};
 use slcbeam_section::error::Error;
+use slcbeam_section::finite::StrainEnergy;
 use slcbeam_section::input::Section;
 use slcbeam_section::three::Spatial;
 
@@ -43,15 +44,25 @@ pub(super) const SIZES: [&str; 7] = [
     "/bladders/height_m",
 ];
 
-static KNOWN: Mutex<Vec<(Section, Coefficients)>> = Mutex::new(vec![]);
+/// What a section says of itself.
+#[derive(Clone, Debug)]
+struct Known {
+    found: Coefficients,
+    energy: Option<StrainEnergy>,
+}
 
-/// The coefficients of a section, computed once; [`slcbeam_section`] says how, with errors.
-fn coefficients(section: &Section) -> std::result::Result<Coefficients, Error> {
+static KNOWN: Mutex<Vec<(Section, Known)>> = Mutex::new(vec![]);
+
+/// The coefficients of a section and its energy at finite strain, computed once; [`slcbeam_section`] says how, with errors.
+fn known(section: &Section) -> std::result::Result<Known, Error> {
     let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, found)) = known().iter().find(|(of, _)| of == section) {
         return Ok(found.clone());
     }
-    let found = section.coefficients(&Options::default())?;
+    let found = Known {
+        found: section.coefficients(&Options::default())?,
+        energy: section.strain_energy()?,
+    };
     let mut known = known();
     known.truncate(KEPT - 1);
     known.insert(0, (section.clone(), found.clone()));
@@ -164,7 +175,7 @@ fn stand_in() -> Value {
 /// What a case takes of its section: the size along the beam of a bladder and the height of a rectangle as large, so that volumes and
 /// masses are right.
 fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Violation>> {
-    let found = coefficients(section).map_err(|error| violations(error, AT))?;
+    let Known { found, energy } = known(section).map_err(|error| violations(error, AT))?;
     let (c, e) = (&found.numbers, &found.errors);
     let worst = [
         ("axial_stiffness_factor", e.axial_stiffness_factor),
@@ -231,6 +242,18 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
                 "area_per_moment_m2_per_n_m": {"opening": of_moment, "closing": of_moment},
                 "area_per_force_m2_per_n": {"tension": of_force, "compression": of_force},
             });
+            if let Some(energy) = energy {
+                let [stretch, curvature, upper, lower] = energy.limits;
+                values["bladders"]["strain_energy"] = json!({
+                    "stretch": stretch,
+                    "curvature_1_m": curvature,
+                    "upper_pressure_pa": upper,
+                    "lower_pressure_pa": lower,
+                    "degree": energy.degree,
+                    "coefficients_n": energy.coefficients_n,
+                    "error": energy.error,
+                });
+            }
             match per_row(case, section.pitch_m) {
                 Ok(number) => values["bladders"]["per_row"] = number.into(),
                 Err(what) => {
@@ -281,7 +304,15 @@ impl Written {
     /// # Errors
     /// [`crate::error::Error::Case`] with every rule that it breaks, or why its cell has no solution.
     pub fn coefficients(&self) -> Result<Coefficients> {
-        self.solved(coefficients(&self.section))
+        self.solved(known(&self.section).map(|known| known.found))
+    }
+
+    /// Its energy at finite strain, where its material has a law.
+    ///
+    /// # Errors
+    /// As [`Self::coefficients`].
+    pub fn strain_energy(&self) -> Result<Option<StrainEnergy>> {
+        self.solved(known(&self.section).map(|known| known.energy))
     }
 
     /// Its compliance by the cell in three dimensions.

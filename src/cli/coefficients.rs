@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use clap::Args;
 use serde_json::{Map, Value, json};
 use slcbeam_section::coefficients::{Coefficients, Numbers};
+use slcbeam_section::finite::StrainEnergy;
 use slcbeam_section::input::Section;
 use slcbeam_section::three::Spatial;
 
@@ -44,10 +45,11 @@ pub fn coefficients(asked: &CoefficientsArguments) -> Result<ExitCode> {
     // where the other stands beside it the table is that of the plane cell
     written.section.three_d &= !asked.three_d;
     let found = written.coefficients()?;
+    let energy = written.strain_energy()?;
     let spatial = asked.three_d.then(|| written.three_dimensional()).transpose()?;
     super::print(&match asked.json {
-        true => format!("{:#}\n", in_json(&found, spatial.as_ref())?),
-        false => in_words(&written.section, &found, spatial.as_ref()),
+        true => format!("{:#}\n", in_json(&found, spatial.as_ref(), energy.as_ref())?),
+        false => in_words(&written.section, &found, spatial.as_ref()) + &energy.map(of_energy).unwrap_or_default(),
     })?;
     Ok(ExitCode::SUCCESS)
 }
@@ -89,12 +91,38 @@ fn in_space(row: &Row, plane: &Numbers, spatial: &Spatial) -> Option<(f64, f64)>
     Some((ratio.recip() - 1.0, row.value * ratio)).filter(|_| ratio.is_finite() && ratio != 0.0)
 }
 
-fn in_json(found: &Coefficients, spatial: Option<&Spatial>) -> Result<Value> {
+/// What is known of the energy at finite strain.
+fn of_energy(energy: StrainEnergy) -> String {
+    let names = [
+        "stretch [1]",
+        "curvature [1/m]",
+        "pressure, upper [Pa]",
+        "pressure, lower [Pa]",
+    ];
+    let mut lines = vec![["".to_owned(), "from".to_owned(), "to".to_owned()].to_vec()];
+    lines.extend(
+        names
+            .into_iter()
+            .zip(energy.limits)
+            .map(|(name, [low, high])| vec![name.to_owned(), significant(low, 4), significant(high, 4)]),
+    );
+    format!(
+        "\nenergy at finite strain beyond the quadratic one: degree {}, error of its slopes {:.0e}, known within the ellipsoid of\n\n{}",
+        energy.degree,
+        energy.error,
+        aligned(&lines, &[0])
+    )
+}
+
+fn in_json(found: &Coefficients, spatial: Option<&Spatial>, energy: Option<&StrainEnergy>) -> Result<Value> {
     let value = |of: &dyn Fn() -> serde_json::Result<Value>| of().map_err(|e| Error::Usage(e.to_string()));
     let mut all = value(&|| serde_json::to_value(&found.numbers))?;
     all["errors"] = value(&|| serde_json::to_value(&found.errors))?;
     all["asymmetry"] = json!(found.asymmetry);
     all["unknowns"] = json!(found.unknowns);
+    if let Some(energy) = energy {
+        all["strain_energy"] = value(&|| serde_json::to_value(energy))?;
+    }
     if let Some(spatial) = spatial {
         let told = rows(found).into_iter().filter_map(|row| {
             let (off, value) = in_space(&row, &found.numbers, spatial)?;

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::quantities::look;
 use super::workspace::Motion;
 use super::{State, System, TimeData, Workspace, ledger};
+use crate::discrete::residual::nonlinear;
 use crate::discrete::residual::solid::node_stretch;
 use crate::model::Kinematics;
 
@@ -57,11 +58,13 @@ pub enum Watched {
     Flow,
     /// Largest `p_u + p_d` of a segment [Pa].
     Pressed,
+    /// How far out a section is in what is known of its energy at finite strain; 1 at the border.
+    Outermost,
 }
 
 impl Watched {
     /// How many there are.
-    pub const COUNT: usize = 13;
+    pub const COUNT: usize = 14;
 }
 
 impl Glance {
@@ -96,6 +99,7 @@ impl Glance {
         let (strain, node) = look::largest_strain(system, half_height, w);
         g.strained = node;
         g.moving[Watched::Strain as usize] = [strain, strain_rate(node, last, half_height, w)];
+        g.moving[Watched::Outermost as usize] = nonlinear::outermost(system, w);
         g.fluid(system, now, w);
         g
     }

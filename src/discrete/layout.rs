@@ -52,6 +52,8 @@ pub struct Coupling {
     pub mean_moment: Range<usize>,
     /// Mean forces `Nbar_j`.
     pub mean_force: Range<usize>,
+    /// Area changes of bladders that the section's energy beyond its quadratic part makes.
+    pub nonlinear_area: Range<usize>,
 }
 
 /// Unknowns of the fluid.
@@ -74,6 +76,7 @@ enum Name {
     Node(&'static str, usize),
     Segment(&'static str, usize),
     Area(usize, usize),
+    NonlinearArea(usize),
     Junction(usize),
     Bridge(usize),
     LumpedNetwork(&'static str, usize),
@@ -132,6 +135,7 @@ impl Layout {
             Name::Node(what, node) => format!("{what} of node {node}"),
             Name::Segment(what, segment) => format!("{what} of segment {}", segment + 1),
             Name::Area(b, cell) => format!("area change [m^2] of bladder {}, cell {}", bladder(b), cell + 1),
+            Name::NonlinearArea(b) => format!("nonlinear area change [m^2] of bladder {}", bladder(b)),
             Name::Junction(j) => format!("pressure [Pa] of junction {}", j + 1),
             Name::LumpedNetwork(what, component) => format!("{what} of network {}", component + 1),
             Name::Bridge(k) => format!("pressure drop [Pa] of turbine behind rectifier {}", k + 1),
@@ -186,6 +190,12 @@ impl Coupling {
         Self {
             mean_moment: build.segments("mean moment [N m]", segments(wet.takes_moments), model.scales.moment),
             mean_force: build.segments("mean normal force [N]", segments(wet.takes_forces), model.scales.force),
+            nonlinear_area: build.block(|build| {
+                let scale = wet.area.per_pressure * model.scales.pressure;
+                for bladder in (0..2 * wet.per_row).filter(|_| wet.strain_energy.is_some()) {
+                    build.push(Name::NonlinearArea(bladder), scale, scale, false);
+                }
+            }),
         }
     }
 }

@@ -83,7 +83,13 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64]) {
             let [moment, force] = [&l.coupling.mean_moment, &l.coupling.mean_force]
                 .map(|means| means.clone().nth(j).map_or(0.0, |unknown| y[unknown]));
             for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
-                let imposed = wet.area.of_moment(moment, row) + wet.area.of_force(force);
+                let excess = l
+                    .coupling
+                    .nonlinear_area
+                    .clone()
+                    .nth(bladder)
+                    .map_or(0.0, |unknown| y[unknown]);
+                let imposed = wet.area.of_moment(moment, row) + wet.area.of_force(force) + excess;
                 if let Ok(slot) = fluid.flowing.binary_search(&bladder) {
                     for (k, cell) in fluid.cells_of(bladder).enumerate() {
                         y[l.network.area.start + slot * fluid.cells_per_bladder + k] =
@@ -94,7 +100,9 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64]) {
         }
         residual::residual(system, now, y, &yp, &mut w, &mut residual);
         // The residual of a mean is what it lacks.
-        let means = l.coupling.mean_moment.clone().chain(l.coupling.mean_force.clone());
+        let own = &l.coupling;
+        let means = own.mean_moment.clone().chain(own.mean_force.clone());
+        let means = means.chain(own.nonlinear_area.clone());
         let worst = means
             .clone()
             .map(|i| (residual[i] / l.scales[i]).abs())

@@ -1,5 +1,7 @@
 //! Intermediate quantities of one evaluation, stage by stage; allocated once, for each scalar type.
 
+use std::borrow::Cow;
+
 use super::System;
 use crate::numerics::{Planar, Scalar};
 
@@ -65,6 +67,10 @@ pub struct Forces<T> {
     pub shear: Vec<T>,
     /// Section force in lab axes [N].
     pub section: Vec<Planar<T>>,
+    /// What the section's energy beyond its quadratic part adds to the moment [N m]; empty without.
+    pub nonlinear_moment: Vec<T>,
+    /// And to the normal force [N].
+    pub nonlinear_normal: Vec<T>,
 }
 
 /// Of segments.
@@ -82,6 +88,14 @@ pub struct Coupling<T> {
     pub pressure_stretch: Vec<T>,
     /// `alpha_p`.
     pub pressure_curvature: Vec<T>,
+    /// Area changes of bladders by the section's energy beyond its quadratic part, as they are known [m^2]; empty without.
+    pub excess_area: Vec<T>,
+    /// Their rates [m^2/s]; for the balances.
+    pub excess_area_rate: Vec<T>,
+    /// As they follow from strains and pressures [m^2].
+    pub nonlinear_area: Vec<T>,
+    /// Integral of that energy over each segment [J].
+    pub nonlinear_energy: Vec<T>,
 }
 
 /// Of bladders' cells and of the network.
@@ -132,6 +146,26 @@ impl std::ops::Deref for State<'_> {
     }
 }
 
+impl Forces<f64> {
+    /// Elastic moments M of nodes [N m].
+    pub fn moments(&self) -> Cow<'_, [f64]> {
+        together(&self.moment, &self.nonlinear_moment)
+    }
+
+    /// Elastic normal forces N of cells [N].
+    pub fn normals(&self) -> Cow<'_, [f64]> {
+        together(&self.normal, &self.nonlinear_normal)
+    }
+}
+
+/// The sum of two parts, of which the second may be absent.
+fn together<'a>(part: &'a [f64], other: &[f64]) -> Cow<'a, [f64]> {
+    match other.is_empty() {
+        true => Cow::Borrowed(part),
+        false => part.iter().zip(other).map(|(a, b)| a + b).collect(),
+    }
+}
+
 impl<T: Scalar> Workspace<T> {
     /// Room for a system.
     pub fn new(system: &System) -> Self {
@@ -148,6 +182,7 @@ impl<T: Scalar> Workspace<T> {
         let (junctions, bridges) = fluid.map_or((0, 0), |f| (f.junctions.len(), f.bridges.len()));
         let components = system.model.wet.as_ref().map_or(0, |w| w.network.components);
         let lumped = fluid.map_or(0, |f| f.volume_at_start.len());
+        let nonlinear = usize::from(system.model.strain_energy().is_some());
         // What is the same at all times is set here, and stays.
         let kept = fluid.map_or(&[][..], |f| &f.area_at_start);
         Self {
@@ -173,6 +208,8 @@ impl<T: Scalar> Workspace<T> {
                 viscous_normal: zeros(c),
                 shear: zeros(c),
                 section: vectors(c),
+                nonlinear_moment: zeros(nonlinear * n),
+                nonlinear_normal: zeros(nonlinear * c),
             },
             coupling: Coupling {
                 mean_moment: zeros(s),
@@ -181,6 +218,10 @@ impl<T: Scalar> Workspace<T> {
                 mean_force_rate: zeros(s),
                 pressure_stretch: zeros(s),
                 pressure_curvature: zeros(s),
+                excess_area: zeros(nonlinear * bladders),
+                excess_area_rate: zeros(nonlinear * bladders),
+                nonlinear_area: zeros(nonlinear * bladders),
+                nonlinear_energy: zeros(nonlinear * s),
             },
             fluid: Fluid {
                 area: kept.iter().map(|&a| T::constant(a)).collect(),

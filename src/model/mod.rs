@@ -16,6 +16,7 @@ pub mod network;
 pub mod passivity;
 pub mod scales;
 pub mod storage;
+pub mod strain_energy;
 pub mod tongue;
 
 use crate::case::schema::Effect;
@@ -33,6 +34,7 @@ pub use loads::Load;
 pub use network::Network;
 pub use scales::Scales;
 pub use storage::{LumpedKind, LumpedNetwork, Storage};
+pub use strain_energy::StrainEnergy;
 
 /// The bladders and what they are filled with and joined by.
 #[derive(Clone, Debug)]
@@ -61,6 +63,8 @@ pub struct Wet {
     pub takes_moments: bool,
     /// Whether something depends on mean forces.
     pub takes_forces: bool,
+    /// Energy of the section beyond its quadratic part.
+    pub strain_energy: Option<StrainEnergy>,
 }
 
 /// `R` of the rows: upper, lower.
@@ -76,6 +80,11 @@ impl Wet {
     pub fn place(&self, bladder: usize) -> (usize, f64) {
         let row = bladder / self.per_row;
         (bladder - row * self.per_row, ROWS[row])
+    }
+
+    /// `φ_b l_b` of a beam of a length.
+    pub fn length_ratio(&self, length: f64) -> f64 {
+        self.bladder_length * self.per_row as f64 / length
     }
 
     /// The whole coupling of a case's bladders.
@@ -95,6 +104,7 @@ impl Wet {
             lumped,
             takes_moments: true,
             takes_forces: true,
+            strain_energy: bladders.strain_energy.as_ref().map(StrainEnergy::new),
         }
     }
 
@@ -106,6 +116,10 @@ impl Wet {
         let stretches =
             effects.has(Effect::PressureToStretch) && reciprocal && self.strains.force_half_difference > 0.0;
         self.takes_moments = effects.has(Effect::MomentToArea) || bends;
+        self.strain_energy = self
+            .strain_energy
+            .take()
+            .filter(|_| effects.has(Effect::NonlinearSection));
         self.takes_forces = effects.has(Effect::AxialStretch) && (effects.has(Effect::ForceToArea) || stretches);
         self.area = self
             .area
@@ -264,6 +278,13 @@ impl Model {
             self.wet.as_ref().map(|wet| &wet.network),
             visit,
         );
+    }
+
+    /// The bladders and the energy of the section beyond its quadratic part, where that is simulated.
+    #[inline]
+    pub fn strain_energy(&self) -> Option<(&Wet, &StrainEnergy)> {
+        let wet = self.wet.as_ref()?;
+        Some((wet, wet.strain_energy.as_ref()?))
     }
 
     /// Whether forces of the published form act, which bending alone brings about.

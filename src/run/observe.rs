@@ -39,6 +39,7 @@ const TURNING: [Watched; Watched::COUNT] = [
     Watched::Strain,
     Watched::Flow,
     Watched::Pressed,
+    Watched::Outermost,
 ];
 /// Turning points closer than this part of the step are looked at as one.
 const APART: f64 = 0.05;
@@ -214,7 +215,7 @@ impl Observer {
         let balance = ledger::balance(stored, *at_start, integrals);
         let residuals = &mut self.seen.residuals;
         residuals.take(system, w, &balance, [first, &invariants], integrals);
-        let least_force = w.forces.normal.iter().copied().fold(f64::INFINITY, f64::min);
+        let least_force = w.forces.normals().iter().copied().fold(f64::INFINITY, f64::min);
         self.seen.growth.take(
             now,
             glance.t,

@@ -96,6 +96,7 @@ impl Limits {
         value(Watched::Opening) > 0.0
             && value(Watched::Swelling) <= self.swelling
             && value(Watched::Strain) <= STRAIN_ENDS
+            && value(Watched::Outermost) <= 1.0
             && pressure <= PRESSURE_ENDS * self.modulus
             && g.moved <= MOTION_ENDS * self.length
     }
@@ -120,6 +121,12 @@ impl Limits {
             return Some(format!(
                 "a bladder has outgrown its segment at t = {t} s: its cross-section h_b w_b + a1 has reached the half \
                  section l_seg h_s/2 that holds it (a1 = {swelling:.3e} m^2)"
+            ));
+        }
+        if value(Watched::Outermost) > 1.0 {
+            return Some(format!(
+                "stretch, curvature and pressures of a section have left at t = {t} s what its strain energy is known for: /bladders/strain_energy \
+                 has the limits on each axis, of which all four together may take part up to a sum of squares of 1"
             ));
         }
         let strain = value(Watched::Strain);
@@ -150,6 +157,7 @@ impl Limits {
             Watched::Swelling => value > 0.95 * self.swelling,
             Watched::Strain => larger(seen.strain.largest, value, STRAIN),
             Watched::Flow => larger(seen.reynolds.largest, value * self.reynolds_per_flow, REYNOLDS),
+            Watched::Outermost => value > 0.95,
             Watched::Pressed => larger(seen.pressed.largest, value, self.convex_up_to),
             _ => false,
         }

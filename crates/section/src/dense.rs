@@ -23,6 +23,31 @@ pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f
     Some(b)
 }
 
+/// Solves a x = b of a positive definite a, whose lower triangle stands by rows and is overwritten; None where it is not.
+pub fn positive(a: &mut [f64], mut b: Vec<f64>) -> Option<Vec<f64>> {
+    let n = b.len();
+    for i in 0..n {
+        for j in 0..=i {
+            let rest = a[i * n + j] - dot(&a[i * n..i * n + j], &a[j * n..j * n + j]);
+            if i > j {
+                a[i * n + j] = rest / a[j * n + j];
+            } else if rest > 0.0 {
+                a[i * n + i] = rest.sqrt();
+            } else {
+                return None;
+            }
+        }
+    }
+    for i in 0..n {
+        b[i] = (b[i] - dot(&a[i * n..i * n + i], &b[..i])) / a[i * n + i];
+    }
+    for i in (0..n).rev() {
+        let known: f64 = (i + 1..n).map(|k| a[k * n + i] * b[k]).sum();
+        b[i] = (b[i] - known) / a[i * n + i];
+    }
+    Some(b)
+}
+
 /// Inner product.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()

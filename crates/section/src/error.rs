@@ -37,4 +37,7 @@ pub enum Error {
         /// Iterations made.
         iterations: usize,
     },
+    /// The energy at finite strain has no fit that is good enough.
+    #[error("the cell's energy at finite strain has no polynomial with an error of at most 1 %: leave \"law\" out")]
+    Energy,
 }

@@ -3,6 +3,7 @@
 //! The cell is `pitch_m` long and `height_m` high; its origin lies in the middle of the pitch on the mid-plane. Points are
 //! `[along, high]`: `along` runs with the beam's axis z, `high` with the transverse axis x, towards the upper row.
 
+use crate::finite::Law;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
@@ -41,6 +42,9 @@ pub struct Material {
     pub poisson_ratio: f64,
     /// Density [kg/m^3].
     pub density_kg_m3: f64,
+    /// Law at finite strain; absent: none for the section's material, which is then linear, and neo-Hookean for that of a region.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<Law>,
 }
 
 impl Material {

@@ -3,8 +3,43 @@
 use crate::error::Error;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
-use faer::sparse::{SparseColMat, Triplet};
+use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
 use faer::{Mat, Side};
+
+/// Where the entries of matrices stand, with what follows from it: order of elimination and fill.
+pub struct Pattern {
+    n: usize,
+    matrix: SymbolicSparseColMat<usize>,
+    order: Argsort<usize>,
+    factor: SymbolicLlt<usize>,
+}
+
+impl Pattern {
+    /// From entries (row, column, value) of the lower triangle.
+    pub fn new(n: usize, entries: &[(usize, usize, f64)]) -> Result<Self, Error> {
+        let places: Vec<_> = entries.iter().map(|&(row, col, _)| Pair { row, col }).collect();
+        let (matrix, order) = SymbolicSparseColMat::try_new_from_indices(n, n, &places).map_err(|_| Error::Singular)?;
+        let factor = SymbolicLlt::try_new(matrix.as_ref(), Side::Lower).map_err(|_| Error::Singular)?;
+        Ok(Self {
+            n,
+            matrix,
+            order,
+            factor,
+        })
+    }
+
+    /// Factorises the matrix of entries at the same places in the same order; those with one place add up.
+    pub fn factor(&self, entries: &[(usize, usize, f64)]) -> Result<Factor, Error> {
+        let values: Vec<f64> = entries.iter().map(|entry| entry.2).collect();
+        let matrix = SparseColMat::new_from_argsort(self.matrix.clone(), &self.order, &values);
+        let matrix = matrix.map_err(|_| Error::Singular)?;
+        let factor = Llt::try_new_with_symbolic(self.factor.clone(), matrix.as_ref(), Side::Lower);
+        Ok(Factor {
+            n: self.n,
+            factor: factor.map_err(|_| Error::Singular)?,
+        })
+    }
+}
 
 /// A factorised positive definite matrix.
 pub struct Factor {
@@ -15,14 +50,7 @@ pub struct Factor {
 impl Factor {
     /// Factorises from entries (row, column, value) of the lower triangle; those with the same place add up.
     pub fn new(n: usize, entries: &[(usize, usize, f64)]) -> Result<Self, Error> {
-        let triplets: Vec<_> = entries
-            .iter()
-            .map(|&(row, col, val)| Triplet { row, col, val })
-            .collect();
-        let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(n, n, &triplets).map_err(|_| Error::Singular)?;
-        let symbolic = SymbolicLlt::try_new(matrix.symbolic(), Side::Lower).map_err(|_| Error::Singular)?;
-        let factor = Llt::try_new_with_symbolic(symbolic, matrix.as_ref(), Side::Lower).map_err(|_| Error::Singular)?;
-        Ok(Self { n, factor })
+        Pattern::new(n, entries)?.factor(entries)
     }
 
     /// Solutions for several right-hand sides, each of length n.

@@ -11,6 +11,7 @@ const OTHER: Material = Material {
     young_modulus_pa: 1e9,
     poisson_ratio: 0.3,
     density_kg_m3: 1000.0,
+    law: None,
 };
 
 /// The places of a section's faults, in order.

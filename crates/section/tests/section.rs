@@ -274,7 +274,7 @@ proptest! {
         let mut section = with_shapes(nu, Some((0.0053, upper)), Some((-0.0051, lower)));
         section.bladders.length_m = length;
         if skin > 0.5 {
-            let material = Material { young_modulus_pa: 2e8, poisson_ratio: 0.35, density_kg_m3: 1200.0 };
+            let material = Material { young_modulus_pa: 2e8, poisson_ratio: 0.35, density_kg_m3: 1200.0, law: None };
             let shape = RegionShape::Layer { high_m: [-0.0108, -0.0104] };
             section.regions = vec![Region { shape, material }];
         }

@@ -1,7 +1,7 @@
 //! Bladders: what must come with them, whether they fit, the order of their slopes.
 
 use crate::case::faults::Violations;
-use crate::case::schema::{Bladders, Case};
+use crate::case::schema::{Bladders, Case, Coupling, Formulation, StrainEnergy};
 use crate::error::{Code, Violation};
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
@@ -13,6 +13,9 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             }
             fits(case, bladders, faults);
             slopes(bladders, faults);
+            if let Some(energy) = &bladders.strain_energy {
+                strain_energy(case, bladders, energy, faults);
+            }
             if bladders.permeability_m4.is_some() && bladders.cross_section.is_some() {
                 two_permeabilities("/bladders", faults);
             }
@@ -119,6 +122,54 @@ fn slopes(bladders: &Bladders, faults: &mut Violations) {
                     .hint("closing stiffens a bladder; are the two exchanged?"),
             );
         }
+    }
+}
+
+/// A polynomial with all its coefficients about a state at rest, where there is one potential.
+fn strain_energy(case: &Case, bladders: &Bladders, energy: &StrainEnergy, faults: &mut Violations) {
+    let at = "/bladders/strain_energy";
+    let count = StrainEnergy::count(energy.degree);
+    if energy.coefficients_n.len() != count && !faults.any_below(at) {
+        let what = format!(
+            "{} coefficients of degree {}",
+            energy.coefficients_n.len(),
+            energy.degree
+        );
+        let fault = Violation::new(Code::Count, format!("{at}/coefficients_n"), what);
+        faults.push(fault.allowed(count.to_string()));
+    }
+    let keys = ["stretch", "curvature_1_m", "upper_pressure_pa", "lower_pressure_pa"];
+    for (key, [low, high]) in keys.into_iter().zip(energy.limits()) {
+        if low > 0.0 || high < 0.0 || low == high {
+            let fault = Violation::new(Code::Range, format!("{at}/{key}"), format!("limits {low} and {high}"));
+            faults.push(fault.allowed("one below zero and one above"));
+        }
+    }
+    let needs = [
+        (
+            bladders.coupling != Coupling::Reciprocal,
+            "/bladders/coupling",
+            "a coupling that is not the reciprocal one",
+            "\"reciprocal\"",
+        ),
+        (
+            case.formulation != Formulation::Conservative,
+            "/formulation",
+            "a formulation without a potential",
+            "\"conservative\"",
+        ),
+    ];
+    for (_, place, what, allowed) in needs.into_iter().filter(|(breaks, ..)| *breaks) {
+        let fault = Violation::new(
+            Code::Together,
+            place,
+            format!("a section with a strain energy and {what}"),
+        );
+        faults.push(
+            fault
+                .allowed(allowed)
+                .hint("or leave the strain energy out: \"strain_energy\": null"),
+        );
     }
 }
 

@@ -48,10 +48,64 @@ pub struct Bladders {
     /// How pressure strains the beam: `lambda_p` and `alpha_p` in `N = EA (lambda - 1 - lambda_p)`, `M = EI (alpha - alpha_p)`.
     #[serde(default)]
     pub coupling: Coupling,
+    /// Energy of the section beyond its quadratic part, where strains are large; with the reciprocal coupling and the conservative
+    /// formulation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strain_energy: Option<StrainEnergy>,
     /// Width of the smoothed kink between opening and closing slopes, relative to `EI/l_s` (moment) and `EA` (force).
     #[serde(default = "default_kink_width")]
     #[schemars(extend("exclusiveMinimum" = 0), range(max = 1.0))]
     pub kink_width: f64,
+}
+
+/// `P = sum P_k z^k`, `3 <= |k| <= degree`, `k_2 + k_4` even: what a law at finite strain adds to the potential of the section [N]. `z` are
+/// the stretch and the curvature that loads make and half of sum and difference of the upper and the lower pressure, each over the
+/// largest of its limits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StrainEnergy {
+    /// Stretch less one below and above which `P` is not known, on its own.
+    pub stretch: [f64; 2],
+    /// Likewise the curvature [1/m].
+    pub curvature_1_m: [f64; 2],
+    /// Likewise the pressure of an upper bladder [Pa].
+    pub upper_pressure_pa: [f64; 2],
+    /// Likewise of a lower bladder [Pa].
+    pub lower_pressure_pa: [f64; 2],
+    /// Degree of `P`.
+    #[schemars(range(min = 3, max = 6))]
+    pub degree: usize,
+    /// `P_k`: powers of sum and difference of the pressures outermost, by their sum; then those of stretch and curvature, by theirs [N].
+    pub coefficients_n: Vec<f64>,
+    /// Largest error of the first derivatives over the largest of their linear parts.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub error: f64,
+}
+
+impl StrainEnergy {
+    /// How many coefficients a polynomial of a degree has.
+    pub fn count(degree: usize) -> usize {
+        let of_sum = |sum: usize| {
+            (0..=sum)
+                .map(move |bent| (bent + 1, sum - bent + 1))
+                .filter(|(bent, _)| bent % 2 == 1)
+        };
+        (3..=degree)
+            .flat_map(of_sum)
+            .map(|(bent, straight)| bent * straight)
+            .sum()
+    }
+
+    /// Of stretch, curvature, upper and lower pressure.
+    pub fn limits(&self) -> [[f64; 2]; 4] {
+        [
+            self.stretch,
+            self.curvature_1_m,
+            self.upper_pressure_pa,
+            self.lower_pressure_pa,
+        ]
+    }
 }
 
 /// Slopes of bladder area against bending moment [m^2/(N m)].

@@ -118,6 +118,8 @@ effects! {
         ForceToArea force_to_area,
         /// Different opening and closing slopes of the bladder area.
         Asymmetry asymmetry,
+        /// Finite strain of the section, `strain_energy` of the bladders; off: forces and areas linear in strains and pressures.
+        NonlinearSection nonlinear_section,
     }
     given {
         /// Damping of the material, and drag.

@@ -7,7 +7,7 @@ use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
 use crate::discrete::residual::fluid::{bridge_drops, pressure_at};
 use crate::discrete::residual::rows::{mean_force, mean_moment};
-use crate::discrete::residual::small;
+use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
 use crate::model::bladder::{kink_curvature, kink_slope};
 use crate::model::network::{LinkKind, Node};
@@ -33,6 +33,8 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
             None => rate(&own.mean_force),
         };
     }
+    let excess = &system.layout.coupling.nonlinear_area;
+    w.coupling.excess_area_rate.copy_from_slice(&yp[excess.clone()]);
     for (k, lumped) in wet.lumped.iter().enumerate() {
         w.fluid.lumped_rate[k] = match (&lumped.kind, system.layout.network.lumped_pressure[k]) {
             (LumpedKind::Port(port), _) => now.port_pressure_rate[*port],
@@ -46,11 +48,12 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
     }
 }
 
-/// Rate of the area that moment and force impose on a bladder.
+/// Rate of the area that moment, force and finite strain impose on a bladder.
 fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
     let (j, row) = wet.place(bladder);
     wet.area.moment_slope(w.coupling.mean_moment[j], row) * w.coupling.mean_moment_rate[j]
         + wet.area.force_slope(w.coupling.mean_force[j]) * w.coupling.mean_force_rate[j]
+        + w.coupling.excess_area_rate.get(bladder).copied().unwrap_or(0.0)
 }
 
 /// Rate of a cell's pressure [Pa/s]; needs [`complete`].
@@ -86,7 +89,7 @@ pub fn foreshorten(system: &System, w: &mut Workspace<f64>) {
     small::foreshorten(system, stretch_rate, w);
 }
 
-/// Power that a coupling without reciprocity adds, and the rate of `alpha_p` at a node (for ends with given moment).
+/// Power that a coupling without reciprocity adds, and the rate of curvature at an end with a given moment, less that of `M/EI`.
 ///
 /// ```text
 /// P_reciprocity = l_seg Σ_j { Nbar d/dt(φ_b [l_b A_N' - ζ'/E] (p_u + p_d))
@@ -94,6 +97,7 @@ pub fn foreshorten(system: &System, w: &mut Workspace<f64>) {
 /// ```
 pub fn rates<'a>(
     system: &'a System,
+    now: &'a TimeData,
     w: &Workspace<f64>,
     out: &mut [f64],
 ) -> impl Fn(&Workspace<f64>, usize) -> f64 + use<'a> {
@@ -111,9 +115,29 @@ pub fn rates<'a>(
     move |w, node| {
         let Some(wet) = &system.model.wet else { return 0.0 };
         let j = system.mesh.segments_of_node(node).0;
-        SegmentRates::new(system, wet, w, j)
-            .strain_rates(&wet.coupling, &wet.strains)
-            .1
+        let by_pressure = pressure_rates(system, wet, w, j);
+        by_pressure.curvature + nonlinear::end_rate(system, now, w, node, &by_pressure)
+    }
+}
+
+/// Rates in a segment.
+pub struct PressureRates {
+    /// Of `lambda_p` [1/s].
+    pub stretch: f64,
+    /// Of `alpha_p` [1/(m s)].
+    pub curvature: f64,
+    /// Of the mean pressures of the upper and the lower bladder [Pa/s].
+    pub pressures: [f64; 2],
+}
+
+/// How fast pressures of a segment change, and the strains that they make; needs [`complete`].
+pub fn pressure_rates(system: &System, wet: &Wet, w: &Workspace<f64>, j: usize) -> PressureRates {
+    let rates = SegmentRates::new(system, wet, w, j);
+    let (stretch, curvature) = rates.strain_rates(&wet.coupling, &wet.strains);
+    PressureRates {
+        stretch,
+        curvature,
+        pressures: rates.pressure_rate,
     }
 }
 
@@ -370,6 +394,15 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
         }
     }
     wet.bladder_length * sum
+}
+
+/// Energy of the section beyond its quadratic part, `P - Σ p ∂P/∂p`, `[E48]`.
+pub fn nonlinear_energy(system: &System, w: &Workspace<f64>) -> f64 {
+    let Some((wet, _)) = system.model.strain_energy() else {
+        return 0.0;
+    };
+    let pressures = w.fluid.mean_pressure.iter().zip(&w.coupling.nonlinear_area);
+    w.coupling.nonlinear_energy.iter().sum::<f64>() + wet.bladder_length * pressures.map(|(p, a)| p * a).sum::<f64>()
 }
 
 /// Volume change stored in each component.

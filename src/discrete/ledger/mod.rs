@@ -5,7 +5,7 @@ mod jump;
 mod reactions;
 mod solid;
 
-pub use fluid::pressure_rate;
+pub use fluid::{PressureRates, pressure_rate, pressure_rates};
 pub use jump::{side, strokes, travel};
 pub use reactions::compared;
 
@@ -87,12 +87,15 @@ pub struct Energies {
     pub bending: f64,
     /// Stored in the bladders.
     pub bladders: f64,
+    /// Of the section at finite strain, beyond all these.
+    #[serde(default)]
+    pub section: f64,
 }
 
 impl Energies {
     /// Sum.
     pub fn total(&self) -> f64 {
-        self.kinetic + self.rotary + self.axial + self.bending + self.bladders
+        self.kinetic + self.rotary + self.axial + self.bending + self.bladders + self.section
     }
 }
 
@@ -159,7 +162,7 @@ pub fn by_law(integrals: &[f64], open: usize, count: usize) -> (f64, f64) {
 pub fn flows(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
     let state = complete(system, now, yp, w);
-    let rates = fluid::rates(system, &state, out);
+    let rates = fluid::rates(system, now, &state, out);
     solid::flows(system, now, rates, &state, out);
     fluid::flows(system, now, w, out);
 }
@@ -179,6 +182,7 @@ pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Work
 pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     let mut e = solid::energies(system, now, &w);
     e.bladders = fluid::energy(system, &w);
+    e.section = fluid::nonlinear_energy(system, &w);
     e
 }
 

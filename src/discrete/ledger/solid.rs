@@ -103,7 +103,8 @@ fn bending(
             Some(slope) => slope.rate,
             None => w.shape.angle_rate[cell] + sign * 0.5 * mesh.h * kappa_rate,
         };
-        let moment = w.forces.moment[i] + w.forces.viscous_moment[i];
+        let nonlinear = w.forces.nonlinear_moment.get(i).copied().unwrap_or(0.0);
+        let moment = w.forces.moment[i] + nonlinear + w.forces.viscous_moment[i];
         add(out, EnergyRate::Ends, sign * moment * angle_rate);
         add(out, EnergyRate::AngularImpulse, sign * moment);
     }

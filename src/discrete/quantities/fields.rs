@@ -79,8 +79,8 @@ impl Field {
             Self::V1 => ("v1_m_s", "m/s", Nodes, Studied, "transverse velocity", |w| w.motion.v.iter().map(|v| v.x).collect()),
             Self::V3 => ("v3_m_s", "m/s", Nodes, Studied, "axial velocity", |w| w.motion.v.iter().map(|v| v.z).collect()),
             Self::Curvature => ("curvature_1_m", "1/m", Nodes, Recorded, "curvature, positive with the +x fibre in tension", |w| Cow::Borrowed(&w.shape.kappa)),
-            Self::Moment => ("moment_n_m", "N m", Nodes, Recorded, "bending moment", |w| Cow::Borrowed(&w.forces.moment)),
-            Self::NormalForce => ("normal_force_n", "N", Cells, Recorded, "normal force", |w| Cow::Borrowed(&w.forces.normal)),
+            Self::Moment => ("moment_n_m", "N m", Nodes, Recorded, "bending moment", |w| w.forces.moments()),
+            Self::NormalForce => ("normal_force_n", "N", Cells, Recorded, "normal force", |w| w.forces.normals()),
             Self::Pressure => ("pressure_pa", "Pa", Network, Recorded, "pressure of the bladder cells", |w| Cow::Borrowed(&w.fluid.pressure)),
             Self::AreaChange => ("area_change_m2", "m^2", Network, Recorded, "area change of the bladder cells", |w| Cow::Borrowed(&w.fluid.area)),
         }

@@ -82,6 +82,10 @@ fn wet(system: &System) -> bool {
     system.fluid.is_some()
 }
 
+fn nonlinear(system: &System) -> bool {
+    system.model.strain_energy().is_some()
+}
+
 fn open(system: &System) -> bool {
     let wet = system.model.wet.as_ref().filter(|_| system.fluid.is_some());
     wet.is_some_and(|wet| !wet.network.open.is_empty())
@@ -175,6 +179,8 @@ observables! {
         "elastic energy of bending";
     BladderEnergy: "bladder_energy" ["J"], "bladder energy", "bladder energy", Stored, Studied, always, Read::State(|look| look.stored.bladders),
         "energy stored in the bladders";
+    SectionEnergy: "section_energy" ["J"], "section energy", "energy of finite strain", Stored, Recorded, nonlinear, Read::State(|look| look.stored.section),
+        "energy of the section at finite strain, beyond those that are quadratic";
     WorkLoads: "work_loads" ["J"], "work of loads", "work of the loads", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Loads as usize]),
         "work of distributed loads and end forces";
     WorkEnds: "work_ends" ["J"], "work of ends", "work of the driven ends", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Ends as usize]),

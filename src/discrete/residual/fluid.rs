@@ -22,7 +22,10 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     for j in 0..wet.per_row {
         let of_force = law.of_force(w.coupling.mean_force[j]);
         for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
-            let imposed = of_force + law.of_moment(w.coupling.mean_moment[j], row);
+            let mut imposed = of_force + law.of_moment(w.coupling.mean_moment[j], row);
+            if let Some(excess) = w.coupling.excess_area.get(bladder) {
+                imposed += *excess;
+            }
             let cells = fluid.cells_of(bladder);
             w.fluid.mean_pressure[bladder] = match wet.storage[bladder] {
                 Storage::Flowing => {

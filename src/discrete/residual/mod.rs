@@ -2,6 +2,7 @@
 
 pub mod bar;
 pub mod fluid;
+pub mod nonlinear;
 pub mod rows;
 pub mod small;
 pub mod solid;
@@ -30,6 +31,7 @@ pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
             small::rates(system, now, w);
             small::normal_forces(system, now, w);
             solid::moments(system, now, w);
+            nonlinear::forces(system, now, w);
             small::section_forces(system, now, w);
         }
         Kinematics::FiniteRotation => {
@@ -37,6 +39,7 @@ pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
             solid::rates(system, now, w);
             solid::normal_forces(system, w);
             solid::moments(system, now, w);
+            nonlinear::forces(system, now, w);
             solid::shears(system, w);
             solid::section_forces(system, now, w);
         }
@@ -60,6 +63,7 @@ pub fn residual<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
     rows::momentum(system, now, w, r);
     rows::motion(system, y, yp, r);
     rows::means(system, w, r);
+    nonlinear::areas(system, w, r);
     rows::storage(system, w, r);
     rows::lumped(system, now, y, yp, w, r);
     rows::junctions(system, w, r);

@@ -160,7 +160,10 @@ pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 /// By how much the moment, viscous part included, falls over a cell [N m].
 #[inline]
 pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
-    let drop = w.forces.moment[c] - w.forces.moment[c + 1];
+    let mut drop = w.forces.moment[c] - w.forces.moment[c + 1];
+    if let [left, right, ..] = w.forces.nonlinear_moment.get(c..).unwrap_or_default() {
+        drop += *left - *right;
+    }
     if system.model.section.bending_damping_time > 0.0 {
         drop + (w.forces.viscous_moment[c] - w.forces.viscous_moment[c + 1])
     } else {
@@ -171,11 +174,14 @@ pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize)
 /// `N_total` of a cell [N].
 #[inline]
 pub fn normal_force<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
-    if system.model.section.axial_damping_time > 0.0 {
-        w.forces.normal[c] + w.forces.viscous_normal[c]
-    } else {
-        w.forces.normal[c]
+    let mut force = w.forces.normal[c];
+    if let Some(nonlinear) = w.forces.nonlinear_normal.get(c) {
+        force += *nonlinear;
     }
+    if system.model.section.axial_damping_time > 0.0 {
+        force += w.forces.viscous_normal[c];
+    }
+    force
 }
 
 /// Couple per length of distributed moments: `d3·m b1`, for small rotations `m b1_z + g φ m b1_x`, `[E26]`.

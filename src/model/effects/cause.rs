@@ -90,6 +90,8 @@ pub enum Number {
     PressureStrain,
     /// Larger of dm/am, dn/an.
     Asymmetry,
+    /// Energy beyond the quadratic part over the quadratic one, at most.
+    StrainEnergy,
 }
 
 /// What keeps an effect.
@@ -113,6 +115,8 @@ pub enum Keeps {
     UnevenStart,
     /// It makes pressure.
     MakesPressure,
+    /// The section is not linear at the scene's loads.
+    FiniteStrain,
 }
 
 impl Display for Cause {
@@ -166,6 +170,7 @@ impl Display for Number {
             Self::LagAlongBladders => "a bladder's own time against that of the motion",
             Self::PressureStrain => "what pressure does over what loads do",
             Self::Asymmetry => "larger of dm/am, dn/an",
+            Self::StrainEnergy => "strain energy beyond the quadratic part over that, at most",
         })
     }
 }
@@ -181,6 +186,7 @@ impl Display for Keeps {
             Self::Fed => "ports or turbines take fluid through the network",
             Self::Dissipation => "all that the fluid dissipates goes with them",
             Self::UnevenStart => "the start has differences along a bladder",
+            Self::FiniteStrain => "the section is not linear at these loads",
             Self::MakesPressure => "it is what makes pressure",
         })
     }

@@ -89,6 +89,7 @@ impl<'a> Chooser<'a> {
         }
         let bladders = self.case.bladders.as_ref();
         match effect {
+            Effect::NonlinearSection if bladders.is_none_or(|b| b.strain_energy.is_none()) => Err(Cause::Given(false)),
             Effect::Fluid if self.case.fluid.is_none() || bladders.is_none() => Err(Cause::Filled(false)),
             Effect::Asymmetry if bladders.is_some_and(|b| b.coupling == Coupling::Reciprocal) => Err(Cause::NoKinks),
             _ => Ok(()),
@@ -132,6 +133,10 @@ impl<'a> Chooser<'a> {
             None => choice,
         };
         match effect {
+            _ if about(Effect::NonlinearSection).needs.contains(&effect) && scene.strain_energy() >= self.tolerance => {
+                kept(Keeps::FiniteStrain)
+            }
+            Effect::NonlinearSection => weigh(Number::StrainEnergy, scene.strain_energy()),
             Effect::TransverseMotion => match scene.unstable() {
                 _ if !scene.mirrored() => kept(Keeps::RowsDiffer),
                 Some(why) => unstable(why),

@@ -165,6 +165,22 @@ pub fn about(effect: Effect) -> About {
             needs: &[Fluid],
             presence: Presence::Chosen,
         },
+        Effect::NonlinearSection => About {
+            adds: "Ω = Ω_2 + P(y): P_1 in N, P_2 in M, -∂P/∂p_R/(φ_b l_b) in the areas",
+            brings: "a nonlinear area a bladder",
+            number: "P over the quadratic energy at the scene's loads, bounded",
+            cost: "a polynomial of degree 4 to 6 in every half of a cell",
+            needs: &[
+                TransverseMotion,
+                AxialStretch,
+                Fluid,
+                PressureToCurvature,
+                PressureToStretch,
+                MomentToArea,
+                ForceToArea,
+            ],
+            presence: Presence::Chosen,
+        },
         Effect::Damping => About {
             adds: "EA τ_a λ_t, EI τ_b κ_t, -c v",
             brings: "rates of strain",

@@ -141,6 +141,9 @@ fn fluid(w: &Workspace<f64>, to: &System, z: &mut [f64]) {
     if wet.takes_forces {
         z[means.mean_force.clone()].copy_from_slice(&w.coupling.mean_force);
     }
+    if wet.strain_energy.is_some() {
+        z[means.nonlinear_area.clone()].copy_from_slice(&w.coupling.nonlinear_area);
+    }
     let cells = w.fluid.area.len() / (2 * wet.per_row);
     // As many cells as before, or one for all of a bladder's.
     let merged = cells / fluid.cells_per_bladder;

@@ -68,12 +68,9 @@ impl FiniteCell {
                 }
             }
             u[12..].copy_from_slice(&[state.w[bubble], state.w[bubble + 1], g0, g1]);
-            let local = answer(
-                &self.cell.corners(triangle),
-                &self.cell.materials[*material],
-                &self.law,
-                &u,
-            )?;
+            let material = &self.cell.materials[*material];
+            let law = material.law.unwrap_or(self.law);
+            let local = answer(&self.cell.corners(triangle), material, &law, &u)?;
             system.energy += local.energy;
             let (force, stiffness) = carry_over(&local, &faces);
             let dof = |i: usize| {

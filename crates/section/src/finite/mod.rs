@@ -17,6 +17,7 @@
 mod assemble;
 pub mod cavity;
 pub mod element;
+pub mod energy;
 pub mod face;
 pub mod jet;
 pub mod law;
@@ -26,7 +27,10 @@ use crate::cell::respond::{cavity_walls, periodic, solids};
 use crate::cell::{Cell, Kind, Part};
 use crate::error::Error;
 use crate::input::Section;
+use crate::sparse::Pattern;
+use std::sync::OnceLock;
 
+pub use energy::StrainEnergy;
 pub use law::Law;
 
 /// What a section is driven by.
@@ -76,6 +80,10 @@ pub struct FiniteCell {
     side: f64,
     width: f64,
     nodes: usize,
+    /// Areas of the bladders at rest [m^2].
+    areas: [f64; 2],
+    /// Of the stiffness, the same at all states.
+    pattern: OnceLock<Pattern>,
 }
 
 /// Unknowns of a cell.
@@ -119,7 +127,7 @@ impl FiniteCell {
             .filter(|&&k| k != usize::MAX)
             .max()
             .map_or(0, |m| m + 1);
-        Ok(Self {
+        let mut found = Self {
             held: 2 * independent[held],
             walls: [upper, lower].map(|w| w.into_iter().map(|(edge, _)| edge).collect()),
             width: section.bladders.length_m,
@@ -129,8 +137,12 @@ impl FiniteCell {
             face,
             side,
             nodes,
+            areas: [0.0; 2],
+            pattern: OnceLock::new(),
             cell,
-        })
+        };
+        found.areas = found.assemble(&found.rest(), [0.0; 2]).ok_or(Error::Singular)?.areas;
+        Ok(found)
     }
 
     /// The state at rest.

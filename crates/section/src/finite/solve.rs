@@ -4,7 +4,7 @@ use super::assemble::System;
 use super::{Drive, FiniteCell, SectionState, State};
 use crate::dense::{dot, solve};
 use crate::error::Error;
-use crate::sparse::Factor;
+use crate::sparse::Pattern;
 
 /// Steps shorter than this, over the pitch, end the iteration: it is quadratic, so the state is at round-off then.
 const SHORT: f64 = 1e-9;
@@ -24,9 +24,15 @@ struct Reduced {
     fields: Vec<Vec<f64>>,
 }
 
-fn reduce(system: &System) -> Option<Reduced> {
-    let n = system.force.len();
-    let factor = Factor::new(n, &system.entries).ok()?;
+fn reduce(cell: &FiniteCell, system: &System) -> Option<Reduced> {
+    let pattern = match cell.pattern.get() {
+        Some(pattern) => pattern,
+        None => {
+            let found = Pattern::new(system.force.len(), &system.entries).ok()?;
+            cell.pattern.get_or_init(|| found)
+        }
+    };
+    let factor = pattern.factor(&system.entries).ok()?;
     let mut sides = system.border.clone();
     sides.extend(system.area_by_w.iter().cloned());
     sides.push(system.force.clone());
@@ -96,7 +102,7 @@ impl FiniteCell {
         for _ in 0..ITERATIONS {
             *iterations += 1;
             let system = self.assemble(state, pressures)?;
-            let reduced = reduce(&system)?;
+            let reduced = reduce(self, &system)?;
             let mut change = [0.0; 4];
             match target {
                 Drive::Strain(end) => {
@@ -142,8 +148,8 @@ impl FiniteCell {
 
     fn report(&self, state: &State, pressures: [f64; 2], iterations: usize) -> Option<SectionState> {
         let system = self.assemble(state, pressures)?;
-        let reduced = reduce(&system)?;
-        let rest = self.assemble(&self.rest(), [0.0; 2])?.areas;
+        let reduced = reduce(self, &system)?;
+        let rest = self.areas;
         let scale = self.width / self.cell.size[0];
         let areas = [system.areas[0] - rest[0], system.areas[1] - rest[1]];
         // Over (e, kappa, p_u, p_l), g0 and g1 eliminated: Omega's Hessian is S, -T^T, -R.

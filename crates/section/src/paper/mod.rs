@@ -125,6 +125,7 @@ pub fn section(poisson_ratio: f64, fillet_m: f64, center_m: f64) -> Section {
             young_modulus_pa: 2e6,
             poisson_ratio,
             density_kg_m3: 950.0,
+            law: None,
         },
         bladders: Bladders {
             length_m: 0.046,

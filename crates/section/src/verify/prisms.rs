@@ -34,6 +34,7 @@ fn material(young_modulus_pa: f64, poisson_ratio: f64) -> Material {
         young_modulus_pa,
         poisson_ratio,
         density_kg_m3: 1000.0,
+        law: None,
     }
 }
 

@@ -30,6 +30,7 @@ fn tube(nu: f64) -> Result<Vec<Comparison>, Error> {
         young_modulus_pa: young,
         poisson_ratio: nu,
         density_kg_m3: 1000.0,
+        law: None,
     };
     let rings = [OUTER, INNER].map(|r| Outline::ellipse([0.0; 2], [r; 2]));
     let bore = rings[1].chords();

@@ -26,6 +26,7 @@ pub fn with_shapes(nu: f64, upper: Option<(f64, Shape)>, lower: Option<(f64, Sha
             young_modulus_pa: 2e6,
             poisson_ratio: nu,
             density_kg_m3: 950.0,
+            law: None,
         },
         bladders: Bladders {
             length_m: 0.046,

@@ -352,6 +352,21 @@ impl<'a> Scene<'a> {
         [over(moment, by_loads), over(force, along)]
     }
 
+    /// Bound of the section's energy beyond its quadratic part over that, at the sizes that the scene expects of stretch, curvature and
+    /// pressure: of all states with no more of each. Three times as large bendings where something comes suddenly.
+    pub fn strain_energy(&self) -> f64 {
+        let law = self.wet.and_then(|wet| Some((wet, wet.strain_energy.as_ref()?)));
+        let Some((wet, law)) = law else { return 0.0 };
+        let (ea, ei) = (self.section.axial_stiffness, self.section.bending_stiffness);
+        let sudden = 1.0 + self.inertia_ratio(self.bending).min(2.0);
+        let pressure = self.scales.pressure * sudden;
+        let stored = wet.length_ratio(self.case.beam.length_m) * wet.area.per_pressure;
+        law.share(
+            [ea, ei, stored],
+            [self.largest_force() / ea, sudden * self.scales.moment / ei, pressure],
+        )
+    }
+
     /// `dm/am`, `dn/an`.
     pub fn asymmetries(&self) -> [f64; 2] {
         let Some(b) = &self.case.bladders else { return [0.0; 2] };

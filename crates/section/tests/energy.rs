@@ -1,0 +1,140 @@
+//! The energy at finite strain as a polynomial, against the cell that it is made from.
+
+mod common;
+
+use common::paper;
+use slcbeam_section::cell::Cell;
+use slcbeam_section::coefficients::Options;
+use slcbeam_section::finite::energy::monomials;
+use slcbeam_section::finite::{Drive, FiniteCell, Law, SectionState, StrainEnergy};
+use slcbeam_section::input::{Row, Section};
+
+fn section(law: Option<Law>) -> Section {
+    let mut section = paper(0.49, 0.0025);
+    section.material.law = law;
+    section
+}
+
+fn cell(section: &Section, meshes: usize) -> FiniteCell {
+    let meshes = section
+        .meshes(&Options {
+            meshes,
+            ..Options::default()
+        })
+        .unwrap();
+    let cell = Cell::new(section, &meshes[meshes.len() - 1]);
+    FiniteCell::new(section, cell, section.material.law.unwrap()).unwrap()
+}
+
+/// P by its definition, at z.
+fn value(energy: &StrainEnergy, z: [f64; 4]) -> f64 {
+    let term = |k: [usize; 4]| (0..4).map(|i| z[i].powi(k[i] as i32)).product::<f64>();
+    let terms = monomials(energy.degree).map(term);
+    terms.zip(&energy.coefficients_n).map(|(term, c)| term * c).sum()
+}
+
+/// z at y.
+fn scaled(energy: &StrainEnergy, y: [f64; 4]) -> [f64; 4] {
+    let largest = |of: &[[f64; 2]]| of.iter().flatten().fold(0.0_f64, |most, end| end.abs().max(most));
+    let [e, k, p] = [&energy.limits[..1], &energy.limits[1..2], &energy.limits[2..]].map(largest);
+    [y[0] / e, y[1] / k, (y[2] + y[3]) / (2.0 * p), (y[2] - y[3]) / (2.0 * p)]
+}
+
+/// Strains by loads y_1, y_2 of a cell, whose strains by pressure are those of its tangent at rest.
+struct Rest(SectionState);
+
+impl Rest {
+    fn by_pressure(&self, p: [f64; 2]) -> [f64; 2] {
+        let t = &self.0.tangent;
+        [0, 1].map(|i| -(t[i][2] * p[0] + t[i][3] * p[1]) / t[i][i])
+    }
+
+    /// Size of the quadratic part, whose terms differ in sign.
+    fn size(&self, at: &SectionState) -> f64 {
+        let x = [at.strain[0], at.strain[1], at.pressures_pa[0], at.pressures_pa[1]];
+        (0..4).map(|i| 0.5 * self.0.tangent[i][i].abs() * x[i] * x[i]).sum()
+    }
+
+    /// Omega less its quadratic part.
+    fn beyond(&self, at: &SectionState) -> f64 {
+        let x = [at.strain[0], at.strain[1], at.pressures_pa[0], at.pressures_pa[1]];
+        let quadratic: f64 = (0..4)
+            .map(|i| (0..4).map(|j| x[i] * x[j] * self.0.tangent[i][j]).sum::<f64>())
+            .sum();
+        at.potential_n - 0.5 * quadratic
+    }
+}
+
+#[test]
+fn the_polynomial_is_the_energy_of_the_cell_between_the_states_that_it_was_fitted_to() {
+    for law in [
+        Law::NeoHookean,
+        Law::SaintVenantKirchhoff,
+        Law::MooneyRivlin { second: 0.2 },
+    ] {
+        let section = section(Some(law));
+        let energy = section.strain_energy().unwrap().unwrap();
+        assert!(energy.error < 1e-2, "{law:?}: {}", energy.error);
+        let cell = cell(&section, 1);
+        let rest = Rest(cell.equilibrium(Drive::Strain([0.0; 2]), [0.0; 2]).unwrap());
+        // directions with no symmetry, inside the ellipsoid
+        for direction in [
+            [0.6, 0.3, 0.4, 0.1],
+            [-0.3, 0.5, 0.6, 0.2],
+            [0.1, -0.2, -0.3, 0.8],
+            [-0.4, -0.4, 0.4, -0.3],
+        ] {
+            let y: [f64; 4] =
+                std::array::from_fn(|i| direction[i] * energy.limits[i][usize::from(direction[i] > 0.0)].abs());
+            let p = [y[2], y[3]];
+            let [stretch, curvature] = rest.by_pressure(p);
+            let at = cell
+                .equilibrium(Drive::Strain([y[0] + stretch, y[1] + curvature]), p)
+                .unwrap();
+            let (found, exact) = (value(&energy, scaled(&energy, y)), rest.beyond(&at));
+            let off = (found - exact).abs() / rest.size(&at);
+            println!("{law:?} {y:?}: {found:.5} {exact:.5}, off by {off:.1e} of the quadratic part");
+            assert!(off < 5e-3, "{law:?} {y:?}: {found} {exact}");
+        }
+    }
+}
+
+#[test]
+fn the_energy_is_that_of_a_finer_mesh() {
+    let section = section(Some(Law::NeoHookean));
+    let energy = section.strain_energy().unwrap().unwrap();
+    let fine = cell(&section, 2);
+    let rest = Rest(fine.equilibrium(Drive::Strain([0.0; 2]), [0.0; 2]).unwrap());
+    for direction in [
+        [0.7, 0.0, 0.0, 0.0],
+        [0.0, 0.8, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.8],
+        [0.4, 0.4, 0.4, 0.4],
+    ] {
+        let y: [f64; 4] = std::array::from_fn(|i| direction[i] * energy.limits[i][1]);
+        let p = [y[2], y[3]];
+        let [stretch, curvature] = rest.by_pressure(p);
+        let at = fine
+            .equilibrium(Drive::Strain([y[0] + stretch, y[1] + curvature]), p)
+            .unwrap();
+        let (found, exact) = (value(&energy, scaled(&energy, y)), rest.beyond(&at));
+        let off = (found - exact).abs() / rest.size(&at);
+        println!("{y:?}: {found:.5} {exact:.5}, off by {off:.1e} of the quadratic part");
+        assert!(off < 1e-2, "{y:?}: {found} {exact}");
+    }
+}
+
+#[test]
+fn sections_without_a_law_or_without_mirrored_rows_have_none() {
+    assert_eq!(section(None).strain_energy().unwrap(), None);
+    let mut one_row = section(Some(Law::NeoHookean));
+    one_row.bladders.lower = Row::None;
+    assert_eq!(one_row.strain_energy().unwrap(), None);
+    let mut unlike = section(Some(Law::NeoHookean));
+    if let Row::Bladder(upper) = &unlike.bladders.upper {
+        let mut lower = upper.clone();
+        lower.center_m = -0.9 * lower.center_m;
+        unlike.bladders.lower = Row::Bladder(lower);
+    }
+    assert_eq!(unlike.strain_energy().unwrap(), None);
+}

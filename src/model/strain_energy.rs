@@ -1,0 +1,346 @@
+//! The section's energy beyond its quadratic part.
+
+use crate::case::schema::StrainEnergy as Written;
+use crate::numerics::Scalar;
+
+/// Highest degree of the polynomial.
+pub const DEGREE: usize = 6;
+/// Monomials of stretch and curvature up to that degree: so many with an even power of curvature, so many in all.
+const EVEN: usize = 16;
+const ALL: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
+
+/// `[E48]` What a law of finite strain adds to the potential of the section, `g_i` the larger limit of `y_i`:
+///
+/// ```text
+/// Ω = Ω_2 + P(z)      y = (λ - 1 - λ_p, κ - α_p, p_u, p_d)      P = Σ P_k z^k, 3 <= |k| <= degree, k_2 + k_4 even
+/// z = (y_1/g_1, y_2/g_2, (p_u + p_d)/2 g_3, (p_u - p_d)/2 g_3)
+/// N = EA y_1 + P_1      M = EI y_2 + P_2      φ_b l_b a1_R = φ_b l_b (a_p p_R + R A_M + A_N) - ∂P/∂p_R
+/// ∂P/∂p_u = P_3 - (λ_p)' P_1 - (α_p)' P_2      ∂P/∂p_d = P_4 - (λ_p)' P_1 + (α_p)' P_2
+/// ```
+///
+/// All three follow from one potential, so energy is conserved whatever the polynomial. An odd power of what bends (`k_2`, `k_4`) does not
+/// occur where the rows mirror each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrainEnergy {
+    /// Limits below and above of `y`.
+    limits: [[f64; 2]; 4],
+    /// `1/g_1`, `1/g_2`, `1/2 g_3`.
+    inverse: [f64; 3],
+    blocks: Vec<Block>,
+}
+
+/// `z_1^a z_2^b`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Monomial {
+    powers: [usize; 2],
+    /// Those with a power less of stretch and of curvature.
+    below: [usize; 2],
+}
+
+/// All of them, those with an even power of curvature first, each kind by the sum of its powers.
+const MONOMIALS: [Monomial; ALL] = {
+    let mut all = [Monomial {
+        powers: [0; 2],
+        below: [0; 2],
+    }; ALL];
+    let mut n = 0;
+    while n < ALL {
+        all[n].powers = powers_of(n);
+        let [a, b] = all[n].powers;
+        all[n].below = [place_of(a.saturating_sub(1), b), place_of(a, b.saturating_sub(1))];
+        n += 1;
+    }
+    all
+};
+
+/// Place of a monomial among all.
+const fn place_of(a: usize, b: usize) -> usize {
+    let mut n = 0;
+    while powers_of(n)[0] != a || powers_of(n)[1] != b {
+        n += 1;
+    }
+    n
+}
+
+/// Powers of the monomial at a place.
+const fn powers_of(place: usize) -> [usize; 2] {
+    let odd = (place >= EVEN) as usize;
+    let (mut left, mut sum) = (place - odd * EVEN, odd);
+    loop {
+        let many = (sum - odd) / 2 + 1;
+        if left < many {
+            let b = odd + 2 * left;
+            return [sum - b, b];
+        }
+        left -= many;
+        sum += 1;
+    }
+}
+
+/// All terms with the same powers of sum and difference of the pressures.
+#[derive(Clone, Debug, PartialEq)]
+struct Block {
+    powers: [usize; 2],
+    /// Of the monomials from `first` on; zero where `|k| < 3`.
+    coefficients: Vec<f64>,
+    first: usize,
+}
+
+/// P at given pressures.
+#[derive(Clone, Copy, Debug)]
+pub struct AtPressures<T> {
+    /// Powers of sum and difference.
+    pressures: [Powers<T>; 2],
+    /// `P_1` and `P_2` by the monomials.
+    normal: Values<T>,
+    moment: Values<T>,
+}
+
+/// Integrals over a part of the beam.
+#[derive(Clone, Copy, Debug)]
+pub struct Sums<T> {
+    /// Of P.
+    pub energy: T,
+    /// Of `P_3` and `P_4`.
+    pub by_pressure: [T; 2],
+}
+
+/// Values of all monomials.
+pub type Values<T> = [T; ALL];
+/// Powers of one number.
+pub type Powers<T> = [T; DEGREE + 1];
+
+/// `1, x, .., x^DEGREE`.
+#[inline]
+fn powers<T: Scalar>(x: T) -> Powers<T> {
+    let mut all = [T::constant(1.0); DEGREE + 1];
+    for k in 1..=DEGREE {
+        all[k] = all[k - 1] * x;
+    }
+    all
+}
+
+/// `k x^(k-1)` from the powers of x.
+#[inline]
+fn slope<T: Scalar>(powers: &Powers<T>, k: usize) -> T {
+    match k {
+        0 => T::zero(),
+        _ => powers[k - 1] * k as f64,
+    }
+}
+
+#[inline]
+fn dot<T: Scalar>(a: &Values<T>, b: &Values<T>) -> T {
+    // four sums that do not wait for each other
+    let mut sums = [T::zero(); 4];
+    for n in 0..ALL {
+        sums[n % 4] += a[n] * b[n];
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+impl StrainEnergy {
+    /// That of a checked case.
+    pub fn new(written: &Written) -> Self {
+        let limits = written.limits();
+        let degree = written.degree.min(DEGREE);
+        let mut given = written.coefficients_n.iter().copied();
+        let of_pressures = (0..=degree).flat_map(|sum| (0..=sum).map(move |d| [sum - d, d]));
+        let blocks = of_pressures.map(|powers| {
+            let (sum, odd) = (powers[0] + powers[1], powers[1] % 2);
+            let kind = [&MONOMIALS[..EVEN], &MONOMIALS[EVEN..]][odd];
+            let all = kind.iter().map(|m| m.powers[0] + m.powers[1] + sum);
+            let coefficients = all.take_while(|all| *all <= degree).map(|all| match all {
+                0..3 => 0.0,
+                _ => given.next().unwrap_or(0.0),
+            });
+            Block {
+                powers,
+                coefficients: coefficients.collect(),
+                first: odd * EVEN,
+            }
+        });
+        let inverse = |parts: &[[f64; 2]]| match parts.iter().flatten().fold(0.0, |most, end| end.abs().max(most)) {
+            largest if largest > 0.0 => 1.0 / largest,
+            _ => 0.0,
+        };
+        Self {
+            limits,
+            inverse: [
+                inverse(&limits[..1]),
+                inverse(&limits[1..2]),
+                0.5 * inverse(&limits[2..]),
+            ],
+            blocks: blocks.collect(),
+        }
+    }
+
+    /// At pressures of the upper and the lower bladder.
+    #[inline]
+    pub fn at_pressures<T: Scalar>(&self, [upper, lower]: [T; 2]) -> AtPressures<T> {
+        let [s, d] = [upper + lower, upper - lower].map(|p| powers(p * self.inverse[2]));
+        let mut energy = [T::zero(); ALL];
+        for block in &self.blocks {
+            let value = s[block.powers[0]] * d[block.powers[1]];
+            for (energy, &c) in energy[block.first..].iter_mut().zip(&block.coefficients) {
+                *energy += value * c;
+            }
+        }
+        let [mut normal, mut moment] = [[T::zero(); ALL]; 2];
+        for n in 0..ALL {
+            let ([a, b], [less_stretch, less_curvature]) = (MONOMIALS[n].powers, MONOMIALS[n].below);
+            if a > 0 {
+                normal[less_stretch] = energy[n] * (a as f64 * self.inverse[0]);
+            }
+            if b > 0 {
+                moment[less_curvature] = energy[n] * (b as f64 * self.inverse[1]);
+            }
+        }
+        AtPressures {
+            pressures: [s, d],
+            normal,
+            moment,
+        }
+    }
+
+    /// P and its derivatives by the pressures, of values of the monomials that are summed over a part of the beam.
+    #[inline]
+    pub fn sums<T: Scalar>(&self, at: &AtPressures<T>, values: &Values<T>) -> Sums<T> {
+        let [s, d] = &at.pressures;
+        let [mut energy, mut by_sum, mut by_difference] = [T::zero(); 3];
+        for block in &self.blocks {
+            let mut sum = T::zero();
+            for (value, &c) in values[block.first..].iter().zip(&block.coefficients) {
+                sum += *value * c;
+            }
+            let [a, b] = block.powers;
+            energy += s[a] * d[b] * sum;
+            by_sum += slope(s, a) * d[b] * sum;
+            by_difference += s[a] * slope(d, b) * sum;
+        }
+        let [by_sum, by_difference] = [by_sum, by_difference].map(|by| by * self.inverse[2]);
+        Sums {
+            energy,
+            by_pressure: [by_sum + by_difference, by_sum - by_difference],
+        }
+    }
+
+    /// Powers of a stretch `y_1`.
+    #[inline]
+    pub fn of_stretch<T: Scalar>(&self, stretch: T) -> Powers<T> {
+        powers(stretch * self.inverse[0])
+    }
+
+    /// Powers of a curvature `y_2`.
+    #[inline]
+    pub fn of_curvature<T: Scalar>(&self, curvature: T) -> Powers<T> {
+        powers(curvature * self.inverse[1])
+    }
+
+    /// No monomials.
+    pub fn none<T: Scalar>(&self) -> Values<T> {
+        [T::zero(); ALL]
+    }
+
+    /// All monomials.
+    #[inline]
+    pub fn values<T: Scalar>(&self, stretch: &Powers<T>, curvature: &Powers<T>) -> Values<T> {
+        std::array::from_fn(|n| stretch[MONOMIALS[n].powers[0]] * curvature[MONOMIALS[n].powers[1]])
+    }
+
+    /// The curvature `y_2` of an end at which `EI y_2 + P_2` is a moment, where P sees the mean of it and that of the `other` node of the
+    /// cell: by Newton's method, a fixed number of iterations, so that derivatives go along.
+    pub fn curvature_under<T: Scalar>(
+        &self,
+        at: &AtPressures<T>,
+        stretch: &Powers<T>,
+        other: T,
+        moment: T,
+        bending_stiffness: f64,
+    ) -> T {
+        const ITERATIONS: usize = 5;
+        let mut curvature = moment * (1.0 / bending_stiffness);
+        for _ in 0..ITERATIONS {
+            let values = self.values(stretch, &self.of_curvature((curvature + other) * 0.5));
+            let mut slope = T::constant(bending_stiffness);
+            for (monomial, of) in MONOMIALS.iter().zip(&at.moment).filter(|(m, _)| m.powers[1] > 0) {
+                slope += *of * values[monomial.below[1]] * (0.5 * monomial.powers[1] as f64 * self.inverse[1]);
+            }
+            curvature -= (curvature * bending_stiffness + at.moment(&values) - moment) / slope;
+        }
+        curvature
+    }
+
+    /// How far out a state lies in the ellipsoid in which P is known, 1 at its border.
+    pub fn out(&self, y: &[f64; 4]) -> f64 {
+        self.parts(y).map(|(part, _)| part * part).sum::<f64>().sqrt()
+    }
+
+    /// Its rate.
+    pub fn out_rate(&self, y: &[f64; 4], rates: &[f64; 4]) -> f64 {
+        let product: f64 = self
+            .parts(y)
+            .zip(rates)
+            .map(|((part, end), rate)| part * rate / end)
+            .sum();
+        product / self.out(y).max(f64::MIN_POSITIVE)
+    }
+
+    /// Each entry over the end of its axis on that side, with the end.
+    fn parts(&self, y: &[f64; 4]) -> impl Iterator<Item = (f64, f64)> {
+        let ends = self
+            .limits
+            .iter()
+            .zip(y)
+            .map(|(limits, y)| (*y, limits[usize::from(*y > 0.0)]));
+        ends.map(|(y, end)| if end == 0.0 { (0.0, 1.0) } else { (y / end, end) })
+    }
+
+    /// A bound of |P| over the quadratic part, `(EA y_1² + EI y_2² + Σ φ_b l_b a_p p²)/2` with `stiffness` these three, of all states
+    /// whose strains and pressures are at most `y` in size: each term is at most the largest square of an entry that it has, times the
+    /// rest of it.
+    pub fn share(&self, stiffness: [f64; 3], y: [f64; 3]) -> f64 {
+        // Σ p² = 2 g² 2 (z_3² + z_4²)
+        let square = |i: usize| 0.5 * stiffness[i.min(2)] * [1.0, 1.0, 0.5, 0.5][i] / self.inverse[i.min(2)].powi(2);
+        let z: [f64; 4] = std::array::from_fn(|i| y[i.min(2)] * self.inverse[i.min(2)] * [1.0, 1.0, 2.0, 2.0][i]);
+        let term = |powers: [usize; 4]| -> f64 {
+            // |z_i z_j| <= (s_i z_i² + s_j z_j²)/(2 √(s_i s_j)), s the squares' parts in the energy
+            let pairs = (0..4).flat_map(|i| (0..=i).map(move |j| [i, j]));
+            let bounds = pairs.filter_map(|pair| {
+                let left: Option<Vec<i32>> = (0..4)
+                    .map(|n| i32::try_from(powers[n].checked_sub(pair.iter().filter(|i| **i == n).count())?).ok())
+                    .collect();
+                let rest: f64 = left?.into_iter().zip(z).map(|(power, z)| z.powi(power)).product();
+                let half = if pair[0] == pair[1] { 1.0 } else { 2.0 };
+                Some(rest / (half * (square(pair[0]) * square(pair[1])).sqrt()))
+            });
+            bounds.fold(f64::INFINITY, f64::min)
+        };
+        let mut share = 0.0;
+        for block in &self.blocks {
+            for (monomial, c) in MONOMIALS[block.first..]
+                .iter()
+                .zip(&block.coefficients)
+                .filter(|(_, c)| **c != 0.0)
+            {
+                let ([a, b], [s, d]) = (monomial.powers, block.powers);
+                share += c.abs() * term([a, b, s, d]);
+            }
+        }
+        share
+    }
+}
+
+impl<T: Scalar> AtPressures<T> {
+    /// `P_1` [N].
+    #[inline]
+    pub fn normal(&self, values: &Values<T>) -> T {
+        dot(&self.normal, values)
+    }
+
+    /// `P_2` [N m].
+    #[inline]
+    pub fn moment(&self, values: &Values<T>) -> T {
+        dot(&self.moment, values)
+    }
+}
