@@ -41,7 +41,7 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Case> {
 pub fn text(path: &Path) -> Result<String> {
     let unreadable = |e| {
         let meant = nearest_file(path).map_or_else(String::new, |name| format!("; did you mean {}?", name.display()));
-        Error::Usage(format!("cannot read the case {}: {e}{meant}", path.display()))
+        Error::Usage(format!("cannot read {}: {e}{meant}", path.display()))
     };
     let bytes = if path == Path::new(STANDARD_INPUT) {
         bounded(std::io::stdin().lock()).map_err(unreadable)?
