@@ -149,6 +149,34 @@ fn a_starting_case_is_valid_for_editors_and_named_as_its_file() {
     }
 }
 
+/// Goal: every section to begin with has coefficients with errors below 1e-3, the one with two rows runs as a case too, and the others say why not.
+#[test]
+fn a_starting_section_has_coefficients() {
+    let folder = tempfile::tempdir().unwrap();
+    for kind in ["honeycomb", "pneunet", "channels", "fibre"] {
+        let file = format!("{kind}.json");
+        let (code, out, _) = slcbeam(folder.path(), &["new", "section", &file, "--of", kind]);
+        assert_eq!((code, out.contains("makes no case")), (0, kind != "honeycomb"));
+        let (code, out, err) = slcbeam(folder.path(), &["coefficients", &file, "--json"]);
+        assert_eq!(code, 0, "{kind}: {err}");
+        let found: Value = serde_json::from_str(&out).unwrap();
+        for key in [
+            "bending_stiffness_factor",
+            "area_per_moment_m2_per_n_m",
+            "permeability_m4",
+        ] {
+            assert!(
+                found[key].as_f64().unwrap() > 0.0 && found["errors"][key].as_f64().unwrap() < 1e-3,
+                "{kind} {key}"
+            );
+        }
+    }
+    let (code, out, err) = slcbeam(folder.path(), &["run", "honeycomb.json", "--json"]);
+    assert_eq!(code, 0, "{out} {err}");
+    let (code, _, err) = slcbeam(folder.path(), &["new", "beam", "--of", "pneunet"]);
+    assert!(code == 2 && err.contains("new section"), "{err}");
+}
+
 /// Editors are told the same as `slcbeam check`: with a preset its sections may be partial, without one they may not.
 #[test]
 fn the_schema_knows_presets_and_remarks() {

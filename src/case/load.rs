@@ -10,7 +10,7 @@ use super::faults::{Source, Violations, sort};
 use super::origins::Origins;
 use super::schema::Case;
 use super::wording::nearest;
-use super::{check, counts, parse as json, presets, schema_json, section, sets, tables, validate};
+use super::{check, counts, fluids, parse as json, presets, schema_json, section, sets, tables, validate};
 use crate::error::{Code, Error, Result, Violation};
 
 /// Largest case file that is read.
@@ -41,7 +41,7 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Case> {
 pub fn text(path: &Path) -> Result<String> {
     let unreadable = |e| {
         let meant = nearest_file(path).map_or_else(String::new, |name| format!("; did you mean {}?", name.display()));
-        Error::Usage(format!("cannot read the case {}: {e}{meant}", path.display()))
+        Error::Usage(format!("cannot read {}: {e}{meant}", path.display()))
     };
     let bytes = if path == Path::new(STANDARD_INPUT) {
         bounded(std::io::stdin().lock()).map_err(unreadable)?
@@ -94,11 +94,9 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
     };
     let own = value.clone();
     let section = section::of(&value);
-    presets::apply(
-        &mut value,
-        &source.sets,
-        section.as_ref().map(|section| section.values.clone()),
-    );
+    let fluid = fluids::of(&value);
+    let brought = [section.as_ref().map(|s| &s.values), fluid.as_ref().map(|f| &f.values)];
+    presets::apply(&mut value, &source.sets, brought.into_iter().flatten().cloned());
     // Numbers that are none have their fault already; `null` stands for them.
     let told = violations.iter().map(|v| v.pointer.clone());
     let told: Vec<String> = told.filter(|p| value.pointer(p).is_some_and(Value::is_null)).collect();
@@ -119,6 +117,7 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         false => None,
     };
     section.iter().for_each(|section| section.tell(&own, &mut faults));
+    fluid.iter().for_each(|fluid| fluid.tell(&mut faults));
     let case = case.map(|case| Case {
         origins: Origins::of(&own, &value, &source.sets, case.preset, section.as_ref()),
         ..case

@@ -8,6 +8,7 @@ mod choices;
 mod counts;
 mod ends;
 mod faults;
+pub mod fluids;
 pub mod inherited;
 mod load;
 pub mod locate;

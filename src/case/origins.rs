@@ -5,7 +5,10 @@ use std::fmt;
 
 use serde_json::Value;
 
+use slcbeam_section::materials::Preset as Elastomer;
+
 use super::faults::{SetValue, is_below};
+use super::fluids;
 use super::presets::Preset;
 use super::section::Brought;
 
@@ -27,6 +30,10 @@ pub enum Origin {
     },
     /// It follows from what is named here.
     Computed(&'static str),
+    /// A fluid by name has it, by this source.
+    Fluid(&'static str, &'static str),
+    /// An elastomer by name has it.
+    Elastomer(Elastomer),
 }
 
 impl fmt::Display for Origin {
@@ -39,6 +46,8 @@ impl fmt::Display for Origin {
             Self::Section { three_d: false } => f.write_str("computed from section"),
             Self::Section { three_d: true } => f.write_str("computed from section in 3-D"),
             Self::Computed(from) => write!(f, "computed from {from}"),
+            Self::Fluid(name, source) => write!(f, "preset {name} ({source})"),
+            Self::Elastomer(preset) => write!(f, "preset {}", preset.name()),
         }
     }
 }
@@ -99,7 +108,7 @@ impl Origins {
             };
             Some((pointer, origin))
         });
-        Self(known.collect())
+        Self(known.chain(named(own)).collect())
     }
 
     /// The origin of the coefficient at a pointer; none where there is no such coefficient.
@@ -112,6 +121,30 @@ impl Origins {
         let words = |(pointer, origin): (&String, &Origin)| (pointer.clone(), origin.to_string());
         self.0.iter().map(words).collect()
     }
+}
+
+/// Numbers of fluids and elastomers that the case names.
+fn named(own: &Value) -> Vec<(String, Origin)> {
+    let mut found = vec![];
+    if let Some(fluid) = fluids::of(own).and_then(|brought| brought.fluid) {
+        let keys = ["/fluid/density_kg_m3", "/fluid/viscosity_pa_s"]
+            .into_iter()
+            .zip(fluid.sources());
+        let own = keys.filter(|(pointer, _)| own.pointer(pointer).is_none());
+        found.extend(own.map(|(pointer, source)| (pointer.to_owned(), Origin::Fluid(fluid.name(), source))));
+    }
+    let regions = own
+        .pointer("/section/regions")
+        .and_then(Value::as_array)
+        .map_or(0, Vec::len);
+    let places = (0..regions).map(|i| format!("/section/regions/{i}/material"));
+    for pointer in std::iter::once("/section/material".to_owned()).chain(places) {
+        let name = own.pointer(&pointer).and_then(|material| material.get("preset"));
+        if let Some(preset) = name.and_then(|name| serde_json::from_value(name.clone()).ok()) {
+            found.push((pointer, Origin::Elastomer(preset)));
+        }
+    }
+    found
 }
 
 /// Where a coefficient that is not given comes from.

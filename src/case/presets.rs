@@ -38,14 +38,13 @@ impl Preset {
     }
 }
 
-/// Fills in what the case leaves to its section, of which `section` is what it brings, and to its preset, the section first: objects are
-/// merged, everything else that the case has stands, and what it gives as `null` is left out. What they bring stays what it is whatever
+/// Fills in what the case leaves to its section and its fluid, which bring `nearer`, and to its preset, those first: objects are merged, everything else that the case has stands, and what it gives as `null` is left out. What they bring stays what it is whatever
 /// else the case has, so that a number set to its own value changes nothing; only a cross-section from which a permeability is to
 /// follow takes theirs away.
-pub fn apply(case: &mut Value, sets: &[SetValue], section: Option<Value>) {
+pub fn apply(case: &mut Value, sets: &[SetValue], nearer: impl IntoIterator<Item = Value>) {
     // A misspelt name is told when the case is checked; the rest is looked at as if it were right.
     let preset = case.get("preset").map(|_| Preset::MatiaGatBeam.values());
-    let Some(mut brought) = [section, preset].into_iter().flatten().reduce(|mut nearer, further| {
+    let Some(mut brought) = nearer.into_iter().chain(preset).reduce(|mut nearer, further| {
         fill(&mut nearer, further);
         nearer
     }) else {
@@ -107,7 +106,7 @@ mod tests {
     fn what_the_case_has_stands_and_null_leaves_out() {
         let mut case =
             json!({"preset": "matia-gat-beam", "beam": {"length_m": 0.2}, "fluid": null, "tubes": {"radius_m": 2e-3}});
-        apply(&mut case, &[], None);
+        apply(&mut case, &[], []);
         assert_eq!(case["beam"]["length_m"], 0.2);
         assert_eq!(case["beam"]["height_m"], 0.0216);
         assert_eq!(case.get("fluid"), None);
@@ -120,7 +119,7 @@ mod tests {
     fn a_permeability_is_computed_where_it_is_null_or_a_section_is_given() {
         let mut case = json!({"preset": "matia-gat-beam", "bladders": {"cross_section": {"circle": {"radius_m": 4e-3}}},
             "tubes": {"permeability_m4": null}, "network": {"tubes": [{"permeability_m4": null}]}});
-        apply(&mut case, &[], None);
+        apply(&mut case, &[], []);
         for section in ["bladders", "tubes"] {
             assert_eq!(case[section].get("permeability_m4"), None, "{section}");
         }
@@ -130,7 +129,7 @@ mod tests {
     #[test]
     fn without_a_preset_nothing_changes() {
         let mut case = json!({"beam": {"length_m": 0.2}});
-        apply(&mut case, &[], None);
+        apply(&mut case, &[], []);
         assert_eq!(case, json!({"beam": {"length_m": 0.2}}));
     }
 }

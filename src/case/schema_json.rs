@@ -41,6 +41,13 @@ pub fn schema_json() -> Value {
     for (name, part) in parts {
         schema["$defs"][name] = part;
     }
+    // a fluid by name brings its numbers
+    if let Some(fluid) = schema["$defs"]["Fluid"].as_object_mut()
+        && let Some(required) = fluid.shift_remove("required")
+    {
+        fluid.insert("if".into(), json!({"required": ["preset"]}));
+        fluid.insert("else".into(), json!({"required": required}));
+    }
     for (_, definition) in schema["$defs"].as_object_mut().into_iter().flatten() {
         // null: to be computed from the cross-section
         if let Some(kind) = definition.pointer_mut("/properties/permeability_m4/type") {

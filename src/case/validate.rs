@@ -1,7 +1,7 @@
 //! Structure: the JSON value against the generated JSON Schema, all faults at once.
 //!
 //! Knows only the keywords the generator writes (`$ref`, `type`, `properties`, `required`, `additionalProperties: false`,
-//! `oneOf`/`anyOf`, `const`, `enum`, `items`, `minItems`, `maxItems`, bounds of numbers). Of several branches the
+//! `oneOf`/`anyOf`, `if`/`else` about `required`, `const`, `enum`, `items`, `minItems`, `maxItems`, bounds of numbers). Of several branches the
 //! one the user meant is chosen by the type of the value and by its single key, so that a message is about that branch.
 
 use serde_json::{Map, Value};
@@ -172,6 +172,13 @@ impl<'a> Walk<'a> {
             }
         }
         let required = schema.get("required").and_then(Value::as_array).into_iter().flatten();
+        let unless = schema.pointer("/if/required").and_then(Value::as_array);
+        let named = unless.is_some_and(|keys| {
+            keys.iter()
+                .all(|key| key.as_str().is_some_and(|k| members.contains_key(k)))
+        });
+        let otherwise = schema.pointer("/else/required").and_then(Value::as_array);
+        let required = required.chain(otherwise.filter(|_| !named).into_iter().flatten());
         for key in required.filter_map(Value::as_str) {
             if !members.contains_key(key) && !misspelt.iter().any(|meant| meant == key) {
                 let fault = Violation::new(Code::Missing, pointer, format!("the key \"{key}\" is missing"));

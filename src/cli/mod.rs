@@ -13,6 +13,7 @@ mod floquet;
 mod interrupt;
 mod line;
 mod mapping;
+mod measure;
 mod modes;
 mod new;
 mod periodic;
@@ -71,6 +72,7 @@ fn act(command: &Command) -> Result<ExitCode> {
         Command::Run(asked) => run::run(asked),
         Command::Check(asked) => check::check(asked),
         Command::Coefficients(asked) => coefficients::coefficients(asked),
+        Command::Measure(asked) => measure::measure(asked),
         Command::Equilibrium(asked) => equilibrium::equilibrium(asked),
         Command::Study(asked) => study::study(asked),
         Command::Effects(asked) => effects::effects(asked),

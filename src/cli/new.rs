@@ -20,6 +20,9 @@ pub struct NewArguments {
     pub kind: Kind,
     /// The file; the case is named like it [default: <kind>.json]
     pub file: Option<PathBuf>,
+    /// Which section, of `new section` [default: honeycomb]; the others have one row, which `coefficients` takes and a case does not
+    #[arg(long, value_name = "NAME")]
+    pub of: Option<SectionKind>,
     /// Print as JSON which files were written
     #[arg(long)]
     pub json: bool,
@@ -38,21 +41,48 @@ pub enum Kind {
     Sensor,
     /// A dry beam that is let go
     Beam,
+    /// The geometry and material of a beam of your own, from which coefficients are computed: --of
+    Section,
+}
+
+/// Sections to begin with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SectionKind {
+    /// The paper's honeycomb, in a case
+    Honeycomb,
+    /// A row of chambers over a sheet that hardly stretches
+    Pneunet,
+    /// A row of round channels in silicone
+    Channels,
+    /// A chamber between threads, over a sheet that hardly stretches
+    Fibre,
+}
+
+impl SectionKind {
+    fn text(self) -> &'static str {
+        match self {
+            Self::Honeycomb => include_str!("sections/honeycomb.json"),
+            Self::Pneunet => include_str!("sections/pneunet.json"),
+            Self::Channels => include_str!("sections/channels.json"),
+            Self::Fibre => include_str!("sections/fibre.json"),
+        }
+    }
 }
 
 impl Kind {
-    fn text(self) -> &'static str {
+    fn text(self, of: SectionKind) -> &'static str {
         match self {
             Self::Wiring => include_str!("../../cases/tour-wiring.json"),
             Self::Actuator => include_str!("../../cases/tour-actuator.json"),
             Self::Harvester => include_str!("../../cases/tour-harvester.json"),
             Self::Sensor => include_str!("../../cases/tour-sensor.json"),
             Self::Beam => include_str!("../../cases/tour-beam.json"),
+            Self::Section => of.text(),
         }
     }
 }
 
-/// Writes the case, named as its file, and the schema beside it; nothing is written over.
+/// Writes the case, named as its file, and the schema beside it, or a section alone; nothing is written over.
 pub fn new(asked: &NewArguments) -> Result<ExitCode> {
     let named = asked
         .kind
@@ -74,11 +104,20 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
             }
         })
         .collect();
-    let text = [("name", name.as_str()), ("$schema", SCHEMA)]
+    let of = asked.of.unwrap_or(SectionKind::Honeycomb);
+    if asked.of.is_some() && asked.kind != Kind::Section {
+        return Err(Error::Usage(format!(
+            "--of says which section: slcbeam new section --of NAME, not new {named}"
+        )));
+    }
+    let text = asked.kind.text(of);
+    // a section alone has no name
+    let alone = asked.kind == Kind::Section && of != SectionKind::Honeycomb;
+    let keys = [("name", name.as_str()), ("$schema", SCHEMA)];
+    let text = keys
         .into_iter()
-        .try_fold(asked.kind.text().to_owned(), |text, (key, value)| {
-            rewrite(&text, key, &value.into())
-        })
+        .filter(|_| !alone)
+        .try_fold(text.to_owned(), |text, (key, value)| rewrite(&text, key, &value.into()))
         .unwrap_or_default();
     if path.exists() {
         return Err(Error::Usage(format!(
@@ -86,17 +125,26 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
             path.display()
         )));
     }
-    let schema = path.with_file_name(SCHEMA);
     replace(&path, &text)?;
+    let quoted = if path.to_string_lossy().contains(' ') {
+        format!("'{}'", path.display())
+    } else {
+        path.display().to_string()
+    };
+    if alone {
+        super::print(&match asked.json {
+            true => format!("{:#}\n", json!({"section": path})),
+            false => format!(
+                "wrote {quoted}, a section with one row: it has coefficients but makes no case\nnext: slcbeam coefficients {quoted}\n"
+            ),
+        })?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let schema = path.with_file_name(SCHEMA);
     replace(&schema, &format!("{:#}\n", schema_json()))?;
     super::print(&if asked.json {
         format!("{:#}\n", json!({"case": path, "schema": schema}))
     } else {
-        let quoted = if path.to_string_lossy().contains(' ') {
-            format!("'{}'", path.display())
-        } else {
-            path.display().to_string()
-        };
         format!(
             "wrote {quoted}, a starting case with remarks, and {}, by which editors explain its keys\nnext: slcbeam check {quoted}; slcbeam run {quoted}\n",
             schema.display()

@@ -7,6 +7,7 @@
 //! | [`planar`] | vectors in the plane |
 //! | [`kernels`] | loops over vectors |
 //! | `gauss` | Gauss' quadrature |
+//! | [`regression`], [`student`] | least squares with covariance, and intervals by Student's distribution |
 //! | [`krylov`] | linear systems and eigenvalues of a map known only by what it does |
 
 pub mod dual;
@@ -14,7 +15,9 @@ pub mod gauss;
 pub mod kernels;
 pub mod krylov;
 pub mod planar;
+pub mod regression;
 pub mod scalar;
+pub mod student;
 
 pub use dual::Dual;
 pub use planar::Planar;

@@ -4,6 +4,7 @@ pub mod accuracy;
 pub mod compare;
 pub mod counted;
 pub mod effects;
+pub mod measure;
 pub mod refine;
 pub mod stability;
 pub mod target;

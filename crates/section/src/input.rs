@@ -7,6 +7,8 @@ use crate::finite::Law;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
+use crate::materials::Given;
+
 /// A point `[along, high]` of the cell's plane [m].
 pub type Point = [f64; 2];
 
@@ -32,9 +34,9 @@ pub struct Section {
     pub three_d: bool,
 }
 
-/// An isotropic elastic material.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+/// An isotropic elastic material; a section may name one of [crate::materials].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Given")]
 pub struct Material {
     /// Young's modulus E [Pa], above 0.
     pub young_modulus_pa: f64,
@@ -182,6 +184,16 @@ pub enum RegionShape {
         /// Corners `[along, high]` [m].
         points_m: Vec<Point>,
     },
+}
+
+impl JsonSchema for Material {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        Given::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Given::json_schema(generator)
+    }
 }
 
 impl Serialize for Row {

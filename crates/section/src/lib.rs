@@ -12,6 +12,7 @@
 //! | room | what it holds |
 //! |---|---|
 //! | [input], [error] | what the user writes; what can be wrong with it, and where |
+//! | [materials] | elastomers by name, with their sources |
 //! | [geometry], [mesh] | outlines and their rules; quadratic triangles on them, refined by halving |
 //! | [element] | shapes; stiffness without locking [S1] [S2]; the Laplacian |
 //! | [cell] | one cell's response to stretch, curvature, lateral strain and pressures [L1] to [L4]; shear [L5] to [L7] |
@@ -30,6 +31,7 @@ pub mod finite;
 pub mod geometry;
 pub mod input;
 pub mod level;
+pub mod materials;
 pub mod mesh;
 pub mod paper;
 pub mod permeability;

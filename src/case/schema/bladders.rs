@@ -3,10 +3,18 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::case::fluids::NamedFluid;
+
 /// Newtonian fluid in creeping flow.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Fluid {
+    /// A fluid by name: density and viscosity that are not given beside it are its own at `temperature_c`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub preset: Option<NamedFluid>,
+    /// Temperature of a fluid by name [C]; absent: 20.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature_c: Option<f64>,
     /// Density `rho_f` [kg/m^3]; 0 for massless fluid.
     #[schemars(range(min = 0.0))]
     pub density_kg_m3: f64,

@@ -123,12 +123,15 @@ impl Case {
         self.effects_tolerance.unwrap_or(1e-3)
     }
 
-    /// The case with every default filled in; without the editor's schema, which is not where results are, and without the
-    /// preset, whose values it has.
+    /// The case with every default filled in; without the editor's schema, which is not where results are, and without
+    /// presets, whose values it has.
     pub fn resolved(&self) -> Self {
         let mut case = self.clone();
         case.schema = None;
         case.preset = None;
+        if let Some(fluid) = &mut case.fluid {
+            (fluid.preset, fluid.temperature_c) = (None, None);
+        }
         case.time.output_interval_s = Some(self.time.output_interval());
         case.time.fields_interval_s = Some(self.time.fields_interval());
         case.time.window_s = Some(self.time.window());

@@ -10,6 +10,7 @@ use super::coefficients::CoefficientsArguments;
 use super::completions::CompletionsArguments;
 use super::explain::ExplainArguments;
 use super::export::ExportArguments;
+use super::measure::MeasureArguments;
 use super::new::NewArguments;
 use super::place::PlaceArguments;
 use super::report::ReportArguments;
@@ -34,6 +35,8 @@ pub enum Command {
     Check(CheckArguments),
     /// Compute the coefficients of a section from its geometry, with errors
     Coefficients(CoefficientsArguments),
+    /// Fit coefficients to measurements, with errors: volumes, extensions, curvatures and flows over pressure, force and moment
+    Measure(MeasureArguments),
     /// Find the static equilibrium under the loads of one instant, along the path from rest
     Equilibrium(EquilibriumArguments),
     /// Find what accuracy costs: time against error over tolerances, meshes and orders
@@ -73,6 +76,7 @@ impl Command {
             Self::Run(a) => a.json,
             Self::Check(a) => a.json,
             Self::Coefficients(a) => a.json,
+            Self::Measure(a) => a.json,
             Self::Equilibrium(a) => a.json,
             Self::Study(a) => a.json,
             Self::Effects(a) => a.json,

@@ -14,6 +14,7 @@
 //! multipliers   about the unit circle
 //! tongue      growth over frequency and amplitude
 //! cycles      steady cycles along a parameter
+//! measured    measurements with their fit
 //! ```
 
 mod canvas;
@@ -27,6 +28,7 @@ pub mod deflection;
 pub mod energy;
 pub mod history;
 pub mod loadpath;
+pub mod measured;
 pub mod modes;
 pub mod multipliers;
 pub mod overlay;

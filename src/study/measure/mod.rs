@@ -1,0 +1,381 @@
+//! Coefficients of a beam from a laboratory's data: the experiments of A.4.1 and A.4.2 of the paper with their errors.
+//!
+//! ```text
+//! y = g x + a [+ c x^3]                                             least squares, equal weights
+//! pressure-volume     a_p  = g/(n l_b)                              n bladders are pumped
+//! moment-volume       a_M  = g/(n l_b), where bending opens and closes
+//! force-volume        a_N  = g/(n l_b), under tension and compression
+//! force-extension     f_e  = l/(g E h w)
+//! moment-curvature    f_i  = 12/(g E h^3 w)
+//! pressure-curvature  psi' = |g| E/phi,  a_M = |g|/(phi l_b)        one row is pumped, reciprocal coupling
+//! flow-pressure       q_1  = g mu L                                 along a duct of length L
+//! ```
+//!
+//! The interval holds the truth in 95 of 100 repetitions if deviations are normal, independent and alike (Student's t). Whether a straight
+//! line is right is asked twice: by x^3 beside it, and by |x| beside it, which gives each side of zero a slope of its own.
+
+pub mod table;
+
+use crate::case::Case;
+use crate::error::{Error, Result};
+use crate::numerics::regression::{self, Regression};
+use table::{Points, Quantity};
+
+/// What was measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Experiment {
+    /// Volume of pumped bladders over pressure.
+    PressureVolume,
+    /// Volume of bladders over the bending moment.
+    MomentVolume,
+    /// Volume of bladders over the normal force.
+    ForceVolume,
+    /// Change of the beam's length over the normal force.
+    ForceExtension,
+    /// Curvature over the bending moment.
+    MomentCurvature,
+    /// Curvature over the pressure of one row, or its excess over that of the other.
+    PressureCurvature,
+    /// Flow through a duct over the difference of pressure along it.
+    FlowPressure,
+}
+
+impl Experiment {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::PressureVolume,
+        Self::MomentVolume,
+        Self::ForceVolume,
+        Self::ForceExtension,
+        Self::MomentCurvature,
+        Self::PressureCurvature,
+        Self::FlowPressure,
+    ];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PressureVolume => "pressure-volume",
+            Self::MomentVolume => "moment-volume",
+            Self::ForceVolume => "force-volume",
+            Self::ForceExtension => "force-extension",
+            Self::MomentCurvature => "moment-curvature",
+            Self::PressureCurvature => "pressure-curvature",
+            Self::FlowPressure => "flow-pressure",
+        }
+    }
+
+    /// What is set, and what is measured.
+    pub fn columns(self) -> [Quantity; 2] {
+        match self {
+            Self::PressureVolume => [Quantity::Pressure, Quantity::Volume],
+            Self::MomentVolume => [Quantity::Moment, Quantity::Volume],
+            Self::ForceVolume => [Quantity::Force, Quantity::Volume],
+            Self::ForceExtension => [Quantity::Force, Quantity::Extension],
+            Self::MomentCurvature => [Quantity::Moment, Quantity::Curvature],
+            Self::PressureCurvature => [Quantity::Pressure, Quantity::Curvature],
+            Self::FlowPressure => [Quantity::Pressure, Quantity::Flow],
+        }
+    }
+}
+
+/// How the fit is made.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// The line goes through zero.
+    pub through_zero: bool,
+    /// A cubic term stands beside the slope.
+    pub cubic: bool,
+    /// Bladders that are pumped or observed; those of one row where none is given.
+    pub bladders: Option<u32>,
+    /// The duct is a bladder, not a tube.
+    pub through_bladder: bool,
+}
+
+/// A number with its errors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Most likely value.
+    pub value: f64,
+    /// Standard error.
+    pub error: f64,
+    /// The interval of 95 %.
+    pub interval: [f64; 2],
+}
+
+impl Estimate {
+    fn of(fit: &Regression, weights: &[f64]) -> Self {
+        let (value, half) = (fit.value(weights), fit.half_width(weights));
+        Self {
+            value,
+            error: fit.error(weights),
+            interval: [value - half, value + half],
+        }
+    }
+
+    /// Times a factor.
+    fn times(self, factor: f64) -> Self {
+        let [a, b] = self.interval.map(|x| x * factor);
+        Self {
+            value: self.value * factor,
+            error: self.error * factor.abs(),
+            interval: [a.min(b), a.max(b)],
+        }
+    }
+
+    /// A factor over it; none where it may be zero.
+    fn under(self, factor: f64) -> Option<Self> {
+        let [a, b] = self.interval;
+        (a * b > 0.0).then(|| Self {
+            value: factor / self.value,
+            error: (factor * self.error / (self.value * self.value)).abs(),
+            interval: [(factor / a).min(factor / b), (factor / a).max(factor / b)],
+        })
+    }
+
+    /// As a positive number: areas count where the bladder opens.
+    fn upright(self) -> Self {
+        if self.value < 0.0 { self.times(-1.0) } else { self }
+    }
+}
+
+/// The two sides of zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sides {
+    /// Chance of slopes that differ as much if they are the same.
+    pub chance: f64,
+    /// Slope above zero.
+    pub above: Estimate,
+    /// Slope below zero.
+    pub below: Estimate,
+}
+
+/// A coefficient of the case.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficient {
+    /// JSON pointer of its key.
+    pub pointer: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// What it is.
+    pub estimate: Estimate,
+}
+
+/// What the data say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// The experiment.
+    pub experiment: Experiment,
+    /// The data [SI].
+    pub points: Points,
+    /// The fit: slope, then the offset, then the cubic term, as far as they are in it.
+    pub fit: Regression,
+    /// Slope.
+    pub slope: Estimate,
+    /// Value at zero, if it is fitted.
+    pub offset: Option<Estimate>,
+    /// Part of the data's variance that the fit explains, about zero for lines through zero.
+    pub explained: f64,
+    /// Chance of a cubic term as large if there is none; absent where there are too few points.
+    pub cubic_chance: Option<f64>,
+    /// The two sides of zero; absent where there are no three points on each.
+    pub sides: Option<Sides>,
+    /// Coefficients of the case.
+    pub coefficients: Vec<Coefficient>,
+    options: Options,
+}
+
+/// Chance below which a deviation from the straight line is told and slopes of both sides are taken.
+pub const SIGNIFICANT: f64 = 0.05;
+
+/// Columns of the fit at a value of what is set.
+fn regressors(options: Options, x: f64) -> Vec<f64> {
+    let offset = (!options.through_zero).then_some(1.0);
+    let cubic = options.cubic.then_some(x.powi(3));
+    [Some(x), offset, cubic].into_iter().flatten().collect()
+}
+
+fn columns(points: &Points, of: impl Fn(f64) -> Vec<f64>) -> Vec<Vec<f64>> {
+    let rows: Vec<Vec<f64>> = points.x.iter().map(|x| of(*x)).collect();
+    let width = rows.first().map_or(0, Vec::len);
+    (0..width).map(|k| rows.iter().map(|row| row[k]).collect()).collect()
+}
+
+/// Fits the data and turns the slope into coefficients of a case.
+///
+/// # Errors
+/// [`Error::Usage`]: too few points, a slope that is not told from zero, or a case without what the coefficient needs.
+pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Options) -> Result<Measured> {
+    let [x, y] = experiment.columns();
+    let fit = regression::fit(&columns(&points, |x| regressors(options, x)), &points.y).ok_or_else(|| {
+        let needed = regressors(options, 1.0).len() + 1;
+        Error::Usage(format!(
+            "{} points of {} do not fix the fit: it takes {needed} and as many different values of {}",
+            points.x.len(),
+            y.name(),
+            x.name()
+        ))
+    })?;
+    let unit = |k: usize| {
+        (0..fit.coefficients.len())
+            .map(|j| f64::from(u8::from(j == k)))
+            .collect::<Vec<_>>()
+    };
+    let slope = Estimate::of(&fit, &unit(0));
+    let offset = (!options.through_zero).then(|| Estimate::of(&fit, &unit(1)));
+    let with = |extra: fn(f64) -> f64| {
+        let of = |x: f64| {
+            let mut row = regressors(
+                Options {
+                    cubic: false,
+                    ..options
+                },
+                x,
+            );
+            row.push(extra(x));
+            row
+        };
+        regression::fit(&columns(&points, of), &points.y)
+    };
+    let cubic_chance = with(|x| x.powi(3)).map(|fit| fit.chance(fit.coefficients.len() - 1));
+    let both = points.x.iter().filter(|x| **x > 0.0).count() > 2 && points.x.iter().filter(|x| **x < 0.0).count() > 2;
+    let sides = with(f64::abs).filter(|_| both).map(|fit| {
+        let last = fit.coefficients.len() - 1;
+        let side = |sign: f64| {
+            let weights: Vec<f64> = (0..=last)
+                .map(|k| {
+                    if k == 0 {
+                        1.0
+                    } else if k == last {
+                        sign
+                    } else {
+                        0.0
+                    }
+                })
+                .collect();
+            Estimate::of(&fit, &weights)
+        };
+        Sides {
+            chance: fit.chance(last),
+            above: side(1.0),
+            below: side(-1.0),
+        }
+    });
+    let mean = if options.through_zero {
+        0.0
+    } else {
+        points.y.iter().sum::<f64>() / points.y.len() as f64
+    };
+    let total: f64 = points.y.iter().map(|y| (y - mean).powi(2)).sum();
+    let left: f64 = fit.residuals.iter().map(|e| e * e).sum();
+    let coefficients = coefficients(experiment, case, options, slope, sides)?;
+    Ok(Measured {
+        experiment,
+        explained: if total > 0.0 { 1.0 - left / total } else { 0.0 },
+        slope,
+        offset,
+        fit,
+        points,
+        cubic_chance,
+        sides,
+        coefficients,
+        options,
+    })
+}
+
+impl Measured {
+    /// The fit at a value of what is set, and half of the width of the band that holds the true curve there in 95 of 100 repetitions.
+    pub fn at(&self, x: f64) -> [f64; 2] {
+        let row = regressors(self.options, x);
+        [self.fit.value(&row), self.fit.half_width(&row)]
+    }
+}
+
+/// Coefficients by the formulas above.
+fn coefficients(
+    experiment: Experiment,
+    case: &Case,
+    options: Options,
+    slope: Estimate,
+    sides: Option<Sides>,
+) -> Result<Vec<Coefficient>> {
+    let lacks = |what: &str| Error::Usage(format!("the case has no {what}, which {} needs", experiment.name()));
+    let beam = &case.beam;
+    let (l, h, w, young) = (beam.length_m, beam.height_m, beam.width_m, beam.young_modulus_pa);
+    let bladders = || case.bladders.as_ref().ok_or_else(|| lacks("bladders"));
+    let per_length = || bladders().map(|b| 1.0 / (options.bladders.map_or(b.per_row as f64, f64::from) * b.length_m));
+    let told = |estimate: Option<Estimate>| {
+        estimate.ok_or_else(|| Error::Usage("the slope is not told from zero: its interval holds both signs".into()))
+    };
+    let one = |pointer, unit, estimate| Coefficient {
+        pointer,
+        unit,
+        estimate,
+    };
+    // slopes above and below zero: one where they are not told apart
+    let split = |factor: f64| {
+        let apart = sides.filter(|sides| sides.chance < SIGNIFICANT);
+        let pair = apart.map_or([slope, slope], |sides| [sides.above, sides.below]);
+        pair.map(|estimate| estimate.times(factor).upright())
+    };
+    Ok(match experiment {
+        Experiment::PressureVolume => vec![one(
+            "/bladders/area_per_pressure_m2_per_pa",
+            "m^2/Pa",
+            slope.times(per_length()?),
+        )],
+        Experiment::MomentVolume => {
+            let [above, below] = split(per_length()?);
+            // a moment above zero opens the bladders if their volume grows with it
+            let [opening, closing] = if slope.value > 0.0 {
+                [above, below]
+            } else {
+                [below, above]
+            };
+            vec![
+                one("/bladders/area_per_moment_m2_per_n_m/opening", "m^2/(N m)", opening),
+                one("/bladders/area_per_moment_m2_per_n_m/closing", "m^2/(N m)", closing),
+            ]
+        }
+        Experiment::ForceVolume => {
+            let [tension, compression] = split(per_length()?);
+            vec![
+                one("/bladders/area_per_force_m2_per_n/tension", "m^2/N", tension),
+                one("/bladders/area_per_force_m2_per_n/compression", "m^2/N", compression),
+            ]
+        }
+        Experiment::ForceExtension => {
+            let factor = told(slope.under(l / (young * h * w)))?;
+            vec![one("/beam/axial_stiffness_factor", "1", factor)]
+        }
+        Experiment::MomentCurvature => {
+            let factor = told(slope.under(12.0 / (young * h.powi(3) * w)))?.upright();
+            vec![one("/beam/bending_stiffness_factor", "1", factor)]
+        }
+        Experiment::PressureCurvature => {
+            let bladders = bladders()?;
+            let pitch = l / bladders.per_row as f64;
+            let area = slope.upright().times(pitch / bladders.length_m);
+            vec![
+                one("/bladders/area_per_moment_m2_per_n_m/opening", "m^2/(N m)", area),
+                one("/bladders/area_per_moment_m2_per_n_m/closing", "m^2/(N m)", area),
+                one(
+                    "/bladders/coupling/published/slope_per_pressure_rad",
+                    "rad",
+                    slope.upright().times(young * pitch),
+                ),
+            ]
+        }
+        Experiment::FlowPressure => {
+            let viscosity = case.fluid.as_ref().ok_or_else(|| lacks("fluid"))?.viscosity_pa_s;
+            let (pointer, length) = match options.through_bladder {
+                true => ("/bladders/permeability_m4", bladders()?.length_m),
+                false => (
+                    "/tubes/permeability_m4",
+                    case.tubes.as_ref().ok_or_else(|| lacks("tubes"))?.length_m,
+                ),
+            };
+            vec![one(pointer, "m^4", slope.upright().times(viscosity * length))]
+        }
+    })
+}

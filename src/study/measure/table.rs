@@ -1,0 +1,267 @@
+//! A laboratory's table: two columns with units in their headers, `pressure [kPa], volume [ml]`; blank lines and those that begin with # count not.
+
+use std::ops::Range;
+use std::path::Path;
+
+use crate::case::{Source, nearest};
+use crate::error::{Code, Result, Violation};
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Pressure above the atmosphere, or a difference [Pa].
+    Pressure,
+    /// Volume that has gone into the bladders [m^3].
+    Volume,
+    /// Normal force, tension positive [N].
+    Force,
+    /// Change of length [m].
+    Extension,
+    /// Bending moment [N m].
+    Moment,
+    /// Curvature [1/m].
+    Curvature,
+    /// Volume flow [m^3/s].
+    Flow,
+}
+
+/// Units and how many SI units each is.
+type Units = &'static [(&'static str, f64)];
+
+impl Quantity {
+    /// Name of its column, SI unit, units.
+    fn known(self) -> (&'static str, &'static str, Units) {
+        match self {
+            Self::Pressure => (
+                "pressure",
+                "Pa",
+                &[
+                    ("Pa", 1.0),
+                    ("kPa", 1e3),
+                    ("MPa", 1e6),
+                    ("mbar", 1e2),
+                    ("bar", 1e5),
+                    ("psi", 6_894.757_293),
+                ],
+            ),
+            Self::Volume => (
+                "volume",
+                "m^3",
+                &[
+                    ("m^3", 1.0),
+                    ("l", 1e-3),
+                    ("ml", 1e-6),
+                    ("ul", 1e-9),
+                    ("cm^3", 1e-6),
+                    ("mm^3", 1e-9),
+                ],
+            ),
+            Self::Force => ("force", "N", &[("N", 1.0), ("mN", 1e-3), ("kN", 1e3)]),
+            Self::Extension => (
+                "extension",
+                "m",
+                &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6)],
+            ),
+            Self::Moment => (
+                "moment",
+                "N m",
+                &[("N m", 1.0), ("mN m", 1e-3), ("N cm", 1e-2), ("N mm", 1e-3)],
+            ),
+            Self::Curvature => ("curvature", "1/m", &[("1/m", 1.0), ("1/cm", 1e2), ("1/mm", 1e3)]),
+            Self::Flow => (
+                "flow",
+                "m^3/s",
+                &[
+                    ("m^3/s", 1.0),
+                    ("l/min", 1e-3 / 60.0),
+                    ("ml/s", 1e-6),
+                    ("ml/min", 1e-6 / 60.0),
+                    ("ul/s", 1e-9),
+                    ("ul/min", 1e-9 / 60.0),
+                ],
+            ),
+        }
+    }
+
+    /// Name of its column.
+    pub fn name(self) -> &'static str {
+        self.known().0
+    }
+
+    /// Its SI unit.
+    pub fn unit(self) -> &'static str {
+        self.known().1
+    }
+}
+
+/// Points of a table, in SI units.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points {
+    /// What was set.
+    pub x: Vec<f64>,
+    /// What was measured.
+    pub y: Vec<f64>,
+}
+
+/// Rows with faults that are told.
+const MOST: usize = 20;
+
+/// Reads the columns of two quantities.
+///
+/// # Errors
+/// [`crate::error::Error::Case`] with every header and row that cannot be read, each at its place.
+pub fn read(path: &Path, text: &str, x: Quantity, y: Quantity) -> Result<Points> {
+    let source = Source::of(path, text);
+    let mut lines = lines(text);
+    let Some(header) = lines.next() else {
+        let what = format!(
+            "no header; the first line names columns: {} [{}], {} [{}]",
+            x.name(),
+            x.unit(),
+            y.name(),
+            y.unit()
+        );
+        return Err(source.error(vec![Violation::new(Code::Table, "", what)]));
+    };
+    let separator = [';', '\t']
+        .into_iter()
+        .find(|s| header.text.contains(*s))
+        .unwrap_or(',');
+    let names = cells(&header, separator);
+    let columns = [x, y].map(|quantity| column(&names, &header, quantity));
+    let [(x_at, x_scale), (y_at, y_scale)] = match columns {
+        [Ok(x), Ok(y)] => [x, y],
+        faulty => {
+            let faults = faulty.into_iter().filter_map(std::result::Result::err);
+            return Err(source.error(faults.map(|fault| *fault).collect()));
+        }
+    };
+    let (mut points, mut faults) = (Points::default(), vec![]);
+    for line in lines {
+        match row(&line, separator, names.len(), [x_at, y_at]) {
+            Ok([x, y]) => {
+                points.x.push(x * x_scale);
+                points.y.push(y * y_scale);
+            }
+            Err(fault) if faults.len() < MOST => faults.push(*fault),
+            Err(_) => {}
+        }
+    }
+    if faults.is_empty() {
+        Ok(points)
+    } else {
+        Err(source.error(faults))
+    }
+}
+
+/// A line with its number, counted from 1, and where it begins.
+struct Line<'t> {
+    text: &'t str,
+    number: usize,
+    start: usize,
+}
+
+fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
+    let mut next = 0;
+    let all = text.split_inclusive('\n').enumerate().map(move |(k, whole)| {
+        let start = next;
+        next += whole.len();
+        Line {
+            text: whole.trim_end_matches(['\n', '\r']),
+            number: k + 1,
+            start,
+        }
+    });
+    all.filter(|line| !line.text.trim().is_empty() && !line.text.trim_start().starts_with('#'))
+}
+
+/// Cells without blanks and quotes around them, and their places in the text.
+fn cells<'t>(line: &Line<'t>, separator: char) -> Vec<(&'t str, Range<usize>)> {
+    let mut at = line.start;
+    let cells = line.text.split(separator).map(|whole| {
+        let start = at;
+        at += whole.len() + separator.len_utf8();
+        let cell = whole.trim_matches(|c: char| c.is_whitespace() || "\"\u{feff}".contains(c));
+        (cell, start..start + whole.len())
+    });
+    cells.collect()
+}
+
+type Read<T> = std::result::Result<T, Box<Violation>>;
+
+fn fault(span: Range<usize>, what: String) -> Violation {
+    Violation {
+        span: Some(span),
+        ..Violation::new(Code::Table, "", what)
+    }
+}
+
+/// Place and scale of the column of a quantity.
+fn column(names: &[(&str, Range<usize>)], header: &Line, quantity: Quantity) -> Read<(usize, f64)> {
+    let (name, unit, units) = quantity.known();
+    let split = |cell: &str| {
+        let (name, unit) = cell.split_once('[').unwrap_or((cell, ""));
+        (
+            name.trim().to_lowercase(),
+            unit.trim_end_matches(']')
+                .trim()
+                .replace('µ', "u")
+                .replace(['²', '³'], "^3"),
+        )
+    };
+    let of_name = names.iter().position(|(cell, _)| split(cell).0 == name);
+    let Some(at) = of_name else {
+        let there: Vec<String> = names.iter().map(|(cell, _)| split(cell).0).collect();
+        let span = header.start..header.start + header.text.len();
+        let what = format!("no column is named {name}");
+        let fault = fault(span, what).allowed(format!("{name} [{unit}]"));
+        return Err(Box::new(Violation {
+            nearest: nearest(name, there.iter().map(String::as_str)).map(|_| format!("{name} [{unit}]")),
+            ..fault
+        }));
+    };
+    let given = split(names[at].0).1;
+    let known = units
+        .iter()
+        .find(|(unit, _)| *unit == given || unit.replace('^', "") == given);
+    known.map(|(_, scale)| (at, *scale)).ok_or_else(|| {
+        let what = match given.as_str() {
+            "" => format!("the column {name} has no unit"),
+            _ => format!("the unit {given} of {name} is not known"),
+        };
+        let all: Vec<&str> = units.iter().map(|(unit, _)| *unit).collect();
+        Box::new(fault(names[at].1.clone(), what).allowed(format!("{name} [{}]", all.join(" | "))))
+    })
+}
+
+fn row(line: &Line, separator: char, columns: usize, wanted: [usize; 2]) -> Read<[f64; 2]> {
+    let cells = cells(line, separator);
+    if cells.len() != columns {
+        let what = format!(
+            "line {}: {} where the header has {columns} columns",
+            line.number,
+            match cells.len() {
+                1 => "one cell".to_owned(),
+                count => format!("{count} cells"),
+            }
+        );
+        return Err(Box::new(fault(line.start..line.start + line.text.len(), what)));
+    }
+    let number = |at: usize| {
+        let (cell, span) = &cells[at];
+        let number = cell.parse::<f64>().ok().filter(|x| x.is_finite());
+        number.ok_or_else(|| {
+            let what = format!(
+                "line {}: \"{}\" is no finite number",
+                line.number,
+                crate::error::visible(cell)
+            );
+            let hint = cell.contains(',').then(|| "decimals stand behind a point".to_owned());
+            Box::new(Violation {
+                hint,
+                ..fault(span.clone(), what)
+            })
+        })
+    };
+    Ok([number(wanted[0])?, number(wanted[1])?])
+}
