@@ -15,6 +15,7 @@ mod line;
 mod mapping;
 mod modes;
 mod new;
+mod paper;
 mod periodic;
 mod place;
 pub mod progress;

@@ -17,6 +17,9 @@ use crate::study::verify::{self, Measure};
 
 /// Computes all rows, or those whose name contains the name asked for, and prints them as a table.
 pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
+    if asked.paper {
+        return super::paper::paper(asked.json);
+    }
     let rows = match &asked.name {
         Some(name) => verify::choose(verify::rows(), name)?,
         None => verify::rows(),
