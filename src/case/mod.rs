@@ -14,6 +14,7 @@ pub mod locate;
 mod meanings;
 mod numbers;
 mod origins;
+mod own_cell;
 pub mod parameter;
 mod parse;
 mod places;

@@ -46,7 +46,7 @@ pub(super) const SIZES: [&str; 7] = [
 static KNOWN: Mutex<Vec<(Section, Coefficients)>> = Mutex::new(vec![]);
 
 /// The coefficients of a section, computed once; [`slcbeam_section`] says how, with errors.
-fn coefficients(section: &Section) -> std::result::Result<Coefficients, Error> {
+pub(super) fn coefficients(section: &Section) -> std::result::Result<Coefficients, Error> {
     let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, found)) = known().iter().find(|(of, _)| of == section) {
         return Ok(found.clone());
