@@ -10,9 +10,10 @@ use slcbeam_section::error::Error;
 use slcbeam_section::input::Section;
 use slcbeam_section::three::Spatial;
 
-use super::faults::{Source, Violations};
+use super::faults::{SetValue, Source, Violations, is_below};
+use super::origins::Origin;
 use super::presets::Preset;
-use super::{parameter, schema_json};
+use super::{parameter, schema_json, sets};
 use crate::error::{Code, Result, Violation};
 
 /// Where it stands in a case.
@@ -27,6 +28,8 @@ const COARSE: f64 = 0.02;
 const COARSE_IN_SPACE: f64 = 0.06;
 /// Where the number of bladders stands.
 const PER_ROW: &str = "/bladders/per_row";
+/// Where the same number stands in the case of a result.
+const SEGMENTS: &str = "/mesh/segments";
 /// Sections whose coefficients are kept, for cases that are read again and again.
 const KEPT: usize = 16;
 /// Relative difference of a size that is given twice.
@@ -76,7 +79,7 @@ pub(super) struct Brought {
     /// the case can be looked at.
     pub values: Value,
     /// Whether they are those of the cell in three dimensions.
-    pub three_d: bool,
+    three_d: bool,
     stands_in: bool,
     told: Vec<Violation>,
 }
@@ -102,7 +105,52 @@ pub(super) fn of(case: &Value) -> Option<Brought> {
     })
 }
 
+/// Whether arguments change the section of a case, or the length that says how many bladders there are.
+pub(super) fn changes(sets: &[SetValue]) -> bool {
+    sets.iter()
+        .any(|set| is_below(&set.pointer, AT) || is_below("/beam/length_m", &set.pointer))
+}
+
+/// Takes out of a case what its file, one of a result, has from its section: another section, or length, brings its own.
+pub(super) fn release(case: &mut Value, file: &Value) {
+    if !case.get(KEY).is_some_and(Value::is_object) {
+        return;
+    }
+    let Some(brought) = of(file).filter(|brought| !brought.stands_in) else {
+        return;
+    };
+    let mut pointers = vec![PER_ROW.to_owned()];
+    parameter::numbers(&brought.values, String::new(), &mut pointers);
+    let same = |pointer: &str| {
+        file.pointer(pointer)
+            .filter(|given| case.pointer(pointer) == Some(*given))
+    };
+    let of_section = |pointer: &String| same(pointer).is_some_and(|given| brought.gives(pointer, given));
+    let mut released: Vec<String> = pointers.into_iter().filter(of_section).collect();
+    if released.iter().any(|p| p == PER_ROW) && same(SEGMENTS) == file.pointer(PER_ROW) {
+        released.push(SEGMENTS.into());
+    }
+    released.iter().for_each(|pointer| sets::remove(case, pointer));
+}
+
 impl Brought {
+    /// Whether its numbers are none of its own.
+    pub(super) fn stands_in(&self) -> bool {
+        self.stands_in
+    }
+
+    /// Whether a number that the case has at a pointer is the section's, as in the case of a result.
+    pub(super) fn gives(&self, pointer: &str, number: &Value) -> bool {
+        let own = self.values.pointer(pointer).and_then(Value::as_f64);
+        let pair = own.zip(number.as_f64());
+        !self.stands_in && pair.is_some_and(|(own, given)| (given / own - 1.0).abs() <= ROUND_OFF)
+    }
+
+    /// Where what it gives comes from.
+    pub(super) fn origin(&self) -> Origin {
+        Origin::Section { three_d: self.three_d }
+    }
+
     /// Tells what is wrong with the section of a case `own`, and nothing of numbers that stand in for its own; what the schema has found in
     /// the section comes first.
     pub(super) fn tell(&self, own: &Value, faults: &mut Violations) {
@@ -145,7 +193,7 @@ fn read(value: &Value, at: &str) -> std::result::Result<Section, Box<Violation>>
     })
 }
 
-/// Takes the section away, whose numbers stand in the case.
+/// Takes the section away.
 pub(super) fn remove(case: &mut Value) {
     if let Some(case) = case.as_object_mut() {
         case.shift_remove(KEY);
