@@ -161,6 +161,75 @@ fn changed_sizes_with_coefficients_of_the_preset_warn() {
     told(&twice, &areas, &["stiffness_factor"]);
 }
 
+/// Goal: beside what is inherited stands what these sizes would give, as `slcbeam coefficients` has it: for a silicone actuator of 18 x 20 mm
+/// areas per moment ten times as large and more. Nothing is told of a beam without bladders; sizes of which no cell can be made are.
+#[test]
+fn inherited_coefficients_stand_beside_those_of_a_cell() {
+    let actuator = [
+        "/beam={\"length_m\": 0.08, \"height_m\": 0.02, \"width_m\": 0.018, \"young_modulus_pa\": 5e5}",
+        "/bladders/width_m=0.0056",
+        "/bladders/height_m=0.0056",
+        "/bladders/length_m=0.014",
+    ];
+    let all = warnings(&little(&actuator));
+    let side = 0.0056;
+    let section = json!({
+        "height_m": 0.02, "width_m": 0.018, "pitch_m": 0.008,
+        "material": {"young_modulus_pa": 5e5, "poisson_ratio": 0.49, "density_kg_m3": 950},
+        "bladders": {"length_m": 0.014, "lower": "mirrored", "upper": {"center_m": side / 2.0 + (0.01 - side) / 3.0,
+            "shape": {"rounded_rectangle": {"along_m": side, "high_m": side, "fillet_m": side * 2.5 / 7.8}}}}
+    });
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    fs::write(file.path(), section.to_string()).expect("written");
+    let path = file.path().to_str().expect("a path");
+    let done = assert_cmd::Command::new(env!("CARGO_BIN_EXE_slcbeam"))
+        .args(["coefficients", path, "--json"])
+        .output()
+        .expect("started");
+    let found: Value = serde_json::from_slice(&done.stdout).expect("JSON");
+    let after = |text: &str, mark: &str| -> f64 {
+        let rest = text.split(mark).nth(1).unwrap_or_else(|| panic!("{mark}: {text}"));
+        let number = rest.trim_start().split([' ', ',']).next().expect("a number");
+        number.parse().unwrap_or_else(|_| panic!("{mark}: {number}"))
+    };
+    for (mark, key) in [
+        ("gives axial_stiffness_factor ", "axial_stiffness_factor"),
+        (" area_per_pressure_m2_per_pa ", "area_per_pressure_m2_per_pa"),
+        ("area_per_moment_m2_per_n_m/opening ", "area_per_moment_m2_per_n_m"),
+        ("area_per_force_m2_per_n/tension ", "area_per_force_m2_per_n"),
+    ] {
+        let (told, own) = (
+            after(&all[0].replace("/bladders/", ""), mark),
+            found[key].as_f64().expect("a number"),
+        );
+        assert!((told / own - 1.0).abs() < 6e-3, "{mark}: {told} {own}");
+    }
+    assert!(
+        all[0].contains("Poisson's ratio of 0.49") && all[0].contains("instead of 3.75e-6"),
+        "{}",
+        all[0]
+    );
+    assert!(
+        all[1].contains("permeability_m4") && all[1].contains("instead of 1.55e-12"),
+        "{}",
+        all[1]
+    );
+    let dry = little(&["/fluid=null", "/bladders=null", "/tubes=null", "/beam/height_m=0.03"]);
+    let told = warnings(&dry).join("");
+    assert!(!told.is_empty() && !told.contains("instead of"), "{told}");
+    let tube = warnings(&little(&["/tubes/radius_m=0.002"])).join("");
+    assert!(
+        tube.contains("permeability_m4 6.28e-12 instead of 6.72e-13 (9.35 times)"),
+        "{tube}"
+    );
+    // as wide as the pitch: no wall is left between neighbours
+    let none = warnings(&little(&["/bladders/width_m=0.01"])).join("");
+    assert!(
+        none.contains("gives nothing to compare with: /bladders/upper: reaches 0.005 m"),
+        "{none}"
+    );
+}
+
 /// Goal: what is given, or left to be computed, is not another beam's.
 #[test]
 fn coefficients_of_its_own_do_not_warn() {

@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 47] = [
+const INDEX: [(&str, &str, &str); 48] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -135,6 +135,7 @@ const INDEX: [(&str, &str, &str); 47] = [
         "difference_formula_is_of_fourth_order",
     ),
     ("[E41]", "tests/sensitivity/exact.rs", "tangent_is_the_jacobian_applied"),
+    ("[E48]", "tests/nonlinear.rs", "a_beam_under_pressure_bends_as_its_cell"),
     (
         "[E47]",
         "tests/physics/flight.rs",

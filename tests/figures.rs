@@ -12,7 +12,7 @@ use slcbeam::discrete::System;
 use slcbeam::run::observe::Observer;
 use tempfile::TempDir;
 
-const FIGURES: [&str; 8] = ["4", "5", "6", "A.4", "A.5", "A.6", "A.7", "A.9"];
+const FIGURES: [&str; 9] = ["4", "5", "6", "A.4", "A.5", "A.6", "A.7", "A.9", "cell"];
 
 /// Runs a Python script; its success, output and complaints.
 fn python(arguments: &[&str], results: &Path) -> (bool, String, String) {
@@ -106,7 +106,7 @@ fn differences(a: &Value, b: &Value, at: &str, tolerance: f64, found: &mut Vec<S
 #[test]
 fn the_numbers_of_the_cheap_figures_come_out_again() {
     let dir = TempDir::new().unwrap();
-    let names = ["6", "A.6", "A.7"];
+    let names = ["6", "A.6", "A.7", "cell"];
     let (now, kept) = (draw(&names, dir.path()), read(Path::new("docs/figures/numbers.json")));
     let mut found = vec![];
     for name in names {

@@ -31,7 +31,7 @@ fn refused(sets: &[&str]) -> Vec<String> {
 fn a_case_takes_its_numbers_from_its_section() {
     let case = read(&[]).unwrap();
     let bladders = case.bladders.as_ref().unwrap();
-    assert_eq!((case.beam.height_m, bladders.per_row, &case.section), (0.02, 10, &None));
+    assert_eq!((case.beam.height_m, bladders.per_row), (0.02, 10));
     // a rectangle as large as the circle and as wide: the volume is right
     let area = std::f64::consts::PI * 0.0028_f64.powi(2);
     assert!((bladders.width_m * bladders.height_m / area - 1.0).abs() < 1e-4);
@@ -55,6 +55,57 @@ fn a_case_takes_its_numbers_from_its_section() {
     // with a preset the section comes first
     let preset = read(&["/preset=\"matia-gat-beam\""]).unwrap();
     assert_eq!(preset.beam, case.beam);
+}
+
+/// Goal: the case of a result keeps its section beside the numbers: it reads back as the same case with the same origins; `--set` of the
+/// section or the length changes it as the case that it came from; a number that is not the section's stays, and says so.
+#[test]
+fn the_case_of_a_result_keeps_its_section() {
+    let text = read(&[]).unwrap().resolved_json();
+    let again = |sets: &[&str]| {
+        let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+        case::parse(&text, Path::new("case.json"), Path::new(""), &sets)
+    };
+    let case = again(&[]).unwrap();
+    assert!(case.section.is_some());
+    assert_eq!(case.resolved_json(), text);
+    assert_eq!(
+        case.origins.words()["/beam/mass_factor"],
+        read(&[]).unwrap().origins.words()["/beam/mass_factor"]
+    );
+    for pointer in [
+        "/beam/axial_stiffness_factor",
+        "/bladders/area_per_moment_m2_per_n_m/opening",
+    ] {
+        assert_eq!(
+            case.origins.get(pointer),
+            Some(Origin::Section { three_d: true }),
+            "{pointer}"
+        );
+    }
+    for sets in [
+        &["/section/three_d=false", "/section/material/poisson_ratio=0.45"][..],
+        &["/beam/length_m=0.16"],
+        &["/section/three_d=false", "/beam/axial_stiffness_factor=0.5"],
+    ] {
+        let (from_result, from_case) = (again(sets).unwrap(), read(sets).unwrap());
+        assert_eq!(from_result.resolved_json(), from_case.resolved_json(), "{sets:?}");
+    }
+    let measured = again(&[
+        "/bladders/area_per_pressure_m2_per_pa=1e-9",
+        "/beam/damping/bending_time_s=0.01",
+    ])
+    .unwrap();
+    assert_eq!(measured.bladders.as_ref().unwrap().area_per_pressure_m2_per_pa, 1e-9);
+    assert_eq!(
+        measured.origins.get("/bladders/area_per_pressure_m2_per_pa"),
+        Some(Origin::Set)
+    );
+    assert!(matches!(again(&["/beam/height_m=0.03"]), Err(Error::Case(_))));
+    // without it the numbers stand by themselves
+    let without = again(&["/section=null"]).unwrap();
+    assert_eq!((without.beam, without.section), (case.beam, None));
+    assert_eq!(without.origins.get("/beam/axial_stiffness_factor"), Some(Origin::Case));
 }
 
 /// Goal: twice the size everywhere: factors stay, areas per pressure go with the square of lengths, areas per moment with their inverse,

@@ -1,7 +1,7 @@
 """A module a figure; each has NEEDS (folder, case, changes, command) and draw() -> (figure, numbers)."""
 from collections import namedtuple
 
-from . import harvester, maps, steps, valves, wet, wiring
+from . import cell, harvester, maps, steps, valves, wet, wiring
 
 Figure = namedtuple("Figure", "needs draw")
 
@@ -14,4 +14,5 @@ FIGURES = {
     "A.6": Figure(steps.NEEDS_STRETCH, steps.stretch),
     "A.7": Figure(steps.NEEDS_BEND, steps.bend),
     "A.9": Figure(wet.NEEDS, wet.draw),
+    "cell": Figure([], cell.draw),
 }

@@ -1,8 +1,11 @@
 //! Coefficients of a preset in a case whose beam is another one, and of a plane cell where bladders are short.
 
+use std::f64::consts::PI;
+
 use serde_json::Value;
 
 use super::origins::Origin;
+use super::own_cell::OwnCell;
 use super::presets::Preset;
 use super::schema::Case;
 use crate::error::Code;
@@ -41,7 +44,11 @@ struct Part {
     groups: &'static [Group],
     words: fn(&Sizes) -> String,
     advice: &'static str,
+    own: fn(&Case, &[Inherited]) -> Option<String>,
 }
+
+/// A coefficient of the preset: where it stands, and its value.
+type Inherited = (&'static str, f64);
 
 const OWN_OR_NULL: &str = "give your own, or null to have it computed from the cross-section";
 
@@ -83,6 +90,7 @@ const PARTS: [Part; 3] = [
         ],
         words: section,
         advice: "give those of your own beam",
+        own: of_cell,
     },
     Part {
         groups: &[Group {
@@ -94,6 +102,7 @@ const PARTS: [Part; 3] = [
             format!("a bladder of {} mm", millimetres(&sides))
         },
         advice: OWN_OR_NULL,
+        own: of_cell,
     },
     Part {
         groups: &[Group {
@@ -102,6 +111,7 @@ const PARTS: [Part; 3] = [
         }],
         words: |s| format!("a tube of radius {} mm", millimetres(&[s.radius.unwrap_or_default()])),
         advice: OWN_OR_NULL,
+        own: of_tube,
     },
 ];
 
@@ -140,6 +150,7 @@ fn plane_cell(case: &Case) -> Option<String> {
 
 fn warning(case: &Case, mine: &Sizes, part: &Part) -> Option<String> {
     let (mut names, mut of) = (vec![], None);
+    let mut inherited: Vec<Inherited> = vec![];
     for group in part.groups {
         for pointer in group.coefficients {
             let Some(Origin::Preset(preset)) = case.origins.get(pointer) else {
@@ -148,6 +159,8 @@ fn warning(case: &Case, mine: &Sizes, part: &Part) -> Option<String> {
             let theirs = of_preset(preset, mine.bladders.is_some())?;
             if !same((group.sizes)(mine), (group.sizes)(&theirs)) {
                 names.push(*pointer);
+                let value = preset.values().pointer(pointer).and_then(Value::as_f64);
+                inherited.extend(value.map(|value| (*pointer, value)));
                 of = Some((preset, theirs));
             }
         }
@@ -155,13 +168,60 @@ fn warning(case: &Case, mine: &Sizes, part: &Part) -> Option<String> {
     let (preset, theirs) = of?;
     let verb = if names.len() == 1 { "belongs" } else { "belong" };
     Some(Code::Inherited.warning(format!(
-        "coefficients of preset {}: {} {verb} to {}, here it is {}: {}",
+        "coefficients of preset {}: {} {verb} to {}, here it is {}: {}{}",
         preset.name(),
         names.join(", "),
         (part.words)(&theirs),
         (part.words)(mine),
-        part.advice
+        part.advice,
+        (part.own)(case, &inherited).map_or_else(String::new, |own| format!("; {own}"))
     )))
+}
+
+/// What the cell of the case's own sizes would give in place of what is inherited; nothing for a beam without bladders.
+fn of_cell(case: &Case, inherited: &[Inherited]) -> Option<String> {
+    let cell = OwnCell::of(case)?;
+    let beside = |&(pointer, value): &Inherited| Ok(cell.coefficient(pointer)?.map(|own| instead(pointer, own, value)));
+    let all: Result<Vec<_>, &str> = inherited.iter().map(beside).collect();
+    Some(match all {
+        Ok(all) => {
+            let all: Vec<String> = all.into_iter().flatten().collect();
+            format!("{} gives {}", cell.assumed, all.join(", "))
+        }
+        Err(why) => format!("{} gives nothing to compare with: {why}", cell.assumed),
+    })
+}
+
+/// Hagen and Poiseuille's permeability of a round tube.
+fn of_tube(case: &Case, inherited: &[Inherited]) -> Option<String> {
+    let radius = case.tubes.as_ref()?.radius_m;
+    let own = PI / 8.0 * radius.powi(4);
+    let all: Vec<String> = inherited
+        .iter()
+        .map(|&(pointer, value)| instead(pointer, own, value))
+        .collect();
+    Some(format!("a round tube has {}", all.join(", ")))
+}
+
+/// A coefficient beside the one that is inherited, and how many times as large it is.
+fn instead(pointer: &str, own: f64, inherited: f64) -> String {
+    let name = pointer.split_once('/').and_then(|(_, rest)| rest.split_once('/'));
+    let (name, times) = (name.map_or(pointer, |(_, name)| name), digits(own / inherited));
+    format!(
+        "{name} {} instead of {} ({times} times)",
+        digits(own),
+        digits(inherited)
+    )
+}
+
+/// Three digits, as a case would have them.
+fn digits(x: f64) -> String {
+    let rounded: f64 = format!("{x:.2e}").parse().unwrap_or(x);
+    if (1e-3..1e6).contains(&rounded.abs()) {
+        rounded.to_string()
+    } else {
+        format!("{rounded:e}")
+    }
 }
 
 fn same(mine: Option<Vec<f64>>, theirs: Option<Vec<f64>>) -> bool {

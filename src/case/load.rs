@@ -87,8 +87,12 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         return Err(source.error(violations));
     };
     let mut value = file.to_value();
+    let sets = sets::apply(&mut value, sets)?;
+    if section::changes(&sets) {
+        section::release(&mut value, &file.to_value());
+    }
     let source = Source {
-        sets: sets::apply(&mut value, sets)?,
+        sets,
         file: Some(file),
         ..source
     };
@@ -111,7 +115,9 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         .collect();
     faults.drop_below(&cleared);
     cleared.iter().for_each(|pointer| sets::remove(&mut value, pointer));
-    section::remove(&mut value);
+    if section.as_ref().is_some_and(section::Brought::stands_in) {
+        section::remove(&mut value);
+    }
     let case = match value.is_object() {
         true => build(value.clone(), base, &mut faults, violations.is_empty()),
         false => None,

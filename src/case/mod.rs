@@ -5,6 +5,7 @@
 
 mod check;
 mod choices;
+mod computed;
 mod counts;
 mod ends;
 mod faults;
@@ -15,6 +16,7 @@ pub mod locate;
 mod meanings;
 mod numbers;
 mod origins;
+mod own_cell;
 pub mod parameter;
 mod parse;
 mod places;

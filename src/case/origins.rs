@@ -99,10 +99,9 @@ impl Origins {
             let origin = match (whole.pointer(&pointer), own.pointer(&pointer), brought, preset) {
                 (None, ..) => absent(whole, &pointer)?,
                 (_, Some(_), ..) if set() => Origin::Set,
+                (_, Some(own), Some(brought), _) if brought.gives(&pointer, own) => brought.origin(),
                 (_, Some(_), ..) => Origin::Case,
-                (_, None, Some(brought), _) => Origin::Section {
-                    three_d: brought.three_d,
-                },
+                (_, None, Some(brought), _) => brought.origin(),
                 (_, None, None, Some(preset)) => Origin::Preset(preset),
                 (_, None, None, None) => return None,
             };

@@ -34,14 +34,14 @@ impl Parameter {
         let usage = |what: String| Err(Error::Usage(format!("--sensitivity {pointer}: {what}")));
         let resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
         let part = pointer.split('/').nth(1).unwrap_or_default();
+        if pointer.starts_with("/section/") {
+            return usage("the numbers of a section are no parameters of the model; its coefficients are".into());
+        }
         if pointer.starts_with('/') && resolved.get(part).is_some() && !PARTS.contains(&part) {
             return usage(format!(
                 "/{part} is not a part of the model; parameters stand under /{}",
                 PARTS.join(", /")
             ));
-        }
-        if pointer.starts_with("/section/") {
-            return usage("the numbers of a section are no parameters of the model; its coefficients are".into());
         }
         let stiffness = case.origins.get("/beam/axial_stiffness_factor");
         if section::SIZES.contains(&pointer) && matches!(stiffness, Some(Origin::Section { .. })) {
@@ -80,6 +80,7 @@ impl Parameter {
     /// The case is not valid with it.
     pub fn changed(&self, case: &Case, value: f64) -> Result<Case> {
         let mut resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
+        section::remove(&mut resolved);
         if let Some(number) = resolved.pointer_mut(&self.pointer) {
             *number = value.into();
         }

@@ -1,19 +1,19 @@
 //! The coefficients of a case that gives its section by its geometry.
 
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
 
 use serde_json::{Value, json};
 use serde_path_to_error::Segment;
-use slcbeam_section::coefficients::{Coefficients, Options};
+use slcbeam_section::coefficients::Coefficients;
 use slcbeam_section::error::Error;
 use slcbeam_section::finite::StrainEnergy;
 use slcbeam_section::input::Section;
 use slcbeam_section::three::Spatial;
 
-use super::faults::{Source, Violations};
+use super::faults::{SetValue, Source, Violations, is_below};
+use super::origins::Origin;
 use super::presets::Preset;
-use super::{parameter, schema_json};
+use super::{computed, parameter, schema_json, sets};
 use crate::error::{Code, Result, Violation};
 
 /// Where it stands in a case.
@@ -26,10 +26,12 @@ const ALIKE: f64 = 1e-3;
 const COARSE: f64 = 0.02;
 /// The same of a cell in three dimensions, whose meshes are coarser; the plane one leaves out more.
 const COARSE_IN_SPACE: f64 = 0.06;
+/// Where the energy at finite strain stands.
+const ENERGY: &str = "/bladders/strain_energy";
 /// Where the number of bladders stands.
 const PER_ROW: &str = "/bladders/per_row";
-/// Sections whose coefficients are kept, for cases that are read again and again.
-const KEPT: usize = 16;
+/// Where the same number stands in the case of a result.
+const SEGMENTS: &str = "/mesh/segments";
 /// Relative difference of a size that is given twice.
 const ROUND_OFF: f64 = 1e-9;
 
@@ -43,31 +45,6 @@ pub(super) const SIZES: [&str; 7] = [
     "/bladders/width_m",
     "/bladders/height_m",
 ];
-
-/// What a section says of itself.
-#[derive(Clone, Debug)]
-struct Known {
-    found: Coefficients,
-    energy: Option<StrainEnergy>,
-}
-
-static KNOWN: Mutex<Vec<(Section, Known)>> = Mutex::new(vec![]);
-
-/// The coefficients of a section and its energy at finite strain, computed once; [`slcbeam_section`] says how, with errors.
-fn known(section: &Section) -> std::result::Result<Known, Error> {
-    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, found)) = known().iter().find(|(of, _)| of == section) {
-        return Ok(found.clone());
-    }
-    let found = Known {
-        found: section.coefficients(&Options::default())?,
-        energy: section.strain_energy()?,
-    };
-    let mut known = known();
-    known.truncate(KEPT - 1);
-    known.insert(0, (section.clone(), found.clone()));
-    Ok(found)
-}
 
 /// What is wrong with a section that stands at a pointer.
 fn violations(error: Error, at: &str) -> Vec<Violation> {
@@ -87,7 +64,7 @@ pub(super) struct Brought {
     /// the case can be looked at.
     pub values: Value,
     /// Whether they are those of the cell in three dimensions.
-    pub three_d: bool,
+    three_d: bool,
     stands_in: bool,
     told: Vec<Violation>,
 }
@@ -113,7 +90,58 @@ pub(super) fn of(case: &Value) -> Option<Brought> {
     })
 }
 
+/// Whether arguments change the section of a case, or the length that says how many bladders there are.
+pub(super) fn changes(sets: &[SetValue]) -> bool {
+    sets.iter()
+        .any(|set| is_below(&set.pointer, AT) || is_below("/beam/length_m", &set.pointer))
+}
+
+/// Takes out of a case what its file, one of a result, has from its section: another section, or length, brings its own.
+pub(super) fn release(case: &mut Value, file: &Value) {
+    if !case.get(KEY).is_some_and(Value::is_object) {
+        return;
+    }
+    let Some(brought) = of(file).filter(|brought| !brought.stands_in) else {
+        return;
+    };
+    let mut pointers = vec![PER_ROW.to_owned()];
+    parameter::numbers(&brought.values, String::new(), &mut pointers);
+    let same = |pointer: &str| {
+        file.pointer(pointer)
+            .filter(|given| case.pointer(pointer) == Some(*given))
+    };
+    let of_section = |pointer: &String| same(pointer).is_some_and(|given| brought.gives(pointer, given));
+    let mut released: Vec<String> = pointers.into_iter().filter(of_section).collect();
+    if released.iter().any(|p| p == PER_ROW) && same(SEGMENTS) == file.pointer(PER_ROW) {
+        released.push(SEGMENTS.into());
+    }
+    let energy = file
+        .get(KEY)
+        .and_then(|section| computed::strain_energy(&read(section, AT).ok()?).ok()?);
+    if energy.is_some_and(|energy| same(ENERGY) == Some(&computed::written(&energy))) {
+        released.push(ENERGY.into());
+    }
+    released.iter().for_each(|pointer| sets::remove(case, pointer));
+}
+
 impl Brought {
+    /// Whether its numbers are none of its own.
+    pub(super) fn stands_in(&self) -> bool {
+        self.stands_in
+    }
+
+    /// Whether a number that the case has at a pointer is the section's, as in the case of a result.
+    pub(super) fn gives(&self, pointer: &str, number: &Value) -> bool {
+        let own = self.values.pointer(pointer).and_then(Value::as_f64);
+        let pair = own.zip(number.as_f64());
+        !self.stands_in && pair.is_some_and(|(own, given)| (given / own - 1.0).abs() <= ROUND_OFF)
+    }
+
+    /// Where what it gives comes from.
+    pub(super) fn origin(&self) -> Origin {
+        Origin::Section { three_d: self.three_d }
+    }
+
     /// Tells what is wrong with the section of a case `own`, and nothing of numbers that stand in for its own; what the schema has found in
     /// the section comes first.
     pub(super) fn tell(&self, own: &Value, faults: &mut Violations) {
@@ -156,7 +184,7 @@ fn read(value: &Value, at: &str) -> std::result::Result<Section, Box<Violation>>
     })
 }
 
-/// Takes the section away, whose numbers stand in the case.
+/// Takes the section away.
 pub(super) fn remove(case: &mut Value) {
     if let Some(case) = case.as_object_mut() {
         case.shift_remove(KEY);
@@ -175,7 +203,7 @@ fn stand_in() -> Value {
 /// What a case takes of its section: the size along the beam of a bladder and the height of a rectangle as large, so that volumes and
 /// masses are right.
 fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Violation>> {
-    let Known { found, energy } = known(section).map_err(|error| violations(error, AT))?;
+    let found = computed::coefficients(section).map_err(|error| violations(error, AT))?;
     let (c, e) = (&found.numbers, &found.errors);
     let worst = [
         ("axial_stiffness_factor", e.axial_stiffness_factor),
@@ -242,17 +270,12 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
                 "area_per_moment_m2_per_n_m": {"opening": of_moment, "closing": of_moment},
                 "area_per_force_m2_per_n": {"tension": of_force, "compression": of_force},
             });
-            if let Some(energy) = energy {
-                let [stretch, curvature, upper, lower] = energy.limits;
-                values["bladders"]["strain_energy"] = json!({
-                    "stretch": stretch,
-                    "curvature_1_m": curvature,
-                    "upper_pressure_pa": upper,
-                    "lower_pressure_pa": lower,
-                    "degree": energy.degree,
-                    "coefficients_n": energy.coefficients_n,
-                    "error": energy.error,
-                });
+            // what the case has of it, as that of a result has, is not computed again
+            if case.pointer(ENERGY).is_none() {
+                let energy = computed::strain_energy(section).map_err(|error| violations(error, AT))?;
+                energy
+                    .iter()
+                    .for_each(|energy| values["bladders"]["strain_energy"] = computed::written(energy));
             }
             match per_row(case, section.pitch_m) {
                 Ok(number) => values["bladders"]["per_row"] = number.into(),
@@ -304,7 +327,7 @@ impl Written {
     /// # Errors
     /// [`crate::error::Error::Case`] with every rule that it breaks, or why its cell has no solution.
     pub fn coefficients(&self) -> Result<Coefficients> {
-        self.solved(known(&self.section).map(|known| known.found))
+        self.solved(computed::coefficients(&self.section))
     }
 
     /// Its energy at finite strain, where its material has a law.
@@ -312,7 +335,7 @@ impl Written {
     /// # Errors
     /// As [`Self::coefficients`].
     pub fn strain_energy(&self) -> Result<Option<StrainEnergy>> {
-        self.solved(known(&self.section).map(|known| known.energy))
+        self.solved(computed::strain_energy(&self.section))
     }
 
     /// Its compliance by the cell in three dimensions.

@@ -52,6 +52,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         None
     };
     let mut warnings = known::without_outputs(case, &system);
+    warnings.extend(path.warning());
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.and_then(refine::warning));
     let sensitivities = match path.states.last() {

@@ -16,6 +16,7 @@ mod mapping;
 mod measure;
 mod modes;
 mod new;
+mod paper;
 mod periodic;
 mod place;
 pub mod progress;

@@ -17,6 +17,9 @@ use crate::study::verify::{self, Measure};
 
 /// Computes all rows, or those whose name contains the name asked for, and prints them as a table.
 pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
+    if asked.paper {
+        return super::paper::paper(asked.json);
+    }
     let rows = match &asked.name {
         Some(name) => verify::choose(verify::rows(), name)?,
         None => verify::rows(),
@@ -46,23 +49,23 @@ fn exit_code(rows: &[Row]) -> u8 {
     if rows.iter().all(|row| row.passed) { 0 } else { 4 }
 }
 
-const HEADINGS: &str = "name | quantity | computed | exact | error | tolerance | order | limit | verdict";
+const HEADINGS: &str = "name | quantity | computed | exact | error | tolerance | order | limit | estimate | verdict";
 
 fn table(rows: &[Row]) -> String {
-    let mut lines = vec![cells::<9>(HEADINGS).map(String::from)];
+    let mut lines = vec![cells::<10>(HEADINGS).map(String::from)];
     for row in rows {
         lines.extend(row.figures.iter().flatten().map(|figure| line(row, figure)));
         if let Some(failure) = &row.failure {
-            let mut failed = [const { String::new() }; 9];
+            let mut failed = [const { String::new() }; 10];
             failed[0].clone_from(&row.name);
             failed[1].clone_from(failure);
-            failed[8] = "FAIL".into();
+            failed[9] = "FAIL".into();
             lines.push(failed);
         }
     }
-    let mut text = aligned(&lines, &[0, 1, 2, 3, 4, 5, 6, 7, 8]);
+    let mut text = aligned(&lines, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]);
     text += "\nerror: r relative, a absolute; order: observed in the mesh size between the two finest of three meshes;\n\
-             limit: error of the limit to which they point (Richardson)\n\nsources\n";
+             limit: error of the limit to which they point (Richardson); estimate: error that the meshes alone show\n\nsources\n";
     for row in rows {
         let _ = writeln!(
             text,
@@ -75,7 +78,7 @@ fn table(rows: &[Row]) -> String {
     text
 }
 
-fn line(row: &Row, figure: &Figure) -> [String; 9] {
+fn line(row: &Row, figure: &Figure) -> [String; 10] {
     let sign = match figure.error_is {
         Measure::Relative => 'r',
         Measure::Absolute => 'a',
@@ -90,6 +93,7 @@ fn line(row: &Row, figure: &Figure) -> [String; 9] {
         format!("{:.1e}", figure.tolerance),
         or_nothing(figure.order, |order| format!("{order:.2}")),
         or_nothing(figure.limit_error, |error| format!("{error:.1e}")),
+        or_nothing(figure.estimate, |error| format!("{error:.1e}")),
         if figure.passed { "pass" } else { "FAIL" }.into(),
     ]
 }

@@ -82,6 +82,7 @@ codes! {
     EnergyFigure = "W020", "A figure of energy that its balance does not carry.";
     ErrorEstimate = "W021", "An error that may be larger than it seems.";
     PlaneCell = "W022", "Coefficients that leave out the ends of bladders.";
+    BeyondRange = "W023", "States beyond what the model describes.";
 }
 
 impl Code {

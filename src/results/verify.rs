@@ -71,7 +71,10 @@ pub struct Figure {
     pub limit_error: Option<f64>,
     /// The largest accepted.
     pub limit_tolerance: Option<f64>,
-    /// Whether error, order and limit are as they should be.
+    /// Error that the meshes alone show.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<f64>,
+    /// Whether error, order, limit and estimate are as they should be.
     pub passed: bool,
 }
 
@@ -87,6 +90,7 @@ impl Figure {
             order: figure.order,
             limit_error: figure.limit.map(|l| l.0),
             limit_tolerance: figure.limit.map(|l| l.1),
+            estimate: figure.estimate.map(|e| e.0),
             passed: figure.passed(),
         }
     }

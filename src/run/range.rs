@@ -23,6 +23,8 @@ const MOTION_ENDS: f64 = 1e3;
 /// Limits of a case.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
+    /// Half of the beam's height [m].
+    pub half_height: f64,
     length: f64,
     modulus: f64,
     /// Area change at which a bladder fills the half section of its segment [m^2].
@@ -78,6 +80,7 @@ impl Limits {
         });
         let half_section = 0.5 * system.mesh.segment_length * case.beam.height_m;
         Self {
+            half_height: 0.5 * case.beam.height_m,
             length: system.model.length,
             modulus: case.beam.young_modulus_pa,
             swelling: wet.map_or(f64::INFINITY, |wet| half_section - wet.area_at_rest),
@@ -103,36 +106,41 @@ impl Limits {
 
     /// What lies beyond the model in a state, if anything does.
     pub fn beyond(&self, g: &Glance) -> Option<String> {
+        let at = match g.t {
+            t if t.abs() < 1e-3 => format!("t = {t:.3e} s"),
+            t => format!("t = {t:.6} s"),
+        };
+        self.beyond_at(g, &at)
+    }
+
+    /// The same, told with where it is.
+    pub fn beyond_at(&self, g: &Glance, at: &str) -> Option<String> {
         if self.hold(g) {
             return None;
         }
         let value = |which| g.of(which)[0];
-        let t = match g.t {
-            t if t.abs() < 1e-3 => format!("{t:.3e}"),
-            t => format!("{t:.6}"),
-        };
         if value(Watched::Opening) <= 0.0 {
             return Some(format!(
-                "a bladder is closed at t = {t} s: its cross-section h_b w_b + a1 has reached zero, where the model ends"
+                "a bladder is closed at {at}: its cross-section h_b w_b + a1 has reached zero, where the model ends"
             ));
         }
         let swelling = value(Watched::Swelling);
         if swelling > self.swelling {
             return Some(format!(
-                "a bladder has outgrown its segment at t = {t} s: its cross-section h_b w_b + a1 has reached the half \
+                "a bladder has outgrown its segment at {at}: its cross-section h_b w_b + a1 has reached the half \
                  section l_seg h_s/2 that holds it (a1 = {swelling:.3e} m^2)"
             ));
         }
         if value(Watched::Outermost) > 1.0 {
             return Some(format!(
-                "stretch, curvature and pressures of a section have left at t = {t} s what its strain energy is known for: /bladders/strain_energy \
-                 has the limits on each axis, of which all four together may take part up to a sum of squares of 1"
+                "a section has left at {at} the states for which its strain energy is known: stretch, curvature and pressures, each over \
+                 its limit in /bladders/strain_energy, have a sum of squares above 1"
             ));
         }
         let strain = value(Watched::Strain);
         if strain > STRAIN_ENDS {
             return Some(format!(
-                "the fibre strain |lambda - 1| + |kappa| h_s/2 has reached {STRAIN_ENDS} at t = {t} s, node {}: a law that \
+                "the fibre strain |lambda - 1| + |kappa| h_s/2 has reached {STRAIN_ENDS} at {at}, node {}: a law that \
                  is linear in the strain ends before",
                 g.strained
             ));
@@ -140,11 +148,11 @@ impl Limits {
         let pressure = value(Watched::High).abs().max(value(Watched::Low).abs());
         if pressure > PRESSURE_ENDS * self.modulus {
             return Some(format!(
-                "a pressure has reached {PRESSURE_ENDS} times Young's modulus at t = {t} s ({pressure:.3e} Pa)"
+                "a pressure has reached {PRESSURE_ENDS} times Young's modulus at {at} ({pressure:.3e} Pa)"
             ));
         }
         Some(format!(
-            "a node has reached {MOTION_ENDS} lengths of the beam against the root at t = {t} s ({:.3e} m)",
+            "a node has reached {MOTION_ENDS} lengths of the beam against the root at {at} ({:.3e} m)",
             g.moved
         ))
     }

@@ -143,3 +143,23 @@ fn cycles_say_whether_they_are_stable() {
         4.0
     );
 }
+
+/// Goal: a case with a section shows its cell under each of the four loads, and bladders by their outlines.
+#[test]
+fn the_cell_of_a_section_is_drawn_under_its_loads() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = made(
+        folder.path(),
+        &["run", "cases/section-actuator.json", "--set", "/time/end_s=0.02"],
+    );
+    let mut browser = Browser::start();
+    sound(&mut browser, &page, &["scene", "motion", "cell", "case"]);
+    let drawn =
+        "[...document.querySelectorAll('#cell img')].filter(i => i.naturalWidth > 50 && i.naturalHeight > 50).length";
+    assert_eq!(browser.number(drawn), 4.0);
+    let words = browser.text("document.querySelector('#cell .caption').textContent");
+    assert!(words.starts_with("1 N, displacements × "), "{words}");
+    // A circle has many corners.
+    let outlines = "[...document.querySelectorAll('#scene svg.fig path')].filter(p => p.getAttribute('d').split('L').length > 12).length";
+    assert_eq!(browser.number(outlines), 20.0);
+}

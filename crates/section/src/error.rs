@@ -38,6 +38,8 @@ pub enum Error {
         iterations: usize,
     },
     /// The energy at finite strain has no fit that is good enough.
-    #[error("the cell's energy at finite strain has no polynomial with an error of at most 1 %: say \"law\": \"linear\"")]
+    #[error(
+        "the cell's energy at finite strain has no polynomial with an error of at most 1 %: say \"law\": \"linear\""
+    )]
     Energy,
 }

@@ -46,7 +46,8 @@ pub struct Case {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub preset: Option<Preset>,
     /// The beam's section by its geometry: what the case does not give of sizes, material and coefficients in `beam` and `bladders`
-    /// is computed from one unit cell, by finite elements; `slcbeam coefficients` has the numbers with their errors.
+    /// is computed from one unit cell, by finite elements; `slcbeam coefficients` has the numbers with their errors. The case of a result
+    /// has the section beside its numbers, which stand as they are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub section: Option<Section>,
     /// The solid.

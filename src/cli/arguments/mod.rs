@@ -381,6 +381,9 @@ pub struct MappingArguments {
 pub struct VerifyArguments {
     /// Only results whose name contains this
     pub name: Option<String>,
+    /// Compute instead the coefficients of the published cell, for every shape that the paper leaves open, beside the printed ones
+    #[arg(long, conflicts_with = "name")]
+    pub paper: bool,
     /// Print as JSON
     #[arg(long)]
     pub json: bool,

@@ -14,6 +14,7 @@
 //! multipliers   about the unit circle
 //! tongue      growth over frequency and amplitude
 //! cycles      steady cycles along a parameter
+//! cell        a cell of the section under one load
 //! measured    measurements with their fit
 //! ```
 
@@ -23,6 +24,7 @@ mod panel;
 mod ticks;
 
 pub mod ablation;
+pub mod cell;
 pub mod cycles;
 pub mod deflection;
 pub mod energy;

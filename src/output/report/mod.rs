@@ -5,6 +5,7 @@
 //! page        shell, style, scripts and data as one text
 //! pack        arrays as base64
 //! frames      fields of a run at chosen instants
+//! cell        the cell of the section under its loads
 //! history     history.csv, thinned to what a screen can show
 //! scene       the drawing: beam, bladders, tubes, ports, loads, ends
 //! signals     functions of time in words
@@ -21,6 +22,7 @@
 //! The data of a page is JSON in a script element that is never run; the scripts put every text of a case into the page as
 //! text, so that nothing in it is taken for markup. The same folder gives the same bytes.
 
+mod cell;
 mod cycles;
 mod energy_balance;
 mod equilibrium;
@@ -166,6 +168,8 @@ impl<'a> Place<'a> {
         page.put("name", name);
         page.put("about", self.case.as_ref().map_or("", |c| c.about.as_str()));
         page.put("files", self.files());
+        let section = self.case.as_ref().and_then(|c| c.section.as_ref());
+        page.put("cell", section.map_or_else(Vec::new, cell::pictures));
         page.put("scene", self.case.as_ref().and_then(scene::of));
         let rows = self.case_text.as_deref().map(parameters::rows);
         page.put("parameters", rows.unwrap_or_default());

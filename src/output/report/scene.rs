@@ -35,6 +35,7 @@ pub fn of(case: &Case) -> Option<Value> {
             "width": b.width_m,
             "volume": format!("{} ml", significant(b.length_m * b.height_m * b.width_m * 1e6, 3)),
             "network": network.component_of_bladder,
+            "outlines": case.section.as_ref().and_then(super::cell::outlines),
         })),
         "wiring": case.bladders.as_ref().and(wiring(case)),
         "ends": [end(&case.ends.root.resolve(), case.ends.root.form().0), end(&case.ends.tip.resolve(), case.ends.tip.form().0)],

@@ -24,7 +24,7 @@ mod state;
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, StaticBeam};
 use crate::discrete::{System, TimeData, start};
-use crate::error::{self, At, SolverError};
+use crate::error::{self, At, Code, SolverError};
 use crate::functions::signals::Polynomial;
 use crate::functions::{Clock, Signal};
 use crate::model::{Model, Storage};
@@ -73,6 +73,8 @@ pub struct Path {
     pub rejected: u64,
     /// Why the path ends before the share that was asked for, if it does.
     pub fault: Option<SolverError>,
+    /// What of the first state lies beyond the model, where one does.
+    pub beyond: Option<String>,
 }
 
 /// A remarkable point of a path.
@@ -106,6 +108,12 @@ impl Event {
 }
 
 impl Path {
+    /// That states are not what the model describes.
+    pub fn warning(&self) -> Option<String> {
+        let beyond = self.beyond.as_ref()?;
+        Some(Code::BeyondRange.warning(format!("{beyond}; states from there on are not to be trusted")))
+    }
+
     /// The last state.
     pub fn last(&self) -> &State {
         &self.states[self.states.len() - 1]

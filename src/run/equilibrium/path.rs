@@ -3,11 +3,12 @@
 use super::arclength::Arclength;
 use super::natural::Natural;
 use super::predict::Trail;
-use super::state::{Stability, State};
+use super::state::{self, Stability, State};
 use super::{Event, Kind, Options, Path, rest, system};
 use crate::case::schema::Case;
 use crate::discrete::System;
 use crate::error::{self, At, Code, SolverError};
+use crate::run::range::Limits;
 use crate::run::record::Control;
 use crate::sundials::{Kinsol, KinsolError, KinsolOptions};
 
@@ -63,6 +64,7 @@ pub(super) fn follow_of(
     }
     let n = y.len();
     let weights = weights(statics.system());
+    let limits = Limits::new(case, statics.system());
     let natural = Natural::of(&statics);
     match Kinsol::new(Arclength::new(statics)) {
         Err(failure) => path.fault = Some(fault(0.0, &failure.what)),
@@ -78,6 +80,7 @@ pub(super) fn follow_of(
                 weights,
                 n,
                 options: *options,
+                limits,
                 path: &mut path,
                 watch,
             };
@@ -128,6 +131,7 @@ pub(super) struct Follower<'a> {
     pub(super) weights: Vec<f64>,
     pub(super) n: usize,
     options: Options,
+    limits: Limits,
     pub(super) path: &'a mut Path,
     watch: &'a mut dyn FnMut(&State) -> Control,
 }
@@ -307,6 +311,9 @@ impl Follower<'_> {
     /// Keeps a state and shows it.
     pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), End> {
         let state = State::read(self.solver.dae_mut().statics(), x);
+        if self.path.beyond.is_none() {
+            self.path.beyond = state::beyond(self.solver.dae_mut().statics(), x, &self.limits);
+        }
         let control = (self.watch)(&state);
         if let [.., a, b] = &self.path.states[self.branch..]
             && (b.share - a.share) * (state.share - b.share) < 0.0

@@ -1,10 +1,12 @@
 //! One state of equilibrium.
 
 use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
+use crate::discrete::glance::Glance;
 use crate::discrete::layout::Line;
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, Look, Observable, Row};
 use crate::discrete::{System, TimeData, Workspace};
+use crate::run::range::Limits;
 use crate::run::record::Column;
 use crate::spectral;
 
@@ -82,6 +84,14 @@ impl State {
             stability: None,
         }
     }
+}
+
+/// What lies beyond the model in a state, if anything does.
+pub fn beyond(statics: &mut StaticBeam, x: &[f64], limits: &Limits) -> Option<String> {
+    let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
+    let (system, now, w) = statics.beam().evaluate(share, y, &vec![0.0; y.len()]);
+    let glance = Glance::new(system, now, share, limits.half_height, w);
+    limits.beyond_at(&glance, &format!("load factor {share:.4}"))
 }
 
 impl Stability {

@@ -1,5 +1,7 @@
 //! One number, computed and exact.
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
 
 use super::fit::richardson;
@@ -27,14 +29,18 @@ pub struct Figure {
     pub measure: Measure,
     /// Largest error accepted.
     pub tolerance: f64,
-    /// Order in the mesh size observed between the two finer meshes, where it is to be 2.
+    /// Order in the mesh size observed between the two finer meshes.
     pub order: Option<f64>,
+    /// Orders accepted.
+    pub orders: RangeInclusive<f64>,
     /// Error of the limit that the two finer meshes point to (Richardson), and the largest accepted.
     pub limit: Option<(f64, f64)>,
+    /// Error that the meshes alone show, which is to cover the true one up to the round-off beside it.
+    pub estimate: Option<(f64, f64)>,
 }
 
 /// Orders accepted where second order is due.
-const SECOND_ORDER: std::ops::RangeInclusive<f64> = 1.8..=2.2;
+const SECOND_ORDER: RangeInclusive<f64> = 1.8..=2.2;
 
 impl Figure {
     /// A number with a tolerance relative to its exact value.
@@ -46,7 +52,9 @@ impl Figure {
             measure: Measure::Relative,
             tolerance,
             order: None,
+            orders: SECOND_ORDER,
             limit: None,
+            estimate: None,
         }
     }
 
@@ -82,10 +90,13 @@ impl Figure {
         }
     }
 
-    /// Whether error, order and limit are as they should be. Not a number is not.
+    /// Whether error, order, limit and estimate are as they should be. Not a number is not.
     pub fn passed(&self) -> bool {
         self.error() <= self.tolerance
-            && self.order.is_none_or(|order| SECOND_ORDER.contains(&order))
+            && self.order.is_none_or(|order| self.orders.contains(&order))
             && self.limit.is_none_or(|(error, largest)| error <= largest)
+            && self
+                .estimate
+                .is_none_or(|(shown, noise)| self.error() <= shown.max(noise))
     }
 }

@@ -18,6 +18,7 @@
 //! decay        relaxation of chains and rings, dissipation
 //! kirchhoff    a steady network as resistors
 //! ducts        permeabilities of cross-sections
+//! section      the cell from which coefficients of a section are computed
 //! ```
 
 mod beck;
@@ -33,6 +34,7 @@ mod kirchhoff;
 mod mathieu;
 mod row;
 mod scene;
+mod section;
 mod solve;
 mod spin_up;
 mod statics;
@@ -54,5 +56,6 @@ pub fn rows() -> Vec<Row> {
     all.extend(decay::rows());
     all.extend(kirchhoff::rows());
     all.extend(ducts::rows());
+    all.extend(section::rows());
     all
 }

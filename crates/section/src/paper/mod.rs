@@ -68,8 +68,8 @@ pub const PRINTED: [Printed; 8] = [
     },
     Printed {
         name: "length_per_pressure_m",
-        low: 0.005,
-        high: 0.005,
+        low: 0.01,
+        high: 0.01,
         fitted: false,
     },
     Printed {

@@ -15,7 +15,8 @@ fn rectangle(a: f64, b: f64) -> f64 {
     a * b.powi(3) / 12.0 * (1.0 - 192.0 * b / (PI.powi(5) * a) * sum)
 }
 
-pub(super) fn compare() -> Result<Vec<Comparison>, Error> {
+/// Channels of six outlines.
+pub fn compare() -> Result<Vec<Comparison>, Error> {
     let sharp = |along_m, high_m| {
         Channel::Open(Shape::RoundedRectangle {
             along_m,
@@ -75,7 +76,7 @@ pub(super) fn compare() -> Result<Vec<Comparison>, Error> {
     ];
     let row = |(name, source, exact, channel): (&str, &str, f64, Channel)| {
         Ok(Comparison::new(
-            format!("permeability of a {name} [m^4]"),
+            format!("permeability, {name} [m^4]"),
             source,
             exact,
             levels(&channel, 3)?,

@@ -16,7 +16,8 @@ use std::f64::consts::PI;
 const INNER: f64 = 2e-3;
 const OUTER: f64 = 5e-3;
 
-pub(super) fn compare() -> Result<Vec<Comparison>, Error> {
+/// Tubes up to a Poisson's ratio of 0.4999.
+pub fn compare() -> Result<Vec<Comparison>, Error> {
     let mut rows = Vec::new();
     for nu in [0.3, 0.49, 0.4999] {
         rows.extend(tube(nu)?);
@@ -96,7 +97,10 @@ fn tube(nu: f64) -> Result<Vec<Comparison>, Error> {
         "axial strain of a closed tube per pressure [1/Pa]",
     ];
     let row = |((name, exact), computed): ((&str, f64), Vec<f64>)| {
-        Comparison::new(format!("{name}, nu {nu}"), "Lame", exact, computed)
+        let row = Comparison::new(format!("{name}, nu {nu}"), "Lame", exact, computed);
+        // The sum of strains loses (1 - 2 nu): 1e-16 over 2e-4 times the condition of the cell, a million at nu 0.4999.
+        let lost = nu > 0.499 && name.starts_with("axial strain");
+        if lost { row.within(1e-6) } else { row }
     };
     Ok(names.into_iter().zip(exact).zip(computed).map(row).collect())
 }

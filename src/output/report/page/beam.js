@@ -59,7 +59,8 @@ function paintBeam(ctx, view, curve, scene, layout, pressure) {
     const rim = w * view.scale > 6 ? css("--solid-line") : null;
     for (const b of layout.bladders) {
       const [l, r] = [b.a - w / 2, b.a + w / 2];
-      outline([[l, b.e - h / 2], [b.a, b.e - h / 2], [r, b.e - h / 2], [r, b.e + h / 2], [b.a, b.e + h / 2], [l, b.e + h / 2]]);
+      if (b.outline) outline(b.outline.map(([z, x]) => [b.a + z, b.e + x]));
+      else outline([[l, b.e - h / 2], [b.a, b.e - h / 2], [r, b.e - h / 2], [r, b.e + h / 2], [b.a, b.e + h / 2], [l, b.e + h / 2]]);
       ctx.closePath();
       const p = pressure ? pressure(b.index) : null;
       ctx.fillStyle = p === null ? css("--card") : divergingCss(p);

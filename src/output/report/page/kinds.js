@@ -1,5 +1,12 @@
 // What each kind of result shows between its title and its case.
 
+/** The cell of the section under its loads. */
+function showCell() {
+  if (!data.cell?.length) return;
+  const body = section("cell", "The section under its loads", "One pitch of the beam from the side, as its coefficients are computed: at rest in grey, deformed in colour. Displacements are linear in the loads; a load as many times as large as the factor gives what is drawn.");
+  body.append(el("div", { class: "grid4" }, ...data.cell.map(pictureCard)));
+}
+
 /** The drawing with its words; `tell` gives the words of a bladder. */
 function showScene(tell) {
   const scene = data.scene;
@@ -12,7 +19,7 @@ function showScene(tell) {
   const legend = el("ul", { class: "legend" });
   const note = el("p", { class: "caption" });
   const card = figure(null, null, host, half ? readout : null, legend, note);
-  const parts = half ? " Squares are bladders, which lie across the beam; lines are tubes, which join their ends in front and behind." : "";
+  const parts = half ? ` ${scene.bladders.outlines ? "Outlines" : "Squares"} are bladders, which lie across the beam; lines are tubes, which join their ends in front and behind.` : "";
   const scale = (thicker) => (note.textContent = `${thicker > 1.01 ? `To scale along the beam; its height is drawn ${shortest(thicker)} times larger.` : "To scale."} Root on the left, tip on the right.${parts}`);
   body.append(card);
   const drawn = drawScene(scene, host, readout, tell || ((b, layout) => bladderWords(b, layout, scene)), scale);

@@ -95,7 +95,9 @@ function drawBladders(add, layout, X, Y, scale, thicker) {
   const numbered = w >= 17;
   for (const b of layout.bladders) {
     const colour = wireColour(layout.colourOf(b.network));
-    add(svg("rect", { x: X(b.a) - w / 2, y: Y(b.e) - h / 2, width: w, height: h, rx: Math.min(3, w / 4), style: `fill:${css("--card")};stroke:${colour};stroke-width:${w > 8 ? 1.5 : 0.6}` }));
+    const style = `fill:${css("--card")};stroke:${colour};stroke-width:${w > 8 ? 1.5 : 0.6}`;
+    if (b.outline) add(svg("path", { d: `M${b.outline.map(([z, x]) => `${X(b.a + z).toFixed(1)} ${Y(b.e + x).toFixed(1)}`).join("L")}Z`, style }));
+    else add(svg("rect", { x: X(b.a) - w / 2, y: Y(b.e) - h / 2, width: w, height: h, rx: Math.min(3, w / 4), style }));
     if (numbered) add(svg("text", { x: X(b.a), y: b.row > 0 ? Y(b.e) - h / 2 + Math.min(12, h * 0.42) : Y(b.e) + h / 2 - 3, "text-anchor": "middle", style: `font-size:${Math.min(11, w / 2.2)}px`, text: String(b.label).replace("-", "−") }));
   }
 }

@@ -9,10 +9,17 @@ function layOut(scene) {
   const [wide, high] = [Math.min(scene.bladders.width, 0.92 * segment), Math.min(scene.bladders.height, 0.46 * scene.height)];
   out.segment = segment;
   out.size = [wide, high];
+  // The outlines of a section, about the middles of their own heights.
+  const rows = (scene.bladders.outlines || []).map((points) => {
+    const [low, top] = extent(points.map((p) => p[1]));
+    const [left, right] = extent(points.map((p) => p[0]));
+    return { e: (low + top) / 2, size: [right - left, top - low], outline: points.map(([z, x]) => [z, x - (low + top) / 2]) };
+  });
+  if (rows.length) out.size = [Math.max(...rows.map((r) => r.size[0])), Math.max(...rows.map((r) => r.size[1]))];
   for (let b = 0; b < 2 * perRow; b++) {
     const row = b < perRow ? 1 : -1;
     const j = b % perRow;
-    out.bladders.push({ index: b, row, label: row * (j + 1), a: (j + 0.5) * segment, e: row * scene.height * 0.25, network: network[b], flipped: false });
+    out.bladders.push({ index: b, row, label: row * (j + 1), a: (j + 0.5) * segment, e: row * scene.height * 0.25, ...rows[row > 0 ? 0 : 1], network: network[b], flipped: false });
   }
   const sizes = new Map();
   for (const n of network) sizes.set(n, (sizes.get(n) || 0) + 1);
@@ -31,7 +38,7 @@ function layOut(scene) {
   const mouth = (b, outlet) => {
     const bladder = out.bladders[b];
     const side = outlet !== bladder.flipped ? 1 : -1;
-    return { a: bladder.a + side * 0.24 * wide, e: bladder.e };
+    return { a: bladder.a + side * 0.24 * out.size[0], e: bladder.e };
   };
   const name = (b) => String(out.bladders[b].label).replace("-", "−");
   chains.forEach((chain, c) => {

@@ -1,0 +1,57 @@
+//! What is computed of sections, once each: cases are read again and again.
+
+use std::sync::{Mutex, PoisonError};
+
+use serde_json::{Value, json};
+use slcbeam_section::coefficients::{Coefficients, Options};
+use slcbeam_section::error::Error;
+use slcbeam_section::finite::StrainEnergy;
+use slcbeam_section::input::Section;
+
+/// Sections that are kept.
+const KEPT: usize = 16;
+
+/// What was computed of some sections.
+type Kept<T> = Mutex<Vec<(Section, T)>>;
+
+static COEFFICIENTS: Kept<Coefficients> = Mutex::new(vec![]);
+static ENERGIES: Kept<Option<StrainEnergy>> = Mutex::new(vec![]);
+
+/// What is kept of a section, computed where nothing is.
+fn once<T: Clone>(kept: &Kept<T>, section: &Section, compute: impl FnOnce() -> Computed<T>) -> Computed<T> {
+    let known = || kept.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, found)) = known().iter().find(|(of, _)| of == section) {
+        return Ok(found.clone());
+    }
+    let found = compute()?;
+    let mut known = known();
+    known.truncate(KEPT - 1);
+    known.insert(0, (section.clone(), found.clone()));
+    Ok(found)
+}
+
+type Computed<T> = std::result::Result<T, Error>;
+
+/// The coefficients of a section, computed once; [`slcbeam_section`] says how, with errors.
+pub fn coefficients(section: &Section) -> Computed<Coefficients> {
+    once(&COEFFICIENTS, section, || section.coefficients(&Options::default()))
+}
+
+/// Its energy at finite strain, computed once.
+pub fn strain_energy(section: &Section) -> Computed<Option<StrainEnergy>> {
+    once(&ENERGIES, section, || section.strain_energy())
+}
+
+/// An energy as a case has it.
+pub fn written(energy: &StrainEnergy) -> Value {
+    let [stretch, curvature, upper, lower] = energy.limits;
+    json!({
+        "stretch": stretch,
+        "curvature_1_m": curvature,
+        "upper_pressure_pa": upper,
+        "lower_pressure_pa": lower,
+        "degree": energy.degree,
+        "coefficients_n": energy.coefficients_n,
+        "error": energy.error,
+    })
+}

@@ -1,0 +1,85 @@
+//! One cell of a section, deformed by one of its loads, over the cell at rest.
+
+use slcbeam_section::picture::Picture;
+
+use super::canvas::{FAINT_INK, INK, Stroke, picture};
+use super::colour::{Colour, PALETTE};
+
+/// Height of the cell [pt].
+const HEIGHT: f64 = 200.0;
+/// Largest displacement over the height of the cell, which is also the margin.
+const SHOWN: f64 = 0.12;
+/// Sides of triangles.
+const SIDES: Stroke = Stroke {
+    colour: Colour(0xff, 0xff, 0xff),
+    width: 0.3,
+    dash: None,
+};
+
+/// A cell under one load.
+pub struct Deformed {
+    /// How many times its displacements are enlarged.
+    pub factor: f64,
+    /// The picture.
+    pub svg: String,
+}
+
+/// Draws the cell under the load of that place, in units of 1; nothing under a load that does not move it.
+pub fn draw(cell: &Picture, load: usize) -> Option<Deformed> {
+    let displacements = cell.displacements_m.get(load)?;
+    let [along, high] = [0, 1].map(|k| cell.nodes_m.iter().map(|p| p[k].abs()).fold(0.0, f64::max));
+    let largest = displacements.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+    let factor = round(SHOWN * 2.0 * high / largest)?;
+    let (scale, margin) = (HEIGHT / (2.0 * high), 1.2 * SHOWN * HEIGHT);
+    let at = |k: usize, factor: f64| {
+        let (p, u) = (cell.nodes_m[k], displacements[k]);
+        (
+            margin + scale * (along + p[0] + factor * u[0]),
+            margin + scale * (high - p[1] - factor * u[1]),
+        )
+    };
+    let size = (2.0 * (margin + scale * along), 2.0 * margin + HEIGHT);
+    let svg = picture(size.0, size.1, |canvas| {
+        for (triangle, material) in cell.triangles.iter().zip(&cell.materials) {
+            let [a, b, c, ab, bc, ca] = triangle.map(|k| at(k, factor));
+            let sides = [a, ab, b, bc, c, ca, a];
+            canvas.polygon(&sides[..6], fill(*material));
+            canvas.line(&sides, SIDES);
+        }
+        for edge in &cell.outline {
+            canvas.line(&edge.map(|k| at(k, 0.0)), Stroke::solid(FAINT_INK, 0.5));
+        }
+        for edge in &cell.outline {
+            canvas.line(&edge.map(|k| at(k, factor)), Stroke::solid(INK, 1.2));
+        }
+    });
+    Some(Deformed { factor, svg })
+}
+
+/// A light colour of each material.
+fn fill(material: usize) -> Colour {
+    let Colour(r, g, b) = PALETTE[(5 + material) % PALETTE.len()];
+    let light = |x: u8| 255 - (255 - x) / 2;
+    Colour(light(r), light(g), light(b))
+}
+
+/// The next of 1, 2 and 5 times a power of ten below.
+fn round(x: f64) -> Option<f64> {
+    let power = 10_f64.powf(x.log10().floor());
+    let most = [5.0, 2.0, 1.0].into_iter().find(|m| m * power <= x * (1.0 + 1e-9));
+    most.map(|m| m * power).filter(|x| x.is_finite() && *x > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_are_round() {
+        assert_eq!(
+            [0.34, 1.0, 4.9, 5.0, 7.1e6].map(round),
+            [0.2, 1.0, 2.0, 5.0, 5e6].map(Some)
+        );
+        assert_eq!([0.0, f64::INFINITY, f64::NAN].map(round), [None; 3]);
+    }
+}
