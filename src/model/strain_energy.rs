@@ -29,38 +29,16 @@ pub struct StrainEnergy {
     blocks: Vec<Block>,
 }
 
-/// `z_1^a z_2^b`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Monomial {
-    powers: [usize; 2],
-    /// Those with a power less of stretch and of curvature.
-    below: [usize; 2],
-}
-
-/// All of them, those with an even power of curvature first, each kind by the sum of its powers.
-const MONOMIALS: [Monomial; ALL] = {
-    let mut all = [Monomial {
-        powers: [0; 2],
-        below: [0; 2],
-    }; ALL];
+/// Powers of `z_1^a z_2^b`, those with an even power of curvature first, each kind by the sum of its powers.
+const MONOMIALS: [[usize; 2]; ALL] = {
+    let mut all = [[0; 2]; ALL];
     let mut n = 0;
     while n < ALL {
-        all[n].powers = powers_of(n);
-        let [a, b] = all[n].powers;
-        all[n].below = [place_of(a.saturating_sub(1), b), place_of(a, b.saturating_sub(1))];
+        all[n] = powers_of(n);
         n += 1;
     }
     all
 };
-
-/// Place of a monomial among all.
-const fn place_of(a: usize, b: usize) -> usize {
-    let mut n = 0;
-    while powers_of(n)[0] != a || powers_of(n)[1] != b {
-        n += 1;
-    }
-    n
-}
 
 /// Powers of the monomial at a place.
 const fn powers_of(place: usize) -> [usize; 2] {
@@ -86,29 +64,21 @@ struct Block {
     first: usize,
 }
 
-/// P at given pressures.
+/// P and its derivatives by y.
 #[derive(Clone, Copy, Debug)]
-pub struct AtPressures<T> {
-    /// Powers of sum and difference.
-    pressures: [Powers<T>; 2],
-    /// `P_1` and `P_2` by the monomials.
-    normal: Values<T>,
-    moment: Values<T>,
-}
-
-/// Integrals over a part of the beam.
-#[derive(Clone, Copy, Debug)]
-pub struct Sums<T> {
-    /// Of P.
+pub struct Slopes<T> {
+    /// P [N].
     pub energy: T,
-    /// Of `P_3` and `P_4`.
+    /// `P_1` [N].
+    pub force: T,
+    /// `P_2` [N m].
+    pub moment: T,
+    /// `P_3`, `P_4` [N/Pa].
     pub by_pressure: [T; 2],
 }
 
-/// Values of all monomials.
-pub type Values<T> = [T; ALL];
 /// Powers of one number.
-pub type Powers<T> = [T; DEGREE + 1];
+type Powers<T> = [T; DEGREE + 1];
 
 /// `1, x, .., x^DEGREE`.
 #[inline]
@@ -129,16 +99,6 @@ fn slope<T: Scalar>(powers: &Powers<T>, k: usize) -> T {
     }
 }
 
-#[inline]
-fn dot<T: Scalar>(a: &Values<T>, b: &Values<T>) -> T {
-    // four sums that do not wait for each other
-    let mut sums = [T::zero(); 4];
-    for n in 0..ALL {
-        sums[n % 4] += a[n] * b[n];
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
-}
-
 impl StrainEnergy {
     /// That of a checked case.
     pub fn new(written: &Written) -> Self {
@@ -149,7 +109,7 @@ impl StrainEnergy {
         let blocks = of_pressures.map(|powers| {
             let (sum, odd) = (powers[0] + powers[1], powers[1] % 2);
             let kind = [&MONOMIALS[..EVEN], &MONOMIALS[EVEN..]][odd];
-            let all = kind.iter().map(|m| m.powers[0] + m.powers[1] + sum);
+            let all = kind.iter().map(|[a, b]| a + b + sum);
             let coefficients = all.take_while(|all| *all <= degree).map(|all| match all {
                 0..3 => 0.0,
                 _ => given.next().unwrap_or(0.0),
@@ -175,100 +135,38 @@ impl StrainEnergy {
         }
     }
 
-    /// At pressures of the upper and the lower bladder.
-    #[inline]
-    pub fn at_pressures<T: Scalar>(&self, [upper, lower]: [T; 2]) -> AtPressures<T> {
+    /// At y.
+    pub fn at<T: Scalar>(&self, [stretch, curvature, upper, lower]: [T; 4]) -> Slopes<T> {
+        let [e, k] = [stretch * self.inverse[0], curvature * self.inverse[1]].map(powers);
         let [s, d] = [upper + lower, upper - lower].map(|p| powers(p * self.inverse[2]));
-        let mut energy = [T::zero(); ALL];
+        let values = MONOMIALS.map(|[a, b]| e[a] * k[b]);
+        let by_stretch = MONOMIALS.map(|[a, b]| slope(&e, a) * k[b]);
+        let by_curvature = MONOMIALS.map(|[a, b]| e[a] * slope(&k, b));
+        let [mut energy, mut force, mut moment, mut by_sum, mut by_difference] = [T::zero(); 5];
         for block in &self.blocks {
-            let value = s[block.powers[0]] * d[block.powers[1]];
-            for (energy, &c) in energy[block.first..].iter_mut().zip(&block.coefficients) {
-                *energy += value * c;
-            }
-        }
-        let [mut normal, mut moment] = [[T::zero(); ALL]; 2];
-        for n in 0..ALL {
-            let ([a, b], [less_stretch, less_curvature]) = (MONOMIALS[n].powers, MONOMIALS[n].below);
-            if a > 0 {
-                normal[less_stretch] = energy[n] * (a as f64 * self.inverse[0]);
-            }
-            if b > 0 {
-                moment[less_curvature] = energy[n] * (b as f64 * self.inverse[1]);
-            }
-        }
-        AtPressures {
-            pressures: [s, d],
-            normal,
-            moment,
-        }
-    }
-
-    /// P and its derivatives by the pressures, of values of the monomials that are summed over a part of the beam.
-    #[inline]
-    pub fn sums<T: Scalar>(&self, at: &AtPressures<T>, values: &Values<T>) -> Sums<T> {
-        let [s, d] = &at.pressures;
-        let [mut energy, mut by_sum, mut by_difference] = [T::zero(); 3];
-        for block in &self.blocks {
-            let mut sum = T::zero();
-            for (value, &c) in values[block.first..].iter().zip(&block.coefficients) {
-                sum += *value * c;
+            let [mut value, mut of_stretch, mut of_curvature] = [T::zero(); 3];
+            let range = block.first..block.first + block.coefficients.len();
+            let slopes = by_stretch[range.clone()].iter().zip(&by_curvature[range.clone()]);
+            for ((own, (stretch, curvature)), &c) in values[range].iter().zip(slopes).zip(&block.coefficients) {
+                value += *own * c;
+                of_stretch += *stretch * c;
+                of_curvature += *curvature * c;
             }
             let [a, b] = block.powers;
-            energy += s[a] * d[b] * sum;
-            by_sum += slope(s, a) * d[b] * sum;
-            by_difference += s[a] * slope(d, b) * sum;
+            let pressures = s[a] * d[b];
+            energy += pressures * value;
+            force += pressures * of_stretch;
+            moment += pressures * of_curvature;
+            by_sum += slope(&s, a) * d[b] * value;
+            by_difference += s[a] * slope(&d, b) * value;
         }
         let [by_sum, by_difference] = [by_sum, by_difference].map(|by| by * self.inverse[2]);
-        Sums {
+        Slopes {
             energy,
+            force: force * self.inverse[0],
+            moment: moment * self.inverse[1],
             by_pressure: [by_sum + by_difference, by_sum - by_difference],
         }
-    }
-
-    /// Powers of a stretch `y_1`.
-    #[inline]
-    pub fn of_stretch<T: Scalar>(&self, stretch: T) -> Powers<T> {
-        powers(stretch * self.inverse[0])
-    }
-
-    /// Powers of a curvature `y_2`.
-    #[inline]
-    pub fn of_curvature<T: Scalar>(&self, curvature: T) -> Powers<T> {
-        powers(curvature * self.inverse[1])
-    }
-
-    /// No monomials.
-    pub fn none<T: Scalar>(&self) -> Values<T> {
-        [T::zero(); ALL]
-    }
-
-    /// All monomials.
-    #[inline]
-    pub fn values<T: Scalar>(&self, stretch: &Powers<T>, curvature: &Powers<T>) -> Values<T> {
-        std::array::from_fn(|n| stretch[MONOMIALS[n].powers[0]] * curvature[MONOMIALS[n].powers[1]])
-    }
-
-    /// The curvature `y_2` of an end at which `EI y_2 + P_2` is a moment, where P sees the mean of it and that of the `other` node of the
-    /// cell: by Newton's method, a fixed number of iterations, so that derivatives go along.
-    pub fn curvature_under<T: Scalar>(
-        &self,
-        at: &AtPressures<T>,
-        stretch: &Powers<T>,
-        other: T,
-        moment: T,
-        bending_stiffness: f64,
-    ) -> T {
-        const ITERATIONS: usize = 5;
-        let mut curvature = moment * (1.0 / bending_stiffness);
-        for _ in 0..ITERATIONS {
-            let values = self.values(stretch, &self.of_curvature((curvature + other) * 0.5));
-            let mut slope = T::constant(bending_stiffness);
-            for (monomial, of) in MONOMIALS.iter().zip(&at.moment).filter(|(m, _)| m.powers[1] > 0) {
-                slope += *of * values[monomial.below[1]] * (0.5 * monomial.powers[1] as f64 * self.inverse[1]);
-            }
-            curvature -= (curvature * bending_stiffness + at.moment(&values) - moment) / slope;
-        }
-        curvature
     }
 
     /// How far out a state lies in the ellipsoid in which P is known, 1 at its border.
@@ -323,24 +221,10 @@ impl StrainEnergy {
                 .zip(&block.coefficients)
                 .filter(|(_, c)| **c != 0.0)
             {
-                let ([a, b], [s, d]) = (monomial.powers, block.powers);
+                let ([a, b], [s, d]) = (*monomial, block.powers);
                 share += c.abs() * term([a, b, s, d]);
             }
         }
         share
-    }
-}
-
-impl<T: Scalar> AtPressures<T> {
-    /// `P_1` [N].
-    #[inline]
-    pub fn normal(&self, values: &Values<T>) -> T {
-        dot(&self.normal, values)
-    }
-
-    /// `P_2` [N m].
-    #[inline]
-    pub fn moment(&self, values: &Values<T>) -> T {
-        dot(&self.moment, values)
     }
 }

@@ -97,7 +97,6 @@ pub fn foreshorten(system: &System, w: &mut Workspace<f64>) {
 /// ```
 pub fn rates<'a>(
     system: &'a System,
-    now: &'a TimeData,
     w: &Workspace<f64>,
     out: &mut [f64],
 ) -> impl Fn(&Workspace<f64>, usize) -> f64 + use<'a> {
@@ -115,30 +114,14 @@ pub fn rates<'a>(
     move |w, node| {
         let Some(wet) = &system.model.wet else { return 0.0 };
         let j = system.mesh.segments_of_node(node).0;
-        let by_pressure = pressure_rates(system, wet, w, j);
-        by_pressure.curvature + nonlinear::end_rate(system, now, w, node, &by_pressure)
+        let (_, curvature) = SegmentRates::new(system, wet, w, j).strain_rates(&wet.coupling, &wet.strains);
+        curvature + nonlinear::end_rate(system, w, node)
     }
 }
 
-/// Rates in a segment.
-pub struct PressureRates {
-    /// Of `lambda_p` [1/s].
-    pub stretch: f64,
-    /// Of `alpha_p` [1/(m s)].
-    pub curvature: f64,
-    /// Of the mean pressures of the upper and the lower bladder [Pa/s].
-    pub pressures: [f64; 2],
-}
-
-/// How fast pressures of a segment change, and the strains that they make; needs [`complete`].
-pub fn pressure_rates(system: &System, wet: &Wet, w: &Workspace<f64>, j: usize) -> PressureRates {
-    let rates = SegmentRates::new(system, wet, w, j);
-    let (stretch, curvature) = rates.strain_rates(&wet.coupling, &wet.strains);
-    PressureRates {
-        stretch,
-        curvature,
-        pressures: rates.pressure_rate,
-    }
+/// Rates of the mean pressures of a segment's upper and lower bladder [Pa/s]; needs [`complete`].
+pub fn pressure_rates(system: &System, wet: &Wet, w: &Workspace<f64>, j: usize) -> [f64; 2] {
+    SegmentRates::new(system, wet, w, j).pressure_rate
 }
 
 /// Pressures, means and their rates in one segment.

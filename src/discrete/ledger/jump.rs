@@ -37,7 +37,7 @@ pub fn travel(now: &mut TimeData, [before, after]: [&TimeData; 2]) {
 pub fn side(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
     let w = &*complete(system, now, yp, w);
-    let rates = fluid::rates(system, now, w, out);
+    let rates = fluid::rates(system, w, out);
     solid::flows(system, now, rates, w, out);
     fluid::lumped_jump(system, now, w, out);
     for flow in [

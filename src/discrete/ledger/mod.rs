@@ -5,7 +5,7 @@ mod jump;
 mod reactions;
 mod solid;
 
-pub use fluid::{PressureRates, pressure_rate, pressure_rates};
+pub use fluid::{pressure_rate, pressure_rates};
 pub use jump::{side, strokes, travel};
 pub use reactions::compared;
 
@@ -162,7 +162,7 @@ pub fn by_law(integrals: &[f64], open: usize, count: usize) -> (f64, f64) {
 pub fn flows(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
     let state = complete(system, now, yp, w);
-    let rates = fluid::rates(system, now, &state, out);
+    let rates = fluid::rates(system, &state, out);
     solid::flows(system, now, rates, &state, out);
     fluid::flows(system, now, w, out);
 }

@@ -19,6 +19,7 @@ pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
     unpack(system, now, y, yp, w);
     fluid::pressures(system, w);
     fluid::pressure_strains(system, w);
+    nonlinear::forces(system, w);
     match system.model.kinematics {
         Kinematics::Bar => {
             bar::kinematics(system, w);
@@ -31,7 +32,6 @@ pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
             small::rates(system, now, w);
             small::normal_forces(system, now, w);
             solid::moments(system, now, w);
-            nonlinear::forces(system, now, w);
             small::section_forces(system, now, w);
         }
         Kinematics::FiniteRotation => {
@@ -39,7 +39,6 @@ pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
             solid::rates(system, now, w);
             solid::normal_forces(system, w);
             solid::moments(system, now, w);
-            nonlinear::forces(system, now, w);
             solid::shears(system, w);
             solid::section_forces(system, now, w);
         }

@@ -126,8 +126,12 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
         };
         match given {
             Some(moment) => {
-                w.forces.moment[i] = T::constant(moment);
-                let alpha = pressure_curvature + moment / ei;
+                let mut elastic = T::constant(moment);
+                if let Some(nonlinear) = w.forces.nonlinear_moment.get(i) {
+                    elastic -= *nonlinear;
+                }
+                w.forces.moment[i] = elastic;
+                let alpha = pressure_curvature + elastic / T::constant(ei);
                 w.shape.kappa[i] = if published { alpha / stretch } else { alpha };
             }
             None => {

@@ -169,7 +169,7 @@ pub fn about(effect: Effect) -> About {
             adds: "Ω = Ω_2 + P(y): P_1 in N, P_2 in M, -∂P/∂p_R/(φ_b l_b) in the areas",
             brings: "a nonlinear area a bladder",
             number: "P over the quadratic energy at the scene's loads, bounded",
-            cost: "a polynomial of degree 4 to 6 in every cell",
+            cost: "a polynomial of degree 4 to 6 in every segment",
             needs: &[
                 TransverseMotion,
                 AxialStretch,
