@@ -133,7 +133,7 @@ fn sections_without_a_law_or_without_mirrored_rows_have_none() {
     let mut unlike = section(Some(Law::NeoHookean));
     if let Row::Bladder(upper) = &unlike.bladders.upper {
         let mut lower = upper.clone();
-        lower.center_m = -0.9 * lower.center_m;
+        lower.center_m *= -0.9;
         unlike.bladders.lower = Row::Bladder(lower);
     }
     assert_eq!(unlike.strain_energy().unwrap(), None);
