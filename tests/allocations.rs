@@ -57,6 +57,10 @@ fn nothing_is_allocated_at_a_step() {
     let mut found = vec![];
     for path in cases() {
         for formulation in ["conservative", "published"] {
+            let nonlinear = std::fs::read_to_string(&path).unwrap().contains("\"law\"");
+            if nonlinear && formulation == "published" {
+                continue;
+            }
             let case = case::load(&path, &[format!("/formulation=\"{formulation}\"")]).unwrap();
             let end = case.time.end_s;
             let time = |call: usize| end * call as f64 / (WARM + CALLS) as f64;

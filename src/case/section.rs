@@ -270,8 +270,9 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
                 "area_per_moment_m2_per_n_m": {"opening": of_moment, "closing": of_moment},
                 "area_per_force_m2_per_n": {"tension": of_force, "compression": of_force},
             });
-            // what the case has of it, as that of a result has, is not computed again
-            if case.pointer(ENERGY).is_none() {
+            // what the case has of it, as that of a result has, is not computed again, nor what it leaves out
+            let given = |energy: &Value| energy.is_null() || energy.get("coefficients_n").is_some();
+            if !case.pointer(ENERGY).is_some_and(given) {
                 let energy = computed::strain_energy(section).map_err(|error| violations(error, AT))?;
                 energy
                     .iter()

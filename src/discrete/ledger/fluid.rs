@@ -379,15 +379,6 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     wet.bladder_length * sum
 }
 
-/// Energy of the section beyond its quadratic part, `P - Σ p ∂P/∂p`, `[E48]`.
-pub fn nonlinear_energy(system: &System, w: &Workspace<f64>) -> f64 {
-    let Some((wet, _)) = system.model.strain_energy() else {
-        return 0.0;
-    };
-    let pressures = w.fluid.mean_pressure.iter().zip(&w.coupling.nonlinear_area);
-    w.coupling.nonlinear_energy.iter().sum::<f64>() + wet.bladder_length * pressures.map(|(p, a)| p * a).sum::<f64>()
-}
-
 /// Volume change stored in each component.
 pub fn volumes(system: &System, w: &Workspace<f64>) -> Vec<f64> {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {

@@ -182,7 +182,7 @@ pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Work
 pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     let mut e = solid::energies(system, now, &w);
     e.bladders = fluid::energy(system, &w);
-    e.section = fluid::nonlinear_energy(system, &w);
+    e.section = residual::nonlinear::energy(system, &w);
     e
 }
 

@@ -5,7 +5,7 @@ use crate::discrete::{System, Workspace};
 use crate::model::ROWS;
 use crate::numerics::{Dual, Scalar};
 
-/// `[E48]` on the mesh: a segment is one cell of the section, with the means of [E16] for its strains,
+/// The energy of [`crate::model::StrainEnergy`] on the mesh: a segment is one cell of the section, with the means of [E16] for its strains,
 ///
 /// ```text
 /// y = (Nbar/EA, Mbar/EI, p_u, p_d)      E gains Σ l_seg P      Nbar, Mbar the means of what is linear in N and M
@@ -56,6 +56,15 @@ pub fn areas<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     for (bladder, row) in system.layout.coupling.nonlinear_area.clone().enumerate() {
         r[row] = w.coupling.excess_area[bladder] - w.coupling.nonlinear_area[bladder];
     }
+}
+
+/// Energy of the section beyond its quadratic part [J]: `Σ l_seg P + l_b Σ p a_x`, `a_x` what it does to areas.
+pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
+    let Some((wet, _)) = system.model.strain_energy() else {
+        return 0.0;
+    };
+    let pressures = w.fluid.mean_pressure.iter().zip(&w.coupling.nonlinear_area);
+    w.coupling.nonlinear_energy.iter().sum::<f64>() + wet.bladder_length * pressures.map(|(p, a)| p * a).sum::<f64>()
 }
 
 /// State of a segment with its rate; needs [`crate::discrete::ledger::complete`].
