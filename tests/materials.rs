@@ -254,3 +254,22 @@ fn elastomer(preset: Preset) -> String {
         known.density_source
     )
 }
+
+/// Goal: a temperature that nothing takes is not passed over.
+#[test]
+fn a_temperature_needs_a_named_fluid() {
+    let text = include_str!("../cases/wiring-2.json");
+    let read = |set: &str| {
+        slcbeam::case::parse(
+            text,
+            std::path::Path::new("mine.json"),
+            std::path::Path::new(""),
+            &[set.to_owned()],
+        )
+    };
+    let Err(slcbeam::error::Error::Case(fault)) = read("/fluid/temperature_c=25") else {
+        panic!("accepted");
+    };
+    assert_eq!(fault.violations[0].pointer, "/fluid/temperature_c");
+    assert!(read(r#"/fluid={"preset":"water","temperature_c":25}"#).is_ok());
+}

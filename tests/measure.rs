@@ -290,3 +290,23 @@ fn the_command_prints_what_a_case_takes() {
     );
     assert_eq!(run(&["--bladders", "0"]).status.code(), Some(2));
 }
+
+/// Goal: what no case can have is not handed out: a turned sign, an overflow; nor is one of two columns chosen in silence.
+#[test]
+fn what_no_case_can_have_is_refused() {
+    let points = |x: &[f64], y: &[f64]| Points {
+        x: x.to_vec(),
+        y: y.to_vec(),
+    };
+    let of = |points| measure(Experiment::PressureVolume, points, &case(), Options::default());
+    let x = [-1e4, 0.0, 1e4, 2e4];
+    let falling = of(points(&x, &[8e-7, 1e-8, -8.1e-7, -1.6e-6])).unwrap_err();
+    assert!(falling.to_string().contains("is a sign turned"), "{falling}");
+    assert!(
+        of(points(&x, &[-1e300, 1e297, 1e300, 2e300])).is_err(),
+        "squares overflow"
+    );
+    let twice = "pressure [kPa],pressure [Pa],volume [ml]\n-10,1,-0.8\n0,2,0\n10,3,0.8\n";
+    let read = table::read(Path::new("d.csv"), twice, Quantity::Pressure, Quantity::Volume);
+    assert!(matches!(read, Err(Error::Case(fault)) if fault.violations[0].what.contains("second column")));
+}

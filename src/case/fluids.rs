@@ -21,7 +21,7 @@ use crate::error::{Code, Violation};
 
 /// Where it stands.
 const KEY: &str = "fluid";
-const TEMPERATURE: &str = "/fluid/temperature_c";
+pub(super) const TEMPERATURE: &str = "/fluid/temperature_c";
 const ZERO_CELSIUS_K: f64 = 273.15;
 
 /// Fluids by name.

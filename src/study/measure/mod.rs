@@ -269,6 +269,15 @@ pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Opt
     let total: f64 = points.y.iter().map(|y| (y - mean).powi(2)).sum();
     let left: f64 = fit.residuals.iter().map(|e| e * e).sum();
     let coefficients = coefficients(experiment, case, options, slope, sides)?;
+    for Coefficient { pointer, estimate, .. } in &coefficients {
+        let sizes = [estimate.value, estimate.error, total, left];
+        if estimate.value <= 0.0 || sizes.iter().any(|size| !size.is_finite()) {
+            let value = estimate.value;
+            return Err(Error::Usage(format!(
+                "these data make {pointer} {value:.4e}, which is no positive number that a case can have: is a sign turned, or a unit wrong?"
+            )));
+        }
+    }
     Ok(Measured {
         experiment,
         explained: if total > 0.0 { 1.0 - left / total } else { 0.0 },

@@ -220,6 +220,10 @@ fn column(names: &[(&str, Range<usize>)], header: &Line, quantity: Quantity) -> 
             ..fault
         }));
     };
+    if let Some((_, again)) = names[at + 1..].iter().find(|(cell, _)| split(cell).0 == name) {
+        let what = format!("a second column named {name}");
+        return Err(Box::new(fault(again.clone(), what).allowed("one, that which is meant")));
+    }
     let given = split(names[at].0).1;
     let known = units
         .iter()

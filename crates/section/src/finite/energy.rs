@@ -26,6 +26,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const LARGEST_STRAIN: f64 = 0.3;
 /// Largest area change over the area at rest, by the linear law.
 const LARGEST_SWELLING: f64 = 1.0;
+/// Largest pressure over Young's modulus that is looked for.
+const LARGEST_PRESSURE: f64 = 0.2;
+/// Poisson's ratio above which P is that of this one: solids nearer to incompressible take many more steps, and change P by up to 0.5 % of the
+/// quadratic part.
+const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 /// Steps in which each axis is followed, longer and longer.
 const STEPS: u32 = 8;
 /// Parts of the axes that are tried as limits, one after the other where a state is not found or the fit too coarse.
@@ -86,8 +91,15 @@ impl Section {
             meshes: 1,
             ..Options::default()
         })?;
-        let cell = FiniteCell::new(self, Cell::new(self, &meshes[0]), law)?;
-        let experiment = Experiment::new(&cell, self)?;
+        let mut softer = self.clone();
+        let materials = softer.regions.iter_mut().map(|region| &mut region.material);
+        for material in materials.chain([&mut softer.material]) {
+            let mu = material.shear_modulus();
+            material.poisson_ratio = material.poisson_ratio.min(NEARLY_INCOMPRESSIBLE);
+            material.young_modulus_pa = 2.0 * (1.0 + material.poisson_ratio) * mu;
+        }
+        let cell = FiniteCell::new(&softer, Cell::new(&softer, &meshes[0]), law)?;
+        let experiment = Experiment::new(&cell, &softer)?;
         experiment.is_mirrored().then(|| experiment.fit()).transpose()
     }
 }
@@ -123,6 +135,7 @@ struct Experiment<'a> {
     /// Whether the lower row is the upper one mirrored.
     mirrored: bool,
     height: f64,
+    modulus: f64,
     /// phi_b l_b.
     ratio: f64,
     /// Area of the bladders at rest [m^2].
@@ -146,6 +159,7 @@ impl<'a> Experiment<'a> {
             cell,
             mirrored: matches!(section.bladders.lower, Row::Mirrored) && section.regions.is_empty(),
             height: section.height_m,
+            modulus: section.material.young_modulus_pa,
             ratio: section.bladders.length_m / section.pitch_m,
             areas: cell.areas,
             tangent,
@@ -190,7 +204,10 @@ impl<'a> Experiment<'a> {
     /// How far each axis goes.
     fn axes(&self) -> [[f64; 2]; 4] {
         let swelling = |row: usize| match self.areas[row] {
-            area if area > 0.0 => LARGEST_SWELLING * area * self.ratio / -self.tangent[2 + row][2 + row],
+            area if area > 0.0 => {
+                let doubled = LARGEST_SWELLING * area * self.ratio / -self.tangent[2 + row][2 + row];
+                doubled.min(LARGEST_PRESSURE * self.modulus)
+            }
             _ => 0.0,
         };
         let most = [
