@@ -195,6 +195,9 @@ fn what_is_not_known_is_said() {
         ["/bladders/coupling"]
     );
     assert_eq!(refused(&["/section/material/law=\"hooke\""]), ["/section/material/law"]);
+    // a degree that is none is told, not counted through
+    let degree = "/bladders/strain_energy/degree";
+    assert_eq!(refused(&[&format!("{degree}=1000000000")]), [degree]);
     let linear = "/bladders/strain_energy=null";
     assert!(parse(&[r#"/formulation="published""#, linear]).is_ok());
     let short = r#"/bladders/strain_energy={"stretch":[-0.1,0.1],"curvature_1_m":[-9,9],"upper_pressure_pa":[0,0],"lower_pressure_pa":[-1e4,1e4],"degree":3,"coefficients_n":[1]}"#;

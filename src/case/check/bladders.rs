@@ -1,5 +1,7 @@
 //! Bladders: what must come with them, whether they fit, the order of their slopes.
 
+use slcbeam_section::finite::energy::monomials;
+
 use crate::case::faults::Violations;
 use crate::case::schema::{Bladders, Case, Coupling, Formulation, StrainEnergy};
 use crate::error::{Code, Violation};
@@ -128,15 +130,13 @@ fn slopes(bladders: &Bladders, faults: &mut Violations) {
 /// A polynomial with all its coefficients about a state at rest, where there is one potential.
 fn strain_energy(case: &Case, bladders: &Bladders, energy: &StrainEnergy, faults: &mut Violations) {
     let at = "/bladders/strain_energy";
-    let count = StrainEnergy::count(energy.degree);
-    if energy.coefficients_n.len() != count && !faults.any_below(at) {
-        let what = format!(
-            "{} coefficients of degree {}",
-            energy.coefficients_n.len(),
-            energy.degree
-        );
+    // the schema has said so of a degree that is none
+    let (degree, given) = (energy.degree, energy.coefficients_n.len());
+    let wanted = || monomials(degree).count();
+    if !faults.any_below(at) && given != wanted() {
+        let what = format!("{given} coefficients of degree {degree}");
         let fault = Violation::new(Code::Count, format!("{at}/coefficients_n"), what);
-        faults.push(fault.allowed(count.to_string()));
+        faults.push(fault.allowed(wanted().to_string()));
     }
     let keys = ["stretch", "curvature_1_m", "upper_pressure_pa", "lower_pressure_pa"];
     for (key, [low, high]) in keys.into_iter().zip(energy.limits()) {
@@ -145,31 +145,17 @@ fn strain_energy(case: &Case, bladders: &Bladders, energy: &StrainEnergy, faults
             faults.push(fault.allowed("one below zero and one above"));
         }
     }
-    let needs = [
-        (
-            bladders.coupling != Coupling::Reciprocal,
-            "/bladders/coupling",
-            "a coupling that is not the reciprocal one",
-            "\"reciprocal\"",
-        ),
-        (
-            case.formulation != Formulation::Conservative,
-            "/formulation",
-            "a formulation without a potential",
-            "\"conservative\"",
-        ),
-    ];
-    for (_, place, what, allowed) in needs.into_iter().filter(|(breaks, ..)| *breaks) {
-        let fault = Violation::new(
-            Code::Together,
-            place,
-            format!("a section with a strain energy and {what}"),
-        );
-        faults.push(
-            fault
-                .allowed(allowed)
-                .hint("or leave the strain energy out: \"strain_energy\": null"),
-        );
+    let mut refuse = |place: &str, what: &str, allowed: &str| {
+        let what = format!("a section with a strain energy and {what}");
+        let fault = Violation::new(Code::Together, place, what).allowed(allowed);
+        faults.push(fault.hint("or leave the strain energy out: \"strain_energy\": null"));
+    };
+    if bladders.coupling != Coupling::Reciprocal {
+        let what = "a coupling that is not the reciprocal one";
+        refuse("/bladders/coupling", what, "\"reciprocal\"");
+    }
+    if case.formulation != Formulation::Conservative {
+        refuse("/formulation", "a formulation without a potential", "\"conservative\"");
     }
 }
 

@@ -92,19 +92,6 @@ pub struct StrainEnergy {
 }
 
 impl StrainEnergy {
-    /// How many coefficients a polynomial of a degree has.
-    pub fn count(degree: usize) -> usize {
-        let of_sum = |sum: usize| {
-            (0..=sum)
-                .map(move |bent| (bent + 1, sum - bent + 1))
-                .filter(|(bent, _)| bent % 2 == 1)
-        };
-        (3..=degree)
-            .flat_map(of_sum)
-            .map(|(bent, straight)| bent * straight)
-            .sum()
-    }
-
     /// Of stretch, curvature, upper and lower pressure.
     pub fn limits(&self) -> [[f64; 2]; 4] {
         [
