@@ -8,6 +8,8 @@ use slcbeam_section::error::Error;
 use slcbeam_section::finite::StrainEnergy;
 use slcbeam_section::input::Section;
 
+use super::schema::StrainEnergy as Written;
+
 /// Sections that are kept.
 const KEPT: usize = 16;
 
@@ -44,14 +46,14 @@ pub fn strain_energy(section: &Section) -> Computed<Option<StrainEnergy>> {
 
 /// An energy as a case has it.
 pub fn written(energy: &StrainEnergy) -> Value {
-    let [stretch, curvature, upper, lower] = energy.limits;
-    json!({
-        "stretch": stretch,
-        "curvature_1_m": curvature,
-        "upper_pressure_pa": upper,
-        "lower_pressure_pa": lower,
-        "degree": energy.degree,
-        "coefficients_n": energy.coefficients_n,
-        "error": energy.error,
+    let [stretch, curvature_1_m, upper_pressure_pa, lower_pressure_pa] = energy.limits;
+    json!(Written {
+        stretch,
+        curvature_1_m,
+        upper_pressure_pa,
+        lower_pressure_pa,
+        degree: energy.degree,
+        coefficients_n: energy.coefficients_n.clone(),
+        error: energy.error,
     })
 }

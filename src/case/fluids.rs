@@ -21,7 +21,7 @@ use crate::error::{Code, Violation};
 
 /// Where it stands.
 const KEY: &str = "fluid";
-pub(super) const TEMPERATURE: &str = "/fluid/temperature_c";
+const TEMPERATURE: &str = "/fluid/temperature_c";
 const ZERO_CELSIUS_K: f64 = 273.15;
 
 /// Fluids by name.
@@ -183,6 +183,15 @@ pub(super) fn of(case: &Value) -> Option<Brought> {
         values: json!({KEY: {"density_kg_m3": found.density_kg_m3, "viscosity_pa_s": found.viscosity_pa_s}}),
         temperature_c,
     })
+}
+
+/// Tells a temperature that nothing takes: of a case `own` whose fluid has no name.
+pub(super) fn tell_unnamed(own: &Value, faults: &mut Violations) {
+    if own.pointer(TEMPERATURE).is_some_and(|given| !given.is_null()) {
+        let what = "a temperature of a fluid without a name";
+        let hint = "name the fluid by \"preset\", or leave it out: density and viscosity are given";
+        faults.push_at_key(Violation::new(Code::Together, TEMPERATURE, what).hint(hint));
+    }
 }
 
 impl Brought {

@@ -122,17 +122,11 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         true => build(value.clone(), base, &mut faults, violations.is_empty()),
         false => None,
     };
-    if fluid.is_none() && own.pointer(fluids::TEMPERATURE).is_some_and(|given| !given.is_null()) {
-        let fault = Violation::new(
-            Code::Together,
-            fluids::TEMPERATURE,
-            "a temperature of a fluid without a name",
-        );
-        faults
-            .push_at_key(fault.hint("name the fluid by \"preset\", or leave it out: density and viscosity are given"));
-    }
     section.iter().for_each(|section| section.tell(&own, &mut faults));
-    fluid.iter().for_each(|fluid| fluid.tell(&mut faults));
+    match &fluid {
+        Some(fluid) => fluid.tell(&mut faults),
+        None => fluids::tell_unnamed(&own, &mut faults),
+    }
     let case = case.map(|case| Case {
         origins: Origins::of(&own, &value, &source.sets, case.preset, section.as_ref()),
         ..case

@@ -99,7 +99,7 @@ fn of_energy(energy: StrainEnergy) -> String {
         "pressure, upper [Pa]",
         "pressure, lower [Pa]",
     ];
-    let mut lines = vec![["".to_owned(), "from".to_owned(), "to".to_owned()].to_vec()];
+    let mut lines = vec![["", "from", "to"].map(str::to_owned).to_vec()];
     lines.extend(
         names
             .into_iter()

@@ -71,7 +71,6 @@ pub struct Observed {
 
 /// Watches a run, samples it for its recorder and keeps what the summary needs.
 pub struct Observer {
-    half_height: f64,
     cell_order: Vec<usize>,
     fields_every: u64,
     thinning: Thinning,
@@ -90,7 +89,6 @@ impl Observer {
         let fields_every = (case.time.fields_interval() / interval).round().max(1.0) as u64;
         let floors = Floors::of_model(case, &system.model);
         Self {
-            half_height: 0.5 * case.beam.height_m,
             cell_order: quantities::fields::cell_order(system, tube_length(case)),
             fields_every,
             thinning: case.time.history,
@@ -141,7 +139,7 @@ impl Observer {
 
     /// Begins a smooth stretch: at the start of a run, and after every switch. Returns what lies beyond the model, if anything.
     pub fn enter(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
-        let half_height = self.half_height;
+        let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
         let glance = Glance::new(system, now, t, half_height, w);
         self.watch(system, now, w, &glance, integrals);
@@ -153,7 +151,7 @@ impl Observer {
     /// Watches the end of an accepted step, and finds out where between its ends something may have turned: see
     /// [`Observer::turning`]. Returns what lies beyond the model there, if anything; nothing is kept of such a step.
     pub fn arrive(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
-        let half_height = self.half_height;
+        let half_height = self.limits.half_height;
         let (system, now, w) = dae.accepted(t, y, yp);
         let glance = Glance::new(system, now, t, half_height, w);
         self.turning.clear();
@@ -179,7 +177,7 @@ impl Observer {
 
     /// Looks at a state inside the step. Returns what lies beyond the model there, if anything.
     pub fn look(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
-        let half_height = self.half_height;
+        let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
         let glance = Glance::new(system, now, t, half_height, w);
         let beyond = self.limits.beyond(&glance);
@@ -193,7 +191,7 @@ impl Observer {
     /// What lies beyond the model in a state, if anything; nothing is kept.
     pub fn beyond(&self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64]) -> Option<String> {
         let (system, now, w) = dae.evaluate(t, y, yp);
-        let glance = Glance::new(system, now, t, self.half_height, w);
+        let glance = Glance::new(system, now, t, self.limits.half_height, w);
         self.limits.beyond(&glance)
     }
 
@@ -258,7 +256,7 @@ impl Observer {
         integrals: &[f64],
         recorder: &mut dyn Recorder,
     ) -> Result<bool> {
-        let half_height = self.half_height;
+        let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
         let glance = Glance::new(system, now, t, half_height, w);
         let balance = self.watch(system, now, w, &glance, integrals);

@@ -2,9 +2,7 @@
 
 mod common;
 
-use common::paper;
-use slcbeam_section::cell::Cell;
-use slcbeam_section::coefficients::Options;
+use common::{finest, paper};
 use slcbeam_section::finite::energy::monomials;
 use slcbeam_section::finite::{Drive, FiniteCell, Law, SectionState, StrainEnergy};
 use slcbeam_section::input::{Row, Section};
@@ -20,14 +18,7 @@ fn of_ratio(poisson_ratio: f64, law: Option<Law>) -> Section {
 }
 
 fn cell(section: &Section, meshes: usize) -> FiniteCell {
-    let meshes = section
-        .meshes(&Options {
-            meshes,
-            ..Options::default()
-        })
-        .unwrap();
-    let cell = Cell::new(section, &meshes[meshes.len() - 1]);
-    FiniteCell::new(section, cell, section.material.law.unwrap()).unwrap()
+    FiniteCell::new(section, finest(section, meshes), section.material.law.unwrap()).unwrap()
 }
 
 /// P by its definition, at z.
@@ -48,6 +39,23 @@ fn scaled(energy: &StrainEnergy, y: [f64; 4]) -> [f64; 4] {
 struct Rest(SectionState);
 
 impl Rest {
+    fn of(cell: &FiniteCell) -> Self {
+        Self(cell.equilibrium(Drive::Strain([0.0; 2]), [0.0; 2]).unwrap())
+    }
+
+    /// By how much the polynomial is off the energy of the cell at y, over the quadratic part.
+    fn off(&self, energy: &StrainEnergy, cell: &FiniteCell, y: [f64; 4]) -> f64 {
+        let p = [y[2], y[3]];
+        let [stretch, curvature] = self.by_pressure(p);
+        let at = cell
+            .equilibrium(Drive::Strain([y[0] + stretch, y[1] + curvature]), p)
+            .unwrap();
+        let (found, exact) = (value(energy, scaled(energy, y)), self.beyond(&at));
+        let off = (found - exact).abs() / self.size(&at);
+        println!("{y:?}: {found:.5} {exact:.5}, off by {off:.1e} of the quadratic part");
+        off
+    }
+
     fn by_pressure(&self, p: [f64; 2]) -> [f64; 2] {
         let t = &self.0.tangent;
         [0, 1].map(|i| -(t[i][2] * p[0] + t[i][3] * p[1]) / t[i][i])
@@ -80,7 +88,7 @@ fn the_polynomial_is_the_energy_of_the_cell_between_the_states_that_it_was_fitte
         let energy = section.strain_energy().unwrap().unwrap();
         assert!(energy.error < 1e-2, "{law:?}: {}", energy.error);
         let cell = cell(&section, 1);
-        let rest = Rest(cell.equilibrium(Drive::Strain([0.0; 2]), [0.0; 2]).unwrap());
+        let rest = Rest::of(&cell);
         // directions with no symmetry, inside the ellipsoid
         for direction in [
             [0.6, 0.3, 0.4, 0.1],
@@ -90,15 +98,8 @@ fn the_polynomial_is_the_energy_of_the_cell_between_the_states_that_it_was_fitte
         ] {
             let y: [f64; 4] =
                 std::array::from_fn(|i| direction[i] * energy.limits[i][usize::from(direction[i] > 0.0)].abs());
-            let p = [y[2], y[3]];
-            let [stretch, curvature] = rest.by_pressure(p);
-            let at = cell
-                .equilibrium(Drive::Strain([y[0] + stretch, y[1] + curvature]), p)
-                .unwrap();
-            let (found, exact) = (value(&energy, scaled(&energy, y)), rest.beyond(&at));
-            let off = (found - exact).abs() / rest.size(&at);
-            println!("{law:?} {y:?}: {found:.5} {exact:.5}, off by {off:.1e} of the quadratic part");
-            assert!(off < 5e-3, "{law:?} {y:?}: {found} {exact}");
+            let off = rest.off(&energy, &cell, y);
+            assert!(off < 5e-3, "{law:?} {y:?}: {off}");
         }
     }
 }
@@ -108,7 +109,7 @@ fn the_energy_is_that_of_a_finer_mesh() {
     let section = section(Some(Law::NeoHookean));
     let energy = section.strain_energy().unwrap().unwrap();
     let fine = cell(&section, 2);
-    let rest = Rest(fine.equilibrium(Drive::Strain([0.0; 2]), [0.0; 2]).unwrap());
+    let rest = Rest::of(&fine);
     for direction in [
         [0.7, 0.0, 0.0, 0.0],
         [0.0, 0.8, 0.0, 0.0],
@@ -116,15 +117,8 @@ fn the_energy_is_that_of_a_finer_mesh() {
         [0.4, 0.4, 0.4, 0.4],
     ] {
         let y: [f64; 4] = std::array::from_fn(|i| direction[i] * energy.limits[i][1]);
-        let p = [y[2], y[3]];
-        let [stretch, curvature] = rest.by_pressure(p);
-        let at = fine
-            .equilibrium(Drive::Strain([y[0] + stretch, y[1] + curvature]), p)
-            .unwrap();
-        let (found, exact) = (value(&energy, scaled(&energy, y)), rest.beyond(&at));
-        let off = (found - exact).abs() / rest.size(&at);
-        println!("{y:?}: {found:.5} {exact:.5}, off by {off:.1e} of the quadratic part");
-        assert!(off < 1e-2, "{y:?}: {found} {exact}");
+        let off = rest.off(&energy, &fine, y);
+        assert!(off < 1e-2, "{y:?}: {off}");
     }
 }
 
@@ -133,7 +127,7 @@ fn nearer_to_incompressible_little_changes() {
     let section = of_ratio(0.4999, Some(Law::NeoHookean));
     let energy = section.strain_energy().unwrap().unwrap();
     let cell = cell(&section, 1);
-    let rest = Rest(cell.equilibrium(Drive::Strain([0.0; 2]), [0.0; 2]).unwrap());
+    let rest = Rest::of(&cell);
     for direction in [
         [0.7, 0.0, 0.0, 0.0],
         [0.0, 0.8, 0.0, 0.0],
@@ -141,15 +135,8 @@ fn nearer_to_incompressible_little_changes() {
         [-0.4, 0.4, 0.4, 0.4],
     ] {
         let y: [f64; 4] = std::array::from_fn(|i| direction[i] * energy.limits[i][1]);
-        let p = [y[2], y[3]];
-        let [stretch, curvature] = rest.by_pressure(p);
-        let at = cell
-            .equilibrium(Drive::Strain([y[0] + stretch, y[1] + curvature]), p)
-            .unwrap();
-        let (found, exact) = (value(&energy, scaled(&energy, y)), rest.beyond(&at));
-        let off = (found - exact).abs() / rest.size(&at);
-        println!("{y:?}: {found:.5} {exact:.5}, off by {off:.1e} of the quadratic part");
-        assert!(off < 1e-2, "{y:?}: {found} {exact}");
+        let off = rest.off(&energy, &cell, y);
+        assert!(off < 1e-2, "{y:?}: {off}");
     }
 }
 

@@ -2,9 +2,7 @@
 
 mod common;
 
-use common::{paper, with_shapes};
-use slcbeam_section::cell::Cell;
-use slcbeam_section::coefficients::Options;
+use common::{finest, paper, with_shapes};
 use slcbeam_section::finite::{Drive, FiniteCell, Law, SectionState, cavity};
 use slcbeam_section::input::{Row, Section};
 use slcbeam_section::level::Level;
@@ -20,13 +18,7 @@ const LAWS: [Law; 4] = [
 ];
 
 fn cells(section: &Section, law: Law, meshes: usize) -> (FiniteCell, Level) {
-    let meshes = section
-        .meshes(&Options {
-            meshes,
-            ..Options::default()
-        })
-        .unwrap();
-    let cell = Cell::new(section, &meshes[meshes.len() - 1]);
+    let cell = finest(section, meshes);
     let level = Level::new(section, &cell).unwrap();
     (FiniteCell::new(section, cell, law).unwrap(), level)
 }

@@ -101,7 +101,7 @@ pub fn rates<'a>(
     out: &mut [f64],
 ) -> impl Fn(&Workspace<f64>, usize) -> f64 + use<'a> {
     if let Some(wet) = &system.model.wet {
-        let ratio = wet.bladder_length * wet.per_row as f64 / system.model.length;
+        let ratio = wet.length_ratio(system.model.length);
         for j in 0..wet.per_row {
             let s = SegmentRates::new(system, wet, w, j);
             let reciprocal = Coupling::Reciprocal { length_ratio: ratio };

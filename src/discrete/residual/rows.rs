@@ -208,12 +208,17 @@ pub fn means<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
 
 /// `Mbar` of a segment.
 pub fn mean_moment<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize) -> T {
+    mean_of_nodes(system, &w.forces.moment, segment)
+}
+
+/// Mean over a segment of what stands at nodes, with the weights of [`means`].
+pub fn mean_of_nodes<T: Scalar>(system: &System, values: &[T], segment: usize) -> T {
     let k = system.mesh.cells_per_segment;
-    let mut moment = T::zero();
+    let mut mean = T::zero();
     for i in 0..=k {
-        moment += w.forces.moment[segment * k + i] * system.mesh.moment_weight(i);
+        mean += values[segment * k + i] * system.mesh.moment_weight(i);
     }
-    moment
+    mean
 }
 
 /// `Nbar` of a segment.

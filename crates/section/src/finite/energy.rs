@@ -281,21 +281,24 @@ impl<'a> Experiment<'a> {
         let axes = self.axes();
         for part in PARTS {
             let limits = axes.map(|axis| axis.map(|end| part * end));
-            let states = self.states(&rays(), &RADII, &limits);
-            if let Some((seen, unseen)) = states.zip(self.states(&others(), &[1.0], &limits)) {
-                let mut best: Option<StrainEnergy> = None;
-                for degree in DEGREES {
-                    let found = least_squares(&seen, &unseen, limits, degree)?;
-                    if best.as_ref().is_none_or(|best| found.error < best.error) {
-                        best = Some(found);
-                    }
-                    if best.as_ref().is_some_and(|best| best.error < GOOD) {
-                        break;
-                    }
+            let Some(seen) = self.states(&rays(), &RADII, &limits) else {
+                continue;
+            };
+            let Some(unseen) = self.states(&others(), &[1.0], &limits) else {
+                continue;
+            };
+            let mut best: Option<StrainEnergy> = None;
+            for degree in DEGREES {
+                let found = least_squares(&seen, &unseen, limits, degree)?;
+                if best.as_ref().is_none_or(|best| found.error < best.error) {
+                    best = Some(found);
                 }
-                if let Some(best) = best.filter(|best| best.error <= TAKEN) {
-                    return Ok(best);
+                if best.as_ref().is_some_and(|best| best.error < GOOD) {
+                    break;
                 }
+            }
+            if let Some(best) = best.filter(|best| best.error <= TAKEN) {
+                return Ok(best);
             }
         }
         Err(Error::Energy)

@@ -12,6 +12,7 @@ pub use tube::compare as tubes;
 
 use crate::error::Error;
 use crate::estimate;
+use crate::input::Material;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -78,6 +79,16 @@ impl Comparison {
     /// The error that the meshes alone show; None where values are exact up to round-off, which no mesh shows.
     pub fn estimate(&self) -> Option<f64> {
         (self.tolerance == APPROACHED).then(|| estimate::estimate(&self.computed, estimate::SMOOTH).relative_error)
+    }
+}
+
+/// A material of any density.
+fn material(young_modulus_pa: f64, poisson_ratio: f64) -> Material {
+    Material {
+        young_modulus_pa,
+        poisson_ratio,
+        density_kg_m3: 1000.0,
+        law: None,
     }
 }
 

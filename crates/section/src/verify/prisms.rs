@@ -1,11 +1,11 @@
 //! Sections without bladders: extension, bending with its anticlastic curvature, and shear of one material and of layers.
 
-use super::Comparison;
+use super::{Comparison, material};
 use crate::cell::{Cell, Kind, Response};
 use crate::coefficients::{Numbers, Options};
 use crate::error::Error;
 use crate::finite::{Drive, Law};
-use crate::input::{Bladders, Material, Region, RegionShape, Row, Section};
+use crate::input::{Bladders, Region, RegionShape, Row, Section};
 use crate::level::Level;
 use crate::mesh::Fineness;
 
@@ -26,15 +26,6 @@ fn solid(nu: f64) -> Section {
         },
         regions: Vec::new(),
         three_d: false,
-    }
-}
-
-fn material(young_modulus_pa: f64, poisson_ratio: f64) -> Material {
-    Material {
-        young_modulus_pa,
-        poisson_ratio,
-        density_kg_m3: 1000.0,
-        law: None,
     }
 }
 

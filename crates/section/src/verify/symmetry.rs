@@ -1,21 +1,12 @@
 //! What every passive section obeys: its compliance is symmetric (Maxwell and Betti) and positive definite.
 
-use super::Comparison;
+use super::{Comparison, material};
 use crate::coefficients::Options;
 use crate::error::Error;
-use crate::input::{Bladder, Bladders, Material, Region, RegionShape, Row, Section, Shape};
+use crate::input::{Bladder, Bladders, Region, RegionShape, Row, Section, Shape};
 
 /// Symmetry that reciprocity is held to.
 const RECIPROCAL: f64 = 1e-12;
-
-fn material(young_modulus_pa: f64, poisson_ratio: f64) -> Material {
-    Material {
-        young_modulus_pa,
-        poisson_ratio,
-        density_kg_m3: 1000.0,
-        law: None,
-    }
-}
 
 fn bladder(center_m: f64, shape: Shape) -> Row {
     Row::Bladder(Bladder { center_m, shape })

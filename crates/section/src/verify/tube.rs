@@ -3,13 +3,12 @@
 //! The tube stands in a cell as long as its diameter, so that the two faces of the period are one node each; the cell's stretch is free.
 //! That holds the tube against turning and loads it with nothing.
 
-use super::Comparison;
+use super::{Comparison, material};
 use crate::cell::respond::walls;
 use crate::cell::{Cell, Kind, Part, Response};
 use crate::dense::{dot, solve};
 use crate::error::Error;
 use crate::geometry::outline::{Outline, inside};
-use crate::input::Material;
 use crate::mesh::{Domain, Fineness, Mesh};
 use std::f64::consts::PI;
 
@@ -27,12 +26,7 @@ pub fn compare() -> Result<Vec<Comparison>, Error> {
 
 fn tube(nu: f64) -> Result<Vec<Comparison>, Error> {
     let young = 2e6;
-    let material = Material {
-        young_modulus_pa: young,
-        poisson_ratio: nu,
-        density_kg_m3: 1000.0,
-        law: None,
-    };
+    let solid = material(young, nu);
     let rings = [OUTER, INNER].map(|r| Outline::ellipse([0.0; 2], [r; 2]));
     let bore = rings[1].chords();
     let domain = Domain {
@@ -55,7 +49,7 @@ fn tube(nu: f64) -> Result<Vec<Comparison>, Error> {
         }
         let cell = Cell {
             mesh: mesh.quadratic(),
-            materials: vec![material],
+            materials: vec![solid],
             size: [2.0 * OUTER, 2.0 * OUTER],
         };
         let response = Response::new(&cell, Kind::Hollow)?;

@@ -1,6 +1,8 @@
 //! Sections that several tests use.
 #![allow(dead_code)]
 
+use slcbeam_section::cell::Cell;
+use slcbeam_section::coefficients::Options;
 use slcbeam_section::input::{Bladder, Bladders, Material, Row, Section, Shape};
 
 /// The paper's cell with square bladders of the given fillet.
@@ -36,4 +38,14 @@ pub fn with_shapes(nu: f64, upper: Option<(f64, Shape)>, lower: Option<(f64, Sha
         regions: Vec::new(),
         three_d: false,
     }
+}
+
+/// The cell on the finest of so many meshes.
+pub fn finest(section: &Section, meshes: usize) -> Cell {
+    let options = Options {
+        meshes,
+        ..Options::default()
+    };
+    let meshes = section.meshes(&options).unwrap();
+    Cell::new(section, &meshes[meshes.len() - 1])
 }
