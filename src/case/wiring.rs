@@ -24,6 +24,12 @@ pub struct Tube<'a> {
     pub length_m: f64,
     /// What it is inside.
     pub bore: Bore<'a>,
+    /// Radius of its circle, where one is given [m].
+    pub radius_m: Option<f64>,
+    /// Losses at its ends and on the way, in dynamic pressures of its mean velocity.
+    pub loss_coefficient: f64,
+    /// Roughness of its wall [m].
+    pub roughness_m: f64,
     /// Opening of its valve.
     pub opening: &'a Signal,
 }

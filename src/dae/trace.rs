@@ -125,4 +125,7 @@ impl Scalar for Trace {
     fn softplus(self) -> Self {
         self
     }
+    fn lift(self, _: impl Fn(f64) -> (f64, f64)) -> Self {
+        self
+    }
 }

@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use crate::case::schema::BladderEnd;
-use crate::model::network::{LinkKind, Node};
+use crate::model::network::tube::BRANCHES;
+use crate::model::network::{LinkKind, Node, TubeFlow};
 use crate::model::{Storage, Wet};
 
 /// Where a link ends, on the mesh.
@@ -32,6 +33,19 @@ pub struct MeshLink {
     pub resistance: f64,
     /// What it is.
     pub kind: LinkKind,
+    /// Flow that does not follow from pressures alone.
+    pub flow: Option<MeshFlow>,
+}
+
+/// The flow of a tube as an unknown.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshFlow {
+    /// Number among the flows that are unknowns.
+    pub number: usize,
+    /// Number of its first branch among all, where friction has a memory.
+    pub branch: Option<usize>,
+    /// Its law.
+    pub tube: TubeFlow,
 }
 
 /// A prescribed flow on the mesh.
@@ -73,6 +87,12 @@ pub struct FluidMesh {
     pub runs: Vec<Range<usize>>,
     /// Junctions whose pressures are unknowns, by their numbers in the network.
     pub junctions: Vec<usize>,
+    /// Of each of them, whether only tubes with inertia meet there: then it is their accelerations that decide its pressure.
+    pub accelerated: Vec<bool>,
+    /// Flows of tubes that are unknowns.
+    pub flows: usize,
+    /// Branches of all of them.
+    pub branches: usize,
     /// Links along which fluid flows.
     pub links: Vec<MeshLink>,
     /// Prescribed flows.
@@ -110,6 +130,7 @@ impl FluidMesh {
             Node::Port(p) => wet.flows.then_some(Place::Port(p)),
         };
         let half_of = |p: Place| if let Place::Cell(_) = p { half } else { 0.0 };
+        let (mut flows, mut branches) = (0, 0);
         let open = network.links.iter().enumerate().filter(|(_, link)| !link.is_shut());
         let links = open.filter_map(|(number, link)| {
             let (from, to) = (place(link.from)?, place(link.to)?);
@@ -120,8 +141,16 @@ impl FluidMesh {
                 half_cells: half_of(from) + half_of(to),
                 resistance: link.resistance,
                 kind: link.kind,
+                flow: link.tube.map(|tube| {
+                    let number = flows;
+                    flows += 1;
+                    let branch = tube.remembers().then_some(branches);
+                    branches += if tube.remembers() { BRANCHES } else { 0 };
+                    MeshFlow { number, branch, tube }
+                }),
             })
         });
+        let links: Vec<MeshLink> = links.collect();
         let sources = network.sources.iter().enumerate().filter_map(|(number, source)| {
             let into = place(source.into)?;
             Some(MeshSource { number, into })
@@ -130,6 +159,15 @@ impl FluidMesh {
             let (from, to) = (place(bridge.from)?, place(bridge.to)?);
             Some(MeshBridge { number, from, to })
         });
+        let bridges: Vec<MeshBridge> = bridges.collect();
+        let accelerated = (0..junctions.len()).map(|j| {
+            let here = Place::Junction(j);
+            let bridged = bridges.iter().any(|b| b.from == here || b.to == here);
+            let own = |link: &&MeshLink| link.from == here || link.to == here;
+            let inert = |link: &MeshLink| link.flow.is_some_and(|flow| flow.tube.inertance > 0.0);
+            !bridged && links.iter().filter(own).all(inert)
+        });
+        let accelerated: Vec<bool> = accelerated.collect();
         Self {
             bladders,
             cells_per_bladder,
@@ -138,9 +176,12 @@ impl FluidMesh {
             conductance,
             runs: runs(&flowing, cells_per_bladder),
             flowing,
-            links: links.collect(),
+            flows,
+            branches,
+            accelerated,
+            links,
             sources: sources.collect(),
-            bridges: bridges.collect(),
+            bridges,
             junctions: junctions.clone(),
             volume_at_start: vec![0.0; wet.lumped.len()],
             area_at_start: vec![0.0; bladders * cells_per_bladder],

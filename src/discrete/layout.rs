@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use super::fluid_mesh::{MeshFlow, MeshLink};
 use super::{FluidMesh, Mesh};
 use crate::case::Translation;
 use crate::case::schema::Effect;
@@ -65,6 +66,10 @@ pub struct Network {
     pub junction: Range<usize>,
     /// Pressure drops of turbines behind real rectifiers.
     pub bridge: Range<usize>,
+    /// Flows of tubes that do not follow from pressures alone.
+    pub flow: Range<usize>,
+    /// Flows of the branches of their friction.
+    pub branch: Range<usize>,
     /// Pressure of each lumped network, where it is unknown.
     pub lumped_pressure: Vec<Option<usize>>,
     /// Volume of each lumped network, where it is unknown.
@@ -79,6 +84,7 @@ enum Name {
     NonlinearArea(usize),
     Junction(usize),
     Bridge(usize),
+    Flow(&'static str, usize),
     LumpedNetwork(&'static str, usize),
 }
 
@@ -138,6 +144,7 @@ impl Layout {
             Name::NonlinearArea(b) => format!("nonlinear area change [m^2] of bladder {}", bladder(b)),
             Name::Junction(j) => format!("pressure [Pa] of junction {}", j + 1),
             Name::LumpedNetwork(what, component) => format!("{what} of network {}", component + 1),
+            Name::Flow(what, tube) => format!("{what} of tube {}", tube + 1),
             Name::Bridge(k) => format!("pressure drop [Pa] of turbine behind rectifier {}", k + 1),
         }
     }
@@ -224,6 +231,24 @@ impl Network {
                 build.push(Name::Bridge(bridge.number), s.pressure, s.pressure * conductance, false);
             }
         });
+        let moved = |link: &MeshLink| {
+            (stored * wet.bladder_length * s.frequency).min(s.pressure / (link.half_cells + link.resistance))
+        };
+        let flows = || fluid.links.iter().filter_map(|link| Some((link, link.flow?)));
+        let flow = build.block(|build| {
+            for (link, MeshFlow { tube, .. }) in flows() {
+                let name = Name::Flow("flow [m^3/s]", wet.network.tube(link.number));
+                build.push(name, moved(link), s.pressure, tube.inertance > 0.0);
+            }
+        });
+        let branch = build.block(|build| {
+            for (link, MeshFlow { tube, .. }) in flows().filter(|(_, flow)| flow.branch.is_some()) {
+                let name = Name::Flow("flow [m^3/s] in the memory of friction", wet.network.tube(link.number));
+                for (_, rate) in tube.branches() {
+                    build.push(name, moved(link), moved(link) * rate.max(s.frequency), true);
+                }
+            }
+        });
         let (mut lumped_pressure, mut lumped_volume) = (vec![], vec![]);
         for lumped in &wet.lumped {
             let volume = stored * wet.bladder_length * lumped.bladders.len() as f64;
@@ -238,6 +263,8 @@ impl Network {
             area,
             junction,
             bridge,
+            flow,
+            branch,
             lumped_pressure,
             lumped_volume,
         }

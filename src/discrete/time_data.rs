@@ -7,6 +7,9 @@ use crate::model::Load;
 use crate::model::loads::LoadKind;
 use crate::numerics::Planar;
 
+/// Opening of a closed valve on a tube whose flow is an unknown: shut, but for a thousand-millionth.
+const TIGHT: f64 = 1e-9;
+
 /// A load's shape where it acts: forces at nodes, moments in cells.
 ///
 /// `[E46]` Forces weigh with the hat functions of the nodes, moments with their cells,
@@ -117,6 +120,8 @@ pub struct TimeData {
     pub conductance: Vec<f64>,
     /// Resistance of each link between its half cells, valve included [Pa s/m^3]; infinite when closed.
     pub resistance: Vec<f64>,
+    /// Opening of each link's valve.
+    pub opening: Vec<f64>,
     /// Prescribed pressure of each port [Pa].
     pub port_pressure: Vec<f64>,
     /// Its rate [Pa/s].
@@ -142,6 +147,7 @@ impl TimeData {
             statics: Statics::new(system),
             conductance: vec![0.0; links],
             resistance: vec![0.0; links],
+            opening: vec![1.0; links],
             port_pressure: vec![0.0; ports],
             port_pressure_rate: vec![0.0; ports],
             source_flow: vec![0.0; sources],
@@ -217,7 +223,11 @@ impl TimeData {
                     self.resistance[k] = mesh_link.resistance;
                 }
                 Some(opening) => {
-                    let o = opening.jet(clock).value.clamp(0.0, 1.0);
+                    let mut o = opening.jet(clock).value.clamp(0.0, 1.0);
+                    if mesh_link.flow.is_some() {
+                        o = o.max(TIGHT);
+                    }
+                    self.opening[k] = o;
                     self.conductance[k] = o / (o * mesh_link.half_cells + mesh_link.resistance);
                     self.resistance[k] = mesh_link.resistance / o;
                 }

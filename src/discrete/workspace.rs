@@ -117,6 +117,14 @@ pub struct Fluid<T> {
     pub lumped_rate: Vec<T>,
     /// Turbine drops behind real rectifiers [Pa].
     pub bridge: Vec<T>,
+    /// Flow of each link, towards its end [m^3/s].
+    pub flow: Vec<T>,
+    /// Rates of those flows that are unknowns [m^3/s^2].
+    pub flow_rate: Vec<T>,
+    /// Flows of the branches of their friction [m^3/s].
+    pub branch: Vec<T>,
+    /// Their rates [m^3/s^2].
+    pub branch_rate: Vec<T>,
     /// Net inflow of each cell [m^3/s].
     pub inflow: Vec<T>,
     /// Net inflow of each junction [m^3/s].
@@ -232,6 +240,10 @@ impl<T: Scalar> Workspace<T> {
                 lumped: zeros(lumped),
                 lumped_rate: zeros(lumped),
                 bridge: zeros(bridges),
+                flow: zeros(fluid.map_or(0, |f| f.links.len())),
+                flow_rate: zeros(fluid.map_or(0, |f| f.flows)),
+                branch: zeros(fluid.map_or(0, |f| f.branches)),
+                branch_rate: zeros(fluid.map_or(0, |f| f.branches)),
                 inflow: zeros(cells),
                 junction_inflow: zeros(junctions),
                 volume_defect: zeros(components),

@@ -27,6 +27,11 @@ pub fn circle(radius: f64) -> f64 {
     PI * radius.powi(4) / 8.0
 }
 
+/// Radius of the circle that has a permeability.
+pub fn radius(permeability: f64) -> f64 {
+    (8.0 * permeability / PI).powf(0.25)
+}
+
 /// Rectangle with the given sides.
 pub fn rectangle(side: f64, other: f64) -> f64 {
     let (a, b) = (side.max(other), side.min(other));

@@ -124,6 +124,9 @@ impl Wet {
         self.area = self
             .area
             .without(!effects.has(Effect::MomentToArea), !effects.has(Effect::ForceToArea));
+        for link in &mut self.network.links {
+            link.tube = link.tube.and_then(|tube| tube.reduced(effects));
+        }
         self.strains = self.strains.without(
             !effects.has(Effect::PressureToCurvature),
             !effects.has(Effect::PressureToStretch),

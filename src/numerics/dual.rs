@@ -153,4 +153,9 @@ impl<const L: usize> Scalar for Dual<L> {
         let slope = 1.0 / (1.0 + (-self.value).exp());
         self.chain(Scalar::softplus(self.value), slope)
     }
+    #[inline(always)]
+    fn lift(self, function: impl Fn(f64) -> (f64, f64)) -> Self {
+        let (value, slope) = function(self.value);
+        self.chain(value, slope)
+    }
 }

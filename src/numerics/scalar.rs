@@ -27,6 +27,8 @@ pub trait Scalar:
     fn sin_cos(self) -> (Self, Self);
     /// `ln(1 + e^self)`, the smooth ramp.
     fn softplus(self) -> Self;
+    /// A function of it, by value and derivative.
+    fn lift(self, function: impl Fn(f64) -> (f64, f64)) -> Self;
     /// Zero.
     fn zero() -> Self {
         Self::constant(0.0)
@@ -57,5 +59,9 @@ impl Scalar for f64 {
     #[inline(always)]
     fn softplus(self) -> Self {
         self.max(0.0) + (-self.abs()).exp().ln_1p()
+    }
+    #[inline(always)]
+    fn lift(self, function: impl Fn(f64) -> (f64, f64)) -> Self {
+        function(self).0
     }
 }

@@ -20,6 +20,15 @@ pub struct TubeDefaults {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub permeability_m4: Option<f64>,
+    /// `K`: losses at both ends, in bends and orifices, `K rho v^2/2`; absent: 1.5, sharp edges (entrance 0.5, exit 1). Counts with
+    /// the effect `tube_losses`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub loss_coefficient: Option<f64>,
+    /// Roughness of the wall [m]; absent: smooth. Counts with the effect `tube_losses`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub roughness_m: Option<f64>,
 }
 
 /// How the bladders are joined: any graph of tubes between bladder ends and junctions.
@@ -130,6 +139,14 @@ pub struct Tube {
     /// Cross-section from which the permeability follows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cross_section: Option<CrossSection>,
+    /// `K`: losses at both ends, in bends and orifices, `K rho v^2/2`; absent: that of `/tubes`, else 1.5.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub loss_coefficient: Option<f64>,
+    /// Roughness of the wall [m]; absent: that of `/tubes`, else smooth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub roughness_m: Option<f64>,
     /// Opening `o(t)` of its valve, 0 (closed) to 1 (open).
     #[serde(default = "Signal::one", skip_serializing_if = "Signal::is_one")]
     pub opening: Signal,

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use super::{ENERGY_RATES, EnergyRate, add};
+use super::{ENERGY_RATES, EnergyRate, add, tubes};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
-use crate::discrete::residual::fluid::{bridge_drops, pressure_at};
+use crate::discrete::residual::fluid::{bridge_drops, drop_over, pressure_at};
 use crate::discrete::residual::rows::{mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
@@ -238,12 +238,14 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
             }
         }
     };
-    for (link, &conductance) in fluid.links.iter().zip(&now.conductance) {
-        let drop = pressure_at(link.from, now, w) - pressure_at(link.to, now, w);
-        let q = conductance * drop;
+    for (n, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
+        let q = w.fluid.flow[n];
         let in_halves = q * q * link.half_cells;
         add(out, EnergyRate::Bladders, in_halves);
-        let rest = q * drop - in_halves;
+        let rest = match &link.flow {
+            None => q * drop_over(link, now, w) - in_halves,
+            Some(flow) => q * q * now.resistance[n] + tubes::dissipation(flow, q, w),
+        };
         add(
             out,
             if matches!(link.kind, LinkKind::Turbine(_)) {

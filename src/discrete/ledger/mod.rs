@@ -4,6 +4,7 @@ mod fluid;
 mod jump;
 mod reactions;
 mod solid;
+mod tubes;
 
 pub use fluid::{pressure_rate, pressure_rates};
 pub use jump::{side, strokes, travel};
@@ -87,6 +88,9 @@ pub struct Energies {
     pub bending: f64,
     /// Stored in the bladders.
     pub bladders: f64,
+    /// Kinetic, of the fluid in tubes.
+    #[serde(default)]
+    pub tubes: f64,
     /// Of the section at finite strain, beyond all these.
     #[serde(default)]
     pub section: f64,
@@ -95,7 +99,7 @@ pub struct Energies {
 impl Energies {
     /// Sum.
     pub fn total(&self) -> f64 {
-        self.kinetic + self.rotary + self.axial + self.bending + self.bladders + self.section
+        self.kinetic + self.rotary + self.axial + self.bending + self.bladders + self.tubes + self.section
     }
 }
 
@@ -182,6 +186,7 @@ pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Work
 pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     let mut e = solid::energies(system, now, &w);
     e.bladders = fluid::energy(system, &w);
+    e.tubes = tubes::kinetic(system, &w);
     e.section = residual::nonlinear::energy(system, &w);
     e
 }

@@ -2,7 +2,6 @@
 
 use crate::discrete::fluid_mesh::Place;
 use crate::discrete::ledger::{self, Energies};
-use crate::discrete::residual::fluid::pressure_at;
 use crate::discrete::residual::solid::node_stretch;
 use crate::discrete::{State, System, TimeData, Workspace};
 use crate::model::Kinematics;
@@ -85,14 +84,13 @@ impl Look<'_> {
 
     /// `Σ R q²` of turbines between bladders, `Σ g Δp²` of those of bridges.
     pub(super) fn turbine_power(&self) -> f64 {
-        let Self { system, now, w, .. } = *self;
+        let Self { system, w, .. } = *self;
         let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
             return 0.0;
         };
         let mut power = 0.0;
-        for (link, &conductance) in fluid.links.iter().zip(&now.conductance) {
+        for (link, q) in fluid.links.iter().zip(&w.fluid.flow) {
             if matches!(link.kind, LinkKind::Turbine(_)) {
-                let q = conductance * (pressure_at(link.from, now, &w) - pressure_at(link.to, now, &w));
                 power += q * q * link.resistance;
             }
         }
@@ -118,27 +116,21 @@ pub(in crate::discrete) fn tip_angle(system: &System, w: &Workspace<f64>) -> f64
 /// Largest flow through a tube [m^3/s], its rate as far as bladders and ports make it, and the tube's number among the tubes.
 pub fn largest_flow(system: &System, now: &TimeData, w: &Workspace<f64>) -> Option<(f64, f64, usize)> {
     let (wet, fluid) = (system.model.wet.as_ref()?, system.fluid.as_ref()?);
-    let tubes = fluid
-        .links
-        .iter()
-        .zip(&now.conductance)
-        .filter(|(link, _)| link.kind == LinkKind::Tube);
+    let tubes = fluid.links.iter().zip(&now.conductance).zip(&w.fluid.flow);
     let (q, link, g) = tubes
-        .map(|(link, g)| {
-            let drop = pressure_at(link.from, now, w) - pressure_at(link.to, now, w);
-            (g * drop, link, g)
-        })
+        .filter(|((link, _), _)| link.kind == LinkKind::Tube)
+        .map(|((link, g), q)| (*q, link, g))
         .reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a })?;
     let rate = |place: Place| match place {
         Place::Cell(cell) => ledger::pressure_rate(wet, fluid, w, cell),
         Place::Port(port) => now.port_pressure_rate[port],
         Place::Junction(_) => 0.0,
     };
-    let before = wet.network.links[..link.number]
-        .iter()
-        .filter(|l| l.kind == LinkKind::Tube);
-    let rate = q.signum() * g * (rate(link.from) - rate(link.to));
-    Some((q.abs(), rate, before.count()))
+    let rate = match link.flow.filter(|flow| flow.tube.inertance > 0.0) {
+        Some(flow) => w.fluid.flow_rate[flow.number],
+        None => g * (rate(link.from) - rate(link.to)),
+    };
+    Some((q.abs(), q.signum() * rate, wet.network.tube(link.number)))
 }
 
 /// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`, and the node where it is.

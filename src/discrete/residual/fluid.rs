@@ -1,7 +1,7 @@
 //! Pressures, what they do to the beam, and the flows they drive.
 
 use crate::case::schema::Effect;
-use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
+use crate::discrete::fluid_mesh::{MeshBridge, MeshLink, MeshSource, Place};
 use crate::discrete::{System, TimeData, Workspace};
 use crate::model::{ROWS, Storage};
 use crate::numerics::Scalar;
@@ -104,8 +104,11 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
             w.fluid.inflow[cell] += q;
         }
     }
-    for (link, &conductance) in fluid.links.iter().zip(&now.conductance) {
-        let q = (pressure_at(link.from, now, w) - pressure_at(link.to, now, w)) * conductance;
+    for (k, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
+        if link.flow.is_none() {
+            w.fluid.flow[k] = drop_over(link, now, w) * conductance;
+        }
+        let q = w.fluid.flow[k];
         deliver(link.from, -q, w);
         deliver(link.to, q, w);
     }
@@ -119,6 +122,12 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
         deliver(from, -q, w);
         deliver(to, q, w);
     }
+}
+
+/// Pressure drop over a link.
+#[inline]
+pub fn drop_over<T: Scalar>(link: &MeshLink, now: &TimeData, w: &Workspace<T>) -> T {
+    pressure_at(link.from, now, w) - pressure_at(link.to, now, w)
 }
 
 /// `[E10]` Pressure drops over the two pairs of valves of a symmetric bridge, `d` between its ports and `w` over the

@@ -66,5 +66,6 @@ pub fn residual<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
     rows::storage(system, w, r);
     rows::lumped(system, now, y, yp, w, r);
     rows::junctions(system, w, r);
+    rows::tubes(system, now, w, r);
     rows::bridges(system, now, w, r);
 }

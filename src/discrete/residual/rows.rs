@@ -1,8 +1,8 @@
 //! The equations, one block after the other.
 
-use super::fluid::{bridge_drops, pressure_at};
+use super::fluid::{bridge_drops, drop_over, pressure_at};
 use crate::case::schema::Effect;
-use crate::discrete::fluid_mesh::MeshBridge;
+use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, Place};
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::model::{Kinematics, LumpedKind};
@@ -267,9 +267,51 @@ pub fn lumped<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
     }
 }
 
-/// Flows into a junction sum to zero.
+/// Flows into a junction sum to zero. Where only tubes with inertia meet, the pressure follows from their accelerations, and the sum keeps
+/// to zero by itself: `Σ q + Σ q'/ω = 0`, ω the characteristic frequency.
 pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
-    r[system.layout.network.junction.clone()].copy_from_slice(&w.fluid.junction_inflow);
+    let rows = system.layout.network.junction.clone();
+    r[rows.clone()].copy_from_slice(&w.fluid.junction_inflow);
+    let Some(fluid) = system.fluid.as_ref().filter(|fluid| fluid.flows > 0) else {
+        return;
+    };
+    let delay = 1.0 / system.model.scales.frequency;
+    for link in &fluid.links {
+        let Some(flow) = link.flow else { continue };
+        for (place, sign) in [(link.from, -delay), (link.to, delay)] {
+            if let Place::Junction(j) = place
+                && fluid.accelerated[j]
+            {
+                r[rows.start + j] += w.fluid.flow_rate[flow.number] * sign;
+            }
+        }
+    }
+}
+
+/// Flow of each tube in which it does not creep, [E49].
+pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
+    let Some(fluid) = system.fluid.as_ref().filter(|fluid| fluid.flows > 0) else {
+        return;
+    };
+    let own = &system.layout.network;
+    for (k, link) in fluid.links.iter().enumerate() {
+        let Some(MeshFlow { number, branch, tube }) = link.flow else {
+            continue;
+        };
+        let q = w.fluid.flow[k];
+        let mut lacking = q * link.half_cells + tube.loss(q) - drop_over(link, now, w);
+        if tube.inertance > 0.0 {
+            lacking += w.fluid.flow_rate[number] * tube.inertance;
+        }
+        if let Some(first) = branch {
+            for (i, (resistance, rate)) in (first..).zip(tube.branches()) {
+                let slip = q - w.fluid.branch[i];
+                lacking += slip * resistance;
+                r[own.branch.start + i] = w.fluid.branch_rate[i] - slip * rate;
+            }
+        }
+        r[own.flow.start + number] = lacking * now.opening[k] + q * link.resistance;
+    }
 }
 
 /// `[E18]` What flows through the valves of a bridge flows through its turbine:

@@ -50,6 +50,14 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
         }
         copy(&mut w.fluid.junction, y, &l.network.junction);
         copy(&mut w.fluid.bridge, y, &l.network.bridge);
+        for (link, q) in fluid.links.iter().zip(&mut w.fluid.flow) {
+            if let Some(flow) = link.flow {
+                *q = y[l.network.flow.start + flow.number];
+            }
+        }
+        copy(&mut w.fluid.flow_rate, yp, &l.network.flow);
+        copy(&mut w.fluid.branch, y, &l.network.branch);
+        copy(&mut w.fluid.branch_rate, yp, &l.network.branch);
         for (k, lumped) in wet.lumped.iter().enumerate() {
             w.fluid.lumped[k] = match (&lumped.kind, l.network.lumped_pressure[k]) {
                 (LumpedKind::Port(port), _) => T::constant(now.port_pressure[*port]),

@@ -16,6 +16,8 @@ pub enum Cause {
     LeftOut,
     /// It was to be left out, and cannot be.
     Refused(Obstacle),
+    /// It comes by name only, and was not asked for.
+    Unasked,
     /// The case gives it, or not.
     Given(bool),
     /// The case gives bladders and fluid, or not.
@@ -126,6 +128,7 @@ impl Display for Cause {
             Self::Asked => f.write_str("asked for"),
             Self::LeftOut => f.write_str("left out as asked"),
             Self::Refused(obstacle) => write!(f, "cannot be left out: {}", obstacle.what),
+            Self::Unasked => f.write_str("flow in tubes creeps unless this is asked for by name"),
             Self::Given(true) => f.write_str("given"),
             Self::Given(false) => f.write_str("not given"),
             Self::Filled(true) => f.write_str("bladders and fluid are given"),

@@ -72,6 +72,7 @@ impl<'a> Chooser<'a> {
                     (true, Cause::Refused(obstacle))
                 }
             },
+            Choice::Auto if by_name(effect) => (false, Cause::Unasked),
             Choice::Auto => match self.scene {
                 None => (true, Cause::Full),
                 Some(scene) => match self.obstacle(effect) {
@@ -193,4 +194,9 @@ impl<'a> Chooser<'a> {
             _ => (true, Cause::Given(true)),
         }
     }
+}
+
+/// Whether an effect is there only where a case names it.
+fn by_name(effect: Effect) -> bool {
+    matches!(effect, Effect::TubeInertia | Effect::UnsteadyFriction | Effect::TubeLosses)
 }

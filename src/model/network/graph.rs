@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{
-    Bridge, CheckValve, Link, LinkKind, Network, Node, PressurePort, Source, Turbine, bladder_permeability, components,
+    Bridge, CheckValve, Link, LinkKind, Network, Node, PressurePort, Source, TubeFlow, Turbine, bladder_permeability, components,
 };
 use crate::case::schema::{Bladders, Fluid, Rectifier, TurbineConductance};
 use crate::case::wiring::{Bore, Given, Point, Tube, Wiring};
@@ -57,6 +57,7 @@ pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Blad
                 resistance: resistance(tube),
                 opening: (!tube.opening.is_one()).then(|| tube.opening.clone()),
                 kind: LinkKind::Tube,
+                tube: Some(TubeFlow::new(tube, self::permeability(tube.bore), fluid)),
             }),
             Thing::Turbine { to, index } => join(
                 &mut network,
@@ -166,6 +167,7 @@ fn opening(cell: Node, here: Node) -> Link {
         resistance: 0.0,
         opening: None,
         kind: LinkKind::Opening,
+        tube: None,
     }
 }
 
@@ -178,6 +180,7 @@ fn join(network: &mut Network, [from, to]: [Node; 2], index: usize, rectifier: &
             resistance: 1.0 / network.turbines[index].conductance,
             opening: None,
             kind: LinkKind::Turbine(index),
+            tube: None,
         }),
         Rectifier::CheckValves {
             cracking_pressure_pa,

@@ -3,16 +3,20 @@
 //! ```text
 //! graph       the graph of what a case has resolved: a pressure of its own where several things meet
 //! components  what is joined to what
+//! tube        what flow in a tube needs beyond creeping
 //! ```
 
 mod components;
 mod graph;
+pub mod tube;
 
 use super::duct;
 use crate::case::schema::{BladderEnd, Bladders, Case};
 use crate::case::wiring::Wiring;
 use crate::error::Result;
 use crate::functions::signals::Signal;
+
+pub use tube::TubeFlow;
 
 /// A point of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +62,8 @@ pub struct Link {
     pub opening: Option<Signal>,
     /// What it is.
     pub kind: LinkKind,
+    /// Inertia and losses of a tube in which flow does not creep.
+    pub tube: Option<TubeFlow>,
 }
 
 impl Link {
@@ -196,6 +202,12 @@ impl Network {
             links.into_iter().any(|l| here(l.from) || here(l.to)) || self.sources.iter().any(|s| here(s.into))
         };
         (0..self.component_of_bladder.len()).map(move |bladder| !joined(bladder))
+    }
+
+    /// Number of a link among the tubes.
+    pub fn tube(&self, link: usize) -> usize {
+        let tubes = self.links[..link].iter().filter(|l| l.kind == LinkKind::Tube);
+        tubes.count()
     }
 
     /// Component of a point; `None` for a pressure port.

@@ -1,0 +1,187 @@
+//! What flow in a round tube needs beyond the resistance of creeping flow: inertia, friction with a memory, turbulence, losses.
+
+use std::f64::consts::PI;
+
+use crate::case::schema::{Effect, Fluid};
+use crate::case::wiring::Tube;
+use crate::model::{EffectSet, duct};
+use crate::numerics::Scalar;
+
+/// Rates `n_i` and weights `m_i` of Kagawa et al. (Trans. JSME B 49, 1983) for Zielke's weighting function, `W(τ) = Σ m_i exp(-n_i τ)`.
+const KAGAWA: [(f64, f64); BRANCHES] = [
+    (26.3744, 1.0),
+    (72.8033, 1.16725),
+    (187.424, 2.20064),
+    (536.626, 3.92861),
+    (1570.60, 6.78788),
+    (4618.13, 11.6761),
+    (13601.1, 20.0612),
+    (40082.5, 34.4541),
+    (118_153.0, 59.1642),
+    (348_316.0, 101.590),
+];
+
+/// Branches of the ladder that stands for frequency-dependent friction.
+pub const BRANCHES: usize = 10;
+
+/// Inertance of creeping laminar flow over that of a plug: mean of the squared velocity of Poiseuille's profile over its mean's square.
+const PARABOLIC: f64 = 4.0 / 3.0;
+
+/// Reynolds number below which Churchill's factor is that of laminar flow to the last digit.
+const LAMINAR: f64 = 100.0;
+
+/// Flow below which losses are smooth through zero, over that of Reynolds number 1.
+const SLOW: f64 = 1e-3;
+
+/// `[E49]` Flow q of a round tube, radius r, area `A = π r²`, through a valve of opening o; R of `[E6]`, `R_0 = 8 μ l/(π r⁴)`:
+///
+/// ```text
+/// o [I dq/dt + Σ_i r_i (q - j_i) + Δp_loss(q) + R_half q - (p_a - p_b)] + R q = 0
+/// dj_i/dt = n_i (ν/r²) (q - j_i)        r_i = R_0 m_i/2
+/// I = ρ l/A, without the branches 4/3 of it: the inertance of Poiseuille's profile
+/// ```
+///
+/// The branches stand for the memory of laminar friction (Zielke 1968), each a resistance beside an inertance `r_i r²/(n_i ν)`: a passive
+/// network, which stores `I q²/2 + Σ r_i r² j_i²/(2 n_i ν)` and dissipates `(R/o) q² + q Δp_loss + Σ r_i (q - j_i)²`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TubeFlow {
+    /// Radius of the circle [m].
+    pub radius: f64,
+    /// `I` [kg/m^4]; 0 where the fluid has no inertia.
+    pub inertance: f64,
+    /// `ν/r²` [1/s].
+    pub viscous_rate: f64,
+    /// `R_0` of frequency-dependent friction [Pa s/m^3]; 0 without.
+    pub laminar: f64,
+    losses: Option<Losses>,
+}
+
+/// `[E50]` Losses beyond laminar friction, D = 2 r, roughness e, `Re = ρ |v| D/μ`:
+///
+/// ```text
+/// Δp_loss = (f - 64/Re) (l/D) ρ v |v|/2 + K ρ v |v|/2        |v| -> √(v² + v_s²) - v_s in K's part, v_s that of Re = 10^-3
+/// f = 8 [(8/Re)^12 + (a + b)^(-3/2)]^(1/12)      a = (2.457 ln(1/((7/Re)^0.9 + 0.27 e/D)))^16      b = (37530/Re)^16
+/// ```
+///
+/// Churchill, Chem. Eng. 84 (1977) 91; K counts both ends, bends and orifices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Losses {
+    /// Reynolds number over flow [s/m^3].
+    reynolds_per_flow: f64,
+    /// `8 μ l/(π r⁴)` [Pa s/m^3].
+    laminar: f64,
+    /// `K ρ/(2 A²)` [kg/m^7].
+    local: f64,
+    /// `e/D`.
+    roughness: f64,
+}
+
+/// Churchill's friction factor over that of laminar flow, `f Re/64`, and its derivative by Re, at `Re >= 0`.
+pub fn friction_ratio(reynolds: f64, roughness: f64) -> (f64, f64) {
+    if reynolds < LAMINAR {
+        return (1.0, 0.0);
+    }
+    let smooth = (7.0 / reynolds).powf(0.9);
+    let inside = smooth + 0.27 * roughness;
+    let logarithm = -inside.ln();
+    let a = (2.457 * logarithm).powi(16);
+    let b = (37530.0 / reynolds).powi(16);
+    let a_slope = 16.0 * a / logarithm * (0.9 * smooth / (reynolds * inside));
+    let b_slope = -16.0 * b / reynolds;
+    let eighth = (reynolds / 8.0).powi(12);
+    let turbulent = eighth * (a + b).powf(-1.5);
+    let slope = turbulent * (12.0 / reynolds - 1.5 * (a_slope + b_slope) / (a + b));
+    let ratio = (1.0 + turbulent).powf(1.0 / 12.0);
+    (ratio, ratio / (12.0 * (1.0 + turbulent)) * slope)
+}
+
+impl TubeFlow {
+    /// Of a tube of a case, everything included.
+    pub(super) fn new(tube: &Tube, permeability: f64, fluid: &Fluid) -> Self {
+        let (density, viscosity) = (fluid.density_kg_m3, fluid.viscosity_pa_s);
+        let radius = tube.radius_m.unwrap_or_else(|| duct::radius(permeability));
+        let area = PI * radius * radius;
+        let laminar = viscosity * tube.length_m / duct::circle(radius);
+        Self {
+            radius,
+            inertance: density * tube.length_m / area,
+            viscous_rate: viscosity / (density * radius * radius),
+            laminar,
+            losses: Some(Losses {
+                reynolds_per_flow: 2.0 * density / (PI * viscosity * radius),
+                laminar,
+                local: 0.5 * tube.loss_coefficient * density / (area * area),
+                roughness: 0.5 * tube.roughness_m / radius,
+            }),
+        }
+    }
+
+    /// What effects leave of it; nothing where flow creeps.
+    pub(in crate::model) fn reduced(mut self, effects: &EffectSet) -> Option<Self> {
+        let [inertia, memory, losses] =
+            [Effect::TubeInertia, Effect::UnsteadyFriction, Effect::TubeLosses].map(|effect| effects.has(effect));
+        if !memory {
+            self.laminar = 0.0;
+            self.inertance *= PARABOLIC;
+        }
+        if !inertia {
+            self.inertance = 0.0;
+        }
+        self.losses = self.losses.filter(|_| losses);
+        (inertia || losses).then_some(self)
+    }
+
+    /// Whether friction has a memory.
+    pub fn remembers(&self) -> bool {
+        self.laminar > 0.0
+    }
+
+    /// Resistances `r_i` [Pa s/m^3] and rates `n_i ν/r²` [1/s] of the branches.
+    pub fn branches(&self) -> impl Iterator<Item = (f64, f64)> {
+        let Self { laminar, viscous_rate, .. } = *self;
+        KAGAWA.into_iter().map(move |(n, m)| (0.5 * m * laminar, n * viscous_rate))
+    }
+
+    /// `Δp_loss(q)` [Pa].
+    #[inline]
+    pub fn loss<T: Scalar>(&self, flow: T) -> T {
+        let Some(losses) = &self.losses else { return T::zero() };
+        flow.lift(|q| losses.at(q))
+    }
+}
+
+impl Losses {
+    /// Loss [Pa] and its derivative at a flow.
+    fn at(&self, q: f64) -> (f64, f64) {
+        let (ratio, slope) = friction_ratio(self.reynolds_per_flow * q.abs(), self.roughness);
+        let slow = SLOW / self.reynolds_per_flow;
+        let root = q.hypot(slow);
+        let friction = self.laminar * (ratio - 1.0);
+        let value = q * (friction + self.local * (root - slow));
+        let steeper = self.laminar * slope * self.reynolds_per_flow * q.abs();
+        (value, friction + steeper + self.local * (root - slow + q * q / root))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: the derivative that Newton's iteration takes is that of the loss, in all regimes.
+    #[test]
+    fn slopes_of_losses_are_their_derivatives() {
+        let losses = Losses {
+            reynolds_per_flow: 2e9,
+            laminar: 1e9,
+            local: 1e15,
+            roughness: 1e-3,
+        };
+        for reynolds in [1e-4, 1e-2, 1.0, 99.0, 101.0, 1e3, 2.2e3, 3e3, 1e4, 1e6] {
+            let q = -reynolds / losses.reynolds_per_flow;
+            let h = 1e-5 * q;
+            let difference = (losses.at(q + h).0 - losses.at(q - h).0) / (2.0 * h);
+            let (_, slope) = losses.at(q);
+            assert!((slope / difference - 1.0).abs() < 1e-6, "Re {reynolds}: {slope:e} {difference:e}");
+        }
+    }
+}
