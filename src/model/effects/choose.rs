@@ -105,6 +105,7 @@ impl<'a> Chooser<'a> {
             Effect::FiniteRotation => obstacles::finite_rotation(case),
             Effect::AxialForceOnBending => obstacles::axial_force_on_bending(turning),
             Effect::AxialStretch => obstacles::axial_stretch(case, across, turning),
+            Effect::SolidInertia => obstacles::solid_inertia(case),
             Effect::AxialInertia => obstacles::axial_inertia(case),
             Effect::Flow => network.and_then(obstacles::flow),
             Effect::NetworkPressureDifferences => network.and_then(obstacles::network_pressure_differences),
@@ -133,6 +134,7 @@ impl<'a> Chooser<'a> {
             None => choice,
         };
         match effect {
+            _ if !self.case.attachments.is_empty() && by_motion(effect) => kept(Keeps::Attachments),
             _ if about(Effect::NonlinearSection).needs.contains(&effect) && scene.strain_energy() >= self.tolerance => {
                 kept(Keeps::FiniteStrain)
             }
@@ -193,4 +195,18 @@ impl<'a> Chooser<'a> {
             _ => (true, Cause::Given(true)),
         }
     }
+}
+
+/// Whether numbers of a beam that nothing is attached to decide on an effect.
+fn by_motion(effect: Effect) -> bool {
+    use Effect::*;
+    let by_fluid = [
+        Fluid,
+        Flow,
+        NetworkPressureDifferences,
+        MomentToArea,
+        ForceToArea,
+        Asymmetry,
+    ];
+    !by_fluid.contains(&effect)
 }
