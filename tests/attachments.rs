@@ -204,6 +204,8 @@ fn balances_close_with_everything_attached() {
     let no_dashpots = json!([{"at": 0.0, "mass_kg": 0.004, "stiffness_rotation_n_m_rad": 0.02},
         {"at": 0.333, "stiffness_x_n_m": 2.0}, {"at": 0.71, "mass_kg": 0.01, "force_z_n": {"sine": {"amplitude": 0.03, "frequency_hz": 8}}},
         {"at": 1.0, "mass_kg": 0.005}]);
+    let along = json!([{"at": 0.0, "mass_kg": 0.004}, {"at": 0.333, "stiffness_z_n_m": 20.0, "damping_z_n_s_m": 0.02},
+        {"at": 0.71, "mass_kg": 0.01, "force_z_n": {"sine": {"amplitude": 0.03, "frequency_hz": 8}}}]);
     let cases = [
         ("finite rotation", json!({})),
         ("published", json!({"formulation": "published"})),
@@ -219,6 +221,15 @@ fn balances_close_with_everything_attached() {
         (
             "without axial inertia",
             json!({"attachments": no_dashpots, "effects": {"axial_inertia": "off"}}),
+        ),
+        (
+            "bar",
+            json!({"attachments": along, "loads": [{"gravity": {"z_m_s2": -9.81}}], "effects": {"transverse_motion": "off"},
+            "ends": {"root": {"pinned": {"u3_m": {"sine": {"amplitude": 1e-3, "frequency_hz": 9}}}}, "tip": "free"}}),
+        ),
+        (
+            "kicked",
+            json!({"ends": {"root": {"pinned": {"u1_m": {"ramp": {"to": 2e-3, "start_s": 0.05, "duration_s": 0.05, "shape": "linear"}}}}, "tip": "free"}}),
         ),
         (
             "at rest",
