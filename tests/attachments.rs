@@ -1,4 +1,4 @@
-//! What is attached to the beam, [E60] and [E61]: point masses, springs and dashpots to ground, forces at places.
+//! What is attached to the beam, [E49] and [E50]: point masses, springs and dashpots to ground, forces at places.
 //!
 //! Sources: Euler-Bernoulli's beam, whose frequency equations (Blevins 1979, Formulas for Natural Frequency and Mode Shape, chapter 8) are
 //! solved here by bisection; its static deflections; conservation laws; differences.

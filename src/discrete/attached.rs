@@ -6,14 +6,14 @@ use crate::numerics::{Planar, Scalar};
 
 /// An attachment between the nodes, and between the midpoints of cells, on its two sides.
 ///
-/// `[E60]` Its place moves as the nodes do between which it is, and what it does is shared among them by the same weights, the hat functions of
+/// `[E49]` Its place moves as the nodes do between which it is, and what it does is shared among them by the same weights, the hat functions of
 /// [E46], so that its work is exact; masses are shared likewise:
 ///
 /// ```text
 /// ū = Σ hat_i u_i      F = f - k ū - c ū_t      f_i = hat_i F      m h_i gains hat_i M      E gains k ū²/2
 /// ```
 ///
-/// `[E61]` A rotational spring takes the angle between the midpoints of its two cells, and its couple is shared among them; the beam between
+/// `[E50]` A rotational spring takes the angle between the midpoints of its two cells, and its couple is shared among them; the beam between
 /// is in series with it, in the half cell at an end too, where one cell alone takes the couple:
 ///
 /// ```text

@@ -50,7 +50,7 @@ pub fn momentum<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r:
 }
 
 /// What acts on a node besides its sections, each force with the account of the balance of energy that its work goes to, [E19]; none
-/// where it is stored, [E60].
+/// where it is stored, [E49].
 #[inline(always)]
 pub fn outer_forces<T: Scalar>(
     system: &System,
