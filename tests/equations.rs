@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 48] = [
+const INDEX: [(&str, &str, &str); 50] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -145,6 +145,16 @@ const INDEX: [(&str, &str, &str); 48] = [
         "[E46]",
         "tests/physics/loads.rs",
         "a_load_has_its_force_and_moment_on_every_mesh",
+    ),
+    (
+        "[E49]",
+        "tests/attachments.rs",
+        "a_cantilever_with_a_tip_mass_swings_as_slowly_as_it_must",
+    ),
+    (
+        "[E50]",
+        "tests/attachments.rs",
+        "a_rotational_spring_at_a_pinned_root_swings_as_it_must",
     ),
 ];
 

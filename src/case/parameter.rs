@@ -12,8 +12,16 @@ use super::{parse, section};
 use crate::error::{Error, Result};
 
 /// Parts of a case that describe what is simulated, not how.
-const PARTS: [&str; 8] = [
-    "beam", "fluid", "bladders", "tubes", "network", "loads", "ends", "start",
+const PARTS: [&str; 9] = [
+    "beam",
+    "fluid",
+    "bladders",
+    "tubes",
+    "network",
+    "loads",
+    "attachments",
+    "ends",
+    "start",
 ];
 
 /// A number of a case, found by its JSON pointer; defaults that are not written count too.

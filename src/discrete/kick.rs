@@ -48,9 +48,11 @@ pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f6
 
 /// Impulses of nodes [kg m/s] over jumps of their velocities: what outer forces have given them.
 pub fn impulses(system: &System, jumps: &[Planar<f64>], w: &Workspace<f64>) -> Nodal {
-    let (mesh, mass) = (&system.mesh, system.model.section.mass_per_length);
-    let mut all: Nodal = (0..mesh.nodes)
-        .map(|i| jumps[i] * (mass * mesh.node_length(i)))
+    let mesh = &system.mesh;
+    let mut all: Nodal = jumps
+        .iter()
+        .zip(&system.masses)
+        .map(|(jump, mass)| *jump * *mass)
         .collect();
     for c in 0..mesh.cells {
         let handed = planar(coupling(system, w, c) * vector(jumps[c + 1] - jumps[c]));
@@ -89,7 +91,7 @@ fn coupling(system: &System, w: &Workspace<f64>, c: usize) -> Matrix2<f64> {
 
 /// Thomas' algorithm, node by node: no impulse where no jump is given.
 fn solve(system: &System, given: &[[Option<f64>; 2]], w: &Workspace<f64>) -> Nodal {
-    let (mesh, mass) = (&system.mesh, system.model.section.mass_per_length);
+    let mesh = &system.mesh;
     let beside = |cell: Option<usize>| cell.map_or(Matrix2::zeros(), |cell| coupling(system, w, cell));
     // jumps[i] = sums[i] - upper[i] jumps[i + 1]
     let (mut upper, mut sums) = (Matrix2::zeros(), Vector2::zeros());
@@ -97,7 +99,7 @@ fn solve(system: &System, given: &[[Option<f64>; 2]], w: &Workspace<f64>) -> Nod
     for (i, given) in given.iter().enumerate() {
         let left = beside(i.checked_sub(1));
         let right = beside(Some(i).filter(|i| *i < mesh.cells));
-        let mut pivot = left + right + left * upper + Matrix2::identity() * (mass * mesh.node_length(i));
+        let mut pivot = left + right + left * upper + Matrix2::identity() * system.masses[i];
         let (mut next, mut sum) = (-right, left * sums);
         for (k, jump) in given.iter().enumerate() {
             if let Some(jump) = jump {

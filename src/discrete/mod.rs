@@ -1,5 +1,6 @@
 //! Space: the mesh, the unknowns, the semi-discrete equations in the paper's order, and their exact balances.
 
+pub mod attached;
 pub mod fluid_mesh;
 pub mod glance;
 pub mod kick;
@@ -22,6 +23,7 @@ use crate::error::Result;
 use crate::model::loads::LoadKind;
 use crate::model::{Model, Storage, audit};
 
+pub use attached::Attached;
 pub use fluid_mesh::FluidMesh;
 pub use layout::Layout;
 pub use mesh::Mesh;
@@ -42,6 +44,10 @@ pub struct System {
     pub layout: Layout,
     /// Distributed loads, sampled.
     pub loads: Vec<SampledLoad>,
+    /// What is attached to the beam, in the order of places.
+    pub attached: Vec<Attached>,
+    /// Masses of the nodes [kg].
+    pub masses: Vec<f64>,
     /// Whether any load is a distributed moment.
     pub has_moments: bool,
     /// Whether material damping acts.
@@ -120,6 +126,7 @@ impl System {
         let has_moments = loads
             .iter()
             .any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ));
+        let (attached, masses) = Attached::all(&model.attachments, &model.section, &mesh);
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
         Self {
             model,
@@ -127,6 +134,8 @@ impl System {
             fluid,
             layout,
             loads,
+            attached,
+            masses,
             has_moments,
             damped,
         }

@@ -84,11 +84,8 @@ impl Statics {
     /// Forces on nodes: loads, drag, ends, and what carries the mass along.
     fn load(&mut self, system: &System, held: Jet, clock: Clock) {
         let (section, mesh) = (&system.model.section, &system.mesh);
-        let mass = if system.layout.inertia {
-            section.mass_per_length
-        } else {
-            0.0
-        };
+        let inertia = if system.layout.inertia { 1.0 } else { 0.0 };
+        let mass = inertia * section.mass_per_length;
         for (i, node) in self.nodes.iter_mut().enumerate() {
             let length = mesh.node_length(i);
             *node = (
@@ -102,6 +99,20 @@ impl Statics {
                 let size = mesh.node_length(i) * shape;
                 node.0 += size * factor.value;
                 node.1 += size * factor.rate;
+            }
+        }
+        for attached in &system.attached {
+            let attachment = &system.model.attachments[attached.number];
+            let carried = inertia * attachment.mass;
+            let mut force = (-carried * held.acceleration, -carried * held.jerk);
+            for given in attachment.forces.iter().filter(|given| given.axis == 1) {
+                let jet = given.signal.jet(clock);
+                force.0 += given.factor * jet.value;
+                force.1 += given.factor * jet.rate;
+            }
+            for (node, weight) in self.nodes[attached.node..].iter_mut().zip(attached.weights) {
+                node.0 += weight * force.0;
+                node.1 += weight * force.1;
             }
         }
         let last = mesh.nodes - 1;

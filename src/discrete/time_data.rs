@@ -1,6 +1,6 @@
 //! Everything that depends on time alone, evaluated once an instant.
 
-use super::{Statics, System, shapes};
+use super::{Statics, System, attached, shapes};
 use crate::case::{Rotation, Translation};
 use crate::functions::signals::{Clock, Jet, Signal};
 use crate::model::Load;
@@ -114,6 +114,8 @@ pub struct TimeData {
     pub force: Vec<Planar<f64>>,
     /// First moment per length in each cell [N].
     pub moment: Vec<Planar<f64>>,
+    /// Forces at attachments, in the order of the model [N].
+    pub point_force: Vec<Planar<f64>>,
     /// Normal forces that follow from loads alone; nothing where the beam can stretch.
     pub statics: Statics,
     /// Conductance of each link [m^3/(s Pa)].
@@ -144,6 +146,7 @@ impl TimeData {
             ends: [EndData::default(); 2],
             force: vec![Planar::default(); system.mesh.nodes],
             moment: vec![Planar::default(); system.mesh.cells],
+            point_force: vec![Planar::default(); system.model.attachments.len()],
             statics: Statics::new(system),
             conductance: vec![0.0; links],
             resistance: vec![0.0; links],
@@ -190,6 +193,7 @@ impl TimeData {
                 .map(|f| (f.normal.jet(clock).value, f.shear.jet(clock).value));
         }
         self.loads(system, clock);
+        attached::forces(system, self, |signal| signal.jet(clock).value);
         self.statics.update(system, self.frame(1), clock);
         self.network(system, clock, first);
     }

@@ -29,8 +29,12 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
     })
 }
 
-/// Smallest damping ratio among the waves that the mesh carries: `ζ = c/(2 m ω) + ω τ/2`, bending and axial.
+/// Smallest damping ratio among the waves that the mesh carries: `ζ = c/(2 m ω) + ω τ/2`, bending and axial. Masses and
+/// springs that are attached swing with less, by how much is not known: 0.
 pub fn least_damping_ratio(system: &System) -> f64 {
+    if !system.attached.is_empty() {
+        return 0.0;
+    }
     let s = &system.model.section;
     let (m, h, l) = (s.mass_per_length, system.mesh.h, system.model.length);
     let bending = (s.bending_stiffness / m).sqrt();

@@ -2,6 +2,7 @@
 //!
 //! A [`Model`] is the case resolved: effects chosen, every law a closed enum, every signal in place. It knows no mesh.
 
+pub mod attachments;
 pub mod audit;
 pub mod beam;
 pub mod bladder;
@@ -25,6 +26,7 @@ use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::error::Result;
 use crate::functions::{Clock, Signal};
 
+pub use attachments::Attachment;
 pub use beam::Section;
 pub use bladder::AreaLaw;
 pub use coupling::Coupling;
@@ -155,6 +157,8 @@ pub struct Model {
     pub ends: [ResolvedEnd; 2],
     /// Distributed loads.
     pub loads: Vec<Load>,
+    /// What is attached to the beam at places.
+    pub attachments: Vec<Attachment>,
     /// Fluid and bladders; absent in a dry beam.
     pub wet: Option<Wet>,
     /// Characteristic size of every kind of unknown.
@@ -226,6 +230,7 @@ impl Model {
             effects,
             ends,
             loads,
+            attachments: Attachment::all(case),
             wet,
             scales,
         }
@@ -249,6 +254,11 @@ impl Model {
             }
         }
         self.loads.iter_mut().for_each(|load| replace(&mut load.signal));
+        let forces = self
+            .attachments
+            .iter_mut()
+            .flat_map(|attachment| &mut attachment.forces);
+        forces.for_each(|force| replace(&mut force.signal));
         if let Some(wet) = &mut self.wet {
             let network = &mut wet.network;
             network.ports.iter_mut().for_each(|port| replace(&mut port.pressure));
@@ -278,6 +288,7 @@ impl Model {
         each_signal(
             &self.ends,
             &self.loads,
+            &self.attachments,
             self.wet.as_ref().map(|wet| &wet.network),
             visit,
         );
@@ -297,7 +308,13 @@ impl Model {
 }
 
 /// Visits every signal: of ends, loads, valves and ports.
-pub fn each_signal(ends: &[ResolvedEnd; 2], loads: &[Load], network: Option<&Network>, mut visit: impl FnMut(&Signal)) {
+pub fn each_signal(
+    ends: &[ResolvedEnd; 2],
+    loads: &[Load],
+    attachments: &[Attachment],
+    network: Option<&Network>,
+    mut visit: impl FnMut(&Signal),
+) {
     for end in ends {
         for motion in [&end.transverse, &end.axial] {
             match motion {
@@ -314,6 +331,9 @@ pub fn each_signal(ends: &[ResolvedEnd; 2], loads: &[Load], network: Option<&Net
     }
     for load in loads {
         visit(&load.signal);
+    }
+    for force in attachments.iter().flat_map(|attachment| &attachment.forces) {
+        visit(&force.signal);
     }
     if let Some(network) = network {
         network

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Section, Wet};
+use super::{Attachment, Section, Wet};
 use crate::case::schema::{Case, Distributed, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::profile::Profile;
@@ -95,6 +95,16 @@ impl Drive {
             if let Load::ForceXNM(l) | Load::ForceZNM(l) | Load::MomentZN(l) = load {
                 d.hear(&l.signal, end);
             }
+        }
+        for attachment in Attachment::all(case) {
+            for force in &attachment.forces {
+                match force.axis {
+                    0 => d.transverse_force += force.factor.abs() * bends(&force.signal),
+                    _ => d.axial_force += force.factor.abs() * size(&force.signal),
+                }
+                d.hear(&force.signal, end);
+            }
+            d.axial_force += attachment.mass * d.axial_acceleration;
         }
         let both = ends.iter().all(|e| matches!(e.axial, Translation::Displacement(_)));
         for e in ends {

@@ -63,6 +63,10 @@ fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
             all.push((format!("/loads/{i}/{key}/signal"), Role::Other, &load.signal));
         }
     }
+    for (i, attachment) in case.attachments.iter().enumerate() {
+        let forces = attachment.forces();
+        all.extend(forces.map(|(key, signal)| (format!("/attachments/{i}/{key}"), Role::Other, signal)));
+    }
     let Some(network) = &case.network else {
         return all;
     };

@@ -1,5 +1,6 @@
 //! The rules that the schema cannot say, all faults at once.
 
+mod attachments;
 mod bladders;
 mod coefficients;
 mod ends;
@@ -20,7 +21,7 @@ use crate::error::{Code, Violation};
 type Rule = fn(&Case, &mut Violations);
 
 /// All rules, each with the sections of the case that it compares.
-const RULES: [(Rule, &[&str]); 11] = [
+const RULES: [(Rule, &[&str]); 12] = [
     (name, &[]),
     (plausible::sizes, &[]),
     (plausible::proportions, &["beam", "tubes", "network"]),
@@ -30,6 +31,7 @@ const RULES: [(Rule, &[&str]); 11] = [
     ),
     (network::check, &["bladders", "tubes", "network", "time"]),
     (ends::check, &[]),
+    (attachments::check, &[]),
     (functions::check, &["time"]),
     (start::check, &["beam", "bladders", "ends", "start", "time"]),
     (time::check, &[]),

@@ -104,6 +104,11 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             look(format!("/loads/{i}/{key}"), size, bound);
         }
     }
+    for (i, attachment) in case.attachments.iter().enumerate() {
+        for (key, signal) in attachment.forces() {
+            look(format!("/attachments/{i}/{key}"), size_of(signal, end), &bounds.force);
+        }
+    }
     for (i, some) in case.start.pressures.iter().enumerate() {
         let pointer = format!("/start/pressures/{i}/pressure_pa");
         look(pointer, size_along(&some.pressure_pa), &bounds.pressure);

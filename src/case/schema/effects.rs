@@ -142,6 +142,8 @@ effects! {
         Loads loads,
         /// Weight.
         Gravity gravity,
+        /// Point masses, springs, dashpots and forces at places along the beam.
+        Attachments attachments,
     }
 }
 

@@ -34,6 +34,11 @@ pub enum Load {
 }
 
 impl Load {
+    /// Whether it acts on masses.
+    pub fn is_body(&self) -> bool {
+        matches!(self, Self::BodyXMS2(_) | Self::BodyZMS2(_) | Self::Gravity { .. })
+    }
+
     /// Name and function of a load that has one.
     pub fn distributed(&self) -> Option<(&'static str, &Distributed)> {
         match self {

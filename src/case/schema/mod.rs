@@ -14,6 +14,7 @@ use crate::case::origins::Origins;
 use crate::case::presets::Preset;
 use crate::functions::signals::{Clock, Signal};
 
+mod attachments;
 mod beam;
 mod bladders;
 mod effects;
@@ -21,6 +22,7 @@ mod loads;
 mod network;
 mod numerics;
 
+pub use attachments::*;
 pub use beam::*;
 pub use bladders::*;
 pub use effects::*;
@@ -68,6 +70,10 @@ pub struct Case {
     #[serde(default)]
     #[schemars(length(max = 10000))]
     pub loads: Vec<Load>,
+    /// Point masses, springs, dashpots and forces at places along the beam.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000))]
+    pub attachments: Vec<Attachment>,
     /// Conditions at the root (theta = 0) and the tip (theta = length).
     pub ends: Ends,
     /// State at t = 0; what is not given is zero.

@@ -94,12 +94,15 @@ pub struct Energies {
     /// Of the section at finite strain, beyond all these.
     #[serde(default)]
     pub section: f64,
+    /// Of springs to ground.
+    #[serde(default)]
+    pub springs: f64,
 }
 
 impl Energies {
     /// Sum.
     pub fn total(&self) -> f64 {
-        self.kinetic + self.rotary + self.axial + self.bending + self.bladders + self.tubes + self.section
+        self.kinetic + self.rotary + self.axial + self.bending + self.bladders + self.tubes + self.section + self.springs
     }
 }
 
@@ -187,6 +190,7 @@ pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     let mut e = solid::energies(system, now, &w);
     e.bladders = fluid::energy(system, &w);
     e.tubes = tubes::kinetic(system, &w);
+    e.springs = system.attached.iter().map(|attached| attached.energy(system, &w)).sum();
     e.section = residual::nonlinear::energy(system, &w);
     e
 }

@@ -1,7 +1,7 @@
 //! Reactions of driven ends, told in two ways that a mesh makes differ.
 
 use crate::case::schema::Effect;
-use crate::discrete::{State, System, TimeData};
+use crate::discrete::{Attached, State, System, TimeData};
 use crate::model::Kinematics;
 
 /// Squares of reactions and of what they differ by [N^2], added over driven ends and directions; with the reactions stand the end's
@@ -12,7 +12,15 @@ use crate::model::Kinematics;
 pub fn compared(system: &System, now: &TimeData, w: State) -> [f64; 2] {
     let (mesh, section, l) = (&system.mesh, &system.model.section, &system.layout);
     let mut squares = [0.0; 2];
-    if mesh.cells < 2 {
+    // between the cells that are compared the force would jump
+    let inner = |a: &Attached| {
+        let near = |node: usize| (1..=2).contains(&node) || (1..=2).contains(&(mesh.cells - node));
+        a.weights
+            .into_iter()
+            .enumerate()
+            .any(|(k, weight)| weight > 0.0 && near(a.node + k))
+    };
+    if mesh.cells < 2 || system.attached.iter().any(inner) {
         return squares;
     }
     for (node, near, next) in [(0, 0, 1), (mesh.nodes - 1, mesh.cells - 1, mesh.cells - 2)] {

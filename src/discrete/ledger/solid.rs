@@ -4,7 +4,7 @@ use super::{Energies, EnergyRate, add};
 use crate::case::schema::Effect;
 use crate::discrete::residual::rows::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
-use crate::discrete::{System, TimeData, Workspace};
+use crate::discrete::{System, TimeData, Workspace, attached};
 use crate::model::Kinematics;
 use crate::numerics::Planar;
 
@@ -16,19 +16,20 @@ pub fn flows(
     w: &Workspace<f64>,
     out: &mut [f64],
 ) {
-    let (mesh, section, l) = (&system.mesh, &system.model.section, &system.layout);
+    let (mesh, l) = (&system.mesh, &system.layout);
     let last = mesh.nodes - 1;
     let published = system.model.published();
     for i in 0..=last {
-        let length = mesh.node_length(i);
         let (v, a) = (w.motion.v[i], w.motion.a[i]);
         let mut f = Planar::default();
         outer_forces(system, now, w, i, |flow, force| {
-            add(out, flow, flow.energy_sign() * force.dot(v));
+            if let Some(flow) = flow {
+                add(out, flow, flow.energy_sign() * force.dot(v));
+            }
             f += force;
         });
         // Reaction of a driven end: what is missing in its momentum balance.
-        let inertia = section.mass_per_length * length;
+        let inertia = system.masses[i];
         let none = Planar::default();
         let right = w.forces.section.get(i).copied().unwrap_or(none);
         let left = if i > 0 { w.forces.section[i - 1] } else { none };
@@ -59,6 +60,7 @@ pub fn flows(
             bending(system, now, &curvature_rate, w, i, out);
         }
     }
+    add(out, EnergyRate::AngularImpulse, attached::torque(system, w));
     cells(system, now, w, published, out);
 }
 
@@ -177,7 +179,7 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies
         let length = mesh.node_length(i);
         if system.layout.inertia {
             let along = carried(system, now, w, i);
-            e.kinetic += 0.5 * section.mass_per_length * length * (w.motion.v[i].x * w.motion.v[i].x + along * along);
+            e.kinetic += 0.5 * system.masses[i] * (w.motion.v[i].x * w.motion.v[i].x + along * along);
         }
         e.bending += 0.5 * length * w.forces.moment[i] * w.forces.moment[i] / section.bending_stiffness;
     }
@@ -220,14 +222,14 @@ pub fn arms(system: &System, w: &Workspace<f64>, i: usize) -> (Planar<f64>, Plan
 
 /// Momentum and angular momentum about the origin.
 pub fn momenta(system: &System, now: &TimeData, w: &Workspace<f64>) -> (Planar<f64>, f64) {
-    let (mesh, section) = (&system.mesh, &system.model.section);
+    let mesh = &system.mesh;
     let (mut momentum, mut angular) = (Planar::default(), 0.0);
     if !system.layout.inertia {
         return (momentum, angular);
     }
     for i in 0..mesh.nodes {
         let along = carried(system, now, w, i);
-        let mass = section.mass_per_length * mesh.node_length(i);
+        let mass = system.masses[i];
         let own = Planar {
             z: along,
             ..w.motion.v[i]

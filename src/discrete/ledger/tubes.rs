@@ -1,10 +1,10 @@
-//! Energy of the fluid in tubes in which it does not creep, [E49].
+//! Energy of the fluid in tubes in which it does not creep, [E51].
 
 use crate::discrete::fluid_mesh::MeshFlow;
 use crate::discrete::{System, Workspace};
 use crate::model::network::tube::BRANCHES;
 
-/// What losses and the memory of friction dissipate in a tube, [E49].
+/// What losses and the memory of friction dissipate in a tube, [E51].
 pub fn dissipation(flow: &MeshFlow, q: f64, w: &Workspace<f64>) -> f64 {
     let slips = slips(flow, q, w).map(|(resistance, slip, ..)| resistance * slip * slip);
     q * flow.tube.loss(q) + slips.sum::<f64>()
@@ -17,7 +17,7 @@ fn slips(flow: &MeshFlow, q: f64, w: &Workspace<f64>) -> impl Iterator<Item = (f
     laws.zip(own).map(move |((resistance, rate), &j)| (resistance, q - j, rate, j))
 }
 
-/// Kinetic energy of the fluid in tubes: `Σ I q²/2`, and what the branches of friction store, [E49].
+/// Kinetic energy of the fluid in tubes: `Σ I q²/2`, and what the branches of friction store, [E51].
 pub fn kinetic(system: &System, w: &Workspace<f64>) -> f64 {
     let Some(fluid) = &system.fluid else { return 0.0 };
     let flows = fluid.links.iter().zip(&w.fluid.flow);

@@ -82,6 +82,10 @@ fn wet(system: &System) -> bool {
     system.fluid.is_some()
 }
 
+fn attached(system: &System) -> bool {
+    !system.attached.is_empty()
+}
+
 fn nonlinear(system: &System) -> bool {
     system.model.strain_energy().is_some()
 }
@@ -181,6 +185,8 @@ observables! {
         "energy stored in the bladders";
     SectionEnergy: "section_energy" ["J"], "section energy", "energy of finite strain", Stored, Recorded, nonlinear, Read::State(|look| look.stored.section),
         "energy of the section at finite strain, beyond those that are quadratic";
+    SpringEnergy: "spring_energy" ["J"], "spring energy", "energy of springs to ground", Stored, Recorded, attached, Read::State(|look| look.stored.springs),
+        "energy of what holds the beam elastically at places";
     WorkLoads: "work_loads" ["J"], "work of loads", "work of the loads", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Loads as usize]),
         "work of distributed loads and end forces";
     WorkEnds: "work_ends" ["J"], "work of ends", "work of the driven ends", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Ends as usize]),

@@ -2,6 +2,7 @@
 
 use super::fluid::{bridge_drops, drop_over, pressure_at};
 use crate::case::schema::Effect;
+use crate::discrete::attached::at_node;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, Place};
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace};
@@ -35,7 +36,7 @@ pub fn momentum<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r:
         if i > 0 {
             f -= w.forces.section[i - 1];
         }
-        let mass = system.model.section.mass_per_length * mesh.node_length(i);
+        let mass = system.masses[i];
         for (axis, line) in l.lines.iter().enumerate() {
             if let Some(row) = line.momentum(i) {
                 r[row] = if l.inertia {
@@ -48,32 +49,39 @@ pub fn momentum<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r:
     }
 }
 
-/// What acts on a node besides its sections, each force with the account of the balance of energy that its work goes to, [E19].
+/// What acts on a node besides its sections, each force with the account of the balance of energy that its work goes to, [E19]; none
+/// where it is stored, [E49].
 #[inline(always)]
 pub fn outer_forces<T: Scalar>(
     system: &System,
     now: &TimeData,
     w: &Workspace<T>,
     node: usize,
-    mut each: impl FnMut(EnergyRate, Planar<T>),
+    mut each: impl FnMut(Option<EnergyRate>, Planar<T>),
 ) {
     let (section, length) = (&system.model.section, system.mesh.node_length(node));
     let mut given = Planar::constant(now.force[node] * length);
     if node == 0 || node == system.mesh.nodes - 1 {
         given += end_force(system, now, w, node);
     }
-    each(EnergyRate::Loads, given);
+    each(Some(EnergyRate::Loads), given);
     if system.model.published() {
-        each(EnergyRate::Formulation, published_force(system, w, node));
+        each(Some(EnergyRate::Formulation), published_force(system, w, node));
     }
     if section.drag > 0.0 {
         each(
-            EnergyRate::Damping,
+            Some(EnergyRate::Damping),
             -felt_velocity(system, now, w, node) * (length * section.drag),
         );
     }
     if section.quadratic_drag > 0.0 {
-        each(EnergyRate::Damping, quadratic_drag(system, now, w, node) * length);
+        each(Some(EnergyRate::Damping), quadratic_drag(system, now, w, node) * length);
+    }
+    for (attached, weight) in at_node(&system.attached, node) {
+        let given = now.point_force[attached.number] * weight;
+        each(Some(EnergyRate::Loads), Planar::constant(given));
+        each(None, attached.spring(w) * weight);
+        each(Some(EnergyRate::Damping), attached.dashpot(w) * weight);
     }
 }
 
@@ -288,7 +296,7 @@ pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     }
 }
 
-/// Flow of each tube in which it does not creep, [E49].
+/// Flow of each tube in which it does not creep, [E51].
 pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let Some(fluid) = system.fluid.as_ref().filter(|fluid| fluid.flows > 0) else {
         return;

@@ -3,7 +3,7 @@
 use super::solid::{self, couple, curvature_rates, normal_force, total_moment_drop};
 use crate::case::Translation;
 use crate::case::schema::Effect;
-use crate::discrete::{System, TimeData, Workspace};
+use crate::discrete::{System, TimeData, Workspace, attached};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
 
@@ -134,4 +134,5 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
             w.forces.section[c].x += (w.motion.a[c + 1].x - w.motion.a[c].x) * (inverse * inertia);
         }
     }
+    attached::turning(system, w, |couple, c, w| w.forces.section[c].x += couple);
 }

@@ -1,7 +1,7 @@
 //! Kinematics, resultants and section forces of the beam.
 
 use crate::case::schema::Effect;
-use crate::discrete::{System, TimeData, Workspace};
+use crate::discrete::{System, TimeData, Workspace, attached};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
 
@@ -246,6 +246,7 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
             add_couple(couple, c, w);
         }
     }
+    attached::turning(system, w, add_couple);
     if system.model.effects.has(Effect::RotaryInertia) {
         let inertia = section.mass_per_length * section.gyration_radius_squared;
         let inverse = 1.0 / system.mesh.h;

@@ -117,6 +117,8 @@ pub enum Keeps {
     UnevenStart,
     /// It makes pressure.
     MakesPressure,
+    /// Something is attached to the beam, which the scene's numbers do not know.
+    Attachments,
     /// The section is not linear at the scene's loads.
     FiniteStrain,
 }
@@ -190,6 +192,7 @@ impl Display for Keeps {
             Self::Dissipation => "all that the fluid dissipates goes with them",
             Self::UnevenStart => "the start has differences along a bladder",
             Self::FiniteStrain => "the section is not linear at these loads",
+            Self::Attachments => "what is attached to the beam has no bound here",
             Self::MakesPressure => "it is what makes pressure",
         })
     }

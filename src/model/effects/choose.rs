@@ -106,6 +106,7 @@ impl<'a> Chooser<'a> {
             Effect::FiniteRotation => obstacles::finite_rotation(case),
             Effect::AxialForceOnBending => obstacles::axial_force_on_bending(turning),
             Effect::AxialStretch => obstacles::axial_stretch(case, across, turning),
+            Effect::SolidInertia => obstacles::solid_inertia(case),
             Effect::AxialInertia => obstacles::axial_inertia(case),
             Effect::Flow => network.and_then(obstacles::flow),
             Effect::NetworkPressureDifferences => network.and_then(obstacles::network_pressure_differences),
@@ -134,6 +135,7 @@ impl<'a> Chooser<'a> {
             None => choice,
         };
         match effect {
+            _ if !self.case.attachments.is_empty() && by_motion(effect) => kept(Keeps::Attachments),
             _ if about(Effect::NonlinearSection).needs.contains(&effect) && scene.strain_energy() >= self.tolerance => {
                 kept(Keeps::FiniteStrain)
             }
@@ -199,4 +201,18 @@ impl<'a> Chooser<'a> {
 /// Whether an effect is there only where a case names it.
 fn by_name(effect: Effect) -> bool {
     matches!(effect, Effect::TubeInertia | Effect::UnsteadyFriction | Effect::TubeLosses)
+}
+
+/// Whether numbers of a beam that nothing is attached to decide on an effect.
+fn by_motion(effect: Effect) -> bool {
+    use Effect::*;
+    let by_fluid = [
+        Fluid,
+        Flow,
+        NetworkPressureDifferences,
+        MomentToArea,
+        ForceToArea,
+        Asymmetry,
+    ];
+    !by_fluid.contains(&effect)
 }

@@ -1,6 +1,6 @@
 //! What stands against leaving an effect out: something in the case that has a meaning only with it.
 
-use crate::case::schema::{Case, Formulation, Load};
+use crate::case::schema::{Attachment, Case, Formulation, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::profile::Profile;
 use crate::functions::signals::Signal;
@@ -36,6 +36,10 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
     };
     if let Some(k) = case.loads.iter().position(across) {
         return obstacle(format!("/loads/{k} acts across the beam"), HINT);
+    }
+    let pushed = |a: &Attachment| a.force_x_n.as_ref().is_some_and(|signal| !zero(signal));
+    if let Some(k) = case.attachments.iter().position(pushed) {
+        return obstacle(format!("/attachments/{k} pushes the beam across"), HINT);
     }
     for (end, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
         let ResolvedEnd {
@@ -74,8 +78,24 @@ pub fn axial_force_on_bending(finite_rotation: bool) -> Option<Obstacle> {
     obstacle(turns, "leave finite_rotation out too, or axial_force_on_bending on")
 }
 
+/// Dashpots at places resist the motion of their nodes alone.
+pub fn solid_inertia(case: &Case) -> Option<Obstacle> {
+    let damped = |a: &Attachment| a.damping_x_n_s_m > 0.0 || a.damping_z_n_s_m > 0.0;
+    let k = case.attachments.iter().position(damped)?;
+    obstacle(
+        format!("/attachments/{k} has a dashpot, which damps nothing where masses do not move"),
+        "remove it, or leave solid_inertia on",
+    )
+}
+
 /// Something must carry the beam along.
 pub fn axial_inertia(case: &Case) -> Option<Obstacle> {
+    if let Some(k) = case.attachments.iter().position(|a| a.damping_z_n_s_m > 0.0) {
+        return obstacle(
+            format!("/attachments/{k} has a dashpot along"),
+            "remove damping_z_n_s_m, or leave axial_inertia on",
+        );
+    }
     let held = [&case.ends.root, &case.ends.tip].map(|end| end.resolve().axial);
     if held.iter().any(|axial| matches!(axial, Translation::Displacement(_))) {
         return None;
@@ -96,6 +116,13 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
         return obstacle(
             "finite_rotation is on, which couples stretch and bending",
             "leave finite_rotation out too",
+        );
+    }
+    let holds = |a: &Attachment| a.stiffness_z_n_m > 0.0 || a.damping_z_n_s_m > 0.0;
+    if let Some(k) = case.attachments.iter().position(holds) {
+        return obstacle(
+            format!("/attachments/{k} holds the beam along, so the normal force does not follow from the loads"),
+            HINT,
         );
     }
     let held = [&case.ends.root, &case.ends.tip].map(|end| end.resolve().axial);

@@ -258,5 +258,13 @@ pub fn about(effect: Effect) -> About {
             needs: &[],
             presence: Presence::Given(|case, _| case.loads.iter().any(gravity)),
         },
+        Effect::Attachments => About {
+            adds: "M a, -k u, -k φ, -c v and forces at places along the beam",
+            brings: "masses of nodes; forces at their neighbours",
+            number: "present where given; what is decided by the scene's numbers stays then",
+            cost: "arithmetic in two nodes each",
+            needs: &[],
+            presence: Presence::Given(|case, _| !case.attachments.is_empty()),
+        },
     }
 }

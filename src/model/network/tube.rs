@@ -33,7 +33,7 @@ const LAMINAR: f64 = 100.0;
 /// Flow below which losses are smooth through zero, over that of Reynolds number 1.
 const SLOW: f64 = 1e-3;
 
-/// `[E49]` Flow q of a round tube, radius r, area `A = π r²`, through a valve of opening o; R of `[E6]`, `R_0 = 8 μ l/(π r⁴)`:
+/// `[E51]` Flow q of a round tube, radius r, area `A = π r²`, through a valve of opening o; R of `[E6]`, `R_0 = 8 μ l/(π r⁴)`:
 ///
 /// ```text
 /// o [I dq/dt + Σ_i r_i (q - j_i) + Δp_loss(q) + R_half q - (p_a - p_b)] + R q = 0
@@ -56,7 +56,7 @@ pub struct TubeFlow {
     losses: Option<Losses>,
 }
 
-/// `[E50]` Losses beyond laminar friction, D = 2 r, roughness e, `Re = ρ |v| D/μ`:
+/// `[E52]` Losses beyond laminar friction, D = 2 r, roughness e, `Re = ρ |v| D/μ`:
 ///
 /// ```text
 /// Δp_loss = (f - 64/Re) (l/D) ρ v |v|/2 + K ρ v |v|/2        |v| -> √(v² + v_s²) - v_s in K's part, v_s that of Re = 10^-3

@@ -105,7 +105,7 @@ impl Stability {
         let l = &system.layout;
         let mut mass = vec![0.0; l.len];
         for (node, unknown, _) in l.lines.iter().flat_map(Line::unknowns) {
-            let of_node = system.model.section.mass_per_length * system.mesh.node_length(node);
+            let of_node = system.masses[node];
             mass[unknown] = of_node * l.scales[unknown] / l.row_scales[unknown];
         }
         let found = spectral::lowest(statics.pattern(), &values, &mass).ok()?;

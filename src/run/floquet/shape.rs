@@ -66,10 +66,7 @@ impl Modes {
                 bend(&[(end, -2.0 * per), (inner, 2.0 * per)], 0.5 * h);
             }
         }
-        let masses: Vec<f64> = free
-            .clone()
-            .map(|i| section.mass_per_length * mesh.node_length(i))
-            .collect();
+        let masses = system.masses[free.clone()].to_vec();
         let reduced = DMatrix::from_fn(n, n, |i, j| stiffness[(i, j)] / (masses[i] * masses[j]).sqrt());
         let eigen = SymmetricEigen::new(reduced);
         let mut order: Vec<usize> = (0..n).collect();

@@ -14,7 +14,7 @@ use crate::functions::Signal;
 use crate::model::characteristic::first_wave_number;
 use crate::model::network::{Link, Node};
 use crate::model::scales::Drive;
-use crate::model::{Load, Network, Scales, Section, Wet, each_signal};
+use crate::model::{Attachment, Load, Network, Scales, Section, Wet, each_signal};
 
 use least::Least;
 use pace::Pace;
@@ -27,6 +27,7 @@ pub struct Scene<'a> {
     wet: Option<&'a Wet>,
     ends: [ResolvedEnd; 2],
     loads: Vec<Load>,
+    attachments: Vec<Attachment>,
     scales: Scales,
     drive: Drive,
     /// First bending frequency of the drained beam [1/s].
@@ -67,12 +68,14 @@ impl<'a> Scene<'a> {
             }
         }
         let mut others = vec![];
-        each_signal(&undriven, &loads, wet.map(|wet| &wet.network), |signal| {
+        let attachments = Attachment::all(case);
+        each_signal(&undriven, &loads, &attachments, wet.map(|wet| &wet.network), |signal| {
             others.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
         });
         Self {
             wet,
             loads,
+            attachments,
             driven_along,
             others,
             instability: OnceCell::new(),
@@ -93,7 +96,7 @@ impl<'a> Scene<'a> {
     }
 
     fn signals(&self, visit: impl FnMut(&Signal)) {
-        each_signal(&self.ends, &self.loads, self.network(), visit);
+        each_signal(&self.ends, &self.loads, &self.attachments, self.network(), visit);
     }
 
     /// Whether the beam begins bent, stretched, moving, or with bladders under pressure.

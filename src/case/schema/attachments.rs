@@ -1,0 +1,72 @@
+//! What is attached to the beam at a place.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::functions::signals::Signal;
+
+/// Something attached to the beam at one place: a point mass, springs and dashpots to ground, forces; one of them at least. Springs are
+/// at rest in the straight beam.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Attachment {
+    /// Place `theta/l_s`, 0 at the root and 1 at the tip.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub at: f64,
+    /// Point mass; gravity and body forces act on it [kg].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub mass_kg: f64,
+    /// Spring to ground across, force `-k u1` [N/m].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub stiffness_x_n_m: f64,
+    /// Spring to ground along, force `-k u3` [N/m].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub stiffness_z_n_m: f64,
+    /// Rotational spring to ground, couple `-k phi` [N m/rad].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub stiffness_rotation_n_m_rad: f64,
+    /// Dashpot to ground across, force `-c v1` [N s/m].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub damping_x_n_s_m: f64,
+    /// Dashpot to ground along, force `-c v3` [N s/m].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub damping_z_n_s_m: f64,
+    /// Dead force in x [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_x_n: Option<Signal>,
+    /// Dead force in z [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_z_n: Option<Signal>,
+}
+
+impl Attachment {
+    /// The forces that are given, with their keys.
+    pub fn forces(&self) -> impl Iterator<Item = (&'static str, &Signal)> {
+        let both = [("force_x_n", &self.force_x_n), ("force_z_n", &self.force_z_n)];
+        both.into_iter()
+            .filter_map(|(key, signal)| Some((key, signal.as_ref()?)))
+    }
+
+    /// Whether it does nothing to the beam.
+    pub fn is_empty(&self) -> bool {
+        let sizes = [
+            self.mass_kg,
+            self.stiffness_x_n_m,
+            self.stiffness_z_n_m,
+            self.stiffness_rotation_n_m_rad,
+            self.damping_x_n_s_m,
+            self.damping_z_n_s_m,
+        ];
+        sizes.iter().all(|size| *size == 0.0) && self.forces().next().is_none()
+    }
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}

@@ -1,0 +1,159 @@
+//! What is attached to the beam, on a mesh.
+
+use super::{Mesh, System, TimeData, Workspace};
+use crate::model::{Attachment, Kinematics, Section};
+use crate::numerics::{Planar, Scalar};
+
+/// An attachment between the nodes, and between the midpoints of cells, on its two sides.
+///
+/// `[E49]` Its place moves as the nodes do between which it is, and what it does is shared among them by the same weights, the hat functions of
+/// [E46], so that its work is exact; masses are shared likewise:
+///
+/// ```text
+/// ū = Σ hat_i u_i      F = f - k ū - c ū_t      f_i = hat_i F      m h_i gains hat_i M      E gains k ū²/2
+/// ```
+///
+/// `[E50]` A rotational spring takes the angle between the midpoints of its two cells, and its couple is shared among them; the beam between
+/// is in series with it, in the half cell at an end too, where one cell alone takes the couple:
+///
+/// ```text
+/// φ̄ = (1 - s) φ_c + s φ_{c+1}      h r_c λ_c² gains (1 - s) K φ̄, c + 1 gains s K φ̄      E gains K φ̄²/2
+/// 1/K = 1/k + h s (1 - s)/EI      at the ends   φ̄ = φ_c,  1/K = 1/k + (h/2 - d)/EI, d the distance to the end
+/// ```
+#[derive(Clone, Debug)]
+pub struct Attached {
+    /// Number of the attachment in the model.
+    pub number: usize,
+    /// The node before it.
+    pub node: usize,
+    /// Weights of that node and the next.
+    pub weights: [f64; 2],
+    /// Springs across and along [N/m].
+    pub stiffness: Planar<f64>,
+    /// Dashpots across and along [N s/m].
+    pub damping: Planar<f64>,
+    /// Two cells with their weights.
+    cells: [(usize, f64); 2],
+    /// `K` [N m].
+    turning_stiffness: f64,
+}
+
+impl Attached {
+    /// All of a model in the order of their places, with the masses of the nodes [kg].
+    pub fn all(attachments: &[Attachment], section: &Section, mesh: &Mesh) -> (Vec<Self>, Vec<f64>) {
+        let mut all: Vec<_> = (0..attachments.len())
+            .map(|number| Self::new(number, &attachments[number], section, mesh))
+            .collect();
+        all.sort_by_key(|attached| attached.node);
+        let nodes = 0..mesh.nodes;
+        let mut masses: Vec<f64> = nodes.map(|i| section.mass_per_length * mesh.node_length(i)).collect();
+        for attached in &all {
+            for (k, weight) in attached.weights.into_iter().enumerate() {
+                masses[attached.node + k] += weight * attachments[attached.number].mass;
+            }
+        }
+        (all, masses)
+    }
+
+    fn new(number: usize, attachment: &Attachment, section: &Section, mesh: &Mesh) -> Self {
+        let place = attachment.at * mesh.cells as f64;
+        let node = (place as usize).min(mesh.cells - 1);
+        let share = place - node as f64;
+        let (first, last) = (0.5, mesh.cells as f64 - 0.5);
+        let (cells, in_series) = if place <= first {
+            ([(0, 1.0), (0, 0.0)], first - place)
+        } else if place >= last {
+            ([(mesh.cells - 1, 1.0), (mesh.cells - 1, 0.0)], place - last)
+        } else {
+            let cell = ((place - 0.5) as usize).min(mesh.cells - 2);
+            let s = place - 0.5 - cell as f64;
+            ([(cell, 1.0 - s), (cell + 1, s)], s * (1.0 - s))
+        };
+        let k = attachment.turning_stiffness;
+        Self {
+            number,
+            node,
+            weights: [1.0 - share, share],
+            stiffness: attachment.stiffness,
+            damping: attachment.damping,
+            cells,
+            turning_stiffness: k / (1.0 + k * in_series * mesh.h / section.bending_stiffness),
+        }
+    }
+
+    /// What its two nodes have at its place.
+    #[inline]
+    pub fn between<T: Scalar>(&self, values: &[Planar<T>]) -> Planar<T> {
+        values[self.node] * self.weights[0] + values[self.node + 1] * self.weights[1]
+    }
+
+    /// Force of its springs [N].
+    #[inline]
+    pub fn spring<T: Scalar>(&self, w: &Workspace<T>) -> Planar<T> {
+        let u = self.between(&w.motion.u);
+        Planar::new(u.x * -self.stiffness.x, u.z * -self.stiffness.z)
+    }
+
+    /// Force of its dashpots [N].
+    #[inline]
+    pub fn dashpot<T: Scalar>(&self, w: &Workspace<T>) -> Planar<T> {
+        let v = self.between(&w.motion.v);
+        Planar::new(v.x * -self.damping.x, v.z * -self.damping.z)
+    }
+
+    /// Angle at its rotational spring.
+    #[inline]
+    fn angle<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> T {
+        let [a, b] = self.cells.map(|(cell, weight)| match system.model.kinematics {
+            Kinematics::Bar => T::zero(),
+            Kinematics::FiniteRotation => w.shape.tangent[cell].x.atan2(w.shape.tangent[cell].z) * weight,
+            Kinematics::Linear | Kinematics::SmallRotation => w.shape.d3[cell].x * weight,
+        });
+        a + b
+    }
+
+    /// Energy of its springs [J].
+    pub fn energy(&self, system: &System, w: &Workspace<f64>) -> f64 {
+        let (u, angle) = (self.between(&w.motion.u), self.angle(system, w));
+        let turning = self.turning_stiffness * angle * angle;
+        0.5 * (self.stiffness.x * u.x * u.x + self.stiffness.z * u.z * u.z + turning)
+    }
+}
+
+/// What is attached next to a node, with the node's weight.
+#[inline]
+pub fn at_node(attached: &[Attached], node: usize) -> impl Iterator<Item = (&Attached, f64)> {
+    let first = attached.partition_point(|a| a.node + 1 < node);
+    let near = attached[first..].iter().take_while(move |a| a.node <= node);
+    near.map(move |a| (a, a.weights[node - a.node]))
+}
+
+/// Couples per length of rotational springs, cell by cell [N].
+#[inline]
+pub fn turning<T: Scalar>(system: &System, w: &mut Workspace<T>, mut add: impl FnMut(T, usize, &mut Workspace<T>)) {
+    let inverse = 1.0 / system.mesh.h;
+    for attached in system.attached.iter().filter(|a| a.turning_stiffness > 0.0) {
+        let couple = attached.angle(system, w) * (attached.turning_stiffness * inverse);
+        for (cell, weight) in attached.cells {
+            if weight > 0.0 {
+                add(couple * weight, cell, w);
+            }
+        }
+    }
+}
+
+/// Torque of all rotational springs on the beam, in the sense of growing φ [N m].
+pub fn torque(system: &System, w: &Workspace<f64>) -> f64 {
+    let springs = system.attached.iter().filter(|a| a.turning_stiffness > 0.0);
+    -springs.map(|a| a.turning_stiffness * a.angle(system, w)).sum::<f64>()
+}
+
+/// Given forces at an instant [N].
+pub fn forces(system: &System, now: &mut TimeData, value: impl Fn(&crate::functions::Signal) -> f64) {
+    for (force, attachment) in now.point_force.iter_mut().zip(&system.model.attachments) {
+        *force = Planar::default();
+        for given in &attachment.forces {
+            force[given.axis] += given.factor * value(&given.signal);
+        }
+    }
+}

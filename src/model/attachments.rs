@@ -1,0 +1,77 @@
+//! What is attached to the beam at places.
+
+use super::Load;
+use super::loads::LoadKind;
+use crate::case::schema::{Attachment as Written, Case};
+use crate::functions::signals::Signal;
+use crate::numerics::Planar;
+
+/// A point mass, springs and dashpots to ground, and forces, at one place.
+#[derive(Clone, Debug)]
+pub struct Attachment {
+    /// Place `θ/l_s`.
+    pub at: f64,
+    /// Mass [kg].
+    pub mass: f64,
+    /// Springs across and along [N/m].
+    pub stiffness: Planar<f64>,
+    /// Rotational spring [N m].
+    pub turning_stiffness: f64,
+    /// Dashpots across and along [N s/m].
+    pub damping: Planar<f64>,
+    /// Forces, weight included.
+    pub forces: Vec<PointForce>,
+}
+
+/// `factor signal(t)` across (0) or along (1).
+#[derive(Clone, Debug)]
+pub struct PointForce {
+    /// Across or along.
+    pub axis: usize,
+    /// 1 for what is given, `M b` for body forces on a point mass [kg].
+    pub factor: f64,
+    /// Time function.
+    pub signal: Signal,
+}
+
+impl Attachment {
+    /// All of a case.
+    pub fn all(case: &Case) -> Vec<Self> {
+        case.attachments
+            .iter()
+            .map(|written| Self::new(case, written))
+            .collect()
+    }
+
+    fn new(case: &Case, written: &Written) -> Self {
+        let given = written.forces().map(|(key, signal)| PointForce {
+            axis: usize::from(key == "force_z_n"),
+            factor: 1.0,
+            signal: signal.clone(),
+        });
+        let body = case
+            .loads
+            .iter()
+            .filter(|load| written.mass_kg > 0.0 && load.is_body())
+            .flat_map(|load| Load::resolve(load, written.mass_kg))
+            .map(|load| PointForce {
+                axis: usize::from(load.kind == LoadKind::ForceZ),
+                factor: load.factor * load.profile.value(written.at),
+                signal: load.signal,
+            });
+        Self {
+            at: written.at,
+            mass: written.mass_kg,
+            stiffness: Planar {
+                x: written.stiffness_x_n_m,
+                z: written.stiffness_z_n_m,
+            },
+            turning_stiffness: written.stiffness_rotation_n_m_rad,
+            damping: Planar {
+                x: written.damping_x_n_s_m,
+                z: written.damping_z_n_s_m,
+            },
+            forces: given.chain(body).collect(),
+        }
+    }
+}
