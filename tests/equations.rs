@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 50] = [
+const INDEX: [(&str, &str, &str); 52] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -156,6 +156,8 @@ const INDEX: [(&str, &str, &str); 50] = [
         "tests/attachments.rs",
         "a_rotational_spring_at_a_pinned_root_swings_as_it_must",
     ),
+    ("[E51]", "tests/tubes.rs", "the_impedance_of_a_tube_is_womersleys"),
+    ("[E52]", "tests/tubes.rs", "friction_is_churchills"),
 ];
 
 #[test]

@@ -19,7 +19,8 @@ pub mod waves;
 pub mod workspace;
 
 use crate::case::schema::Case;
-use crate::error::Result;
+use crate::discrete::fluid_mesh::{MeshSource, Place};
+use crate::error::{Code, Result, Violation};
 use crate::model::loads::LoadKind;
 use crate::model::{Model, Storage, audit};
 
@@ -88,10 +89,21 @@ impl System {
         let mut faults: Vec<_> = waves::refusal(case, &self).into_iter().collect();
         faults.extend(audit::refusals(case, &self.model));
         faults.extend(self.model.effects.refusals.iter().cloned());
+        faults.extend(self.fed_junction());
         match faults.is_empty() {
             true => Ok(self),
             false => Err(case.source.fault(faults)),
         }
+    }
+
+    /// A junction of tubes with inertia alone into which a port prescribes the flow: the tubes would have to jump with it.
+    fn fed_junction(&self) -> Option<Violation> {
+        let fluid = self.fluid.as_ref()?;
+        let fed = |source: &&MeshSource| matches!(source.into, Place::Junction(j) if fluid.accelerated[j]);
+        let name = &self.model.wet.as_ref()?.network.sources[fluid.sources.iter().find(fed)?.number].name;
+        let what = format!("the flow of port \"{name}\" enters a junction where only tubes with inertia meet");
+        let fault = Violation::new(Code::Effect, "/effects/tube_inertia", what);
+        Some(fault.hint("put the port at a bladder's end, or leave tube_inertia off"))
     }
 
     /// `start` gives the model with which the case starts; it is asked only where something of the start is kept.

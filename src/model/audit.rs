@@ -275,13 +275,10 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         })
         .collect();
     all.extend(inherited::warnings(case));
-    all.extend(over(
-        numbers,
-        Code::FastFlow,
-        "womersley",
-        1.0,
-        "oscillating flow in the tubes is not creeping; their inertia is left out",
-    ));
+    if !model.effects.has(Effect::TubeInertia) {
+        let what = "oscillating flow in the tubes is not creeping; their inertia is left out";
+        all.extend(over(numbers, Code::FastFlow, "womersley", 1.0, what));
+    }
     if let Some(&f) = numbers.get("forcing_frequency_hz") {
         let outputs = 1.0 / (f * case.time.output_interval());
         if outputs < OUTPUTS_A_PERIOD {

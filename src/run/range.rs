@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::cubic::Cubic;
-use crate::case::schema::Case;
+use crate::case::schema::{Case, Effect};
 use crate::discrete::System;
 use crate::discrete::glance::{Glance, Watched};
 use crate::error::Code;
@@ -86,6 +86,7 @@ impl Limits {
             swelling: wet.map_or(f64::INFINITY, |wet| half_section - wet.area_at_rest),
             convex_up_to,
             reynolds_per_flow: match (&case.fluid, &case.tubes) {
+                _ if system.model.effects.has(Effect::TubeLosses) => 0.0,
                 (Some(f), Some(t)) => 2.0 * f.density_kg_m3 / (std::f64::consts::PI * f.viscosity_pa_s * t.radius_m),
                 _ => 0.0,
             },

@@ -102,7 +102,14 @@ pub struct Energies {
 impl Energies {
     /// Sum.
     pub fn total(&self) -> f64 {
-        self.kinetic + self.rotary + self.axial + self.bending + self.bladders + self.tubes + self.section + self.springs
+        self.kinetic
+            + self.rotary
+            + self.axial
+            + self.bending
+            + self.bladders
+            + self.tubes
+            + self.section
+            + self.springs
     }
 }
 

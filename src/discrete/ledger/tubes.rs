@@ -12,9 +12,12 @@ pub fn dissipation(flow: &MeshFlow, q: f64, w: &Workspace<f64>) -> f64 {
 
 /// Of each branch of a tube's friction: resistance, `q - j`, rate, and `j`.
 fn slips(flow: &MeshFlow, q: f64, w: &Workspace<f64>) -> impl Iterator<Item = (f64, f64, f64, f64)> {
-    let own = flow.branch.map_or(&[][..], |first| &w.fluid.branch[first..first + BRANCHES]);
+    let own = flow
+        .branch
+        .map_or(&[][..], |first| &w.fluid.branch[first..first + BRANCHES]);
     let laws = flow.tube.branches();
-    laws.zip(own).map(move |((resistance, rate), &j)| (resistance, q - j, rate, j))
+    laws.zip(own)
+        .map(move |((resistance, rate), &j)| (resistance, q - j, rate, j))
 }
 
 /// Kinetic energy of the fluid in tubes: `Σ I q²/2`, and what the branches of friction store, [E51].

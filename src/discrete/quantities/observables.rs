@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::look::Look;
+use crate::case::schema::Effect;
 use crate::discrete::System;
 use crate::discrete::ledger::{ENERGY_RATES, EnergyRate, passed};
 
@@ -84,6 +85,10 @@ fn wet(system: &System) -> bool {
 
 fn attached(system: &System) -> bool {
     !system.attached.is_empty()
+}
+
+fn inert(system: &System) -> bool {
+    system.fluid.is_some() && system.model.effects.has(Effect::TubeInertia)
 }
 
 fn nonlinear(system: &System) -> bool {
@@ -185,6 +190,8 @@ observables! {
         "energy stored in the bladders";
     SectionEnergy: "section_energy" ["J"], "section energy", "energy of finite strain", Stored, Recorded, nonlinear, Read::State(|look| look.stored.section),
         "energy of the section at finite strain, beyond those that are quadratic";
+    TubeEnergy: "tube_energy" ["J"], "tube energy", "energy of the fluid in tubes", Stored, Recorded, inert, Read::State(|look| look.stored.tubes),
+        "kinetic energy of the fluid in tubes";
     SpringEnergy: "spring_energy" ["J"], "spring energy", "energy of springs to ground", Stored, Recorded, attached, Read::State(|look| look.stored.springs),
         "energy of what holds the beam elastically at places";
     WorkLoads: "work_loads" ["J"], "work of loads", "work of the loads", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Loads as usize]),

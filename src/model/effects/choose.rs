@@ -200,7 +200,10 @@ impl<'a> Chooser<'a> {
 
 /// Whether an effect is there only where a case names it.
 fn by_name(effect: Effect) -> bool {
-    matches!(effect, Effect::TubeInertia | Effect::UnsteadyFriction | Effect::TubeLosses)
+    matches!(
+        effect,
+        Effect::TubeInertia | Effect::UnsteadyFriction | Effect::TubeLosses
+    )
 }
 
 /// Whether numbers of a beam that nothing is attached to decide on an effect.

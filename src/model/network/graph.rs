@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{
-    Bridge, CheckValve, Link, LinkKind, Network, Node, PressurePort, Source, TubeFlow, Turbine, bladder_permeability, components,
+    Bridge, CheckValve, Link, LinkKind, Network, Node, PressurePort, Source, TubeFlow, Turbine, bladder_permeability,
+    components,
 };
 use crate::case::schema::{Bladders, Fluid, Rectifier, TurbineConductance};
 use crate::case::wiring::{Bore, Given, Point, Tube, Wiring};

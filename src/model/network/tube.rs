@@ -138,8 +138,12 @@ impl TubeFlow {
 
     /// Resistances `r_i` [Pa s/m^3] and rates `n_i ν/r²` [1/s] of the branches.
     pub fn branches(&self) -> impl Iterator<Item = (f64, f64)> {
-        let Self { laminar, viscous_rate, .. } = *self;
-        KAGAWA.into_iter().map(move |(n, m)| (0.5 * m * laminar, n * viscous_rate))
+        let Self {
+            laminar, viscous_rate, ..
+        } = *self;
+        KAGAWA
+            .into_iter()
+            .map(move |(n, m)| (0.5 * m * laminar, n * viscous_rate))
     }
 
     /// `Δp_loss(q)` [Pa].
@@ -181,7 +185,10 @@ mod tests {
             let h = 1e-5 * q;
             let difference = (losses.at(q + h).0 - losses.at(q - h).0) / (2.0 * h);
             let (_, slope) = losses.at(q);
-            assert!((slope / difference - 1.0).abs() < 1e-6, "Re {reynolds}: {slope:e} {difference:e}");
+            assert!(
+                (slope / difference - 1.0).abs() < 1e-6,
+                "Re {reynolds}: {slope:e} {difference:e}"
+            );
         }
     }
 }
