@@ -99,7 +99,7 @@ fn friction_is_churchills() {
 /// Goal: each effect alone and all together close the balances of energy and volume to the integrator's error.
 #[test]
 fn balances_close_with_every_effect() {
-    let valve = r#"/network/chains/0/opening={"ramp": {"from": 1, "to": 0, "start_s": 0.1, "end_s": 0.15}}"#;
+    let valve = r#"/network/chains/0/opening={"ramp": {"from": 1, "to": 0, "start_s": 0.1, "duration_s": 0.05}}"#;
     for effects in [
         r#"{"tube_inertia": "on"}"#,
         r#"{"tube_losses": "on"}"#,
