@@ -1,5 +1,7 @@
 //! Flow in tubes that does not creep: inertia and unsteady friction, [E51], losses, [E52].
 
+#[path = "common/chance.rs"]
+mod chance;
 mod differences;
 
 use std::path::Path;
