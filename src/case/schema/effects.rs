@@ -154,6 +154,11 @@ impl std::fmt::Display for Effect {
 }
 
 impl Effect {
+    /// Whether it is there only where a case names it.
+    pub const fn by_name(self) -> bool {
+        matches!(self, Self::TubeInertia | Self::UnsteadyFriction | Self::TubeLosses)
+    }
+
     /// Their names, so joined.
     pub fn names(effects: &[Self], separator: &str) -> String {
         let names: Vec<&str> = effects.iter().map(|effect| effect.name()).collect();

@@ -72,7 +72,7 @@ impl<'a> Chooser<'a> {
                     (true, Cause::Refused(obstacle))
                 }
             },
-            Choice::Auto if by_name(effect) => (false, Cause::Unasked),
+            Choice::Auto if effect.by_name() => (false, Cause::Unasked),
             Choice::Auto => match self.scene {
                 None => (true, Cause::Full),
                 Some(scene) => match self.obstacle(effect) {
@@ -196,14 +196,6 @@ impl<'a> Chooser<'a> {
             _ => (true, Cause::Given(true)),
         }
     }
-}
-
-/// Whether an effect is there only where a case names it.
-fn by_name(effect: Effect) -> bool {
-    matches!(
-        effect,
-        Effect::TubeInertia | Effect::UnsteadyFriction | Effect::TubeLosses
-    )
 }
 
 /// Whether numbers of a beam that nothing is attached to decide on an effect.

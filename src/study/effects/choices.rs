@@ -45,7 +45,11 @@ pub fn with(case: &Case, effects: Effects) -> Case {
 pub fn without(case: &Case, off: &[Effect]) -> Case {
     let mut choices = EffectChoices::default();
     for &effect in Effect::CHOSEN {
-        let choice = if off.contains(&effect) { Choice::Off } else { Choice::On };
+        let choice = match off.contains(&effect) {
+            true => Choice::Off,
+            false if effect.by_name() => Choice::Auto,
+            false => Choice::On,
+        };
         choices.set(effect, choice);
     }
     with(case, Effects::Chosen(choices))
