@@ -71,7 +71,7 @@ pub fn more(few: &EffectSet, many: &EffectSet) -> Vec<Effect> {
 fn named(case: &Case, auto: &EffectSet) -> EffectChoices {
     let mut choices = case.effects.choices();
     for &effect in Effect::CHOSEN {
-        let there = case.effects == Effects::Full || auto.has(effect);
+        let there = (case.effects == Effects::Full && !effect.by_name()) || auto.has(effect);
         if choices.of(effect) == Choice::Auto && there {
             choices.set(effect, Choice::On);
         }
