@@ -299,3 +299,40 @@ fn what_cannot_be_attached_is_refused() {
         assert_eq!(places, [pointer], "{attachment}");
     }
 }
+
+/// Goal: what an attachment has a meaning with cannot be left out, and the case says why.
+#[test]
+fn effects_that_attachments_need_stay() {
+    for (effects, attachment, kept) in [
+        (
+            json!({"transverse_motion": "off"}),
+            json!({"at": 0.5, "force_x_n": 1e-3}),
+            "/effects/transverse_motion",
+        ),
+        (
+            json!({"solid_inertia": "off"}),
+            json!({"at": 0.5, "damping_x_n_s_m": 1}),
+            "/effects/solid_inertia",
+        ),
+        (
+            json!({"axial_inertia": "off"}),
+            json!({"at": 0.5, "damping_z_n_s_m": 1}),
+            "/effects/axial_inertia",
+        ),
+        (
+            json!({"finite_rotation": "off", "axial_stretch": "off"}),
+            json!({"at": 0.5, "stiffness_z_n_m": 1}),
+            "/effects/axial_stretch",
+        ),
+    ] {
+        let mut case = slender(json!("clamped"), json!("free"), json!([attachment]), 4);
+        case["effects"] = effects;
+        let error = System::new(&parse(&case)).unwrap_err();
+        let slcbeam::error::Error::Case(fault) = &error else {
+            panic!("{error:?}")
+        };
+        let places: Vec<_> = fault.violations.iter().map(|v| v.pointer.as_str()).collect();
+        assert_eq!(places, [kept]);
+        assert!(fault.violations[0].what.contains("/attachments/0"));
+    }
+}
