@@ -92,8 +92,7 @@ fn a_cantilever_with_a_tip_mass_swings_as_slowly_as_it_must() {
     }
 }
 
-/// Goal: pinned with a rotational spring k at the root, free at the tip:
-/// `k (1 + cosh b cos b) + b (sinh b cos b - cosh b sin b)·(-1) = 0`. The same for a spring beside the end.
+/// Goal: pinned with a rotational spring k at the root, free at the tip: `k (1 + cosh b cos b) = b (cosh b sin b - sinh b cos b)`.
 #[test]
 fn a_rotational_spring_at_a_pinned_root_swings_as_it_must() {
     for k in [0.1, 1.0, 100.0] {
@@ -109,8 +108,7 @@ fn a_rotational_spring_at_a_pinned_root_swings_as_it_must() {
     }
 }
 
-/// Goal: a beam pinned at both ends with a stiff spring at mid-length swings as half of it, b = 2π, or as two halves that bend together,
-/// clamped and pinned, b = 2·3.9266; with a spring at 1/4 and one at 3/4 of no stiffness worth the name, b = π.
+/// Goal: a beam pinned at both ends with a stiff spring at mid-length swings as half of it, b = 2π, to second order.
 #[test]
 fn a_stiff_spring_is_a_pin() {
     // between two nodes as well as at one: 25 and 24 cells
