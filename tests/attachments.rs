@@ -92,8 +92,7 @@ fn a_cantilever_with_a_tip_mass_swings_as_slowly_as_it_must() {
     }
 }
 
-/// Goal: pinned with a rotational spring k at the root, free at the tip:
-/// `k (1 + cosh b cos b) + b (sinh b cos b - cosh b sin b)·(-1) = 0`. The same for a spring beside the end.
+/// Goal: pinned with a rotational spring k at the root, free at the tip: `k (1 + cosh b cos b) = b (cosh b sin b - sinh b cos b)`.
 #[test]
 fn a_rotational_spring_at_a_pinned_root_swings_as_it_must() {
     for k in [0.1, 1.0, 100.0] {
@@ -109,8 +108,7 @@ fn a_rotational_spring_at_a_pinned_root_swings_as_it_must() {
     }
 }
 
-/// Goal: a beam pinned at both ends with a stiff spring at mid-length swings as half of it, b = 2π, or as two halves that bend together,
-/// clamped and pinned, b = 2·3.9266; with a spring at 1/4 and one at 3/4 of no stiffness worth the name, b = π.
+/// Goal: a beam pinned at both ends with a stiff spring at mid-length swings as half of it, b = 2π, to second order.
 #[test]
 fn a_stiff_spring_is_a_pin() {
     // between two nodes as well as at one: 25 and 24 cells
@@ -297,5 +295,42 @@ fn what_cannot_be_attached_is_refused() {
         };
         let places: Vec<_> = fault.violations.iter().map(|v| v.pointer.as_str()).collect();
         assert_eq!(places, [pointer], "{attachment}");
+    }
+}
+
+/// Goal: what an attachment has a meaning with cannot be left out, and the case says why.
+#[test]
+fn effects_that_attachments_need_stay() {
+    for (effects, attachment, kept) in [
+        (
+            json!({"transverse_motion": "off"}),
+            json!({"at": 0.5, "force_x_n": 1e-3}),
+            "/effects/transverse_motion",
+        ),
+        (
+            json!({"solid_inertia": "off"}),
+            json!({"at": 0.5, "damping_x_n_s_m": 1}),
+            "/effects/solid_inertia",
+        ),
+        (
+            json!({"axial_inertia": "off"}),
+            json!({"at": 0.5, "damping_z_n_s_m": 1}),
+            "/effects/axial_inertia",
+        ),
+        (
+            json!({"finite_rotation": "off", "axial_stretch": "off"}),
+            json!({"at": 0.5, "stiffness_z_n_m": 1}),
+            "/effects/axial_stretch",
+        ),
+    ] {
+        let mut case = slender(json!("clamped"), json!("free"), json!([attachment]), 4);
+        case["effects"] = effects;
+        let error = System::new(&parse(&case)).unwrap_err();
+        let slcbeam::error::Error::Case(fault) = &error else {
+            panic!("{error:?}")
+        };
+        let places: Vec<_> = fault.violations.iter().map(|v| v.pointer.as_str()).collect();
+        assert_eq!(places, [kept]);
+        assert!(fault.violations[0].what.contains("/attachments/0"));
     }
 }
