@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 use slcbeam::case::{self, Case};
 use slcbeam::dae::BeamDae;
 use slcbeam::discrete::System;
+use slcbeam::error::{Error, Violation};
 use slcbeam::run::dynamics;
 use slcbeam::run::equilibrium::{Options, columns, follow, system};
 use slcbeam::run::modes::{self, Plan};
@@ -76,41 +77,36 @@ fn root_between(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Goal: `1 + cosh b cos b + (M/ml) b (cos b sinh b - sin b cosh b) = 0`. Tolerance: the extrapolation's error, b (b h)^4.
+/// Compares a free beam whose root is held so, with something attached, to the exact β; two meshes leave an error of b (b h)^4.
+fn swings(root: &str, attachment: &Value, exact: f64, tolerance: f64) {
+    let of = |cells| wave_number(&slender(json!(root), json!("free"), json!([attachment]), cells));
+    let found = extrapolated(of, 24);
+    println!("{attachment}: {found} of {exact}, {:.1e}", found / exact - 1.0);
+    assert!((found / exact - 1.0).abs() < tolerance);
+}
+
+/// Goal: `1 + cosh b cos b + (M/ml) b (cos b sinh b - sin b cosh b) = 0`.
 #[test]
 fn a_cantilever_with_a_tip_mass_swings_as_slowly_as_it_must() {
     for ratio in [0.1, 1.0, 10.0] {
         let equation = |b: f64| 1.0 + b.cosh() * b.cos() + ratio * b * (b.cos() * b.sinh() - b.sin() * b.cosh());
         let exact = root_between(equation, 0.3, 1.9);
-        let of = |cells| {
-            let mass = json!([{"at": 1.0, "mass_kg": ratio}]);
-            wave_number(&slender(json!("clamped"), json!("free"), mass, cells))
-        };
-        let found = extrapolated(of, 24);
-        println!("M/ml = {ratio}: {found} of {exact}, {:.1e}", found / exact - 1.0);
-        assert!((found / exact - 1.0).abs() < 3e-6);
+        swings("clamped", &json!({"at": 1.0, "mass_kg": ratio}), exact, 3e-6);
     }
 }
 
-/// Goal: pinned with a rotational spring k at the root, free at the tip:
-/// `k (1 + cosh b cos b) + b (sinh b cos b - cosh b sin b)·(-1) = 0`. The same for a spring beside the end.
+/// Goal: pinned with a rotational spring k at the root, free at the tip: `k (1 + cosh b cos b) = b (cosh b sin b - sinh b cos b)`.
 #[test]
 fn a_rotational_spring_at_a_pinned_root_swings_as_it_must() {
     for k in [0.1, 1.0, 100.0] {
         let equation = |b: f64| k * (1.0 + b.cosh() * b.cos()) - b * (b.cosh() * b.sin() - b.sinh() * b.cos());
         let exact = root_between(equation, 1e-3, 1.9);
-        let of = |cells| {
-            let spring = json!([{"at": 0.0, "stiffness_rotation_n_m_rad": k}]);
-            wave_number(&slender(json!("pinned"), json!("free"), spring, cells))
-        };
-        let found = extrapolated(of, 24);
-        println!("k = {k}: {found} of {exact}, {:.1e}", found / exact - 1.0);
-        assert!((found / exact - 1.0).abs() < 1e-5);
+        let spring = json!({"at": 0.0, "stiffness_rotation_n_m_rad": k});
+        swings("pinned", &spring, exact, 1e-5);
     }
 }
 
-/// Goal: a beam pinned at both ends with a stiff spring at mid-length swings as half of it, b = 2π, or as two halves that bend together,
-/// clamped and pinned, b = 2·3.9266; with a spring at 1/4 and one at 3/4 of no stiffness worth the name, b = π.
+/// Goal: a beam pinned at both ends with a stiff spring at mid-length swings as half of it, b = 2π, to second order.
 #[test]
 fn a_stiff_spring_is_a_pin() {
     // between two nodes as well as at one: 25 and 24 cells
@@ -136,8 +132,7 @@ fn tip(case: &Value) -> f64 {
 }
 
 /// Goal: `u(l) = F a² (3 l - a)/6 EI` of a force between nodes; with a spring at b, that of the beam on one elastic support; with a rotational
-/// spring inside. Order 2 in the mesh: 1/81 of the error with nine
-/// times as many cells, places between nodes.
+/// spring inside. Order 2 in the mesh: 1/81 of the error with nine times as many cells, places between nodes.
 #[test]
 fn forces_and_springs_between_nodes_are_of_second_order() {
     let (f, a, b) = (1e-3, 0.4, 0.7);
@@ -168,14 +163,11 @@ fn forces_and_springs_between_nodes_are_of_second_order() {
     }
 }
 
-const BEAM: &str =
-    r#"{"length_m": 0.1, "height_m": 0.01, "width_m": 0.02, "young_modulus_pa": 2e6, "density_kg_m3": 950}"#;
-
 /// Everything at once: masses, springs, dashpots, forces, gravity, a mass on a driven root and one between nodes.
 fn everything(sets: Value) -> Case {
     let mut case = json!({
         "name": "everything",
-        "beam": serde_json::from_str::<Value>(BEAM).unwrap(),
+        "beam": {"length_m": 0.1, "height_m": 0.01, "width_m": 0.02, "young_modulus_pa": 2e6, "density_kg_m3": 950},
         "ends": {"root": {"pinned": {"u1_m": {"sine": {"amplitude": 2e-3, "frequency_hz": 12, "ramp_cycles": 1}},
                                      "u3_m": {"sine": {"amplitude": 1e-3, "frequency_hz": 9}}}}, "tip": "free"},
         "loads": [{"gravity": {"x_m_s2": 3.0, "z_m_s2": -9.81}},
@@ -277,6 +269,18 @@ fn jacobian_agrees_with_differences() {
     }
 }
 
+/// What is wrong with a case.
+fn faults(error: &Error) -> &[Violation] {
+    match error {
+        Error::Case(fault) => &fault.violations,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn places(faults: &[Violation]) -> Vec<&str> {
+    faults.iter().map(|fault| fault.pointer.as_str()).collect()
+}
+
 /// Goal: an entry that attaches nothing, a place off the beam, negative sizes are refused where they stand.
 #[test]
 fn what_cannot_be_attached_is_refused() {
@@ -292,10 +296,39 @@ fn what_cannot_be_attached_is_refused() {
     ] {
         let case = slender(json!("clamped"), json!("free"), json!([attachment]), 4);
         let error = case::parse(&case.to_string(), Path::new("test.json"), Path::new(""), &[]).unwrap_err();
-        let slcbeam::error::Error::Case(fault) = &error else {
-            panic!("{error:?}")
-        };
-        let places: Vec<_> = fault.violations.iter().map(|v| v.pointer.as_str()).collect();
-        assert_eq!(places, [pointer], "{attachment}");
+        assert_eq!(places(faults(&error)), [pointer], "{attachment}");
+    }
+}
+
+/// Goal: what an attachment has a meaning with cannot be left out, and the case says why.
+#[test]
+fn effects_that_attachments_need_stay() {
+    for (effects, attachment, kept) in [
+        (
+            json!({"transverse_motion": "off"}),
+            json!({"at": 0.5, "force_x_n": 1e-3}),
+            "/effects/transverse_motion",
+        ),
+        (
+            json!({"solid_inertia": "off"}),
+            json!({"at": 0.5, "damping_x_n_s_m": 1}),
+            "/effects/solid_inertia",
+        ),
+        (
+            json!({"axial_inertia": "off"}),
+            json!({"at": 0.5, "damping_z_n_s_m": 1}),
+            "/effects/axial_inertia",
+        ),
+        (
+            json!({"finite_rotation": "off", "axial_stretch": "off"}),
+            json!({"at": 0.5, "stiffness_z_n_m": 1}),
+            "/effects/axial_stretch",
+        ),
+    ] {
+        let mut case = slender(json!("clamped"), json!("free"), json!([attachment]), 4);
+        case["effects"] = effects;
+        let error = System::new(&parse(&case)).unwrap_err();
+        assert_eq!(places(faults(&error)), [kept]);
+        assert!(faults(&error)[0].what.contains("/attachments/0"));
     }
 }

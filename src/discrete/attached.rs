@@ -1,6 +1,6 @@
 //! What is attached to the beam, on a mesh.
 
-use super::{Mesh, System, TimeData, Workspace};
+use super::{Mesh, System, Workspace};
 use crate::model::{Attachment, Kinematics, Section};
 use crate::numerics::{Planar, Scalar};
 
@@ -144,16 +144,6 @@ pub fn turning<T: Scalar>(system: &System, w: &mut Workspace<T>, mut add: impl F
 
 /// Torque of all rotational springs on the beam, in the sense of growing φ [N m].
 pub fn torque(system: &System, w: &Workspace<f64>) -> f64 {
-    let springs = system.attached.iter().filter(|a| a.turning_stiffness > 0.0);
-    -springs.map(|a| a.turning_stiffness * a.angle(system, w)).sum::<f64>()
-}
-
-/// Given forces at an instant [N].
-pub fn forces(system: &System, now: &mut TimeData, value: impl Fn(&crate::functions::Signal) -> f64) {
-    for (force, attachment) in now.point_force.iter_mut().zip(&system.model.attachments) {
-        *force = Planar::default();
-        for given in &attachment.forces {
-            force[given.axis] += given.factor * value(&given.signal);
-        }
-    }
+    let couples = system.attached.iter().map(|a| a.turning_stiffness * a.angle(system, w));
+    -couples.sum::<f64>()
 }

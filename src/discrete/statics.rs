@@ -84,13 +84,12 @@ impl Statics {
     /// Forces on nodes: loads, drag, ends, and what carries the mass along.
     fn load(&mut self, system: &System, held: Jet, clock: Clock) {
         let (section, mesh) = (&system.model.section, &system.mesh);
-        let inertia = if system.layout.inertia { 1.0 } else { 0.0 };
-        let mass = inertia * section.mass_per_length;
         for (i, node) in self.nodes.iter_mut().enumerate() {
-            let length = mesh.node_length(i);
+            let mass = if system.layout.inertia { system.masses[i] } else { 0.0 };
+            let drag = mesh.node_length(i) * section.drag;
             *node = (
-                -length * (mass * held.acceleration + section.drag * held.rate),
-                -length * (mass * held.jerk + section.drag * held.acceleration),
+                -mass * held.acceleration - drag * held.rate,
+                -mass * held.jerk - drag * held.acceleration,
             );
         }
         for load in system.loads.iter().filter(|load| load.kind == LoadKind::ForceZ) {
@@ -102,17 +101,13 @@ impl Statics {
             }
         }
         for attached in &system.attached {
-            let attachment = &system.model.attachments[attached.number];
-            let carried = inertia * attachment.mass;
-            let mut force = (-carried * held.acceleration, -carried * held.jerk);
-            for given in attachment.forces.iter().filter(|given| given.axis == 1) {
-                let jet = given.signal.jet(clock);
-                force.0 += given.factor * jet.value;
-                force.1 += given.factor * jet.rate;
-            }
-            for (node, weight) in self.nodes[attached.node..].iter_mut().zip(attached.weights) {
-                node.0 += weight * force.0;
-                node.1 += weight * force.1;
+            let forces = &system.model.attachments[attached.number].forces;
+            for given in forces.iter().filter(|given| given.axis == 1) {
+                let force = given.signal.jet(clock).scaled(given.factor);
+                for (node, weight) in self.nodes[attached.node..].iter_mut().zip(attached.weights) {
+                    node.0 += weight * force.value;
+                    node.1 += weight * force.rate;
+                }
             }
         }
         let last = mesh.nodes - 1;

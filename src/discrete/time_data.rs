@@ -1,6 +1,6 @@
 //! Everything that depends on time alone, evaluated once an instant.
 
-use super::{Statics, System, attached, shapes};
+use super::{Statics, System, shapes};
 use crate::case::{Rotation, Translation};
 use crate::functions::signals::{Clock, Jet, Signal};
 use crate::model::Load;
@@ -193,7 +193,7 @@ impl TimeData {
                 .map(|f| (f.normal.jet(clock).value, f.shear.jet(clock).value));
         }
         self.loads(system, clock);
-        attached::forces(system, self, |signal| signal.jet(clock).value);
+        self.point_forces(system, clock);
         self.statics.update(system, self.frame(1), clock);
         self.network(system, clock, first);
     }
@@ -211,6 +211,15 @@ impl TimeData {
             };
             for (value, shape) in array.iter_mut().zip(&load.shape) {
                 value[axis] += factor * shape;
+            }
+        }
+    }
+
+    fn point_forces(&mut self, system: &System, clock: Clock) {
+        self.point_force.fill(Planar::default());
+        for (total, attachment) in self.point_force.iter_mut().zip(&system.model.attachments) {
+            for given in &attachment.forces {
+                total[given.axis] += given.factor * given.signal.jet(clock).value;
             }
         }
     }

@@ -44,10 +44,13 @@ impl Attachment {
     }
 
     fn new(case: &Case, written: &Written) -> Self {
-        let given = written.forces().map(|(key, signal)| PointForce {
-            axis: usize::from(key == "force_z_n"),
-            factor: 1.0,
-            signal: signal.clone(),
+        let given = [&written.force_x_n, &written.force_z_n].into_iter().enumerate();
+        let given = given.filter_map(|(axis, signal)| {
+            Some(PointForce {
+                axis,
+                factor: 1.0,
+                signal: signal.clone()?,
+            })
         });
         let body = case
             .loads

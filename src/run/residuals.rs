@@ -91,8 +91,7 @@ impl Residuals {
         }
         // The momentum that the largest energy could carry: loads and reactions may cancel all along.
         let model = &system.model;
-        let attached = model.attachments.iter().map(|attachment| attachment.mass);
-        let mass = model.section.mass_per_length * model.length + attached.sum::<f64>();
+        let mass: f64 = system.masses.iter().sum();
         let carried = (2.0 * mass * self.energy_seen).sqrt();
         self.momentum_seen = self.momentum_seen.max(carried);
         self.angular_seen = self.angular_seen.max(carried * model.length);

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::is_zero;
 use crate::functions::signals::Signal;
 
 /// Something attached to the beam at one place: a point mass, springs and dashpots to ground, forces; one of them at least. Springs are
@@ -65,8 +66,4 @@ impl Attachment {
         ];
         sizes.iter().all(|size| *size == 0.0) && self.forces().next().is_none()
     }
-}
-
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
 }

@@ -147,3 +147,8 @@ impl Case {
         case
     }
 }
+
+/// Whether a number is the default that a case need not write.
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
