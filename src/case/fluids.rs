@@ -31,8 +31,7 @@ const ZERO_CELSIUS_K: f64 = 273.15;
 pub enum NamedFluid {
     /// Water at atmospheric pressure, 0 to 100 C: density by Kell 1975, doi:10.1021/je60064a005, viscosity by IAPWS SR6-08(2011).
     Water,
-    /// Air at 101325 Pa, -50 to 500 C: ideal gas, viscosity by Sutherland's law (U.S. Standard Atmosphere 1976). The model does not
-    /// compress it: flows and masses are right, the stiffness of enclosed air is not.
+    /// Air at 101325 Pa, -50 to 500 C: a gas, ideal, viscosity by Sutherland's law (U.S. Standard Atmosphere 1976).
     Air,
     /// Glycerol in water, 15 to 30 C: density by Volk and Kaehler 2018, doi:10.1007/s00348-018-2527-y, viscosity by Cheng 2008, doi:10.1021/ie071349z.
     GlycerolWater {
@@ -178,9 +177,13 @@ pub(super) fn of(case: &Value) -> Option<Brought> {
     let found = in_range.map(|fluid| fluid.at(temperature_c));
     let found = found.filter(|p| p.density_kg_m3.is_normal() && p.density_kg_m3 > 0.0 && p.viscosity_pa_s.is_normal());
     let found = found.unwrap_or(NamedFluid::Water.at(ROOM_C));
+    let mut values = json!({"density_kg_m3": found.density_kg_m3, "viscosity_pa_s": found.viscosity_pa_s});
+    if named == Some(NamedFluid::Air) {
+        values["kind"] = json!("gas");
+    }
     Some(Brought {
         fluid: named,
-        values: json!({KEY: {"density_kg_m3": found.density_kg_m3, "viscosity_pa_s": found.viscosity_pa_s}}),
+        values: json!({KEY: values}),
         temperature_c,
     })
 }

@@ -128,4 +128,7 @@ impl Scalar for Trace {
     fn lift(self, _: impl Fn(f64) -> (f64, f64)) -> Self {
         self
     }
+    fn lift_with(self, other: Self, _: impl Fn(f64, f64) -> (f64, [f64; 2])) -> Self {
+        self.union(other)
+    }
 }

@@ -60,11 +60,13 @@ pub enum Watched {
     Pressed,
     /// How far out a section is in what is known of its energy at finite strain; 1 at the border.
     Outermost,
+    /// Largest `|q| √r'/r` of a tube, r that where it is least: times `√ρ_0/A` its Mach number [m^3/(s Pa^(1/2))].
+    Mach,
 }
 
 impl Watched {
     /// How many there are.
-    pub const COUNT: usize = 14;
+    pub const COUNT: usize = 15;
 }
 
 impl Glance {
@@ -114,15 +116,17 @@ impl Glance {
         let (low, high) = extremes(&w.fluid.pressure);
         set(Watched::High, [w.fluid.pressure[high], rate(high)]);
         set(Watched::Low, [w.fluid.pressure[low], rate(low)]);
-        let (least, most) = extremes(&w.fluid.area);
+        let areas = w.fluid.area_changes();
+        let area_rate = |cell: usize| ledger::area_rate(wet, fluid, w, cell);
+        let (least, most) = extremes(areas);
         set(
             Watched::Opening,
             [
-                1.0 + w.fluid.area[least] / wet.area_at_rest,
-                w.fluid.area_rate[least] / wet.area_at_rest,
+                1.0 + areas[least] / wet.area_at_rest,
+                area_rate(least) / wet.area_at_rest,
             ],
         );
-        set(Watched::Swelling, [w.fluid.area[most], w.fluid.area_rate[most]]);
+        set(Watched::Swelling, [areas[most], area_rate(most)]);
         let pressed = (0..wet.per_row)
             .map(|j| (wet.pair(j).map(|b| w.fluid.mean_pressure[b]).iter().sum::<f64>(), j))
             .reduce(|a, b| if b.0 > a.0 { b } else { a });
@@ -136,6 +140,8 @@ impl Glance {
         }
         if let Some((flow, flow_rate, tube)) = look::largest_flow(system, now, w) {
             set(Watched::Flow, [flow, flow_rate]);
+            let fast = look::largest_mach(system, now, w);
+            set(Watched::Mach, [fast, fast * flow_rate / flow.max(f64::MIN_POSITIVE)]);
             self.tube = tube;
         }
     }

@@ -210,7 +210,7 @@ impl Coupling {
 impl Network {
     fn new(model: &Model, wet: &Wet, fluid: &FluidMesh, build: &mut Builder) -> Self {
         let s = &model.scales;
-        let stored = wet.area.per_pressure * s.pressure;
+        let stored = wet.compliance() * s.pressure;
         let area = build.block(|build| {
             for &bladder in &fluid.flowing {
                 for cell in 0..fluid.cells_per_bladder {

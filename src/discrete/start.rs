@@ -93,7 +93,7 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64]) {
                 if let Ok(slot) = fluid.flowing.binary_search(&bladder) {
                     for (k, cell) in fluid.cells_of(bladder).enumerate() {
                         y[l.network.area.start + slot * fluid.cells_per_bladder + k] =
-                            wet.area.per_pressure * pressure[cell] + imposed;
+                            wet.content(pressure[cell], imposed);
                     }
                 }
             }

@@ -101,10 +101,14 @@ pub struct Coupling<T> {
 /// Of bladders' cells and of the network.
 #[derive(Clone, Debug)]
 pub struct Fluid<T> {
-    /// Area changes of cells [m^2].
+    /// What cells store, over their length and the density at ambient pressure [m^2]: their area changes, but where fluid is compressed.
     pub area: Vec<T>,
     /// Their rates [m^2/s].
     pub area_rate: Vec<T>,
+    /// Area changes of cells where fluid is compressed [m^2]; empty otherwise.
+    pub swelling: Vec<T>,
+    /// What drives flow from cells there [Pa], [E59]; empty otherwise.
+    pub potential: Vec<T>,
     /// Pressures of cells [Pa].
     pub pressure: Vec<T>,
     /// Mean pressures of bladders [Pa].
@@ -154,6 +158,16 @@ impl std::ops::Deref for State<'_> {
     }
 }
 
+impl Fluid<f64> {
+    /// Area changes of cells [m^2].
+    pub fn area_changes(&self) -> &[f64] {
+        match self.swelling.is_empty() {
+            true => &self.area,
+            false => &self.swelling,
+        }
+    }
+}
+
 impl Forces<f64> {
     /// Elastic moments M of nodes [N m].
     pub fn moments(&self) -> Cow<'_, [f64]> {
@@ -190,6 +204,8 @@ impl<T: Scalar> Workspace<T> {
         let (junctions, bridges) = fluid.map_or((0, 0), |f| (f.junctions.len(), f.bridges.len()));
         let components = system.model.wet.as_ref().map_or(0, |w| w.network.components);
         let lumped = fluid.map_or(0, |f| f.volume_at_start.len());
+        let wet = system.model.wet.as_ref();
+        let compressed = usize::from(wet.is_some_and(|wet| wet.compression.is_some()));
         let nonlinear = usize::from(system.model.strain_energy().is_some());
         // What is the same at all times is set here, and stays.
         let kept = fluid.map_or(&[][..], |f| &f.area_at_start);
@@ -234,6 +250,8 @@ impl<T: Scalar> Workspace<T> {
             fluid: Fluid {
                 area: kept.iter().map(|&a| T::constant(a)).collect(),
                 area_rate: zeros(cells),
+                swelling: zeros(compressed * cells),
+                potential: zeros(compressed * cells),
                 pressure: zeros(cells),
                 mean_pressure: zeros(bladders),
                 junction: zeros(junctions),

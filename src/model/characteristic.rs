@@ -109,7 +109,7 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
                         tubes.radius_m * (2.0 * PI * f * fluid.density_kg_m3 / fluid.viscosity_pa_s).sqrt(),
                     );
                 }
-                let flow = model.scales.frequency * wet.area.per_pressure * wet.bladder_length * model.scales.pressure;
+                let flow = model.scales.frequency * wet.compliance() * wet.bladder_length * model.scales.pressure;
                 put(
                     "reynolds_estimate",
                     2.0 * fluid.density_kg_m3 * flow / (PI * fluid.viscosity_pa_s * tubes.radius_m),
@@ -117,7 +117,7 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
                 put("tube_resistance_pa_s_m3", tube.resistance);
                 put(
                     "bladder_tube_time_s",
-                    wet.area.per_pressure * wet.bladder_length * (bladder_resistance + tube.resistance),
+                    wet.compliance() * wet.bladder_length * (bladder_resistance + tube.resistance),
                 );
             }
         }
@@ -335,5 +335,5 @@ fn slowest_time(wet: &Wet, component: usize) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let slowest = values.get(usize::from(!grounded)).copied()?;
     let largest = values.last().copied()?;
-    (slowest > 1e-12 * largest).then(|| wet.area.per_pressure * wet.bladder_length / slowest)
+    (slowest > 1e-12 * largest).then(|| wet.compliance() * wet.bladder_length / slowest)
 }

@@ -7,6 +7,7 @@ pub mod audit;
 pub mod beam;
 pub mod bladder;
 pub mod characteristic;
+pub mod compression;
 pub mod coupling;
 pub mod duct;
 pub mod effects;
@@ -25,10 +26,12 @@ use crate::case::schema::{Bladders, Case, Effects, Formulation};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::error::Result;
 use crate::functions::{Clock, Signal};
+use crate::numerics::Scalar;
 
 pub use attachments::Attachment;
 pub use beam::Section;
 pub use bladder::AreaLaw;
+pub use compression::Compression;
 pub use coupling::Coupling;
 pub use effects::{Decision, EffectSet, Scene};
 pub use kinematics::Kinematics;
@@ -49,6 +52,8 @@ pub struct Wet {
     pub area_at_rest: f64,
     /// Area change of a bladder cell; slopes of what does not change areas are zero.
     pub area: AreaLaw,
+    /// How its fluid is compressed; none of incompressible fluid.
+    pub compression: Option<Compression>,
     /// The law whose slopes pressure strains the beam with; those of what it does not strain are zero.
     pub strains: AreaLaw,
     /// Strains caused by pressure.
@@ -89,15 +94,55 @@ impl Wet {
         self.bladder_length * self.per_row as f64 / length
     }
 
+    /// Area that a bladder stores per pressure [m^2/Pa], compression included, at ambient pressure.
+    pub fn compliance(&self) -> f64 {
+        self.compliance_at(0.0)
+    }
+
+    /// The same at a pressure [Pa]: what is stored over what its flow is driven by, and what is imposed over the pressure that it makes
+    /// where nothing leaves. Gas gets stiffer as it is pressed.
+    pub fn compliance_at(&self, pressure: f64) -> f64 {
+        match &self.compression {
+            None => self.area.per_pressure,
+            Some(compression) => self.area.per_pressure + compression.compliance(pressure),
+        }
+    }
+
+    /// What a cell stores at a pressure [m^2], where `imposed` is what bending and force make of its area.
+    #[inline]
+    pub fn content<T: Scalar>(&self, pressure: T, imposed: T) -> T {
+        match &self.compression {
+            None => pressure * self.area.per_pressure + imposed,
+            Some(compression) => compression.content(&self.area, pressure, imposed),
+        }
+    }
+
+    /// What drives flow at a pressure, [E59].
+    #[inline]
+    pub fn potential<T: Scalar>(&self, pressure: T) -> T {
+        match &self.compression {
+            None => pressure,
+            Some(compression) => compression.potential(pressure),
+        }
+    }
+
+    /// Energy that a volume at ambient density brings along [Pa], [E60].
+    pub fn enthalpy(&self, pressure: f64) -> f64 {
+        self.compression.as_ref().map_or(pressure, |c| c.enthalpy(pressure))
+    }
+
     /// The whole coupling of a case's bladders.
     fn new(case: &Case, bladders: &Bladders, section: &Section, network: Network, effects: &EffectSet) -> Self {
         let area = AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry));
+        let area_at_rest = bladders.height_m * bladders.width_m;
+        let fluid = case.fluid.as_ref().filter(|_| effects.has(Effect::Compressibility));
         let (storage, lumped) = storage::of_bladders(case, &network, effects);
         Self {
             per_row: bladders.per_row,
             bladder_length: bladders.length_m,
-            area_at_rest: bladders.height_m * bladders.width_m,
+            area_at_rest,
             area,
+            compression: fluid.and_then(|fluid| Compression::new(fluid, area_at_rest)),
             strains: area,
             coupling: Coupling::new(case, bladders),
             network,

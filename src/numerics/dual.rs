@@ -158,4 +158,9 @@ impl<const L: usize> Scalar for Dual<L> {
         let (value, slope) = function(self.value);
         self.chain(value, slope)
     }
+    #[inline(always)]
+    fn lift_with(self, other: Self, function: impl Fn(f64, f64) -> (f64, [f64; 2])) -> Self {
+        let (value, [slope, of_other]) = function(self.value, other.value);
+        self.combine(other, value, slope, of_other)
+    }
 }

@@ -29,6 +29,8 @@ pub trait Scalar:
     fn softplus(self) -> Self;
     /// A function of it, by value and derivative.
     fn lift(self, function: impl Fn(f64) -> (f64, f64)) -> Self;
+    /// A function of it and another, by value and both derivatives.
+    fn lift_with(self, other: Self, function: impl Fn(f64, f64) -> (f64, [f64; 2])) -> Self;
     /// Zero.
     fn zero() -> Self {
         Self::constant(0.0)
@@ -63,5 +65,9 @@ impl Scalar for f64 {
     #[inline(always)]
     fn lift(self, function: impl Fn(f64) -> (f64, f64)) -> Self {
         function(self).0
+    }
+    #[inline(always)]
+    fn lift_with(self, other: Self, function: impl Fn(f64, f64) -> (f64, [f64; 2])) -> Self {
+        function(self, other).0
     }
 }

@@ -60,7 +60,7 @@ impl Floors {
             volume: model
                 .wet
                 .as_ref()
-                .map_or(0.0, |wet| wet.area.per_pressure * pressure * wet.bladder_length),
+                .map_or(0.0, |wet| wet.compliance() * pressure * wet.bladder_length),
         }
     }
 

@@ -40,6 +40,7 @@ const TURNING: [Watched; Watched::COUNT] = [
     Watched::Flow,
     Watched::Pressed,
     Watched::Outermost,
+    Watched::Mach,
 ];
 /// Turning points closer than this part of the step are looked at as one.
 const APART: f64 = 0.05;

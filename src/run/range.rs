@@ -13,6 +13,10 @@ use crate::model::audit;
 const STRAIN: f64 = 0.5;
 /// Reynolds number above which a run warns.
 const REYNOLDS: f64 = 100.0;
+/// Mach number above which a run warns.
+const MACH: f64 = 0.3;
+/// Part of ambient pressure, absolute, below which gas ends a run.
+const VACUUM: f64 = 1e-3;
 /// Fibre strain above which a linear law means nothing: a fibre pressed by as much has no length left.
 const STRAIN_ENDS: f64 = 1.0;
 /// Pressure over Young's modulus above which the body around a bladder is no longer what it was.
@@ -33,6 +37,10 @@ pub struct Limits {
     convex_up_to: f64,
     /// `2 ρ/(π μ r_c)`: Reynolds number of a tube over its flow [s/m^3].
     reynolds_per_flow: f64,
+    /// `√ρ_0/(π r_c²)`: Mach number of a tube over what is watched of it.
+    mach_per_flow: f64,
+    /// Pressure at which gas is as good as gone [Pa].
+    vacuum: f64,
 }
 
 /// A limit that was passed: the largest value with its time and place, and when it began.
@@ -49,6 +57,8 @@ struct Passed {
 pub struct Range {
     strain: Passed,
     reynolds: Passed,
+    #[serde(default)]
+    mach: Passed,
     pressed: Passed,
 }
 
@@ -90,6 +100,13 @@ impl Limits {
                 (Some(f), Some(t)) => 2.0 * f.density_kg_m3 / (std::f64::consts::PI * f.viscosity_pa_s * t.radius_m),
                 _ => 0.0,
             },
+            mach_per_flow: match (&case.fluid, &case.tubes) {
+                (Some(f), Some(t)) => f.density_kg_m3.sqrt() / (std::f64::consts::PI * t.radius_m * t.radius_m),
+                _ => 0.0,
+            },
+            vacuum: wet
+                .and_then(|wet| wet.compression.as_ref())
+                .map_or(f64::NEG_INFINITY, |compression| compression.lowest() * (1.0 - VACUUM)),
         }
     }
 
@@ -98,6 +115,7 @@ impl Limits {
         let value = |which| g.of(which)[0];
         let pressure = value(Watched::High).abs().max(value(Watched::Low).abs());
         value(Watched::Opening) > 0.0
+            && value(Watched::Low) > self.vacuum
             && value(Watched::Swelling) <= self.swelling
             && value(Watched::Strain) <= STRAIN_ENDS
             && value(Watched::Outermost) <= 1.0
@@ -123,6 +141,11 @@ impl Limits {
         if value(Watched::Opening) <= 0.0 {
             return Some(format!(
                 "a bladder is closed at {at}: its cross-section h_b w_b + a1 has reached zero, where the model ends"
+            ));
+        }
+        if value(Watched::Low) <= self.vacuum {
+            return Some(format!(
+                "a bladder is evacuated at {at}: less than a thousandth of ambient pressure is left in it, and no gas to follow"
             ));
         }
         let swelling = value(Watched::Swelling);
@@ -166,6 +189,7 @@ impl Limits {
             Watched::Swelling => value > 0.95 * self.swelling,
             Watched::Strain => larger(seen.strain.largest, value, STRAIN),
             Watched::Flow => larger(seen.reynolds.largest, value * self.reynolds_per_flow, REYNOLDS),
+            Watched::Mach => larger(seen.mach.largest, value * self.mach_per_flow, MACH),
             Watched::Outermost => value > 0.95,
             Watched::Pressed => larger(seen.pressed.largest, value, self.convex_up_to),
             _ => false,
@@ -181,6 +205,8 @@ impl Range {
         let factor = limits.reynolds_per_flow;
         self.reynolds
             .take(Watched::Flow, factor, REYNOLDS, before, now, now.tube);
+        self.mach
+            .take(Watched::Mach, limits.mach_per_flow, MACH, before, now, now.tube);
         self.pressed
             .take(Watched::Pressed, 1.0, limits.convex_up_to, before, now, 0);
     }
@@ -210,6 +236,19 @@ impl Range {
             all.push(Code::FastFlow.warning(format!(
                 "range of the model: the Reynolds number reached {largest:.0} at t = {t:.4} s in tube {} (above {REYNOLDS} from \
                  t = {began:.4} s on); flow is meant to creep",
+                place + 1
+            )));
+        }
+        if let Passed {
+            largest,
+            t,
+            place,
+            began: Some(began),
+        } = self.mach
+        {
+            all.push(Code::FastGas.warning(format!(
+                "range of the model: the Mach number reached {largest:.2} at t = {t:.4} s in tube {} (above {MACH} from t = {began:.4} s \
+                 on); flow is meant to creep, and a tube passes no more than at 1, so that real flow is slower than this",
                 place + 1
             )));
         }

@@ -214,7 +214,7 @@ fn displaced(system: &System, area: &[f64], pressure: &[f64], seen: &mut [f64]) 
     for (c, seen) in seen.iter_mut().enumerate() {
         let bladders = components.iter().enumerate().filter(|(_, of)| **of == c);
         let cells = bladders.flat_map(|(bladder, _)| fluid.cells_of(bladder));
-        let size = |cell: usize| area[cell].abs().max(wet.area.per_pressure * pressure[cell].abs());
+        let size = |cell: usize| area[cell].abs().max(wet.compliance() * pressure[cell].abs());
         *seen = seen.max(cells.map(size).sum::<f64>() * fluid.ds);
     }
 }

@@ -4,6 +4,7 @@ mod attachments;
 mod bladders;
 mod coefficients;
 mod ends;
+mod fluid;
 mod functions;
 mod junctions;
 pub mod network;
@@ -21,7 +22,7 @@ use crate::error::{Code, Violation};
 type Rule = fn(&Case, &mut Violations);
 
 /// All rules, each with the sections of the case that it compares.
-const RULES: [(Rule, &[&str]); 12] = [
+const RULES: [(Rule, &[&str]); 13] = [
     (name, &[]),
     (plausible::sizes, &[]),
     (plausible::proportions, &["beam", "tubes", "network"]),
@@ -29,6 +30,7 @@ const RULES: [(Rule, &[&str]); 12] = [
         bladders::check,
         &["beam", "fluid", "bladders", "tubes", "network", "start", "mesh"],
     ),
+    (fluid::check, &["fluid", "network", "start", "time"]),
     (network::check, &["bladders", "tubes", "network", "time"]),
     (ends::check, &[]),
     (attachments::check, &[]),

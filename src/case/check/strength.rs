@@ -180,12 +180,12 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
 
 /// Ports and ends of chains with what they prescribe.
 #[derive(Default)]
-struct Inlets<'a> {
-    pressures: Vec<(String, &'a Signal)>,
+pub(super) struct Inlets<'a> {
+    pub pressures: Vec<(String, &'a Signal)>,
     flows: Vec<(String, &'a Signal)>,
 }
 
-fn inlets(case: &Case) -> Inlets<'_> {
+pub(super) fn inlets(case: &Case) -> Inlets<'_> {
     let mut all = Inlets::default();
     let Some(network) = &case.network else {
         return all;

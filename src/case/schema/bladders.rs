@@ -15,12 +15,55 @@ pub struct Fluid {
     /// Temperature of a fluid by name [C]; absent: 20.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub temperature_c: Option<f64>,
-    /// Density `rho_f` [kg/m^3]; 0 for massless fluid.
+    /// Density `rho_f` at ambient pressure [kg/m^3]; 0 for massless fluid.
     #[schemars(range(min = 0.0))]
     pub density_kg_m3: f64,
     /// Dynamic viscosity `mu` [Pa s].
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub viscosity_pa_s: f64,
+    /// Liquid, or gas, whose density follows its pressure.
+    #[serde(default, skip_serializing_if = "FluidKind::is_liquid")]
+    pub kind: FluidKind,
+    /// Bulk modulus K of a liquid [Pa]; absent: it is not compressed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub bulk_modulus_pa: Option<f64>,
+    /// Part of a liquid's volume at ambient pressure that is free gas, x.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 1))]
+    pub gas_fraction: Option<f64>,
+    /// Exponent n of gas, `p rho^-n` constant: 1 isothermal, which is also what absent means, 1.4 air without heat exchange.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1.0, max = 2.0))]
+    pub polytropic_exponent: Option<f64>,
+    /// Absolute pressure outside the beam [Pa], which pressures are measured against; absent: 101325. Gas has its density there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub ambient_pressure_pa: Option<f64>,
+}
+
+impl Fluid {
+    /// Whether its density follows its pressure.
+    pub fn is_compressible(&self) -> bool {
+        self.kind == FluidKind::Gas || self.bulk_modulus_pa.is_some() || self.gas_fraction.is_some_and(|x| x > 0.0)
+    }
+}
+
+/// What a fluid is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FluidKind {
+    /// Incompressible unless `bulk_modulus_pa` or `gas_fraction` is given.
+    #[default]
+    Liquid,
+    /// Ideal gas.
+    Gas,
+}
+
+impl FluidKind {
+    fn is_liquid(&self) -> bool {
+        *self == Self::Liquid
+    }
 }
 
 /// Two rows of equal bladders, `per_row` each: upper `1..=per_row`, lower `-1..=-per_row`, root to tip.

@@ -108,6 +108,9 @@ effects! {
         NetworkPressureDifferences network_pressure_differences,
         /// Pressure differences along each bladder; off: one finite volume a bladder, whatever `/mesh/cells_per_bladder` says.
         FlowAlongBladders flow_along_bladders,
+        /// Compression of the fluid: gas, or a liquid with `bulk_modulus_pa` or `gas_fraction`; off: it keeps its density at ambient
+        /// pressure.
+        Compressibility compressibility,
         /// Inertia of the fluid in tubes: flow is an unknown of each tube. Chosen by name: `auto` and `"full"` take flow as creeping, and
         /// say where it does not creep.
         TubeInertia tube_inertia,

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use super::{ENERGY_RATES, EnergyRate, add, tubes};
+use super::{ENERGY_RATES, EnergyRate, add, compressed, tubes};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
-use crate::discrete::residual::fluid::{bridge_drops, drop_over, pressure_at};
+use crate::discrete::residual::fluid::{bridge_drops, pressure_at};
 use crate::discrete::residual::rows::{mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
@@ -43,28 +43,18 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
         };
         for &bladder in &lumped.bladders {
             let rate = imposed_rate(wet, w, bladder);
-            w.fluid.area_rate[fluid.cells_of(bladder)].fill(wet.area.per_pressure * w.fluid.lumped_rate[k] + rate);
+            let stored = compressed::stored_rate(wet, w, fluid.cells_of(bladder).start, w.fluid.lumped_rate[k], rate);
+            w.fluid.area_rate[fluid.cells_of(bladder)].fill(stored);
         }
     }
 }
 
 /// Rate of the area that moment, force and finite strain impose on a bladder.
-fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
+pub(super) fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
     let (j, row) = wet.place(bladder);
     wet.area.moment_slope(w.coupling.mean_moment[j], row) * w.coupling.mean_moment_rate[j]
         + wet.area.force_slope(w.coupling.mean_force[j]) * w.coupling.mean_force_rate[j]
         + w.coupling.excess_area_rate.get(bladder).copied().unwrap_or(0.0)
-}
-
-/// Rate of a cell's pressure [Pa/s]; needs [`complete`].
-pub fn pressure_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usize) -> f64 {
-    let bladder = cell / fluid.cells_per_bladder;
-    match wet.storage[bladder] {
-        Storage::Shared(lumped) => w.fluid.lumped_rate[lumped],
-        Storage::Flowing | Storage::Kept => {
-            (w.fluid.area_rate[cell] - imposed_rate(wet, w, bladder)) / wet.area.per_pressure
-        }
-    }
 }
 
 /// Stretch by pressure of a beam that does not stretch otherwise, and with it the motion along, `[E28]`.
@@ -146,9 +136,7 @@ impl SegmentRates {
                 Storage::Shared(lumped) => w.fluid.lumped_rate[lumped],
                 Storage::Flowing | Storage::Kept => {
                     let cells = system.fluid.as_ref().map_or(0..0, |f| f.cells_of(bladder));
-                    let count = cells.len() as f64;
-                    let area_rate = w.fluid.area_rate[cells].iter().sum::<f64>() / count;
-                    (area_rate - imposed_rate(wet, w, bladder)) / wet.area.per_pressure
+                    compressed::mean_pressure_rate(wet, w, bladder, cells)
                 }
             };
         }
@@ -201,8 +189,8 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     let k = fluid.cells_per_bladder;
     for &bladder in &fluid.flowing {
         for cell in bladder * k + 1..(bladder + 1) * k {
-            let drop = w.fluid.pressure[cell - 1] - w.fluid.pressure[cell];
-            add(out, EnergyRate::Bladders, fluid.conductance * drop * drop);
+            let lost = compressed::lost_between(wet, w, fluid.conductance, [cell - 1, cell]);
+            add(out, EnergyRate::Bladders, lost);
         }
     }
     let component = |place: Place| match place {
@@ -224,7 +212,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         }
     };
     for (k, lumped) in wet.lumped.iter().enumerate() {
-        let (power, outward) = lumped_ports(fluid, now, w, k, lumped);
+        let (power, outward) = lumped_ports(wet, fluid, now, w, k, lumped);
         add(out, EnergyRate::Ports, power);
         leave(lumped.component, [outward, outward, 0.0], out);
     }
@@ -232,7 +220,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         for (place, sign) in [(from, 1.0), (to, -1.0)] {
             let outward = sign * q;
             match (place, component(place)) {
-                (Place::Port(p), _) => add(out, EnergyRate::Ports, now.port_pressure[p] * outward),
+                (Place::Port(p), _) => add(out, EnergyRate::Ports, wet.enthalpy(now.port_pressure[p]) * outward),
                 (_, Some(c)) if component(from) != component(to) => leave(c, [outward, sign * by_law, noise], out),
                 _ => {}
             }
@@ -240,10 +228,10 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     };
     for (n, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
         let q = w.fluid.flow[n];
-        let in_halves = q * q * link.half_cells;
+        let [in_halves, between] = compressed::lost(wet, link, q, now, w);
         add(out, EnergyRate::Bladders, in_halves);
         let rest = match &link.flow {
-            None => q * drop_over(link, now, w) - in_halves,
+            None => between,
             Some(flow) => q * q * now.resistance[n] + tubes::dissipation(flow, q, w),
         };
         add(
@@ -262,7 +250,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
             (Some(c), None) => -share(c),
             _ => 0.0,
         };
-        let ends = [link.from, link.to].map(|place| pressure_at(place, now, w).abs());
+        let ends = [link.from, link.to].map(|place| wet.potential(pressure_at(place, now, w)).abs());
         let size = ends[0].max(ends[1]);
         cross(link.from, link.to, [q - surplus, q, conductance * size], out);
     }
@@ -273,8 +261,9 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         } else {
             0.0
         };
-        add(out, EnergyRate::Ports, (pressure_at(place, now, w) + half * q) * q);
-        add(out, EnergyRate::Bladders, half * q * q);
+        let [power, lost] = compressed::fed(wet, pressure_at(place, now, w), half, q);
+        add(out, EnergyRate::Ports, power);
+        add(out, EnergyRate::Bladders, lost);
         if let Some(c) = component(place) {
             leave(c, [-q, -q, 0.0], out);
         }
@@ -295,7 +284,14 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
 }
 
 /// Power and outflow of a lumped network through its ports, and volume that passes them.
-fn lumped_ports(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>, k: usize, lumped: &LumpedNetwork) -> (f64, f64) {
+fn lumped_ports(
+    wet: &Wet,
+    fluid: &FluidMesh,
+    now: &TimeData,
+    w: &Workspace<f64>,
+    k: usize,
+    lumped: &LumpedNetwork,
+) -> (f64, f64) {
     let gain = match &lumped.kind {
         LumpedKind::Closed => 0.0,
         LumpedKind::Fed(sources) => sources.iter().map(|&s| now.source_flow[s]).sum(),
@@ -304,7 +300,7 @@ fn lumped_ports(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>, k: usize,
             cells.map(|cell| w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds
         }
     };
-    (w.fluid.lumped[k] * gain, -gain)
+    (wet.enthalpy(w.fluid.lumped[k]) * gain, -gain)
 }
 
 /// Power and outflow of lumped networks with given pressure, whose areas jump where their pressure or the beam does.
@@ -317,7 +313,7 @@ pub fn lumped_jump(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mu
         if !matches!(lumped.kind, LumpedKind::Port(_)) {
             continue;
         }
-        let (power, outward) = lumped_ports(fluid, now, w, k, lumped);
+        let (power, outward) = lumped_ports(wet, fluid, now, w, k, lumped);
         add(out, EnergyRate::Ports, power);
         if let Some(open) = wet.network.open.iter().position(|&c| c == lumped.component) {
             out[ENERGY_RATES.len() + 2 * open] += outward;

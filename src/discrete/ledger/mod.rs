@@ -1,12 +1,14 @@
 //! Energies, powers and impulses, exact in the semi-discrete system: their balance is the integrator's error alone.
 
+mod compressed;
 mod fluid;
 mod jump;
 mod reactions;
 mod solid;
 mod tubes;
 
-pub use fluid::{pressure_rate, pressure_rates};
+pub use compressed::{area_rate, lost, pressure_rate};
+pub use fluid::pressure_rates;
 pub use jump::{side, strokes, travel};
 pub use reactions::compared;
 
@@ -94,6 +96,9 @@ pub struct Energies {
     /// Of the section at finite strain, beyond all these.
     #[serde(default)]
     pub section: f64,
+    /// Of compressed fluid.
+    #[serde(default)]
+    pub compression: f64,
     /// Of springs to ground.
     #[serde(default)]
     pub springs: f64,
@@ -108,6 +113,7 @@ impl Energies {
             + self.bending
             + self.bladders
             + self.tubes
+            + self.compression
             + self.section
             + self.springs
     }
@@ -196,6 +202,7 @@ pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Work
 pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     let mut e = solid::energies(system, now, &w);
     e.bladders = fluid::energy(system, &w);
+    e.compression = compressed::energy(system, &w);
     e.tubes = tubes::kinetic(system, &w);
     e.springs = system.attached.iter().map(|attached| attached.energy(system, &w)).sum();
     e.section = residual::nonlinear::energy(system, &w);

@@ -82,7 +82,7 @@ impl Field {
             Self::Moment => ("moment_n_m", "N m", Nodes, Recorded, "bending moment", |w| w.forces.moments()),
             Self::NormalForce => ("normal_force_n", "N", Cells, Recorded, "normal force", |w| w.forces.normals()),
             Self::Pressure => ("pressure_pa", "Pa", Network, Recorded, "pressure of the bladder cells", |w| Cow::Borrowed(&w.fluid.pressure)),
-            Self::AreaChange => ("area_change_m2", "m^2", Network, Recorded, "area change of the bladder cells", |w| Cow::Borrowed(&w.fluid.area)),
+            Self::AreaChange => ("area_change_m2", "m^2", Network, Recorded, "area change of the bladder cells", |w| Cow::Borrowed(w.fluid.area_changes())),
         }
     }
 

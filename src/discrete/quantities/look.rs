@@ -2,6 +2,7 @@
 
 use crate::discrete::fluid_mesh::Place;
 use crate::discrete::ledger::{self, Energies};
+use crate::discrete::residual::fluid::pressure_at;
 use crate::discrete::residual::solid::node_stretch;
 use crate::discrete::{State, System, TimeData, Workspace};
 use crate::model::Kinematics;
@@ -27,7 +28,7 @@ impl Extremes {
         Self {
             high: place(&w.fluid.pressure, 1.0),
             low: place(&w.fluid.pressure, -1.0),
-            closed: place(&w.fluid.area, -1.0),
+            closed: place(w.fluid.area_changes(), -1.0),
             angle: tip_angle(system, w),
         }
     }
@@ -79,7 +80,9 @@ impl Look<'_> {
     /// `(h_b w_b + a1)/(h_b w_b)`.
     pub(super) fn least_opening(&self) -> f64 {
         let at_rest = self.system.model.wet.as_ref().map(|wet| wet.area_at_rest);
-        at_rest.map_or(1.0, |at_rest| 1.0 + self.w.fluid.area[self.at.closed] / at_rest)
+        at_rest.map_or(1.0, |at_rest| {
+            1.0 + self.w.fluid.area_changes()[self.at.closed] / at_rest
+        })
     }
 
     /// `Σ R q²` of turbines between bladders, `Σ g Δp²` of those of bridges.
@@ -91,7 +94,10 @@ impl Look<'_> {
         let mut power = 0.0;
         for (link, q) in fluid.links.iter().zip(&w.fluid.flow) {
             if matches!(link.kind, LinkKind::Turbine(_)) {
-                power += q * q * link.resistance;
+                power += match wet.compression {
+                    None => q * q * link.resistance,
+                    Some(_) => ledger::lost(wet, link, *q, self.now, &w)[1],
+                };
             }
         }
         for (bridge, drop) in fluid.bridges.iter().zip(&w.fluid.bridge) {
@@ -121,9 +127,10 @@ pub fn largest_flow(system: &System, now: &TimeData, w: &Workspace<f64>) -> Opti
         .filter(|((link, _), _)| link.kind == LinkKind::Tube)
         .map(|((link, g), q)| (*q, link, g))
         .reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a })?;
+    let density = |p: f64| wet.compression.as_ref().map_or(1.0, |c| c.density(p).0);
     let rate = |place: Place| match place {
-        Place::Cell(cell) => ledger::pressure_rate(wet, fluid, w, cell),
-        Place::Port(port) => now.port_pressure_rate[port],
+        Place::Cell(cell) => density(w.fluid.pressure[cell]) * ledger::pressure_rate(wet, fluid, w, cell),
+        Place::Port(port) => density(now.port_pressure[port]) * now.port_pressure_rate[port],
         Place::Junction(_) => 0.0,
     };
     let rate = match link.flow.filter(|flow| flow.tube.inertance > 0.0) {
@@ -131,6 +138,24 @@ pub fn largest_flow(system: &System, now: &TimeData, w: &Workspace<f64>) -> Opti
         None => g * (rate(link.from) - rate(link.to)),
     };
     Some((q.abs(), q.signum() * rate, wet.network.tube(link.number)))
+}
+
+/// Largest `|q| √r'/r` of a tube, by the density where it is least; 0 where fluid is not compressed.
+pub fn largest_mach(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return 0.0;
+    };
+    let Some(compression) = &wet.compression else {
+        return 0.0;
+    };
+    let tubes = fluid.links.iter().zip(&w.fluid.flow);
+    let tubes = tubes.filter(|(link, _)| link.kind == LinkKind::Tube);
+    let each = tubes.map(|(link, q)| {
+        let [a, b] = [link.from, link.to].map(|place| pressure_at(place, now, w));
+        let (density, slope) = compression.density(a.min(b));
+        q.abs() * slope.sqrt() / density
+    });
+    each.fold(0.0, f64::max)
 }
 
 /// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`, and the node where it is.

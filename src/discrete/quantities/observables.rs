@@ -95,6 +95,10 @@ fn nonlinear(system: &System) -> bool {
     system.model.strain_energy().is_some()
 }
 
+fn compressed(system: &System) -> bool {
+    system.model.wet.as_ref().is_some_and(|wet| wet.compression.is_some())
+}
+
 fn open(system: &System) -> bool {
     let wet = system.model.wet.as_ref().filter(|_| system.fluid.is_some());
     wet.is_some_and(|wet| !wet.network.open.is_empty())
@@ -190,6 +194,8 @@ observables! {
         "energy stored in the bladders";
     SectionEnergy: "section_energy" ["J"], "section energy", "energy of finite strain", Stored, Recorded, nonlinear, Read::State(|look| look.stored.section),
         "energy of the section at finite strain, beyond those that are quadratic";
+    CompressionEnergy: "compression_energy" ["J"], "compression energy", "energy of compressed fluid", Stored, Recorded, compressed, Read::State(|look| look.stored.compression),
+        "energy of compressed fluid, relative to ambient pressure";
     TubeEnergy: "tube_energy" ["J"], "tube energy", "energy of the fluid in tubes", Stored, Recorded, inert, Read::State(|look| look.stored.tubes),
         "kinetic energy of the fluid in tubes";
     SpringEnergy: "spring_energy" ["J"], "spring energy", "energy of springs to ground", Stored, Recorded, attached, Read::State(|look| look.stored.springs),

@@ -1,9 +1,11 @@
 //! Pressures, what they do to the beam, and the flows they drive.
 
+use std::ops::Range;
+
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshLink, MeshSource, Place};
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::{ROWS, Storage};
+use crate::model::{Compression, ROWS, Storage, Wet};
 use crate::numerics::Scalar;
 
 /// `[E8]` Pressure of each cell from its stored area, and each bladder's mean (A.15, A.16 solved for p):
@@ -27,6 +29,10 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
                 imposed += *excess;
             }
             let cells = fluid.cells_of(bladder);
+            if let Some(compression) = &wet.compression {
+                w.fluid.mean_pressure[bladder] = compressed(wet, compression, bladder, cells, imposed, w);
+                continue;
+            }
             w.fluid.mean_pressure[bladder] = match wet.storage[bladder] {
                 Storage::Flowing => {
                     let mut sum = T::zero();
@@ -51,6 +57,41 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
             };
         }
     }
+}
+
+/// The same where fluid is compressed, [E58], with what drives its flow, [E59].
+fn compressed<T: Scalar>(
+    wet: &Wet,
+    compression: &Compression,
+    bladder: usize,
+    cells: Range<usize>,
+    imposed: T,
+    w: &mut Workspace<T>,
+) -> T {
+    let (law, own) = (&wet.area, &mut w.fluid);
+    let p = match wet.storage[bladder] {
+        Storage::Flowing => {
+            let share = 1.0 / cells.len() as f64;
+            let mut sum = T::zero();
+            for cell in cells {
+                let p = compression.pressure(law, own.area[cell], imposed);
+                own.pressure[cell] = p;
+                own.swelling[cell] = p * law.per_pressure + imposed;
+                own.potential[cell] = compression.potential(p);
+                sum += p;
+            }
+            return sum * share;
+        }
+        Storage::Kept => compression.pressure(law, own.area[cells.start], imposed),
+        Storage::Shared(lumped) => {
+            let p = own.lumped[lumped];
+            own.area[cells.clone()].fill(compression.content(law, p, imposed));
+            p
+        }
+    };
+    own.pressure[cells.clone()].fill(p);
+    own.swelling[cells].fill(p * law.per_pressure + imposed);
+    p
 }
 
 /// Stretch and curvature of each segment due to pressure, `[E3]`.
@@ -97,16 +138,22 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let k = fluid.cells_per_bladder;
     w.fluid.inflow.fill(T::zero());
     w.fluid.junction_inflow.fill(T::zero());
+    let own = &mut w.fluid;
+    let driving = if wet.compression.is_some() {
+        &own.potential
+    } else {
+        &own.pressure
+    };
     for &bladder in &fluid.flowing {
         for cell in bladder * k + 1..(bladder + 1) * k {
-            let q = (w.fluid.pressure[cell - 1] - w.fluid.pressure[cell]) * fluid.conductance;
-            w.fluid.inflow[cell - 1] -= q;
-            w.fluid.inflow[cell] += q;
+            let q = (driving[cell - 1] - driving[cell]) * fluid.conductance;
+            own.inflow[cell - 1] -= q;
+            own.inflow[cell] += q;
         }
     }
     for (k, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
         if link.flow.is_none() {
-            w.fluid.flow[k] = drop_over(link, now, w) * conductance;
+            w.fluid.flow[k] = drop_over(wet, link, now, w) * conductance;
         }
         let q = w.fluid.flow[k];
         deliver(link.from, -q, w);
@@ -124,10 +171,22 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     }
 }
 
-/// Pressure drop over a link.
+/// What drives flow over a link: the pressure drop, or that of Ψ, [E59].
 #[inline]
-pub fn drop_over<T: Scalar>(link: &MeshLink, now: &TimeData, w: &Workspace<T>) -> T {
-    pressure_at(link.from, now, w) - pressure_at(link.to, now, w)
+pub fn drop_over<T: Scalar>(wet: &Wet, link: &MeshLink, now: &TimeData, w: &Workspace<T>) -> T {
+    match &wet.compression {
+        None => pressure_at(link.from, now, w) - pressure_at(link.to, now, w),
+        Some(compression) => potential_at(compression, link.from, now, w) - potential_at(compression, link.to, now, w),
+    }
+}
+
+/// `Ψ` at a place.
+#[inline]
+pub fn potential_at<T: Scalar>(compression: &Compression, place: Place, now: &TimeData, w: &Workspace<T>) -> T {
+    match place {
+        Place::Cell(c) => w.fluid.potential[c],
+        Place::Junction(_) | Place::Port(_) => compression.potential(pressure_at(place, now, w)),
+    }
 }
 
 /// `[E10]` Pressure drops over the two pairs of valves of a symmetric bridge, `d` between its ports and `w` over the

@@ -298,7 +298,7 @@ pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
 
 /// Flow of each tube in which it does not creep, [E51].
 pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
-    let Some(fluid) = system.fluid.as_ref().filter(|fluid| fluid.flows > 0) else {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
     let own = &system.layout.network;
@@ -307,7 +307,7 @@ pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &m
             continue;
         };
         let q = w.fluid.flow[k];
-        let mut lacking = q * link.half_cells + tube.loss(q) - drop_over(link, now, w);
+        let mut lacking = q * link.half_cells + tube.loss(q) - drop_over(wet, link, now, w);
         if tube.inertance > 0.0 {
             lacking += w.fluid.flow_rate[number] * tube.inertance;
         }

@@ -57,7 +57,7 @@ pub fn ports(case: &Case, wet: &Wet) -> Vec<Port> {
     let network = &wet.network;
     let depths = |signal: &Signal| {
         fastest(signal, end).map_or(0.0, |omega| {
-            let depth = (network.bladder_mobility / (wet.area.per_pressure * omega)).sqrt();
+            let depth = (network.bladder_mobility / (wet.compliance() * omega)).sqrt();
             wet.bladder_length / depth
         })
     };

@@ -18,6 +18,8 @@ pub enum Cause {
     Refused(Obstacle),
     /// It comes by name only, and was not asked for.
     Unasked,
+    /// The program has it for incompressible fluid alone.
+    Compressed,
     /// The case gives it, or not.
     Given(bool),
     /// The case gives bladders and fluid, or not.
@@ -92,6 +94,8 @@ pub enum Number {
     PressureStrain,
     /// Larger of dm/am, dn/an.
     Asymmetry,
+    /// What compression stores over what the walls of bladders do.
+    Compression,
     /// Energy beyond the quadratic part over the quadratic one, at most.
     StrainEnergy,
 }
@@ -117,6 +121,8 @@ pub enum Keeps {
     UnevenStart,
     /// It makes pressure.
     MakesPressure,
+    /// The fluid is a gas.
+    Gas,
     /// Something is attached to the beam, which the scene's numbers do not know.
     Attachments,
     /// The section is not linear at the scene's loads.
@@ -131,6 +137,7 @@ impl Display for Cause {
             Self::LeftOut => f.write_str("left out as asked"),
             Self::Refused(obstacle) => write!(f, "cannot be left out: {}", obstacle.what),
             Self::Unasked => f.write_str("flow in tubes creeps unless this is asked for by name"),
+            Self::Compressed => f.write_str("the fluid is compressed, and its flow creeps"),
             Self::Given(true) => f.write_str("given"),
             Self::Given(false) => f.write_str("not given"),
             Self::Filled(true) => f.write_str("bladders and fluid are given"),
@@ -175,6 +182,7 @@ impl Display for Number {
             Self::LagAlongBladders => "a bladder's own time against that of the motion",
             Self::PressureStrain => "what pressure does over what loads do",
             Self::Asymmetry => "larger of dm/am, dn/an",
+            Self::Compression => "compression over what the walls of bladders store",
             Self::StrainEnergy => "strain energy beyond the quadratic part over that, at most",
         })
     }
@@ -193,6 +201,7 @@ impl Display for Keeps {
             Self::UnevenStart => "the start has differences along a bladder",
             Self::FiniteStrain => "the section is not linear at these loads",
             Self::Attachments => "what is attached to the beam has no bound here",
+            Self::Gas => "the fluid is a gas",
             Self::MakesPressure => "it is what makes pressure",
         })
     }

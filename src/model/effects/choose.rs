@@ -4,7 +4,7 @@ use super::cause::{Cause, Keeps, Number, Weighed};
 use super::obstacles::{self, Obstacle};
 use super::table::{Presence, about};
 use super::{Decision, EffectSet, Scene};
-use crate::case::schema::{Case, Choice, Coupling, Effect, EffectChoices, Effects};
+use crate::case::schema::{Case, Choice, Coupling, Effect, EffectChoices, Effects, Fluid, FluidKind};
 use crate::error::{Code, Violation};
 use crate::model::Network;
 
@@ -59,16 +59,37 @@ impl<'a> Chooser<'a> {
     /// case is refused if that was asked for.
     fn decide(&mut self, effect: Effect) -> (bool, Cause) {
         if let Err(why) = self.possible(effect) {
+            if why == Cause::Compressed && self.choices.of(effect) == Choice::On {
+                let what = format!("{effect} of a fluid that is compressed is not simulated");
+                self.refuse(effect, &what, "leave it out, or set compressibility to \"off\"");
+            }
             return (false, why);
         }
+        let decided = self.decide_possible(effect);
+        if effect == Effect::Compressibility && decided.0 && self.network.is_some_and(|n| !n.bridges.is_empty()) {
+            let what = "fluid that is compressed does not flow through check valves of rectifiers";
+            self.refuse(
+                effect,
+                what,
+                "give an ideal rectifier or none, or set compressibility to \"off\"",
+            );
+        }
+        decided
+    }
+
+    fn refuse(&mut self, effect: Effect, what: &str, hint: &str) {
+        let refusal = Violation::new(Code::Effect, format!("/effects/{effect}"), what);
+        self.set.refusals.push(refusal.hint(hint));
+    }
+
+    fn decide_possible(&mut self, effect: Effect) -> (bool, Cause) {
         match self.choices.of(effect) {
             Choice::On => (true, Cause::Asked),
             Choice::Off => match self.obstacle(effect) {
                 None => (false, Cause::LeftOut),
                 Some(obstacle) => {
                     let what = format!("{effect} cannot be left out: {}", obstacle.what);
-                    let refusal = Violation::new(Code::Effect, format!("/effects/{effect}"), what);
-                    self.set.refusals.push(refusal.hint(obstacle.hint.clone()));
+                    self.refuse(effect, &what, &obstacle.hint);
                     (true, Cause::Refused(obstacle))
                 }
             },
@@ -91,10 +112,22 @@ impl<'a> Chooser<'a> {
         let bladders = self.case.bladders.as_ref();
         match effect {
             Effect::NonlinearSection if bladders.is_none_or(|b| b.strain_energy.is_none()) => Err(Cause::Given(false)),
+            Effect::Compressibility if self.fluid().is_none_or(|fluid| !fluid.is_compressible()) => {
+                Err(Cause::Given(false))
+            }
+            Effect::TubeInertia | Effect::UnsteadyFriction | Effect::TubeLosses
+                if self.set.has(Effect::Compressibility) =>
+            {
+                Err(Cause::Compressed)
+            }
             Effect::Fluid if self.case.fluid.is_none() || bladders.is_none() => Err(Cause::Filled(false)),
             Effect::Asymmetry if bladders.is_some_and(|b| b.coupling == Coupling::Reciprocal) => Err(Cause::NoKinks),
             _ => Ok(()),
         }
+    }
+
+    fn fluid(&self) -> Option<&Fluid> {
+        self.case.fluid.as_ref()
     }
 
     /// What stands against leaving an effect out.
@@ -184,6 +217,10 @@ impl<'a> Chooser<'a> {
                 None if scene.uneven_start() => kept(Keeps::UnevenStart),
                 None => weigh(Number::LagAlongBladders, scene.lag_along_bladders(self.tolerance)),
             },
+            Effect::Compressibility if self.fluid().is_some_and(|fluid| fluid.kind == FluidKind::Gas) => {
+                kept(Keeps::Gas)
+            }
+            Effect::Compressibility => weigh(Number::Compression, scene.compression_of_fluid()),
             Effect::PressureToCurvature => weigh(Number::PressureStrain, scene.strains_of_pressure()[0]),
             Effect::PressureToStretch => weigh(Number::PressureStrain, scene.strains_of_pressure()[1]),
             Effect::MomentToArea | Effect::ForceToArea => kept(Keeps::MakesPressure),
@@ -205,6 +242,7 @@ fn by_motion(effect: Effect) -> bool {
         Fluid,
         Flow,
         NetworkPressureDifferences,
+        Compressibility,
         MomentToArea,
         ForceToArea,
         Asymmetry,

@@ -125,6 +125,14 @@ pub fn about(effect: Effect) -> About {
             needs: &[Fluid, Flow, NetworkPressureDifferences],
             presence: Presence::Chosen,
         },
+        Effect::Compressibility => About {
+            adds: "c = r(p) (A_0 + a1) - A_0 in place of a1, q = g (Ψ(p_a) - Ψ(p_b)), Ψ = ∫ r dp",
+            brings: "stored gas; a root for the pressure of each cell",
+            number: "A_0/K over a_p, with (1 + χ ω T) of vibrations whose stiffness is fluid to the part χ; gas stays",
+            cost: "arithmetic in every cell",
+            needs: &[Fluid],
+            presence: Presence::Chosen,
+        },
         Effect::TubeInertia => About {
             adds: "I dq/dt, I = 4/3 ρ l/A in each tube",
             brings: "the flow of each tube; its pressure jumps no more with its flow",

@@ -11,8 +11,8 @@ pub fn sealed(system: &System) -> [f64; 2] {
     let (model, s) = (&system.model, &system.model.section);
     let Some(wet) = &model.wet else { return [1.0; 2] };
     let (area, coupling) = (&wet.area, &wet.coupling);
-    let bent = area.moment_mean / area.per_pressure;
-    let stretched = area.force_mean / area.per_pressure;
+    let bent = area.moment_mean / wet.compliance();
+    let stretched = area.force_mean / wet.compliance();
     let soft = [
         s.bending_stiffness * coupling.curvature(area, 0.0, -bent, bent),
         s.axial_stiffness * coupling.stretch(area, 0.0, -stretched, -stretched),
@@ -27,7 +27,7 @@ pub fn pressed(system: &System) -> [f64; 2] {
     let Some(wet) = &model.wet else { return [0.0; 2] };
     let area = &wet.area;
     [
-        (area.moment_mean / area.per_pressure * s.bending_stiffness / model.length.powi(2)).abs(),
-        (area.force_mean / area.per_pressure * s.axial_stiffness / model.length).abs(),
+        (area.moment_mean / wet.compliance() * s.bending_stiffness / model.length.powi(2)).abs(),
+        (area.force_mean / wet.compliance() * s.axial_stiffness / model.length).abs(),
     ]
 }

@@ -112,7 +112,7 @@ impl Modes {
             .zip(system.fluid.as_ref())
             .map_or(0.0, |(wet, fluid)| {
                 let squares: f64 = l.network.area.clone().map(|k| at(k).powi(2)).sum();
-                0.5 * squares * fluid.ds / wet.area.per_pressure
+                0.5 * squares * fluid.ds / wet.compliance()
             });
         (bending.collect(), along, fluid)
     }

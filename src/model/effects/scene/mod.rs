@@ -289,7 +289,7 @@ impl<'a> Scene<'a> {
             }
         }
         let conductance = most.into_iter().fold(0.0, f64::max);
-        2.0 * conductance * self.case.time.end_s / (wet.area.per_pressure * wet.bladder_length)
+        2.0 * conductance * self.case.time.end_s / (self.compliances(wet)[0] * wet.bladder_length)
     }
 
     fn bladder_resistance(&self, wet: &Wet) -> f64 {
@@ -318,7 +318,7 @@ impl<'a> Scene<'a> {
                 rate = rate.max(free * (1.0 + fluid * inertia * free * end));
             }
         }
-        rate * wet.area.per_pressure * wet.bladder_length.powi(2) / (PI * PI * wet.network.bladder_mobility)
+        rate * self.compliances(wet)[1] * wet.bladder_length.powi(2) / (PI * PI * wet.network.bladder_mobility)
     }
 
     /// Parts χ of curvature and stretch that the pressure of sealed bladders takes back, at most: `EI (∂α_p/∂p_u - ∂α_p/∂p_d) A_M'/a_p`
@@ -331,9 +331,23 @@ impl<'a> Scene<'a> {
         let stretched = steepest(&|n| coupling.stretch(area, n, 1.0, 1.0) * area.force_slope(n));
         let stiffness = [self.section.bending_stiffness, self.section.axial_stiffness];
         [
-            stiffness[0] * bent / area.per_pressure,
-            stiffness[1] * stretched / area.per_pressure,
+            stiffness[0] * bent / self.compliances(wet)[0],
+            stiffness[1] * stretched / self.compliances(wet)[0],
         ]
+    }
+
+    /// Least and largest area that a bladder stores per pressure at the scene's pressures [m^2/Pa].
+    fn compliances(&self, wet: &Wet) -> [f64; 2] {
+        [1.0, -1.0].map(|sign| wet.compliance_at(sign * self.scales.pressure))
+    }
+
+    /// `A_0 r'/(r a_p)`, at most: what compression stores over what the walls of bladders do; over the whole run where it changes the
+    /// stiffness of what vibrates.
+    pub fn compression_of_fluid(&self) -> f64 {
+        let Some(wet) = self.wet else { return 0.0 };
+        let share = self.compliances(wet)[1] / wet.area.per_pressure - 1.0;
+        let [bent, stretched] = self.stiffness_of_fluid(wet);
+        share * (1.0 + (bent * self.bending + stretched * self.axial) * self.case.time.end_s)
     }
 
     /// Moment and force that pressure causes, over those of the loads at the least; over the whole run where vibrations are damped by it.

@@ -91,7 +91,7 @@ impl Scene<'_> {
         }
         let excess = self.wet.map_or(0.0, |wet| {
             let sum = wet.coupling.curvature(&wet.area, 0.0, 1.0, 0.0) * self.section.bending_stiffness;
-            2.0 * sum * wet.area.moment_mean / wet.area.per_pressure
+            2.0 * sum * wet.area.moment_mean / self.compliances(wet)[0]
         });
         (excess > 0.5).then(|| format!("pressure feeds {excess:.1e} of a bending moment back"))
     }
@@ -152,7 +152,7 @@ impl Scene<'_> {
         let along = self.wet.map_or(0.0, |wet| {
             let area = &wet.area;
             let density = wet.per_row as f64 / self.case.beam.length_m * wet.bladder_length;
-            2.0 * self.section.axial_stiffness * density * area.force_mean.powi(2) / area.per_pressure
+            2.0 * self.section.axial_stiffness * density * area.force_mean.powi(2) / self.compliances(wet)[0]
         });
         [self.stiffening(), along]
     }
@@ -162,7 +162,7 @@ impl Scene<'_> {
         self.wet.map_or(0.0, |wet| {
             let area = &wet.area;
             let density = wet.per_row as f64 / self.case.beam.length_m * wet.bladder_length;
-            2.0 * self.section.bending_stiffness * density * area.moment_mean.powi(2) / area.per_pressure
+            2.0 * self.section.bending_stiffness * density * area.moment_mean.powi(2) / self.compliances(wet)[0]
         })
     }
 

@@ -1,0 +1,63 @@
+//! The fluid: what goes with a gas, what with a liquid, and pressures that leave something of a gas.
+
+use super::strength::inlets;
+use crate::case::faults::Violations;
+use crate::case::numbers::plain;
+use crate::case::schema::{Case, Fluid, FluidKind};
+use crate::error::{Code, Violation};
+
+/// Standard atmosphere [Pa], where a case gives no other ambient pressure.
+const ATMOSPHERE: f64 = 101_325.0;
+
+pub(super) fn check(case: &Case, faults: &mut Violations) {
+    let Some(fluid) = &case.fluid else { return };
+    let gas = fluid.kind == FluidKind::Gas;
+    let mixed = fluid.gas_fraction.is_some_and(|x| x > 0.0);
+    let of_liquid = [
+        ("bulk_modulus_pa", fluid.bulk_modulus_pa),
+        ("gas_fraction", fluid.gas_fraction),
+    ];
+    let of_gas = [
+        ("polytropic_exponent", fluid.polytropic_exponent),
+        ("ambient_pressure_pa", fluid.ambient_pressure_pa),
+    ];
+    let mut refuse = |key: &str, what: &str, hint: &str| {
+        let fault = Violation::new(Code::Together, format!("/fluid/{key}"), what);
+        faults.push_at_key(fault.hint(hint));
+    };
+    for (key, _) in of_liquid.iter().filter(|(_, value)| gas && value.is_some()) {
+        refuse(
+            key,
+            &format!("\"{key}\" of a gas"),
+            "it is that of a liquid: leave it out, or give kind \"liquid\"",
+        );
+    }
+    for (key, _) in of_gas.iter().filter(|(_, value)| !(gas || mixed) && value.is_some()) {
+        let hint = "it is that of a gas: leave it out, give kind \"gas\", or a gas_fraction";
+        refuse(key, &format!("\"{key}\" of a liquid without gas"), hint);
+    }
+    if gas || mixed {
+        pressures(case, fluid, faults);
+    }
+}
+
+/// Pressures that ports and the start prescribe stay above absolute vacuum.
+fn pressures(case: &Case, fluid: &Fluid, faults: &mut Violations) {
+    let ambient = fluid.ambient_pressure_pa.unwrap_or(ATMOSPHERE);
+    let mut look = |pointer: String, lowest: f64| {
+        if lowest <= -ambient && !faults.has(&pointer) {
+            let what = format!("{} Pa, at or below absolute vacuum", plain(lowest));
+            let fault = Violation::new(Code::Range, pointer, what).allowed(format!("above -{} Pa", plain(ambient)));
+            faults.push(fault.hint("pressures are those above ambient_pressure_pa, and gas fills what is left"));
+        }
+    };
+    for (pointer, signal) in inlets(case).pressures {
+        look(pointer, signal.range(0.0, case.time.end_s).low);
+    }
+    for (i, some) in case.start.pressures.iter().enumerate() {
+        look(
+            format!("/start/pressures/{i}/pressure_pa"),
+            some.pressure_pa.range(0.0, 1.0).low,
+        );
+    }
+}

@@ -1,0 +1,249 @@
+//! Fluid that is compressed: gas, liquid that yields, liquid with free gas in it.
+
+use crate::case::schema::{Fluid, FluidKind};
+use crate::model::AreaLaw;
+use crate::numerics::Scalar;
+use crate::numerics::gauss::Gauss;
+
+/// Standard atmosphere [Pa].
+const ATMOSPHERE: f64 = 101_325.0;
+/// Absolute pressure over ambient below which gas is followed no further.
+const VACUUM: f64 = 1e-9;
+/// Points of the quadrature of Ψ where it has no closed form.
+const POINTS: usize = 16;
+
+/// `[E58]` Fluid whose density follows its pressure, p above ambient, `P_0` ambient, x the part of its volume at ambient pressure that is gas,
+/// K the bulk modulus of the liquid, n the gas's polytropic exponent:
+///
+/// ```text
+/// ρ = ρ_0 r(p)      1/r = (1 - x) e^(-p/K) + x (1 + p/P_0)^(-1/n)      gas: x = 1
+/// c = r(p) (A_0 + a1) - A_0      a1 = a_p p + R A_M + A_N
+/// ```
+///
+/// What a cell of a bladder stores is its content c, the area change that its fluid would take at ambient density; its pressure is the one
+/// root of `r(p) (A_0 + R A_M + A_N + a_p p) = A_0 + c`, for isothermal gas of a quadratic. Incompressible fluid has r = 1, c = a1.
+#[derive(Clone, Debug)]
+pub struct Compression {
+    /// `A_0`, cross-section of a bladder at rest [m^2].
+    area_at_rest: f64,
+    /// `x`.
+    gas: f64,
+    /// `1/K` [1/Pa].
+    softness: f64,
+    /// `P_0` [Pa].
+    ambient: f64,
+    /// `n`.
+    exponent: f64,
+    /// For Ψ of mixtures.
+    points: Option<Gauss>,
+}
+
+impl Compression {
+    /// Of a fluid in bladders of a cross-section [m^2]; none of incompressible fluid.
+    pub fn new(fluid: &Fluid, area_at_rest: f64) -> Option<Self> {
+        let softness = fluid.bulk_modulus_pa.map_or(0.0, f64::recip);
+        let gas = match fluid.kind {
+            FluidKind::Gas => 1.0,
+            FluidKind::Liquid => fluid.gas_fraction.unwrap_or(0.0),
+        };
+        (gas > 0.0 || softness > 0.0).then(|| Self {
+            area_at_rest,
+            gas,
+            softness,
+            ambient: fluid.ambient_pressure_pa.unwrap_or(ATMOSPHERE),
+            exponent: fluid.polytropic_exponent.unwrap_or(1.0),
+            points: (gas > 0.0 && gas < 1.0).then(|| Gauss::new(POINTS)),
+        })
+    }
+
+    /// Pressure against ambient below which there is no fluid to speak of [Pa]; none of pure liquid.
+    pub fn lowest(&self) -> f64 {
+        match self.gas > 0.0 {
+            true => self.ambient * (VACUUM - 1.0),
+            false => f64::NEG_INFINITY,
+        }
+    }
+
+    /// `ln(1 + p/P_0)`, 0 without gas.
+    fn logarithm(&self, p: f64) -> f64 {
+        match self.gas > 0.0 {
+            true => (p / self.ambient).ln_1p(),
+            false => 0.0,
+        }
+    }
+
+    /// `1/r - 1` and its derivative [1/Pa].
+    fn expansion(&self, p: f64) -> (f64, f64) {
+        let liquid = (-p * self.softness).exp_m1();
+        let gas = (-self.logarithm(p) / self.exponent).exp_m1();
+        let slope = match self.gas > 0.0 {
+            true => self.gas * (gas + 1.0) / (self.exponent * (self.ambient + p)),
+            false => 0.0,
+        };
+        let rest = 1.0 - self.gas;
+        (
+            rest * liquid + self.gas * gas,
+            -rest * self.softness * (liquid + 1.0) - slope,
+        )
+    }
+
+    /// `r` and its derivative [1/Pa].
+    pub fn density(&self, p: f64) -> (f64, f64) {
+        let (expansion, slope) = self.expansion(p.max(self.lowest()));
+        let density = 1.0 / (1.0 + expansion);
+        (density, -slope * density * density)
+    }
+
+    /// `h = ∫ dp/r` from ambient pressure [Pa]: what a volume of fluid at ambient density brings along.
+    pub fn enthalpy(&self, p: f64) -> f64 {
+        let p = p.max(self.lowest());
+        let liquid = match self.softness {
+            0.0 => p,
+            softness => -(-p * softness).exp_m1() / softness,
+        };
+        if self.gas == 0.0 {
+            return liquid;
+        }
+        let power = 1.0 - 1.0 / self.exponent;
+        let gas = self.ambient * exponential(power, self.logarithm(p));
+        (1.0 - self.gas) * liquid + self.gas * gas
+    }
+
+    /// `[E59]` `Ψ = ∫ r dp` from ambient pressure [Pa], whose differences drive what flows, counted at ambient density. Along a duct of
+    /// resistance R at ambient density, `dΨ = r dp = -q dR`, so that resistances in series add as without compression:
+    ///
+    /// ```text
+    /// q = g (Ψ(p_a) - Ψ(p_b))      isothermal gas: Ψ = p + p²/(2 P_0),   q ρ_0 = π r⁴/(16 μ l) (P_a² - P_b²)/(R_s T)
+    /// ```
+    ///
+    /// Ducts that flow creeps through store nothing.
+    #[inline]
+    pub fn potential<T: Scalar>(&self, p: T) -> T {
+        p.lift(|p| {
+            let within = p.max(self.lowest());
+            let (density, _) = self.density(within);
+            (self.integral(within) + density * (p - within), density)
+        })
+    }
+
+    fn integral(&self, p: f64) -> f64 {
+        if self.gas == 0.0 {
+            return exponential(self.softness, p);
+        }
+        let logarithm = self.logarithm(p);
+        match &self.points {
+            None => self.ambient * exponential(1.0 + 1.0 / self.exponent, logarithm),
+            Some(points) => {
+                let inner = |t: f64| {
+                    let grown = self.ambient * t.exp();
+                    grown / (1.0 + self.expansion(grown - self.ambient).0)
+                };
+                points.on(0.0, logarithm).map(|(t, weight)| weight * inner(t)).sum()
+            }
+        }
+    }
+
+    /// The pressure of a value of Ψ [Pa]: Ψ is convex, and no less than p.
+    pub fn pressure_of_potential(&self, potential: f64) -> f64 {
+        let mut p = potential.max(self.lowest());
+        for _ in 0..60 {
+            let step = (self.potential(p) - potential) / self.density(p).0;
+            p -= step;
+            if step.abs() <= 1e-10 * p.abs() {
+                break;
+            }
+        }
+        p
+    }
+
+    /// Pressure of a cell that stores `content`, where bending and force account for `imposed` of its area, `[E58]`.
+    #[inline]
+    pub fn pressure<T: Scalar>(&self, law: &AreaLaw, content: T, imposed: T) -> T {
+        content.lift_with(imposed, |content, imposed| {
+            self.root(law.per_pressure, content, imposed)
+        })
+    }
+
+    /// Newton's iteration on `a_p p - (c - A) - (A_0 + c) (1/r - 1)`, A what is imposed, a concave function that grows, from the root of
+    /// isothermal gas as soft as this fluid; the root with its derivatives by c and A.
+    fn root(&self, a_p: f64, content: f64, imposed: f64) -> (f64, [f64; 2]) {
+        let amount = self.area_at_rest + content;
+        if self.gas > 0.0 && amount <= 0.0 {
+            return (self.lowest(), [0.0; 2]);
+        }
+        let lowest = self.lowest();
+        let softness = -self.expansion(0.0).1;
+        let (lacking, linear) = (content - imposed, a_p + (self.area_at_rest + imposed) * softness);
+        let inside = linear * linear + 4.0 * a_p * softness * lacking;
+        let mut p = 2.0 * lacking / (linear + inside.max(0.0).sqrt());
+        if p <= lowest {
+            p = -0.9 * self.ambient;
+        }
+        for _ in 0..100 {
+            let (expansion, slope) = self.expansion(p);
+            let step = (a_p * p - lacking - amount * expansion) / (a_p - amount * slope);
+            let next = p - step;
+            if next <= lowest {
+                p = 0.1 * p - 0.9 * self.ambient;
+                if p <= lowest {
+                    return (lowest, [0.0; 2]);
+                }
+                continue;
+            }
+            p = next;
+            if step.abs() <= 1e-10 * p.abs() {
+                break;
+            }
+        }
+        let (expansion, slope) = self.expansion(p);
+        let stiffness = 1.0 / (a_p - amount * slope);
+        (p, [(1.0 + expansion) * stiffness, -stiffness])
+    }
+
+    /// What a cell stores at a pressure, c, `[E58]`.
+    #[inline]
+    pub fn content<T: Scalar>(&self, law: &AreaLaw, p: T, imposed: T) -> T {
+        let density = p.lift(|p| self.density(p));
+        density * (p * law.per_pressure + imposed + self.area_at_rest) - self.area_at_rest
+    }
+
+    /// Rate of what a cell stores, from those of its pressure and of what is imposed.
+    pub fn content_rate(&self, law: &AreaLaw, [p, area]: [f64; 2], p_t: f64, imposed_t: f64) -> f64 {
+        let (density, slope) = self.density(p);
+        slope * (self.area_at_rest + area) * p_t + density * (law.per_pressure * p_t + imposed_t)
+    }
+
+    /// Rate of a cell's pressure, from those of its content and of what is imposed.
+    pub fn pressure_rate(&self, law: &AreaLaw, [p, area]: [f64; 2], content_t: f64, imposed_t: f64) -> f64 {
+        let (density, slope) = self.density(p);
+        (content_t - density * imposed_t) / (slope * (self.area_at_rest + area) + density * law.per_pressure)
+    }
+
+    /// `[E60]` Energy of the fluid in a cell per length, relative to ambient pressure; with it
+    ///
+    /// ```text
+    /// E = V (r h - p)      dE/dt + p dV/dt = h d(r V)/dt      V = (A_0 + a1) Δs
+    /// P_port = q h(p_port)      D = q (h(p_a) - h(p_b)) >= 0 along a link
+    /// ```
+    ///
+    /// for isothermal gas `E = V (P ln(P/P_0) - p)`, P the absolute pressure: what flows carries h, and what is lost on its way is the fall
+    /// of h.
+    pub fn energy(&self, p: f64, area: f64) -> f64 {
+        (self.area_at_rest + area) * (self.density(p).0 * self.enthalpy(p) - p)
+    }
+
+    /// What compression adds to `a_p` at a pressure: `A_0 r'/r` [m^2/Pa].
+    pub fn compliance(&self, p: f64) -> f64 {
+        let lowest = if self.gas > 0.0 { -0.9 * self.ambient } else { p };
+        let (density, slope) = self.density(p.max(lowest));
+        self.area_at_rest * slope / density
+    }
+}
+
+/// `(e^(k x) - 1)/k`.
+fn exponential(k: f64, x: f64) -> f64 {
+    match k.abs() < 1e-300 {
+        true => x,
+        false => (k * x).exp_m1() / k,
+    }
+}
