@@ -18,8 +18,7 @@ pub mod time_data;
 pub mod waves;
 pub mod workspace;
 
-use crate::case::schema::Case;
-use crate::discrete::fluid_mesh::{MeshSource, Place};
+use crate::case::schema::{Case, Effect};
 use crate::error::{Code, Result, Violation};
 use crate::model::loads::LoadKind;
 use crate::model::{Model, Storage, audit};
@@ -98,9 +97,12 @@ impl System {
 
     /// A junction of tubes with inertia alone into which a port prescribes the flow: the tubes would have to jump with it.
     fn fed_junction(&self) -> Option<Violation> {
-        let fluid = self.fluid.as_ref()?;
-        let fed = |source: &&MeshSource| matches!(source.into, Place::Junction(j) if fluid.accelerated[j]);
-        let name = &self.model.wet.as_ref()?.network.sources[fluid.sources.iter().find(fed)?.number].name;
+        let wet = self
+            .model
+            .wet
+            .as_ref()
+            .filter(|_| self.model.effects.has(Effect::TubeInertia))?;
+        let name = &wet.network.fed_junction()?.name;
         let what = format!("the flow of port \"{name}\" enters a junction where only tubes with inertia meet");
         let fault = Violation::new(Code::Effect, "/effects/tube_inertia", what);
         Some(fault.hint("put the port at a bladder's end, or leave tube_inertia off"))

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Formulation;
+
 /// Which physical effects are simulated: `"auto"`, `"full"` or choice by choice.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Effects {
@@ -154,8 +156,13 @@ impl std::fmt::Display for Effect {
 }
 
 impl Effect {
-    /// Whether it is there only where a case names it.
-    pub const fn by_name(self) -> bool {
+    /// Whether it is there only where a case names it: flow in tubes creeps in the published form.
+    pub fn by_name(self, formulation: Formulation) -> bool {
+        formulation == Formulation::Published && self.of_tubes()
+    }
+
+    /// Whether it is about flow in tubes that does not creep.
+    pub const fn of_tubes(self) -> bool {
         matches!(self, Self::TubeInertia | Self::UnsteadyFriction | Self::TubeLosses)
     }
 

@@ -18,6 +18,8 @@ pub enum Cause {
     Refused(Obstacle),
     /// It comes by name only, and was not asked for.
     Unasked,
+    /// A port's flow enters a junction where only tubes meet, whose inertia does not let it.
+    FedJunction,
     /// The case gives it, or not.
     Given(bool),
     /// The case gives bladders and fluid, or not.
@@ -88,6 +90,12 @@ pub enum Number {
     Leakage,
     /// A bladder's own time against that of the motion.
     LagAlongBladders,
+    /// Inertia of the fluid in a tube over its resistance, at most.
+    Inertance,
+    /// Error of Poiseuille's profile in a tube, at most.
+    UnsteadyFriction,
+    /// Losses of a tube over its laminar friction, at most.
+    TubeLosses,
     /// What pressure does over what loads do.
     PressureStrain,
     /// Larger of dm/am, dn/an.
@@ -130,7 +138,10 @@ impl Display for Cause {
             Self::Asked => f.write_str("asked for"),
             Self::LeftOut => f.write_str("left out as asked"),
             Self::Refused(obstacle) => write!(f, "cannot be left out: {}", obstacle.what),
-            Self::Unasked => f.write_str("flow in tubes creeps unless this is asked for by name"),
+            Self::Unasked => {
+                f.write_str("flow in tubes creeps in the published form, unless this is asked for by name")
+            }
+            Self::FedJunction => f.write_str("left out: the flow of a port enters a junction where only tubes meet"),
             Self::Given(true) => f.write_str("given"),
             Self::Given(false) => f.write_str("not given"),
             Self::Filled(true) => f.write_str("bladders and fluid are given"),
@@ -173,6 +184,9 @@ impl Display for Number {
             Self::RotaryInertia => "phase of the second bending mode in the whole run",
             Self::Leakage => "what leaks in the whole run",
             Self::LagAlongBladders => "a bladder's own time against that of the motion",
+            Self::Inertance => "inertia of the fluid in a tube over its resistance",
+            Self::UnsteadyFriction => "error of Poiseuille's profile in a tube",
+            Self::TubeLosses => "losses of a tube over its laminar friction",
             Self::PressureStrain => "what pressure does over what loads do",
             Self::Asymmetry => "larger of dm/am, dn/an",
             Self::StrainEnergy => "strain energy beyond the quadratic part over that, at most",

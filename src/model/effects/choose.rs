@@ -72,7 +72,10 @@ impl<'a> Chooser<'a> {
                     (true, Cause::Refused(obstacle))
                 }
             },
-            Choice::Auto if effect.by_name() => (false, Cause::Unasked),
+            Choice::Auto if effect.by_name(self.case.formulation) => (false, Cause::Unasked),
+            Choice::Auto if effect.of_tubes() && self.network.is_some_and(|n| n.fed_junction().is_some()) => {
+                (false, Cause::FedJunction)
+            }
             Choice::Auto => match self.scene {
                 None => (true, Cause::Full),
                 Some(scene) => match self.obstacle(effect) {
@@ -184,6 +187,9 @@ impl<'a> Chooser<'a> {
                 None if scene.uneven_start() => kept(Keeps::UnevenStart),
                 None => weigh(Number::LagAlongBladders, scene.lag_along_bladders(self.tolerance)),
             },
+            Effect::TubeInertia => weigh(Number::Inertance, scene.tubes(self.tolerance).inertia),
+            Effect::UnsteadyFriction => weigh(Number::UnsteadyFriction, scene.tubes(self.tolerance).memory),
+            Effect::TubeLosses => weigh(Number::TubeLosses, scene.tubes(self.tolerance).losses),
             Effect::PressureToCurvature => weigh(Number::PressureStrain, scene.strains_of_pressure()[0]),
             Effect::PressureToStretch => weigh(Number::PressureStrain, scene.strains_of_pressure()[1]),
             Effect::MomentToArea | Effect::ForceToArea => kept(Keeps::MakesPressure),

@@ -47,7 +47,7 @@ pub fn without(case: &Case, off: &[Effect]) -> Case {
     for &effect in Effect::CHOSEN {
         let choice = match off.contains(&effect) {
             true => Choice::Off,
-            false if effect.by_name() => Choice::Auto,
+            false if effect.by_name(case.formulation) => Choice::Auto,
             false => Choice::On,
         };
         choices.set(effect, choice);

@@ -4,6 +4,7 @@
 mod least;
 mod pace;
 mod stability;
+mod tubes;
 
 use std::cell::OnceCell;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -19,6 +20,7 @@ use crate::model::{Attachment, Load, Network, Scales, Section, Wet, each_signal}
 use least::Least;
 use pace::Pace;
 use stability::SAFE_COMPRESSION;
+use tubes::Tubes;
 
 /// A scene, before anything is left out.
 pub struct Scene<'a> {
@@ -42,6 +44,7 @@ pub struct Scene<'a> {
     others: Vec<Pace>,
     instability: OnceCell<Option<String>>,
     least: OnceCell<Least>,
+    tubes: OnceCell<Tubes>,
 }
 
 impl<'a> Scene<'a> {
@@ -80,6 +83,7 @@ impl<'a> Scene<'a> {
             others,
             instability: OnceCell::new(),
             least: OnceCell::new(),
+            tubes: OnceCell::new(),
             scales: Scales::estimate(case, section, wet),
             bending: beta * beta * (section.bending_stiffness / mass).sqrt(),
             axial: quarter / length * (section.axial_stiffness / mass).sqrt(),
@@ -301,6 +305,12 @@ impl<'a> Scene<'a> {
     /// over the whole run T.
     pub fn lag_along_bladders(&self, tolerance: f64) -> f64 {
         let Some(wet) = self.wet else { return 0.0 };
+        self.fastest(wet, tolerance) * wet.area.per_pressure * wet.bladder_length.powi(2)
+            / (PI * PI * wet.network.bladder_mobility)
+    }
+
+    /// ω of the fastest motion that is asked for, with ω (1 + χ i ω T) of vibrations [1/s].
+    fn fastest(&self, wet: &Wet, tolerance: f64) -> f64 {
         let end = self.case.time.end_s;
         let mut rate = 0.0_f64;
         self.signals(|signal| {
@@ -318,7 +328,7 @@ impl<'a> Scene<'a> {
                 rate = rate.max(free * (1.0 + fluid * inertia * free * end));
             }
         }
-        rate * wet.area.per_pressure * wet.bladder_length.powi(2) / (PI * PI * wet.network.bladder_mobility)
+        rate
     }
 
     /// Parts χ of curvature and stretch that the pressure of sealed bladders takes back, at most: `EI (∂α_p/∂p_u - ∂α_p/∂p_d) A_M'/a_p`
