@@ -110,13 +110,13 @@ effects! {
         NetworkPressureDifferences network_pressure_differences,
         /// Pressure differences along each bladder; off: one finite volume a bladder, whatever `/mesh/cells_per_bladder` says.
         FlowAlongBladders flow_along_bladders,
-        /// Inertia of the fluid in tubes: flow is an unknown of each tube. Chosen by name: `auto` and `"full"` take flow as creeping, and
-        /// say where it does not creep.
+        /// Inertia of the fluid in tubes: flow is an unknown of each tube. Left out of the published form unless it is named.
         TubeInertia tube_inertia,
-        /// Laminar friction in tubes that depends on how flow has changed, ten states a tube; off: that of Poiseuille's profile. Chosen by
-        /// name; needs `tube_inertia`.
+        /// Laminar friction in tubes that depends on how flow has changed, ten states a tube; off: that of Poiseuille's profile. Needs
+        /// `tube_inertia`.
         UnsteadyFriction unsteady_friction,
-        /// Turbulent friction in tubes, and losses at their ends: `loss_coefficient`, `roughness_m`. Chosen by name.
+        /// Turbulent friction in tubes, and losses at their ends: `loss_coefficient`, `roughness_m`. Left out of the published form
+        /// unless it is named.
         TubeLosses tube_losses,
         /// Pressure bends the beam, `alpha_p`.
         PressureToCurvature pressure_to_curvature,

@@ -128,7 +128,7 @@ pub fn about(effect: Effect) -> About {
         Effect::TubeInertia => About {
             adds: "I dq/dt, I = 4/3 ρ l/A in each tube",
             brings: "the flow of each tube; its pressure jumps no more with its flow",
-            number: "ω I/R, ω that of the flow; by name only",
+            number: "ω I/R, ω of the fastest motion",
             cost: "an unknown a tube; waves of fluid against bladders",
             needs: &[Fluid, Flow, NetworkPressureDifferences],
             presence: Presence::Chosen,
@@ -136,7 +136,7 @@ pub fn about(effect: Effect) -> About {
         Effect::UnsteadyFriction => About {
             adds: "Σ r_i (q - j_i), dj_i/dt = n_i (ν/r²) (q - j_i); I = ρ l/A",
             brings: "ten states a tube, the memory of its friction",
-            number: "Womersley number r √(ω/ν); by name only",
+            number: "Wo⁴/1152, Wo = r √(ω/ν)",
             cost: "10 unknowns a tube",
             needs: &[TubeInertia],
             presence: Presence::Chosen,
@@ -144,7 +144,7 @@ pub fn about(effect: Effect) -> About {
         Effect::TubeLosses => About {
             adds: "(f - 64/Re) (l/D) ρ v²/2 + K ρ v²/2, f by Churchill",
             brings: "the flow of each tube, where it is no unknown yet; nonlinear friction",
-            number: "Re, and Re D/l for the ends; by name only",
+            number: "Δp_loss/(R q) at the largest flow",
             cost: "an algebraic unknown a tube",
             needs: &[Fluid, Flow, NetworkPressureDifferences],
             presence: Presence::Chosen,
