@@ -27,6 +27,7 @@ pub use attached::Attached;
 pub use fluid_mesh::FluidMesh;
 pub use layout::Layout;
 pub use mesh::Mesh;
+pub use quantities::Probe;
 pub use statics::Statics;
 pub use time_data::{SampledLoad, TimeData};
 pub use workspace::{State, Workspace};
@@ -46,6 +47,8 @@ pub struct System {
     pub loads: Vec<SampledLoad>,
     /// What is attached to the beam, in the order of places.
     pub attached: Vec<Attached>,
+    /// Places that are recorded.
+    pub probes: Vec<Probe>,
     /// Masses of the nodes [kg].
     pub masses: Vec<f64>,
     /// Whether any load is a distributed moment.
@@ -144,6 +147,7 @@ impl System {
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
         Self {
             model,
+            probes: Probe::all(case, &mesh),
             mesh,
             fluid,
             layout,

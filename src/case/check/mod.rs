@@ -8,6 +8,7 @@ mod functions;
 mod junctions;
 pub mod network;
 mod plausible;
+mod probes;
 mod size;
 mod start;
 mod strength;
@@ -21,7 +22,7 @@ use crate::error::{Code, Violation};
 type Rule = fn(&Case, &mut Violations);
 
 /// All rules, each with the sections of the case that it compares.
-const RULES: [(Rule, &[&str]); 12] = [
+const RULES: [(Rule, &[&str]); 13] = [
     (name, &[]),
     (plausible::sizes, &[]),
     (plausible::proportions, &["beam", "tubes", "network"]),
@@ -32,6 +33,7 @@ const RULES: [(Rule, &[&str]); 12] = [
     (network::check, &["bladders", "tubes", "network", "time"]),
     (ends::check, &[]),
     (attachments::check, &[]),
+    (probes::check, &[]),
     (functions::check, &["time"]),
     (start::check, &["beam", "bladders", "ends", "start", "time"]),
     (time::check, &[]),

@@ -21,6 +21,7 @@ mod effects;
 mod loads;
 mod network;
 mod numerics;
+mod probes;
 
 pub use attachments::*;
 pub use beam::*;
@@ -29,6 +30,7 @@ pub use effects::*;
 pub use loads::*;
 pub use network::*;
 pub use numerics::*;
+pub use probes::*;
 
 /// A case: one beam, its bladders and tubes, what is done to it, and how it is to be solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -98,6 +100,10 @@ pub struct Case {
     /// Time integration.
     #[serde(default)]
     pub solver: Solver,
+    /// Places of the beam that are recorded over time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000))]
+    pub probes: Vec<Probe>,
     /// Where its coefficients come from; not part of the text, and not compared.
     #[serde(skip)]
     #[schemars(skip)]
