@@ -190,6 +190,14 @@ impl Model {
         Ok(Self::of(case, Section::new(case), network, effects))
     }
 
+    /// The same with inertia, and with Poiseuille's friction in tubes where unsteady friction is not named: its memory has ten decays a
+    /// tube, among which a search for modes would lose itself.
+    pub fn of_modes(case: &Case) -> Result<Self> {
+        let network = Network::of(case)?;
+        let effects = EffectSet::whole(case, network.as_ref()).forgetting();
+        Ok(Self::of(case, Section::new(case), network, effects))
+    }
+
     /// The model of a changed case with the effects and scales of this one.
     pub fn like(&self, case: &Case) -> Result<Self> {
         Ok(Self {

@@ -244,7 +244,12 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         add(out, EnergyRate::Bladders, in_halves);
         let rest = match &link.flow {
             None => q * drop_over(link, now, w) - in_halves,
-            Some(flow) => q * q * now.resistance[n] + tubes::dissipation(flow, q, w),
+            Some(flow) => tubes::dissipation(
+                link,
+                flow,
+                [now.resistance[n], q, drop_over(link, now, w) - q * link.half_cells],
+                w,
+            ),
         };
         add(
             out,

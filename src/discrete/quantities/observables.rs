@@ -6,6 +6,7 @@ use super::look::Look;
 use crate::case::schema::Effect;
 use crate::discrete::System;
 use crate::discrete::ledger::{ENERGY_RATES, EnergyRate, passed};
+use crate::model::effects::Cause;
 
 /// What a quantity is read off.
 #[derive(Clone, Copy, Debug)]
@@ -88,7 +89,8 @@ fn attached(system: &System) -> bool {
 }
 
 fn inert(system: &System) -> bool {
-    system.fluid.is_some() && system.model.effects.has(Effect::TubeInertia)
+    let unasked = || system.model.effects.decision(Effect::TubeInertia).cause == Cause::Unasked;
+    system.fluid.is_some() && !unasked()
 }
 
 fn nonlinear(system: &System) -> bool {
