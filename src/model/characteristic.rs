@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, Matrix2};
 
 use super::network::{Network, Node};
-use super::{Attachment, Load, Model, Wet, each_signal, tongue};
+use super::{Attachment, Load, Model, Surroundings, Wet, each_signal, tongue};
 use crate::case::schema::Effect;
 use crate::case::schema::{Case, ChainEnd};
 use crate::case::{ResolvedEnd, Rotation, Translation};
@@ -191,8 +191,9 @@ fn forcing_frequency(case: &Case) -> Option<f64> {
         }
     };
     let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
-    let loads: Vec<Load> = case.loads.iter().flat_map(|load| Load::resolve(load, 1.0)).collect();
-    each_signal(&ends, &loads, &Attachment::all(case), None, &mut hear);
+    let loads: Vec<Load> = case.loads.iter().flat_map(|load| Load::on(load, [1.0; 2])).collect();
+    let around = case.surroundings.as_ref().map(|s| Surroundings::new(s, &case.beam));
+    each_signal(&ends, &loads, &Attachment::all(case), around.as_ref(), None, &mut hear);
     if let Some(network) = &case.network {
         for chain in &network.chains {
             hear(&chain.opening);

@@ -18,6 +18,7 @@ pub mod passivity;
 pub mod scales;
 pub mod storage;
 pub mod strain_energy;
+pub mod surroundings;
 pub mod tongue;
 
 use crate::case::schema::Effect;
@@ -37,6 +38,7 @@ pub use network::Network;
 pub use scales::Scales;
 pub use storage::{LumpedKind, LumpedNetwork, Storage};
 pub use strain_energy::StrainEnergy;
+pub use surroundings::Surroundings;
 
 /// The bladders and what they are filled with and joined by.
 #[derive(Clone, Debug)]
@@ -159,6 +161,8 @@ pub struct Model {
     pub loads: Vec<Load>,
     /// What is attached to the beam at places.
     pub attachments: Vec<Attachment>,
+    /// What the beam moves through.
+    pub surroundings: Option<Surroundings>,
     /// Fluid and bladders; absent in a dry beam.
     pub wet: Option<Wet>,
     /// Characteristic size of every kind of unknown.
@@ -222,7 +226,7 @@ impl Model {
         let loads = case
             .loads
             .iter()
-            .flat_map(|load| Load::resolve(load, section.mass_per_length))
+            .flat_map(|load| Load::resolve(load, &section))
             .collect();
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
         let scales = Scales::estimate(case, &section, wet.as_ref());
@@ -239,6 +243,7 @@ impl Model {
             ends,
             loads,
             attachments: Attachment::all(case),
+            surroundings: case.surroundings.as_ref().map(|s| Surroundings::new(s, &case.beam)),
             wet,
             scales,
         }
@@ -267,6 +272,8 @@ impl Model {
             .iter_mut()
             .flat_map(|attachment| &mut attachment.forces);
         forces.for_each(|force| replace(&mut force.signal));
+        let stream = self.surroundings.as_mut().and_then(|around| around.stream.as_mut());
+        stream.into_iter().flatten().for_each(replace);
         if let Some(wet) = &mut self.wet {
             let network = &mut wet.network;
             network.ports.iter_mut().for_each(|port| replace(&mut port.pressure));
@@ -297,6 +304,7 @@ impl Model {
             &self.ends,
             &self.loads,
             &self.attachments,
+            self.surroundings.as_ref(),
             self.wet.as_ref().map(|wet| &wet.network),
             visit,
         );
@@ -315,11 +323,12 @@ impl Model {
     }
 }
 
-/// Visits every signal: of ends, loads, valves and ports.
+/// Visits every signal: of ends, loads, attachments, a stream, valves and ports.
 pub fn each_signal(
     ends: &[ResolvedEnd; 2],
     loads: &[Load],
     attachments: &[Attachment],
+    around: Option<&Surroundings>,
     network: Option<&Network>,
     mut visit: impl FnMut(&Signal),
 ) {
@@ -343,6 +352,8 @@ pub fn each_signal(
     for force in attachments.iter().flat_map(|attachment| &attachment.forces) {
         visit(&force.signal);
     }
+    let stream = around.and_then(|around| around.stream.as_ref());
+    stream.into_iter().flatten().for_each(&mut visit);
     if let Some(network) = network {
         network
             .links

@@ -146,6 +146,8 @@ effects! {
         Gravity gravity,
         /// Point masses, springs, dashpots and forces at places along the beam.
         Attachments attachments,
+        /// Fluid around the beam: its inertia and stream.
+        Surroundings surroundings,
     }
 }
 

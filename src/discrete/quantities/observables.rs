@@ -93,6 +93,11 @@ fn inert(system: &System) -> bool {
     system.fluid.is_some() && !unasked()
 }
 
+fn around(system: &System) -> bool {
+    let around = system.model.surroundings.as_ref();
+    around.is_some_and(|around| around.added_mass > 0.0 && around.stream.is_none())
+}
+
 fn nonlinear(system: &System) -> bool {
     system.model.strain_energy().is_some()
 }
@@ -196,6 +201,8 @@ observables! {
         "kinetic energy of the fluid in tubes";
     SpringEnergy: "spring_energy" ["J"], "spring energy", "energy of springs to ground", Stored, Recorded, attached, Read::State(|look| look.stored.springs),
         "energy of what holds the beam elastically at places";
+    SurroundingEnergy: "surrounding_energy" ["J"], "energy around", "energy of the fluid around the beam", Stored, Recorded, around, Read::State(|look| look.stored.around),
+        "kinetic energy of the fluid around that moves with the beam";
     WorkLoads: "work_loads" ["J"], "work of loads", "work of the loads", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Loads as usize]),
         "work of distributed loads and end forces";
     WorkEnds: "work_ends" ["J"], "work of ends", "work of the driven ends", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Ends as usize]),
@@ -281,7 +288,7 @@ impl Observable {
     pub fn at_rest(self) -> bool {
         match self.group() {
             Group::Tip | Group::Pressure | Group::Power | Group::State => true,
-            Group::Stored => !matches!(self, Self::KineticEnergy | Self::RotaryEnergy),
+            Group::Stored => !matches!(self, Self::KineticEnergy | Self::RotaryEnergy | Self::SurroundingEnergy),
             _ => false,
         }
     }

@@ -127,6 +127,8 @@ pub enum Keeps {
     MakesPressure,
     /// Something is attached to the beam, which the scene's numbers do not know.
     Attachments,
+    /// A fluid is around the beam, which the scene's numbers do not know.
+    Surroundings,
     /// The section is not linear at the scene's loads.
     FiniteStrain,
 }
@@ -207,6 +209,7 @@ impl Display for Keeps {
             Self::UnevenStart => "the start has differences along a bladder",
             Self::FiniteStrain => "the section is not linear at these loads",
             Self::Attachments => "what is attached to the beam has no bound here",
+            Self::Surroundings => "the fluid around the beam has no bound here",
             Self::MakesPressure => "it is what makes pressure",
         })
     }

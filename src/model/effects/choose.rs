@@ -110,7 +110,7 @@ impl<'a> Chooser<'a> {
             Effect::AxialForceOnBending => obstacles::axial_force_on_bending(turning),
             Effect::AxialStretch => obstacles::axial_stretch(case, across, turning),
             Effect::SolidInertia => obstacles::solid_inertia(case),
-            Effect::AxialInertia => obstacles::axial_inertia(case),
+            Effect::AxialInertia => obstacles::axial_inertia(case, turning),
             Effect::Flow => network.and_then(obstacles::flow),
             Effect::NetworkPressureDifferences => network.and_then(obstacles::network_pressure_differences),
             _ => None,
@@ -139,6 +139,7 @@ impl<'a> Chooser<'a> {
         };
         match effect {
             _ if !self.case.attachments.is_empty() && by_motion(effect) => kept(Keeps::Attachments),
+            _ if self.case.surroundings.is_some() && by_motion(effect) => kept(Keeps::Surroundings),
             _ if about(Effect::NonlinearSection).needs.contains(&effect) && scene.strain_energy() >= self.tolerance => {
                 kept(Keeps::FiniteStrain)
             }

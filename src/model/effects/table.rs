@@ -222,7 +222,10 @@ pub fn about(effect: Effect) -> About {
             number: "c₂ u1/m, u1 the swing: what a swing loses of itself; present where given",
             cost: "a root in every node",
             needs: &[TransverseMotion],
-            presence: Presence::Given(|case, _| case.beam.damping.quadratic_drag_n_s2_m3 > 0.0),
+            presence: Presence::Given(|case, _| {
+                let around = case.surroundings.as_ref();
+                case.beam.damping.quadratic_drag_n_s2_m3 > 0.0 || around.is_some_and(|s| s.drag_coefficient > 0.0)
+            }),
         },
         Effect::Valves => About {
             adds: "g = o/(o R_half + R), o(t) given",
@@ -265,6 +268,14 @@ pub fn about(effect: Effect) -> About {
             cost: "arithmetic in two nodes each",
             needs: &[],
             presence: Presence::Given(|case, _| !case.attachments.is_empty()),
+        },
+        Effect::Surroundings => About {
+            adds: "-m_a (v·e_n)_t e_n, drag on v less the stream's velocity, -ρ h_s w_s g",
+            brings: "accelerations of both directions coupled in every node",
+            number: "present where given; what is decided by the scene's numbers stays then",
+            cost: "arithmetic in every node",
+            needs: &[],
+            presence: Presence::Given(|case, _| case.surroundings.is_some()),
         },
     }
 }

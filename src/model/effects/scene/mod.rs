@@ -15,7 +15,7 @@ use crate::functions::Signal;
 use crate::model::characteristic::first_wave_number;
 use crate::model::network::{Link, Node};
 use crate::model::scales::Drive;
-use crate::model::{Attachment, Load, Network, Scales, Section, Wet, each_signal};
+use crate::model::{Attachment, Load, Network, Scales, Section, Surroundings, Wet, each_signal};
 
 use least::Least;
 use pace::Pace;
@@ -30,6 +30,7 @@ pub struct Scene<'a> {
     ends: [ResolvedEnd; 2],
     loads: Vec<Load>,
     attachments: Vec<Attachment>,
+    around: Option<Surroundings>,
     scales: Scales,
     drive: Drive,
     /// First bending frequency of the drained beam [1/s].
@@ -61,7 +62,11 @@ impl<'a> Scene<'a> {
             FRAC_PI_2
         };
         let beta = first_wave_number(&ends).unwrap_or(FRAC_PI_2) / length;
-        let loads: Vec<Load> = case.loads.iter().flat_map(|load| Load::resolve(load, mass)).collect();
+        let loads: Vec<Load> = case
+            .loads
+            .iter()
+            .flat_map(|load| Load::resolve(load, section))
+            .collect();
         let mut undriven = ends.clone();
         let mut driven_along = vec![];
         for end in &mut undriven {
@@ -72,13 +77,22 @@ impl<'a> Scene<'a> {
         }
         let mut others = vec![];
         let attachments = Attachment::all(case);
-        each_signal(&undriven, &loads, &attachments, wet.map(|wet| &wet.network), |signal| {
-            others.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
-        });
+        let around = case.surroundings.as_ref().map(|s| Surroundings::new(s, &case.beam));
+        each_signal(
+            &undriven,
+            &loads,
+            &attachments,
+            around.as_ref(),
+            wet.map(|wet| &wet.network),
+            |signal| {
+                others.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
+            },
+        );
         Self {
             wet,
             loads,
             attachments,
+            around,
             driven_along,
             others,
             instability: OnceCell::new(),
@@ -100,7 +114,14 @@ impl<'a> Scene<'a> {
     }
 
     fn signals(&self, visit: impl FnMut(&Signal)) {
-        each_signal(&self.ends, &self.loads, &self.attachments, self.network(), visit);
+        each_signal(
+            &self.ends,
+            &self.loads,
+            &self.attachments,
+            self.around.as_ref(),
+            self.network(),
+            visit,
+        );
     }
 
     /// Whether the beam begins bent, stretched, moving, or with bladders under pressure.
