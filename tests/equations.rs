@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 52] = [
+const INDEX: [(&str, &str, &str); 53] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -158,6 +158,7 @@ const INDEX: [(&str, &str, &str); 52] = [
     ),
     ("[E51]", "tests/tubes.rs", "the_impedance_of_a_tube_is_womersleys"),
     ("[E52]", "tests/tubes.rs", "friction_is_churchills"),
+    ("[E53]", "tests/surroundings.rs", "frequencies_fall_with_the_added_mass"),
 ];
 
 #[test]

@@ -321,52 +321,6 @@ impl<'a> Scene<'a> {
         wet.bladder_length / wet.network.bladder_mobility
     }
 
-    /// `τ ω`, `τ = a_p l_b² μ/(π² q1b)` a bladder's own time and ω of the fastest motion that is asked for. Of a vibration whose part
-    /// in the motion is i and whose stiffness is fluid to the part χ it is `τ ω (1 + χ i ω T)`: what flows along bladders damps it
-    /// over the whole run T.
-    pub fn lag_along_bladders(&self, tolerance: f64) -> f64 {
-        let Some(wet) = self.wet else { return 0.0 };
-        self.fastest(wet, tolerance) * wet.area.per_pressure * wet.bladder_length.powi(2)
-            / (PI * PI * wet.network.bladder_mobility)
-    }
-
-    /// ω of the fastest motion that is asked for, with ω (1 + χ i ω T) of vibrations [1/s].
-    fn fastest(&self, wet: &Wet, tolerance: f64) -> f64 {
-        let end = self.case.time.end_s;
-        let mut rate = 0.0_f64;
-        self.signals(|signal| {
-            if let Some(period) = signal.shortest_time_s(end) {
-                rate = rate.max(2.0 * PI / period);
-            }
-        });
-        let [bent, stretched] = self.stiffness_of_fluid(wet);
-        let waves = [
-            (self.bending_inertia(), self.bending, bent),
-            (self.axial_waves(), self.axial, stretched),
-        ];
-        for (inertia, free, fluid) in waves {
-            if inertia > tolerance {
-                rate = rate.max(free * (1.0 + fluid * inertia * free * end));
-            }
-        }
-        rate
-    }
-
-    /// Parts χ of curvature and stretch that the pressure of sealed bladders takes back, at most: `EI (∂α_p/∂p_u - ∂α_p/∂p_d) A_M'/a_p`
-    /// and `EA (∂λ_p/∂p_u + ∂λ_p/∂p_d) A_N'/a_p`.
-    fn stiffness_of_fluid(&self, wet: &Wet) -> [f64; 2] {
-        let (area, coupling) = (&wet.area, &wet.coupling);
-        // far from a kink on either side of it, where slopes are steepest
-        let steepest = |slope: &dyn Fn(f64) -> f64| slope(1e100).abs().max(slope(-1e100).abs());
-        let bent = steepest(&|m| coupling.curvature(area, m, 1.0, -1.0) * area.moment_slope(m, 1.0));
-        let stretched = steepest(&|n| coupling.stretch(area, n, 1.0, 1.0) * area.force_slope(n));
-        let stiffness = [self.section.bending_stiffness, self.section.axial_stiffness];
-        [
-            stiffness[0] * bent / area.per_pressure,
-            stiffness[1] * stretched / area.per_pressure,
-        ]
-    }
-
     /// Moment and force that pressure causes, over those of the loads at the least; over the whole run where vibrations are damped by it.
     pub fn strains_of_pressure(&self) -> [f64; 2] {
         let Some(wet) = self.wet else { return [0.0; 2] };
