@@ -131,6 +131,12 @@ fn balances_close_in_water() {
             json!({"surroundings": still, "effects": {"rotary_inertia": "off"},
                 "ends": {"root": {"pinned": {"u1_m": {"ramp": {"to": 2e-3, "start_s": 0.05, "duration_s": 0.05, "shape": "linear"}}}}, "tip": "free"}}),
         ),
+        (
+            "kicked across only",
+            json!({"surroundings": still, "effects": {"rotary_inertia": "off"},
+                "ends": {"root": {"conditions": {"u1_m": {"ramp": {"to": 2e-3, "start_s": 0.15, "duration_s": 0.05, "shape": "linear"}},
+                    "force_z_n": 0.0, "moment_n_m": 0.01}}, "tip": "free"}}),
+        ),
     ];
     let mut open = vec![];
     for (what, sets) in cases {
