@@ -31,7 +31,10 @@ pub fn velocities(w: &Workspace<f64>) -> Nodal {
 /// the place of the beam.
 pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f64>) -> Option<Nodal> {
     let l = &system.layout;
-    if !l.inertia || !system.model.effects.has(Effect::RotaryInertia) || system.model.kinematics == Kinematics::Bar {
+    let around = system.model.surroundings.as_ref();
+    // the fluid around couples both directions of a node, sections that turn couple nodes
+    let coupled = system.model.effects.has(Effect::RotaryInertia) || around.is_some_and(|s| s.added_mass > 0.0);
+    if !l.inertia || !coupled || system.model.kinematics == Kinematics::Bar {
         return None;
     }
     let last = system.mesh.nodes - 1;
