@@ -51,7 +51,15 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
     put("t_s_s", solid_time);
     let first = first_wave_number(&model.ends);
     if let Some(beta) = first {
-        put("first_bending_frequency_hz", beta * beta / (2.0 * PI * solid_time));
+        let dry = beta * beta / (2.0 * PI * solid_time);
+        put("first_bending_frequency_hz", dry);
+        if let Some(around) = &model.surroundings {
+            put("added_mass_kg_m", around.added_mass);
+            put(
+                "first_bending_frequency_in_fluid_hz",
+                dry / (1.0 + around.added_mass / m).sqrt(),
+            );
+        }
     }
     put(
         "first_axial_frequency_hz",
