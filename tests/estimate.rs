@@ -149,7 +149,7 @@ fn a_loose_tolerance_is_told() {
 }
 
 /// Source: Fig. 6 of Matia & Gat. Goal: `run` printed 193 % in the window of the reciprocal, conservative beam, which had put energy
-/// in before; of what was spent in it the turbine has 70 %, of a passive beam never more than all. With the published coupling a
+/// in before; of what was spent in it the turbine has 59 % (70 % where flow in tubes creeps), of a passive beam never more than all. With the published coupling a
 /// quotient above one says whose energy that is.
 #[test]
 fn an_efficiency_counts_what_was_spent() {
@@ -157,7 +157,7 @@ fn an_efficiency_counts_what_was_spent() {
     let sound = run(&shipped("harvester-crossover-uniform", &passive));
     let efficiency = sound.quantities["efficiency"];
     let window = efficiency.window.unwrap();
-    assert!((0.6..0.8).contains(&window), "{efficiency:?}");
+    assert!((0.5..0.7).contains(&window), "{efficiency:?}");
     assert!(efficiency.window_error.unwrap() < 0.05, "{efficiency:?}");
     assert!(!warned(&sound, "W020"), "{:?}", sound.warnings);
     let published = run(&shipped("harvester-crossover-uniform", &[]));
@@ -180,6 +180,7 @@ fn open_balances_are_told_beside_their_figures() {
             &[
                 r#"/bladders/coupling="reciprocal""#,
                 r#"/formulation="conservative""#,
+                r#"/effects={"tube_inertia":"off","tube_losses":"off"}"#,
                 rtol,
             ],
         ))

@@ -139,7 +139,11 @@ fn a_warm_start_keeps_the_volume_of_the_start() {
 fn a_cycle_whose_energies_do_not_add_up_is_found_again() {
     let case = shipped(
         "harvester-parallel-wave",
-        &[r#"/bladders/coupling="reciprocal""#, r#"/formulation="conservative""#],
+        &[
+            r#"/bladders/coupling="reciprocal""#,
+            r#"/formulation="conservative""#,
+            r#"/effects={"tube_inertia":"off","tube_losses":"off"}"#,
+        ],
     );
     let scene = Scene::new(&case, None).unwrap();
     let cycle = shoot(&scene, None).unwrap();

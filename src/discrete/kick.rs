@@ -4,7 +4,7 @@
 //! and `[E27]`:
 //!
 //! ```text
-//! m h_i Δv_i = ΔS_{i+1/2} - ΔS_{i-1/2} (+ P_i, of a driven end)      ΔS = J/h n n·(Δv_{i+1} - Δv_i)
+//! m h_i Δv_i + m_a h_i e_n e_n·Δv_i = ΔS_{i+1/2} - ΔS_{i-1/2} (+ P_i, of a driven end)      ΔS = J/h n n·(Δv_{i+1} - Δv_i)
 //! J = m y11/λ² (conservative), m y11 (published), n = (cos φ, -sin φ);  m y11, n = (1, 0) where rotary inertia has no axial part
 //! ```
 //!
@@ -13,6 +13,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
+use super::residual::around::node_tangent;
 use super::{System, TimeData, Workspace};
 use crate::case::schema::Effect;
 use crate::model::Kinematics;
@@ -30,7 +31,10 @@ pub fn velocities(w: &Workspace<f64>) -> Nodal {
 /// the place of the beam.
 pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f64>) -> Option<Nodal> {
     let l = &system.layout;
-    if !l.inertia || !system.model.effects.has(Effect::RotaryInertia) || system.model.kinematics == Kinematics::Bar {
+    let around = system.model.surroundings.as_ref();
+    // the fluid around couples both directions of a node, sections that turn couple nodes
+    let coupled = system.model.effects.has(Effect::RotaryInertia) || around.is_some_and(|s| s.added_mass > 0.0);
+    if !l.inertia || !coupled || system.model.kinematics == Kinematics::Bar {
         return None;
     }
     let last = system.mesh.nodes - 1;
@@ -44,6 +48,12 @@ pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f6
     }
     let jumps = given.iter().flatten().flatten().any(|jump| *jump != 0.0);
     jumps.then(|| solve(system, &given, w))
+}
+
+/// Impulses [kg m/s] that the fluid around takes from nodes over jumps of their velocities.
+pub fn taken_around(system: &System, jumps: &[Planar<f64>], w: &Workspace<f64>) -> Nodal {
+    let of = |(node, jump): (usize, &Planar<f64>)| planar(added(system, w, node) * vector(*jump));
+    jumps.iter().enumerate().map(of).collect()
 }
 
 /// Impulses of nodes [kg m/s] over jumps of their velocities: what outer forces have given them.
@@ -68,6 +78,17 @@ fn vector(v: Planar<f64>) -> Vector2<f64> {
 
 fn planar(v: Vector2<f64>) -> Planar<f64> {
     Planar { x: v.x, z: v.y }
+}
+
+/// `m_a h_i n nᵀ` of a node, [E53].
+fn added(system: &System, w: &Workspace<f64>, node: usize) -> Matrix2<f64> {
+    let added = system
+        .model
+        .surroundings
+        .as_ref()
+        .map_or(0.0, |around| around.added_mass);
+    let n = vector(node_tangent(system, w, node).normal());
+    system.mesh.node_length(node) * added * n * n.transpose()
 }
 
 /// `J/h n nᵀ` of a cell.
@@ -99,7 +120,7 @@ fn solve(system: &System, given: &[[Option<f64>; 2]], w: &Workspace<f64>) -> Nod
     for (i, given) in given.iter().enumerate() {
         let left = beside(i.checked_sub(1));
         let right = beside(Some(i).filter(|i| *i < mesh.cells));
-        let mut pivot = left + right + left * upper + Matrix2::identity() * system.masses[i];
+        let mut pivot = left + right + left * upper + Matrix2::identity() * system.masses[i] + added(system, w, i);
         let (mut next, mut sum) = (-right, left * sums);
         for (k, jump) in given.iter().enumerate() {
             if let Some(jump) = jump {

@@ -18,8 +18,7 @@ pub mod time_data;
 pub mod waves;
 pub mod workspace;
 
-use crate::case::schema::Case;
-use crate::discrete::fluid_mesh::{MeshSource, Place};
+use crate::case::schema::{Case, Effect};
 use crate::error::{Code, Result, Violation};
 use crate::model::loads::LoadKind;
 use crate::model::{Model, Storage, audit};
@@ -28,6 +27,7 @@ pub use attached::Attached;
 pub use fluid_mesh::FluidMesh;
 pub use layout::Layout;
 pub use mesh::Mesh;
+pub use quantities::Probe;
 pub use statics::Statics;
 pub use time_data::{SampledLoad, TimeData};
 pub use workspace::{State, Workspace};
@@ -47,6 +47,8 @@ pub struct System {
     pub loads: Vec<SampledLoad>,
     /// What is attached to the beam, in the order of places.
     pub attached: Vec<Attached>,
+    /// Places that are recorded.
+    pub probes: Vec<Probe>,
     /// Masses of the nodes [kg].
     pub masses: Vec<f64>,
     /// Whether any load is a distributed moment.
@@ -98,9 +100,12 @@ impl System {
 
     /// A junction of tubes with inertia alone into which a port prescribes the flow: the tubes would have to jump with it.
     fn fed_junction(&self) -> Option<Violation> {
-        let fluid = self.fluid.as_ref()?;
-        let fed = |source: &&MeshSource| matches!(source.into, Place::Junction(j) if fluid.accelerated[j]);
-        let name = &self.model.wet.as_ref()?.network.sources[fluid.sources.iter().find(fed)?.number].name;
+        let wet = self
+            .model
+            .wet
+            .as_ref()
+            .filter(|_| self.model.effects.has(Effect::TubeInertia))?;
+        let name = &wet.network.fed_junction()?.name;
         let what = format!("the flow of port \"{name}\" enters a junction where only tubes with inertia meet");
         let fault = Violation::new(Code::Effect, "/effects/tube_inertia", what);
         Some(fault.hint("put the port at a bladder's end, or leave tube_inertia off"))
@@ -142,6 +147,7 @@ impl System {
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
         Self {
             model,
+            probes: Probe::all(case, &mesh),
             mesh,
             fluid,
             layout,

@@ -116,6 +116,8 @@ pub struct TimeData {
     pub moment: Vec<Planar<f64>>,
     /// Forces at attachments, in the order of the model [N].
     pub point_force: Vec<Planar<f64>>,
+    /// Velocity of the stream around the beam [m/s].
+    pub stream: Planar<f64>,
     /// Normal forces that follow from loads alone; nothing where the beam can stretch.
     pub statics: Statics,
     /// Conductance of each link [m^3/(s Pa)].
@@ -147,6 +149,7 @@ impl TimeData {
             force: vec![Planar::default(); system.mesh.nodes],
             moment: vec![Planar::default(); system.mesh.cells],
             point_force: vec![Planar::default(); system.model.attachments.len()],
+            stream: Planar::default(),
             statics: Statics::new(system),
             conductance: vec![0.0; links],
             resistance: vec![0.0; links],
@@ -194,6 +197,14 @@ impl TimeData {
         }
         self.loads(system, clock);
         self.point_forces(system, clock);
+        let stream = system
+            .model
+            .surroundings
+            .as_ref()
+            .and_then(|around| around.stream.as_ref());
+        if let Some([x, z]) = stream {
+            self.stream = Planar::new(x.jet(clock).value, z.jet(clock).value);
+        }
         self.statics.update(system, self.frame(1), clock);
         self.network(system, clock, first);
     }

@@ -56,7 +56,7 @@ impl Attachment {
             .loads
             .iter()
             .filter(|load| written.mass_kg > 0.0 && load.is_body())
-            .flat_map(|load| Load::resolve(load, written.mass_kg))
+            .flat_map(|load| Load::on(load, [written.mass_kg; 2]))
             .map(|load| PointForce {
                 axis: usize::from(load.kind == LoadKind::ForceZ),
                 factor: load.factor * load.profile.value(written.at),

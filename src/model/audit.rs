@@ -222,13 +222,10 @@ pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
 /// a run measures those.
 pub fn warnings(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> Vec<String> {
     let mut all = lasting(case, model, numbers);
-    all.extend(over(
-        numbers,
-        Code::FastFlow,
-        "reynolds_estimate",
-        100.0,
-        "flow in the tubes may not be creeping",
-    ));
+    if !model.effects.has(Effect::TubeLosses) {
+        let what = "flow in the tubes may not be creeping";
+        all.extend(over(numbers, Code::FastFlow, "reynolds_estimate", 100.0, what));
+    }
     all.extend(over(
         numbers,
         Code::Strain,

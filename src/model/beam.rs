@@ -1,5 +1,6 @@
 //! The cross-section of the beam: mass, stiffness, rotary inertia, damping.
 
+use super::surroundings::displaced;
 use crate::case::schema::Case;
 
 /// Constants of the cross-section.
@@ -21,6 +22,8 @@ pub struct Section {
     pub bending_damping_time: f64,
     /// `c` [N s/m^2].
     pub drag: f64,
+    /// `m` less the mass of the fluid around that the beam displaces [kg/m]: what gravity acts on.
+    pub weighing_per_length: f64,
     /// `c_2` [N s^2/m^3].
     pub quadratic_drag: f64,
 }
@@ -57,6 +60,7 @@ impl Section {
             mass_per_length,
             axial_stiffness: beam.young_modulus_pa * beam.height_m * beam.width_m * beam.axial_stiffness_factor,
             bending_stiffness: beam.young_modulus_pa * second_moment,
+            weighing_per_length: mass_per_length - displaced(case.surroundings.as_ref(), beam),
             gyration_radius_squared: beam.density_kg_m3 / mass_per_length * second_moment,
             axial_damping_time: beam.damping.axial_time_s,
             bending_damping_time: beam.damping.bending_time_s,

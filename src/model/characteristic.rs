@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, Matrix2};
 
 use super::network::{Network, Node};
-use super::{Attachment, Load, Model, Wet, each_signal, tongue};
+use super::{Attachment, Load, Model, Surroundings, Wet, each_signal, tongue};
 use crate::case::schema::Effect;
 use crate::case::schema::{Case, ChainEnd};
 use crate::case::{ResolvedEnd, Rotation, Translation};
@@ -51,7 +51,15 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
     put("t_s_s", solid_time);
     let first = first_wave_number(&model.ends);
     if let Some(beta) = first {
-        put("first_bending_frequency_hz", beta * beta / (2.0 * PI * solid_time));
+        let dry = beta * beta / (2.0 * PI * solid_time);
+        put("first_bending_frequency_hz", dry);
+        if let Some(around) = &model.surroundings {
+            put("added_mass_kg_m", around.added_mass);
+            put(
+                "first_bending_frequency_in_fluid_hz",
+                dry / (1.0 + around.added_mass / m).sqrt(),
+            );
+        }
     }
     put(
         "first_axial_frequency_hz",
@@ -191,8 +199,9 @@ fn forcing_frequency(case: &Case) -> Option<f64> {
         }
     };
     let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
-    let loads: Vec<Load> = case.loads.iter().flat_map(|load| Load::resolve(load, 1.0)).collect();
-    each_signal(&ends, &loads, &Attachment::all(case), None, &mut hear);
+    let loads: Vec<Load> = case.loads.iter().flat_map(|load| Load::on(load, [1.0; 2])).collect();
+    let around = case.surroundings.as_ref().map(|s| Surroundings::new(s, &case.beam));
+    each_signal(&ends, &loads, &Attachment::all(case), around.as_ref(), None, &mut hear);
     if let Some(network) = &case.network {
         for chain in &network.chains {
             hear(&chain.opening);

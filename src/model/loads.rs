@@ -1,5 +1,6 @@
 //! Distributed loads.
 
+use super::Section;
 use crate::case::schema::{Distributed, Load as Written};
 use crate::functions::profile::Profile;
 use crate::functions::signals::Signal;
@@ -31,8 +32,14 @@ pub struct Load {
 }
 
 impl Load {
-    /// `[E5]` (A.6, A.7) with `b` in N/m: contact loads as given, body forces and gravity times `m`.
-    pub fn resolve(written: &Written, mass_per_length: f64) -> Vec<Self> {
+    /// `[E5]` (A.6, A.7) with `b` in N/m: contact loads as given, body forces times `m`, gravity times what weighs: `m` less the fluid that
+    /// the beam displaces.
+    pub fn resolve(written: &Written, section: &Section) -> Vec<Self> {
+        Self::on(written, [section.mass_per_length, section.weighing_per_length])
+    }
+
+    /// Of a mass, and of that part of it which gravity acts on.
+    pub fn on(written: &Written, [mass, weighing]: [f64; 2]) -> Vec<Self> {
         let one = |kind, factor, d: &Distributed| {
             vec![Self {
                 kind,
@@ -46,14 +53,14 @@ impl Load {
             Written::ForceZNM(d) => one(LoadKind::ForceZ, 1.0, d),
             Written::MomentXN(d) => one(LoadKind::MomentX, 1.0, d),
             Written::MomentZN(d) => one(LoadKind::MomentZ, 1.0, d),
-            Written::BodyXMS2(d) => one(LoadKind::ForceX, mass_per_length, d),
-            Written::BodyZMS2(d) => one(LoadKind::ForceZ, mass_per_length, d),
+            Written::BodyXMS2(d) => one(LoadKind::ForceX, mass, d),
+            Written::BodyZMS2(d) => one(LoadKind::ForceZ, mass, d),
             Written::Gravity { x_m_s2, z_m_s2 } => [(LoadKind::ForceX, *x_m_s2), (LoadKind::ForceZ, *z_m_s2)]
                 .into_iter()
                 .filter(|(_, g)| *g != 0.0)
                 .map(|(kind, g)| Self {
                     kind,
-                    factor: mass_per_length * g,
+                    factor: weighing * g,
                     signal: Signal::one(),
                     profile: Profile::one(),
                 })

@@ -19,6 +19,7 @@ pub mod passivity;
 pub mod scales;
 pub mod storage;
 pub mod strain_energy;
+pub mod surroundings;
 pub mod tongue;
 
 use crate::case::schema::Effect;
@@ -40,6 +41,7 @@ pub use network::Network;
 pub use scales::Scales;
 pub use storage::{LumpedKind, LumpedNetwork, Storage};
 pub use strain_energy::StrainEnergy;
+pub use surroundings::Surroundings;
 
 /// The bladders and what they are filled with and joined by.
 #[derive(Clone, Debug)]
@@ -204,6 +206,8 @@ pub struct Model {
     pub loads: Vec<Load>,
     /// What is attached to the beam at places.
     pub attachments: Vec<Attachment>,
+    /// What the beam moves through.
+    pub surroundings: Option<Surroundings>,
     /// Fluid and bladders; absent in a dry beam.
     pub wet: Option<Wet>,
     /// Characteristic size of every kind of unknown.
@@ -235,6 +239,14 @@ impl Model {
         Ok(Self::of(case, Section::new(case), network, effects))
     }
 
+    /// The same with inertia, and with Poiseuille's friction in tubes where unsteady friction is not named: its memory has ten decays a
+    /// tube, among which a search for modes would lose itself.
+    pub fn of_modes(case: &Case) -> Result<Self> {
+        let network = Network::of(case)?;
+        let effects = EffectSet::whole(case, network.as_ref()).forgetting();
+        Ok(Self::of(case, Section::new(case), network, effects))
+    }
+
     /// The model of a changed case with the effects and scales of this one.
     pub fn like(&self, case: &Case) -> Result<Self> {
         Ok(Self {
@@ -259,7 +271,7 @@ impl Model {
         let loads = case
             .loads
             .iter()
-            .flat_map(|load| Load::resolve(load, section.mass_per_length))
+            .flat_map(|load| Load::resolve(load, &section))
             .collect();
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
         let scales = Scales::estimate(case, &section, wet.as_ref());
@@ -276,6 +288,7 @@ impl Model {
             ends,
             loads,
             attachments: Attachment::all(case),
+            surroundings: case.surroundings.as_ref().map(|s| Surroundings::new(s, &case.beam)),
             wet,
             scales,
         }
@@ -304,6 +317,8 @@ impl Model {
             .iter_mut()
             .flat_map(|attachment| &mut attachment.forces);
         forces.for_each(|force| replace(&mut force.signal));
+        let stream = self.surroundings.as_mut().and_then(|around| around.stream.as_mut());
+        stream.into_iter().flatten().for_each(replace);
         if let Some(wet) = &mut self.wet {
             let network = &mut wet.network;
             network.ports.iter_mut().for_each(|port| replace(&mut port.pressure));
@@ -334,6 +349,7 @@ impl Model {
             &self.ends,
             &self.loads,
             &self.attachments,
+            self.surroundings.as_ref(),
             self.wet.as_ref().map(|wet| &wet.network),
             visit,
         );
@@ -352,11 +368,12 @@ impl Model {
     }
 }
 
-/// Visits every signal: of ends, loads, valves and ports.
+/// Visits every signal: of ends, loads, attachments, a stream, valves and ports.
 pub fn each_signal(
     ends: &[ResolvedEnd; 2],
     loads: &[Load],
     attachments: &[Attachment],
+    around: Option<&Surroundings>,
     network: Option<&Network>,
     mut visit: impl FnMut(&Signal),
 ) {
@@ -380,6 +397,8 @@ pub fn each_signal(
     for force in attachments.iter().flat_map(|attachment| &attachment.forces) {
         visit(&force.signal);
     }
+    let stream = around.and_then(|around| around.stream.as_ref());
+    stream.into_iter().flatten().for_each(&mut visit);
     if let Some(network) = network {
         network
             .links

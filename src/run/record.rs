@@ -2,6 +2,7 @@
 
 use super::checkpoint::Checkpoint;
 use crate::discrete::quantities::Observable;
+use crate::discrete::quantities::probes::ProbeColumn;
 use crate::error::Result;
 
 /// A column of the history: one number an output time.
@@ -22,6 +23,12 @@ impl From<Observable> for Column {
             unit: one.unit(),
             about: one.about().into(),
         }
+    }
+}
+
+impl From<ProbeColumn> for Column {
+    fn from(ProbeColumn { name, unit, about }: ProbeColumn) -> Self {
+        Self { name, unit, about }
     }
 }
 

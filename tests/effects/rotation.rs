@@ -14,7 +14,10 @@ fn scene(ends: &str, loads: &str, effects: &str) -> super::common::Run {
     let (ends, loads, effects) = (
         format!("/ends={ends}"),
         format!("/loads={loads}"),
-        format!("/effects={effects}"),
+        format!(
+            "/effects={}",
+            effects.replacen('{', r#"{"tube_inertia":"off","tube_losses":"off","#, 1)
+        ),
     );
     let mut sets = SCENE.to_vec();
     sets.extend([ends.as_str(), loads.as_str(), effects.as_str()]);

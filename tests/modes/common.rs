@@ -46,6 +46,7 @@ pub fn wet(per_row: usize, viscosity: f64, am: f64) -> Value {
         "tubes": {"length_m": 0.020, "radius_m": 0.001, "permeability_m4": 6.72e-13},
         "network": {},
         "ends": {"root": "clamped", "tip": "free"},
+        "effects": {"tube_inertia": "off", "tube_losses": "off"},
         "mesh": {"cells_per_segment": 4, "cells_per_bladder": 1},
         "time": {"end_s": 1.0}
     })

@@ -115,6 +115,7 @@ fn balances_of_loaded_beams_close() {
         ("tour-sensor", 0.1),
         ("tip-mass", 0.6),
         ("water-in-tubes", 0.1),
+        ("fin-in-water", 2.0),
         ("tour-beam", 0.1),
         ("section-actuator", 0.3),
         ("section-finite", 0.3),

@@ -18,6 +18,8 @@ pub const KINKED: &str = r#"/bladders/coupling="reciprocal_kinked""#;
 pub const CONSERVATIVE: &str = r#"/formulation="conservative""#;
 /// The paper's form, `--set` argument.
 pub const AS_PUBLISHED: &str = r#"/formulation="published""#;
+/// Flow in tubes creeps, as in the paper, `--set` argument.
+pub const CREEPING: &str = r#"/effects={"tube_inertia":"off","tube_losses":"off"}"#;
 /// Young's modulus of the paper's beam [Pa].
 pub const E: f64 = 2e6;
 /// Length of the paper's beam [m].

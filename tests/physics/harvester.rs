@@ -7,7 +7,7 @@
 use slcbeam::model::characteristic::numbers;
 use slcbeam::model::{Model, audit};
 
-use super::common::{AS_PUBLISHED, CONSERVATIVE, PUBLISHED, RECIPROCAL, Run, run_shipped, shipped, within};
+use super::common::{AS_PUBLISHED, CONSERVATIVE, CREEPING, PUBLISHED, RECIPROCAL, Run, run_shipped, shipped, within};
 
 /// Gains over the last period [J].
 struct Period {
@@ -76,6 +76,7 @@ fn harvests(formulation: &str) {
             &[
                 formulation,
                 RECIPROCAL,
+                CREEPING,
                 r#"/beam/damping={"drag_n_s_m2":10}"#,
                 "/time/end_s=4",
                 "/time/output_interval_s=0.01",

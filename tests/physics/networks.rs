@@ -35,7 +35,7 @@ fn still(per_row: usize, network: &str, pressures: &[(i64, f64)], end: f64) -> s
         "network":{network},
         "ends":{{"root":"clamped","tip":"free"}},
         "start":{{"pressures":[{}]}},
-        "effects":{{"solid_inertia":"off"}},
+        "effects":{{"solid_inertia":"off","tube_inertia":"off","tube_losses":"off"}},
         "mesh":{{"cells_per_segment":1,"cells_per_bladder":1}},
         "time":{{"end_s":{end}}},
         "solver":{{"rtol":1e-9}}}}"#,

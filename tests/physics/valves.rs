@@ -3,7 +3,7 @@
 //! Goal: that order, and that hardly anything is left at a hundredth; for both formulations.
 //! The sizes depend on the start (here: a ramp of one cycle) and are printed, not asserted.
 
-use super::common::{AS_PUBLISHED, CONSERVATIVE, LENGTH, listed, run_shipped};
+use super::common::{AS_PUBLISHED, CONSERVATIVE, CREEPING, LENGTH, listed, run_shipped};
 
 #[test]
 fn closing_valves_turn_bending_off() {
@@ -12,6 +12,7 @@ fn closing_valves_turn_bending_off() {
             let factor = format!("/network/permeability_factor={factor}");
             let sets = [
                 formulation,
+                CREEPING,
                 &factor,
                 "/ends/root/clamped/u3_m/sine/amplitude=0.025",
                 "/ends/root/clamped/u3_m/sine/ramp_cycles=1",

@@ -7,7 +7,8 @@ use nalgebra::Complex;
 use slcbeam::model::Model;
 
 use super::common::{
-    AS_PUBLISHED, CONSERVATIVE, E, EI, LENGTH, PUBLISHED, RECIPROCAL, Run, largest, run, run_shipped, shipped, within,
+    AS_PUBLISHED, CONSERVATIVE, CREEPING, E, EI, LENGTH, PUBLISHED, RECIPROCAL, Run, largest, run, run_shipped,
+    shipped, within,
 };
 
 fn ramp(cycles: u32) -> String {
@@ -53,7 +54,13 @@ fn sizes_of_the_impulsive_start() {
 fn sizes_of_the_ramped_start() {
     for (case, u1) in [("wiring-2", 1.7e-5), ("wiring-3", 8e-6)] {
         for formulation in [CONSERVATIVE, AS_PUBLISHED] {
-            let sets = [&ramp(1), formulation, "/time/window_s=0.05", "/solver/rtol=1e-6"];
+            let sets = [
+                &ramp(1),
+                formulation,
+                CREEPING,
+                "/time/window_s=0.05",
+                "/solver/rtol=1e-6",
+            ];
             let run = run_shipped(case, &sets);
             let deflection = run.window_max_abs("tip_u1_m") / LENGTH;
             within(
@@ -108,6 +115,7 @@ fn shaken(case: &str, coupling: &str, hertz: f64, cycles: f64, more: &[&str]) ->
         format!("/time/output_interval_s={interval}"),
         format!("/time/fields_interval_s={interval}"),
         CONSERVATIVE.into(),
+        CREEPING.into(),
         coupling.into(),
     ];
     sets.extend(more.iter().map(|s| s.to_string()));
@@ -196,7 +204,7 @@ fn above_its_first_frequency_a_beam_answers_uniform_pressure_with_two_signs() {
             &chain,
             "/network/permeability_factor=1000",
             "/ends/root=\"clamped\"",
-            r#"/effects={"rotary_inertia":"off"}"#,
+            r#"/effects={"rotary_inertia":"off","tube_inertia":"off","tube_losses":"off"}"#,
             r#"/beam/damping={"drag_n_s_m2":20}"#,
             "/time/end_s=1",
             "/time/output_interval_s=5e-4",

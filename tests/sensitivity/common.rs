@@ -43,6 +43,7 @@ pub fn wet(end_s: f64) -> Value {
     });
     case["tubes"] = json!({"length_m": 0.02, "radius_m": 0.001, "permeability_m4": 6.72e-13});
     case["network"] = json!({"chains": [{"bladders": [1, 2], "ends": ["sealed", "sealed"]}]});
+    case["effects"] = json!({"tube_inertia": "off", "tube_losses": "off"});
     case["start"] =
         json!({"pressures": [{"bladders": [1], "pressure_pa": 1000.0}, {"bladders": [-2], "pressure_pa": 300.0}]});
     case

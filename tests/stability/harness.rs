@@ -16,6 +16,9 @@ pub const BUDGET: &str = "budget";
 pub const PUBLISHED: &str =
     r#"/bladders/coupling={"published": {"slope_per_pressure_rad": 0.00381467, "length_per_pressure_m": 0.01}}"#;
 
+/// Flow in tubes creeps.
+pub const CREEPING: &str = r#"/effects={"tube_inertia":"off","tube_losses":"off"}"#;
+
 /// Every formulation with every coupling, with a name.
 pub const COMBINATIONS: [(&str, [&str; 2]); 4] = [
     (

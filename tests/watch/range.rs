@@ -60,7 +60,14 @@ fn strains_between_output_times() {
 #[test]
 fn fast_flow_between_output_times() {
     let with = |interval: &str| {
-        let s = finished(&shipped("pluck", &["/time/end_s=0.1", interval]));
+        let s = finished(&shipped(
+            "pluck",
+            &[
+                "/time/end_s=0.1",
+                interval,
+                r#"/effects={"tube_inertia":"off","tube_losses":"off"}"#,
+            ],
+        ));
         let text = s
             .warnings
             .iter()

@@ -67,6 +67,9 @@ fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
         let forces = attachment.forces();
         all.extend(forces.map(|(key, signal)| (format!("/attachments/{i}/{key}"), Role::Other, signal)));
     }
+    for (key, signal) in case.surroundings.iter().flat_map(|around| around.stream()) {
+        all.push((format!("/surroundings/{key}"), Role::Other, signal));
+    }
     let Some(network) = &case.network else {
         return all;
     };

@@ -9,6 +9,7 @@ mod functions;
 mod junctions;
 pub mod network;
 mod plausible;
+mod probes;
 mod size;
 mod start;
 mod strength;
@@ -22,7 +23,7 @@ use crate::error::{Code, Violation};
 type Rule = fn(&Case, &mut Violations);
 
 /// All rules, each with the sections of the case that it compares.
-const RULES: [(Rule, &[&str]); 13] = [
+const RULES: [(Rule, &[&str]); 14] = [
     (name, &[]),
     (plausible::sizes, &[]),
     (plausible::proportions, &["beam", "tubes", "network"]),
@@ -34,6 +35,7 @@ const RULES: [(Rule, &[&str]); 13] = [
     (network::check, &["bladders", "tubes", "network", "time"]),
     (ends::check, &[]),
     (attachments::check, &[]),
+    (probes::check, &[]),
     (functions::check, &["time"]),
     (start::check, &["beam", "bladders", "ends", "start", "time"]),
     (time::check, &[]),

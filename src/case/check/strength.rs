@@ -20,6 +20,9 @@ struct Bound {
     hint: &'static str,
 }
 
+/// Speed of sound in air [m/s]: no stream of the model is faster.
+const SOUND: f64 = 343.0;
+
 /// Bounds from the beam's own sizes.
 struct Bounds {
     pressure: Bound,
@@ -28,6 +31,7 @@ struct Bounds {
     force_along: Bound,
     moment_along: Bound,
     body: Bound,
+    stream: Bound,
 }
 
 impl Bounds {
@@ -59,6 +63,12 @@ impl Bounds {
             force_along: bound(force / beam.length_m, "N/m", strain, newtons),
             moment_along: bound(moment / beam.length_m, "N", strain, "first moments per length are in N"),
             body: bound(force / mass, "m/s^2", strain, "accelerations are in m/s^2"),
+            stream: bound(
+                SOUND,
+                "m/s",
+                "the speed of sound in air",
+                "velocities are in m/s; a km/h is 0.278",
+            ),
         }
     }
 }
@@ -102,6 +112,11 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             };
             let size = size_of(&load.signal, end) * size_along(&load.profile);
             look(format!("/loads/{i}/{key}"), size, bound);
+        }
+    }
+    if let Some(around) = &case.surroundings {
+        for (key, signal) in around.stream() {
+            look(format!("/surroundings/{key}"), size_of(signal, end), &bounds.stream);
         }
     }
     for (i, attachment) in case.attachments.iter().enumerate() {

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Formulation;
+
 /// Which physical effects are simulated: `"auto"`, `"full"` or choice by choice.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Effects {
@@ -111,13 +113,13 @@ effects! {
         /// Compression of the fluid: gas, or a liquid with `bulk_modulus_pa` or `gas_fraction`; off: it keeps its density at ambient
         /// pressure.
         Compressibility compressibility,
-        /// Inertia of the fluid in tubes: flow is an unknown of each tube. Chosen by name: `auto` and `"full"` take flow as creeping, and
-        /// say where it does not creep.
+        /// Inertia of the fluid in tubes: flow is an unknown of each tube. Left out of the published form unless it is named.
         TubeInertia tube_inertia,
-        /// Laminar friction in tubes that depends on how flow has changed, ten states a tube; off: that of Poiseuille's profile. Chosen by
-        /// name; needs `tube_inertia`.
+        /// Laminar friction in tubes that depends on how flow has changed, ten states a tube; off: that of Poiseuille's profile. Needs
+        /// `tube_inertia`.
         UnsteadyFriction unsteady_friction,
-        /// Turbulent friction in tubes, and losses at their ends: `loss_coefficient`, `roughness_m`. Chosen by name.
+        /// Turbulent friction in tubes, and losses at their ends: `loss_coefficient`, `roughness_m`. Left out of the published form
+        /// unless it is named.
         TubeLosses tube_losses,
         /// Pressure bends the beam, `alpha_p`.
         PressureToCurvature pressure_to_curvature,
@@ -147,6 +149,8 @@ effects! {
         Gravity gravity,
         /// Point masses, springs, dashpots and forces at places along the beam.
         Attachments attachments,
+        /// Fluid around the beam: its inertia and stream.
+        Surroundings surroundings,
     }
 }
 
@@ -157,8 +161,13 @@ impl std::fmt::Display for Effect {
 }
 
 impl Effect {
-    /// Whether it is there only where a case names it.
-    pub const fn by_name(self) -> bool {
+    /// Whether it is there only where a case names it: flow in tubes creeps in the published form.
+    pub fn by_name(self, formulation: Formulation) -> bool {
+        formulation == Formulation::Published && self.of_tubes()
+    }
+
+    /// Whether it is about flow in tubes that does not creep.
+    pub const fn of_tubes(self) -> bool {
         matches!(self, Self::TubeInertia | Self::UnsteadyFriction | Self::TubeLosses)
     }
 

@@ -21,6 +21,8 @@ mod effects;
 mod loads;
 mod network;
 mod numerics;
+mod probes;
+mod surroundings;
 
 pub use attachments::*;
 pub use beam::*;
@@ -29,6 +31,8 @@ pub use effects::*;
 pub use loads::*;
 pub use network::*;
 pub use numerics::*;
+pub use probes::*;
+pub use surroundings::*;
 
 /// A case: one beam, its bladders and tubes, what is done to it, and how it is to be solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -74,6 +78,9 @@ pub struct Case {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 1000))]
     pub attachments: Vec<Attachment>,
+    /// What the beam moves through. Absent: nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surroundings: Option<Surroundings>,
     /// Conditions at the root (theta = 0) and the tip (theta = length).
     pub ends: Ends,
     /// State at t = 0; what is not given is zero.
@@ -98,6 +105,10 @@ pub struct Case {
     /// Time integration.
     #[serde(default)]
     pub solver: Solver,
+    /// Places of the beam that are recorded over time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000))]
+    pub probes: Vec<Probe>,
     /// Where its coefficients come from; not part of the text, and not compared.
     #[serde(skip)]
     #[schemars(skip)]

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{ENERGY_RATES, EnergyRate, add, compressed, tubes};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
-use crate::discrete::residual::fluid::{bridge_drops, pressure_at};
+use crate::discrete::residual::fluid::{bridge_drops, drop_over, pressure_at};
 use crate::discrete::residual::rows::{mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
@@ -232,7 +232,12 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         add(out, EnergyRate::Bladders, in_halves);
         let rest = match &link.flow {
             None => between,
-            Some(flow) => q * q * now.resistance[n] + tubes::dissipation(flow, q, w),
+            Some(flow) => tubes::dissipation(
+                link,
+                flow,
+                [now.resistance[n], q, drop_over(wet, link, now, w) - q * link.half_cells],
+                w,
+            ),
         };
         add(
             out,

@@ -66,27 +66,34 @@ pub fn strokes(
     let last = mesh.nodes - 1;
     let jumps: Nodal = was.iter().zip(is).map(|(a, b)| *b - *a).collect();
     let impulses = kick::impulses(system, &jumps, w);
+    let around = kick::taken_around(system, &jumps, w);
+    let streams = system.model.surroundings.as_ref().is_some_and(|s| s.stream.is_some());
     for node in 0..=last {
         let end = match node {
             0 => Some(&after.ends[0]),
             _ if node == last => Some(&after.ends[1]),
             _ => None,
         };
-        let stroke = |k: usize| {
-            (
-                impulses[node][k],
-                0.5 * impulses[node][k] * (was[node][k] + is[node][k]),
-            )
-        };
+        let mean = |k: usize| 0.5 * (was[node][k] + is[node][k]);
+        let stroke = |k: usize| (impulses[node][k], (impulses[node][k] + around[node][k]) * mean(k));
         let across = system.model.kinematics != Kinematics::Bar && end.is_some_and(|end| end.u[0].is_some());
-        let (px, work_x) = if across { stroke(0) } else { (0.0, 0.0) };
+        // what the fluid around takes of a free node
+        let left = |k: usize| (-around[node][k], 0.0);
+        let (px, work_x) = if across { stroke(0) } else { left(0) };
         let (pz, work_z) = if l.lines[1].v.is_some() {
             let driven = end.is_some_and(|end| end.u[1].is_some());
-            if driven { stroke(1) } else { (0.0, 0.0) }
+            if driven { stroke(1) } else { left(1) }
         } else {
             carried(system, [before, after], node)
         };
         add(out, EnergyRate::Ends, work_x + work_z);
+        if streams {
+            add(
+                out,
+                EnergyRate::Loads,
+                -around[node].x * mean(0) - around[node].z * mean(1),
+            );
+        }
         add(out, EnergyRate::ImpulseX, px);
         add(out, EnergyRate::ImpulseZ, pz);
         let (arm, _) = solid::arms(system, w, node);

@@ -102,6 +102,9 @@ pub struct Energies {
     /// Of springs to ground.
     #[serde(default)]
     pub springs: f64,
+    /// Kinetic, of the fluid around the beam.
+    #[serde(default)]
+    pub around: f64,
 }
 
 impl Energies {
@@ -116,6 +119,7 @@ impl Energies {
             + self.compression
             + self.section
             + self.springs
+            + self.around
     }
 }
 
@@ -206,6 +210,9 @@ pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     e.tubes = tubes::kinetic(system, &w);
     e.springs = system.attached.iter().map(|attached| attached.energy(system, &w)).sum();
     e.section = residual::nonlinear::energy(system, &w);
+    e.around = (0..system.mesh.nodes)
+        .map(|i| system.mesh.node_length(i) * residual::around::kinetic(system, now, &w, i))
+        .sum();
     e
 }
 

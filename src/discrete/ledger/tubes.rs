@@ -1,13 +1,32 @@
 //! Energy of the fluid in tubes in which it does not creep, [E51].
 
-use crate::discrete::fluid_mesh::MeshFlow;
+use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
 use crate::discrete::{System, Workspace};
 use crate::model::network::tube::BRANCHES;
 
-/// What losses and the memory of friction dissipate in a tube, [E51].
-pub fn dissipation(flow: &MeshFlow, q: f64, w: &Workspace<f64>) -> f64 {
-    let slips = slips(flow, q, w).map(|(resistance, slip, ..)| resistance * slip * slip);
-    q * flow.tube.loss(q) + slips.sum::<f64>()
+/// A valve that is open by less than this tells what it dissipates by the pressure drop over it: its flow is too small to.
+const NEARLY_SHUT: f64 = 0.01;
+
+/// What a tube dissipates, [E51]: its resistance R/o at its opening [Pa s/m^3], flow [m^3/s], and pressure drop between its ends [Pa].
+pub fn dissipation(link: &MeshLink, flow: &MeshFlow, [resistance, q, drop]: [f64; 3], w: &Workspace<f64>) -> f64 {
+    let (mut slips, mut shear) = (0.0, 0.0);
+    for (r, slip, ..) in self::slips(flow, q, w) {
+        slips += r * slip * slip;
+        shear += r * slip;
+    }
+    let loss = flow.tube.loss(q);
+    let steady = if NEARLY_SHUT * resistance > link.resistance {
+        let rate = if flow.tube.inertance > 0.0 {
+            w.fluid.flow_rate[flow.number]
+        } else {
+            0.0
+        };
+        let over_valve = drop - flow.tube.inertance * rate - shear - loss;
+        over_valve * over_valve / resistance
+    } else {
+        q * q * resistance
+    };
+    steady + q * loss + slips
 }
 
 /// Of each branch of a tube's friction: resistance, `q - j`, rate, and `j`.

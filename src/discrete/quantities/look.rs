@@ -112,11 +112,15 @@ impl Look<'_> {
 pub(in crate::discrete) fn tip_angle(system: &System, w: &Workspace<f64>) -> f64 {
     let last = system.mesh.nodes - 1;
     let interior: f64 = w.shape.kappa[1..last].iter().sum();
-    let first = match system.model.kinematics {
+    first_angle(system, w) - system.mesh.h * (interior + 0.5 * w.shape.kappa[last])
+}
+
+/// `φ` of the first cell.
+pub(super) fn first_angle(system: &System, w: &Workspace<f64>) -> f64 {
+    match system.model.kinematics {
         Kinematics::Bar | Kinematics::FiniteRotation => w.shape.tangent[0].x.atan2(w.shape.tangent[0].z),
         Kinematics::Linear | Kinematics::SmallRotation => w.shape.d3[0].x,
-    };
-    first - system.mesh.h * (interior + 0.5 * w.shape.kappa[last])
+    }
 }
 
 /// Largest flow through a tube [m^3/s], its rate as far as bladders and ports make it, and the tube's number among the tubes.

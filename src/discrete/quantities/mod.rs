@@ -4,6 +4,7 @@
 //! observables   over time: the columns of the history, from which its derivatives, pictures, comparisons and the energy balance follow
 //! interest      in the end: the quantities of the summary
 //! fields        along the beam and the network, with their axes
+//! probes        over time, at places that the case names
 //! look          how a state is read
 //! row           the values of all of them at one instant
 //! ```
@@ -15,10 +16,12 @@ pub mod fields;
 pub mod interest;
 pub mod look;
 pub mod observables;
+pub mod probes;
 pub mod row;
 
 pub use fields::{Axis, Field};
 pub use interest::{Interest, Source};
 pub use look::{Extremes, Look};
 pub use observables::{Group, Observable, Read, Role};
+pub use probes::Probe;
 pub use row::Row;

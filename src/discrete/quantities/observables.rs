@@ -6,6 +6,7 @@ use super::look::Look;
 use crate::case::schema::Effect;
 use crate::discrete::System;
 use crate::discrete::ledger::{ENERGY_RATES, EnergyRate, passed};
+use crate::model::effects::Cause;
 
 /// What a quantity is read off.
 #[derive(Clone, Copy, Debug)]
@@ -88,7 +89,13 @@ fn attached(system: &System) -> bool {
 }
 
 fn inert(system: &System) -> bool {
-    system.fluid.is_some() && system.model.effects.has(Effect::TubeInertia)
+    let unasked = || system.model.effects.decision(Effect::TubeInertia).cause == Cause::Unasked;
+    system.fluid.is_some() && !unasked()
+}
+
+fn around(system: &System) -> bool {
+    let around = system.model.surroundings.as_ref();
+    around.is_some_and(|around| around.added_mass > 0.0 && around.stream.is_none())
 }
 
 fn nonlinear(system: &System) -> bool {
@@ -200,6 +207,8 @@ observables! {
         "kinetic energy of the fluid in tubes";
     SpringEnergy: "spring_energy" ["J"], "spring energy", "energy of springs to ground", Stored, Recorded, attached, Read::State(|look| look.stored.springs),
         "energy of what holds the beam elastically at places";
+    SurroundingEnergy: "surrounding_energy" ["J"], "energy around", "energy of the fluid around the beam", Stored, Recorded, around, Read::State(|look| look.stored.around),
+        "kinetic energy of the fluid around that moves with the beam";
     WorkLoads: "work_loads" ["J"], "work of loads", "work of the loads", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Loads as usize]),
         "work of distributed loads and end forces";
     WorkEnds: "work_ends" ["J"], "work of ends", "work of the driven ends", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Ends as usize]),
@@ -285,7 +294,7 @@ impl Observable {
     pub fn at_rest(self) -> bool {
         match self.group() {
             Group::Tip | Group::Pressure | Group::Power | Group::State => true,
-            Group::Stored => !matches!(self, Self::KineticEnergy | Self::RotaryEnergy),
+            Group::Stored => !matches!(self, Self::KineticEnergy | Self::RotaryEnergy | Self::SurroundingEnergy),
             _ => false,
         }
     }

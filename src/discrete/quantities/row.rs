@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Group, Look, Observable, Read};
+use super::{Group, Look, Observable, Read, probes};
 use crate::discrete::System;
 
-/// Values of the quantities over time at one instant.
+/// Values of the quantities over time at one instant, then those of probes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     columns: Vec<Observable>,
@@ -15,18 +15,19 @@ pub struct Row {
 impl Row {
     /// Of a system, zero yet.
     pub fn of(system: &System) -> Self {
-        Self::new(Observable::of(system))
+        Self::new(Observable::of(system), probes::columns(system).count())
     }
 
-    /// Of columns, zero yet.
-    pub fn new(columns: Vec<Observable>) -> Self {
-        let values = vec![0.0; columns.len()];
+    /// Of columns and so many of probes, zero yet.
+    pub fn new(columns: Vec<Observable>, probes: usize) -> Self {
+        let values = vec![0.0; columns.len() + probes];
         Self { columns, values }
     }
 
     /// Reads a state at a time [s], with what has flowed up to then and what the balance of energy leaves open [J].
     pub fn take(&mut self, t: f64, look: &Look, integrals: &[f64], open: f64) {
-        for (value, column) in self.values.iter_mut().zip(&self.columns) {
+        let (values, at_probes) = self.values.split_at_mut(self.columns.len());
+        for (value, column) in values.iter_mut().zip(&self.columns) {
             *value = match column.read() {
                 Read::Time => t,
                 Read::State(read) => read(look),
@@ -34,14 +35,17 @@ impl Row {
                 Read::Open => open,
             };
         }
+        for (value, read) in at_probes.iter_mut().zip(probes::values(look)) {
+            *value = read;
+        }
     }
 
-    /// What its values are.
+    /// What its first values are.
     pub fn columns(&self) -> &[Observable] {
         &self.columns
     }
 
-    /// Its values, in the order of the columns.
+    /// Its values, in the order of the columns, those of probes behind them.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -64,7 +68,7 @@ impl Row {
         }
     }
 
-    /// Each value with what it is.
+    /// Each value but those of probes with what it is.
     pub fn each(&self) -> impl Iterator<Item = (Observable, f64)> {
         self.columns.iter().copied().zip(self.values.iter().copied())
     }

@@ -1,7 +1,7 @@
 //! The equations, one block after the other.
 
+use super::around::{self, node_tangent};
 use super::fluid::{bridge_drops, drop_over, pressure_at};
-use crate::case::schema::Effect;
 use crate::discrete::attached::at_node;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, Place};
 use crate::discrete::ledger::EnergyRate;
@@ -59,7 +59,7 @@ pub fn outer_forces<T: Scalar>(
     node: usize,
     mut each: impl FnMut(Option<EnergyRate>, Planar<T>),
 ) {
-    let (section, length) = (&system.model.section, system.mesh.node_length(node));
+    let length = system.mesh.node_length(node);
     let mut given = Planar::constant(now.force[node] * length);
     if node == 0 || node == system.mesh.nodes - 1 {
         given += end_force(system, now, w, node);
@@ -68,54 +68,13 @@ pub fn outer_forces<T: Scalar>(
     if system.model.published() {
         each(Some(EnergyRate::Formulation), published_force(system, w, node));
     }
-    if section.drag > 0.0 {
-        each(
-            Some(EnergyRate::Damping),
-            -felt_velocity(system, now, w, node) * (length * section.drag),
-        );
-    }
-    if section.quadratic_drag > 0.0 {
-        each(Some(EnergyRate::Damping), quadratic_drag(system, now, w, node) * length);
-    }
+    around::forces(system, now, w, node, length, &mut each);
     for (attached, weight) in at_node(&system.attached, node) {
         let given = now.point_force[attached.number] * weight;
         each(Some(EnergyRate::Loads), Planar::constant(given));
         each(None, attached.spring(w) * weight);
         each(Some(EnergyRate::Damping), attached.dashpot(w) * weight);
     }
-}
-
-/// `[E47]` Drag of what the beam moves through, per length, on the velocity across it (Morison et al. 1950), linear and the same in all
-/// directions where the motion turns, so that it is smooth and never without a slope:
-///
-/// ```text
-/// b = -c₂ [(√(v_n² + v_s²) - v_s) v_n e_n + v_s v]        v_n = v·e_n        v_s a millionth of the largest v1 that the case expects
-/// ```
-fn quadratic_drag<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
-    let normal = node_tangent(system, w, node).normal();
-    let v = felt_velocity(system, now, w, node);
-    let across = v.dot(normal);
-    let slow = 1e-6 * system.model.scales.transverse_rate;
-    let beyond = (across.squared() + slow * slow).sqrt() - slow;
-    (normal.times(across * beyond) + v * slow) * -system.model.section.quadratic_drag
-}
-
-/// Unit tangent at a node: along the mean of those of its cells.
-fn node_tangent<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> Planar<T> {
-    let cells = &w.shape.tangent;
-    let mean = cells[node.saturating_sub(1)] + cells[node.min(system.mesh.cells - 1)];
-    mean.times(T::constant(1.0) / mean.squared().sqrt())
-}
-
-/// Velocity with which a node meets what surrounds the beam: its own; along a beam that does not stretch that of its frame, [E28].
-#[inline]
-fn felt_velocity<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
-    let own = w.motion.v[node];
-    if system.model.effects.has(Effect::AxialStretch) {
-        return own;
-    }
-    let share = node as f64 / (system.mesh.nodes - 1) as f64;
-    Planar::new(own.x, T::constant(now.carried(1, share).rate))
 }
 
 /// Force given at an end node: dead, plus follower section forces `N e_t + V e_n` at the end's angle (A.53, A.54),

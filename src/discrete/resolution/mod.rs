@@ -157,7 +157,7 @@ fn loads_along(case: &Case, model: &Model) -> Vec<Shape> {
             Some(Signal::Constant(value)) => (None, *value),
             signal => (signal, 1.0),
         };
-        for load in Load::resolve(written, model.section.mass_per_length) {
+        for load in Load::resolve(written, &model.section) {
             let part = Shape::new(format!("/loads/{k}"), load, constant, model);
             let known = groups
                 .iter()

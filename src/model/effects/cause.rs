@@ -20,6 +20,8 @@ pub enum Cause {
     Unasked,
     /// The program has it for incompressible fluid alone.
     Compressed,
+    /// A port's flow enters a junction where only tubes meet, whose inertia does not let it.
+    FedJunction,
     /// The case gives it, or not.
     Given(bool),
     /// The case gives bladders and fluid, or not.
@@ -90,6 +92,12 @@ pub enum Number {
     Leakage,
     /// A bladder's own time against that of the motion.
     LagAlongBladders,
+    /// Inertia of the fluid in a tube over its resistance, at most.
+    Inertance,
+    /// Error of Poiseuille's profile in a tube, at most.
+    UnsteadyFriction,
+    /// Losses of a tube over its laminar friction, at most.
+    TubeLosses,
     /// What pressure does over what loads do.
     PressureStrain,
     /// Larger of dm/am, dn/an.
@@ -125,6 +133,8 @@ pub enum Keeps {
     Gas,
     /// Something is attached to the beam, which the scene's numbers do not know.
     Attachments,
+    /// A fluid is around the beam, which the scene's numbers do not know.
+    Surroundings,
     /// The section is not linear at the scene's loads.
     FiniteStrain,
 }
@@ -136,8 +146,11 @@ impl Display for Cause {
             Self::Asked => f.write_str("asked for"),
             Self::LeftOut => f.write_str("left out as asked"),
             Self::Refused(obstacle) => write!(f, "cannot be left out: {}", obstacle.what),
-            Self::Unasked => f.write_str("flow in tubes creeps unless this is asked for by name"),
             Self::Compressed => f.write_str("the fluid is compressed, and its flow creeps"),
+            Self::Unasked => {
+                f.write_str("flow in tubes creeps in the published form, unless this is asked for by name")
+            }
+            Self::FedJunction => f.write_str("left out: the flow of a port enters a junction where only tubes meet"),
             Self::Given(true) => f.write_str("given"),
             Self::Given(false) => f.write_str("not given"),
             Self::Filled(true) => f.write_str("bladders and fluid are given"),
@@ -180,6 +193,9 @@ impl Display for Number {
             Self::RotaryInertia => "phase of the second bending mode in the whole run",
             Self::Leakage => "what leaks in the whole run",
             Self::LagAlongBladders => "a bladder's own time against that of the motion",
+            Self::Inertance => "inertia of the fluid in a tube over its resistance",
+            Self::UnsteadyFriction => "error of Poiseuille's profile in a tube",
+            Self::TubeLosses => "losses of a tube over its laminar friction",
             Self::PressureStrain => "what pressure does over what loads do",
             Self::Asymmetry => "larger of dm/am, dn/an",
             Self::Compression => "compression over what the walls of bladders store",
@@ -202,6 +218,7 @@ impl Display for Keeps {
             Self::FiniteStrain => "the section is not linear at these loads",
             Self::Attachments => "what is attached to the beam has no bound here",
             Self::Gas => "the fluid is a gas",
+            Self::Surroundings => "the fluid around the beam has no bound here",
             Self::MakesPressure => "it is what makes pressure",
         })
     }

@@ -93,7 +93,10 @@ impl<'a> Chooser<'a> {
                     (true, Cause::Refused(obstacle))
                 }
             },
-            Choice::Auto if effect.by_name() => (false, Cause::Unasked),
+            Choice::Auto if effect.by_name(self.case.formulation) => (false, Cause::Unasked),
+            Choice::Auto if effect.of_tubes() && self.network.is_some_and(|n| n.fed_junction().is_some()) => {
+                (false, Cause::FedJunction)
+            }
             Choice::Auto => match self.scene {
                 None => (true, Cause::Full),
                 Some(scene) => match self.obstacle(effect) {
@@ -140,7 +143,7 @@ impl<'a> Chooser<'a> {
             Effect::AxialForceOnBending => obstacles::axial_force_on_bending(turning),
             Effect::AxialStretch => obstacles::axial_stretch(case, across, turning),
             Effect::SolidInertia => obstacles::solid_inertia(case),
-            Effect::AxialInertia => obstacles::axial_inertia(case),
+            Effect::AxialInertia => obstacles::axial_inertia(case, turning),
             Effect::Flow => network.and_then(obstacles::flow),
             Effect::NetworkPressureDifferences => network.and_then(obstacles::network_pressure_differences),
             _ => None,
@@ -169,6 +172,7 @@ impl<'a> Chooser<'a> {
         };
         match effect {
             _ if !self.case.attachments.is_empty() && by_motion(effect) => kept(Keeps::Attachments),
+            _ if self.case.surroundings.is_some() && by_motion(effect) => kept(Keeps::Surroundings),
             _ if about(Effect::NonlinearSection).needs.contains(&effect) && scene.strain_energy() >= self.tolerance => {
                 kept(Keeps::FiniteStrain)
             }
@@ -221,6 +225,9 @@ impl<'a> Chooser<'a> {
                 kept(Keeps::Gas)
             }
             Effect::Compressibility => weigh(Number::Compression, scene.compression_of_fluid()),
+            Effect::TubeInertia => weigh(Number::Inertance, scene.tubes(self.tolerance).inertia),
+            Effect::UnsteadyFriction => weigh(Number::UnsteadyFriction, scene.tubes(self.tolerance).memory),
+            Effect::TubeLosses => weigh(Number::TubeLosses, scene.tubes(self.tolerance).losses),
             Effect::PressureToCurvature => weigh(Number::PressureStrain, scene.strains_of_pressure()[0]),
             Effect::PressureToStretch => weigh(Number::PressureStrain, scene.strains_of_pressure()[1]),
             Effect::MomentToArea | Effect::ForceToArea => kept(Keeps::MakesPressure),

@@ -79,6 +79,13 @@ impl EffectSet {
         self
     }
 
+    /// The same without unsteady friction, unless that is asked for by name.
+    pub fn forgetting(mut self) -> Self {
+        let memory = Effect::UnsteadyFriction;
+        self.on[memory as usize] &= self.decision(memory).cause == Cause::Asked;
+        self
+    }
+
     fn push(&mut self, decision: Decision) {
         self.on[decision.effect as usize] = decision.on;
         self.decisions.push(decision);

@@ -41,6 +41,13 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
     if let Some(k) = case.attachments.iter().position(pushed) {
         return obstacle(format!("/attachments/{k} pushes the beam across"), HINT);
     }
+    if case
+        .surroundings
+        .as_ref()
+        .is_some_and(|around| around.stream().next().is_some())
+    {
+        return obstacle("/surroundings streams across the beam", HINT);
+    }
     for (end, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
         let ResolvedEnd {
             transverse,
@@ -89,7 +96,17 @@ pub fn solid_inertia(case: &Case) -> Option<Obstacle> {
 }
 
 /// Something must carry the beam along.
-pub fn axial_inertia(case: &Case) -> Option<Obstacle> {
+pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
+    let inert = case
+        .surroundings
+        .as_ref()
+        .is_some_and(|s| s.added_mass_coefficient > 0.0);
+    if inert && finite_rotation {
+        return obstacle(
+            "the fluid around the beam is carried along by nodes that turn",
+            "leave finite_rotation out too, or axial_inertia on",
+        );
+    }
     if let Some(k) = case.attachments.iter().position(|a| a.damping_z_n_s_m > 0.0) {
         return obstacle(
             format!("/attachments/{k} has a dashpot along"),

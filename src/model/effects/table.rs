@@ -136,7 +136,7 @@ pub fn about(effect: Effect) -> About {
         Effect::TubeInertia => About {
             adds: "I dq/dt, I = 4/3 ρ l/A in each tube",
             brings: "the flow of each tube; its pressure jumps no more with its flow",
-            number: "ω I/R, ω that of the flow; by name only",
+            number: "ω I/R, ω of the fastest motion",
             cost: "an unknown a tube; waves of fluid against bladders",
             needs: &[Fluid, Flow, NetworkPressureDifferences],
             presence: Presence::Chosen,
@@ -144,7 +144,7 @@ pub fn about(effect: Effect) -> About {
         Effect::UnsteadyFriction => About {
             adds: "Σ r_i (q - j_i), dj_i/dt = n_i (ν/r²) (q - j_i); I = ρ l/A",
             brings: "ten states a tube, the memory of its friction",
-            number: "Womersley number r √(ω/ν); by name only",
+            number: "Wo⁴/1152, Wo = r √(ω/ν)",
             cost: "10 unknowns a tube",
             needs: &[TubeInertia],
             presence: Presence::Chosen,
@@ -152,7 +152,7 @@ pub fn about(effect: Effect) -> About {
         Effect::TubeLosses => About {
             adds: "(f - 64/Re) (l/D) ρ v²/2 + K ρ v²/2, f by Churchill",
             brings: "the flow of each tube, where it is no unknown yet; nonlinear friction",
-            number: "Re, and Re D/l for the ends; by name only",
+            number: "Δp_loss/(R q) at the largest flow",
             cost: "an algebraic unknown a tube",
             needs: &[Fluid, Flow, NetworkPressureDifferences],
             presence: Presence::Chosen,
@@ -230,7 +230,10 @@ pub fn about(effect: Effect) -> About {
             number: "c₂ u1/m, u1 the swing: what a swing loses of itself; present where given",
             cost: "a root in every node",
             needs: &[TransverseMotion],
-            presence: Presence::Given(|case, _| case.beam.damping.quadratic_drag_n_s2_m3 > 0.0),
+            presence: Presence::Given(|case, _| {
+                let around = case.surroundings.as_ref();
+                case.beam.damping.quadratic_drag_n_s2_m3 > 0.0 || around.is_some_and(|s| s.drag_coefficient > 0.0)
+            }),
         },
         Effect::Valves => About {
             adds: "g = o/(o R_half + R), o(t) given",
@@ -273,6 +276,14 @@ pub fn about(effect: Effect) -> About {
             cost: "arithmetic in two nodes each",
             needs: &[],
             presence: Presence::Given(|case, _| !case.attachments.is_empty()),
+        },
+        Effect::Surroundings => About {
+            adds: "-m_a (v·e_n)_t e_n, drag on v less the stream's velocity, -ρ h_s w_s g",
+            brings: "accelerations of both directions coupled in every node",
+            number: "present where given; what is decided by the scene's numbers stays then",
+            cost: "arithmetic in every node",
+            needs: &[],
+            presence: Presence::Given(|case, _| case.surroundings.is_some()),
         },
     }
 }

@@ -204,6 +204,16 @@ impl Network {
         (0..self.component_of_bladder.len()).map(move |bladder| !joined(bladder))
     }
 
+    /// A prescribed flow into a junction where only tubes meet: their inertia does not let it follow at once.
+    pub fn fed_junction(&self) -> Option<&Source> {
+        self.sources.iter().find(|source| {
+            let here = |from: Node, to: Node| from == source.into || to == source.into;
+            let mut links = self.links.iter().filter(|l| !l.is_shut() && here(l.from, l.to));
+            let bridged = self.bridges.iter().any(|b| here(b.from, b.to));
+            matches!(source.into, Node::Junction(_)) && !bridged && links.all(|link| link.tube.is_some())
+        })
+    }
+
     /// Number of a link among the tubes.
     pub fn tube(&self, link: usize) -> usize {
         let tubes = self.links[..link].iter().filter(|l| l.kind == LinkKind::Tube);

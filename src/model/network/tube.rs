@@ -131,6 +131,11 @@ impl TubeFlow {
         (inertia || losses).then_some(self)
     }
 
+    /// Inertance of Poiseuille's profile [kg/m^4], of a tube from which no effect is left out.
+    pub fn steady_inertance(&self) -> f64 {
+        PARABOLIC * self.inertance
+    }
+
     /// Whether friction has a memory.
     pub fn remembers(&self) -> bool {
         self.laminar > 0.0

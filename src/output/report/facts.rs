@@ -25,6 +25,8 @@ euler_load_n | N | compression under which the beam buckles (Euler)
 f_u | 1 | how fast the drive is for the fluid: forcing frequency times fluid time
 first_axial_frequency_hz | Hz | lowest frequency of waves along the beam
 first_bending_frequency_hz | Hz | lowest frequency of bending
+first_bending_frequency_in_fluid_hz | Hz | the same with the added mass of the fluid around
+added_mass_kg_m | kg/m | mass of the fluid around that moves across with the beam, per length
 force_scale_n | N | force that is expected in the beam
 forcing_frequency_hz | Hz | frequency of the drive
 gyration_radius_squared_m2 | m^2 | squared radius of gyration of a section, y11

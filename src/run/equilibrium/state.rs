@@ -4,7 +4,7 @@ use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
 use crate::discrete::glance::Glance;
 use crate::discrete::layout::Line;
 use crate::discrete::ledger;
-use crate::discrete::quantities::{Extremes, Look, Observable, Row};
+use crate::discrete::quantities::{Extremes, Look, Observable, Row, probes};
 use crate::discrete::{System, TimeData, Workspace};
 use crate::run::range::Limits;
 use crate::run::record::Column;
@@ -56,6 +56,7 @@ pub fn columns(system: &System) -> Vec<Column> {
         about: "load factor".into(),
     };
     let all = at_rest(system).into_iter().map(Column::from);
+    let all = all.chain(probes::columns(system).map(Column::from));
     std::iter::once(share).chain(all).collect()
 }
 
@@ -72,7 +73,7 @@ impl State {
             stored: ledger::energies(system, now, w),
             at: Extremes::of(system, &w),
         };
-        let mut read = Row::new(at_rest(system));
+        let mut read = Row::new(at_rest(system), probes::columns(system).count());
         read.take(share, &look, &[], 0.0);
         let row = std::iter::once(share).chain(read.values().iter().copied()).collect();
         Self {

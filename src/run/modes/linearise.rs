@@ -46,7 +46,7 @@ pub struct Linearised {
 }
 
 /// Linearises everything that a case describes, with signals held at `at` [s], about `state` (scaled unknowns of
-/// `System::with(case, Model::whole(case, true))`, velocities zero) or about the start, which may be an equilibrium under
+/// `System::with(case, Model::of_modes(case))`, velocities zero) or about the start, which may be an equilibrium under
 /// loads of another instant.
 ///
 /// # Errors
@@ -77,7 +77,7 @@ pub fn at_equilibrium(case: &Case, at: f64) -> Result<Linearised> {
 
 /// Everything that a case describes, signals held at an instant [s].
 fn held(case: &Case, at: f64) -> Result<BeamDae> {
-    let mut model = Model::whole(case, true)?;
+    let mut model = Model::of_modes(case)?;
     model.freeze(at);
     let mut dae = BeamDae::new(System::with(case, model)?);
     dae.enter_smooth_interval(at);

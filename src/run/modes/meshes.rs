@@ -119,11 +119,17 @@ fn elsewhere(
     Some((others, pairs))
 }
 
-/// Pairs of what decays, or grows, without swinging: the most alike in displacements and pressures together. Of flows to and fro within
-/// bladders neither tells much: what is left goes in the order in which it was found.
+/// Pairs of what decays, or grows, without swinging: the most alike in displacements and pressures together, and in how fast they do. Of
+/// flows to and fro within bladders neither tells much: what is left goes in the order in which it was found.
 fn real(modes: &[Mode], others: &[Mode], length: f64) -> Vec<(usize, usize, f64)> {
     let real = |mode: &Mode| !mode.kind.swings() && !mode.kind.stays();
-    let mut pairs = super::paired(modes, others, real, |a, b| alike(&a.shape, &b.shape, length));
+    let as_fast = |a: &Mode, b: &Mode| {
+        let [a, b] = [a, b].map(|mode| mode.s.norm());
+        (a * b).sqrt() * 2.0 / (a + b)
+    };
+    let mut pairs = super::paired(modes, others, real, |a, b| {
+        alike(&a.shape, &b.shape, length) * as_fast(a, b)
+    });
     let left = |all: &[Mode], taken: &dyn Fn(usize) -> bool| -> Vec<usize> {
         let open = all.iter().enumerate().filter(|(k, mode)| real(mode) && !taken(*k));
         open.map(|(k, _)| k).collect()

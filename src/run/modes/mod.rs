@@ -18,6 +18,7 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
+use crate::case::schema::Effect;
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::run::null;
 use crate::spectral::{self, Options, Pair, Pencil, SpectralError};
@@ -155,6 +156,33 @@ pub struct Modes {
     pub dense: bool,
     /// Whether there is a mesh along bladders that could be compared with another.
     pub bladders_compared: bool,
+}
+
+/// Error of a tube's impedance from which on it is told.
+const FORGOTTEN: f64 = 0.01;
+
+impl Modes {
+    /// What is lost where tubes have Poiseuille's friction, of the mode that swings fastest: error of the impedance `Wo⁴/1152`.
+    pub fn forgotten(&self) -> Option<String> {
+        let model = &self.about.system().model;
+        let has = |effect| model.effects.has(effect);
+        if !has(Effect::TubeInertia) || has(Effect::UnsteadyFriction) {
+            return None;
+        }
+        let tubes = model.wet.iter().flat_map(|wet| &wet.network.links);
+        let rates = tubes.filter_map(|link| Some(link.tube.as_ref()?.viscous_rate));
+        let slowest = rates.fold(f64::INFINITY, f64::min);
+        let swinging = self.modes.iter().filter(|mode| mode.kind.swings());
+        let womersley = swinging
+            .map(|mode| (mode.s.im.abs() / slowest).sqrt())
+            .fold(0.0, f64::max);
+        (womersley.powi(4) / 1152.0 > FORGOTTEN).then(|| {
+            Code::FastFlow.warning(format!(
+                "tubes have Poiseuille's friction here, and Womersley numbers up to {womersley:.1}: frequencies and damping of modes that \
+                 move much fluid are off; {{\"unsteady_friction\": \"on\"}} has them right, its own decays among them"
+            ))
+        })
+    }
 }
 
 /// Modes of everything that a case describes, about its start.

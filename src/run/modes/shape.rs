@@ -78,6 +78,8 @@ impl Shape {
         let (by, size) = if moved.norm() > NOTHING * pressed.norm() {
             (moved, moved.norm().max(pressed.norm()))
         } else {
+            self.u1.fill(Complex::default());
+            self.u3.fill(Complex::default());
             (pressed, pressed.norm())
         };
         if size > 0.0 && by.norm() > 0.0 {
@@ -131,7 +133,12 @@ const NOTHING: f64 = 1e-6;
 /// ```text
 /// MAC = |Σ h_i (ū1 w1 + ū3 w3)|² / (Σ h_i |u|² Σ h_i |w|²)
 /// ```
+///
+/// Of pressures where neither moves the beam.
 pub fn likeness(a: &Shape, b: &Shape) -> f64 {
+    if a.displacement() == 0.0 && b.displacement() == 0.0 {
+        return alike(a, b, 1.0);
+    }
     let last = a.u1.len().saturating_sub(1);
     let inner = |a: &Shape, b: &Shape| -> Complex<f64> {
         let part = |u: &[Complex<f64>], w: &[Complex<f64>]| -> Complex<f64> {

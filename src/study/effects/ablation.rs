@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::change::{Changes, Measure, Reference, Size, judge, largest};
-use super::choices::{Out, candidates, effects, guards, with, without};
+use super::choices::{Out, candidates, effects, guards, whole, with, without};
 use super::recommend::{Recommendation, recommend};
 use super::trial::{Plan, Runs, Trial, Watch};
 use crate::case::Case;
@@ -197,7 +197,7 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
     };
     let all = candidates(case)?;
     let mut runs = Runs::new(plan, watch);
-    let full_case = with(case, Effects::Full);
+    let full_case = whole(case);
     let full = runs.run("full", full_case.clone())?;
     found.full = runs.trial(full).clone();
     let row = |name: Effect, out: &Out| Row {

@@ -3,8 +3,8 @@
 use crate::case::Case;
 use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
 use crate::error;
-use crate::model::Model;
 use crate::model::effects::{Cause, EffectSet, Scene};
+use crate::model::{Model, Network};
 
 /// An effect, and what leaving it out takes.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,13 +41,21 @@ pub fn with(case: &Case, effects: Effects) -> Case {
     }
 }
 
-/// The full model without some effects.
+/// The full model, with what the case names beyond that.
+pub fn whole(case: &Case) -> Case {
+    without(case, &[])
+}
+
+/// The same without some effects.
 pub fn without(case: &Case, off: &[Effect]) -> Case {
+    let named = case.effects.choices();
+    let fed = matches!(Network::of(case), Ok(Some(network)) if network.fed_junction().is_some());
     let mut choices = EffectChoices::default();
     for &effect in Effect::CHOSEN {
+        let unasked = effect.by_name(case.formulation) || (fed && effect.of_tubes());
         let choice = match off.contains(&effect) {
             true => Choice::Off,
-            false if effect.by_name() => Choice::Auto,
+            false if unasked && named.of(effect) != Choice::On => Choice::Auto,
             false => Choice::On,
         };
         choices.set(effect, choice);
@@ -63,7 +71,7 @@ pub fn effects(case: &Case) -> error::Result<EffectSet> {
 /// Whether the program keeps an effect, whatever its number, since without it an instability might not show. A run need not
 /// show it either: what is not disturbed stays straight.
 pub fn guards(case: &Case, auto: &EffectSet) -> error::Result<Option<Guard>> {
-    let full = with(case, Effects::Full);
+    let full = whole(case);
     let model = Model::new(&full)?;
     let why = Scene::new(&full, &model.section, model.wet.as_ref()).unstable();
     let guarded = auto.decisions.iter().filter(|d| matches!(d.cause, Cause::Unstable(_)));
@@ -84,7 +92,7 @@ pub struct Guard {
 
 /// Every effect.
 pub fn candidates(case: &Case) -> error::Result<Vec<Candidate>> {
-    let full = effects(&with(case, Effects::Full))?;
+    let full = effects(&whole(case))?;
     let candidate = |effect: Effect| -> error::Result<Candidate> {
         let there = full.has(effect);
         let kept = |why: String| Err(Kept { there, why });

@@ -19,15 +19,17 @@ pub struct Full {
     pub left_out: Vec<Effect>,
 }
 
-/// The case with everything that it leaves to the program. What it names off stays off; motion across stays out where nothing
-/// makes the beam leave its line, which is exact. `None` where nothing is then left out.
+/// The case with everything that it leaves to the program. What it names off stays off, and so does what comes by name only; motion
+/// across stays out where nothing makes the beam leave its line, which is exact. `None` where nothing is then left out.
 pub fn full(case: &Case) -> Result<Option<Full>> {
     let auto = effects(case)?;
     let mut choices = named(case, &auto);
     let open: Vec<Effect> = Effect::CHOSEN
         .iter()
         .copied()
-        .filter(|effect| choices.of(*effect) == Choice::Auto && !straight(&auto, *effect))
+        .filter(|effect| {
+            choices.of(*effect) == Choice::Auto && !effect.by_name(case.formulation) && !straight(&auto, *effect)
+        })
         .collect();
     for effect in open {
         let mut more = choices.clone();
@@ -71,7 +73,7 @@ pub fn more(few: &EffectSet, many: &EffectSet) -> Vec<Effect> {
 fn named(case: &Case, auto: &EffectSet) -> EffectChoices {
     let mut choices = case.effects.choices();
     for &effect in Effect::CHOSEN {
-        let there = (case.effects == Effects::Full && !effect.by_name()) || auto.has(effect);
+        let there = (case.effects == Effects::Full && !effect.by_name(case.formulation)) || auto.has(effect);
         if choices.of(effect) == Choice::Auto && there {
             choices.set(effect, Choice::On);
         }

@@ -30,7 +30,7 @@ pub fn case(per_row: usize, network: Value, end: f64, interval: f64) -> Value {
         "tubes": {"length_m": TUBE_LENGTH, "radius_m": 0.001, "permeability_m4": 6.72e-13},
         "network": network,
         "ends": {"root": "clamped", "tip": "free"},
-        "effects": {"solid_inertia": "off"},
+        "effects": {"solid_inertia": "off", "tube_inertia": "off", "tube_losses": "off"},
         "mesh": {"cells_per_segment": 1, "cells_per_bladder": 1},
         "time": {"end_s": end, "output_interval_s": interval},
         "solver": {"rtol": 1e-9}

@@ -4,6 +4,7 @@
 mod least;
 mod pace;
 mod stability;
+mod tubes;
 
 use std::cell::OnceCell;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -14,11 +15,12 @@ use crate::functions::Signal;
 use crate::model::characteristic::first_wave_number;
 use crate::model::network::{Link, Node};
 use crate::model::scales::Drive;
-use crate::model::{Attachment, Load, Network, Scales, Section, Wet, each_signal};
+use crate::model::{Attachment, Load, Network, Scales, Section, Surroundings, Wet, each_signal};
 
 use least::Least;
 use pace::Pace;
 use stability::SAFE_COMPRESSION;
+use tubes::Tubes;
 
 /// A scene, before anything is left out.
 pub struct Scene<'a> {
@@ -28,6 +30,7 @@ pub struct Scene<'a> {
     ends: [ResolvedEnd; 2],
     loads: Vec<Load>,
     attachments: Vec<Attachment>,
+    around: Option<Surroundings>,
     scales: Scales,
     drive: Drive,
     /// First bending frequency of the drained beam [1/s].
@@ -42,6 +45,7 @@ pub struct Scene<'a> {
     others: Vec<Pace>,
     instability: OnceCell<Option<String>>,
     least: OnceCell<Least>,
+    tubes: OnceCell<Tubes>,
 }
 
 impl<'a> Scene<'a> {
@@ -58,7 +62,11 @@ impl<'a> Scene<'a> {
             FRAC_PI_2
         };
         let beta = first_wave_number(&ends).unwrap_or(FRAC_PI_2) / length;
-        let loads: Vec<Load> = case.loads.iter().flat_map(|load| Load::resolve(load, mass)).collect();
+        let loads: Vec<Load> = case
+            .loads
+            .iter()
+            .flat_map(|load| Load::resolve(load, section))
+            .collect();
         let mut undriven = ends.clone();
         let mut driven_along = vec![];
         for end in &mut undriven {
@@ -69,17 +77,27 @@ impl<'a> Scene<'a> {
         }
         let mut others = vec![];
         let attachments = Attachment::all(case);
-        each_signal(&undriven, &loads, &attachments, wet.map(|wet| &wet.network), |signal| {
-            others.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
-        });
+        let around = case.surroundings.as_ref().map(|s| Surroundings::new(s, &case.beam));
+        each_signal(
+            &undriven,
+            &loads,
+            &attachments,
+            around.as_ref(),
+            wet.map(|wet| &wet.network),
+            |signal| {
+                others.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
+            },
+        );
         Self {
             wet,
             loads,
             attachments,
+            around,
             driven_along,
             others,
             instability: OnceCell::new(),
             least: OnceCell::new(),
+            tubes: OnceCell::new(),
             scales: Scales::estimate(case, section, wet),
             bending: beta * beta * (section.bending_stiffness / mass).sqrt(),
             axial: quarter / length * (section.axial_stiffness / mass).sqrt(),
@@ -96,7 +114,14 @@ impl<'a> Scene<'a> {
     }
 
     fn signals(&self, visit: impl FnMut(&Signal)) {
-        each_signal(&self.ends, &self.loads, &self.attachments, self.network(), visit);
+        each_signal(
+            &self.ends,
+            &self.loads,
+            &self.attachments,
+            self.around.as_ref(),
+            self.network(),
+            visit,
+        );
     }
 
     /// Whether the beam begins bent, stretched, moving, or with bladders under pressure.
@@ -296,48 +321,8 @@ impl<'a> Scene<'a> {
         wet.bladder_length / wet.network.bladder_mobility
     }
 
-    /// `τ ω`, `τ = a_p l_b² μ/(π² q1b)` a bladder's own time and ω of the fastest motion that is asked for. Of a vibration whose part
-    /// in the motion is i and whose stiffness is fluid to the part χ it is `τ ω (1 + χ i ω T)`: what flows along bladders damps it
-    /// over the whole run T.
-    pub fn lag_along_bladders(&self, tolerance: f64) -> f64 {
-        let Some(wet) = self.wet else { return 0.0 };
-        let end = self.case.time.end_s;
-        let mut rate = 0.0_f64;
-        self.signals(|signal| {
-            if let Some(period) = signal.shortest_time_s(end) {
-                rate = rate.max(2.0 * PI / period);
-            }
-        });
-        let [bent, stretched] = self.stiffness_of_fluid(wet);
-        let waves = [
-            (self.bending_inertia(), self.bending, bent),
-            (self.axial_waves(), self.axial, stretched),
-        ];
-        for (inertia, free, fluid) in waves {
-            if inertia > tolerance {
-                rate = rate.max(free * (1.0 + fluid * inertia * free * end));
-            }
-        }
-        rate * self.compliances(wet)[1] * wet.bladder_length.powi(2) / (PI * PI * wet.network.bladder_mobility)
-    }
-
-    /// Parts χ of curvature and stretch that the pressure of sealed bladders takes back, at most: `EI (∂α_p/∂p_u - ∂α_p/∂p_d) A_M'/a_p`
-    /// and `EA (∂λ_p/∂p_u + ∂λ_p/∂p_d) A_N'/a_p`.
-    fn stiffness_of_fluid(&self, wet: &Wet) -> [f64; 2] {
-        let (area, coupling) = (&wet.area, &wet.coupling);
-        // far from a kink on either side of it, where slopes are steepest
-        let steepest = |slope: &dyn Fn(f64) -> f64| slope(1e100).abs().max(slope(-1e100).abs());
-        let bent = steepest(&|m| coupling.curvature(area, m, 1.0, -1.0) * area.moment_slope(m, 1.0));
-        let stretched = steepest(&|n| coupling.stretch(area, n, 1.0, 1.0) * area.force_slope(n));
-        let stiffness = [self.section.bending_stiffness, self.section.axial_stiffness];
-        [
-            stiffness[0] * bent / self.compliances(wet)[0],
-            stiffness[1] * stretched / self.compliances(wet)[0],
-        ]
-    }
-
     /// Least and largest area that a bladder stores per pressure at the scene's pressures [m^2/Pa].
-    fn compliances(&self, wet: &Wet) -> [f64; 2] {
+    pub(super) fn compliances(&self, wet: &Wet) -> [f64; 2] {
         [1.0, -1.0].map(|sign| wet.compliance_at(sign * self.scales.pressure))
     }
 

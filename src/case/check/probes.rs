@@ -1,0 +1,32 @@
+//! Names of probes: columns begin with them.
+
+use std::collections::HashMap;
+
+use crate::case::faults::Violations;
+use crate::case::schema::Case;
+use crate::error::{Code, Violation};
+
+pub(super) fn check(case: &Case, faults: &mut Violations) {
+    let good = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
+    let mut known = HashMap::new();
+    for (i, probe) in case.probes.iter().enumerate() {
+        let name = &probe.name;
+        let mut fault = |what: String| {
+            let fault = Violation::new(Code::ProbeName, format!("/probes/{i}/name"), what);
+            faults.push(fault.allowed("letters, digits, `-` and `_`, a name for each probe, not \"tip\""));
+        };
+        if name.is_empty() || !name.chars().all(good) {
+            fault(format!("\"{name}\" cannot begin the name of a column"));
+        } else if name == TIP {
+            fault(format!("the columns of \"{name}\" are there already"));
+        }
+        if let Some(first) = known.insert(name, i) {
+            fault(format!(
+                "two probes are called \"{name}\", the first is /probes/{first}"
+            ));
+        }
+    }
+}
+
+/// The tip has columns of its own.
+const TIP: &str = "tip";

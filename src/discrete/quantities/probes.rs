@@ -1,0 +1,158 @@
+//! Quantities at places that the case names.
+
+use super::look::{Look, first_angle, tip_angle};
+use crate::case::schema::{Case, Probe as Written};
+use crate::discrete::{Mesh, System};
+
+/// A place of the beam, on a mesh.
+///
+/// Values of nodes and of cells are interpolated linearly, those of cells extrapolated to the ends: off by the second order of a cell.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    /// What its columns begin with.
+    pub name: String,
+    /// Place `θ/l_s`.
+    pub at: f64,
+    /// The node before it, and how far it is from there to the next.
+    node: (usize, f64),
+    /// The cell whose midpoint is before it, and how far it is from there to the next; below 0 and above 1 at the ends.
+    cell: (usize, f64),
+    /// Its segment.
+    segment: usize,
+    /// `h_s/2` [m].
+    half_height: f64,
+}
+
+/// One row of the table: what a column's name ends with, unit, what it is, whether it needs bladders, how it is read.
+type Entry = (&'static str, &'static str, &'static str, bool, fn(&Probe, &Look) -> f64);
+
+/// What is recorded at each place.
+#[rustfmt::skip]
+const TABLE: [Entry; 11] = [
+    ("u1", "m", "transverse displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].x)),
+    ("u3", "m", "axial displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].z)),
+    ("angle", "rad", "slope angle phi, counted over full turns", false, Probe::angle),
+    ("curvature", "1/m", "curvature", false, |p, look| p.of_nodes(|i| look.w.shape.kappa[i])),
+    ("strain_upper", "1", "strain lambda - 1 + kappa h_s/2 of the upper surface", false, |p, look| p.surface(look, 1.0)),
+    ("strain_lower", "1", "strain lambda - 1 - kappa h_s/2 of the lower surface", false, |p, look| p.surface(look, -1.0)),
+    ("normal_force", "N", "elastic normal force", false, |p, look| { let n = look.w.forces.normals(); p.of_cells(|c| n[c]) }),
+    ("moment", "N m", "elastic bending moment", false, |p, look| { let m = look.w.forces.moments(); p.of_nodes(|i| m[i]) }),
+    ("shear_force", "N", "shear force", false, |p, look| p.of_cells(|c| look.w.forces.shear[c])),
+    ("pressure_upper", "Pa", "mean pressure of the upper bladder", true, |p, look| p.pressure(look, 0)),
+    ("pressure_lower", "Pa", "mean pressure of the lower bladder", true, |p, look| p.pressure(look, 1)),
+];
+
+/// A column of a probe.
+pub struct ProbeColumn {
+    /// Name without unit: `middle_u1`.
+    pub name: String,
+    /// Unit, `1` when dimensionless.
+    pub unit: &'static str,
+    /// What it is, in one sentence.
+    pub about: String,
+}
+
+/// Columns of all probes of a system, one probe after the other.
+pub fn columns(system: &System) -> impl Iterator<Item = ProbeColumn> + '_ {
+    entries(system).map(|(probe, (name, unit, about, ..))| ProbeColumn {
+        name: format!("{}_{name}", probe.name),
+        unit,
+        about: format!("{about} at {} of the length", probe.at),
+    })
+}
+
+/// Their values in a state.
+pub fn values<'a>(look: &'a Look) -> impl Iterator<Item = f64> + 'a {
+    entries(look.system).map(|(probe, entry)| (entry.4)(probe, look))
+}
+
+fn entries(system: &System) -> impl Iterator<Item = (&Probe, Entry)> {
+    let wet = system.fluid.is_some();
+    let of = move |probe| {
+        TABLE
+            .into_iter()
+            .filter(move |entry| wet || !entry.3)
+            .map(move |e| (probe, e))
+    };
+    system.probes.iter().flat_map(of)
+}
+
+impl Probe {
+    /// All of a case.
+    pub fn all(case: &Case, mesh: &Mesh) -> Vec<Self> {
+        let half_height = 0.5 * case.beam.height_m;
+        let probe = |probe: &Written| Self::new(&probe.name, probe.at, half_height, mesh);
+        case.probes.iter().map(probe).collect()
+    }
+
+    fn new(name: &str, at: f64, half_height: f64, mesh: &Mesh) -> Self {
+        let place = at * mesh.cells as f64;
+        let node = (place as usize).min(mesh.cells - 1);
+        let cell = ((place - 0.5).max(0.0) as usize).min(mesh.cells.saturating_sub(2));
+        let beyond = if mesh.cells > 1 { place - 0.5 - cell as f64 } else { 0.0 };
+        Self {
+            name: name.into(),
+            at,
+            node: (node, place - node as f64),
+            cell: (cell, beyond),
+            segment: node / mesh.cells_per_segment,
+            half_height,
+        }
+    }
+
+    fn of_nodes(&self, value: impl Fn(usize) -> f64) -> f64 {
+        let (node, share) = self.node;
+        (1.0 - share) * value(node) + share * value(node + 1)
+    }
+
+    fn of_cells(&self, value: impl Fn(usize) -> f64) -> f64 {
+        match self.cell {
+            (cell, 0.0) => value(cell),
+            (cell, share) => (1.0 - share) * value(cell) + share * value(cell + 1),
+        }
+    }
+
+    /// That of the midpoints' chain, `φ_{c+1} = φ_c - h κ_{c+1}`, with the turns of the tip's.
+    fn angle(&self, look: &Look) -> f64 {
+        let (kappa, h) = (&look.w.shape.kappa, look.system.mesh.h);
+        let (node, share) = self.node;
+        let turns = look.tip_angle() - tip_angle(look.system, &look.w);
+        // from the midpoint of the first cell: nodes that are passed, and half of that at an end
+        let passed: f64 = kappa[1..=node].iter().sum();
+        let rest = match (node, share) {
+            (0, share) if share < 0.5 => (share - 0.5) * kappa[0],
+            (_, share) if share < 0.5 => (share - 0.5) * kappa[node],
+            _ => (share - 0.5) * kappa[node + 1],
+        };
+        first_angle(look.system, &look.w) - h * (passed + rest) + turns
+    }
+
+    /// `λ - 1 ± κ h_s/2`.
+    fn surface(&self, look: &Look, side: f64) -> f64 {
+        let shape = &look.w.shape;
+        self.of_cells(|c| shape.strain[c]) + side * self.half_height * self.of_nodes(|i| shape.kappa[i])
+    }
+
+    fn pressure(&self, look: &Look, row: usize) -> f64 {
+        let wet = look.system.model.wet.as_ref();
+        wet.map_or(0.0, |wet| look.w.fluid.mean_pressure[wet.pair(self.segment)[row]])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::TABLE;
+    use crate::discrete::quantities::Observable;
+
+    /// Goal: only a probe called "tip", which cases refuse, would have columns of a name that is taken.
+    #[test]
+    fn names_of_columns_are_their_own() {
+        let ends = |name: &str| {
+            TABLE
+                .iter()
+                .find_map(|entry| name.strip_suffix(&format!("_{}", entry.0)).map(String::from))
+        };
+        let taken: Vec<String> = Observable::ALL.iter().filter_map(|one| ends(one.name())).collect();
+        assert!(!taken.is_empty() && taken.iter().all(|name| name == "tip"), "{taken:?}");
+    }
+}

@@ -1,0 +1,130 @@
+//! What flow is late by: along bladders, and in tubes by inertia, unsteady friction and losses.
+
+use std::f64::consts::PI;
+
+use super::Scene;
+use crate::model::Wet;
+use crate::model::network::Link;
+
+/// The largest of all tubes; none where there are no tubes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tubes {
+    /// `ω I/R`: inertia over resistance.
+    pub inertia: f64,
+    /// `Wo⁴/1152`, `Wo² = ω r²/ν`: error that Poiseuille's profile makes of the impedance, to first order (Womersley 1955).
+    pub memory: f64,
+    /// `Δp_loss(q)/(R q)`, at the largest flow that is expected.
+    pub losses: f64,
+}
+
+/// Margin of flows: resonance and what comes at once make them larger than what acts at rest.
+const MARGIN: f64 = 3.0;
+
+impl Scene<'_> {
+    /// `τ ω`, `τ = a_p l_b² μ/(π² q1b)` a bladder's own time and ω of the fastest motion that is asked for. Of a vibration whose part
+    /// in the motion is i and whose stiffness is fluid to the part χ it is `τ ω (1 + χ i ω T)`: what flows along bladders damps it
+    /// over the whole run T.
+    pub fn lag_along_bladders(&self, tolerance: f64) -> f64 {
+        let Some(wet) = self.wet else { return 0.0 };
+        self.fastest(wet, tolerance) * self.compliances(wet)[1] * wet.bladder_length.powi(2)
+            / (PI * PI * wet.network.bladder_mobility)
+    }
+
+    /// ω of the fastest motion that is asked for, with ω (1 + χ i ω T) of vibrations [1/s].
+    fn fastest(&self, wet: &Wet, tolerance: f64) -> f64 {
+        let end = self.case.time.end_s;
+        let mut rate = 0.0_f64;
+        self.signals(|signal| {
+            if let Some(period) = signal.shortest_time_s(end) {
+                rate = rate.max(2.0 * PI / period);
+            }
+        });
+        let [bent, stretched] = self.stiffness_of_fluid(wet);
+        let waves = [
+            (self.bending_inertia(), self.bending, bent),
+            (self.axial_waves(), self.axial, stretched),
+        ];
+        for (inertia, free, fluid) in waves {
+            if inertia > tolerance {
+                rate = rate.max(free * (1.0 + fluid * inertia * free * end));
+            }
+        }
+        rate
+    }
+
+    /// Parts χ of curvature and stretch that the pressure of sealed bladders takes back, at most: `EI (∂α_p/∂p_u - ∂α_p/∂p_d) A_M'/a_p`
+    /// and `EA (∂λ_p/∂p_u + ∂λ_p/∂p_d) A_N'/a_p`.
+    pub(super) fn stiffness_of_fluid(&self, wet: &Wet) -> [f64; 2] {
+        let (area, coupling) = (&wet.area, &wet.coupling);
+        // far from a kink on either side of it, where slopes are steepest
+        let steepest = |slope: &dyn Fn(f64) -> f64| slope(1e100).abs().max(slope(-1e100).abs());
+        let bent = steepest(&|m| coupling.curvature(area, m, 1.0, -1.0) * area.moment_slope(m, 1.0));
+        let stretched = steepest(&|n| coupling.stretch(area, n, 1.0, 1.0) * area.force_slope(n));
+        let stiffness = [self.section.bending_stiffness, self.section.axial_stiffness];
+        [
+            stiffness[0] * bent / self.compliances(wet)[0],
+            stiffness[1] * stretched / self.compliances(wet)[0],
+        ]
+    }
+
+    /// What tubes do at the fastest motion, and the fastest relaxation of a bladder into one where that is excited; by tolerance since
+    /// vibrations below it do not count.
+    pub fn tubes(&self, tolerance: f64) -> Tubes {
+        *self.tubes.get_or_init(|| {
+            let Some(wet) = self.wet else { return Tubes::default() };
+            let fastest = self.fastest(wet, tolerance);
+            let all = wet
+                .network
+                .links
+                .iter()
+                .map(|link| self.of(wet, link, fastest, tolerance));
+            all.fold(Tubes::default(), Tubes::larger)
+        })
+    }
+
+    fn of(&self, wet: &Wet, link: &Link, fastest: f64, tolerance: f64) -> Tubes {
+        let Some(tube) = &link.tube else {
+            return Tubes::default();
+        };
+        let compliance = wet.area.per_pressure * wet.bladder_length;
+        let relaxation = 1.0 / (link.resistance * compliance);
+        let rate = if self.inertia_ratio(relaxation) > tolerance {
+            fastest.max(relaxation)
+        } else {
+            fastest
+        };
+        let flow = self.largest_flow(wet, link, rate * compliance);
+        let womersley_squared = rate / tube.viscous_rate;
+        Tubes {
+            inertia: rate * tube.steady_inertance() / link.resistance,
+            memory: womersley_squared * womersley_squared / 1152.0,
+            losses: tube.loss(flow) / (link.resistance * flow).max(f64::MIN_POSITIVE),
+        }
+    }
+
+    /// In a tube, at most [m^3/s]: what the largest pressure drives through it, or what all bladders give up at the fastest rate (C ω a
+    /// bladder, [m^3/(s Pa)]), if that is less; with it what is pumped.
+    fn largest_flow(&self, wet: &Wet, link: &Link, given_up: f64) -> f64 {
+        let bladders = 2.0 * wet.per_row as f64;
+        let end = self.case.time.end_s;
+        let pumped: f64 = wet
+            .network
+            .sources
+            .iter()
+            .map(|source| source.flow.largest(end).value)
+            .sum();
+        MARGIN * self.scales.pressure * (1.0 / link.resistance).min(bladders * given_up) + pumped
+    }
+}
+
+impl Tubes {
+    fn larger(self, other: Self) -> Self {
+        // NaN, where something is unknown, stays
+        let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
+        Self {
+            inertia: larger(self.inertia, other.inertia),
+            memory: larger(self.memory, other.memory),
+            losses: larger(self.losses, other.losses),
+        }
+    }
+}
