@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 53] = [
+const INDEX: [(&str, &str, &str); 56] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -159,6 +159,9 @@ const INDEX: [(&str, &str, &str); 53] = [
     ("[E51]", "tests/tubes.rs", "the_impedance_of_a_tube_is_womersleys"),
     ("[E52]", "tests/tubes.rs", "friction_is_churchills"),
     ("[E53]", "tests/surroundings.rs", "frequencies_fall_with_the_added_mass"),
+    ("[E54]", "tests/gas.rs", "a_bladder_blows_down_through_a_capillary"),
+    ("[E55]", "tests/gas.rs", "a_bladder_blows_down_through_a_capillary"),
+    ("[E56]", "tests/gas.rs", "balances_close_with_compression"),
 ];
 
 #[test]

@@ -1,4 +1,4 @@
-//! Fluid that is compressed: gas, liquid that yields, liquid with free gas, [E58] [E59] [E60].
+//! Fluid that is compressed: gas, liquid that yields, liquid with free gas, [E54] [E55] [E56].
 
 #[path = "common/chance.rs"]
 mod chance;
@@ -60,7 +60,7 @@ fn behind_a_capillary(fluid: Value, start: f64, radius: f64, end: f64) -> Value 
     })
 }
 
-/// Source: [E58] and [E59] of one cell, `d/dt [r (A_0 + a_p p)] l_b = -(Ψ(p) - Ψ(0))/R`, integrated here by Runge & Kutta in p. Goal: a bladder
+/// Source: [E54] and [E55] of one cell, `d/dt [r (A_0 + a_p p)] l_b = -(Ψ(p) - Ψ(0))/R`, integrated here by Runge & Kutta in p. Goal: a bladder
 /// that blows down through a capillary follows it to 1e-6, isothermal and polytropic.
 #[test]
 fn a_bladder_blows_down_through_a_capillary() {

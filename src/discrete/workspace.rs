@@ -107,7 +107,7 @@ pub struct Fluid<T> {
     pub area_rate: Vec<T>,
     /// Area changes of cells where fluid is compressed [m^2]; empty otherwise.
     pub swelling: Vec<T>,
-    /// What drives flow from cells there [Pa], [E59]; empty otherwise.
+    /// What drives flow from cells there [Pa], [E55]; empty otherwise.
     pub potential: Vec<T>,
     /// Pressures of cells [Pa].
     pub pressure: Vec<T>,

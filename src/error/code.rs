@@ -84,7 +84,7 @@ codes! {
     ErrorEstimate = "W021", "An error that may be larger than it seems.";
     PlaneCell = "W022", "Coefficients that leave out the ends of bladders.";
     BeyondRange = "W023", "States beyond what the model describes.";
-    FastGas = "W026", "Gas that flows nearly as fast as sound.";
+    FastGas = "W024", "Gas that flows nearly as fast as sound.";
 }
 
 impl Code {

@@ -12,7 +12,7 @@ const VACUUM: f64 = 1e-9;
 /// Points of the quadrature of Ψ where it has no closed form.
 const POINTS: usize = 16;
 
-/// `[E58]` Fluid whose density follows its pressure, p above ambient, `P_0` ambient, x the part of its volume at ambient pressure that is gas,
+/// `[E54]` Fluid whose density follows its pressure, p above ambient, `P_0` ambient, x the part of its volume at ambient pressure that is gas,
 /// K the bulk modulus of the liquid, n the gas's polytropic exponent:
 ///
 /// ```text
@@ -109,7 +109,7 @@ impl Compression {
         (1.0 - self.gas) * liquid + self.gas * gas
     }
 
-    /// `[E59]` `Ψ = ∫ r dp` from ambient pressure [Pa], whose differences drive what flows, counted at ambient density. Along a duct of
+    /// `[E55]` `Ψ = ∫ r dp` from ambient pressure [Pa], whose differences drive what flows, counted at ambient density. Along a duct of
     /// resistance R at ambient density, `dΨ = r dp = -q dR`, so that resistances in series add as without compression:
     ///
     /// ```text
@@ -156,7 +156,7 @@ impl Compression {
         p
     }
 
-    /// Pressure of a cell that stores `content`, where bending and force account for `imposed` of its area, `[E58]`.
+    /// Pressure of a cell that stores `content`, where bending and force account for `imposed` of its area, `[E54]`.
     #[inline]
     pub fn pressure<T: Scalar>(&self, law: &AreaLaw, content: T, imposed: T) -> T {
         content.lift_with(imposed, |content, imposed| {
@@ -200,7 +200,7 @@ impl Compression {
         (p, [(1.0 + expansion) * stiffness, -stiffness])
     }
 
-    /// What a cell stores at a pressure, c, `[E58]`.
+    /// What a cell stores at a pressure, c, `[E54]`.
     #[inline]
     pub fn content<T: Scalar>(&self, law: &AreaLaw, p: T, imposed: T) -> T {
         let density = p.lift(|p| self.density(p));
@@ -219,7 +219,7 @@ impl Compression {
         (content_t - density * imposed_t) / (slope * (self.area_at_rest + area) + density * law.per_pressure)
     }
 
-    /// `[E60]` Energy of the fluid in a cell per length, relative to ambient pressure; with it
+    /// `[E56]` Energy of the fluid in a cell per length, relative to ambient pressure; with it
     ///
     /// ```text
     /// E = V (r h - p)      dE/dt + p dV/dt = h d(r V)/dt      V = (A_0 + a1) Δs

@@ -119,7 +119,7 @@ impl Wet {
         }
     }
 
-    /// What drives flow at a pressure, [E59].
+    /// What drives flow at a pressure, [E55].
     #[inline]
     pub fn potential<T: Scalar>(&self, pressure: T) -> T {
         match &self.compression {
@@ -128,7 +128,7 @@ impl Wet {
         }
     }
 
-    /// Energy that a volume at ambient density brings along [Pa], [E60].
+    /// Energy that a volume at ambient density brings along [Pa], [E56].
     pub fn enthalpy(&self, pressure: f64) -> f64 {
         self.compression.as_ref().map_or(pressure, |c| c.enthalpy(pressure))
     }

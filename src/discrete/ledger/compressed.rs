@@ -1,4 +1,4 @@
-//! What flow brings along and loses, and what fluid stores that is compressed, [E60]; without compression `h = p`.
+//! What flow brings along and loses, and what fluid stores that is compressed, [E56]; without compression `h = p`.
 
 use std::ops::Range;
 
@@ -112,7 +112,7 @@ pub fn fed(wet: &Wet, pressure: f64, half: f64, q: f64) -> [f64; 2] {
     }
 }
 
-/// Energy of compressed fluid, [E60].
+/// Energy of compressed fluid, [E56].
 pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return 0.0;

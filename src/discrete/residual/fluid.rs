@@ -59,7 +59,7 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     }
 }
 
-/// The same where fluid is compressed, [E58], with what drives its flow, [E59].
+/// The same where fluid is compressed, [E54], with what drives its flow, [E55].
 fn compressed<T: Scalar>(
     wet: &Wet,
     compression: &Compression,
@@ -171,7 +171,7 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     }
 }
 
-/// What drives flow over a link: the pressure drop, or that of Ψ, [E59].
+/// What drives flow over a link: the pressure drop, or that of Ψ, [E55].
 #[inline]
 pub fn drop_over<T: Scalar>(wet: &Wet, link: &MeshLink, now: &TimeData, w: &Workspace<T>) -> T {
     match &wet.compression {
