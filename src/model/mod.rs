@@ -17,16 +17,16 @@ pub mod mapping;
 pub mod network;
 pub mod passivity;
 pub mod scales;
+mod signals;
 pub mod storage;
 pub mod strain_energy;
 pub mod surroundings;
 pub mod tongue;
 
+use crate::case::ResolvedEnd;
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Effects, Formulation};
-use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::error::Result;
-use crate::functions::{Clock, Signal};
 use crate::numerics::Scalar;
 
 pub use attachments::Attachment;
@@ -39,6 +39,7 @@ pub use kinematics::Kinematics;
 pub use loads::Load;
 pub use network::Network;
 pub use scales::Scales;
+pub use signals::each_signal;
 pub use storage::{LumpedKind, LumpedNetwork, Storage};
 pub use strain_energy::StrainEnergy;
 pub use surroundings::Surroundings;
@@ -294,46 +295,6 @@ impl Model {
         }
     }
 
-    /// Puts another signal in place of every one: of ends, loads, ports and sources by `load`, of valves by `opening`.
-    pub fn replace_signals(&mut self, load: impl Fn(&Signal) -> Signal, opening: impl Fn(&Signal) -> Signal) {
-        let replace = |signal: &mut Signal| *signal = load(signal);
-        for end in &mut self.ends {
-            for motion in [&mut end.transverse, &mut end.axial] {
-                match motion {
-                    Translation::Displacement(s) | Translation::Force(s) => replace(s),
-                }
-            }
-            match &mut end.rotation {
-                Rotation::Slope(s) | Rotation::Moment(s) => replace(s),
-            }
-            if let Some(follower) = &mut end.follower {
-                replace(&mut follower.normal);
-                replace(&mut follower.shear);
-            }
-        }
-        self.loads.iter_mut().for_each(|load| replace(&mut load.signal));
-        let forces = self
-            .attachments
-            .iter_mut()
-            .flat_map(|attachment| &mut attachment.forces);
-        forces.for_each(|force| replace(&mut force.signal));
-        let stream = self.surroundings.as_mut().and_then(|around| around.stream.as_mut());
-        stream.into_iter().flatten().for_each(replace);
-        if let Some(wet) = &mut self.wet {
-            let network = &mut wet.network;
-            network.ports.iter_mut().for_each(|port| replace(&mut port.pressure));
-            network.sources.iter_mut().for_each(|source| replace(&mut source.flow));
-            let valves = network.links.iter_mut().filter_map(|link| link.opening.as_mut());
-            valves.for_each(|signal| *signal = opening(signal));
-        }
-    }
-
-    /// Holds every signal at its value at an instant [s].
-    pub fn freeze(&mut self, t: f64) {
-        let at = |signal: &Signal| Signal::Constant(signal.jet(Clock { t, within: t }).value);
-        self.replace_signals(at, at);
-    }
-
     /// Finite volumes in each bladder: as the mesh says, or one.
     pub fn cells_per_bladder(&self, case: &Case) -> usize {
         if self.effects.has(Effect::FlowAlongBladders) {
@@ -341,18 +302,6 @@ impl Model {
         } else {
             1
         }
-    }
-
-    /// Visits every signal that takes part.
-    pub fn each_signal(&self, visit: impl FnMut(&Signal)) {
-        each_signal(
-            &self.ends,
-            &self.loads,
-            &self.attachments,
-            self.surroundings.as_ref(),
-            self.wet.as_ref().map(|wet| &wet.network),
-            visit,
-        );
     }
 
     /// The bladders and the energy of the section beyond its quadratic part, where that is simulated.
@@ -365,47 +314,5 @@ impl Model {
     /// Whether forces of the published form act, which bending alone brings about.
     pub fn published(&self) -> bool {
         self.formulation == Formulation::Published && self.kinematics == Kinematics::FiniteRotation
-    }
-}
-
-/// Visits every signal: of ends, loads, attachments, a stream, valves and ports.
-pub fn each_signal(
-    ends: &[ResolvedEnd; 2],
-    loads: &[Load],
-    attachments: &[Attachment],
-    around: Option<&Surroundings>,
-    network: Option<&Network>,
-    mut visit: impl FnMut(&Signal),
-) {
-    for end in ends {
-        for motion in [&end.transverse, &end.axial] {
-            match motion {
-                Translation::Displacement(s) | Translation::Force(s) => visit(s),
-            }
-        }
-        match &end.rotation {
-            Rotation::Slope(s) | Rotation::Moment(s) => visit(s),
-        }
-        if let Some(follower) = &end.follower {
-            visit(&follower.normal);
-            visit(&follower.shear);
-        }
-    }
-    for load in loads {
-        visit(&load.signal);
-    }
-    for force in attachments.iter().flat_map(|attachment| &attachment.forces) {
-        visit(&force.signal);
-    }
-    let stream = around.and_then(|around| around.stream.as_ref());
-    stream.into_iter().flatten().for_each(&mut visit);
-    if let Some(network) = network {
-        network
-            .links
-            .iter()
-            .filter_map(|l| l.opening.as_ref())
-            .for_each(&mut visit);
-        network.ports.iter().map(|p| &p.pressure).for_each(&mut visit);
-        network.sources.iter().map(|s| &s.flow).for_each(&mut visit);
     }
 }

@@ -1,0 +1,101 @@
+//! Every signal of a model: visited, replaced, held.
+
+use super::{Attachment, Load, Model, Network, Surroundings};
+use crate::case::{ResolvedEnd, Rotation, Translation};
+use crate::functions::{Clock, Signal};
+
+impl Model {
+    /// Puts another signal in place of every one: of ends, loads, ports and sources by `load`, of valves by `opening`.
+    pub fn replace_signals(&mut self, load: impl Fn(&Signal) -> Signal, opening: impl Fn(&Signal) -> Signal) {
+        let replace = |signal: &mut Signal| *signal = load(signal);
+        for end in &mut self.ends {
+            for motion in [&mut end.transverse, &mut end.axial] {
+                match motion {
+                    Translation::Displacement(s) | Translation::Force(s) => replace(s),
+                }
+            }
+            match &mut end.rotation {
+                Rotation::Slope(s) | Rotation::Moment(s) => replace(s),
+            }
+            if let Some(follower) = &mut end.follower {
+                replace(&mut follower.normal);
+                replace(&mut follower.shear);
+            }
+        }
+        self.loads.iter_mut().for_each(|load| replace(&mut load.signal));
+        let forces = self
+            .attachments
+            .iter_mut()
+            .flat_map(|attachment| &mut attachment.forces);
+        forces.for_each(|force| replace(&mut force.signal));
+        let stream = self.surroundings.as_mut().and_then(|around| around.stream.as_mut());
+        stream.into_iter().flatten().for_each(replace);
+        if let Some(wet) = &mut self.wet {
+            let network = &mut wet.network;
+            network.ports.iter_mut().for_each(|port| replace(&mut port.pressure));
+            network.sources.iter_mut().for_each(|source| replace(&mut source.flow));
+            let valves = network.links.iter_mut().filter_map(|link| link.opening.as_mut());
+            valves.for_each(|signal| *signal = opening(signal));
+        }
+    }
+
+    /// Holds every signal at its value at an instant [s].
+    pub fn freeze(&mut self, t: f64) {
+        let at = |signal: &Signal| Signal::Constant(signal.jet(Clock { t, within: t }).value);
+        self.replace_signals(at, at);
+    }
+
+    /// Visits every signal that takes part.
+    pub fn each_signal(&self, visit: impl FnMut(&Signal)) {
+        each_signal(
+            &self.ends,
+            &self.loads,
+            &self.attachments,
+            self.surroundings.as_ref(),
+            self.wet.as_ref().map(|wet| &wet.network),
+            visit,
+        );
+    }
+}
+
+/// Visits every signal: of ends, loads, attachments, a stream, valves and ports.
+pub fn each_signal(
+    ends: &[ResolvedEnd; 2],
+    loads: &[Load],
+    attachments: &[Attachment],
+    around: Option<&Surroundings>,
+    network: Option<&Network>,
+    mut visit: impl FnMut(&Signal),
+) {
+    for end in ends {
+        for motion in [&end.transverse, &end.axial] {
+            match motion {
+                Translation::Displacement(s) | Translation::Force(s) => visit(s),
+            }
+        }
+        match &end.rotation {
+            Rotation::Slope(s) | Rotation::Moment(s) => visit(s),
+        }
+        if let Some(follower) = &end.follower {
+            visit(&follower.normal);
+            visit(&follower.shear);
+        }
+    }
+    for load in loads {
+        visit(&load.signal);
+    }
+    for force in attachments.iter().flat_map(|attachment| &attachment.forces) {
+        visit(&force.signal);
+    }
+    let stream = around.and_then(|around| around.stream.as_ref());
+    stream.into_iter().flatten().for_each(&mut visit);
+    if let Some(network) = network {
+        network
+            .links
+            .iter()
+            .filter_map(|l| l.opening.as_ref())
+            .for_each(&mut visit);
+        network.ports.iter().map(|p| &p.pressure).for_each(&mut visit);
+        network.sources.iter().map(|s| &s.flow).for_each(&mut visit);
+    }
+}
