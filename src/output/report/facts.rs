@@ -13,6 +13,7 @@ use crate::run::summary::Summary;
 
 /// Characteristic numbers: name, unit, meaning. Those of networks are matched by the start of their names.
 const CHARACTERISTIC: &str = "\
+added_mass_kg_m | kg/m | mass of the fluid around that moves across with the beam, per length
 area_change_estimate | 1 | how far pressure is expected to close a bladder, as a share of its cross-section
 axial_stiffness_n | N | force that would double the beam's length, EA
 base_acceleration_m_s2 | m/s^2 | acceleration of the shaken root
@@ -26,7 +27,6 @@ f_u | 1 | how fast the drive is for the fluid: forcing frequency times fluid tim
 first_axial_frequency_hz | Hz | lowest frequency of waves along the beam
 first_bending_frequency_hz | Hz | lowest frequency of bending
 first_bending_frequency_in_fluid_hz | Hz | the same with the added mass of the fluid around
-added_mass_kg_m | kg/m | mass of the fluid around that moves across with the beam, per length
 force_scale_n | N | force that is expected in the beam
 forcing_frequency_hz | Hz | frequency of the drive
 gyration_radius_squared_m2 | m^2 | squared radius of gyration of a section, y11
