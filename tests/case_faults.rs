@@ -17,7 +17,8 @@ fn a_wrong_key_names_the_nearest() {
      --> bad.json:9:36 at /fluid/viscousity_pa_s
     9 |   "fluid": {"density_kg_m3": 1000, "viscousity_pa_s": 8.68e-4},
       |                                    ^^^^^^^^^^^^^^^^^
-      = allowed: preset, temperature_c, density_kg_m3, viscosity_pa_s
+      = allowed: preset, temperature_c, density_kg_m3, viscosity_pa_s, kind, bulk_modulus_pa,
+                 gas_fraction, polytropic_exponent, ambient_pressure_pa
       = nearest: did you mean "viscosity_pa_s"?
 
     1 fault in bad.json

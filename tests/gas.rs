@@ -66,7 +66,7 @@ fn behind_a_capillary(fluid: Value, start: f64, radius: f64, end: f64) -> Value 
 fn a_bladder_blows_down_through_a_capillary() {
     let radius = 1e-4;
     for exponent in [1.0, 1.4] {
-        let (start, end) = (4e4, 0.2);
+        let (start, end) = (4e4, 0.4);
         let (memory, _) = finished(&behind_a_capillary(gas(exponent), start, radius, end));
         let half = 0.5 * AIR * 0.046 / 1e-6;
         let resistance = 8.0 * AIR * 0.02 / (std::f64::consts::PI * radius.powi(4)) + half;
