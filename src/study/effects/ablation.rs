@@ -197,7 +197,7 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
     };
     let all = candidates(case)?;
     let mut runs = Runs::new(plan, watch);
-    let full_case = whole(case);
+    let full_case = whole(case)?;
     let full = runs.run("full", full_case.clone())?;
     found.full = runs.trial(full).clone();
     let row = |name: Effect, out: &Out| Row {
@@ -221,7 +221,7 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
     let tighter = runs.run("full, a tenth of the tolerance", tight_case)?;
     let mut pairs = vec![];
     for candidate in &all {
-        let mut run = |off: &[Effect]| runs.run(&format!("without {}", Effect::names(off, ", ")), without(case, off));
+        let mut run = |off: &[Effect]| runs.run(&format!("without {}", Effect::names(off, ", ")), without(case, off)?);
         pairs.push(match &candidate.out {
             Ok(out) => {
                 let base = match out.without.as_slice() {

@@ -42,25 +42,30 @@ pub fn with(case: &Case, effects: Effects) -> Case {
 }
 
 /// The full model, with what the case names beyond that.
-pub fn whole(case: &Case) -> Case {
+///
+/// # Errors
+/// Of [`Network::of`].
+pub fn whole(case: &Case) -> error::Result<Case> {
     without(case, &[])
 }
 
 /// The same without some effects.
-pub fn without(case: &Case, off: &[Effect]) -> Case {
+///
+/// # Errors
+/// Of [`Network::of`].
+pub fn without(case: &Case, off: &[Effect]) -> error::Result<Case> {
     let named = case.effects.choices();
-    let fed = matches!(Network::of(case), Ok(Some(network)) if network.fed_junction().is_some());
+    let full = EffectSet::whole(&with(case, Effects::Full), Network::of(case)?.as_ref());
     let mut choices = EffectChoices::default();
     for &effect in Effect::CHOSEN {
-        let unasked = effect.by_name(case.formulation) || (fed && effect.of_tubes());
         let choice = match off.contains(&effect) {
             true => Choice::Off,
-            false if unasked && named.of(effect) != Choice::On => Choice::Auto,
-            false => Choice::On,
+            false if full.has(effect) || named.of(effect) == Choice::On => Choice::On,
+            false => Choice::Off,
         };
         choices.set(effect, choice);
     }
-    with(case, Effects::Chosen(choices))
+    Ok(with(case, Effects::Chosen(choices)))
 }
 
 /// The effects of a case's model, which may be refused.
@@ -71,7 +76,7 @@ pub fn effects(case: &Case) -> error::Result<EffectSet> {
 /// Whether the program keeps an effect, whatever its number, since without it an instability might not show. A run need not
 /// show it either: what is not disturbed stays straight.
 pub fn guards(case: &Case, auto: &EffectSet) -> error::Result<Option<Guard>> {
-    let full = whole(case);
+    let full = whole(case)?;
     let model = Model::new(&full)?;
     let why = Scene::new(&full, &model.section, model.wet.as_ref()).unstable();
     let guarded = auto.decisions.iter().filter(|d| matches!(d.cause, Cause::Unstable(_)));
@@ -92,12 +97,12 @@ pub struct Guard {
 
 /// Every effect.
 pub fn candidates(case: &Case) -> error::Result<Vec<Candidate>> {
-    let full = effects(&whole(case))?;
+    let (full, plain) = (effects(&whole(case)?)?, effects(&with(case, Effects::Full))?);
     let candidate = |effect: Effect| -> error::Result<Candidate> {
         let there = full.has(effect);
         let kept = |why: String| Err(Kept { there, why });
         let out = if !there {
-            kept(full.decision(effect).cause.to_string())
+            kept(plain.decision(effect).cause.to_string())
         } else if !Effect::CHOSEN.contains(&effect) {
             kept("given by the case, and left out by not giving it".into())
         } else {
@@ -110,7 +115,7 @@ pub fn candidates(case: &Case) -> error::Result<Vec<Candidate>> {
 
 /// Alone where that is possible, else together with one other without which it can be compared.
 fn leave_out(case: &Case, effect: Effect, full: &EffectSet) -> error::Result<Result<Out, String>> {
-    let alone = effects(&without(case, &[effect]))?;
+    let alone = effects(&without(case, &[effect])?)?;
     if alone.refusals.is_empty() {
         return Ok(Ok(Out {
             without: vec![],
@@ -121,8 +126,8 @@ fn leave_out(case: &Case, effect: Effect, full: &EffectSet) -> error::Result<Res
         .iter()
         .filter(|other| **other != effect && full.has(**other))
     {
-        let base = effects(&without(case, &[other]))?;
-        let both = effects(&without(case, &[other, effect]))?;
+        let base = effects(&without(case, &[other])?)?;
+        let both = effects(&without(case, &[other, effect])?)?;
         if base.refusals.is_empty() && base.has(effect) && both.refusals.is_empty() && !both.has(effect) {
             return Ok(Ok(Out {
                 without: vec![other],

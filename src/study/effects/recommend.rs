@@ -64,7 +64,7 @@ pub fn recommend(
             .copied()
             .filter(|effect| off.contains(effect))
             .collect();
-        let wanted = without(case, &off);
+        let wanted = without(case, &off)?;
         let (out, why) = if let Err(Error::Case(fault)) = System::new(&wanted)
             && let Some(refusal) = fault.violations.into_iter().next().filter(|_| !off.is_empty())
         {
