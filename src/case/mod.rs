@@ -21,6 +21,7 @@ pub mod parameter;
 mod parse;
 mod places;
 mod presets;
+pub mod relaxation;
 mod render;
 mod rewrite;
 pub mod schema;

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::quantities::look;
 use super::workspace::Motion;
 use super::{State, System, TimeData, Workspace, ledger};
-use crate::discrete::residual::nonlinear;
 use crate::discrete::residual::solid::node_stretch;
+use crate::discrete::residual::{nonlinear, relaxation};
 use crate::model::Kinematics;
 
 /// A value and its rate in time.
@@ -191,7 +191,10 @@ fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
     }
     let curvature_rate = match now.ends[1].slope {
         Some(_) => w.shape.kappa_rate[last],
-        None => now.ends[1].moment.rate / system.model.section.bending_stiffness,
+        None => {
+            let alpha_rate = now.ends[1].moment.rate / system.model.section.bending_stiffness;
+            relaxation::curvature_rate(system, w, last, alpha_rate, 1.0)
+        }
     };
     w.shape.angle_rate[last - 1] - 0.5 * system.mesh.h * curvature_rate
 }

@@ -17,6 +17,8 @@ use crate::model::{Kinematics, LumpedKind, Model, Wet};
 pub struct Layout {
     /// Motion of the beam across (`u1`) and along (`u3`).
     pub lines: [Line; 2],
+    /// What a solid that relaxes remembers.
+    pub relaxation: Relaxation,
     /// What beam and bladders know of each other.
     pub coupling: Coupling,
     /// Bladders and what joins them.
@@ -44,6 +46,15 @@ pub struct Line {
     pub u: Range<usize>,
     /// Their velocities; none without inertia, and along a beam without axial waves.
     pub v: Option<Range<usize>>,
+}
+
+/// Curvatures and stretches to which the branches of a solid have relaxed, branch by branch.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Relaxation {
+    /// At nodes.
+    pub curvature: Range<usize>,
+    /// In cells.
+    pub stretch: Range<usize>,
 }
 
 /// Means of segments that bladders feel.
@@ -79,6 +90,7 @@ pub struct Network {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Name {
     Node(&'static str, usize),
+    Relaxed(&'static str, usize, usize),
     Segment(&'static str, usize),
     Area(usize, usize),
     NonlinearArea(usize),
@@ -110,6 +122,7 @@ impl Layout {
     pub fn new(model: &Model, mesh: &Mesh, fluid: Option<&FluidMesh>) -> Self {
         let mut build = Builder::default();
         let lines = Line::both(model, mesh, &mut build);
+        let relaxation = Relaxation::new(model, mesh, &mut build);
         let wet = model.wet.as_ref().zip(fluid);
         let coupling = wet.map_or_else(Default::default, |(wet, _)| Coupling::new(model, wet, mesh, &mut build));
         let network = wet.map_or_else(Default::default, |(wet, fluid)| {
@@ -117,6 +130,7 @@ impl Layout {
         });
         Self {
             lines,
+            relaxation,
             coupling,
             network,
             len: build.len(),
@@ -139,6 +153,7 @@ impl Layout {
         let bladder = |b: usize| bladder_label(b, self.per_row);
         match self.names[unknown] {
             Name::Node(what, node) => format!("{what} of node {node}"),
+            Name::Relaxed(what, branch, place) => format!("{what} {place} in branch {} of relaxation", branch + 1),
             Name::Segment(what, segment) => format!("{what} of segment {}", segment + 1),
             Name::Area(b, cell) => format!("area change [m^2] of bladder {}, cell {}", bladder(b), cell + 1),
             Name::NonlinearArea(b) => format!("nonlinear area change [m^2] of bladder {}", bladder(b)),
@@ -188,6 +203,38 @@ impl Line {
             line.v = Some(build.nodes(["v1 [m/s]", "v3 [m/s]"][k], &line.free, rates[k], acceleration, true));
         }
         lines
+    }
+}
+
+impl Relaxation {
+    fn new(model: &Model, mesh: &Mesh, build: &mut Builder) -> Self {
+        let (s, section) = (&model.scales, &model.section);
+        let mut of = |there: bool, what: &'static str, places: usize, scale: f64| {
+            build.block(|build| {
+                for (k, branch) in model.relaxation.iter().enumerate().filter(|_| there) {
+                    for place in 0..places {
+                        let rate = scale * s.frequency.max(1.0 / branch.time_s);
+                        build.push(Name::Relaxed(what, k, place), scale, rate, true);
+                    }
+                }
+            })
+        };
+        let bends = model.kinematics != Kinematics::Bar;
+        let stretches = model.effects.has(Effect::AxialStretch);
+        Self {
+            curvature: of(
+                bends,
+                "curvature [1/m] of node",
+                mesh.nodes,
+                s.moment / section.bending_stiffness,
+            ),
+            stretch: of(
+                stretches,
+                "stretch of cell",
+                mesh.cells,
+                s.force / section.axial_stiffness,
+            ),
+        }
     }
 }
 

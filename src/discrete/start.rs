@@ -35,7 +35,12 @@ pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
             }
         }
     }
-    fill_bladders(system, case, now, &mut y);
+    let mut w = Workspace::new(system);
+    if !system.model.relaxation.is_empty() {
+        residual::evaluate(system, now, &y, &vec![0.0; l.len], &mut w);
+        residual::relaxation::settle(system, now, &w, &mut y);
+    }
+    fill_bladders(system, case, now, &mut y, &mut w);
     for (value, scale) in y.iter_mut().zip(&l.scales) {
         *value /= scale;
     }
@@ -52,7 +57,7 @@ pub fn areas(system: &System, case: &Case) -> Vec<f64> {
 
 /// Areas that give the prescribed pressures, with the means that follow from them: a fixed point, exact after one
 /// round unless the coupling depends on the means.
-fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64]) {
+fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64], w: &mut Workspace<f64>) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
@@ -76,7 +81,6 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64]) {
         }
     }
     let yp = vec![0.0; y.len()];
-    let mut w = Workspace::new(system);
     let mut residual = vec![0.0; y.len()];
     for _ in 0..20 {
         for j in 0..wet.per_row {
@@ -98,7 +102,8 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64]) {
                 }
             }
         }
-        residual::residual(system, now, y, &yp, &mut w, &mut residual);
+        residual::residual(system, now, y, &yp, w, &mut residual);
+        residual::relaxation::settle(system, now, w, y);
         // The residual of a mean is what it lacks.
         let own = &l.coupling;
         let means = own.mean_moment.clone().chain(own.mean_force.clone());

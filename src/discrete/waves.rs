@@ -69,8 +69,8 @@ pub fn least_damping_ratio(system: &System) -> f64 {
 pub fn highest_frequency(system: &System) -> f64 {
     let s = &system.model.section;
     let h = system.mesh.h;
-    let bending = 4.0 / (h * h) * (s.bending_stiffness / s.mass_per_length).sqrt();
-    let axial = 2.0 / h * (s.axial_stiffness / s.mass_per_length).sqrt();
+    let bending = 4.0 / (h * h) * (s.stiffening * s.bending_stiffness / s.mass_per_length).sqrt();
+    let axial = 2.0 / h * (s.stiffening * s.axial_stiffness / s.mass_per_length).sqrt();
     let carried = [bending, axial].into_iter().zip(system.layout.waves());
     carried.filter(|(_, waves)| *waves).map(|(f, _)| f).fold(0.0, f64::max)
 }

@@ -12,6 +12,8 @@ pub struct Workspace<T> {
     pub motion: Motion<T>,
     /// How the beam is bent and stretched.
     pub shape: Shape<T>,
+    /// To what the solid has relaxed.
+    pub relaxed: Relaxed<T>,
     /// What its sections carry.
     pub forces: Forces<T>,
     /// What beam and bladders know of each other.
@@ -52,6 +54,19 @@ pub struct Shape<T> {
     pub kappa_rate: Vec<T>,
 }
 
+/// Of the branches of a solid that relaxes, one after the other; empty without.
+#[derive(Clone, Debug)]
+pub struct Relaxed<T> {
+    /// Curvatures `κ_k` of nodes [1/m].
+    pub curvature: Vec<T>,
+    /// Their rates [1/(m s)].
+    pub curvature_rate: Vec<T>,
+    /// Stretches `ε_k` of cells.
+    pub stretch: Vec<T>,
+    /// Their rates [1/s].
+    pub stretch_rate: Vec<T>,
+}
+
 /// Moments at nodes, forces in cells.
 #[derive(Clone, Debug)]
 pub struct Forces<T> {
@@ -67,6 +82,10 @@ pub struct Forces<T> {
     pub shear: Vec<T>,
     /// Section force in lab axes [N].
     pub section: Vec<Planar<T>>,
+    /// Part of the moment that relaxes [N m]; empty without.
+    pub relaxing_moment: Vec<T>,
+    /// And of the normal force [N].
+    pub relaxing_normal: Vec<T>,
     /// What the section's energy beyond its quadratic part adds to the moment [N m]; empty without.
     pub nonlinear_moment: Vec<T>,
     /// And to the normal force [N].
@@ -169,23 +188,24 @@ impl Fluid<f64> {
 }
 
 impl Forces<f64> {
-    /// Elastic moments M of nodes [N m].
+    /// Moments M of nodes without what damps them [N m].
     pub fn moments(&self) -> Cow<'_, [f64]> {
-        together(&self.moment, &self.nonlinear_moment)
+        together(&self.moment, [&self.nonlinear_moment, &self.relaxing_moment])
     }
 
-    /// Elastic normal forces N of cells [N].
+    /// Normal forces N of cells without what damps them [N].
     pub fn normals(&self) -> Cow<'_, [f64]> {
-        together(&self.normal, &self.nonlinear_normal)
+        together(&self.normal, [&self.nonlinear_normal, &self.relaxing_normal])
     }
 }
 
-/// The sum of two parts, of which the second may be absent.
-fn together<'a>(part: &'a [f64], other: &[f64]) -> Cow<'a, [f64]> {
-    match other.is_empty() {
-        true => Cow::Borrowed(part),
-        false => part.iter().zip(other).map(|(a, b)| a + b).collect(),
+/// The sum of parts, of which all but the first may be absent.
+fn together<'a>(part: &'a [f64], others: [&[f64]; 2]) -> Cow<'a, [f64]> {
+    let mut sum = Cow::Borrowed(part);
+    for other in others.into_iter().filter(|other| !other.is_empty()) {
+        sum.to_mut().iter_mut().zip(other).for_each(|(sum, more)| *sum += more);
     }
+    sum
 }
 
 impl<T: Scalar> Workspace<T> {
@@ -199,6 +219,7 @@ impl<T: Scalar> Workspace<T> {
         } else {
             0
         };
+        let relaxation = &system.layout.relaxation;
         let fluid = system.fluid.as_ref();
         let (cells, bladders) = fluid.map_or((0, 0), |f| (f.cells, f.bladders));
         let (junctions, bridges) = fluid.map_or((0, 0), |f| (f.junctions.len(), f.bridges.len()));
@@ -225,6 +246,12 @@ impl<T: Scalar> Workspace<T> {
                 kappa: zeros(n),
                 kappa_rate: zeros(n),
             },
+            relaxed: Relaxed {
+                curvature: zeros(relaxation.curvature.len()),
+                curvature_rate: zeros(relaxation.curvature.len()),
+                stretch: zeros(relaxation.stretch.len()),
+                stretch_rate: zeros(relaxation.stretch.len()),
+            },
             forces: Forces {
                 moment: zeros(n),
                 viscous_moment: zeros(n),
@@ -232,6 +259,8 @@ impl<T: Scalar> Workspace<T> {
                 viscous_normal: zeros(c),
                 shear: zeros(c),
                 section: vectors(c),
+                relaxing_moment: zeros(relaxation.curvature.len().min(n)),
+                relaxing_normal: zeros(relaxation.stretch.len().min(c)),
                 nonlinear_moment: zeros(nonlinear * n),
                 nonlinear_normal: zeros(nonlinear * c),
             },

@@ -1,7 +1,7 @@
 //! The cross-section of the beam: mass, stiffness, rotary inertia, damping.
 
 use super::surroundings::displaced;
-use crate::case::schema::Case;
+use crate::case::schema::{Case, Viscoelasticity};
 
 /// Constants of the cross-section.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +26,8 @@ pub struct Section {
     pub weighing_per_length: f64,
     /// `c_2` [N s^2/m^3].
     pub quadratic_drag: f64,
+    /// `1 + Σ g`: stiffness of a solid that relaxes at once over that in the long term.
+    pub stiffening: f64,
 }
 
 impl Section {
@@ -54,6 +56,8 @@ impl Section {
             (cavities * fluid_density + (solid - cavities) * beam.density_kg_m3) / (solid * beam.density_kg_m3),
         );
         let mass_per_length = beam.density_kg_m3 * beam.width_m * beam.height_m * mass_factor;
+        let relaxing = beam.viscoelasticity.as_ref().and_then(Viscoelasticity::branches);
+        let ratios = relaxing.iter().flatten().map(|branch| branch.modulus_ratio);
         let second_moment = beam.width_m * beam.height_m.powi(3) / 12.0 * beam.bending_stiffness_factor;
         Self {
             mass_factor,
@@ -66,6 +70,7 @@ impl Section {
             bending_damping_time: beam.damping.bending_time_s,
             drag: beam.damping.drag_n_s_m2,
             quadratic_drag: beam.damping.quadratic_drag_n_s2_m3,
+            stiffening: 1.0 + ratios.sum::<f64>(),
         }
     }
 }

@@ -25,7 +25,7 @@ pub mod tongue;
 
 use crate::case::ResolvedEnd;
 use crate::case::schema::Effect;
-use crate::case::schema::{Bladders, Case, Effects, Formulation};
+use crate::case::schema::{Bladders, Branch, Case, Effects, Formulation, Viscoelasticity};
 use crate::error::Result;
 use crate::numerics::Scalar;
 
@@ -207,6 +207,8 @@ pub struct Model {
     pub loads: Vec<Load>,
     /// What is attached to the beam at places.
     pub attachments: Vec<Attachment>,
+    /// Branches of a solid that relaxes.
+    pub relaxation: Vec<Branch>,
     /// What the beam moves through.
     pub surroundings: Option<Surroundings>,
     /// Fluid and bladders; absent in a dry beam.
@@ -289,6 +291,9 @@ impl Model {
             ends,
             loads,
             attachments: Attachment::all(case),
+            relaxation: (case.beam.viscoelasticity.as_ref())
+                .and_then(Viscoelasticity::branches)
+                .unwrap_or_default(),
             surroundings: case.surroundings.as_ref().map(|s| Surroundings::new(s, &case.beam)),
             wet,
             scales,

@@ -10,6 +10,7 @@ mod junctions;
 pub mod network;
 mod plausible;
 mod probes;
+mod relaxation;
 mod size;
 mod start;
 mod strength;
@@ -23,7 +24,7 @@ use crate::error::{Code, Violation};
 type Rule = fn(&Case, &mut Violations);
 
 /// All rules, each with the sections of the case that it compares.
-const RULES: [(Rule, &[&str]); 14] = [
+const RULES: [(Rule, &[&str]); 15] = [
     (name, &[]),
     (plausible::sizes, &[]),
     (plausible::proportions, &["beam", "tubes", "network"]),
@@ -36,6 +37,7 @@ const RULES: [(Rule, &[&str]); 14] = [
     (ends::check, &[]),
     (attachments::check, &[]),
     (probes::check, &[]),
+    (relaxation::check, &["beam"]),
     (functions::check, &["time"]),
     (start::check, &["beam", "bladders", "ends", "start", "time"]),
     (time::check, &[]),

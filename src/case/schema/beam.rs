@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::is_zero;
+use super::{Viscoelasticity, is_zero};
 
 /// The elastic beam; stiffness of the honeycomb through two correction factors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -39,6 +39,9 @@ pub struct Beam {
     /// Material damping and external drag; absent: undamped.
     #[serde(default)]
     pub damping: Damping,
+    /// How the material relaxes; absent: it does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub viscoelasticity: Option<Viscoelasticity>,
 }
 
 /// Kelvin-Voigt material damping and external drag (not in the paper).

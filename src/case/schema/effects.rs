@@ -137,6 +137,8 @@ effects! {
     given {
         /// Damping of the material, and drag.
         Damping damping,
+        /// Relaxation of the material: a Prony series, or a loss factor over a band.
+        Viscoelasticity viscoelasticity,
         /// Drag across the beam that grows with the square of its velocity.
         QuadraticDrag quadratic_drag,
         /// Valves that move.

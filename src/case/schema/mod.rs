@@ -23,6 +23,7 @@ mod network;
 mod numerics;
 mod probes;
 mod surroundings;
+mod viscoelasticity;
 
 pub use attachments::*;
 pub use beam::*;
@@ -33,6 +34,7 @@ pub use network::*;
 pub use numerics::*;
 pub use probes::*;
 pub use surroundings::*;
+pub use viscoelasticity::*;
 
 /// A case: one beam, its bladders and tubes, what is done to it, and how it is to be solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

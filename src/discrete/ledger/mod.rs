@@ -96,6 +96,9 @@ pub struct Energies {
     /// Of the section at finite strain, beyond all these.
     #[serde(default)]
     pub section: f64,
+    /// Of the parts of the section's forces that relax.
+    #[serde(default)]
+    pub relaxing: f64,
     /// Of compressed fluid.
     #[serde(default)]
     pub compression: f64,
@@ -116,6 +119,7 @@ impl Energies {
             + self.bending
             + self.bladders
             + self.tubes
+            + self.relaxing
             + self.compression
             + self.section
             + self.springs
@@ -209,6 +213,7 @@ pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     e.compression = compressed::energy(system, &w);
     e.tubes = tubes::kinetic(system, &w);
     e.springs = system.attached.iter().map(|attached| attached.energy(system, &w)).sum();
+    e.relaxing = residual::relaxation::energy_and_loss(system, &w)[0];
     e.section = residual::nonlinear::energy(system, &w);
     e.around = (0..system.mesh.nodes)
         .map(|i| system.mesh.node_length(i) * residual::around::kinetic(system, now, &w, i))

@@ -2,6 +2,7 @@
 
 use super::{Energies, EnergyRate, add};
 use crate::case::schema::Effect;
+use crate::discrete::residual::relaxation;
 use crate::discrete::residual::rows::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
 use crate::discrete::{System, TimeData, Workspace, attached};
@@ -61,6 +62,7 @@ pub fn flows(
         }
     }
     add(out, EnergyRate::AngularImpulse, attached::torque(system, w));
+    add(out, EnergyRate::Damping, relaxation::energy_and_loss(system, w)[1]);
     cells(system, now, w, published, out);
 }
 
@@ -95,7 +97,7 @@ fn bending(
     let kappa_rate = match end {
         Some(e) if e.slope.is_none() => {
             let alpha_rate = e.moment.rate / section.bending_stiffness + curvature_rate(w, i);
-            (alpha_rate - w.shape.kappa[i] * stretch_rate) / stretch
+            relaxation::curvature_rate(system, w, i, alpha_rate - w.shape.kappa[i] * stretch_rate, stretch)
         }
         _ => w.shape.kappa_rate[i],
     };
@@ -106,7 +108,8 @@ fn bending(
             None => w.shape.angle_rate[cell] + sign * 0.5 * mesh.h * kappa_rate,
         };
         let nonlinear = w.forces.nonlinear_moment.get(i).copied().unwrap_or(0.0);
-        let moment = w.forces.moment[i] + nonlinear + w.forces.viscous_moment[i];
+        let relaxing = w.forces.relaxing_moment.get(i).copied().unwrap_or(0.0);
+        let moment = w.forces.moment[i] + nonlinear + relaxing + w.forces.viscous_moment[i];
         add(out, EnergyRate::Ends, sign * moment * angle_rate);
         add(out, EnergyRate::AngularImpulse, sign * moment);
     }

@@ -102,6 +102,10 @@ fn nonlinear(system: &System) -> bool {
     system.model.strain_energy().is_some()
 }
 
+fn relaxing(system: &System) -> bool {
+    !system.model.relaxation.is_empty()
+}
+
 fn compressed(system: &System) -> bool {
     system.model.wet.as_ref().is_some_and(|wet| wet.compression.is_some())
 }
@@ -201,6 +205,8 @@ observables! {
         "energy stored in the bladders";
     SectionEnergy: "section_energy" ["J"], "section energy", "energy of finite strain", Stored, Recorded, nonlinear, Read::State(|look| look.stored.section),
         "energy of the section at finite strain, beyond those that are quadratic";
+    RelaxingEnergy: "relaxing_energy" ["J"], "relaxing energy", "energy of what relaxes", Stored, Recorded, relaxing, Read::State(|look| look.stored.relaxing),
+        "energy of the parts of moments and normal forces that relax";
     CompressionEnergy: "compression_energy" ["J"], "compression energy", "energy of compressed fluid", Stored, Recorded, compressed, Read::State(|look| look.stored.compression),
         "energy of compressed fluid, relative to ambient pressure";
     TubeEnergy: "tube_energy" ["J"], "tube energy", "energy of the fluid in tubes", Stored, Recorded, inert, Read::State(|look| look.stored.tubes),

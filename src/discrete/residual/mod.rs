@@ -4,6 +4,7 @@ pub mod around;
 pub mod bar;
 pub mod fluid;
 pub mod nonlinear;
+pub mod relaxation;
 pub mod rows;
 pub mod small;
 pub mod solid;
@@ -26,12 +27,14 @@ pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
             bar::kinematics(system, w);
             bar::rates(system, w);
             solid::normal_forces(system, w);
+            relaxation::normal_forces(system, w);
             bar::section_forces(system, w);
         }
         Kinematics::Linear | Kinematics::SmallRotation => {
             small::kinematics(system, now, w);
             small::rates(system, now, w);
             small::normal_forces(system, now, w);
+            relaxation::normal_forces(system, w);
             solid::moments(system, now, w);
             small::section_forces(system, now, w);
         }
@@ -39,6 +42,7 @@ pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
             solid::kinematics(system, now, w);
             solid::rates(system, now, w);
             solid::normal_forces(system, w);
+            relaxation::normal_forces(system, w);
             solid::moments(system, now, w);
             solid::shears(system, w);
             solid::section_forces(system, now, w);
@@ -62,6 +66,7 @@ pub fn residual<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
     evaluate(system, now, y, yp, w);
     rows::momentum(system, now, w, r);
     rows::motion(system, y, yp, r);
+    relaxation::rows(system, w, r);
     rows::means(system, w, r);
     nonlinear::areas(system, w, r);
     rows::storage(system, w, r);

@@ -141,6 +141,9 @@ pub fn published_force<T: Scalar>(system: &System, w: &Workspace<T>, i: usize) -
     if system.damped {
         normal += (forces.viscous_normal[a] + forces.viscous_normal[b]) * 0.5;
     }
+    if let (Some(left), Some(right)) = (forces.relaxing_normal.get(a), forces.relaxing_normal.get(b)) {
+        normal += (*left + *right) * 0.5;
+    }
     let shear = (forces.shear[a] + forces.shear[b]) * 0.5;
     let excess = (w.shape.kappa[i] - forces.moment[i] * (1.0 / system.model.section.bending_stiffness))
         * system.mesh.node_length(i);

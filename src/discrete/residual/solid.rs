@@ -1,5 +1,6 @@
 //! Kinematics, resultants and section forces of the beam.
 
+use super::relaxation;
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace, attached};
 use crate::model::Kinematics;
@@ -132,7 +133,12 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
                 }
                 w.forces.moment[i] = elastic;
                 let alpha = pressure_curvature + elastic / T::constant(ei);
-                w.shape.kappa[i] = if published { alpha / stretch } else { alpha };
+                if w.relaxed.curvature.is_empty() {
+                    w.shape.kappa[i] = if published { alpha / stretch } else { alpha };
+                } else {
+                    w.shape.kappa[i] = relaxation::curvature(system, w, i, alpha, stretch);
+                    w.forces.moment[i] = (w.shape.kappa[i] * stretch - pressure_curvature) * ei;
+                }
             }
             None => {
                 let alpha = if published {
@@ -144,6 +150,7 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
             }
         }
     }
+    relaxation::moments(system, w);
     if section.bending_damping_time > 0.0 {
         let first = usize::from(now.ends[0].slope.is_none());
         let end = last + usize::from(now.ends[1].slope.is_some());
@@ -168,6 +175,9 @@ pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize)
     if let [left, right, ..] = w.forces.nonlinear_moment.get(c..).unwrap_or_default() {
         drop += *left - *right;
     }
+    if let [left, right, ..] = w.forces.relaxing_moment.get(c..).unwrap_or_default() {
+        drop += *left - *right;
+    }
     if system.model.section.bending_damping_time > 0.0 {
         drop + (w.forces.viscous_moment[c] - w.forces.viscous_moment[c + 1])
     } else {
@@ -181,6 +191,9 @@ pub fn normal_force<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T
     let mut force = w.forces.normal[c];
     if let Some(nonlinear) = w.forces.nonlinear_normal.get(c) {
         force += *nonlinear;
+    }
+    if let Some(relaxing) = w.forces.relaxing_normal.get(c) {
+        force += *relaxing;
     }
     if system.model.section.axial_damping_time > 0.0 {
         force += w.forces.viscous_normal[c];

@@ -34,6 +34,10 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
             carry(&frame, system, axis, motion);
         }
     }
+    copy(&mut w.relaxed.curvature, y, &l.relaxation.curvature);
+    copy(&mut w.relaxed.curvature_rate, yp, &l.relaxation.curvature);
+    copy(&mut w.relaxed.stretch, y, &l.relaxation.stretch);
+    copy(&mut w.relaxed.stretch_rate, yp, &l.relaxation.stretch);
     if let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) {
         copy(&mut w.coupling.mean_moment, y, &l.coupling.mean_moment);
         copy(&mut w.coupling.mean_force, y, &l.coupling.mean_force);

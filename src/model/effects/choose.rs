@@ -172,6 +172,7 @@ impl<'a> Chooser<'a> {
         };
         match effect {
             _ if !self.case.attachments.is_empty() && by_motion(effect) => kept(Keeps::Attachments),
+            _ if self.case.beam.viscoelasticity.is_some() && by_motion(effect) => kept(Keeps::Viscoelasticity),
             _ if self.case.surroundings.is_some() && by_motion(effect) => kept(Keeps::Surroundings),
             _ if about(Effect::NonlinearSection).needs.contains(&effect) && scene.strain_energy() >= self.tolerance => {
                 kept(Keeps::FiniteStrain)

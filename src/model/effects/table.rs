@@ -224,6 +224,14 @@ pub fn about(effect: Effect) -> About {
                 damping.axial_time_s > 0.0 || damping.bending_time_s > 0.0 || damping.drag_n_s_m2 > 0.0
             }),
         },
+        Effect::Viscoelasticity => About {
+            adds: "EI Σ g_k (κ - κ_k), EA Σ g_k (ε - ε_k), dκ_k/dt = (κ - κ_k)/τ_k",
+            brings: "a curvature a node and branch, a stretch a cell and branch",
+            number: "present where given; what is decided by the scene's numbers stays then",
+            cost: "as many unknowns; steps of its relaxation times",
+            needs: &[],
+            presence: Presence::Given(|case, _| case.beam.viscoelasticity.is_some()),
+        },
         Effect::QuadraticDrag => About {
             adds: "b = -c₂ √(v_n²) v_n e_n, v_n = v·e_n",
             brings: "a force across at every node",

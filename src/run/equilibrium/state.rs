@@ -5,6 +5,7 @@ use crate::discrete::glance::Glance;
 use crate::discrete::layout::Line;
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, Look, Observable, Row, probes};
+use crate::discrete::residual::relaxation;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::run::range::Limits;
 use crate::run::record::Column;
@@ -124,6 +125,7 @@ pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &Tim
     let (_, _, w) = from.evaluate(share, y, &zeros);
     let mut z = vec![0.0; to.layout.len];
     displacements(&w, to, now, &mut z);
+    relaxation::settle(to, now, &w, &mut z);
     fluid(&w, to, &mut z);
     for (z, scale) in z.iter_mut().zip(&to.layout.scales) {
         *z /= scale;

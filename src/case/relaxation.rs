@@ -1,0 +1,77 @@
+//! Branches of a solid that relaxes, from what a case gives.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::schema::{Branch, LossFactor, Viscoelasticity};
+
+/// Branches a decade of a loss factor's band, and decades beyond each of its ends that they reach.
+const PER_DECADE: f64 = 2.0;
+const BEYOND: f64 = 0.5;
+/// Frequencies a branch at which the loss factor is fitted.
+const FITTED: usize = 20;
+/// Relative error of a loss factor up to which it is taken.
+const GOOD: f64 = 0.02;
+
+impl Viscoelasticity {
+    /// Its branches; none where no series has this loss factor.
+    pub fn branches(&self) -> Option<Vec<Branch>> {
+        match &self.loss_factor {
+            None => Some(self.prony.clone()),
+            Some(loss_factor) => loss_factor.branches(),
+        }
+    }
+}
+
+impl LossFactor {
+    /// `[E60]` Branches whose loss factor is constant to 2 % over the band: with relaxation times spaced evenly in log τ,
+    ///
+    /// ```text
+    /// Σ g_k (x_k - η x_k²)/(1 + x_k²) = η        x_k = ω τ_k
+    /// ```
+    ///
+    /// in the least squares over log ω. None where that takes a spring of negative stiffness, from about 0.5 on.
+    fn branches(&self) -> Option<Vec<Branch>> {
+        let decades = (self.to_hz / self.from_hz).log10();
+        let count = ((decades + 2.0 * BEYOND) * PER_DECADE).ceil() as usize + 1;
+        let spread =
+            |low: f64, decades: f64, k: usize, of: usize| low * 10_f64.powf(decades * k as f64 / (of - 1) as f64);
+        let slowest = self.from_hz * 10_f64.powf(-BEYOND);
+        let times: Vec<f64> = (0..count)
+            .map(|k| 1.0 / (TAU * spread(slowest, decades + 2.0 * BEYOND, k, count)))
+            .collect();
+        let fitted = FITTED * count;
+        let omegas: Vec<f64> = (0..fitted)
+            .map(|k| TAU * spread(self.from_hz, decades, k, fitted))
+            .collect();
+        let matrix = DMatrix::from_fn(fitted, count, |i, k| {
+            let x = omegas[i] * times[k];
+            (x - self.value * x * x) / (1.0 + x * x)
+        });
+        let ratios = matrix
+            .svd(true, true)
+            .solve(&DVector::from_element(fitted, self.value), 1e-14);
+        let ratios = ratios.ok().filter(|ratios| ratios.iter().all(|&g| g > 0.0))?;
+        let branches: Vec<Branch> = ratios
+            .iter()
+            .zip(times)
+            .map(|(&modulus_ratio, time_s)| Branch { modulus_ratio, time_s })
+            .collect();
+        let good = |&omega: &f64| {
+            let [storage, loss] = dynamic_modulus(&branches, omega);
+            (loss / storage / self.value - 1.0).abs() <= GOOD
+        };
+        omegas.iter().all(good).then_some(branches)
+    }
+}
+
+/// Storage and loss modulus over the modulus in the long term at an angular frequency [1/s]: `1 + Σ g x²/(1 + x²)`, `Σ g x/(1 + x²)`, x = ω τ.
+pub fn dynamic_modulus(branches: &[Branch], omega: f64) -> [f64; 2] {
+    branches.iter().fold([1.0, 0.0], |[storage, loss], branch| {
+        let x = omega * branch.time_s;
+        // 1/(1/x + x) neither overflows nor divides by zero
+        let share = branch.modulus_ratio / (1.0 / x + x);
+        [storage + share * x, loss + share]
+    })
+}

@@ -1,0 +1,155 @@
+//! The solid that relaxes.
+
+use super::solid::node_stretch;
+use crate::discrete::{System, TimeData, Workspace};
+use crate::model::Section;
+use crate::numerics::Scalar;
+
+/// `[E61]` Generalised Maxwell solid: beside the spring of the long term branches of a spring, g_k times as stiff, and a dashpot in series,
+/// on the strains of the beam; what pressure does to bladders keeps to the long term:
+///
+/// ```text
+/// M_total = M + EI Σ g_k (κ - κ_k)      dκ_k/dt = (κ - κ_k)/τ_k
+/// N_total = N + EA Σ g_k (ε - ε_k)      dε_k/dt = (ε - ε_k)/τ_k        ε = λ - 1
+/// E gains Σ h_i EI g_k (κ - κ_k)²/2 + Σ h EA g_k (ε - ε_k)²/2        D = Σ h_i EI g_k (κ - κ_k) dκ_k/dt + Σ h EA g_k (ε - ε_k) dε_k/dt
+/// ```
+///
+/// For g_k → ∞ at g_k τ_k fixed it is Kelvin and Voigt's. Where an end's moment is given, α = s κ the measure of curvature of [E12],
+///
+/// ```text
+/// κ = (M/EI + α_p + Σ g_k κ_k)/(s + Σ g_k)
+/// ```
+pub fn rows<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
+    let own = &system.layout.relaxation;
+    let curvatures = [&w.relaxed.curvature, &w.relaxed.curvature_rate];
+    let stretches = [&w.relaxed.stretch, &w.relaxed.stretch_rate];
+    for (rows, strain, [kept, rate]) in [
+        (&own.curvature, &w.shape.kappa, curvatures),
+        (&own.stretch, &w.shape.strain, stretches),
+    ] {
+        let mut all = rows.clone().zip(kept).zip(rate);
+        for branch in &system.model.relaxation {
+            for (((row, kept), rate), strain) in all.by_ref().take(strain.len()).zip(strain) {
+                r[row] = *rate - (*strain - *kept) * (1.0 / branch.time_s);
+            }
+        }
+    }
+}
+
+/// Parts of normal forces that relax.
+pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+    let stiffness = system.model.section.axial_stiffness;
+    relaxing(
+        system,
+        stiffness,
+        &w.shape.strain,
+        &w.relaxed.stretch,
+        &mut w.forces.relaxing_normal,
+    );
+}
+
+/// Parts of moments that relax.
+pub fn moments<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+    let stiffness = system.model.section.bending_stiffness;
+    relaxing(
+        system,
+        stiffness,
+        &w.shape.kappa,
+        &w.relaxed.curvature,
+        &mut w.forces.relaxing_moment,
+    );
+}
+
+fn relaxing<T: Scalar>(system: &System, stiffness: f64, strain: &[T], kept: &[T], out: &mut [T]) {
+    out.fill(T::zero());
+    for (branch, kept) in system.model.relaxation.iter().zip(kept.chunks_exact(out.len().max(1))) {
+        for ((out, strain), kept) in out.iter_mut().zip(strain).zip(kept) {
+            *out += (*strain - *kept) * (stiffness * branch.modulus_ratio);
+        }
+    }
+}
+
+/// Curvature of a node whose moment is given, `α = M/EI + α_p` in the long term.
+pub fn curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: usize, alpha: T, stretch: T) -> T {
+    let (remembered, ratios) = remembered(system, &w.relaxed.curvature, node);
+    (alpha + remembered) / (stretch + ratios)
+}
+
+/// Its rate.
+pub fn curvature_rate(system: &System, w: &Workspace<f64>, node: usize, alpha_rate: f64, stretch: f64) -> f64 {
+    let (remembered, ratios) = remembered(system, &w.relaxed.curvature_rate, node);
+    (alpha_rate + remembered) / (stretch + ratios)
+}
+
+/// `Σ g_k κ_k` of a node, and `Σ g_k`.
+fn remembered<T: Scalar>(system: &System, kept: &[T], node: usize) -> (T, f64) {
+    let mut sum = T::zero();
+    let mut ratios = 0.0;
+    for (branch, kept) in system.model.relaxation.iter().zip(kept.chunks_exact(system.mesh.nodes)) {
+        sum += kept[node] * branch.modulus_ratio;
+        ratios += branch.modulus_ratio;
+    }
+    (sum, ratios)
+}
+
+/// Energy stored in the branches [J], and what they dissipate [W].
+pub fn energy_and_loss(system: &System, w: &Workspace<f64>) -> [f64; 2] {
+    let (
+        mesh,
+        Section {
+            axial_stiffness,
+            bending_stiffness,
+            ..
+        },
+    ) = (&system.mesh, system.model.section);
+    let mut sums = [0.0; 2];
+    let mut add = |strain: &[f64], kept: &[f64], rate: &[f64], stiffness: &dyn Fn(usize) -> f64| {
+        let count = strain.len();
+        let branches = kept.chunks_exact(count).zip(rate.chunks_exact(count));
+        for (branch, (kept, rate)) in system.model.relaxation.iter().zip(branches) {
+            for (place, ((strain, kept), rate)) in strain.iter().zip(kept).zip(rate).enumerate() {
+                let (slip, stiffness) = (strain - kept, stiffness(place) * branch.modulus_ratio);
+                sums[0] += 0.5 * stiffness * slip * slip;
+                sums[1] += stiffness * slip * rate;
+            }
+        }
+    };
+    let relaxed = &w.relaxed;
+    add(&w.shape.kappa, &relaxed.curvature, &relaxed.curvature_rate, &|node| {
+        mesh.node_length(node) * bending_stiffness
+    });
+    add(&w.shape.strain, &relaxed.stretch, &relaxed.stretch_rate, &|_| {
+        mesh.h * axial_stiffness
+    });
+    sums
+}
+
+/// Gives the branches of a state `y` (SI) the strains in which a beam of this shape and these pressures is relaxed; `w` holds them, of the same
+/// system or of one without branches. A given moment is then all elastic.
+pub fn settle(system: &System, now: &TimeData, w: &Workspace<f64>, y: &mut [f64]) {
+    let (own, last) = (&system.layout.relaxation, system.mesh.nodes - 1);
+    for (unknown, strain) in own.stretch.clone().zip(w.shape.strain.iter().cycle()) {
+        y[unknown] = *strain;
+    }
+    for (k, unknown) in own.curvature.clone().enumerate() {
+        let node = k % system.mesh.nodes;
+        let end = match node {
+            0 => Some(&now.ends[0]),
+            _ if node == last => Some(&now.ends[1]),
+            _ => None,
+        };
+        let mut curvature = w.shape.kappa[node];
+        if let (Some(relaxing), Some(_)) = (
+            w.forces.relaxing_moment.get(node),
+            end.filter(|end| end.slope.is_none()),
+        ) {
+            let stretch = if system.model.published() {
+                node_stretch(w, node, last)
+            } else {
+                1.0
+            };
+            curvature += relaxing / (system.model.section.bending_stiffness * stretch);
+        }
+        y[unknown] = curvature;
+    }
+}
