@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 56] = [
+const INDEX: [(&str, &str, &str); 58] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -162,6 +162,12 @@ const INDEX: [(&str, &str, &str); 56] = [
     ("[E54]", "tests/gas.rs", "a_bladder_blows_down_through_a_capillary"),
     ("[E55]", "tests/gas.rs", "a_bladder_blows_down_through_a_capillary"),
     ("[E56]", "tests/gas.rs", "balances_close_with_compression"),
+    (
+        "[E57]",
+        "tests/viscoelastic/branches.rs",
+        "loss_factors_are_constant_over_their_band",
+    ),
+    ("[E58]", "tests/viscoelastic/main.rs", "held_strains_relax_exactly"),
 ];
 
 #[test]

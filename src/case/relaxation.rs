@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::schema::{Branch, LossFactor, Viscoelasticity};
 
@@ -25,7 +25,7 @@ impl Viscoelasticity {
 }
 
 impl LossFactor {
-    /// `[E60]` Branches whose loss factor is constant to 2 % over the band: with relaxation times spaced evenly in log τ,
+    /// `[E57]` Branches whose loss factor is constant to 2 % over the band: with relaxation times spaced evenly in log τ,
     ///
     /// ```text
     /// Σ g_k (x_k - η x_k²)/(1 + x_k²) = η        x_k = ω τ_k
@@ -75,3 +75,34 @@ pub fn dynamic_modulus(branches: &[Branch], omega: f64) -> [f64; 2] {
         [storage + share * x, loss + share]
     })
 }
+
+/// Angular frequency and rate of decay [1/s] with which a vibration swings whose frequency is ω in the long term: the root of
+///
+/// ```text
+/// s² + ω² (1 + Σ g s τ/(1 + s τ)) = 0
+/// ```
+///
+/// Where none is found near the frequency that storage alone gives, that with no decay, which is on the safe side.
+pub fn vibration(branches: &[Branch], omega: f64) -> [f64; 2] {
+    if branches.is_empty() {
+        return [omega, 0.0];
+    }
+    // storage grows with frequency: from below it comes to its own
+    let stored = (0..SETTLED).fold(omega, |at, _| omega * dynamic_modulus(branches, at)[0].sqrt());
+    let one = Complex::new(1.0, 0.0);
+    let mut s = Complex::new(0.0, stored);
+    for _ in 0..SETTLED {
+        let (mut stiffness, mut slope) = (one, Complex::new(0.0, 0.0));
+        for &Branch { modulus_ratio, time_s } in branches {
+            let relaxing = one + s * time_s;
+            stiffness += s * (modulus_ratio * time_s) / relaxing;
+            slope += (relaxing * relaxing).inv() * (modulus_ratio * time_s);
+        }
+        s -= (s * s + stiffness * omega * omega) / (s * 2.0 + slope * omega * omega);
+    }
+    let near = (0.5..2.0).contains(&(s.im / stored)) && s.re <= 0.0;
+    if near { [s.im, -s.re] } else { [stored, 0.0] }
+}
+
+/// Steps of iterations that converge in a few.
+const SETTLED: usize = 20;

@@ -85,6 +85,7 @@ codes! {
     PlaneCell = "W022", "Coefficients that leave out the ends of bladders.";
     BeyondRange = "W023", "States beyond what the model describes.";
     FastGas = "W024", "Gas that flows nearly as fast as sound.";
+    LostModes = "W025", "Modes that were not found again.";
 }
 
 impl Code {

@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, Matrix2};
 
 use super::network::{Network, Node};
 use super::{Attachment, Load, Model, Surroundings, Wet, each_signal, tongue};
+use crate::case::relaxation::{self, dynamic_modulus};
 use crate::case::schema::Effect;
 use crate::case::schema::{Case, ChainEnd};
 use crate::case::{ResolvedEnd, Rotation, Translation};
@@ -50,9 +51,26 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
     let solid_time = (m * l.powi(4) / ei).sqrt();
     put("t_s_s", solid_time);
     let first = first_wave_number(&model.ends);
+    if !model.relaxation.is_empty() {
+        put("instantaneous_modulus_pa", s.stiffening * case.beam.young_modulus_pa);
+    }
+    let loss_factor = case.beam.viscoelasticity.as_ref().and_then(|v| v.loss_factor);
+    if let Some(band) = loss_factor {
+        let at = |hertz: f64| dynamic_modulus(&model.relaxation, 2.0 * PI * hertz);
+        put(
+            "storage_modulus_from_pa",
+            at(band.from_hz)[0] * case.beam.young_modulus_pa,
+        );
+        put("storage_modulus_to_pa", at(band.to_hz)[0] * case.beam.young_modulus_pa);
+    }
     if let Some(beta) = first {
         let dry = beta * beta / (2.0 * PI * solid_time);
         put("first_bending_frequency_hz", dry);
+        if !model.relaxation.is_empty() {
+            let [omega, decay] = relaxation::vibration(&model.relaxation, 2.0 * PI * dry);
+            put("first_bending_frequency_relaxing_hz", omega / (2.0 * PI));
+            put("first_bending_damping_ratio", decay / omega.hypot(decay));
+        }
         if let Some(around) = &model.surroundings {
             put("added_mass_kg_m", around.added_mass);
             put(
@@ -226,7 +244,8 @@ pub fn forcing_period(case: &Case) -> Option<f64> {
 
 /// Mathieu's parameters when a cantilever's root is shaken along its axis by a sine.
 pub fn mathieu(model: &Model) -> Option<Mathieu> {
-    if !is_cantilever(model) || !model.effects.has(Effect::SolidInertia) {
+    // a solid that relaxes has not one stiffness
+    if !is_cantilever(model) || !model.effects.has(Effect::SolidInertia) || !model.relaxation.is_empty() {
         return None;
     }
     let Translation::Displacement(Signal::Sine(sine)) = &model.ends[0].axial else {

@@ -116,6 +116,7 @@ fn balances_of_loaded_beams_close() {
         ("tip-mass", 0.6),
         ("water-in-tubes", 0.1),
         ("fin-in-water", 2.0),
+        ("silicone-strip", 0.5),
         ("air-actuator", 0.2),
         ("tour-beam", 0.1),
         ("section-actuator", 0.3),

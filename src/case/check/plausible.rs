@@ -38,6 +38,7 @@ const SOFTNESS: Range = Range::new(
     "area in m^2 per pressure in Pa; is this per MPa or in mm^2?",
 );
 const FACTOR: Range = Range::new(1e-6, 1e3, "1", "a ratio to the full section, near 1");
+const RELAXATION: Range = Range::new(1e-9, 1e9, "s", "times are in seconds");
 const DURATION: Range = Range::new(1e-9, 1e7, "s", "times are in seconds");
 
 /// Longest beam, in heights: dry, and with bladders, which cover a good part of it.
@@ -67,6 +68,14 @@ pub(super) fn sizes(case: &Case, faults: &mut Violations) {
     look("/beam/axial_stiffness_factor", beam.axial_stiffness_factor, &FACTOR);
     look("/beam/bending_stiffness_factor", beam.bending_stiffness_factor, &FACTOR);
     look("/beam/mass_factor", beam.mass_factor.unwrap_or(1.0), &FACTOR);
+    let branches = beam.viscoelasticity.iter().flat_map(|relaxing| &relaxing.prony);
+    for (k, branch) in branches.enumerate() {
+        look(
+            &format!("/beam/viscoelasticity/prony/{k}/time_s"),
+            branch.time_s,
+            &RELAXATION,
+        );
+    }
     look("/time/end_s", case.time.end_s, &DURATION);
     if let Some(fluid) = &case.fluid {
         look("/fluid/density_kg_m3", fluid.density_kg_m3, &FLUID_DENSITY);

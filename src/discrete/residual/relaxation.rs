@@ -5,7 +5,7 @@ use crate::discrete::{System, TimeData, Workspace};
 use crate::model::Section;
 use crate::numerics::Scalar;
 
-/// `[E61]` Generalised Maxwell solid: beside the spring of the long term branches of a spring, g_k times as stiff, and a dashpot in series,
+/// `[E58]` Generalised Maxwell solid: beside the spring of the long term branches of a spring, g_k times as stiff, and a dashpot in series,
 /// on the strains of the beam; what pressure does to bladders keeps to the long term:
 ///
 /// ```text

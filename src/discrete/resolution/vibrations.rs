@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
+use crate::case::relaxation;
+use crate::case::schema::Branch;
 use crate::discrete::shapes;
 use crate::discrete::straight::{self, Mode};
 use crate::functions::profile::Profile;
@@ -24,6 +26,8 @@ pub(super) struct Vibrations {
     bends: bool,
     /// Unit of the frequencies: `(EI/m)^(1/2)/l²` or `(EA/m)^(1/2)/l` [1/s].
     unit: f64,
+    /// Of a solid that relaxes.
+    relaxation: Vec<Branch>,
     /// Of damping: drag per mass [1/s], and the time of the material [s].
     damping: [f64; 2],
     /// End of the run [s].
@@ -74,6 +78,7 @@ impl Vibrations {
             content: modes.iter().map(one).collect(),
             bends,
             unit,
+            relaxation: model.relaxation.clone(),
             damping: [s.drag / s.mass_per_length, material],
             end,
         }
@@ -111,7 +116,8 @@ impl Vibrations {
         } else {
             (beta * self.unit, slower)
         };
-        let decay = 0.5 * (self.damping[0] + self.damping[1] * omega * omega);
+        let [omega, relaxing] = relaxation::vibration(&self.relaxation, omega);
+        let decay = relaxing + 0.5 * (self.damping[0] + self.damping[1] * omega * omega);
         let time = self.end.min(1.0 / decay.max(f64::MIN_POSITIVE));
         let phase = omega * (1.0 - ratio) * time;
         if phase < FRAC_PI_2 {

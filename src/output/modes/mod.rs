@@ -101,6 +101,7 @@ impl Report<'_> {
         let short = self.accuracy.and_then(refine::warning);
         let known = self.known.iter().cloned();
         let by_mesh = meshes::warning(self.found).into_iter().chain(self.found.forgotten());
+        let by_mesh = by_mesh.chain(self.found.missing());
         known.chain(moving).chain(still).chain(by_mesh).chain(short).collect()
     }
 

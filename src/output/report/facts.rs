@@ -25,11 +25,14 @@ bladder_tube_time_s | s | time in which a bladder empties through its tube
 euler_load_n | N | compression under which the beam buckles (Euler)
 f_u | 1 | how fast the drive is for the fluid: forcing frequency times fluid time
 first_axial_frequency_hz | Hz | lowest frequency of waves along the beam
+first_bending_damping_ratio | 1 | damping ratio of that vibration by relaxation
 first_bending_frequency_hz | Hz | lowest frequency of bending
 first_bending_frequency_in_fluid_hz | Hz | the same with the added mass of the fluid around
+first_bending_frequency_relaxing_hz | Hz | the same of a solid that relaxes, stiffer than in the long term
 force_scale_n | N | force that is expected in the beam
 forcing_frequency_hz | Hz | frequency of the drive
 gyration_radius_squared_m2 | m^2 | squared radius of gyration of a section, y11
+instantaneous_modulus_pa | Pa | Young's modulus at once, before anything relaxes
 inertial_compression_n_m | N/m | load along the beam by shaking its root
 largest_strain_estimate | 1 | strain that is expected; the model wants it small
 mass_factor | 1 | mass over that of a solid beam of the same size
@@ -41,6 +44,8 @@ mathieu_modulation | 1 | how strongly shaking along changes the bending stiffnes
 reynolds_estimate | 1 | inertia over viscosity in the tubes; creeping flow needs it small
 self_weight_buckling_load_n_m | N/m | load along the beam under which it buckles
 slenderness | 1 | length over height
+storage_modulus_from_pa | Pa | storage modulus at the lower end of the loss factor's band
+storage_modulus_to_pa | Pa | storage modulus at its upper end
 t_f_s | s | time scale of the fluid, t_f*
 t_s_over_t_f | 1 | time of the solid over that of the fluid
 t_s_s | s | time scale of the solid, t_s*

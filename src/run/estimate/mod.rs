@@ -38,6 +38,7 @@ use serde::{Deserialize, Serialize};
 use super::floors::Floors;
 use super::growth::{Growth, Linear};
 use super::summary::Quantity;
+use crate::case::relaxation;
 use crate::case::schema::Case;
 use crate::discrete::System;
 use crate::discrete::quantities::Interest;
@@ -143,7 +144,7 @@ impl Estimator {
         let one = |mode: SmallMode, which: usize| {
             let line = &layout.lines[which];
             let [size, rate] = [Some(&line.u), line.v.as_ref()].map(|of| of.map_or(1.0, |of| layout.scales[of.start]));
-            let frequency = mode.frequency * units[which];
+            let [frequency, relaxing] = relaxation::vibration(&model.relaxation, mode.frequency * units[which]);
             let frequencies = [frequency, frequency * stiffer[which]];
             let material = [s.bending_damping_time, s.axial_damping_time][which];
             let weight = |node: usize| {
@@ -157,7 +158,7 @@ impl Estimator {
                 rate: rate / size,
                 frequencies,
                 mesh: mode.mesh * fine,
-                damping: 0.5 * s.drag / s.mass_per_length + 0.5 * material * frequency * frequency,
+                damping: 0.5 * s.drag / s.mass_per_length + 0.5 * material * frequency * frequency + relaxing,
                 places: [
                     mode.at(1.0),
                     mode.tip_slope() / length,

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use super::words::LARGE;
-use crate::case::{Rotation, Translation};
+use crate::case::{Rotation, Translation, relaxation};
 use crate::discrete::System;
 use crate::discrete::straight::meshed::{self, SmallMode};
 use crate::functions::Signal;
@@ -47,6 +47,8 @@ impl Near {
 /// ```text
 /// q = f/(ω² - Ω²)     Δq/q = 2 δ ω²/(ω² - Ω²)
 /// ```
+///
+/// Where the solid relaxes ω² stands with its dynamic modulus at Ω.
 pub fn nearest(system: &System) -> Option<Near> {
     system.layout.lines[0].v.as_ref()?;
     let s = &system.model.section;
@@ -60,13 +62,15 @@ pub fn nearest(system: &System) -> Option<Near> {
         for (beta, mesh) in &modes {
             let omega = beta * beta * unit;
             let damping = s.drag / s.mass_per_length + s.bending_damping_time * omega * omega;
-            let answer = omega * omega / (omega * omega - drive * drive).hypot(damping * drive);
+            let [storage, loss] =
+                relaxation::dynamic_modulus(&system.model.relaxation, drive).map(|e| e * omega * omega);
+            let answer = omega * omega / (storage - drive * drive).hypot(damping * drive + loss);
             let misplaced = (mesh * fine).abs();
             let change = 2.0 * misplaced * answer;
             if answer > NEAR && change > LARGE && worst.is_none_or(|w| change > w.change) {
                 worst = Some(Near {
                     drive_hz,
-                    vibration_hz: omega / TAU,
+                    vibration_hz: relaxation::vibration(&system.model.relaxation, omega)[0] / TAU,
                     misplaced,
                     change,
                     wave_number: beta / length,

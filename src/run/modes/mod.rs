@@ -4,6 +4,7 @@
 //! linearise   the pencil of a case about a state, with the fluid as it is, held, or free
 //! shape       displacements and pressures of an eigenvector; likeness of two
 //! meshes       the same modes on other meshes
+//! relaxing     those of a solid that relaxes
 //! sensitivity  derivatives by numbers of the case
 //! kind        oscillation, decay, growth, rigid motion, kept volume
 //! ```
@@ -11,6 +12,7 @@
 pub mod kind;
 pub mod linearise;
 pub mod meshes;
+mod relaxing;
 pub mod sensitivity;
 pub mod shape;
 
@@ -154,6 +156,8 @@ pub struct Modes {
     pub solves: u64,
     /// Whether all eigenvalues were computed at once.
     pub dense: bool,
+    /// Modes of the long term that were not found again where the solid relaxes.
+    pub lost: usize,
     /// Whether there is a mesh along bladders that could be compared with another.
     pub bladders_compared: bool,
 }
@@ -162,6 +166,17 @@ pub struct Modes {
 const FORGOTTEN: f64 = 0.01;
 
 impl Modes {
+    /// That modes of a solid that relaxes are missing, where some are.
+    pub fn missing(&self) -> Option<String> {
+        (self.lost > 0).then(|| {
+            Code::LostModes.warning(format!(
+                "{} of the modes that the beam has in the long term were not found again where it relaxes: they are damped too strongly to \
+                 swing, or lie far from where they were expected",
+                self.lost
+            ))
+        })
+    }
+
     /// What is lost where tubes have Poiseuille's friction, of the mode that swings fastest: error of the impedance `Wo⁴/1152`.
     pub fn forgotten(&self) -> Option<String> {
         let model = &self.about.system().model;
@@ -200,6 +215,7 @@ pub fn modes(case: &Case, plan: &Plan) -> Result<Modes> {
 pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
     let mut tally = Tally::default();
     let mut modes = search(&about, Fluid::Flowing, plan, &mut tally)?;
+    let lost = tally.lost;
     if plan.limits && about.flows() {
         let wider = Plan {
             count: plan.count + 4,
@@ -231,6 +247,7 @@ pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
         factorizations: tally.factorizations,
         solves: tally.solves,
         dense: tally.dense,
+        lost,
         bladders_compared: false,
     })
 }
@@ -241,6 +258,7 @@ struct Tally {
     factorizations: u64,
     solves: u64,
     dense: bool,
+    lost: usize,
 }
 
 /// Share of the beam's own frequency at which a search from zero begins: beside zero, where closed networks and free beams
@@ -249,17 +267,28 @@ const BESIDE: f64 = 0.1;
 
 fn search(about: &Linearised, fluid: Fluid, plan: &Plan, tally: &mut Tally) -> Result<Vec<Mode>> {
     let (a, b) = about.with(fluid);
-    let pencil = Pencil {
-        a: &a,
-        b: &b,
-        ..about.pencil()
-    };
-    let frequency = about.frequency();
-    let target = Complex::new(0.0, std::f64::consts::TAU * plan.near_hz);
-    let shift = if plan.near_hz > 0.0 {
+    let near = std::f64::consts::TAU * plan.near_hz;
+    match about.system().model.relaxation.is_empty() {
+        true => near_to(about, fluid, [&a, &b], plan, near, tally),
+        false => relaxing::search(about, fluid, [&a, &b], plan, near, tally),
+    }
+}
+
+/// Modes of entries A and B, so many as are planned, nearest to an angular frequency first.
+fn near_to(
+    about: &Linearised,
+    fluid: Fluid,
+    [a, b]: [&[f64]; 2],
+    plan: &Plan,
+    near: f64,
+    tally: &mut Tally,
+) -> Result<Vec<Mode>> {
+    let pencil = Pencil { a, b, ..about.pencil() };
+    let target = Complex::new(0.0, near);
+    let shift = if near > 0.0 {
         target
     } else {
-        Complex::new(BESIDE * frequency, 0.0)
+        Complex::new(BESIDE * about.frequency(), 0.0)
     };
     let mut asked = plan.count + 2;
     loop {

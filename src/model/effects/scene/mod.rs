@@ -326,13 +326,18 @@ impl<'a> Scene<'a> {
         [1.0, -1.0].map(|sign| wet.compliance_at(sign * self.scales.pressure))
     }
 
+    /// A frequency of the beam with the stiffness that it has at once, where the solid relaxes [1/s].
+    fn at_once(&self, frequency: f64) -> f64 {
+        frequency * self.section.stiffening.sqrt()
+    }
+
     /// `A_0 r'/(r a_p)`, at most: what compression stores over what the walls of bladders do; over the whole run where it changes the
     /// stiffness of what vibrates.
     pub fn compression_of_fluid(&self) -> f64 {
         let Some(wet) = self.wet else { return 0.0 };
         let share = self.compliances(wet)[1] / wet.area.per_pressure - 1.0;
         let [bent, stretched] = self.stiffness_of_fluid(wet);
-        share * (1.0 + (bent * self.bending + stretched * self.axial) * self.case.time.end_s)
+        share * (1.0 + self.at_once(bent * self.bending + stretched * self.axial) * self.case.time.end_s)
     }
 
     /// Moment and force that pressure causes, over those of the loads at the least; over the whole run where vibrations are damped by it.

@@ -41,8 +41,8 @@ impl Scene<'_> {
         });
         let [bent, stretched] = self.stiffness_of_fluid(wet);
         let waves = [
-            (self.bending_inertia(), self.bending, bent),
-            (self.axial_waves(), self.axial, stretched),
+            (self.bending_inertia(), self.at_once(self.bending), bent),
+            (self.axial_waves(), self.at_once(self.axial), stretched),
         ];
         for (inertia, free, fluid) in waves {
             if inertia > tolerance {

@@ -1,0 +1,77 @@
+//! Modes of a solid that relaxes.
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use nalgebra::Complex;
+
+use super::{Fluid, Linearised, Mode, Plan, Shapes, Tally, likeness, mode, near_to};
+use crate::case::relaxation::{dynamic_modulus, vibration};
+use crate::error::Result;
+use crate::spectral::{self, Options, Pencil};
+
+/// Pairs looked at around the place where one is expected: that, then more.
+const AROUND: [usize; 2] = [1, 4];
+
+/// The branches of a solid that relaxes have a decay a node each, in clusters, among which a search would lose itself: modes are looked for
+/// with the stiffness of the long term, in which the branches follow at once, and each again in the whole pencil near to where it swings by
+/// [`vibration`]. Decays of the material alone are left out; a mode that is not found again is counted.
+///
+/// # Errors
+/// Of the first search.
+pub fn search(
+    about: &Linearised,
+    fluid: Fluid,
+    [a, b]: [&[f64]; 2],
+    plan: &Plan,
+    near: f64,
+    tally: &mut Tally,
+) -> Result<Vec<Mode>> {
+    let branches = &about.system().model.relaxation;
+    let own = &about.system().layout.relaxation;
+    let pattern = about.pencil().pattern;
+    let mut followed = b.to_vec();
+    for column in 0..pattern.columns() {
+        for entry in pattern.column(column) {
+            let row = pattern.rows[entry] as usize;
+            if own.curvature.contains(&row) || own.stretch.contains(&row) {
+                followed[entry] = 0.0;
+            }
+        }
+    }
+    let softer = near / dynamic_modulus(branches, near)[0].sqrt();
+    let long_term = near_to(about, fluid, [a, &followed], plan, softer, tally)?;
+    let pencil = Pencil { a, b, ..about.pencil() };
+    let mut modes: Vec<Mode> = vec![];
+    for expected in long_term {
+        if expected.kind.stays() {
+            modes.push(expected);
+            continue;
+        }
+        let shift = match expected.kind.swings() {
+            true => {
+                let [frequency, decay] = vibration(branches, expected.s.im);
+                Complex::new(expected.s.re - decay, frequency)
+            }
+            false => expected.s,
+        };
+        let again = AROUND.into_iter().find_map(|count| {
+            let found = spectral::nearest(&pencil, shift, count, &Options::default()).ok()?;
+            tally.factorizations += found.factorizations;
+            tally.solves += found.solves;
+            let mut shapes = Shapes::new(about);
+            let modes = found.pairs.iter().filter_map(|pair| mode(about, &mut shapes, pair));
+            let alike = |found: &Mode| likeness(&found.shape, &expected.shape);
+            modes
+                .filter(|found| found.kind.swings() == expected.kind.swings())
+                .max_by(|a, b| alike(a).total_cmp(&alike(b)))
+                .filter(|found| alike(found) > FRAC_1_SQRT_2)
+        });
+        match again {
+            Some(found) => modes.push(found),
+            None => tally.lost += 1,
+        }
+    }
+    let target = Complex::new(0.0, near);
+    modes.sort_by(|a, b| (a.s - target).norm().total_cmp(&(b.s - target).norm()));
+    Ok(modes)
+}
