@@ -218,7 +218,7 @@ fn forcing_frequency(case: &Case) -> Option<f64> {
     };
     let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
     let loads: Vec<Load> = case.loads.iter().flat_map(|load| Load::on(load, [1.0; 2])).collect();
-    let around = case.surroundings.as_ref().map(|s| Surroundings::new(s, &case.beam));
+    let around = Surroundings::of(case);
     each_signal(&ends, &loads, &Attachment::all(case), around.as_ref(), None, &mut hear);
     if let Some(network) = &case.network {
         for chain in &network.chains {

@@ -1,12 +1,10 @@
 //! Fluid that is compressed: gas, liquid that yields, liquid with free gas in it.
 
-use crate::case::schema::{Fluid, FluidKind};
+use crate::case::schema::Fluid;
 use crate::model::AreaLaw;
 use crate::numerics::Scalar;
 use crate::numerics::gauss::Gauss;
 
-/// Standard atmosphere [Pa].
-const ATMOSPHERE: f64 = 101_325.0;
 /// Absolute pressure over ambient below which gas is followed no further.
 const VACUUM: f64 = 1e-9;
 /// Points of the quadrature of Ψ where it has no closed form.
@@ -42,15 +40,12 @@ impl Compression {
     /// Of a fluid in bladders of a cross-section [m^2]; none of incompressible fluid.
     pub fn new(fluid: &Fluid, area_at_rest: f64) -> Option<Self> {
         let softness = fluid.bulk_modulus_pa.map_or(0.0, f64::recip);
-        let gas = match fluid.kind {
-            FluidKind::Gas => 1.0,
-            FluidKind::Liquid => fluid.gas_fraction.unwrap_or(0.0),
-        };
+        let gas = fluid.gas();
         (gas > 0.0 || softness > 0.0).then(|| Self {
             area_at_rest,
             gas,
             softness,
-            ambient: fluid.ambient_pressure_pa.unwrap_or(ATMOSPHERE),
+            ambient: fluid.ambient_pressure(),
             exponent: fluid.polytropic_exponent.unwrap_or(1.0),
             points: (gas > 0.0 && gas < 1.0).then(|| Gauss::new(POINTS)),
         })

@@ -294,7 +294,7 @@ impl Model {
             relaxation: (case.beam.viscoelasticity.as_ref())
                 .and_then(Viscoelasticity::branches)
                 .unwrap_or_default(),
-            surroundings: case.surroundings.as_ref().map(|s| Surroundings::new(s, &case.beam)),
+            surroundings: Surroundings::of(case),
             wet,
             scales,
         }

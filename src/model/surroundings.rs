@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::case::schema::{Beam, Surroundings as Written};
+use crate::case::schema::{Beam, Case, Surroundings as Written};
 use crate::functions::signals::Signal;
 
 /// A fluid around the beam.
@@ -17,8 +17,12 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
-    /// Around the beam of a case.
-    pub fn new(written: &Written, beam: &Beam) -> Self {
+    /// Around the beam of a case, where something is.
+    pub fn of(case: &Case) -> Option<Self> {
+        case.surroundings.as_ref().map(|written| Self::new(written, &case.beam))
+    }
+
+    fn new(written: &Written, beam: &Beam) -> Self {
         let (density, width) = (written.density_kg_m3, beam.width_m);
         let given = |signal: &Option<Signal>| signal.clone().unwrap_or(Signal::Constant(0.0));
         let streams = written.stream().next().is_some();

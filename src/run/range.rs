@@ -78,6 +78,19 @@ impl Passed {
             }));
         }
     }
+
+    /// The largest value with its time and place, and since when it is above a limit; none where it stayed below.
+    fn told(&self, digits: usize, place: String, limit: f64) -> Option<String> {
+        let began = self.began?;
+        let (largest, t) = (self.largest, self.t);
+        Some(format!(
+            "reached {largest:.digits$} at t = {t:.4} s{place} (above {limit} from t = {began:.4} s on)"
+        ))
+    }
+}
+
+fn in_tube(passed: &Passed) -> String {
+    format!(" in tube {}", passed.place + 1)
 }
 
 impl Limits {
@@ -214,42 +227,20 @@ impl Range {
     /// Limits that were passed.
     pub fn warnings(&self, limits: &Limits) -> Vec<String> {
         let mut all = Vec::new();
-        if let Passed {
-            largest,
-            t,
-            place,
-            began: Some(began),
-        } = self.strain
-        {
+        if let Some(told) = self.strain.told(2, format!(", node {}", self.strain.place), STRAIN) {
             all.push(Code::Strain.warning(format!(
-                "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 reached {largest:.2} at \
-                 t = {t:.4} s, node {place} (above {STRAIN} from t = {began:.4} s on); strains are meant to be small"
+                "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 {told}; strains are meant to be small"
             )));
         }
-        if let Passed {
-            largest,
-            t,
-            place,
-            began: Some(began),
-        } = self.reynolds
-        {
+        if let Some(told) = self.reynolds.told(0, in_tube(&self.reynolds), REYNOLDS) {
             all.push(Code::FastFlow.warning(format!(
-                "range of the model: the Reynolds number reached {largest:.0} at t = {t:.4} s in tube {} (above {REYNOLDS} from \
-                 t = {began:.4} s on); flow is meant to creep",
-                place + 1
+                "range of the model: the Reynolds number {told}; flow is meant to creep"
             )));
         }
-        if let Passed {
-            largest,
-            t,
-            place,
-            began: Some(began),
-        } = self.mach
-        {
+        if let Some(told) = self.mach.told(2, in_tube(&self.mach), MACH) {
             all.push(Code::FastGas.warning(format!(
-                "range of the model: the Mach number reached {largest:.2} at t = {t:.4} s in tube {} (above {MACH} from t = {began:.4} s \
-                 on); flow is meant to creep, and a tube passes no more than at 1, so that real flow is slower than this",
-                place + 1
+                "range of the model: the Mach number {told}; flow is meant to creep, and a tube passes no more than at 1, so that real flow \
+                 is slower than this"
             )));
         }
         if let Some(began) = self.pressed.began {

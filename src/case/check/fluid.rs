@@ -6,13 +6,10 @@ use crate::case::numbers::plain;
 use crate::case::schema::{Case, Fluid, FluidKind};
 use crate::error::{Code, Violation};
 
-/// Standard atmosphere [Pa], where a case gives no other ambient pressure.
-const ATMOSPHERE: f64 = 101_325.0;
-
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     let Some(fluid) = &case.fluid else { return };
     let gas = fluid.kind == FluidKind::Gas;
-    let mixed = fluid.gas_fraction.is_some_and(|x| x > 0.0);
+    let some_gas = fluid.gas() > 0.0;
     let of_liquid = [
         ("bulk_modulus_pa", fluid.bulk_modulus_pa),
         ("gas_fraction", fluid.gas_fraction),
@@ -32,18 +29,18 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             "it is that of a liquid: leave it out, or give kind \"liquid\"",
         );
     }
-    for (key, _) in of_gas.iter().filter(|(_, value)| !(gas || mixed) && value.is_some()) {
+    for (key, _) in of_gas.iter().filter(|(_, value)| !some_gas && value.is_some()) {
         let hint = "it is that of a gas: leave it out, give kind \"gas\", or a gas_fraction";
         refuse(key, &format!("\"{key}\" of a liquid without gas"), hint);
     }
-    if gas || mixed {
+    if some_gas {
         pressures(case, fluid, faults);
     }
 }
 
 /// Pressures that ports and the start prescribe stay above absolute vacuum.
 fn pressures(case: &Case, fluid: &Fluid, faults: &mut Violations) {
-    let ambient = fluid.ambient_pressure_pa.unwrap_or(ATMOSPHERE);
+    let ambient = fluid.ambient_pressure();
     let mut look = |pointer: String, lowest: f64| {
         if lowest <= -ambient && !faults.has(&pointer) {
             let what = format!("{} Pa, at or below absolute vacuum", plain(lowest));

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::is_zero;
+use super::{given, is_zero};
 use crate::functions::signals::Signal;
 
 /// Something attached to the beam at one place: a point mass, springs and dashpots to ground, forces; one of them at least. Springs are
@@ -49,9 +49,7 @@ pub struct Attachment {
 impl Attachment {
     /// The forces that are given, with their keys.
     pub fn forces(&self) -> impl Iterator<Item = (&'static str, &Signal)> {
-        let both = [("force_x_n", &self.force_x_n), ("force_z_n", &self.force_z_n)];
-        both.into_iter()
-            .filter_map(|(key, signal)| Some((key, signal.as_ref()?)))
+        given([("force_x_n", &self.force_x_n), ("force_z_n", &self.force_z_n)])
     }
 
     /// Whether it does nothing to the beam.

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Viscoelasticity, is_zero};
+use super::{Viscoelasticity, is_zero, one};
 
 /// The elastic beam; stiffness of the honeycomb through two correction factors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -65,8 +65,4 @@ pub struct Damping {
     #[serde(default, skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0.0))]
     pub quadratic_drag_n_s2_m3: f64,
-}
-
-fn one() -> f64 {
-    1.0
 }

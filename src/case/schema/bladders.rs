@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::fluids::NamedFluid;
 
+/// Standard atmosphere [Pa].
+const ATMOSPHERE: f64 = 101_325.0;
+
 /// Newtonian fluid in creeping flow.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -45,7 +48,20 @@ pub struct Fluid {
 impl Fluid {
     /// Whether its density follows its pressure.
     pub fn is_compressible(&self) -> bool {
-        self.kind == FluidKind::Gas || self.bulk_modulus_pa.is_some() || self.gas_fraction.is_some_and(|x| x > 0.0)
+        self.gas() > 0.0 || self.bulk_modulus_pa.is_some()
+    }
+
+    /// Part of its volume at ambient pressure that is gas, x.
+    pub fn gas(&self) -> f64 {
+        match self.kind {
+            FluidKind::Gas => 1.0,
+            FluidKind::Liquid => self.gas_fraction.unwrap_or(0.0),
+        }
+    }
+
+    /// Absolute pressure outside the beam [Pa].
+    pub fn ambient_pressure(&self) -> f64 {
+        self.ambient_pressure_pa.unwrap_or(ATMOSPHERE)
     }
 }
 

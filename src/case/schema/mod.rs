@@ -161,6 +161,17 @@ impl Case {
     }
 }
 
+/// The default of factors.
+fn one() -> f64 {
+    1.0
+}
+
+/// The signals of a pair that are given, with their keys.
+fn given<'a>(pair: [(&'static str, &'a Option<Signal>); 2]) -> impl Iterator<Item = (&'static str, &'a Signal)> {
+    pair.into_iter()
+        .filter_map(|(key, signal)| Some((key, signal.as_ref()?)))
+}
+
 /// Whether a number is the default that a case need not write.
 fn is_zero(value: &f64) -> bool {
     *value == 0.0

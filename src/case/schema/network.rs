@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::CrossSection;
+use super::{CrossSection, one};
 use crate::functions::signals::Signal;
 
 /// What a tube is unless it says otherwise: rigid, slender, without storage.
@@ -228,8 +228,4 @@ pub enum Rectifier {
         #[schemars(extend("exclusiveMinimum" = 0))]
         smoothing_pa: f64,
     },
-}
-
-fn one() -> f64 {
-    1.0
 }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::is_zero;
+use super::{given, is_zero, one};
 use crate::functions::signals::Signal;
 
 /// A fluid around the beam, at rest or streaming past it: inertia and drag across the beam, and buoyancy against gravity.
@@ -32,15 +32,9 @@ pub struct Surroundings {
 impl Surroundings {
     /// Velocities of the stream that are given, with their keys.
     pub fn stream(&self) -> impl Iterator<Item = (&'static str, &Signal)> {
-        let both = [
+        given([
             ("stream_x_m_s", &self.stream_x_m_s),
             ("stream_z_m_s", &self.stream_z_m_s),
-        ];
-        both.into_iter()
-            .filter_map(|(key, signal)| Some((key, signal.as_ref()?)))
+        ])
     }
-}
-
-fn one() -> f64 {
-    1.0
 }

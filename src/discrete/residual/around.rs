@@ -1,5 +1,6 @@
 //! What surrounds the beam: drag, inertia and stream of the fluid that it moves through.
 
+use super::solid::angle_rate;
 use crate::case::schema::Effect;
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace};
@@ -108,17 +109,8 @@ pub fn kinetic(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize)
 /// Rate of the angle of [`node_tangent`] [1/s].
 fn turning<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
     let (before, after) = (node.saturating_sub(1), node.min(system.mesh.cells - 1));
-    let inverse = 1.0 / system.mesh.h;
-    let turned = |c: usize| {
-        let d3_t = (w.motion.v[c + 1] - w.motion.v[c]) * inverse;
-        w.shape.tangent[c].cross(d3_t) / w.shape.stretch[c]
-    };
     // the mean of two unit vectors halves the angle between them
-    if before == after {
-        turned(before)
-    } else {
-        (turned(before) + turned(after)) * 0.5
-    }
+    (angle_rate(system, w, before) + angle_rate(system, w, after)) * 0.5
 }
 
 /// Unit tangent at a node: along the mean of those of its cells.

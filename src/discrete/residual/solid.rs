@@ -53,15 +53,21 @@ pub fn rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
 
 /// Rates of stretch, angle and curvature, always.
 pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
-    let (v, shape) = (&w.motion.v, &mut w.shape);
     for c in 0..system.mesh.cells {
-        let d3_t = (v[c + 1] - v[c]) * inverse;
-        let tangent = shape.tangent[c];
-        shape.stretch_rate[c] = tangent.dot(d3_t);
-        shape.angle_rate[c] = tangent.cross(d3_t) / shape.stretch[c];
+        w.shape.stretch_rate[c] = w.shape.tangent[c].dot(director_rate(system, w, c));
+        w.shape.angle_rate[c] = angle_rate(system, w, c);
     }
     curvature_rates(system, now, w);
+}
+
+/// `d3_t` of a cell [1/s].
+fn director_rate<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> Planar<T> {
+    (w.motion.v[c + 1] - w.motion.v[c]) * (1.0 / system.mesh.h)
+}
+
+/// `φ_t` of a cell [1/s].
+pub fn angle_rate<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
+    w.shape.tangent[c].cross(director_rate(system, w, c)) / w.shape.stretch[c]
 }
 
 /// `κ_t` at nodes from the turning of cells and prescribed slopes.

@@ -77,7 +77,7 @@ impl<'a> Scene<'a> {
         }
         let mut others = vec![];
         let attachments = Attachment::all(case);
-        let around = case.surroundings.as_ref().map(|s| Surroundings::new(s, &case.beam));
+        let around = Surroundings::of(case);
         each_signal(
             &undriven,
             &loads,
