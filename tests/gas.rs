@@ -3,18 +3,15 @@
 #[path = "common/chance.rs"]
 mod chance;
 mod differences;
-
-use std::path::Path;
+#[path = "common/scene.rs"]
+mod scene;
 
 use differences::worst_difference;
+use scene::{finished, parse};
 use serde_json::{Value, json};
-use slcbeam::case::{self, Case};
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
-use slcbeam::run::dynamics;
 use slcbeam::run::modes::{self, Plan};
-use slcbeam::run::record::Memory;
-use slcbeam::run::summary::{Status, Summary};
 
 const AIR: f64 = 1.8e-5;
 const AMBIENT: f64 = 101_325.0;
@@ -22,19 +19,6 @@ const AMBIENT: f64 = 101_325.0;
 const AREA: f64 = 0.0078 * 0.0078;
 /// `a_p` [m^2/Pa].
 const SOFT: f64 = 1.75e-10;
-
-fn parse(value: &Value) -> Case {
-    case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), &[])
-        .map_err(|e| format!("{e:?}"))
-        .unwrap()
-}
-
-fn finished(case: &Value) -> (Memory, Summary) {
-    let mut memory = Memory::default();
-    let summary = dynamics::run(&parse(case), &mut memory).unwrap().summary;
-    assert_eq!(summary.status, Status::Finished, "{:?}", summary.reason);
-    (memory, summary)
-}
 
 fn gas(exponent: f64) -> Value {
     json!({"kind": "gas", "density_kg_m3": 1.2, "viscosity_pa_s": AIR, "polytropic_exponent": exponent})

@@ -1,26 +1,21 @@
 //! A fluid around the beam: added mass, drag, stream, buoyancy, [E47] [E53].
 
+#[path = "common/balances.rs"]
+mod balances;
 #[path = "common/chance.rs"]
 mod chance;
 mod differences;
+#[path = "common/scene.rs"]
+mod scene;
 
-use std::path::Path;
-
+use balances::close;
+use scene::{finished, parse};
 use serde_json::{Value, json};
-use slcbeam::case::{self, Case};
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
-use slcbeam::run::dynamics;
 use slcbeam::run::equilibrium::{Options, columns, follow, system};
 use slcbeam::run::modes::{self, Plan};
-use slcbeam::run::record::{Control, Memory};
-use slcbeam::run::summary::Status;
-
-fn parse(value: &Value) -> Case {
-    case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), &[])
-        .map_err(|e| format!("{e:?}"))
-        .unwrap()
-}
+use slcbeam::run::record::Control;
 
 /// A silicone strip 0.1 m long, 5 mm high, 50 mm wide, with changes.
 fn strip(sets: Value) -> Value {
@@ -41,13 +36,6 @@ fn strip(sets: Value) -> Value {
         };
     }
     case
-}
-
-fn finished(case: &Value) -> (Memory, slcbeam::run::summary::Summary) {
-    let mut memory = Memory::default();
-    let summary = dynamics::run(&parse(case), &mut memory).unwrap().summary;
-    assert_eq!(summary.status, Status::Finished, "{:?}", summary.reason);
-    (memory, summary)
 }
 
 /// Source: inertia across grows from m to m + m_a, `m_a = π ρ w²/4` of a blade. Goal: every bending frequency falls by √(1 + m_a/m) exactly, those
@@ -169,16 +157,7 @@ fn balances_close_in_water() {
         let mut case = strip(sets);
         case["loads"] = json!([{"gravity": {"x_m_s2": 3.0, "z_m_s2": -9.81}}]);
         let (_, summary) = finished(&case);
-        let b = &summary.balances;
-        println!(
-            "{what}: energy {:.1e}, momentum {:?}, angular momentum {:.1e}",
-            b.energy_residual_relative, b.momentum_residual_relative, b.angular_momentum_residual_relative
-        );
-        assert!(b.energy_residual_relative.abs() < 1e-6, "{what}");
-        assert!(
-            b.momentum_residual_relative < 1e-6 && b.angular_momentum_residual_relative < 1e-6,
-            "{what}"
-        );
+        close(what, &summary, 1e-6);
     }
 }
 

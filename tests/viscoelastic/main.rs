@@ -1,35 +1,22 @@
 //! The solid that relaxes: Prony series and loss factors, [E57] [E58].
 
+#[path = "../common/balances.rs"]
+mod balances;
 mod branches;
 #[path = "../common/chance.rs"]
 mod chance;
 #[path = "../differences/mod.rs"]
 mod differences;
 mod modes;
+#[path = "../common/scene.rs"]
+mod scene;
 
-use std::path::Path;
-
+use balances::close;
 use differences::worst_difference;
+use scene::{finished, parse};
 use serde_json::{Value, json};
-use slcbeam::case::{self, Case};
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
-use slcbeam::run::dynamics;
-use slcbeam::run::record::Memory;
-use slcbeam::run::summary::{Status, Summary};
-
-fn parse(value: &Value) -> Case {
-    case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), &[])
-        .map_err(|e| format!("{e:?}"))
-        .unwrap()
-}
-
-fn finished(case: &Value) -> (Memory, Summary) {
-    let mut memory = Memory::default();
-    let summary = dynamics::run(&parse(case), &mut memory).unwrap().summary;
-    assert_eq!(summary.status, Status::Finished, "{:?}", summary.reason);
-    (memory, summary)
-}
 
 /// `EI` and `EA` of the strip in the long term.
 const EI: f64 = 1e6 * 0.02 * 0.004 * 0.004 * 0.004 / 12.0;
@@ -194,7 +181,7 @@ fn balances_close() {
     ];
     for (what, sets) in cases {
         let (_, summary) = finished(&strip(prony(&BRANCHES), sets));
-        close(what, &summary);
+        close(what, &summary, 1e-6);
     }
     for (what, sets) in [
         ("wet", json!({})),
@@ -216,19 +203,8 @@ fn balances_close() {
             case[key] = value.clone();
         }
         let (_, summary) = finished(&case);
-        close(what, &summary);
+        close(what, &summary, 1e-6);
     }
-}
-
-fn close(what: &str, summary: &Summary) {
-    let b = &summary.balances;
-    println!(
-        "{what}: energy {:.1e}, momentum {:?}, angular momentum {:.1e}",
-        b.energy_residual_relative, b.momentum_residual_relative, b.angular_momentum_residual_relative
-    );
-    assert!(b.energy_residual_relative.abs() < 1e-6, "{what}");
-    assert!(b.momentum_residual_relative < 1e-6, "{what}");
-    assert!(b.angular_momentum_residual_relative < 1e-6, "{what}");
 }
 
 /// All effects of a dry beam but these.
