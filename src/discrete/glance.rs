@@ -98,9 +98,9 @@ impl Glance {
         set(Watched::Largest1, largest(&w.motion, 0));
         set(Watched::Largest3, largest(&w.motion, 1));
         (g.deflection, g.moved) = moved(w);
-        let (strain, node) = look::largest_strain(system, half_height, w);
+        let (strain, node) = look::largest_strain(system, now, half_height, w);
         g.strained = node;
-        g.moving[Watched::Strain as usize] = [strain, strain_rate(node, last, half_height, w)];
+        g.moving[Watched::Strain as usize] = [strain, strain_rate(now, node, last, half_height, w)];
         g.moving[Watched::Outermost as usize] = nonlinear::outermost(system, w);
         g.fluid(system, now, w);
         g
@@ -192,17 +192,19 @@ fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
     let curvature_rate = match now.ends[1].slope {
         Some(_) => w.shape.kappa_rate[last],
         None => {
-            let alpha_rate = now.ends[1].moment.rate / system.model.section.bending_stiffness;
-            relaxation::curvature_rate(system, w, last, alpha_rate, 1.0)
+            let given = now.ends[1].moment.rate / system.model.section.bending_stiffness;
+            relaxation::curvature_rate(system, now, w, last, given + now.rest_curvature_rate(last), 1.0)
         }
     };
     w.shape.angle_rate[last - 1] - 0.5 * system.mesh.h * curvature_rate
 }
 
 /// Rate of the largest fibre strain at its node [1/s].
-fn strain_rate(node: usize, last: usize, half_height: f64, w: &Workspace<f64>) -> f64 {
+fn strain_rate(now: &TimeData, node: usize, last: usize, half_height: f64, w: &Workspace<f64>) -> f64 {
     let (a, b) = (node.saturating_sub(1), node.min(last - 1));
     let stretch_rate = 0.5 * (w.shape.stretch_rate[a] + w.shape.stretch_rate[b]);
     (node_stretch(w, node, last) - 1.0).signum() * stretch_rate
-        + w.shape.kappa[node].signum() * w.shape.kappa_rate[node] * half_height
+        + (w.shape.kappa[node] - now.rest_curvature(node)).signum()
+            * (w.shape.kappa_rate[node] - now.rest_curvature_rate(node))
+            * half_height
 }

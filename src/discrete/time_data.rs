@@ -35,7 +35,9 @@ impl SampledLoad {
     /// Puts a load on a mesh.
     pub fn new(load: &Load, mesh: &super::Mesh) -> Self {
         let mut shape = match load.kind {
-            LoadKind::ForceX | LoadKind::ForceZ => shapes::at_nodes(&load.profile, mesh.cells),
+            LoadKind::ForceX | LoadKind::ForceZ | LoadKind::RestCurvature => {
+                shapes::at_nodes(&load.profile, mesh.cells)
+            }
             LoadKind::MomentX | LoadKind::MomentZ => shapes::in_cells(&load.profile, mesh.cells),
         };
         shape.iter_mut().for_each(|value| *value *= load.factor);
@@ -114,6 +116,8 @@ pub struct TimeData {
     pub force: Vec<Planar<f64>>,
     /// First moment per length in each cell [N].
     pub moment: Vec<Planar<f64>>,
+    /// Curvature of the beam at rest at each node [1/m], and its rate [1/(m s)]; empty where it is straight.
+    pub rest_curvature: [Vec<f64>; 2],
     /// Forces at attachments, in the order of the model [N].
     pub point_force: Vec<Planar<f64>>,
     /// Velocity of the stream around the beam [m/s].
@@ -143,11 +147,13 @@ impl TimeData {
             .as_ref()
             .map_or((0, 0), |wet| (wet.network.ports.len(), wet.network.sources.len()));
         let links = system.fluid.as_ref().map_or(0, |fluid| fluid.links.len());
+        let curved = system.loads.iter().any(|load| load.kind == LoadKind::RestCurvature);
         Self {
             clock: None,
             ends: [EndData::default(); 2],
             force: vec![Planar::default(); system.mesh.nodes],
             moment: vec![Planar::default(); system.mesh.cells],
+            rest_curvature: [(); 2].map(|()| vec![0.0; if curved { system.mesh.nodes } else { 0 }]),
             point_force: vec![Planar::default(); system.model.attachments.len()],
             stream: Planar::default(),
             statics: Statics::new(system),
@@ -158,6 +164,18 @@ impl TimeData {
             port_pressure_rate: vec![0.0; ports],
             source_flow: vec![0.0; sources],
         }
+    }
+
+    /// Curvature of the beam at rest at a node [1/m].
+    #[inline]
+    pub fn rest_curvature(&self, node: usize) -> f64 {
+        self.rest_curvature[0].get(node).copied().unwrap_or(0.0)
+    }
+
+    /// Its rate [1/(m s)].
+    #[inline]
+    pub fn rest_curvature_rate(&self, node: usize) -> f64 {
+        self.rest_curvature[1].get(node).copied().unwrap_or(0.0)
     }
 
     /// Frame of the displacements across (0) or along (1).
@@ -212,13 +230,22 @@ impl TimeData {
     fn loads(&mut self, system: &System, clock: Clock) {
         self.force.fill(Planar::default());
         self.moment.fill(Planar::default());
+        self.rest_curvature.iter_mut().for_each(|values| values.fill(0.0));
         for load in &system.loads {
-            let factor = load.signal.jet(clock).value;
+            let jet = load.signal.jet(clock);
+            let factor = jet.value;
             let (array, axis) = match load.kind {
                 LoadKind::ForceX => (&mut self.force, 0),
                 LoadKind::ForceZ => (&mut self.force, 1),
                 LoadKind::MomentX => (&mut self.moment, 0),
                 LoadKind::MomentZ => (&mut self.moment, 1),
+                LoadKind::RestCurvature => {
+                    for (values, factor) in self.rest_curvature.iter_mut().zip([jet.value, jet.rate]) {
+                        let shaped = values.iter_mut().zip(&load.shape);
+                        shaped.for_each(|(value, shape)| *value += factor * shape);
+                    }
+                    continue;
+                }
             };
             for (value, shape) in array.iter_mut().zip(&load.shape) {
                 value[axis] += factor * shape;

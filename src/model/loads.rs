@@ -16,6 +16,8 @@ pub enum LoadKind {
     MomentX,
     /// First moment per length `m b1_z` [N].
     MomentZ,
+    /// Curvature of the beam at rest [1/m].
+    RestCurvature,
 }
 
 /// `factor signal(t) profile(θ/l_s)`.
@@ -55,6 +57,7 @@ impl Load {
             Written::MomentZN(d) => one(LoadKind::MomentZ, 1.0, d),
             Written::BodyXMS2(d) => one(LoadKind::ForceX, mass, d),
             Written::BodyZMS2(d) => one(LoadKind::ForceZ, mass, d),
+            Written::RestCurvature(d) => one(LoadKind::RestCurvature, 1.0, d),
             Written::Gravity { x_m_s2, z_m_s2 } => [(LoadKind::ForceX, *x_m_s2), (LoadKind::ForceZ, *z_m_s2)]
                 .into_iter()
                 .filter(|(_, g)| *g != 0.0)

@@ -87,12 +87,13 @@ impl Drive {
                 Load::MomentXN(l) | Load::MomentZN(l) => d.moment += dist(l) * length,
                 Load::BodyXMS2(l) => d.transverse_load += m * dist(l),
                 Load::BodyZMS2(l) => d.axial_load += m * along(l),
+                Load::RestCurvature(l) => d.moment += section.bending_stiffness * size(&l.signal) * l.profile.size(),
                 Load::Gravity { x_m_s2, z_m_s2 } => {
                     d.transverse_load += m * x_m_s2.abs();
                     d.axial_load += m * z_m_s2.abs();
                 }
             }
-            if let Load::ForceXNM(l) | Load::ForceZNM(l) | Load::MomentZN(l) = load {
+            if let Load::ForceXNM(l) | Load::ForceZNM(l) | Load::MomentZN(l) | Load::RestCurvature(l) = load {
                 d.hear(&l.signal, end);
             }
         }

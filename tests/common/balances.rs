@@ -10,6 +10,7 @@ pub fn close(what: &str, summary: &Summary, most: f64) {
         b.momentum_residual_relative,
         b.angular_momentum_residual_relative,
     ];
-    println!("{what}: energy, momentum, angular momentum {open:.1e?}");
-    assert!(open.iter().all(|part| part.abs() < most), "{what}: {open:e?}");
+    let told = open.map(|part| format!("{part:.1e}")).join(", ");
+    println!("{what}: energy, momentum, angular momentum {told}");
+    assert!(open.iter().all(|part| part.abs() < most), "{what}: {told}");
 }

@@ -3,7 +3,7 @@
 use crate::case::faults::Violations;
 use crate::case::locate::child;
 use crate::case::numbers::plain;
-use crate::case::schema::{Case, ChainEnd};
+use crate::case::schema::{Case, ChainEnd, Formulation};
 use crate::error::{Code, Violation};
 use crate::functions::profile::Profile;
 use crate::functions::signals::{Clock, Signal};
@@ -28,6 +28,17 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         signal_parts(&pointer, signal, faults);
         if faults.count() == known {
             values(&pointer, role, signal, case.time.end_s, faults);
+        }
+    }
+    for (i, _) in case.loads.iter().enumerate().filter(|(_, load)| load.is_rest()) {
+        if case.formulation == Formulation::Published {
+            let pointer = format!("/loads/{i}/rest_curvature_1_m");
+            let fault = Violation::new(
+                Code::Together,
+                pointer,
+                "a beam that is curved at rest, in the published form",
+            );
+            faults.push_at_key(fault.hint("the published form knows straight beams alone: leave \"formulation\" out"));
         }
     }
     for (pointer, profile) in profiles(case) {
@@ -60,7 +71,10 @@ fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
     }
     for (i, load) in case.loads.iter().enumerate() {
         if let Some((key, load)) = load.distributed() {
-            all.push((format!("/loads/{i}/{key}/signal"), Role::Other, &load.signal));
+            // what is damped by its rate must not jump
+            let moves = key == "rest_curvature_1_m" && case.beam.damping.bending_time_s > 0.0;
+            let role = if moves { Role::Motion } else { Role::Other };
+            all.push((format!("/loads/{i}/{key}/signal"), role, &load.signal));
         }
     }
     for (i, attachment) in case.attachments.iter().enumerate() {

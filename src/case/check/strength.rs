@@ -31,6 +31,7 @@ struct Bounds {
     force_along: Bound,
     moment_along: Bound,
     body: Bound,
+    curvature: Bound,
     stream: Bound,
 }
 
@@ -63,6 +64,12 @@ impl Bounds {
             force_along: bound(force / beam.length_m, "N/m", strain, newtons),
             moment_along: bound(moment / beam.length_m, "N", strain, "first moments per length are in N"),
             body: bound(force / mass, "m/s^2", strain, "accelerations are in m/s^2"),
+            curvature: bound(
+                2.0 * MOST / beam.height_m,
+                "1/m",
+                "ten over half the height",
+                "is this in 1/mm?",
+            ),
             stream: bound(
                 SOUND,
                 "m/s",
@@ -108,6 +115,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             let bound = match key {
                 "force_x_n_m" | "force_z_n_m" => &bounds.force_along,
                 "moment_x_n" | "moment_z_n" => &bounds.moment_along,
+                "rest_curvature_1_m" => &bounds.curvature,
                 _ => &bounds.body,
             };
             let size = size_of(&load.signal, end) * size_along(&load.profile);

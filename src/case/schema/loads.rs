@@ -22,6 +22,9 @@ pub enum Load {
     BodyXMS2(Distributed),
     /// Body force per mass in z [m/s^2], acting on `m`.
     BodyZMS2(Distributed),
+    /// Curvature that the beam takes by itself where nothing acts on it [1/m]: of a beam made curved, or that something inside it bends.
+    #[serde(rename = "rest_curvature_1_m")]
+    RestCurvature(Distributed),
     /// Uniform constant gravity.
     Gravity {
         /// x component [m/s^2].
@@ -39,6 +42,11 @@ impl Load {
         matches!(self, Self::BodyXMS2(_) | Self::BodyZMS2(_) | Self::Gravity { .. })
     }
 
+    /// Whether it bends the beam at rest, without a moment.
+    pub fn is_rest(&self) -> bool {
+        matches!(self, Self::RestCurvature(_))
+    }
+
     /// Name and function of a load that has one.
     pub fn distributed(&self) -> Option<(&'static str, &Distributed)> {
         match self {
@@ -48,6 +56,7 @@ impl Load {
             Self::MomentZN(load) => Some(("moment_z_n", load)),
             Self::BodyXMS2(load) => Some(("body_x_m_s2", load)),
             Self::BodyZMS2(load) => Some(("body_z_m_s2", load)),
+            Self::RestCurvature(load) => Some(("rest_curvature_1_m", load)),
             Self::Gravity { .. } => None,
         }
     }

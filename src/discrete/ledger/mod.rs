@@ -213,7 +213,7 @@ pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     e.compression = compressed::energy(system, &w);
     e.tubes = tubes::kinetic(system, &w);
     e.springs = system.attached.iter().map(|attached| attached.energy(system, &w)).sum();
-    e.relaxing = residual::relaxation::energy_and_loss(system, &w)[0];
+    e.relaxing = residual::relaxation::energy_and_loss(system, now, &w)[0];
     e.section = residual::nonlinear::energy(system, &w);
     e.around = (0..system.mesh.nodes)
         .map(|i| system.mesh.node_length(i) * residual::around::kinetic(system, now, &w, i))

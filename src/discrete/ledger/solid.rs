@@ -62,7 +62,7 @@ pub fn flows(
         }
     }
     add(out, EnergyRate::AngularImpulse, attached::torque(system, w));
-    add(out, EnergyRate::Damping, relaxation::energy_and_loss(system, w)[1]);
+    add(out, EnergyRate::Damping, relaxation::energy_and_loss(system, now, w)[1]);
     cells(system, now, w, published, out);
 }
 
@@ -96,28 +96,32 @@ fn bending(
     // Where the moment is given, the curvature follows from it.
     let kappa_rate = match end {
         Some(e) if e.slope.is_none() => {
-            let alpha_rate = e.moment.rate / section.bending_stiffness + curvature_rate(w, i);
-            relaxation::curvature_rate(system, w, i, alpha_rate - w.shape.kappa[i] * stretch_rate, stretch)
+            let free_rate = curvature_rate(w, i) + now.rest_curvature_rate(i);
+            let alpha_rate = e.moment.rate / section.bending_stiffness + free_rate - w.shape.kappa[i] * stretch_rate;
+            relaxation::curvature_rate(system, now, w, i, alpha_rate, stretch)
         }
         _ => w.shape.kappa_rate[i],
     };
+    let part = |moments: &[f64]| moments.get(i).copied().unwrap_or(0.0);
+    let forces = &w.forces;
+    let elastic = forces.moment[i] + part(&forces.nonlinear_moment) + part(&forces.relaxing_moment);
+    let moment = elastic + forces.viscous_moment[i];
     if let Some(e) = end {
         let (sign, cell) = if i == 0 { (1.0, 0) } else { (-1.0, last - 1) };
         let angle_rate = match e.slope {
             Some(slope) => slope.rate,
             None => w.shape.angle_rate[cell] + sign * 0.5 * mesh.h * kappa_rate,
         };
-        let nonlinear = w.forces.nonlinear_moment.get(i).copied().unwrap_or(0.0);
-        let relaxing = w.forces.relaxing_moment.get(i).copied().unwrap_or(0.0);
-        let moment = w.forces.moment[i] + nonlinear + relaxing + w.forces.viscous_moment[i];
         add(out, EnergyRate::Ends, sign * moment * angle_rate);
         add(out, EnergyRate::AngularImpulse, sign * moment);
     }
+    let rest_rate = now.rest_curvature_rate(i);
     add(
         out,
         EnergyRate::Damping,
-        length * w.forces.viscous_moment[i] * kappa_rate,
+        length * forces.viscous_moment[i] * (kappa_rate - rest_rate),
     );
+    add(out, EnergyRate::Loads, -length * moment * rest_rate);
     if published {
         // d/dt (λ κ - κ)
         let excess_rate = (stretch - 1.0) * kappa_rate + w.shape.kappa[i] * stretch_rate;

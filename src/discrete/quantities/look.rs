@@ -162,13 +162,13 @@ pub fn largest_mach(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 
     each.fold(0.0, f64::max)
 }
 
-/// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`, and the node where it is.
-pub fn largest_strain(system: &System, half_height: f64, w: &Workspace<f64>) -> (f64, usize) {
+/// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`, κ beyond that at rest, and the node where it is.
+pub fn largest_strain(system: &System, now: &TimeData, half_height: f64, w: &Workspace<f64>) -> (f64, usize) {
     let last = system.mesh.nodes - 1;
     (0..=last)
         .map(|i| {
             (
-                (node_stretch(w, i, last) - 1.0).abs() + w.shape.kappa[i].abs() * half_height,
+                (node_stretch(w, i, last) - 1.0).abs() + (w.shape.kappa[i] - now.rest_curvature(i)).abs() * half_height,
                 i,
             )
         })

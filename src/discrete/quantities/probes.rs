@@ -127,10 +127,11 @@ impl Probe {
         first_angle(look.system, &look.w) - h * (passed + rest) + turns
     }
 
-    /// `λ - 1 ± κ h_s/2`.
+    /// `λ - 1 ± κ h_s/2`, κ beyond that at rest.
     fn surface(&self, look: &Look, side: f64) -> f64 {
         let shape = &look.w.shape;
-        self.of_cells(|c| shape.strain[c]) + side * self.half_height * self.of_nodes(|i| shape.kappa[i])
+        self.of_cells(|c| shape.strain[c])
+            + side * self.half_height * self.of_nodes(|i| shape.kappa[i] - look.now.rest_curvature(i))
     }
 
     fn pressure(&self, look: &Look, row: usize) -> f64 {

@@ -66,7 +66,7 @@ pub fn residual<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
     evaluate(system, now, y, yp, w);
     rows::momentum(system, now, w, r);
     rows::motion(system, y, yp, r);
-    relaxation::rows(system, w, r);
+    relaxation::rows(system, now, w, r);
     rows::means(system, w, r);
     nonlinear::areas(system, w, r);
     rows::storage(system, w, r);

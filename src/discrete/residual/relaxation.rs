@@ -2,7 +2,6 @@
 
 use super::solid::node_stretch;
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::Section;
 use crate::numerics::Scalar;
 
 /// `[E58]` Generalised Maxwell solid: beside the spring of the long term branches of a spring, g_k times as stiff, and a dashpot in series,
@@ -14,23 +13,23 @@ use crate::numerics::Scalar;
 /// E gains Σ h_i EI g_k (κ - κ_k)²/2 + Σ h EA g_k (ε - ε_k)²/2        D = Σ h_i EI g_k (κ - κ_k) dκ_k/dt + Σ h EA g_k (ε - ε_k) dε_k/dt
 /// ```
 ///
-/// For g_k → ∞ at g_k τ_k fixed it is Kelvin and Voigt's. Where an end's moment is given, α = s κ the measure of curvature of [E12],
+/// κ stands beyond the curvature at rest, [E59]. For g_k → ∞ at g_k τ_k fixed it is Kelvin and Voigt's. Where an end's moment is given, α = s κ the measure of curvature of [E12],
 ///
 /// ```text
 /// κ = (M/EI + α_p + Σ g_k κ_k)/(s + Σ g_k)
 /// ```
-pub fn rows<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
+pub fn rows<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let own = &system.layout.relaxation;
     let curvatures = [&w.relaxed.curvature, &w.relaxed.curvature_rate];
     let stretches = [&w.relaxed.stretch, &w.relaxed.stretch_rate];
-    for (rows, strain, [kept, rate]) in [
-        (&own.curvature, &w.shape.kappa, curvatures),
-        (&own.stretch, &w.shape.strain, stretches),
+    for (rows, strain, rest, [kept, rate]) in [
+        (&own.curvature, &w.shape.kappa, &now.rest_curvature[0][..], curvatures),
+        (&own.stretch, &w.shape.strain, &[], stretches),
     ] {
         let mut all = rows.clone().zip(kept).zip(rate);
         for branch in &system.model.relaxation {
-            for (((row, kept), rate), strain) in all.by_ref().take(strain.len()).zip(strain) {
-                r[row] = *rate - (*strain - *kept) * (1.0 / branch.time_s);
+            for (place, ((row, kept), rate)) in all.by_ref().take(strain.len()).enumerate() {
+                r[row] = *rate - (beyond(strain, rest, place) - *kept) * (1.0 / branch.time_s);
             }
         }
     }
@@ -42,85 +41,99 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     relaxing(
         system,
         stiffness,
-        &w.shape.strain,
+        (&w.shape.strain, &[]),
         &w.relaxed.stretch,
         &mut w.forces.relaxing_normal,
     );
 }
 
 /// Parts of moments that relax.
-pub fn moments<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let stiffness = system.model.section.bending_stiffness;
     relaxing(
         system,
         stiffness,
-        &w.shape.kappa,
+        (&w.shape.kappa, &now.rest_curvature[0]),
         &w.relaxed.curvature,
         &mut w.forces.relaxing_moment,
     );
 }
 
-fn relaxing<T: Scalar>(system: &System, stiffness: f64, strain: &[T], kept: &[T], out: &mut [T]) {
+/// Strain of a place beyond that at rest.
+#[inline]
+fn beyond<T: Scalar>(strain: &[T], rest: &[f64], place: usize) -> T {
+    match rest.get(place) {
+        Some(rest) => strain[place] - T::constant(*rest),
+        None => strain[place],
+    }
+}
+
+fn relaxing<T: Scalar>(system: &System, stiffness: f64, (strain, rest): (&[T], &[f64]), kept: &[T], out: &mut [T]) {
     out.fill(T::zero());
     for (branch, kept) in system.model.relaxation.iter().zip(kept.chunks_exact(out.len().max(1))) {
-        for ((out, strain), kept) in out.iter_mut().zip(strain).zip(kept) {
-            *out += (*strain - *kept) * (stiffness * branch.modulus_ratio);
+        for (place, (out, kept)) in out.iter_mut().zip(kept).enumerate() {
+            *out += (beyond(strain, rest, place) - *kept) * (stiffness * branch.modulus_ratio);
         }
     }
 }
 
 /// Curvature of a node whose moment is given, `α = M/EI + α_p` in the long term.
-pub fn curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: usize, alpha: T, stretch: T) -> T {
-    let (remembered, ratios) = remembered(system, &w.relaxed.curvature, node);
+pub fn curvature<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize, alpha: T, stretch: T) -> T {
+    let (remembered, ratios) = remembered(system, &w.relaxed.curvature, now.rest_curvature(node), node);
     (alpha + remembered) / (stretch + ratios)
 }
 
 /// Its rate.
-pub fn curvature_rate(system: &System, w: &Workspace<f64>, node: usize, alpha_rate: f64, stretch: f64) -> f64 {
-    let (remembered, ratios) = remembered(system, &w.relaxed.curvature_rate, node);
+pub fn curvature_rate(
+    system: &System,
+    now: &TimeData,
+    w: &Workspace<f64>,
+    node: usize,
+    alpha_rate: f64,
+    stretch: f64,
+) -> f64 {
+    let rest = now.rest_curvature_rate(node);
+    let (remembered, ratios) = remembered(system, &w.relaxed.curvature_rate, rest, node);
     (alpha_rate + remembered) / (stretch + ratios)
 }
 
-/// `Σ g_k κ_k` of a node, and `Σ g_k`.
-fn remembered<T: Scalar>(system: &System, kept: &[T], node: usize) -> (T, f64) {
+/// `Σ g_k (κ_k + κ_0)` of a node, and `Σ g_k`.
+fn remembered<T: Scalar>(system: &System, kept: &[T], rest: f64, node: usize) -> (T, f64) {
     let mut sum = T::zero();
     let mut ratios = 0.0;
     for (branch, kept) in system.model.relaxation.iter().zip(kept.chunks_exact(system.mesh.nodes)) {
-        sum += kept[node] * branch.modulus_ratio;
+        sum += (kept[node] + T::constant(rest)) * branch.modulus_ratio;
         ratios += branch.modulus_ratio;
     }
     (sum, ratios)
 }
 
 /// Energy stored in the branches [J], and what they dissipate [W].
-pub fn energy_and_loss(system: &System, w: &Workspace<f64>) -> [f64; 2] {
-    let (
-        mesh,
-        Section {
-            axial_stiffness,
-            bending_stiffness,
-            ..
-        },
-    ) = (&system.mesh, system.model.section);
+pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>) -> [f64; 2] {
+    let (mesh, section, relaxed) = (&system.mesh, &system.model.section, &w.relaxed);
     let mut sums = [0.0; 2];
-    let mut add = |strain: &[f64], kept: &[f64], rate: &[f64], stiffness: &dyn Fn(usize) -> f64| {
+    let mut add = |strain: &[f64], rest: &[f64], [kept, rate]: [&[f64]; 2], stiffness: &dyn Fn(usize) -> f64| {
         let count = strain.len();
         let branches = kept.chunks_exact(count).zip(rate.chunks_exact(count));
         for (branch, (kept, rate)) in system.model.relaxation.iter().zip(branches) {
-            for (place, ((strain, kept), rate)) in strain.iter().zip(kept).zip(rate).enumerate() {
-                let (slip, stiffness) = (strain - kept, stiffness(place) * branch.modulus_ratio);
+            for (place, (kept, rate)) in kept.iter().zip(rate).enumerate() {
+                let stiffness = stiffness(place) * branch.modulus_ratio;
+                let slip = beyond(strain, rest, place) - kept;
                 sums[0] += 0.5 * stiffness * slip * slip;
                 sums[1] += stiffness * slip * rate;
             }
         }
     };
-    let relaxed = &w.relaxed;
-    add(&w.shape.kappa, &relaxed.curvature, &relaxed.curvature_rate, &|node| {
-        mesh.node_length(node) * bending_stiffness
-    });
-    add(&w.shape.strain, &relaxed.stretch, &relaxed.stretch_rate, &|_| {
-        mesh.h * axial_stiffness
-    });
+    let of_curvature = |node| mesh.node_length(node) * section.bending_stiffness;
+    let curvatures = [&relaxed.curvature[..], &relaxed.curvature_rate];
+    add(&w.shape.kappa, &now.rest_curvature[0], curvatures, &of_curvature);
+    let of_stretch = |_| mesh.h * section.axial_stiffness;
+    add(
+        &w.shape.strain,
+        &[],
+        [&relaxed.stretch, &relaxed.stretch_rate],
+        &of_stretch,
+    );
     sums
 }
 
@@ -150,6 +163,6 @@ pub fn settle(system: &System, now: &TimeData, w: &Workspace<f64>, y: &mut [f64]
             };
             curvature += relaxing / (system.model.section.bending_stiffness * stretch);
         }
-        y[unknown] = curvature;
+        y[unknown] = curvature - now.rest_curvature(node);
     }
 }

@@ -114,13 +114,22 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 }
 
 /// Moments and the shear that follows from them, `[E12]`.
+///
+/// `[E59]` A beam that is curved at rest, by κ_0 (loads of the kind `rest_curvature_1_m`), with the weights of forces, [E46]:
+///
+/// ```text
+/// M = EI (α - α_p - κ_0)      EI τ_b (κ - κ_0)_t      P_loads gains -Σ h_i M_total κ_0,t
+/// ```
 pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let section = &system.model.section;
     let ei = section.bending_stiffness;
     let published = system.model.published();
     let last = system.mesh.nodes - 1;
     for i in 0..=last {
-        let pressure_curvature = pressure_curvature(system, w, i);
+        let mut free_curvature = pressure_curvature(system, w, i);
+        if let Some(rest) = now.rest_curvature[0].get(i) {
+            free_curvature += T::constant(*rest);
+        }
         let given = match i {
             0 if now.ends[0].slope.is_none() => Some(now.ends[0].moment.value),
             _ if i == last && now.ends[1].slope.is_none() => Some(now.ends[1].moment.value),
@@ -138,12 +147,12 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
                     elastic -= *nonlinear;
                 }
                 w.forces.moment[i] = elastic;
-                let alpha = pressure_curvature + elastic / T::constant(ei);
+                let alpha = free_curvature + elastic / T::constant(ei);
                 if w.relaxed.curvature.is_empty() {
                     w.shape.kappa[i] = if published { alpha / stretch } else { alpha };
                 } else {
-                    w.shape.kappa[i] = relaxation::curvature(system, w, i, alpha, stretch);
-                    w.forces.moment[i] = (w.shape.kappa[i] * stretch - pressure_curvature) * ei;
+                    w.shape.kappa[i] = relaxation::curvature(system, now, w, i, alpha, stretch);
+                    w.forces.moment[i] = (w.shape.kappa[i] * stretch - free_curvature) * ei;
                 }
             }
             None => {
@@ -152,16 +161,20 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
                 } else {
                     w.shape.kappa[i]
                 };
-                w.forces.moment[i] = (alpha - pressure_curvature) * ei;
+                w.forces.moment[i] = (alpha - free_curvature) * ei;
             }
         }
     }
-    relaxation::moments(system, w);
+    relaxation::moments(system, now, w);
     if section.bending_damping_time > 0.0 {
         let first = usize::from(now.ends[0].slope.is_none());
         let end = last + usize::from(now.ends[1].slope.is_some());
         for i in first..end {
-            w.forces.viscous_moment[i] = w.shape.kappa_rate[i] * (ei * section.bending_damping_time);
+            let mut rate = w.shape.kappa_rate[i];
+            if let Some(rest) = now.rest_curvature[1].get(i) {
+                rate -= T::constant(*rest);
+            }
+            w.forces.viscous_moment[i] = rate * (ei * section.bending_damping_time);
         }
     }
 }

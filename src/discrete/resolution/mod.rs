@@ -150,7 +150,8 @@ fn finding(
 /// Loads along the beam that take part: those of one time function together, for they act together.
 fn loads_along(case: &Case, model: &Model) -> Vec<Shape> {
     let mut groups: Vec<(Option<&Signal>, Shape)> = vec![];
-    for (k, written) in case.loads.iter().enumerate() {
+    // what bends at rest turns every cell exactly as far as it should
+    for (k, written) in case.loads.iter().enumerate().filter(|(_, load)| !load.is_rest()) {
         let signal = written.distributed().map(|(_, load)| &load.signal);
         // Loads that never change act together whatever their values.
         let (signal, constant) = match signal {

@@ -29,7 +29,7 @@ impl Shape {
     pub fn new(pointer: String, load: Load, constant: f64, model: &Model) -> Self {
         let length = match load.kind {
             LoadKind::ForceX | LoadKind::ForceZ => model.length,
-            LoadKind::MomentX | LoadKind::MomentZ => 1.0,
+            LoadKind::MomentX | LoadKind::MomentZ | LoadKind::RestCurvature => 1.0,
         };
         let factor = load.factor * constant * length;
         let held = [0, 1].map(|end| {
@@ -64,7 +64,7 @@ impl Shape {
     /// Whether both do the same kind of thing to a straight beam. A first moment across turns only what is bent.
     pub fn acts_with(&self, other: &Self) -> bool {
         let kind = |shape: &Self| match shape.loads[0].0.kind {
-            LoadKind::ForceX | LoadKind::MomentZ => 0,
+            LoadKind::ForceX | LoadKind::MomentZ | LoadKind::RestCurvature => 0,
             LoadKind::ForceZ => 1,
             LoadKind::MomentX => 2,
         };
@@ -139,6 +139,7 @@ impl Shape {
                         gained += m0;
                         mean += m1;
                     }
+                    LoadKind::RestCurvature => {}
                     LoadKind::MomentX | LoadKind::MomentZ => {
                         gained -= m0;
                         mean -= m1;

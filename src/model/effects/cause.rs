@@ -135,6 +135,8 @@ pub enum Keeps {
     Attachments,
     /// A fluid is around the beam, which the scene's numbers do not know.
     Surroundings,
+    /// The beam is curved at rest, which the scene's numbers do not know.
+    RestCurvature,
     /// The solid relaxes, which the scene's numbers do not know.
     Viscoelasticity,
     /// The section is not linear at the scene's loads.
@@ -221,6 +223,7 @@ impl Display for Keeps {
             Self::Attachments => "what is attached to the beam has no bound here",
             Self::Gas => "the fluid is a gas",
             Self::Surroundings => "the fluid around the beam has no bound here",
+            Self::RestCurvature => "a beam that is curved at rest has no bound here",
             Self::Viscoelasticity => "a solid that relaxes has no bound here",
             Self::MakesPressure => "it is what makes pressure",
         })

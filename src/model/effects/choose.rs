@@ -4,7 +4,7 @@ use super::cause::{Cause, Keeps, Number, Weighed};
 use super::obstacles::{self, Obstacle};
 use super::table::{Presence, about};
 use super::{Decision, EffectSet, Scene};
-use crate::case::schema::{Case, Choice, Coupling, Effect, EffectChoices, Effects, Fluid, FluidKind};
+use crate::case::schema::{Case, Choice, Coupling, Effect, EffectChoices, Effects, Fluid, FluidKind, Load};
 use crate::error::{Code, Violation};
 use crate::model::Network;
 
@@ -172,6 +172,7 @@ impl<'a> Chooser<'a> {
         };
         match effect {
             _ if !self.case.attachments.is_empty() && by_motion(effect) => kept(Keeps::Attachments),
+            _ if self.case.loads.iter().any(Load::is_rest) && by_motion(effect) => kept(Keeps::RestCurvature),
             _ if self.case.beam.viscoelasticity.is_some() && by_motion(effect) => kept(Keeps::Viscoelasticity),
             _ if self.case.surroundings.is_some() && by_motion(effect) => kept(Keeps::Surroundings),
             _ if about(Effect::NonlinearSection).needs.contains(&effect) && scene.strain_energy() >= self.tolerance => {

@@ -30,7 +30,9 @@ fn zero(signal: &Signal) -> bool {
 pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
     const HINT: &str = "remove it, or leave transverse_motion on";
     let across = |load: &Load| match load {
-        Load::ForceXNM(d) | Load::BodyXMS2(d) | Load::MomentXN(d) | Load::MomentZN(d) => !zero(&d.signal),
+        Load::ForceXNM(d) | Load::BodyXMS2(d) | Load::MomentXN(d) | Load::MomentZN(d) | Load::RestCurvature(d) => {
+            !zero(&d.signal)
+        }
         Load::Gravity { x_m_s2, .. } => *x_m_s2 != 0.0,
         Load::ForceZNM(_) | Load::BodyZMS2(_) => false,
     };

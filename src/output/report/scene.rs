@@ -156,6 +156,7 @@ fn load(load: &Load, end_s: f64) -> Value {
         "force_z_n_m" => ("along", "force along", "N/m"),
         "body_x_m_s2" => ("across", "body force across", "m/s²"),
         "body_z_m_s2" => ("along", "body force along", "m/s²"),
+        "rest_curvature_1_m" => ("moment", "curvature at rest", "1/m"),
         _ => ("moment", "couple", "N"),
     };
     let sign = match peak(&distributed.signal, end_s) {
