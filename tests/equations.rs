@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 58] = [
+const INDEX: [(&str, &str, &str); 59] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -168,6 +168,11 @@ const INDEX: [(&str, &str, &str); 58] = [
         "loss_factors_are_constant_over_their_band",
     ),
     ("[E58]", "tests/viscoelastic/main.rs", "held_strains_relax_exactly"),
+    (
+        "[E59]",
+        "tests/rest_curvature.rs",
+        "what_nothing_acts_on_has_its_own_shape",
+    ),
 ];
 
 #[test]

@@ -6,7 +6,7 @@ use serde_json::json;
 use slcbeam::error::At;
 use slcbeam::run::equilibrium::{self, Kind, Options};
 
-use crate::common::{parse, path_of, solved, unit};
+use crate::common::{parse, path_of, shipped, solved, unit};
 
 /// Goal: roll-up to a closed ring and to two turns converges from rest and closes to 1e-6 (here 1e-9: the mesh's chords
 /// close exactly, Newton leaves 1e-10), whether the beam stretches easily or hardly.
@@ -104,4 +104,13 @@ fn beam_that_nothing_holds_is_refused() {
     // an equilibrium has no time of its own, and what it has is not told as one
     assert_eq!((fault.at, fault.at.time_s()), (At::LoadFactor(0.0), None));
     assert!(fault.cause.is_some_and(|c| c.contains("nothing holds")));
+}
+
+/// Goal: a path ends at the share that is asked for, though a step passes it that was predicted to stay before: an arch in the shape that it has at
+/// rest, from where loads beyond push it through.
+#[test]
+fn a_path_stops_where_a_step_passes_its_end() {
+    let path = path_of(&shipped("snap-arch", &[]), &Options::at(0.0));
+    assert!(path.fault.is_none(), "{:?}", path.fault);
+    assert!(path.states.iter().all(|state| state.share <= 1.0) && path.last().share == 1.0);
 }

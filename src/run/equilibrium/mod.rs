@@ -15,6 +15,7 @@
 
 mod arclength;
 mod branch;
+mod judge;
 mod natural;
 mod path;
 mod predict;

@@ -191,11 +191,14 @@ impl Follower<'_> {
         let (n, target) = (self.n, self.options.share);
         let last = trail.last.clone();
         let mut growth = GROWTH;
+        let passes = |share: f64| (share - target) * (last[n] - target) <= 0.0;
+        // a point beyond the target that was predicted before it
+        let mut passed = false;
         loop {
             let mut guess = trail.natural.beyond(step);
             let share = |z: &[f64]| z[z.len() - 1];
-            let arrives = (share(&guess) - target) * (last[n] - target) <= 0.0;
-            if arrives {
+            let arrives = passed || passes(share(&guess));
+            if passes(share(&guess)) {
                 step = crossing(|step| share(&trail.natural.beyond(step)) - target, step);
                 guess = trail.natural.beyond(step);
             }
@@ -211,6 +214,11 @@ impl Follower<'_> {
             if let Ok(iterations) = solved
                 && off <= ASTRAY
             {
+                if !arrives && passes(x[n]) {
+                    passed = true;
+                    step *= (target - last[n]) / (x[n] - last[n]);
+                    continue;
+                }
                 // With the load prescribed the equations are turned around where it falls.
                 let orientation = if arrives && x[n] < last[n] { -1 } else { 1 } * self.solver.determinant_sign();
                 if orientation != self.orientation && self.options.branches {
@@ -238,6 +246,7 @@ impl Follower<'_> {
                 return Ok(Next::Step(taken * by_distance.min(by_work).clamp(0.3, growth)));
             }
             self.path.rejected += 1;
+            passed = false;
             growth = 1.0;
             step *= if solved.is_ok() {
                 (0.5 * ASTRAY / off).clamp(0.1, 0.5)
@@ -281,31 +290,6 @@ impl Follower<'_> {
         let solution = self.solver.solve(0.0, x, &options)?;
         self.path.work.add(&solution);
         Ok(solution.iterations)
-    }
-
-    /// Says of every state whether it holds. Between events the determinant keeps its sign: where the first and the last state of
-    /// such a stretch give way in as many directions, those in between do too; else each is looked at.
-    fn judge(&mut self) {
-        self.bounds.push(self.path.states.len());
-        for k in 1..self.bounds.len() {
-            let (first, next) = (self.bounds[k - 1], self.bounds[k]);
-            if first >= next {
-                continue;
-            }
-            let last = next - 1;
-            let ends = [first, last].map(|k| self.stability(k));
-            let same = ends[0].map(|s| s.unstable) == ends[1].map(|s| s.unstable);
-            for state in first + 1..last {
-                let inherited = ends[0].map(|s| Stability { softest: None, ..s });
-                self.path.states[state].stability = if same { inherited } else { self.stability(state) };
-            }
-            (self.path.states[first].stability, self.path.states[last].stability) = (ends[0], ends[1]);
-        }
-    }
-
-    fn stability(&mut self, k: usize) -> Option<Stability> {
-        let state = &self.path.states[k];
-        Stability::of(self.solver.dae_mut().statics(), state.share, &state.y)
     }
 
     /// Keeps a state and shows it.

@@ -1,0 +1,31 @@
+//! Whether the states of a path hold.
+
+use super::Stability;
+use super::path::Follower;
+
+impl Follower<'_> {
+    /// Says of every state whether it holds. Between events the determinant keeps its sign: where the first and the last state of
+    /// such a stretch give way in as many directions, those in between do too; else each is looked at.
+    pub(super) fn judge(&mut self) {
+        self.bounds.push(self.path.states.len());
+        for k in 1..self.bounds.len() {
+            let (first, next) = (self.bounds[k - 1], self.bounds[k]);
+            if first >= next {
+                continue;
+            }
+            let last = next - 1;
+            let ends = [first, last].map(|k| self.stability(k));
+            let same = ends[0].map(|s| s.unstable) == ends[1].map(|s| s.unstable);
+            for state in first + 1..last {
+                let inherited = ends[0].map(|s| Stability { softest: None, ..s });
+                self.path.states[state].stability = if same { inherited } else { self.stability(state) };
+            }
+            (self.path.states[first].stability, self.path.states[last].stability) = (ends[0], ends[1]);
+        }
+    }
+
+    fn stability(&mut self, k: usize) -> Option<Stability> {
+        let state = &self.path.states[k];
+        Stability::of(self.solver.dae_mut().statics(), state.share, &state.y)
+    }
+}
