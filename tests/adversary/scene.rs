@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use crate::chance::Random;
 use crate::digits::short;
+use crate::further;
 use crate::network;
 use crate::profiles;
 use crate::signals::{self, Times};
@@ -35,6 +36,8 @@ pub struct Beam {
 pub enum Kind {
     /// Everything the schema allows.
     Extreme,
+    /// The same with further effects.
+    Further,
     /// Sizes and loads like those of the shipped cases.
     Sane,
 }
@@ -65,6 +68,9 @@ pub fn draw(seed: u64, kind: Kind) -> Value {
     }
     if !wet && !r.one_in(4) {
         case["mesh"] = json!({"segments": 1 + r.below(3)});
+    }
+    if kind == Kind::Further {
+        further::add(r, &b, &mut case, wet);
     }
     case
 }

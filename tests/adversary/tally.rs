@@ -72,8 +72,8 @@ pub fn asked(seed: u64) -> f64 {
 pub fn close(kind: Kind, asked: f64, promised: bool) -> f64 {
     let judged = match kind {
         Kind::Sane => NEEDLESS,
-        Kind::Extreme if promised => asked.min(DEFAULT),
-        Kind::Extreme => DEFAULT,
+        _ if promised => asked.min(DEFAULT),
+        _ => DEFAULT,
     };
     KNOWN * judged
 }
@@ -107,7 +107,12 @@ fn one(kind: Kind, seed: u64, build: &str) -> Value {
 
 /// A scene's name.
 pub fn name(kind: Kind, seed: u64) -> String {
-    format!("{}-{seed}", if kind == Kind::Sane { "sane" } else { "scene" })
+    let of = match kind {
+        Kind::Sane => "sane",
+        Kind::Further => "further",
+        Kind::Extreme => "scene",
+    };
+    format!("{of}-{seed}")
 }
 
 /// Writes a scene so that `slcbeam run` takes it.

@@ -1,0 +1,99 @@
+//! Further effects of a scene: what is attached, what is around, a solid that relaxes or is curved at rest, fluid that is compressed.
+
+use std::f64::consts::PI;
+
+use serde_json::{Map, Value, json};
+
+use crate::chance::Random;
+use crate::digits::short;
+use crate::network;
+use crate::profiles;
+use crate::scene::Beam;
+use crate::signals;
+
+/// Adds one of them at least.
+pub fn add(r: &mut Random, b: &Beam, case: &mut Value, wet: bool) {
+    let first = r.below(if wet { 5 } else { 4 });
+    let mut takes = |which: usize| which == first || r.one_in(5);
+    let [attached, around, relaxing, curved] = [0, 1, 2, 3].map(&mut takes);
+    let compressed = wet && takes(4);
+    if attached {
+        case["attachments"] = (0..1 + r.below(2)).map(|_| attachment(r, b)).collect();
+    }
+    if around {
+        case["surroundings"] = surroundings(r, b);
+    }
+    if relaxing {
+        case["beam"]["viscoelasticity"] = viscoelasticity(r, b);
+    }
+    if curved {
+        let signal = signals::load(r, b.times, 0.5 / b.length);
+        let load = json!({"rest_curvature_1_m": {"signal": signal, "profile": profiles::profile(r, b.times.sane)}});
+        case["loads"].as_array_mut().expect("loads").push(load);
+        case.as_object_mut().expect("a case").remove("formulation");
+    }
+    if compressed {
+        let pressure = network::pressure(case);
+        let fluid = case["fluid"].as_object_mut().expect("a fluid");
+        fluid.extend(compression(r, pressure));
+    }
+}
+
+fn attachment(r: &mut Random, b: &Beam) -> Value {
+    let at = *r.of(&[0.0, 0.25, 0.5, 0.8, 1.0, 1.0]);
+    let (k, m) = (b.ei / b.length.powi(3), b.mass * b.length);
+    let time = b.times.period;
+    let mut one = json!({"at": at});
+    match r.below(6) {
+        0 => one["stiffness_x_n_m"] = short(k * r.log(0.1, 1e3)),
+        1 => one["stiffness_rotation_n_m_rad"] = short(k * b.length * b.length * r.log(0.1, 1e3)),
+        2 => one["stiffness_z_n_m"] = short(b.ea / b.length * r.log(1e-3, 1e1)),
+        3 => one["damping_x_n_s_m"] = short(m / time * r.log(1e-2, 1e1)),
+        4 => one["force_x_n"] = signals::load(r, b.times, b.ei / (b.length * b.length)),
+        _ => one["mass_kg"] = short(m * r.log(1e-2, 3.0)),
+    }
+    if r.one_in(3) {
+        one["mass_kg"] = short(m * r.log(1e-2, 3.0));
+    }
+    one
+}
+
+fn surroundings(r: &mut Random, b: &Beam) -> Value {
+    // added mass over that of the beam
+    let density = r.log(1e-2, 1e1) * b.mass / (0.25 * PI * b.width * b.width);
+    let mut around = json!({"density_kg_m3": short(density), "drag_coefficient": short(r.between(0.0, 2.5))});
+    if r.one_in(3) {
+        around["added_mass_coefficient"] = json!(0.0);
+    }
+    if r.one_in(3) {
+        let speed = (b.ei / (b.length.powi(3) * density * b.width)).sqrt().min(100.0);
+        around["stream_x_m_s"] = signals::load(r, b.times, 0.5 * speed);
+    }
+    if r.one_in(5) {
+        around["stream_z_m_s"] = short(0.3 * (b.length / b.times.period).min(100.0));
+    }
+    around
+}
+
+fn viscoelasticity(r: &mut Random, b: &Beam) -> Value {
+    if r.one_in(3) {
+        let from = r.log(1e-2, 1.0) / b.times.period;
+        let band = r.log(2.0, 1e3);
+        return json!({"loss_factor": {"value": short(r.log(1e-2, 0.4)), "from_hz": short(from), "to_hz": short(from * band)}});
+    }
+    let branch = |r: &mut Random| {
+        let time = b.times.period * r.log(1e-3, 1e2);
+        json!({"modulus_ratio": short(r.log(1e-2, 5.0)), "time_s": short(time)})
+    };
+    json!({"prony": (0..1 + r.below(3)).map(|_| branch(r)).collect::<Vec<_>>()})
+}
+
+fn compression(r: &mut Random, pressure: f64) -> Map<String, Value> {
+    let ambient = short((10.0 * pressure).max(1e5));
+    let fluid = match r.below(3) {
+        0 => json!({"bulk_modulus_pa": short(pressure * r.log(3.0, 1e4))}),
+        1 => json!({"gas_fraction": short(r.log(1e-3, 0.5)), "ambient_pressure_pa": ambient}),
+        _ => json!({"kind": "gas", "ambient_pressure_pa": ambient, "polytropic_exponent": *r.of(&[1.0, 1.4])}),
+    };
+    fluid.as_object().expect("an object").clone()
+}
