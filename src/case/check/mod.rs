@@ -23,7 +23,7 @@ use crate::error::{Code, Violation};
 type Rule = fn(&Case, &mut Violations);
 
 /// All rules, each with the sections of the case that it compares.
-const RULES: [(Rule, &[&str]); 14] = [
+const RULES: [(Rule, &[&str]); 15] = [
     (name, &[]),
     (plausible::sizes, &[]),
     (plausible::proportions, &["beam", "tubes", "network"]),
@@ -36,6 +36,7 @@ const RULES: [(Rule, &[&str]); 14] = [
     (ends::check, &[]),
     (attachments::check, &[]),
     (probes::check, &[]),
+    (probes::step, &["step_response", "time"]),
     (functions::check, &["time"]),
     (start::check, &["beam", "bladders", "ends", "start", "time"]),
     (time::check, &[]),

@@ -1,4 +1,4 @@
-//! Places that are recorded.
+//! Places that are recorded, and the step whose response is told.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
