@@ -18,8 +18,8 @@ use slcbeam::results::verify::Row;
 use slcbeam::results::{self, Kept, Provenance, run::Summary};
 use slcbeam::run::{dynamics, record::Control, summary::Status};
 
-/// A wet beam, derivatives, a history with an envelope, checkpoints.
-const SETS: [&str; 7] = [
+/// A wet beam, derivatives, a probe and step responses, a history with an envelope, checkpoints.
+const SETS: [&str; 9] = [
     "/time/checkpoint_interval_s=0.01",
     "/time/end_s=0.04",
     "/time/window_s=0.01",
@@ -27,6 +27,8 @@ const SETS: [&str; 7] = [
     "/solver/rtol=1e-4",
     "/mesh/cells_per_segment=2",
     "/mesh/cells_per_bladder=1",
+    "/probes=[{\"name\": \"middle\", \"at\": 0.5}]",
+    "/step_response={}",
 ];
 
 /// A line a value, each once: its keys, `[]` for places in a list, and what it is.

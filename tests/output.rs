@@ -171,6 +171,8 @@ fn summary_of(status: Status) -> Summary {
         accuracy: None,
         estimate: None,
         sensitivities: Default::default(),
+        probes: Default::default(),
+        step_response: Default::default(),
         warnings: Vec::new(),
     }
 }

@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use serde_json::{Value, json};
+use slcbeam::case::parameter::Parameter;
 use slcbeam::case::{self, Case};
+use slcbeam::discrete::System;
 use slcbeam::error::Error;
 use slcbeam::run::dynamics;
 use slcbeam::run::equilibrium::{Options, columns, follow, system};
@@ -155,4 +157,117 @@ fn names_that_are_taken_are_refused() {
     assert_eq!(at, ["/probes/1/name", "/probes/2/name", "/probes/3/name"]);
     case["probes"] = json!([{"name": "a", "at": 1.5}]);
     assert!(parse(&case).is_err());
+}
+
+/// A wet beam that is shaken, with a probe.
+fn shaken(sets: &[&str]) -> Case {
+    let own = [
+        r#"/time={"end_s": 0.06, "output_interval_s": 1e-4, "window_s": 0.02}"#,
+        r#"/probes=[{"name": "a", "at": 0.37}, {"name": "end", "at": 1.0}]"#,
+    ];
+    let sets: Vec<String> = own.iter().chain(sets).map(|s| (*s).into()).collect();
+    case::load(Path::new("cases/tour-harvester.json"), &sets).unwrap()
+}
+
+/// Goal: figures of the summary are those of the motion: of a history that is fine, also where only the ends of the run are written, and
+/// of the tip those that it has by itself.
+#[test]
+fn figures_at_probes_are_those_of_the_motion() {
+    let mut memory = Memory::default();
+    let fine = dynamics::run(&shaken(&[]), &mut memory).unwrap().summary;
+    let coarse = dynamics::run(&shaken(&["/time/output_interval_s=0.06"]), &mut Memory::default())
+        .unwrap()
+        .summary;
+    let times = memory.column("t").unwrap();
+    assert_eq!(fine.probes.len(), 2 * 11);
+    for (name, column) in [
+        ("a_u1_m", "a_u1"),
+        ("a_moment_n_m", "a_moment"),
+        ("a_curvature_per_m", "a_curvature"),
+        ("a_strain_upper", "a_strain_upper"),
+        ("a_pressure_lower_pa", "a_pressure_lower"),
+    ] {
+        let values = memory.column(column).unwrap();
+        let largest = |from: f64| {
+            let sizes = times.iter().zip(&values).filter(|(t, _)| **t >= from - 1e-9);
+            sizes.map(|(_, v)| v.abs()).fold(0.0, f64::max)
+        };
+        let in_window = || times.iter().zip(&values).filter(|(t, _)| **t >= 0.04 - 1e-9);
+        let pairs = in_window().zip(in_window().skip(1));
+        let squares: f64 = pairs.map(|((a, v), (b, w))| 0.5 * (b - a) * (v * v + w * w)).sum();
+        for (summary, tolerance) in [(&fine, 2e-3), (&coarse, 2e-3)] {
+            let told = &summary.probes[name];
+            let close = |told: Option<f64>, own: f64| {
+                let told = told.unwrap_or(f64::NAN);
+                assert!((told - own).abs() <= tolerance * own.abs(), "{name}: {told} {own}");
+            };
+            close(told.last, *values.last().unwrap());
+            close(told.max_abs, largest(0.0));
+            close(told.window_max_abs, largest(0.04));
+            close(told.window_rms, (squares / 0.02).sqrt());
+            let at = told.max_abs_at_s.unwrap();
+            let nearest = times.iter().position(|t| *t >= at - 0.5e-4).unwrap();
+            close(told.max_abs, values[nearest].abs());
+        }
+    }
+    for what in ["u1_m", "u3_m", "angle_rad"] {
+        let (own, probed) = (
+            &fine.quantities[&format!("tip_{what}")],
+            &fine.probes[&format!("end_{what}")],
+        );
+        for ((key, a), (_, b)) in own.figures().zip(probed.figures()) {
+            assert!((a - b).abs() < 2e-3 * a.abs(), "{what} {key}: {a} {b}");
+        }
+    }
+}
+
+/// Goal: derivatives of probes, of their columns and figures, are differences of runs.
+#[test]
+fn derivatives_at_probes_are_differences_of_runs() {
+    let tight = "/solver/rtol=1e-9";
+    let case = shaken(&[tight]);
+    let by = Parameter::find(&case, "/beam/young_modulus_pa").unwrap();
+    let (value, pointer) = (by.value, by.pointer.clone());
+    let mut memory = Memory::default();
+    let with = dynamics::run_with(&case, System::new(&case).unwrap(), &[by], &mut memory).unwrap();
+    let derivatives = &with.summary.sensitivities[&pointer].probes;
+    assert_eq!(derivatives.len(), 2 * 11);
+    let step = 1e-3;
+    let [less, more] = [-step, step].map(|step| {
+        let set = format!("{pointer}={:e}", value * (1.0 + step));
+        dynamics::run(&shaken(&[tight, &set]), &mut Memory::default())
+            .unwrap()
+            .summary
+    });
+    for name in [
+        "a_u1_m",
+        "a_moment_n_m",
+        "a_curvature_per_m",
+        "a_pressure_upper_pa",
+        "end_angle_rad",
+    ] {
+        let all = derivatives[name]
+            .figures()
+            .zip(less.probes[name].figures())
+            .zip(more.probes[name].figures());
+        for (((key, slope), (_, less)), (_, more)) in all {
+            let difference = (more - less) / (2.0 * step * value);
+            let scale = with.summary.probes[name].size() / value;
+            println!("{name} {key}: {:.6} {:.6}", slope / scale, difference / scale);
+            // largest values of derivatives are those at output times
+            assert!(
+                (slope - difference).abs() < 5e-3 * scale,
+                "{name} {key}: {slope:e} {difference:e}"
+            );
+        }
+    }
+    let column = format!("d a_u1/d {pointer} [m per unit]");
+    let place = memory
+        .header
+        .sensitivities
+        .iter()
+        .position(|name| *name == column)
+        .unwrap();
+    let last = memory.sensitivities.last().unwrap()[place];
+    assert_eq!(Some(last), derivatives["a_u1_m"].last);
 }

@@ -94,6 +94,8 @@ fn summary(status: Status) -> Summary {
         accuracy: None,
         estimate: None,
         sensitivities: Default::default(),
+        probes: Default::default(),
+        step_response: Default::default(),
         warnings: Vec::new(),
     }
 }

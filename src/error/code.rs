@@ -50,6 +50,7 @@ codes! {
     Convexity = "E022", "A potential that is not convex at the pressures expected.";
     Order = "E023", "An order of BDF that is unstable for this beam.";
     ProbeName = "E024", "A probe whose columns are not told from others.";
+    StepTime = "E025", "A step response that has no time.";
     Usage = "E030", "A command line that makes no sense.";
     NoStart = "E040", "No consistent state to start or go on from.";
     Integrator = "E041", "The integrator cannot go on.";

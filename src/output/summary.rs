@@ -16,11 +16,13 @@ pub fn to_json(summary: &Summary) -> String {
     let derivatives = summary
         .sensitivities
         .values_mut()
-        .flat_map(|s| s.quantities.values_mut());
-    for q in summary.quantities.values_mut().chain(derivatives) {
+        .flat_map(|s| s.quantities.values_mut().chain(s.probes.values_mut()));
+    let own = summary.quantities.values_mut().chain(summary.probes.values_mut());
+    for q in own.chain(derivatives) {
         *q = Quantity {
             last: finite(q.last),
             max_abs: finite(q.max_abs),
+            max_abs_at_s: finite(q.max_abs_at_s),
             window_max_abs: finite(q.window_max_abs),
             window_rms: finite(q.window_rms),
             window: finite(q.window),

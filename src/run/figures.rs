@@ -11,54 +11,14 @@ use serde::{Deserialize, Serialize};
 use super::cubic::{self, Cubic};
 use super::schedule::SAME;
 use super::summary::Quantity;
+use super::track::Track;
 use crate::case::schema::Case;
 use crate::discrete::System;
 use crate::discrete::glance::{Glance, Watched};
 use crate::discrete::quantities::{Interest, Row, Source};
 
-/// Excess over the largest value seen for which the state at a turning point between two steps is looked at; below it the cubic
-/// through values and rates at the step's ends is as good.
-const WORTH: f64 = 1e-3;
 /// Share of the characteristic size below which nothing is a motion.
 const FLOOR: f64 = 1e-9;
-
-/// Largest and last value of one number.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Track {
-    last: f64,
-    max_abs: f64,
-    window_max_abs: f64,
-    window_start: Option<f64>,
-    /// Integral of the square over the window, as far as it has been followed.
-    window_squares: f64,
-}
-
-impl Track {
-    /// Takes the value at an output time, or at an end of the window.
-    fn take(&mut self, value: f64, in_window: bool) {
-        self.last = value;
-        if in_window {
-            self.window_start.get_or_insert(value);
-        }
-    }
-
-    /// Takes the size of a value at any time.
-    fn see(&mut self, size: f64, in_window: bool) {
-        self.max_abs = self.max_abs.max(size);
-        if in_window {
-            self.window_max_abs = self.window_max_abs.max(size);
-        }
-    }
-
-    fn increment(&self) -> f64 {
-        self.last - self.window_start.unwrap_or(self.last)
-    }
-
-    /// Whether a size between two steps is worth a look.
-    fn worth(&self, size: f64, in_window: bool) -> bool {
-        size > (1.0 + WORTH) * self.max_abs || in_window && size > (1.0 + WORTH) * self.window_max_abs
-    }
-}
 
 /// Follows the motion and the history.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -109,7 +69,7 @@ impl Figures {
         let in_window = glance.t >= self.window_start;
         for (one, track) in self.each() {
             if let Source::Motion(watched) = one.source() {
-                track.see(value(glance, watched).abs(), in_window);
+                track.see(value(glance, watched).abs(), glance.t, in_window);
             }
         }
     }
@@ -136,7 +96,7 @@ impl Figures {
                 }
                 Source::Energy(_) | Source::Efficiency => continue,
             };
-            track.window_squares += h * squares;
+            track.square(h * squares);
         }
     }
 
@@ -159,7 +119,7 @@ impl Figures {
         }
         let worth = track.worth(size, in_window);
         if !worth {
-            track.see(size, in_window);
+            track.see(size, t, in_window);
         }
         worth
     }
@@ -173,26 +133,20 @@ impl Figures {
     pub fn quantities(&self) -> BTreeMap<String, Quantity> {
         let [input, harvested] = [Interest::InputEnergy, Interest::HarvestedEnergy].map(|of| self.track(of));
         // before the motion has come to the window there is nothing to tell of it
-        let reached = self.window_time > 0.0 || input.is_some_and(|input| input.window_start.is_some());
+        let reached = self.window_time > 0.0 || input.is_some_and(Track::in_window);
         let ratio = |of: fn(&Track) -> f64| {
             let ratio = of(harvested?) / of(input?);
             ratio.is_finite().then_some(ratio)
         };
         let quantity = |one: Interest, t: &Track| match one.source() {
-            Source::Motion(_) => Quantity {
-                last: Some(t.last),
-                max_abs: Some(t.max_abs),
-                window_max_abs: reached.then_some(t.window_max_abs),
-                window_rms: (self.window_time > 0.0).then(|| (t.window_squares / self.window_time).sqrt()),
-                ..Quantity::default()
-            },
+            Source::Motion(_) => t.swing(reached, self.window_time),
             Source::Energy(_) => Quantity {
-                last: Some(t.last),
+                last: Some(t.last()),
                 window: reached.then(|| t.increment()),
                 ..Quantity::default()
             },
             Source::Efficiency => Quantity {
-                last: ratio(|t| t.last),
+                last: ratio(Track::last),
                 window: ratio(Track::increment).filter(|_| reached),
                 ..Quantity::default()
             },

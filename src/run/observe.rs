@@ -20,8 +20,10 @@ use super::figures::{self, Figures};
 use super::floors::Floors;
 use super::growth::Growth;
 use super::range::{Limits, Range};
+use super::readings::{self, ProbeFigures, Readings};
 use super::record::{Axis, Column, Field, Header, Recorder};
 use super::residuals::Residuals;
+use super::step_response::StepResponses;
 use super::stretch::{self, Stretch, Stretches};
 
 /// What may turn between two steps.
@@ -55,6 +57,10 @@ pub struct Observed {
     pub residuals: Residuals,
     /// Quantities of interest.
     pub figures: Figures,
+    /// Figures at probes.
+    pub probes: ProbeFigures,
+    /// Step responses, where they are asked for.
+    pub steps: Option<StepResponses>,
     /// Errors of those that are energies.
     pub energies: Energies,
     /// What mesh and steps do to vibrations.
@@ -80,6 +86,7 @@ pub struct Observer {
     /// The end of the last step, or the start of the first after a switch.
     before: Option<Glance>,
     turning: Vec<f64>,
+    readings: Readings,
     /// What has been seen so far.
     pub seen: Observed,
 }
@@ -97,9 +104,14 @@ impl Observer {
             limits: Limits::new(case, system),
             before: None,
             turning: vec![],
+            readings: Readings::new(case),
             seen: Observed {
                 residuals: Residuals::new(system, case.solver.rtol, floors),
                 figures: Figures::new(case, system),
+                probes: ProbeFigures::new(case, system),
+                steps: case
+                    .step_response
+                    .map(|step| StepResponses::new(readings::names(system), step.at_s)),
                 energies: Energies::new(case, floors.energy),
                 estimate: Estimator::new(case, system, floors),
                 growth: Growth::new(&system.model, case.time.end_s),
@@ -144,6 +156,7 @@ impl Observer {
         let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
         let glance = Glance::new(system, now, t, half_height, w);
+        self.readings.arrive(t, true, system, now, w);
         self.watch(system, now, w, &glance, integrals);
         self.seen.range.take(&self.limits, None, &glance);
         self.before = Some(glance);
@@ -161,6 +174,7 @@ impl Observer {
         if beyond.is_some() {
             return beyond;
         }
+        self.readings.arrive(t, false, system, now, w);
         self.watch(system, now, w, &glance, integrals);
         if let Some(before) = self.before.filter(|before| before.t < t) {
             self.seen.range.take(&self.limits, Some(&before), &glance);
@@ -188,6 +202,23 @@ impl Observer {
             self.seen.range.take(&self.limits, None, &glance);
         }
         beyond
+    }
+
+    /// The times [s] inside the step at which [`Observer::read`] is to read tip and probes.
+    pub fn reading(&self) -> impl Iterator<Item = f64> + use<> {
+        self.readings.times()
+    }
+
+    /// Reads tip and probes inside the step; after the second state the step is taken into their figures.
+    pub fn read(&mut self, dae: &mut BeamDae, second: bool, t: f64, y: &[f64], yp: &[f64]) {
+        let (system, now, w) = dae.evaluate(t, y, yp);
+        self.readings.within(second, system, now, w);
+        if second {
+            self.seen.probes.step(&self.readings);
+            if let Some(steps) = &mut self.seen.steps {
+                steps.step(&self.readings);
+            }
+        }
     }
 
     /// What lies beyond the model in a state, if anything; nothing is kept.
@@ -278,6 +309,7 @@ impl Observer {
         self.seen.row.take(t, &look, integrals, balance.residual);
         let seen = &mut self.seen;
         seen.figures.take(&seen.row, &glance);
+        seen.probes.take(t, seen.row.at_probes());
         seen.energies.take(&seen.row);
         let Some(number) = output else {
             return Ok(false);

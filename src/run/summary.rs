@@ -8,6 +8,7 @@ use super::estimate::Estimated;
 use super::growth::Growing;
 use super::null;
 use super::sensitivity::figures::Sensitivity;
+use super::step_response::StepResponse;
 pub use crate::integrate::Counters;
 
 /// How a run ended.
@@ -33,6 +34,9 @@ pub struct Quantity {
     /// Largest absolute value of the motion, between the output times too.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_abs: Option<f64>,
+    /// When it was reached [s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_abs_at_s: Option<f64>,
     /// Largest absolute value in the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window_max_abs: Option<f64>,
@@ -216,6 +220,12 @@ pub struct Summary {
     pub unknowns: usize,
     /// Quantities of interest.
     pub quantities: BTreeMap<String, Quantity>,
+    /// What is recorded at probes, by name and unit.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub probes: BTreeMap<String, Quantity>,
+    /// Step responses of tip and probes, by name and unit, where they are asked for.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub step_response: BTreeMap<String, StepResponse>,
     /// Balances.
     pub balances: Balances,
     /// Integrator.

@@ -45,6 +45,8 @@ fn finished(last: f64) -> Summary {
         accuracy: None,
         estimate: None,
         sensitivities: Default::default(),
+        probes: Default::default(),
+        step_response: Default::default(),
         warnings: Vec::new(),
     }
 }

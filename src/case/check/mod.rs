@@ -24,7 +24,7 @@ use crate::error::{Code, Violation};
 type Rule = fn(&Case, &mut Violations);
 
 /// All rules, each with the sections of the case that it compares.
-const RULES: [(Rule, &[&str]); 15] = [
+const RULES: [(Rule, &[&str]); 16] = [
     (name, &[]),
     (plausible::sizes, &[]),
     (plausible::proportions, &["beam", "tubes", "network"]),
@@ -38,6 +38,7 @@ const RULES: [(Rule, &[&str]); 15] = [
     (attachments::check, &[]),
     (probes::check, &[]),
     (relaxation::check, &["beam"]),
+    (probes::step, &["step_response", "time"]),
     (functions::check, &["time"]),
     (start::check, &["beam", "bladders", "ends", "start", "time"]),
     (time::check, &[]),

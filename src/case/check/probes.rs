@@ -1,4 +1,4 @@
-//! Names of probes: columns begin with them.
+//! Names of probes: columns begin with them. The time of a step whose response is told.
 
 use std::collections::HashMap;
 
@@ -26,6 +26,19 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             ));
         }
     }
+}
+
+/// Something of the run has to be left after the step.
+pub(super) fn step(case: &Case, faults: &mut Violations) {
+    let Some(step) = case.step_response.filter(|step| step.at_s >= case.time.end_s) else {
+        return;
+    };
+    let what = format!(
+        "the step is at {} s, and the run ends at {} s",
+        step.at_s, case.time.end_s
+    );
+    let fault = Violation::new(Code::StepTime, "/step_response/at_s", what).allowed("times before /time/end_s");
+    faults.push(fault.hint("make the run longer than the response takes to settle"));
 }
 
 /// The tip has columns of its own.

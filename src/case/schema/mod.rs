@@ -111,6 +111,9 @@ pub struct Case {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 1000))]
     pub probes: Vec<Probe>,
+    /// Tells rise time, settling times and overshoot of the tip and at probes. Absent: not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step_response: Option<Step>,
     /// Where its coefficients come from; not part of the text, and not compared.
     #[serde(skip)]
     #[schemars(skip)]

@@ -1,4 +1,4 @@
-//! Places that are recorded.
+//! Places that are recorded, and the step whose response is told.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -12,4 +12,14 @@ pub struct Probe {
     /// Place `theta/l_s`, 0 at the root and 1 at the tip.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub at: f64,
+}
+
+/// A step whose response is told in `summary.json`, of the tip and at probes: rise time, settling times, overshoot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Step {
+    /// When the step is: times count from here, and the way from the value here \[s\].
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub at_s: f64,
 }

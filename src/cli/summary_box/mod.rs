@@ -93,6 +93,7 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     add("", more, Tone::Warning);
     add("deflection", deflection(summary), Tone::Plain);
     add("pressure", pressure(summary), Tone::Plain);
+    add("step", step(summary), Tone::Plain);
     add("energy", energy(summary), Tone::Plain);
     add("sensitivity", sensitivities(summary), Tone::Plain);
     add("accuracy", accuracy(summary), Tone::Plain);
@@ -102,6 +103,24 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     let ended_well = !matches!(summary.status, Status::Failed | Status::OutOfRange);
     add("spent on", spent(summary).filter(|_| ended_well), Tone::Plain);
     rows
+}
+
+/// The step response of the tip's deflection, where it is asked for.
+fn step(summary: &Summary) -> Option<String> {
+    let name = Interest::TipU1.name();
+    let found = summary.step_response.get(name)?;
+    let time = |t: Option<f64>| Some(quantity(t?, "s", 3));
+    let parts = [
+        time(found.rise_time_s).map(|t| format!("u₁ rises in {t}")),
+        time(found.settling_time_5_percent_s).map(|t| format!("within 5 % after {t}")),
+        time(found.settling_time_2_percent_s).map(|t| format!("2 % after {t}")),
+        found
+            .overshoot_percent
+            .map(|p| format!("overshoot {} %", significant(p, 3))),
+        found.reason.as_ref().map(|reason| format!("u₁: {reason}")),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    Some(parts.join(BETWEEN))
 }
 
 /// What one per cent more of each number does to the largest deflections and the largest pressure.

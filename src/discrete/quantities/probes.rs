@@ -52,6 +52,21 @@ pub struct ProbeColumn {
     pub about: String,
 }
 
+impl ProbeColumn {
+    /// Its name with the unit, as keys of the summary have it.
+    pub fn key(&self) -> String {
+        key(&self.name, self.unit)
+    }
+}
+
+/// A name with its unit, as keys have it: `middle_u1_m`.
+pub fn key(name: &str, unit: &str) -> String {
+    match unit {
+        "1" => name.into(),
+        unit => format!("{name}_{}", unit.to_lowercase().replace("1/", "per_").replace(' ', "_")),
+    }
+}
+
 /// Columns of all probes of a system, one probe after the other.
 pub fn columns(system: &System) -> impl Iterator<Item = ProbeColumn> + '_ {
     entries(system).map(|(probe, (name, unit, about, ..))| ProbeColumn {

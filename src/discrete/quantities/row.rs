@@ -50,6 +50,11 @@ impl Row {
         &self.values
     }
 
+    /// Its values at probes.
+    pub fn at_probes(&self) -> &[f64] {
+        &self.values[self.columns.len()..]
+    }
+
     /// Time [s].
     pub fn t(&self) -> f64 {
         self.get(Observable::Time).unwrap_or(0.0)

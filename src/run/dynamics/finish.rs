@@ -61,6 +61,9 @@ impl Run<'_> {
         };
         let o = &self.observer.seen;
         s.quantities = o.figures.quantities();
+        s.probes = o.probes.quantities();
+        let finished = s.status == Status::Finished;
+        s.step_response = o.steps.as_ref().map(|steps| steps.judge(finished)).unwrap_or_default();
         o.energies.complete(&mut s.quantities);
         s.warnings.extend(o.energies.warning(&s.quantities));
         let unstable = Unstable::of(&o.growth, self.case.beam.length_m, &self.linear);

@@ -68,6 +68,15 @@ impl Run<'_> {
                 None => within = t,
             }
         }
+        if left.is_none() {
+            for (k, t) in self.observer.reading().enumerate() {
+                if let Err(end) = self.read(solver, t) {
+                    return Ok(Some(end));
+                }
+                self.observer
+                    .read(solver.dae_mut(), k == 1, t, &self.state, &self.rates);
+            }
+        }
         match left {
             None => self.sample(solver, from, now, recorder),
             Some((t, what)) => {

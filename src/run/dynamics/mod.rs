@@ -146,6 +146,8 @@ impl<'a> Run<'a> {
                 time_s: 0.0,
                 unknowns: system.layout.len,
                 quantities: Default::default(),
+                probes: Default::default(),
+                step_response: Default::default(),
                 balances: Default::default(),
                 solver: Counters::default(),
                 wall_s: WallTimes::default(),

@@ -15,6 +15,9 @@ pub struct Sensitivity {
     pub value: f64,
     /// Derivatives of the quantities, each per unit of the number; by the names and keys of the quantities themselves.
     pub quantities: BTreeMap<String, Quantity>,
+    /// Of what is recorded at probes, likewise.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub probes: BTreeMap<String, Quantity>,
 }
 
 /// Derivatives of the figures of one number: of a largest value, its own at the instant when it is reached.
@@ -95,6 +98,8 @@ pub struct Figures {
     window_start: f64,
     turbines: bool,
     tracks: BTreeMap<Interest, Track>,
+    /// Of what is recorded at probes, in its order.
+    probes: Vec<Track>,
     /// Of all that is spent, `H + D - P` ([`crate::run::energies`]): followed for the efficiency.
     spent: Track,
 }
@@ -106,6 +111,7 @@ impl Figures {
             window_start,
             turbines,
             tracks: BTreeMap::new(),
+            probes: vec![],
             spent: Track::default(),
         }
     }
@@ -138,6 +144,20 @@ impl Figures {
             let spent = Observable::grouped(Group::Added).fold(spent, |sum, of| add(sum, -1.0, of));
             self.spent.take(t, spent, in_window);
         }
+    }
+
+    /// Takes values at probes with their derivatives at the same instant.
+    pub fn take_probes(&mut self, t: f64, all: impl ExactSizeIterator<Item = [f64; 2]>) {
+        self.probes.resize(all.len(), Track::default());
+        for (track, now) in self.probes.iter_mut().zip(all) {
+            track.take(t, now, t >= self.window_start);
+        }
+    }
+
+    /// Derivatives at probes by their names, per unit of the number.
+    pub fn at_probes(&self, names: &[String]) -> BTreeMap<String, Quantity> {
+        let all = names.iter().cloned().zip(&self.probes);
+        all.map(|(name, track)| (name, track.sizes())).collect()
     }
 
     /// The derivatives by quantity, per unit of the number.

@@ -10,6 +10,7 @@ use super::kept::Kept;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, PerturbedSystems};
+use crate::discrete::quantities::probes::{self, ProbeColumn};
 use crate::discrete::quantities::{Extremes, Look, Observable, Read, Row};
 use crate::discrete::{ledger, start};
 use crate::error::{At, Code, Error, Result, SolverError};
@@ -27,6 +28,8 @@ pub struct Forward<'a> {
     stops: Vec<[Vec<Stop>; 4]>,
     /// The quantities of the history that are differentiated.
     columns: Vec<Observable>,
+    /// Those at probes.
+    probes: Vec<ProbeColumn>,
     s: Vec<Vec<f64>>,
     sp: Vec<Vec<f64>>,
     /// Derivatives of the integrals up to the last restart.
@@ -87,6 +90,7 @@ impl<'a> Forward<'a> {
             cases: all_cases,
             stops: all_stops,
             columns,
+            probes: probes::columns(dae.system()).collect(),
             s: vec![vec![0.0; dae.len()]; count],
             sp: vec![vec![0.0; dae.len()]; count],
             carried: vec![vec![0.0; dae.integrals()]; count],
@@ -99,8 +103,10 @@ impl<'a> Forward<'a> {
     /// Names of the columns that are recorded, units included; a derivative is per unit of the number that its pointer names.
     pub fn names(&self) -> Vec<String> {
         let of = |parameter: &Parameter| -> Vec<String> {
-            let name = |one: &Observable| format!("d {}/d {} [{} per unit]", one.name(), parameter.pointer, one.unit());
-            self.columns.iter().map(name).collect()
+            let name = |(name, unit)| format!("d {name}/d {} [{unit} per unit]", parameter.pointer);
+            let own = self.columns.iter().map(|one| (one.name(), one.unit()));
+            let probed = self.probes.iter().map(|one| (one.name.as_str(), one.unit));
+            own.chain(probed).map(name).collect()
         };
         let names = self.parameters.iter().flat_map(of);
         std::iter::once("t [s]".to_owned()).chain(names).collect()
@@ -313,7 +319,7 @@ impl<'a> Forward<'a> {
         let reads: Vec<fn(&Look) -> f64> = reads.collect();
         self.row.clear();
         self.row.push(t);
-        let mut slopes = vec![0.0; reads.len()];
+        let mut slopes = vec![0.0; reads.len() + self.probes.len()];
         for (k, (parameter, integrals)) in self.parameters.iter().zip(&integrals).enumerate() {
             dae.read_slope(
                 k,
@@ -331,7 +337,10 @@ impl<'a> Forward<'a> {
                         stored,
                         at,
                     };
-                    out.iter_mut().zip(&reads).for_each(|(out, read)| *out = read(&look));
+                    let (own, probed) = out.split_at_mut(reads.len());
+                    own.iter_mut().zip(&reads).for_each(|(out, read)| *out = read(&look));
+                    let values = probes::values(&look);
+                    probed.iter_mut().zip(values).for_each(|(out, value)| *out = value);
                 },
             );
             let mut slopes = slopes.iter().copied();
@@ -342,7 +351,10 @@ impl<'a> Forward<'a> {
             let first = self.row.len();
             let derivatives = self.columns.iter().map(of).map(|slope| slope / parameter.value);
             self.row.extend(derivatives);
+            self.row.extend(slopes.map(|slope| slope / parameter.value));
             let (columns, derivatives) = (&self.columns, &self.row[first..]);
+            let probed = derivatives[columns.len()..].iter().zip(row.at_probes());
+            self.figures[k].take_probes(t, probed.map(|(slope, value)| [*value, *slope]));
             self.figures[k].take(t, |which| {
                 let i = columns.iter().position(|one| *one == which)?;
                 Some([row.get(which)?, derivatives[i]])
@@ -353,10 +365,12 @@ impl<'a> Forward<'a> {
 
     /// What the summary says.
     pub fn summary(&self) -> BTreeMap<String, Sensitivity> {
+        let names: Vec<String> = self.probes.iter().map(ProbeColumn::key).collect();
         let of = |(parameter, figures): (&Parameter, &Figures)| {
             let sensitivity = Sensitivity {
                 value: parameter.value,
                 quantities: figures.quantities(),
+                probes: figures.at_probes(&names),
             };
             (parameter.pointer.clone(), sensitivity)
         };

@@ -1,0 +1,79 @@
+//! One number over a run: its last and largest value, and what happens to it in the window at the end.
+
+use serde::{Deserialize, Serialize};
+
+use super::summary::Quantity;
+
+/// Excess over the largest value seen for which the state at a turning point between two steps is looked at; below it the cubic
+/// through values and rates at the step's ends is as good.
+const WORTH: f64 = 1e-3;
+
+/// Largest and last value of one number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Track {
+    last: f64,
+    max_abs: f64,
+    /// When that was first reached [s].
+    max_abs_at: f64,
+    window_max_abs: f64,
+    window_start: Option<f64>,
+    /// Integral of the square over the window, as far as it has been followed.
+    window_squares: f64,
+}
+
+impl Track {
+    /// Takes the value at an output time, or at an end of the window.
+    pub fn take(&mut self, value: f64, in_window: bool) {
+        self.last = value;
+        if in_window {
+            self.window_start.get_or_insert(value);
+        }
+    }
+
+    /// Takes the size of a value at any time [s].
+    pub fn see(&mut self, size: f64, t: f64, in_window: bool) {
+        if size > self.max_abs {
+            (self.max_abs, self.max_abs_at) = (size, t);
+        }
+        if in_window {
+            self.window_max_abs = self.window_max_abs.max(size);
+        }
+    }
+
+    /// Adds to the integral of the square over the window.
+    pub fn square(&mut self, integral: f64) {
+        self.window_squares += integral;
+    }
+
+    /// What was taken last.
+    pub fn last(&self) -> f64 {
+        self.last
+    }
+
+    /// Change over the window.
+    pub fn increment(&self) -> f64 {
+        self.last - self.window_start.unwrap_or(self.last)
+    }
+
+    /// Whether the window has begun.
+    pub fn in_window(&self) -> bool {
+        self.window_start.is_some()
+    }
+
+    /// Whether a size between two steps is worth a look.
+    pub fn worth(&self, size: f64, in_window: bool) -> bool {
+        size > (1.0 + WORTH) * self.max_abs || in_window && size > (1.0 + WORTH) * self.window_max_abs
+    }
+
+    /// What is told of a value that swings: `reached` when the run has come to its window, which it has followed for so long [s].
+    pub fn swing(&self, reached: bool, window_time: f64) -> Quantity {
+        Quantity {
+            last: Some(self.last),
+            max_abs: Some(self.max_abs),
+            max_abs_at_s: (self.max_abs > 0.0).then_some(self.max_abs_at),
+            window_max_abs: reached.then_some(self.window_max_abs),
+            window_rms: (window_time > 0.0).then(|| (self.window_squares / window_time).sqrt()),
+            ..Quantity::default()
+        }
+    }
+}
