@@ -69,7 +69,7 @@ fn the_full_model_has_what_is_possible() {
             "tubes": [{"from": {"bladder": 1, "end": "outlet"}, "to": {"junction": "tee"}},
                       {"from": {"bladder": -1, "end": "inlet"}, "to": {"junction": "tee"}}]}"#,
     );
-    for text in [gas, fed] {
+    for (text, losses) in [(gas, "off"), (fed, "on")] {
         let found = ablated(&text, 60.0);
         let whole = found
             .full
@@ -77,6 +77,8 @@ fn the_full_model_has_what_is_possible() {
             .as_ref()
             .unwrap_or_else(|| panic!("{:?}", found.full));
         assert_eq!(whole.effects["tube_inertia"].value, "off");
+        // what a port feeds is lost in tubes as it is anywhere
+        assert_eq!(whole.effects["tube_losses"].value, losses);
         assert!(row(&found, Effect::MomentToArea).left_out.is_some());
     }
     let without = without(

@@ -9,6 +9,7 @@ mod scene;
 use differences::worst_difference;
 use scene::{finished, parse};
 use serde_json::{Value, json};
+use slcbeam::case::schema::Effect;
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
 use slcbeam::run::modes::{self, Plan};
@@ -213,4 +214,31 @@ fn sealed_gas_softens_a_beam_by_its_compliance() {
     assert!((air / soft - 1.0).abs() < 1e-9, "{air} {soft}");
     let hard = frequency(json!({"density_kg_m3": 1.2, "viscosity_pa_s": AIR}), SOFT);
     assert!(hard / air > 1.001, "{hard} {air}");
+}
+
+/// Goal: a liquid that yields a little does not take away the inertia of its flow in tubes: that of water, whose bulk modulus is given, stays in
+/// `auto`, in the full model, and where it is asked for; compression that is asked for, and gas, stay.
+#[test]
+fn a_bulk_modulus_leaves_inertia_in_tubes_alone() {
+    let water = |modulus: f64| json!({"density_kg_m3": 1000, "viscosity_pa_s": 1e-3, "bulk_modulus_pa": modulus});
+    let has = |fluid: Value, effects: Value| {
+        let system = System::new(&parse(&actuator(fluid, json!({"effects": effects})))).unwrap();
+        [Effect::Compressibility, Effect::TubeInertia, Effect::TubeLosses]
+            .map(|effect| system.model.effects.has(effect))
+    };
+    for effects in [json!("auto"), json!("full"), json!({"tube_losses": "on"})] {
+        assert_eq!(has(water(2.2e9), effects.clone())[..2], [false, true], "{effects}");
+    }
+    assert_eq!(
+        has(water(2.2e9), json!({"compressibility": "on"})),
+        [true, false, false]
+    );
+    assert_eq!(has(gas(1.0), json!("full")), [true, false, false]);
+}
+
+/// Goal: fluid without mass has neither inertia nor losses in tubes, and runs.
+#[test]
+fn massless_fluid_flows() {
+    let fluid = json!({"density_kg_m3": 0, "viscosity_pa_s": 1e-3});
+    finished(&actuator(fluid, json!({"effects": "auto"})));
 }

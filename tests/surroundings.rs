@@ -184,3 +184,36 @@ fn unknowns_and_their_jacobian() {
         }
     }
 }
+
+/// Source: a change of frame: a fin as heavy as the water it displaces, heaved by X(t) in still water, moves against its root as one that is held
+/// in water that swings by -X(t). Goal: so to 1e-6, with drag and added mass; without drag it moves too.
+#[test]
+fn water_that_swings_moves_a_fin_as_its_heaved_root_does() {
+    let (a, f) = (3e-3, 2.0);
+    let omega = std::f64::consts::TAU * f;
+    let heave =
+        json!({"sum": [a, {"sine": {"amplitude": -a, "frequency_hz": f, "phase_rad": std::f64::consts::FRAC_PI_2}}]});
+    let swing = json!({"sine": {"amplitude": -a * omega, "frequency_hz": f}});
+    for drag in [2.0, 0.0] {
+        let water = json!({"density_kg_m3": 1100, "drag_coefficient": drag});
+        let mut swinging = water.clone();
+        swinging["stream_x_m_s"] = swing.clone();
+        let heaved = json!({"root": {"clamped": {"u1_m": heave}}, "tip": "free"});
+        let tip = |sets: Value| {
+            let memory = finished(&strip(sets)).0;
+            (memory.column("t").unwrap(), memory.column("tip_u1").unwrap())
+        };
+        let (times, moved) = tip(json!({"surroundings": water, "ends": heaved}));
+        let (_, swung) = tip(json!({"surroundings": swinging}));
+        let size = swung.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        assert!(size > 1e-4, "{size:e}");
+        for ((t, moved), swung) in times.iter().zip(&moved).zip(&swung) {
+            let root = a * (1.0 - (omega * t).cos());
+            assert!(
+                (moved - root - swung).abs() < 1e-6 * size,
+                "t = {t}: {} {swung}",
+                moved - root
+            );
+        }
+    }
+}

@@ -122,6 +122,8 @@ pub struct TimeData {
     pub point_force: Vec<Planar<f64>>,
     /// Velocity of the stream around the beam [m/s].
     pub stream: Planar<f64>,
+    /// Its rate [m/s^2].
+    pub stream_rate: Planar<f64>,
     /// Normal forces that follow from loads alone; nothing where the beam can stretch.
     pub statics: Statics,
     /// Conductance of each link [m^3/(s Pa)].
@@ -156,6 +158,7 @@ impl TimeData {
             rest_curvature: [(); 2].map(|()| vec![0.0; if curved { system.mesh.nodes } else { 0 }]),
             point_force: vec![Planar::default(); system.model.attachments.len()],
             stream: Planar::default(),
+            stream_rate: Planar::default(),
             statics: Statics::new(system),
             conductance: vec![0.0; links],
             resistance: vec![0.0; links],
@@ -221,7 +224,9 @@ impl TimeData {
             .as_ref()
             .and_then(|around| around.stream.as_ref());
         if let Some([x, z]) = stream {
-            self.stream = Planar::new(x.jet(clock).value, z.jet(clock).value);
+            let [x, z] = [x, z].map(|signal| signal.jet(clock));
+            self.stream = Planar::new(x.value, z.value);
+            self.stream_rate = Planar::new(x.rate, z.rate);
         }
         self.statics.update(system, self.frame(1), clock);
         self.network(system, clock, first);

@@ -87,6 +87,7 @@ codes! {
     BeyondRange = "W023", "States beyond what the model describes.";
     FastGas = "W024", "Gas that flows nearly as fast as sound.";
     LostModes = "W025", "Modes that were not found again.";
+    PartOfStream = "W026", "A stream of which the model has a part.";
 }
 
 impl Code {

@@ -7,6 +7,7 @@ use crate::case::inherited;
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
 use crate::error::{Code, Violation};
+use crate::functions::Signal;
 
 /// One audited number.
 #[derive(Clone, Debug, PartialEq)]
@@ -276,6 +277,7 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         let what = "oscillating flow in the tubes is not creeping; their inertia is left out";
         all.extend(over(numbers, Code::FastFlow, "womersley", 1.0, what));
     }
+    all.extend(stream(model));
     if let Some(&f) = numbers.get("forcing_frequency_hz") {
         let outputs = 1.0 / (f * case.time.output_interval());
         if outputs < OUTPUTS_A_PERIOD {
@@ -300,6 +302,28 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         all.push(Code::Stocky.warning(format!(
             "range of the model: length over height is {slender:.2}; a rod model wants 5 or more"
         )));
+    }
+    all
+}
+
+/// Warnings of a stream of which the model has a part.
+fn stream(model: &Model) -> Vec<String> {
+    let Some((around, [across, along])) = (model.surroundings.as_ref()).and_then(|s| Some((s, s.stream.as_ref()?)))
+    else {
+        return vec![];
+    };
+    let flows = |signal: &Signal| !(signal.is_constant() && signal.value(0.0) == 0.0);
+    let mut all = vec![];
+    if flows(along) && around.added_mass > 0.0 && model.effects.has(Effect::SolidInertia) {
+        all.push(Code::PartOfStream.warning(
+            "a stream along the beam: what the flow carries along it is left out, half of the force that moves with the beam at first order; \
+             growth, flutter and damping by the stream are not to be judged by this model",
+        ));
+    }
+    if around.drag == 0.0 && flows(across) {
+        all.push(Code::PartOfStream.warning(
+            "a stream across the beam without drag (/surroundings/drag_coefficient is 0): nothing but its acceleration acts on the beam",
+        ));
     }
     all
 }

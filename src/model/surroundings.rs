@@ -12,6 +12,8 @@ pub struct Surroundings {
     pub drag: f64,
     /// `m_a = C_a π ρ w²/4` of its inertia across [kg/m].
     pub added_mass: f64,
+    /// Mass of the fluid that the beam displaces, per length [kg/m].
+    pub displaced: f64,
     /// Velocity in x and z, where it streams [m/s].
     pub stream: Option<[Signal; 2]>,
 }
@@ -29,6 +31,7 @@ impl Surroundings {
         Self {
             drag: 0.5 * written.drag_coefficient * density * width,
             added_mass: 0.25 * PI * written.added_mass_coefficient * density * width * width,
+            displaced: displaced(Some(written), beam),
             stream: streams.then(|| [given(&written.stream_x_m_s), given(&written.stream_z_m_s)]),
         }
     }

@@ -82,7 +82,7 @@ fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
         all.extend(forces.map(|(key, signal)| (format!("/attachments/{i}/{key}"), Role::Other, signal)));
     }
     for (key, signal) in case.surroundings.iter().flat_map(|around| around.stream()) {
-        all.push((format!("/surroundings/{key}"), Role::Other, signal));
+        all.push((format!("/surroundings/{key}"), Role::Motion, signal));
     }
     let Some(network) = &case.network else {
         return all;
@@ -217,7 +217,11 @@ fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Vio
         if let Some(before) = last
             && (first - before).abs() > 1e-9 * (first.abs() + before.abs())
         {
-            let what = format!("the motion jumps from {before} to {first} at {start} s: infinite velocity");
+            let (moves, infinite) = match pointer.starts_with("/surroundings") {
+                true => ("stream", "force"),
+                false => ("motion", "velocity"),
+            };
+            let what = format!("the {moves} jumps from {before} to {first} at {start} s: infinite {infinite}");
             faults.push(
                 Violation::new(Code::Function, pointer, what).hint("use a ramp with a duration and a smooth shape"),
             );

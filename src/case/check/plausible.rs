@@ -29,6 +29,7 @@ const RADIUS: Range = Range::new(1e-9, 0.5, "m", MILLIMETRES);
 const MODULUS: Range = Range::new(1e2, 1e13, "Pa", "moduli are in Pa; is this in MPa or GPa?");
 const SOLID_DENSITY: Range = Range::new(0.1, 3e4, "kg/m^3", "is this in g/cm^3?");
 const FLUID_DENSITY: Range = Range::new(0.0, 3e4, "kg/m^3", "densities are in kg/m^3");
+const BULK_MODULUS: Range = Range::new(1e4, 1e12, "Pa", "moduli are in Pa; water has 2.2e9");
 const VISCOSITY: Range = Range::new(1e-7, 1e5, "Pa s", "is this in mPa s? water has 1e-3 Pa s");
 const PERMEABILITY: Range = Range::new(1e-36, 10.0, "m^4", "a circle has pi r^4/8, r in metres");
 const SOFTNESS: Range = Range::new(
@@ -79,6 +80,11 @@ pub(super) fn sizes(case: &Case, faults: &mut Violations) {
     look("/time/end_s", case.time.end_s, &DURATION);
     if let Some(fluid) = &case.fluid {
         look("/fluid/density_kg_m3", fluid.density_kg_m3, &FLUID_DENSITY);
+        look(
+            "/fluid/bulk_modulus_pa",
+            fluid.bulk_modulus_pa.unwrap_or(BULK_MODULUS.high),
+            &BULK_MODULUS,
+        );
         look("/fluid/viscosity_pa_s", fluid.viscosity_pa_s, &VISCOSITY);
     }
     if let Some(bladders) = &case.bladders {

@@ -173,6 +173,11 @@ impl Effect {
         matches!(self, Self::TubeInertia | Self::UnsteadyFriction | Self::TubeLosses)
     }
 
+    /// Whether it takes flow in tubes as what is accelerated.
+    pub const fn of_inertial_tubes(self) -> bool {
+        matches!(self, Self::TubeInertia | Self::UnsteadyFriction)
+    }
+
     /// Their names, so joined.
     pub fn names(effects: &[Self], separator: &str) -> String {
         let names: Vec<&str> = effects.iter().map(|effect| effect.name()).collect();

@@ -45,6 +45,9 @@ pub fn forces<T: Scalar>(
         let account = streams.then_some(EnergyRate::Loads);
         each(account, inertia(system, now, w, node) * (-length * around.added_mass));
     }
+    if streams && system.layout.inertia {
+        each(Some(EnergyRate::Loads), swept(system, now, w, node) * length);
+    }
 }
 
 /// `[E47]` Drag of what the beam moves through, per length, on the velocity across it (Morison et al. 1950), linear and the same in all
@@ -77,8 +80,8 @@ fn quadratic_drag<T: Scalar>(
 /// b = -m_a (d/dt (v·e_n)) e_n        d/dt (v·e_n) = v_t·e_n + v·e_n,t
 /// ```
 ///
-/// v against a steady stream. Its power is -d/dt (m_a v_n²/2). It is Lighthill's reactive force (1971) on a slender body whose
-/// changes along itself are slow: what the flow carries along the beam is left out, and so is the acceleration of a stream.
+/// v against the stream, whose own acceleration is [`swept`]. Its power in still fluid is -d/dt (m_a v_n²/2). It is Lighthill's reactive
+/// force (1971) on a slender body without what the flow carries along it: in a stream along the beam half of the force at first order.
 fn inertia<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
     let tangent = node_tangent(system, w, node);
     let normal = tangent.normal();
@@ -91,6 +94,21 @@ fn inertia<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: u
         speeding
     };
     normal.times(across)
+}
+
+/// Force of a stream that speeds up, per length, on what it flows around: that which its pressure has on the displaced fluid in its place,
+/// and the added mass (Froude and Krylov; Morison et al. 1950):
+///
+/// ```text
+/// b = ρ h_s w_s U_t + m_a (U_t·e_n) e_n
+/// ```
+fn swept<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
+    let Some(around) = &system.model.surroundings else {
+        return Planar::zero();
+    };
+    let normal = node_tangent(system, w, node).normal();
+    let speeding = Planar::constant(now.stream_rate);
+    normal.times(speeding.dot(normal) * around.added_mass) + speeding * around.displaced
 }
 
 /// `m_a (v·e_n)²/2` per length: energy of the fluid that moves across with a node.

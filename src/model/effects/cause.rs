@@ -22,6 +22,10 @@ pub enum Cause {
     Compressed,
     /// A port's flow enters a junction where only tubes meet, whose inertia does not let it.
     FedJunction,
+    /// Inertia and losses of flow in tubes stand against it, and matter more.
+    Yields,
+    /// The fluid has no mass.
+    Massless,
     /// The case gives it, or not.
     Given(bool),
     /// The case gives bladders and fluid, or not.
@@ -154,6 +158,10 @@ impl Display for Cause {
             Self::Unasked => {
                 f.write_str("flow in tubes creeps in the published form, unless this is asked for by name")
             }
+            Self::Yields => f.write_str(
+                "left out for inertia and losses of flow in tubes, which are not simulated with it and matter more",
+            ),
+            Self::Massless => f.write_str("the fluid has no mass"),
             Self::FedJunction => f.write_str("left out: the flow of a port enters a junction where only tubes meet"),
             Self::Given(true) => f.write_str("given"),
             Self::Given(false) => f.write_str("not given"),

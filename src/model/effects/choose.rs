@@ -94,7 +94,8 @@ impl<'a> Chooser<'a> {
                 }
             },
             Choice::Auto if effect.by_name(self.case.formulation) => (false, Cause::Unasked),
-            Choice::Auto if effect.of_tubes() && self.network.is_some_and(|n| n.fed_junction().is_some()) => {
+            Choice::Auto if effect == Effect::Compressibility && self.yields() => (false, Cause::Yields),
+            Choice::Auto if effect.of_inertial_tubes() && self.network.is_some_and(|n| n.fed_junction().is_some()) => {
                 (false, Cause::FedJunction)
             }
             Choice::Auto => match self.scene {
@@ -123,9 +124,36 @@ impl<'a> Chooser<'a> {
             {
                 Err(Cause::Compressed)
             }
+            _ if effect.of_tubes() && self.fluid().is_some_and(|fluid| fluid.density_kg_m3 == 0.0) => {
+                Err(Cause::Massless)
+            }
             Effect::Fluid if self.case.fluid.is_none() || bladders.is_none() => Err(Cause::Filled(false)),
             Effect::Asymmetry if bladders.is_some_and(|b| b.coupling == Coupling::Reciprocal) => Err(Cause::NoKinks),
             _ => Ok(()),
+        }
+    }
+
+    /// Whether compression of a liquid is left out for inertia and losses of flow in tubes, with which it is not simulated: where these
+    /// are asked for, where they are larger by the scene's numbers, and in the full model where the liquid holds no gas.
+    fn yields(&self) -> bool {
+        let of_tubes = [Effect::TubeInertia, Effect::UnsteadyFriction, Effect::TubeLosses];
+        let Some(liquid) = self.fluid().filter(|fluid| fluid.kind == FluidKind::Liquid) else {
+            return false;
+        };
+        if of_tubes.iter().any(|effect| self.choices.of(*effect) == Choice::On) {
+            return true;
+        }
+        let unasked = Effect::TubeInertia.by_name(self.case.formulation);
+        let left_out = of_tubes.iter().all(|effect| self.choices.of(*effect) == Choice::Off);
+        if unasked || left_out || self.network.is_none_or(|network| network.tubes == 0) || liquid.density_kg_m3 == 0.0 {
+            return false;
+        }
+        match self.scene {
+            None => liquid.gas() == 0.0,
+            Some(scene) => {
+                let tubes = scene.tubes(self.tolerance);
+                tubes.inertia.max(tubes.losses) > scene.compression_of_fluid()
+            }
         }
     }
 
