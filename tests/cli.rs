@@ -112,7 +112,7 @@ fn a_run_fills_a_result_folder() {
     for quantity in ["tip_u1_m", "tip_u3_m", "max_pressure_pa"] {
         assert_eq!(
             keys(&summary["quantities"][quantity]),
-            ["final", "max_abs", "window_max_abs", "window_rms"],
+            ["final", "max_abs", "max_abs_at_s", "window_max_abs", "window_rms"],
             "{quantity}"
         );
     }
