@@ -5,10 +5,13 @@ mod balances;
 #[path = "common/chance.rs"]
 mod chance;
 mod differences;
+#[path = "common/kinematics.rs"]
+mod kinematics;
 #[path = "common/scene.rs"]
 mod scene;
 
 use balances::close;
+use kinematics::reduced;
 use scene::{finished, parse};
 use serde_json::{Value, json};
 use slcbeam::dae::{BeamDae, Dae};
@@ -125,22 +128,8 @@ fn balances_close_in_water() {
     let stream = json!({"density_kg_m3": 1000, "drag_coefficient": 2.0, "stream_x_m_s": {"sine": {"amplitude": 0.3, "frequency_hz": 5}},
                         "stream_z_m_s": 0.4});
     let thrown = json!({"u1_rate_m_s": {"polynomial": {"coefficients": [0.2, 0.5, -1.0]}}});
-    let cases = [
-        ("driven", json!({"ends": driven})),
-        ("published", json!({"ends": driven, "formulation": "published"})),
-        ("small", json!({"ends": driven, "effects": {"finite_rotation": "off"}})),
-        (
-            "linear",
-            json!({"ends": driven, "effects": {"finite_rotation": "off", "axial_force_on_bending": "off"}}),
-        ),
-        (
-            "inextensible",
-            json!({"ends": driven, "effects": {"finite_rotation": "off", "axial_stretch": "off"}}),
-        ),
-        (
-            "small, frame",
-            json!({"ends": driven, "effects": {"finite_rotation": "off", "axial_inertia": "off"}}),
-        ),
+    let mut cases = reduced(&driven);
+    cases.extend([
         ("stream", json!({"ends": driven, "surroundings": stream})),
         ("kicked", json!({"ends": kicked})),
         ("kicked in a stream", json!({"ends": kicked, "surroundings": stream})),
@@ -152,7 +141,7 @@ fn balances_close_in_water() {
             "at rest",
             json!({"surroundings": stream, "effects": {"solid_inertia": "off"}}),
         ),
-    ];
+    ]);
     for (what, sets) in cases {
         let mut case = strip(sets);
         case["loads"] = json!([{"gravity": {"x_m_s2": 3.0, "z_m_s2": -9.81}}]);

@@ -169,6 +169,16 @@ impl TimeData {
         }
     }
 
+    /// What is given at a node, where that is an end.
+    #[inline]
+    pub fn end(&self, node: usize) -> Option<&EndData> {
+        match node {
+            0 => Some(&self.ends[0]),
+            _ if node + 1 == self.force.len() => Some(&self.ends[1]),
+            _ => None,
+        }
+    }
+
     /// Curvature of the beam at rest at a node [1/m].
     #[inline]
     pub fn rest_curvature(&self, node: usize) -> f64 {

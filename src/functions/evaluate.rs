@@ -97,6 +97,11 @@ impl Signal {
         }
     }
 
+    /// Nothing at all times.
+    pub fn is_zero(&self) -> bool {
+        self.is_constant() && self.value(0.0) == 0.0
+    }
+
     /// Never changes.
     pub fn is_constant(&self) -> bool {
         match self {

@@ -7,7 +7,6 @@ use crate::case::inherited;
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
 use crate::error::{Code, Violation};
-use crate::functions::Signal;
 
 /// One audited number.
 #[derive(Clone, Debug, PartialEq)]
@@ -312,15 +311,14 @@ fn stream(model: &Model) -> Vec<String> {
     else {
         return vec![];
     };
-    let flows = |signal: &Signal| !(signal.is_constant() && signal.value(0.0) == 0.0);
     let mut all = vec![];
-    if flows(along) && around.added_mass > 0.0 && model.effects.has(Effect::SolidInertia) {
+    if !along.is_zero() && around.added_mass > 0.0 && model.effects.has(Effect::SolidInertia) {
         all.push(Code::PartOfStream.warning(
             "a stream along the beam: what the flow carries along it is left out, half of the force that moves with the beam at first order; \
              growth, flutter and damping by the stream are not to be judged by this model",
         ));
     }
-    if around.drag == 0.0 && flows(across) {
+    if around.drag == 0.0 && !across.is_zero() {
         all.push(Code::PartOfStream.warning(
             "a stream across the beam without drag (/surroundings/drag_coefficient is 0): nothing but its acceleration acts on the beam",
         ));

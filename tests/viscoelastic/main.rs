@@ -7,12 +7,15 @@ mod branches;
 mod chance;
 #[path = "../differences/mod.rs"]
 mod differences;
+#[path = "../common/kinematics.rs"]
+mod kinematics;
 mod modes;
 #[path = "../common/scene.rs"]
 mod scene;
 
 use balances::close;
 use differences::worst_difference;
+use kinematics::reduced;
 use scene::{finished, parse};
 use serde_json::{Value, json};
 use slcbeam::dae::{BeamDae, Dae};
@@ -151,22 +154,8 @@ fn balances_close() {
         "tip": {"free": {"force_z_n": 0.01, "moment_n_m": {"sine": {"amplitude": 2e-4, "frequency_hz": 3}}}}});
     let held = json!({"root": {"clamped": {"slope_rad": {"ramp": {"to": 0.3, "start_s": 0.2, "duration_s": 0.01}}}}, "tip": "clamped"});
     let thrown = json!({"u1_rate_m_s": {"polynomial": {"coefficients": [0.2, 0.5, -1.0]}}});
-    let cases = [
-        ("driven", json!({"ends": driven})),
-        ("published", json!({"ends": driven, "formulation": "published"})),
-        ("small", json!({"ends": driven, "effects": {"finite_rotation": "off"}})),
-        (
-            "linear",
-            json!({"ends": driven, "effects": {"finite_rotation": "off", "axial_force_on_bending": "off"}}),
-        ),
-        (
-            "inextensible",
-            json!({"ends": driven, "effects": {"finite_rotation": "off", "axial_stretch": "off"}}),
-        ),
-        (
-            "frame",
-            json!({"ends": driven, "effects": {"finite_rotation": "off", "axial_inertia": "off"}}),
-        ),
+    let mut cases = reduced(&driven);
+    cases.extend([
         (
             "bar",
             json!({"ends": {"root": "clamped", "tip": {"free": {"force_z_n": {"sine": {"amplitude": 1, "frequency_hz": 9}}}}},
@@ -178,7 +167,7 @@ fn balances_close() {
             "thrown",
             json!({"ends": {"root": "free", "tip": "free"}, "start": thrown}),
         ),
-    ];
+    ]);
     for (what, sets) in cases {
         let (_, summary) = finished(&strip(prony(&BRANCHES), sets));
         close(what, &summary, 1e-6);

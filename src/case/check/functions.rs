@@ -18,8 +18,20 @@ const STEEPEST: f64 = 1e8;
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Role {
     Motion,
+    Stream,
     Opening,
     Other,
+}
+
+impl Role {
+    /// What must not jump, and what is infinite where it does.
+    fn of_jumps(self) -> Option<[&'static str; 2]> {
+        match self {
+            Self::Motion => Some(["motion", "velocity"]),
+            Self::Stream => Some(["stream", "force"]),
+            Self::Opening | Self::Other => None,
+        }
+    }
 }
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
@@ -82,7 +94,7 @@ fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
         all.extend(forces.map(|(key, signal)| (format!("/attachments/{i}/{key}"), Role::Other, signal)));
     }
     for (key, signal) in case.surroundings.iter().flat_map(|around| around.stream()) {
-        all.push((format!("/surroundings/{key}"), Role::Motion, signal));
+        all.push((format!("/surroundings/{key}"), Role::Stream, signal));
     }
     let Some(network) = &case.network else {
         return all;
@@ -203,31 +215,13 @@ fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mu
 /// A signal over the run: no jumps where something moves, finite everywhere, openings within their range. By bounds, so that no
 /// pulse passes between two looks.
 fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Violations) {
-    let mut last: Option<f64> = None;
-    for (start, stop) in signal
-        .smooth_intervals(end)
-        .into_iter()
-        .filter(|_| role == Role::Motion)
+    if let Some([moves, infinite]) = role.of_jumps()
+        && let Some([t, before, after]) = jump(signal, end)
     {
-        let at = |t: f64| {
-            let within = 0.5 * (start + stop);
-            signal.jet(Clock { t, within }).value
-        };
-        let first = at(start);
-        if let Some(before) = last
-            && (first - before).abs() > 1e-9 * (first.abs() + before.abs())
-        {
-            let (moves, infinite) = match pointer.starts_with("/surroundings") {
-                true => ("stream", "force"),
-                false => ("motion", "velocity"),
-            };
-            let what = format!("the {moves} jumps from {before} to {first} at {start} s: infinite {infinite}");
-            faults.push(
-                Violation::new(Code::Function, pointer, what).hint("use a ramp with a duration and a smooth shape"),
-            );
-            return;
-        }
-        last = Some(at(stop));
+        let what = format!("the {moves} jumps from {before} to {after} at {t} s: infinite {infinite}");
+        faults
+            .push(Violation::new(Code::Function, pointer, what).hint("use a ramp with a duration and a smooth shape"));
+        return;
     }
     if let Some(t) = signal.overflows(end) {
         faults.push(Violation::new(
@@ -241,4 +235,21 @@ fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Vio
         let what = format!("an opening of {} at {} s", excess.value, excess.t);
         faults.push(Violation::new(Code::Function, pointer, what).allowed("0 (closed) to 1 (open)"));
     }
+}
+
+/// When a signal first jumps [s], and its values on both sides.
+fn jump(signal: &Signal, end: f64) -> Option<[f64; 3]> {
+    let mut last: Option<f64> = None;
+    for (start, stop) in signal.smooth_intervals(end) {
+        let at = |t: f64| {
+            let within = 0.5 * (start + stop);
+            signal.jet(Clock { t, within }).value
+        };
+        let first = at(start);
+        if let Some(before) = last.filter(|before| (first - before).abs() > 1e-9 * (first.abs() + before.abs())) {
+            return Some([start, before, first]);
+        }
+        last = Some(at(stop));
+    }
+    None
 }

@@ -168,9 +168,12 @@ impl Effect {
         formulation == Formulation::Published && self.of_tubes()
     }
 
+    /// Those about flow in tubes that does not creep.
+    pub const OF_TUBES: [Self; 3] = [Self::TubeInertia, Self::UnsteadyFriction, Self::TubeLosses];
+
     /// Whether it is about flow in tubes that does not creep.
-    pub const fn of_tubes(self) -> bool {
-        matches!(self, Self::TubeInertia | Self::UnsteadyFriction | Self::TubeLosses)
+    pub fn of_tubes(self) -> bool {
+        Self::OF_TUBES.contains(&self)
     }
 
     /// Whether it takes flow in tubes as what is accelerated.

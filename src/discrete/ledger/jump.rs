@@ -71,11 +71,7 @@ pub fn strokes(
     let around = kick::taken_around(system, &jumps, w);
     let streams = system.model.surroundings.as_ref().is_some_and(|s| s.stream.is_some());
     for node in 0..=last {
-        let end = match node {
-            0 => Some(&after.ends[0]),
-            _ if node == last => Some(&after.ends[1]),
-            _ => None,
-        };
+        let end = after.end(node);
         let mean = |k: usize| 0.5 * (was[node][k] + is[node][k]);
         let stroke = |k: usize| (impulses[node][k], (impulses[node][k] + around[node][k]) * mean(k));
         let across = system.model.kinematics != Kinematics::Bar && end.is_some_and(|end| end.u[0].is_some());

@@ -79,11 +79,7 @@ fn bending(
     let last = mesh.nodes - 1;
     let length = mesh.node_length(i);
     let published = system.model.published();
-    let end = match i {
-        0 => Some(&now.ends[0]),
-        _ if i == last => Some(&now.ends[1]),
-        _ => None,
-    };
+    let end = now.end(i);
     let (stretch, stretch_rate) = if published {
         let (a, b) = (i.saturating_sub(1), i.min(last - 1));
         (

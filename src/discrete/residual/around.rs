@@ -4,7 +4,7 @@ use super::solid::angle_rate;
 use crate::case::schema::Effect;
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::Kinematics;
+use crate::model::{Kinematics, Surroundings};
 use crate::numerics::{Planar, Scalar};
 
 /// Forces of the surroundings on a node of so much length, each with the account of its work; none where it is stored.
@@ -46,7 +46,7 @@ pub fn forces<T: Scalar>(
         each(account, inertia(system, now, w, node) * (-length * around.added_mass));
     }
     if streams && system.layout.inertia {
-        each(Some(EnergyRate::Loads), swept(system, now, w, node) * length);
+        each(Some(EnergyRate::Loads), swept(system, around, now, w, node) * length);
     }
 }
 
@@ -102,10 +102,13 @@ fn inertia<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: u
 /// ```text
 /// b = ρ h_s w_s U_t + m_a (U_t·e_n) e_n
 /// ```
-fn swept<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
-    let Some(around) = &system.model.surroundings else {
-        return Planar::zero();
-    };
+fn swept<T: Scalar>(
+    system: &System,
+    around: &Surroundings,
+    now: &TimeData,
+    w: &Workspace<T>,
+    node: usize,
+) -> Planar<T> {
     let normal = node_tangent(system, w, node).normal();
     let speeding = Planar::constant(now.stream_rate);
     normal.times(speeding.dot(normal) * around.added_mass) + speeding * around.displaced

@@ -146,16 +146,9 @@ pub fn settle(system: &System, now: &TimeData, w: &Workspace<f64>, y: &mut [f64]
     }
     for (k, unknown) in own.curvature.clone().enumerate() {
         let node = k % system.mesh.nodes;
-        let end = match node {
-            0 => Some(&now.ends[0]),
-            _ if node == last => Some(&now.ends[1]),
-            _ => None,
-        };
+        let turns = now.end(node).is_some_and(|end| end.slope.is_none());
         let mut curvature = w.shape.kappa[node];
-        if let (Some(relaxing), Some(_)) = (
-            w.forces.relaxing_moment.get(node),
-            end.filter(|end| end.slope.is_none()),
-        ) {
+        if let Some(relaxing) = w.forces.relaxing_moment.get(node).filter(|_| turns) {
             let stretch = if system.model.published() {
                 node_stretch(w, node, last)
             } else {

@@ -130,11 +130,8 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
         if let Some(rest) = now.rest_curvature[0].get(i) {
             free_curvature += T::constant(*rest);
         }
-        let given = match i {
-            0 if now.ends[0].slope.is_none() => Some(now.ends[0].moment.value),
-            _ if i == last && now.ends[1].slope.is_none() => Some(now.ends[1].moment.value),
-            _ => None,
-        };
+        let turns = now.end(i).filter(|end| end.slope.is_none());
+        let given = turns.map(|end| end.moment.value);
         let stretch = if published {
             node_stretch(w, i, last)
         } else {

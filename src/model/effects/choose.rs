@@ -119,11 +119,7 @@ impl<'a> Chooser<'a> {
             Effect::Compressibility if self.fluid().is_none_or(|fluid| !fluid.is_compressible()) => {
                 Err(Cause::Given(false))
             }
-            Effect::TubeInertia | Effect::UnsteadyFriction | Effect::TubeLosses
-                if self.set.has(Effect::Compressibility) =>
-            {
-                Err(Cause::Compressed)
-            }
+            _ if effect.of_tubes() && self.set.has(Effect::Compressibility) => Err(Cause::Compressed),
             _ if effect.of_tubes() && self.fluid().is_some_and(|fluid| fluid.density_kg_m3 == 0.0) => {
                 Err(Cause::Massless)
             }
@@ -136,15 +132,19 @@ impl<'a> Chooser<'a> {
     /// Whether compression of a liquid is left out for inertia and losses of flow in tubes, with which it is not simulated: where these
     /// are asked for, where they are larger by the scene's numbers, and in the full model where the liquid holds no gas.
     fn yields(&self) -> bool {
-        let of_tubes = [Effect::TubeInertia, Effect::UnsteadyFriction, Effect::TubeLosses];
         let Some(liquid) = self.fluid().filter(|fluid| fluid.kind == FluidKind::Liquid) else {
             return false;
         };
-        if of_tubes.iter().any(|effect| self.choices.of(*effect) == Choice::On) {
+        if Effect::OF_TUBES
+            .iter()
+            .any(|effect| self.choices.of(*effect) == Choice::On)
+        {
             return true;
         }
         let unasked = Effect::TubeInertia.by_name(self.case.formulation);
-        let left_out = of_tubes.iter().all(|effect| self.choices.of(*effect) == Choice::Off);
+        let left_out = Effect::OF_TUBES
+            .iter()
+            .all(|effect| self.choices.of(*effect) == Choice::Off);
         if unasked || left_out || self.network.is_none_or(|network| network.tubes == 0) || liquid.density_kg_m3 == 0.0 {
             return false;
         }

@@ -3,7 +3,6 @@
 use crate::case::schema::{Attachment, Case, Formulation, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::profile::Profile;
-use crate::functions::signals::Signal;
 use crate::model::{LumpedNetwork, Network};
 
 /// Why an effect must stay, and what to do.
@@ -22,16 +21,12 @@ fn obstacle(what: impl Into<String>, hint: &str) -> Option<Obstacle> {
     })
 }
 
-fn zero(signal: &Signal) -> bool {
-    signal.is_constant() && signal.value(0.0) == 0.0
-}
-
 /// Nothing may move or load the beam across.
 pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
     const HINT: &str = "remove it, or leave transverse_motion on";
     let across = |load: &Load| match load {
         Load::ForceXNM(d) | Load::BodyXMS2(d) | Load::MomentXN(d) | Load::MomentZN(d) | Load::RestCurvature(d) => {
-            !zero(&d.signal)
+            !d.signal.is_zero()
         }
         Load::Gravity { x_m_s2, .. } => *x_m_s2 != 0.0,
         Load::ForceZNM(_) | Load::BodyZMS2(_) => false,
@@ -39,7 +34,7 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
     if let Some(k) = case.loads.iter().position(across) {
         return obstacle(format!("/loads/{k} acts across the beam"), HINT);
     }
-    let pushed = |a: &Attachment| a.force_x_n.as_ref().is_some_and(|signal| !zero(signal));
+    let pushed = |a: &Attachment| a.force_x_n.as_ref().is_some_and(|signal| !signal.is_zero());
     if let Some(k) = case.attachments.iter().position(pushed) {
         return obstacle(format!("/attachments/{k} pushes the beam across"), HINT);
     }
@@ -59,7 +54,7 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
         } = end.resolve();
         let (Translation::Displacement(moves) | Translation::Force(moves)) = &transverse;
         let (Rotation::Slope(turns) | Rotation::Moment(turns)) = &rotation;
-        if !zero(moves) || !zero(turns) || follower.is_some_and(|f| !zero(&f.shear)) {
+        if !moves.is_zero() || !turns.is_zero() || follower.is_some_and(|f| !f.shear.is_zero()) {
             return obstacle(format!("the {name} is moved, turned or loaded across the beam"), HINT);
         }
     }

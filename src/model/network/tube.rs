@@ -118,8 +118,7 @@ impl TubeFlow {
 
     /// What effects leave of it; nothing where flow creeps.
     pub(in crate::model) fn reduced(mut self, effects: &EffectSet) -> Option<Self> {
-        let [inertia, memory, losses] =
-            [Effect::TubeInertia, Effect::UnsteadyFriction, Effect::TubeLosses].map(|effect| effects.has(effect));
+        let [inertia, memory, losses] = Effect::OF_TUBES.map(|effect| effects.has(effect));
         if !memory {
             self.laminar = 0.0;
             self.inertance *= PARABOLIC;

@@ -42,6 +42,13 @@ pub struct Plan {
     pub limits: bool,
 }
 
+impl Plan {
+    /// `2πi near` [1/s].
+    fn target(&self) -> Complex<f64> {
+        Complex::new(0.0, std::f64::consts::TAU * self.near_hz)
+    }
+}
+
 /// The same mode with the fluid held or free.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
@@ -267,25 +274,17 @@ const BESIDE: f64 = 0.1;
 
 fn search(about: &Linearised, fluid: Fluid, plan: &Plan, tally: &mut Tally) -> Result<Vec<Mode>> {
     let (a, b) = about.with(fluid);
-    let near = std::f64::consts::TAU * plan.near_hz;
     match about.system().model.relaxation.is_empty() {
-        true => near_to(about, fluid, [&a, &b], plan, near, tally),
-        false => relaxing::search(about, fluid, [&a, &b], plan, near, tally),
+        true => near_to(about, fluid, [&a, &b], plan, tally),
+        false => relaxing::search(about, fluid, [&a, &b], plan, tally),
     }
 }
 
-/// Modes of entries A and B, so many as are planned, nearest to an angular frequency first.
-fn near_to(
-    about: &Linearised,
-    fluid: Fluid,
-    [a, b]: [&[f64]; 2],
-    plan: &Plan,
-    near: f64,
-    tally: &mut Tally,
-) -> Result<Vec<Mode>> {
+/// Modes of entries A and B, as planned.
+fn near_to(about: &Linearised, fluid: Fluid, [a, b]: [&[f64]; 2], plan: &Plan, tally: &mut Tally) -> Result<Vec<Mode>> {
     let pencil = Pencil { a, b, ..about.pencil() };
-    let target = Complex::new(0.0, near);
-    let shift = if near > 0.0 {
+    let target = plan.target();
+    let shift = if plan.near_hz > 0.0 {
         target
     } else {
         Complex::new(BESIDE * about.frequency(), 0.0)

@@ -23,7 +23,6 @@ pub fn search(
     fluid: Fluid,
     [a, b]: [&[f64]; 2],
     plan: &Plan,
-    near: f64,
     tally: &mut Tally,
 ) -> Result<Vec<Mode>> {
     let branches = &about.system().model.relaxation;
@@ -38,8 +37,12 @@ pub fn search(
             }
         }
     }
-    let softer = near / dynamic_modulus(branches, near)[0].sqrt();
-    let long_term = near_to(about, fluid, [a, &followed], plan, softer, tally)?;
+    let target = plan.target();
+    let softer = Plan {
+        near_hz: plan.near_hz / dynamic_modulus(branches, target.im)[0].sqrt(),
+        ..*plan
+    };
+    let long_term = near_to(about, fluid, [a, &followed], &softer, tally)?;
     let pencil = Pencil { a, b, ..about.pencil() };
     let mut modes: Vec<Mode> = vec![];
     for expected in long_term {
@@ -71,7 +74,6 @@ pub fn search(
             None => tally.lost += 1,
         }
     }
-    let target = Complex::new(0.0, near);
     modes.sort_by(|a, b| (a.s - target).norm().total_cmp(&(b.s - target).norm()));
     Ok(modes)
 }

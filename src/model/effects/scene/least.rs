@@ -66,12 +66,17 @@ impl Least {
     /// Draw-in and moment.
     fn across(scene: &Scene) -> [f64; 2] {
         let still = scene.ends.iter().all(|e| {
-            let across = matches!(&e.transverse, Translation::Displacement(s) if !zero(s));
-            let turned = matches!(&e.rotation, Rotation::Slope(s) if !zero(s));
+            let across = matches!(&e.transverse, Translation::Displacement(s) if !s.is_zero());
+            let turned = matches!(&e.rotation, Rotation::Slope(s) if !s.is_zero());
             !across && !turned && e.follower.is_none()
         });
         let couples = |kind| matches!(kind, LoadKind::MomentX | LoadKind::MomentZ);
-        if !still || scene.loads.iter().any(|load| couples(load.kind) && !zero(&load.signal)) {
+        if !still
+            || scene
+                .loads
+                .iter()
+                .any(|load| couples(load.kind) && !load.signal.is_zero())
+        {
             return [0.0; 2];
         }
         let Some(units) = bent(scene) else { return [0.0; 2] };
@@ -103,12 +108,12 @@ impl Least {
         let held: Vec<bool> = scene
             .ends
             .iter()
-            .map(|e| matches!(&e.axial, Translation::Displacement(s) if zero(s)))
+            .map(|e| matches!(&e.axial, Translation::Displacement(s) if s.is_zero()))
             .collect();
         if held[0] == held[1] || scene.ends.iter().any(|e| e.follower.is_some()) {
             return [0.0; 2];
         }
-        let driven = |e: &crate::case::ResolvedEnd| matches!(&e.axial, Translation::Displacement(s) if !zero(s));
+        let driven = |e: &crate::case::ResolvedEnd| matches!(&e.axial, Translation::Displacement(s) if !s.is_zero());
         if scene.ends.iter().any(driven) {
             return [0.0; 2];
         }
@@ -124,10 +129,6 @@ impl Least {
             }
         })
     }
-}
-
-fn zero(signal: &Signal) -> bool {
-    signal.is_constant() && signal.value(0.0) == 0.0
 }
 
 /// The most of two measures over the instants at which a signal is largest.
@@ -221,7 +222,7 @@ fn bent<'a>(scene: &'a Scene) -> Option<Vec<Unit<'a>>> {
     for load in scene
         .loads
         .iter()
-        .filter(|load| load.kind == LoadKind::ForceX && !zero(&load.signal))
+        .filter(|load| load.kind == LoadKind::ForceX && !load.signal.is_zero())
     {
         let mut right = DVector::zeros(n);
         for (i, nodal) in forces(&load.profile, scene.case.beam.length_m)?.iter().enumerate() {
@@ -233,14 +234,14 @@ fn bent<'a>(scene: &'a Scene) -> Option<Vec<Unit<'a>>> {
     }
     for (end, node) in [(&scene.ends[0], 0), (&scene.ends[1], ELEMENTS)] {
         if let Translation::Force(signal) = &end.transverse
-            && !zero(signal)
+            && !signal.is_zero()
         {
             let mut right = DVector::zeros(n);
             right[2 * node] = 1.0;
             add(signal, right)?;
         }
         if let Rotation::Moment(signal) = &end.rotation
-            && !zero(signal)
+            && !signal.is_zero()
         {
             let mut right = DVector::zeros(n);
             right[2 * node + 1] = 1.0;
@@ -271,7 +272,7 @@ fn stretched<'a>(scene: &'a Scene, root: bool) -> Option<Vec<Unit<'a>>> {
     for load in scene
         .loads
         .iter()
-        .filter(|load| load.kind == LoadKind::ForceZ && !zero(&load.signal))
+        .filter(|load| load.kind == LoadKind::ForceZ && !load.signal.is_zero())
     {
         let forces = forces(&load.profile, scene.case.beam.length_m)?;
         add(
@@ -281,7 +282,7 @@ fn stretched<'a>(scene: &'a Scene, root: bool) -> Option<Vec<Unit<'a>>> {
     }
     let free = usize::from(root);
     if let Translation::Force(signal) = &scene.ends[free].axial
-        && !zero(signal)
+        && !signal.is_zero()
     {
         let along = [if root { 1.0 } else { -1.0 }; ELEMENTS];
         units.push(Unit {
