@@ -2,7 +2,7 @@
 
 use super::check;
 use super::faults::Violations;
-use super::schema::{BladderEnd, Case, CrossSection, TubeDefaults, Turbine};
+use super::schema::{Accumulator, BladderEnd, Case, CheckValve, CrossSection, Pump, TubeDefaults, Turbine};
 use crate::error::Result;
 use crate::functions::Signal;
 
@@ -32,6 +32,10 @@ pub struct Tube<'a> {
     pub roughness_m: f64,
     /// Opening of its valve.
     pub opening: &'a Signal,
+    /// Its check valve.
+    pub check_valve: Option<&'a CheckValve>,
+    /// Its pump.
+    pub pump: Option<&'a Pump>,
 }
 
 /// What the permeability of a tube follows from.
@@ -61,6 +65,8 @@ pub enum Given<'a> {
     Pressure(&'a Signal),
     /// A flow into the network [m^3/s].
     Flow(&'a Signal),
+    /// A volume let into the network [m^3].
+    Volume(&'a Signal),
 }
 
 /// A port, or what prescribes something at the end of a chain.
@@ -93,6 +99,8 @@ pub struct Wiring<'a> {
     pub ports: Vec<Port<'a>>,
     /// Turbines, each with its two points.
     pub turbines: Vec<([Point; 2], &'a Turbine)>,
+    /// Accumulators, each with its point.
+    pub accumulators: Vec<(Point, &'a Accumulator)>,
 }
 
 impl<'a> Wiring<'a> {

@@ -186,6 +186,11 @@ impl BeamDae {
         ledger::strokes(system, [&from, &to], &velocities, &b.workspace, integrals);
     }
 
+    /// The values of time alone, of the last evaluation.
+    pub(super) fn now(&self) -> &TimeData {
+        &self.now
+    }
+
     /// The system, and the values of time alone at an instant.
     pub fn instant(&mut self, t: f64) -> (&System, &TimeData) {
         self.held = None;

@@ -3,13 +3,16 @@
 use super::{BeamDae, Dae, EvaluationError, Pattern, Seeds};
 use crate::discrete::System;
 use crate::discrete::fluid_mesh::{FluidMesh, Place};
+use crate::model::network::Feed;
 
 /// `[E29]` The equations of a [`System`] without inertia and without rates, where `t` is the load factor that acts:
 ///
 /// ```text
 /// F(t, y, 0) = 0,        and for each set of joined cells that no prescribed pressure reaches
-/// Σ Δs (a1 - t a1(0)) = 0  in place of the storage of one of its cells
+/// Σ Δs (a1 - t a1(0)) + Σ (V - t V(0)) = Σ V_port  in place of the storage of one of its cells
 /// ```
+///
+/// V those of accumulators, `V_port` what ports that prescribe a volume have let in,
 ///
 /// for these storage equations are dependent: flows inside a closed network sum to zero whatever the pressures are. A
 /// network through which ports or turbines drive a steady flow is at rest too. Forces on unknowns, constant in time, may be
@@ -19,8 +22,8 @@ pub struct StaticBeam {
     beam: BeamDae,
     closed: Vec<Closed>,
     pattern: Pattern,
-    /// Entry of the beam's own pattern behind each entry, where it is not of a volume.
-    from: Vec<Option<usize>>,
+    /// What stands behind each entry: one of the beam's own pattern, or that of a volume.
+    from: Vec<Entry>,
     zeros: Vec<f64>,
     beam_values: Vec<f64>,
     none: Vec<bool>,
@@ -28,15 +31,26 @@ pub struct StaticBeam {
     pub imperfection: Vec<f64>,
 }
 
-/// Cells that share a volume which nothing can change.
+/// An entry of the static Jacobian.
+#[derive(Clone, Copy, Debug)]
+enum Entry {
+    /// That of the beam, by its place.
+    Own(usize),
+    /// Volume by the unknown, over the scale of volumes.
+    Volume(f64),
+}
+
+/// Cells and accumulators that share a volume which ports of volume alone can change.
 #[derive(Clone, Debug)]
 struct Closed {
-    /// Equation that the volume replaces, the unknown of its first cell.
+    /// Equation that the volume replaces, that of its first unknown.
     row: usize,
-    /// Unknowns of its cells, ascending.
-    cells: Vec<usize>,
-    /// Sum of their areas, over their scale.
+    /// Unknowns of its cells and accumulators, ascending, each with its volume over that of a cell.
+    parts: Vec<(usize, f64)>,
+    /// Sum of their volumes at the start, over that of a cell.
     sum: f64,
+    /// Sources that prescribe volumes, and the volume of a cell [m^3].
+    volumes: (Vec<usize>, f64),
     /// What ports of prescribed flow feed into them at t = 1, all together [m^3/s].
     inflow: f64,
 }
@@ -53,12 +67,13 @@ impl StaticBeam {
         let mut starts = vec![0];
         let (mut rows, mut from) = (vec![], vec![]);
         for column in 0..n {
-            let kept = inner.column(column).map(|e| (inner.rows[e], Some(e)));
-            let mut entries: Vec<(i64, Option<usize>)> =
-                kept.filter(|(row, _)| replaced(*row as usize).is_none()).collect();
-            let volumes = closed.iter().filter(|c| c.cells.binary_search(&column).is_ok());
-            entries.extend(volumes.map(|c| (c.row as i64, None)));
-            entries.sort_unstable();
+            let kept = inner.column(column).map(|e| (inner.rows[e], e));
+            let kept = kept.filter(|(row, _)| replaced(*row as usize).is_none());
+            let mut entries: Vec<(i64, Entry)> = kept.map(|(row, entry)| (row, Entry::Own(entry))).collect();
+            let weight = |c: &Closed| c.parts.iter().find(|(part, _)| *part == column).map(|part| part.1);
+            let volumes = closed.iter().filter_map(|c| Some((c.row as i64, weight(c)?)));
+            entries.extend(volumes.map(|(row, weight)| (row, Entry::Volume(weight))));
+            entries.sort_unstable_by_key(|(row, _)| *row);
             rows.extend(entries.iter().map(|e| e.0));
             from.extend(entries.iter().map(|e| e.1));
             starts.push(rows.len() as i64);
@@ -91,7 +106,7 @@ impl StaticBeam {
         let layout = &self.system().layout;
         let mut scales = layout.row_scales.clone();
         for closed in &self.closed {
-            scales[closed.row] = layout.scales[closed.row];
+            scales[closed.row] = closed.volumes.1;
         }
         scales
     }
@@ -105,9 +120,10 @@ impl StaticBeam {
 /// The sets of joined cells that no prescribed pressure reaches, with what is open at t = 1.
 fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
     let (system, now) = beam.instant(1.0);
-    let (Some(fluid), layout) = (&system.fluid, &system.layout) else {
+    let (Some(wet), Some(fluid), layout) = (&system.model.wet, &system.fluid, &system.layout) else {
         return vec![];
     };
+    let sources = &wet.network.sources;
     // Cells, then junctions, then whatever prescribes a pressure.
     let given = fluid.cells + fluid.junctions.len();
     let mut sets = Sets::new(given + 1);
@@ -130,32 +146,40 @@ fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
     }
     let given = sets.root(given);
     let mut closed: Vec<(usize, Closed)> = vec![];
-    for (unknown, cell) in layout.network.area.clone().zip(flowing_cells(fluid)) {
-        let root = sets.root(cell);
+    let unit = layout.network.area.clone().next().map_or(1.0, |cell| layout.scales[cell] * fluid.ds);
+    let cells = layout.network.area.clone().zip(flowing_cells(fluid));
+    let vessels = fluid.accumulators.iter().map(|one| {
+        let unknown = layout.network.junction.start + one.junction;
+        (unknown, fluid.cells + one.junction, layout.scales[unknown] / unit)
+    });
+    for (unknown, place, weight) in cells.map(|(unknown, cell)| (unknown, cell, 1.0)).chain(vessels) {
+        let root = sets.root(place);
         if root == given {
             continue;
         }
-        match closed.iter_mut().find(|(r, _)| *r == root) {
-            Some((_, c)) => {
-                c.cells.push(unknown);
-                c.sum += start[unknown];
-            }
-            None => closed.push((
-                root,
-                Closed {
-                    row: unknown,
-                    cells: vec![unknown],
-                    sum: start[unknown],
-                    inflow: 0.0,
-                },
-            )),
-        }
+        let known = closed.iter().position(|(r, _)| *r == root).unwrap_or_else(|| {
+            let empty = Closed {
+                row: unknown,
+                parts: vec![],
+                sum: 0.0,
+                volumes: (vec![], unit),
+                inflow: 0.0,
+            };
+            closed.push((root, empty));
+            closed.len() - 1
+        });
+        let own = &mut closed[known].1;
+        own.parts.push((unknown, weight));
+        own.sum += weight * start[unknown];
     }
     // Flows that cancel but for round-off do cancel.
     let mut passed = vec![0.0; closed.len()];
     for source in &fluid.sources {
         let root = sets.root(index(source.into));
         if let Some(k) = closed.iter().position(|(r, _)| *r == root) {
+            if matches!(sources[source.number].feed, Feed::Volume(_)) {
+                closed[k].1.volumes.0.push(source.number);
+            }
             closed[k].1.inflow += now.source_flow[source.number];
             passed[k] += now.source_flow[source.number].abs();
         }
@@ -211,8 +235,10 @@ impl Dae for StaticBeam {
     fn residual(&mut self, t: f64, y: &[f64], _: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError> {
         self.beam.residual(t, y, &self.zeros, residual)?;
         for closed in &self.closed {
-            let sum: f64 = closed.cells.iter().map(|&c| y[c]).sum();
-            residual[closed.row] = sum - t * closed.sum;
+            let sum: f64 = closed.parts.iter().map(|&(part, weight)| weight * y[part]).sum();
+            let (sources, unit) = &closed.volumes;
+            let let_in: f64 = sources.iter().map(|&source| self.beam.now().source_volume[source]).sum();
+            residual[closed.row] = sum - t * closed.sum - let_in / unit;
         }
         for (r, more) in residual.iter_mut().zip(&self.imperfection) {
             *r += more;
@@ -231,7 +257,10 @@ impl Dae for StaticBeam {
         let seeds = Seeds::Step { cj: 0.0 };
         self.beam.jacobian(t, y, &self.zeros, seeds, &mut self.beam_values)?;
         for (value, from) in values.iter_mut().zip(&self.from) {
-            *value = from.map_or(1.0, |entry| self.beam_values[entry]);
+            *value = match *from {
+                Entry::Own(entry) => self.beam_values[entry],
+                Entry::Volume(weight) => weight,
+            };
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::case::schema::BladderEnd;
 use crate::model::network::tube::BRANCHES;
-use crate::model::network::{LinkKind, Node, TubeFlow};
+use crate::model::network::{AccumulatorLaw, CheckValve, LinkKind, Node, TubeFlow};
 use crate::model::{Storage, Wet};
 
 /// Where a link ends, on the mesh.
@@ -29,12 +29,30 @@ pub struct MeshLink {
     pub to: Place,
     /// Resistance of the half cells at its ends [Pa s/m^3].
     pub half_cells: f64,
-    /// Resistance in between [Pa s/m^3].
+    /// Resistance in between, which a valve scales [Pa s/m^3].
     pub resistance: f64,
+    /// Resistance of its pump [Pa s/m^3].
+    pub of_pump: f64,
+    /// Number of its pump among all.
+    pub pump: Option<usize>,
+    /// Its check valve.
+    pub check_valve: Option<CheckValve>,
     /// What it is.
     pub kind: LinkKind,
     /// Flow that does not follow from pressures alone.
     pub flow: Option<MeshFlow>,
+}
+
+impl MeshLink {
+    /// All resistance along it, valves wide open [Pa s/m^3].
+    pub fn in_series(&self) -> f64 {
+        self.half_cells + self.of_pump + self.resistance
+    }
+
+    /// What falls over its check valve where a flow passes [Pa].
+    pub fn over_check_valve(&self, flow: f64) -> f64 {
+        self.check_valve.map_or(0.0, |valve| valve.drop(flow))
+    }
 }
 
 /// The flow of a tube as an unknown.
@@ -55,6 +73,17 @@ pub struct MeshSource {
     pub number: usize,
     /// Where it enters.
     pub into: Place,
+}
+
+/// An accumulator on the mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshAccumulator {
+    /// Number among the network's accumulators.
+    pub number: usize,
+    /// Its place among the junctions of the mesh.
+    pub junction: usize,
+    /// Its law.
+    pub law: AccumulatorLaw,
 }
 
 /// A bridge on the mesh.
@@ -99,6 +128,10 @@ pub struct FluidMesh {
     pub sources: Vec<MeshSource>,
     /// Bridges of check valves.
     pub bridges: Vec<MeshBridge>,
+    /// Accumulators: their junctions' unknowns are volumes.
+    pub accumulators: Vec<MeshAccumulator>,
+    /// Links with a pump, in the order of these.
+    pub pumps: Vec<usize>,
     /// Volume change of each lumped network at the start [m^3].
     pub volume_at_start: Vec<f64>,
     /// Area change of each cell at the start, where it stays that [m^2].
@@ -131,15 +164,23 @@ impl FluidMesh {
         };
         let half_of = |p: Place| if let Place::Cell(_) = p { half } else { 0.0 };
         let (mut flows, mut branches) = (0, 0);
+        let mut pumps = vec![];
         let open = network.links.iter().enumerate().filter(|(_, link)| !link.is_shut());
         let links = open.filter_map(|(number, link)| {
             let (from, to) = (place(link.from)?, place(link.to)?);
+            let pump = link.pump.as_ref().map(|_| {
+                pumps.push(number);
+                pumps.len() - 1
+            });
             Some(MeshLink {
                 number,
                 from,
                 to,
                 half_cells: half_of(from) + half_of(to),
                 resistance: link.resistance,
+                of_pump: link.pump.as_ref().map_or(0.0, |pump| pump.resistance),
+                pump,
+                check_valve: link.check_valve,
                 kind: link.kind,
                 flow: link.tube.map(|tube| {
                     let number = flows;
@@ -160,12 +201,23 @@ impl FluidMesh {
             Some(MeshBridge { number, from, to })
         });
         let bridges: Vec<MeshBridge> = bridges.collect();
+        let accumulators = network.accumulators.iter().enumerate();
+        let accumulators = accumulators.filter_map(|(number, one)| {
+            let junction = junctions.iter().position(|&j| j == one.junction)?;
+            Some(MeshAccumulator {
+                number,
+                junction,
+                law: one.law,
+            })
+        });
+        let accumulators: Vec<MeshAccumulator> = accumulators.collect();
         let accelerated = (0..junctions.len()).map(|j| {
             let here = Place::Junction(j);
+            let stores = accumulators.iter().any(|one| one.junction == j);
             let bridged = bridges.iter().any(|b| b.from == here || b.to == here);
             let own = |link: &&MeshLink| link.from == here || link.to == here;
             let inert = |link: &MeshLink| link.flow.is_some_and(|flow| flow.tube.inertance > 0.0);
-            !bridged && links.iter().filter(own).all(inert)
+            !stores && !bridged && links.iter().filter(own).all(inert)
         });
         let accelerated: Vec<bool> = accelerated.collect();
         Self {
@@ -182,6 +234,8 @@ impl FluidMesh {
             links,
             sources: sources.collect(),
             bridges,
+            accumulators,
+            pumps,
             junctions: junctions.clone(),
             volume_at_start: vec![0.0; wet.lumped.len()],
             area_at_start: vec![0.0; bladders * cells_per_bladder],

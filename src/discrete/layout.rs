@@ -73,7 +73,7 @@ pub struct Coupling {
 pub struct Network {
     /// Stored areas of cells.
     pub area: Range<usize>,
-    /// Pressures of junctions.
+    /// Pressures of junctions; of those that are accumulators, their volumes.
     pub junction: Range<usize>,
     /// Pressure drops of turbines behind real rectifiers.
     pub bridge: Range<usize>,
@@ -95,6 +95,7 @@ enum Name {
     Area(usize, usize),
     NonlinearArea(usize),
     Junction(usize),
+    Accumulator(usize),
     Bridge(usize),
     Flow(&'static str, usize),
     LumpedNetwork(&'static str, usize),
@@ -158,6 +159,7 @@ impl Layout {
             Name::Area(b, cell) => format!("area change [m^2] of bladder {}, cell {}", bladder(b), cell + 1),
             Name::NonlinearArea(b) => format!("nonlinear area change [m^2] of bladder {}", bladder(b)),
             Name::Junction(j) => format!("pressure [Pa] of junction {}", j + 1),
+            Name::Accumulator(k) => format!("volume [m^3] in accumulator {}", k + 1),
             Name::LumpedNetwork(what, component) => format!("{what} of network {}", component + 1),
             Name::Flow(what, tube) => format!("{what} of tube {}", tube + 1),
             Name::Bridge(k) => format!("pressure drop [Pa] of turbine behind rectifier {}", k + 1),
@@ -267,8 +269,14 @@ impl Network {
             }
         });
         let junction = build.block(|build| {
-            for &j in &fluid.junctions {
-                build.push(Name::Junction(j), s.pressure, s.pressure * fluid.conductance, false);
+            for (k, &j) in fluid.junctions.iter().enumerate() {
+                match fluid.accumulators.iter().find(|one| one.junction == k) {
+                    None => build.push(Name::Junction(j), s.pressure, s.pressure * fluid.conductance, false),
+                    Some(one) => {
+                        let volume = one.law.volume(s.pressure);
+                        build.push(Name::Accumulator(one.number), volume, volume * s.frequency, true)
+                    }
+                };
             }
         });
         let bridge = build.block(|build| {
@@ -279,7 +287,7 @@ impl Network {
             }
         });
         let moved = |link: &MeshLink| {
-            (stored * wet.bladder_length * s.frequency).min(s.pressure / (link.half_cells + link.resistance))
+            (stored * wet.bladder_length * s.frequency).min(s.pressure / link.in_series())
         };
         let flows = || fluid.links.iter().filter_map(|link| Some((link, link.flow?)));
         let flow = build.block(|build| {

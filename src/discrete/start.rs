@@ -122,6 +122,10 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64], w:
     for (junction, value) in y[l.network.junction.clone()].iter_mut().enumerate() {
         *value = w.fluid.junction.get(junction).copied().unwrap_or(0.0);
     }
+    for one in &fluid.accumulators {
+        let pressure = wet.network.accumulators[one.number].start_pressure;
+        y[l.network.junction.start + one.junction] = one.law.volume(pressure);
+    }
 }
 
 /// Adds jumps [m/s] to the velocities of free nodes.

@@ -5,6 +5,7 @@ use crate::case::{Rotation, Translation};
 use crate::functions::signals::{Clock, Jet, Signal};
 use crate::model::Load;
 use crate::model::loads::LoadKind;
+use crate::model::network::Feed;
 use crate::numerics::Planar;
 
 /// Opening of a closed valve on a tube whose flow is an unknown: shut, but for a thousand-millionth.
@@ -138,6 +139,10 @@ pub struct TimeData {
     pub port_pressure_rate: Vec<f64>,
     /// Prescribed flow of each source [m^3/s].
     pub source_flow: Vec<f64>,
+    /// Volume that each source has let in, where that is what is prescribed [m^3]; 0 elsewhere.
+    pub source_volume: Vec<f64>,
+    /// Pressure that each pump adds where nothing flows [Pa].
+    pub pump_pressure: Vec<f64>,
 }
 
 impl TimeData {
@@ -166,6 +171,8 @@ impl TimeData {
             port_pressure: vec![0.0; ports],
             port_pressure_rate: vec![0.0; ports],
             source_flow: vec![0.0; sources],
+            source_volume: vec![0.0; sources],
+            pump_pressure: vec![0.0; system.fluid.as_ref().map_or(0, |fluid| fluid.pumps.len())],
         }
     }
 
@@ -285,7 +292,7 @@ impl TimeData {
             match &wet.network.links[mesh_link.number].opening {
                 None if !first => {}
                 None => {
-                    self.conductance[k] = 1.0 / (mesh_link.half_cells + mesh_link.resistance);
+                    self.conductance[k] = 1.0 / mesh_link.in_series();
                     self.resistance[k] = mesh_link.resistance;
                 }
                 Some(opening) => {
@@ -294,7 +301,8 @@ impl TimeData {
                         o = o.max(TIGHT);
                     }
                     self.opening[k] = o;
-                    self.conductance[k] = o / (o * mesh_link.half_cells + mesh_link.resistance);
+                    let behind = mesh_link.half_cells + mesh_link.of_pump;
+                    self.conductance[k] = o / (o * behind + mesh_link.resistance);
                     self.resistance[k] = mesh_link.resistance / o;
                 }
             }
@@ -303,8 +311,19 @@ impl TimeData {
             let pressure = port.pressure.jet(clock);
             (self.port_pressure[k], self.port_pressure_rate[k]) = (pressure.value, pressure.rate);
         }
-        for (value, source) in self.source_flow.iter_mut().zip(&wet.network.sources) {
-            *value = source.flow.jet(clock).value;
+        for (k, source) in wet.network.sources.iter().enumerate() {
+            match &source.feed {
+                Feed::Flow(flow) => self.source_flow[k] = flow.jet(clock).value,
+                Feed::Volume(volume) => {
+                    let volume = volume.jet(clock);
+                    self.source_volume[k] = volume.value;
+                    self.source_flow[k] = if wet.network.still { 0.0 } else { volume.rate };
+                }
+            }
+        }
+        for (value, &link) in self.pump_pressure.iter_mut().zip(&fluid.pumps) {
+            let pump = wet.network.links[link].pump.as_ref();
+            *value = pump.map_or(0.0, |pump| pump.pressure.jet(clock).value);
         }
     }
 }

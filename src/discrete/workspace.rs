@@ -134,6 +134,10 @@ pub struct Fluid<T> {
     pub mean_pressure: Vec<T>,
     /// Pressures of junctions [Pa].
     pub junction: Vec<T>,
+    /// Volumes in accumulators [m^3].
+    pub accumulated: Vec<T>,
+    /// Their rates [m^3/s].
+    pub accumulated_rate: Vec<T>,
     /// Pressures of lumped networks [Pa].
     pub lumped: Vec<T>,
     /// Their rates [Pa/s]; for the balances.
@@ -223,6 +227,7 @@ impl<T: Scalar> Workspace<T> {
         let fluid = system.fluid.as_ref();
         let (cells, bladders) = fluid.map_or((0, 0), |f| (f.cells, f.bladders));
         let (junctions, bridges) = fluid.map_or((0, 0), |f| (f.junctions.len(), f.bridges.len()));
+        let accumulators = fluid.map_or(0, |f| f.accumulators.len());
         let components = system.model.wet.as_ref().map_or(0, |w| w.network.components);
         let lumped = fluid.map_or(0, |f| f.volume_at_start.len());
         let wet = system.model.wet.as_ref();
@@ -284,6 +289,8 @@ impl<T: Scalar> Workspace<T> {
                 pressure: zeros(cells),
                 mean_pressure: zeros(bladders),
                 junction: zeros(junctions),
+                accumulated: zeros(accumulators),
+                accumulated_rate: zeros(accumulators),
                 lumped: zeros(lumped),
                 lumped_rate: zeros(lumped),
                 bridge: zeros(bridges),

@@ -7,6 +7,7 @@ use crate::case::schema::{Case, Distributed, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::profile::Profile;
 use crate::functions::signals::{Clock, Signal};
+use crate::model::network::Feed;
 
 /// Sizes to which tolerances are relative; SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,6 +183,19 @@ impl Scales {
             for port in &wet.network.ports {
                 let held = case.held_at_start(&port.pressure).abs();
                 d.pressure = d.pressure.max(port.pressure.largest(case.time.end_s).value).max(held);
+            }
+            for pump in wet.network.links.iter().filter_map(|link| link.pump.as_ref()) {
+                let held = case.held_at_start(&pump.pressure).abs();
+                d.pressure = d.pressure.max(pump.pressure.largest(case.time.end_s).value).max(held);
+            }
+            for one in &wet.network.accumulators {
+                d.pressure = d.pressure.max(one.start_pressure.abs());
+            }
+            for source in &wet.network.sources {
+                if let Feed::Volume(volume) = &source.feed {
+                    let volume = volume.largest(case.time.end_s).value.max(case.held_at_start(volume).abs());
+                    d.pressure = d.pressure.max(volume / wet.network.compliance_at(source.into, wet));
+                }
             }
             let moment = moment_of_loads + ei * started / (l * l);
             let sealed = (wet.area.force_mean * force_of_loads + wet.area.moment_mean * moment) / wet.compliance();

@@ -5,7 +5,7 @@ use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::{Clock, Signal};
 
 impl Model {
-    /// Puts another signal in place of every one: of ends, loads, ports and sources by `load`, of valves by `opening`.
+    /// Puts another signal in place of every one: of ends, loads, ports, sources and pumps by `load`, of valves by `opening`.
     pub fn replace_signals(&mut self, load: impl Fn(&Signal) -> Signal, opening: impl Fn(&Signal) -> Signal) {
         let replace = |signal: &mut Signal| *signal = load(signal);
         for end in &mut self.ends {
@@ -33,7 +33,10 @@ impl Model {
         if let Some(wet) = &mut self.wet {
             let network = &mut wet.network;
             network.ports.iter_mut().for_each(|port| replace(&mut port.pressure));
-            network.sources.iter_mut().for_each(|source| replace(&mut source.flow));
+            let sources = network.sources.iter_mut();
+            sources.for_each(|source| replace(source.feed.signal_mut()));
+            let pumps = network.links.iter_mut().filter_map(|link| link.pump.as_mut());
+            pumps.for_each(|pump| replace(&mut pump.pressure));
             let valves = network.links.iter_mut().filter_map(|link| link.opening.as_mut());
             valves.for_each(|signal| *signal = opening(signal));
         }
@@ -58,7 +61,7 @@ impl Model {
     }
 }
 
-/// Visits every signal: of ends, loads, attachments, a stream, valves and ports.
+/// Visits every signal: of ends, loads, attachments, a stream, valves, ports and pumps.
 pub fn each_signal(
     ends: &[ResolvedEnd; 2],
     loads: &[Load],
@@ -96,6 +99,8 @@ pub fn each_signal(
             .filter_map(|l| l.opening.as_ref())
             .for_each(&mut visit);
         network.ports.iter().map(|p| &p.pressure).for_each(&mut visit);
-        network.sources.iter().map(|s| &s.flow).for_each(&mut visit);
+        network.sources.iter().map(|s| s.feed.signal()).for_each(&mut visit);
+        let pumps = network.links.iter().filter_map(|link| link.pump.as_ref());
+        pumps.map(|pump| &pump.pressure).for_each(&mut visit);
     }
 }

@@ -65,6 +65,12 @@ impl LumpedNetwork {
             if matches!(link.kind, LinkKind::Turbine(_)) {
                 return Err("a turbine needs them".into());
             }
+            if link.check_valve.is_some() {
+                return Err("a check valve needs them".into());
+            }
+            if link.pump.is_some() {
+                return Err("a pump needs them".into());
+            }
             if link.opening.as_ref().is_some_and(|o| !o.is_constant()) {
                 return Err("a valve moves".into());
             }
@@ -72,6 +78,9 @@ impl LumpedNetwork {
                 Node::Port(p) => Some(p),
                 _ => None,
             }));
+        }
+        if network.accumulators.iter().any(|one| inside(Node::Junction(one.junction))) {
+            return Err("an accumulator needs them".into());
         }
         if bridged {
             return Err("a turbine needs them".into());

@@ -3,13 +3,18 @@
 use super::strength::inlets;
 use crate::case::faults::Violations;
 use crate::case::numbers::plain;
-use crate::case::schema::{Case, Fluid, FluidKind};
+use crate::case::schema::{AccumulatorKind, Case, Fluid, FluidKind};
 use crate::error::{Code, Violation};
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     let Some(fluid) = &case.fluid else { return };
     let gas = fluid.kind == FluidKind::Gas;
     let some_gas = fluid.gas() > 0.0;
+    let accumulators = case.network.iter().flat_map(|network| &network.accumulators);
+    let cushions: Vec<_> = (0..)
+        .zip(accumulators)
+        .filter(|(_, one)| matches!(one.kind, AccumulatorKind::Gas { .. }))
+        .collect();
     let of_liquid = [
         ("bulk_modulus_pa", fluid.bulk_modulus_pa),
         ("gas_fraction", fluid.gas_fraction),
@@ -29,25 +34,33 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             "it is that of a liquid: leave it out, or give kind \"liquid\"",
         );
     }
-    for (key, _) in of_gas.iter().filter(|(_, value)| !some_gas && value.is_some()) {
+    let presses = |key: &str| some_gas || (key == "ambient_pressure_pa" && !cushions.is_empty());
+    for (key, _) in of_gas.iter().filter(|(key, value)| !presses(key) && value.is_some()) {
         let hint = "it is that of a gas: leave it out, give kind \"gas\", or a gas_fraction";
         refuse(key, &format!("\"{key}\" of a liquid without gas"), hint);
+    }
+    for (i, one) in cushions {
+        let pointer = format!("/network/accumulators/{i}/start_pressure_pa");
+        above_vacuum(fluid, pointer, one.start_pressure_pa, faults);
     }
     if some_gas {
         pressures(case, fluid, faults);
     }
 }
 
+/// A gauge pressure of gas, at the least.
+fn above_vacuum(fluid: &Fluid, pointer: String, lowest: f64, faults: &mut Violations) {
+    let ambient = fluid.ambient_pressure();
+    if lowest <= -ambient && !faults.has(&pointer) {
+        let what = format!("{} Pa, at or below absolute vacuum", plain(lowest));
+        let fault = Violation::new(Code::Range, pointer, what).allowed(format!("above -{} Pa", plain(ambient)));
+        faults.push(fault.hint("pressures are those above ambient_pressure_pa, and gas fills what is left"));
+    }
+}
+
 /// Pressures that ports and the start prescribe stay above absolute vacuum.
 fn pressures(case: &Case, fluid: &Fluid, faults: &mut Violations) {
-    let ambient = fluid.ambient_pressure();
-    let mut look = |pointer: String, lowest: f64| {
-        if lowest <= -ambient && !faults.has(&pointer) {
-            let what = format!("{} Pa, at or below absolute vacuum", plain(lowest));
-            let fault = Violation::new(Code::Range, pointer, what).allowed(format!("above -{} Pa", plain(ambient)));
-            faults.push(fault.hint("pressures are those above ambient_pressure_pa, and gas fills what is left"));
-        }
-    };
+    let mut look = |pointer: String, lowest: f64| above_vacuum(fluid, pointer, lowest, faults);
     for (pointer, signal) in inlets(case).pressures {
         look(pointer, signal.range(0.0, case.time.end_s).low);
     }

@@ -19,6 +19,7 @@ const STEEPEST: f64 = 1e8;
 enum Role {
     Motion,
     Stream,
+    Volume,
     Opening,
     Other,
 }
@@ -29,6 +30,7 @@ impl Role {
         match self {
             Self::Motion => Some(["motion", "velocity"]),
             Self::Stream => Some(["stream", "force"]),
+            Self::Volume => Some(["volume", "flow"]),
             Self::Opening | Self::Other => None,
         }
     }
@@ -105,21 +107,27 @@ fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
             let (key, signal) = match end {
                 ChainEnd::PressurePa(signal) => ("pressure_pa", signal),
                 ChainEnd::FlowM3S(signal) => ("flow_m3_s", signal),
+                ChainEnd::VolumeM3(signal) => ("volume_m3", signal),
                 ChainEnd::Sealed | ChainEnd::Connected => continue,
             };
-            all.push((format!("/network/chains/{i}/ends/{k}/{key}"), Role::Other, signal));
+            let role = if key == "volume_m3" { Role::Volume } else { Role::Other };
+            all.push((format!("/network/chains/{i}/ends/{k}/{key}"), role, signal));
         }
     }
     for (i, tube) in network.tubes.iter().enumerate() {
         all.push((format!("/network/tubes/{i}/opening"), Role::Opening, &tube.opening));
+        let pump = tube.pump.iter().map(|pump| &pump.pressure_pa);
+        all.extend(pump.map(|signal| (format!("/network/tubes/{i}/pump/pressure_pa"), Role::Other, signal)));
     }
     for (i, port) in network.ports.iter().enumerate() {
-        for (key, signal) in [("pressure_pa", &port.pressure_pa), ("flow_m3_s", &port.flow_m3_s)] {
-            all.extend(
-                signal
-                    .iter()
-                    .map(|signal| (format!("/network/ports/{i}/{key}"), Role::Other, signal)),
-            );
+        let given = [
+            ("pressure_pa", Role::Other, &port.pressure_pa),
+            ("flow_m3_s", Role::Other, &port.flow_m3_s),
+            ("volume_m3", Role::Volume, &port.volume_m3),
+        ];
+        for (key, role, signal) in given {
+            let at = format!("/network/ports/{i}/{key}");
+            all.extend(signal.iter().map(|signal| (at.clone(), role, signal)));
         }
     }
     all

@@ -1,4 +1,4 @@
-//! Junctions have no storage: each must reach a bladder or a pressure port through open branches, or its pressure
+//! Junctions have no storage: each must reach a bladder, an accumulator or a pressure port through open branches, or its pressure
 //! is not determined.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -39,7 +39,7 @@ pub(super) fn check(case: &Case, joined: &Joined, faults: &mut Violations) {
     }
     for (i, t) in dead {
         let what = format!(
-            "junction \"{}\" reaches neither a bladder nor a pressure port at {t} s",
+            "junction \"{}\" reaches no bladder, accumulator or pressure port at {t} s",
             names[i]
         );
         let fault = Violation::new(Code::Junction, format!("/network/junctions/{i}"), what);
@@ -68,9 +68,9 @@ fn instants(joined: &Joined, end: f64) -> Vec<f64> {
     instants
 }
 
-/// Points joined by open branches to a bladder or a pressure port.
+/// Points joined by open branches to a bladder, an accumulator or a pressure port.
 fn reached(joined: &Joined, t: f64) -> BTreeSet<Point> {
-    let mut reached = joined.held.clone();
+    let mut reached = &joined.held | &joined.stores;
     let ends = joined.branches.iter().flat_map(|(points, _)| points);
     reached.extend(ends.filter(|point| matches!(point, Point::Bladder(..))));
     let open: Vec<_> = joined

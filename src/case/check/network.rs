@@ -30,6 +30,8 @@ pub struct Joined<'a> {
     pub branches: Vec<([Point; 2], Option<&'a Signal>)>,
     /// Points of ports with a pressure.
     pub held: BTreeSet<Point>,
+    /// Points of accumulators.
+    pub stores: BTreeSet<Point>,
     /// Some end leads nowhere: what is not attached may have been meant by it.
     lost: bool,
 }
@@ -54,6 +56,7 @@ pub fn resolve<'a>(case: &'a Case, faults: &mut Violations) -> (Wiring<'a>, Join
         tubes: rules.tubes(),
         ports: rules.ports(),
         turbines: rules.turbines(),
+        accumulators: rules.accumulators(),
         ..Wiring::default()
     };
     rules.chains(&mut wiring);
@@ -230,6 +233,8 @@ impl<'a> Rules<'a, '_> {
                 loss_coefficient: loss_coefficient(tube.loss_coefficient, self.usual),
                 roughness_m: roughness(tube.roughness_m, self.usual),
                 opening: &tube.opening,
+                check_valve: tube.check_valve.as_ref(),
+                pump: tube.pump.as_ref(),
             }));
         }
         found
@@ -240,7 +245,7 @@ impl<'a> Rules<'a, '_> {
         for (i, chain) in self.network.chains.iter().enumerate() {
             for (k, end) in chain.ends.iter().enumerate() {
                 let point = chain_end(chain, k).and_then(|(number, end)| self.end_of(number, end));
-                let gives = matches!(end, ChainEnd::PressurePa(_) | ChainEnd::FlowM3S(_));
+                let gives = !matches!(end, ChainEnd::Sealed | ChainEnd::Connected);
                 known.extend(
                     point
                         .filter(|_| gives)
@@ -251,16 +256,18 @@ impl<'a> Rules<'a, '_> {
         let mut found = vec![];
         for (i, port) in self.network.ports.iter().enumerate() {
             let pointer = format!("/network/ports/{i}");
-            let given = match (&port.pressure_pa, &port.flow_m3_s) {
-                (Some(pressure), None) => Ok(Given::Pressure(pressure)),
-                (None, Some(flow)) => Ok(Given::Flow(flow)),
-                (Some(_), Some(_)) => Err("a port with pressure and flow"),
-                (None, None) => Err("a port with neither pressure nor flow"),
-            };
-            if let Err(what) = given {
+            let pressure = port.pressure_pa.as_ref().map(Given::Pressure);
+            let flow = port.flow_m3_s.as_ref().map(Given::Flow);
+            let volume = port.volume_m3.as_ref().map(Given::Volume);
+            let given: Vec<Given> = [pressure, flow, volume].into_iter().flatten().collect();
+            if given.len() != 1 {
+                let what = match given.len() {
+                    0 => "a port with neither pressure, flow nor volume",
+                    _ => "a port of which more than one thing is given",
+                };
                 let fault = Violation::new(Code::Wiring, pointer.clone(), what);
                 self.faults
-                    .push(fault.allowed("exactly one of pressure_pa and flow_m3_s"));
+                    .push(fault.allowed("exactly one of pressure_pa, flow_m3_s and volume_m3"));
             }
             let Some(at) = self.point(&port.at, &format!("{pointer}/at"), &pointer) else {
                 continue;
@@ -274,7 +281,34 @@ impl<'a> Rules<'a, '_> {
                 self.joined.held.insert(at);
             }
             let name = port.name.as_deref();
-            found.extend(given.map(|given| Port { at, name, given }));
+            found.extend(given.into_iter().take(1).map(|given| Port { at, name, given }));
+        }
+        found
+    }
+
+    fn accumulators(&mut self) -> Vec<(Point, &'a schema::Accumulator)> {
+        let mut found: Vec<(Point, &schema::Accumulator)> = vec![];
+        for (i, accumulator) in self.network.accumulators.iter().enumerate() {
+            let pointer = format!("/network/accumulators/{i}");
+            let Some(at) = self.point(&accumulator.at, &format!("{pointer}/at"), &pointer) else {
+                continue;
+            };
+            if let Some(first) = found.iter().position(|(other, _)| *other == at) {
+                let what = format!(
+                    "a second accumulator at {}, the first is /network/accumulators/{first}",
+                    self.words(at)
+                );
+                self.fault(format!("{pointer}/at"), what);
+            }
+            if self.joined.held.contains(&at) {
+                let what = format!(
+                    "an accumulator at {}, where a port gives the pressure",
+                    self.words(at)
+                );
+                self.fault(format!("{pointer}/at"), what);
+            }
+            self.joined.stores.insert(at);
+            found.push((at, accumulator));
         }
         found
     }
@@ -319,6 +353,8 @@ impl<'a> Rules<'a, '_> {
                     loss_coefficient: loss_coefficient(None, self.usual),
                     roughness_m: roughness(None, self.usual),
                     opening: &chain.opening,
+                    check_valve: None,
+                    pump: None,
                 })),
                 None if chain.bladders.len() > 1 => {
                     let what = "a chain without tubes to join its bladders";
@@ -360,6 +396,7 @@ impl<'a> Rules<'a, '_> {
             (ChainEnd::Sealed | ChainEnd::Connected, _) => return None,
             (ChainEnd::PressurePa(pressure), _) => Given::Pressure(pressure),
             (ChainEnd::FlowM3S(flow), _) => Given::Flow(flow),
+            (ChainEnd::VolumeM3(volume), _) => Given::Volume(volume),
         };
         Some(Port {
             at: at?,

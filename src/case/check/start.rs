@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::strength::inlets;
 use crate::case::ends::{Rotation, Translation};
 use crate::case::faults::Violations;
 use crate::case::locate::child;
@@ -13,6 +14,7 @@ use crate::functions::signals::{Clock, Signal};
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     pressures(case, faults);
     equilibrium(case, faults);
+    volumes(case, faults);
     agreement(&case.ends.root, "root", 0.0, case, faults);
     agreement(&case.ends.tip, "tip", 1.0, case, faults);
 }
@@ -31,6 +33,21 @@ fn pressures(case: &Case, faults: &mut Violations) {
                 let what = format!("the pressure of bladder {index} is given twice, first at {first}");
                 faults.push(Violation::new(Code::Start, pointer, what));
             }
+        }
+    }
+}
+
+/// Volumes that ports let in begin at what the network holds of them.
+fn volumes(case: &Case, faults: &mut Violations) {
+    for (pointer, signal) in inlets(case).volumes {
+        let (begins, holds) = (signal.value(0.0), case.held_at_start(signal));
+        if (begins - holds).abs() > 1e-9 * signal.largest(case.time.end_s).value.max(holds.abs()) {
+            let what = format!("a volume that begins at {begins} m^3, of which the start holds {holds} m^3");
+            let hint = match case.start.equilibrium {
+                None => "begin at 0: bladders begin at their pressures of /start; or give /start/equilibrium",
+                Some(_) => "give /start/equilibrium with loads_at_s 0, or the same volume at both instants",
+            };
+            faults.push(Violation::new(Code::Start, pointer, what).hint(hint));
         }
     }
 }

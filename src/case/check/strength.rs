@@ -140,13 +140,24 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         look(pointer, size_of(signal, end), &bounds.pressure);
     }
     for (i, turbine) in case.network.iter().flat_map(|n| &n.turbines).enumerate() {
-        if let Rectifier::CheckValves {
-            cracking_pressure_pa, ..
-        } = turbine.rectifier
-        {
+        if let Rectifier::CheckValves(valve) = &turbine.rectifier {
             let pointer = format!("/network/turbines/{i}/rectifier/check_valves/cracking_pressure_pa");
-            look(pointer, cracking_pressure_pa, &bounds.pressure);
+            look(pointer, valve.cracking_pressure_pa, &bounds.pressure);
         }
+    }
+    for (i, tube) in case.network.iter().flat_map(|n| &n.tubes).enumerate() {
+        if let Some(valve) = &tube.check_valve {
+            let pointer = format!("/network/tubes/{i}/check_valve/cracking_pressure_pa");
+            look(pointer, valve.cracking_pressure_pa, &bounds.pressure);
+        }
+        if let Some(pump) = &tube.pump {
+            let pointer = format!("/network/tubes/{i}/pump/pressure_pa");
+            look(pointer, size_of(&pump.pressure_pa, end), &bounds.pressure);
+        }
+    }
+    for (i, accumulator) in case.network.iter().flat_map(|n| &n.accumulators).enumerate() {
+        let pointer = format!("/network/accumulators/{i}/start_pressure_pa");
+        look(pointer, accumulator.start_pressure_pa.abs(), &bounds.pressure);
     }
     if let Some(bladders) = &case.bladders {
         flows(case, bladders, faults);
@@ -206,6 +217,7 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
 pub(super) struct Inlets<'a> {
     pub pressures: Vec<(String, &'a Signal)>,
     flows: Vec<(String, &'a Signal)>,
+    pub volumes: Vec<(String, &'a Signal)>,
 }
 
 pub(super) fn inlets(case: &Case) -> Inlets<'_> {
@@ -219,6 +231,7 @@ pub(super) fn inlets(case: &Case) -> Inlets<'_> {
             match end {
                 ChainEnd::PressurePa(signal) => all.pressures.push((format!("{at}/pressure_pa"), signal)),
                 ChainEnd::FlowM3S(signal) => all.flows.push((format!("{at}/flow_m3_s"), signal)),
+                ChainEnd::VolumeM3(signal) => all.volumes.push((format!("{at}/volume_m3"), signal)),
                 ChainEnd::Sealed | ChainEnd::Connected => {}
             }
         }
@@ -227,6 +240,8 @@ pub(super) fn inlets(case: &Case) -> Inlets<'_> {
         let at = format!("/network/ports/{i}");
         all.pressures
             .extend(port.pressure_pa.iter().map(|s| (format!("{at}/pressure_pa"), s)));
+        all.volumes
+            .extend(port.volume_m3.iter().map(|s| (format!("{at}/volume_m3"), s)));
         all.flows
             .extend(port.flow_m3_s.iter().map(|s| (format!("{at}/flow_m3_s"), s)));
     }

@@ -106,7 +106,7 @@ effects! {
         /// Flow between bladders; off: every bladder keeps its volume.
         Flow flow,
         /// Pressure differences within each network; off: one pressure for all bladders that are joined. Not possible with
-        /// turbines, moving valves, or ports of different pressures.
+        /// turbines, valves that move, check valves, pumps, accumulators, or ports of different pressures.
         NetworkPressureDifferences network_pressure_differences,
         /// Pressure differences along each bladder; off: one finite volume a bladder, whatever `/mesh/cells_per_bladder` says.
         FlowAlongBladders flow_along_bladders,
@@ -143,6 +143,12 @@ effects! {
         QuadraticDrag quadratic_drag,
         /// Valves that move.
         Valves valves,
+        /// Check valves and relief valves in tubes.
+        CheckValves check_valves,
+        /// Pumps in tubes.
+        Pumps pumps,
+        /// Vessels that take in fluid as their pressure rises.
+        Accumulators accumulators,
         /// Turbines that harvest energy.
         Turbines turbines,
         /// Loads along the beam.

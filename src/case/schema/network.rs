@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{CrossSection, one};
+use super::{CrossSection, is_zero, one};
 use crate::functions::signals::Signal;
 
 /// What a tube is unless it says otherwise: rigid, slender, without storage.
@@ -48,9 +48,12 @@ pub struct Network {
     /// Single tubes between any two points.
     #[serde(default)]
     pub tubes: Vec<Tube>,
-    /// Points with prescribed pressure or flow.
+    /// Points with prescribed pressure, flow or volume.
     #[serde(default)]
     pub ports: Vec<Port>,
+    /// Vessels that take in fluid as their pressure rises.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub accumulators: Vec<Accumulator>,
     /// Conductances that harvest energy, between two points.
     #[serde(default)]
     pub turbines: Vec<Turbine>,
@@ -84,6 +87,8 @@ pub enum ChainEnd {
     PressurePa(Signal),
     /// Prescribed flow into the network [m^3/s] (A.69).
     FlowM3S(Signal),
+    /// Volume let into the network beyond what it holds at the start [m^3]: a syringe.
+    VolumeM3(Signal),
 }
 
 /// A point of the network: `{"bladder": 3, "end": "outlet"}` or `{"junction": "tee"}`.
@@ -150,9 +155,15 @@ pub struct Tube {
     /// Opening `o(t)` of its valve, 0 (closed) to 1 (open).
     #[serde(default = "Signal::one", skip_serializing_if = "Signal::is_one")]
     pub opening: Signal,
+    /// Check valve or relief valve in it, which lets fluid through from `from` to `to`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub check_valve: Option<CheckValve>,
+    /// Pump in it, which presses from `from` to `to`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pump: Option<Pump>,
 }
 
-/// A point with prescribed pressure or flow; exactly one of the two.
+/// A point with prescribed pressure, flow or volume; exactly one of the three.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Port {
@@ -167,6 +178,9 @@ pub struct Port {
     /// Flow into the network [m^3/s].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flow_m3_s: Option<Signal>,
+    /// Volume let into the network beyond what it holds at the start [m^3]: a syringe, whose flow is the rate of this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub volume_m3: Option<Signal>,
 }
 
 /// A turbine: `q = G (p_from - p_to)`, power `G (p_from - p_to)^2`.
@@ -214,18 +228,73 @@ pub enum Rectifier {
     #[default]
     Ideal,
     /// Four equal real check valves in a bridge.
-    CheckValves {
-        /// Pressure drop at which a valve opens [Pa].
-        #[schemars(range(min = 0.0))]
-        cracking_pressure_pa: f64,
-        /// Conductance of an open valve beyond cracking [m^3/(s Pa)].
+    CheckValves(CheckValve),
+}
+
+/// A check valve; with a high cracking pressure a relief valve.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CheckValve {
+    /// Pressure drop at which it opens [Pa].
+    #[schemars(range(min = 0.0))]
+    pub cracking_pressure_pa: f64,
+    /// Conductance of the open valve beyond cracking [m^3/(s Pa)].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub forward_conductance_m3_s_pa: f64,
+    /// Leakage conductance of the closed valve [m^3/(s Pa)].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub reverse_conductance_m3_s_pa: f64,
+    /// Range of pressure over which it opens smoothly, from cracking on [Pa].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub smoothing_pa: f64,
+}
+
+/// A pump in a tube, which adds `pressure_pa - resistance_pa_s_m3 q` in the tube's direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pump {
+    /// Pressure that it adds where nothing flows, over time [Pa].
+    pub pressure_pa: Signal,
+    /// What that falls by with its flow [Pa s/m^3]: the slope of its curve.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub resistance_pa_s_m3: f64,
+}
+
+/// A vessel that takes in fluid as its pressure rises.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Accumulator {
+    /// Name in outputs; absent: made from the point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// The point.
+    pub at: Endpoint,
+    /// What presses on the fluid in it: elastic walls, or gas above it.
+    pub kind: AccumulatorKind,
+    /// Gauge pressure in it at the start [Pa].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub start_pressure_pa: f64,
+}
+
+/// What presses on the fluid in an accumulator.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum AccumulatorKind {
+    /// Elastic walls, `V = C p`: the compliance of a syringe, of a soft tube.
+    Elastic {
+        /// `C` [m^3/Pa].
         #[schemars(extend("exclusiveMinimum" = 0))]
-        forward_conductance_m3_s_pa: f64,
-        /// Leakage conductance of a closed valve [m^3/(s Pa)].
+        compliance_m3_pa: f64,
+    },
+    /// Gas above the fluid.
+    Gas {
+        /// Volume of the gas at ambient pressure [m^3].
         #[schemars(extend("exclusiveMinimum" = 0))]
-        reverse_conductance_m3_s_pa: f64,
-        /// Pressure range over which the valve opens smoothly [Pa].
-        #[schemars(extend("exclusiveMinimum" = 0))]
-        smoothing_pa: f64,
+        volume_m3: f64,
+        /// `n` of `p V^n`: 1 isothermal (slow), up to its ratio of heats (fast).
+        #[serde(default = "one")]
+        #[schemars(range(min = 1.0, max = 2.0))]
+        polytropic_exponent: f64,
     },
 }

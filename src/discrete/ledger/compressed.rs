@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::fluid::imposed_rate;
 use crate::discrete::fluid_mesh::{MeshLink, Place};
-use crate::discrete::residual::fluid::{drop_over, potential_at, pressure_at};
+use crate::discrete::residual::fluid::{driving, potential_at, pressure_at};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
 use crate::model::{Compression, Storage, Wet};
 
@@ -74,7 +74,7 @@ pub fn lost_between(wet: &Wet, w: &Workspace<f64>, conductance: f64, [a, b]: [us
 pub fn lost(wet: &Wet, link: &MeshLink, q: f64, now: &TimeData, w: &Workspace<f64>) -> [f64; 2] {
     let Some(compression) = &wet.compression else {
         let in_halves = q * q * link.half_cells;
-        return [in_halves, q * drop_over(wet, link, now, w) - in_halves];
+        return [in_halves, q * driving(wet, link, now, w) - in_halves];
     };
     let ends = [link.from, link.to];
     let cells = ends.iter().filter(|place| matches!(place, Place::Cell(_))).count();

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{ENERGY_RATES, EnergyRate, add, compressed, tubes};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
-use crate::discrete::residual::fluid::{bridge_drops, drop_over, pressure_at};
+use crate::discrete::residual::fluid::{bridge_drops, driving, pressure_at};
 use crate::discrete::residual::rows::{mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
@@ -230,14 +230,19 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         let q = w.fluid.flow[n];
         let [in_halves, between] = compressed::lost(wet, link, q, now, w);
         add(out, EnergyRate::Bladders, in_halves);
+        if let Some(pump) = link.pump {
+            add(out, EnergyRate::Ports, q * now.pump_pressure[pump]);
+        }
+        let in_valve = q * link.over_check_valve(q);
+        add(out, EnergyRate::Rectifiers, in_valve);
         let rest = match &link.flow {
-            None => between,
-            Some(flow) => tubes::dissipation(
-                link,
-                flow,
-                [now.resistance[n], q, drop_over(wet, link, now, w) - q * link.half_cells],
-                w,
-            ),
+            None => between - in_valve,
+            Some(flow) => {
+                let in_pump = q * link.of_pump;
+                let before = q * link.half_cells + in_pump + link.over_check_valve(q);
+                let drop = driving(wet, link, now, w) - before;
+                q * in_pump + tubes::dissipation(link, flow, [now.resistance[n], q, drop], w)
+            }
         };
         add(
             out,
@@ -348,6 +353,10 @@ fn surplus(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     for (inflow, &junction) in w.fluid.junction_inflow.iter().zip(&fluid.junctions) {
         w.fluid.volume_defect[network.component_of_junction[junction]] += inflow;
     }
+    for (one, rate) in fluid.accumulators.iter().zip(&w.fluid.accumulated_rate) {
+        let junction = fluid.junctions[one.junction];
+        w.fluid.volume_defect[network.component_of_junction[junction]] -= rate;
+    }
     for (link, conductance) in fluid.links.iter().zip(&now.conductance) {
         let link = &network.links[link.number];
         let inside = match (link.from, link.to) {
@@ -382,6 +391,13 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     wet.bladder_length * sum
 }
 
+/// Energy in accumulators, [E60].
+pub fn accumulated(system: &System, w: &Workspace<f64>) -> f64 {
+    let accumulators = system.fluid.iter().flat_map(|fluid| &fluid.accumulators);
+    let volumes = accumulators.zip(&w.fluid.accumulated);
+    volumes.map(|(one, &volume)| one.law.energy(volume)).sum()
+}
+
 /// Volume change stored in each component.
 pub fn volumes(system: &System, w: &Workspace<f64>) -> Vec<f64> {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
@@ -391,6 +407,9 @@ pub fn volumes(system: &System, w: &Workspace<f64>) -> Vec<f64> {
     for bladder in 0..fluid.bladders {
         let stored: f64 = w.fluid.area[fluid.cells_of(bladder)].iter().sum();
         volumes[wet.network.component_of_bladder[bladder]] += stored * fluid.ds;
+    }
+    for (one, volume) in fluid.accumulators.iter().zip(&w.fluid.accumulated) {
+        volumes[wet.network.component_of_junction[fluid.junctions[one.junction]]] += volume;
     }
     volumes
 }

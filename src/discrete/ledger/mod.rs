@@ -24,7 +24,7 @@ pub enum EnergyRate {
     Loads,
     /// Power of driven ends and end moments.
     Ends,
-    /// Power of pressure and flow ports.
+    /// Power of ports and pumps.
     Ports,
     /// Dissipated in the bladders.
     Bladders,
@@ -32,7 +32,7 @@ pub enum EnergyRate {
     Tubes,
     /// Harvested by the turbines.
     Turbines,
-    /// Dissipated in the check valves of rectifiers.
+    /// Dissipated in check valves, of rectifiers and in tubes.
     Rectifiers,
     /// Dissipated by material damping and drag.
     Damping,
@@ -102,6 +102,9 @@ pub struct Energies {
     /// Of compressed fluid.
     #[serde(default)]
     pub compression: f64,
+    /// In accumulators.
+    #[serde(default)]
+    pub accumulators: f64,
     /// Of springs to ground.
     #[serde(default)]
     pub springs: f64,
@@ -122,6 +125,7 @@ impl Energies {
             + self.relaxing
             + self.compression
             + self.section
+            + self.accumulators
             + self.springs
             + self.around
     }
@@ -211,6 +215,7 @@ pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     let mut e = solid::energies(system, now, &w);
     e.bladders = fluid::energy(system, &w);
     e.compression = compressed::energy(system, &w);
+    e.accumulators = fluid::accumulated(system, &w);
     e.tubes = tubes::kinetic(system, &w);
     e.springs = system.attached.iter().map(|attached| attached.energy(system, &w)).sum();
     e.relaxing = residual::relaxation::energy_and_loss(system, now, &w)[0];

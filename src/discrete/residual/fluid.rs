@@ -139,21 +139,26 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     w.fluid.inflow.fill(T::zero());
     w.fluid.junction_inflow.fill(T::zero());
     let own = &mut w.fluid;
-    let driving = if wet.compression.is_some() {
+    let driven_by = if wet.compression.is_some() {
         &own.potential
     } else {
         &own.pressure
     };
     for &bladder in &fluid.flowing {
         for cell in bladder * k + 1..(bladder + 1) * k {
-            let q = (driving[cell - 1] - driving[cell]) * fluid.conductance;
+            let q = (driven_by[cell - 1] - driven_by[cell]) * fluid.conductance;
             own.inflow[cell - 1] -= q;
             own.inflow[cell] += q;
         }
     }
     for (k, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
         if link.flow.is_none() {
-            w.fluid.flow[k] = drop_over(wet, link, now, w) * conductance;
+            let drop = driving(wet, link, now, w);
+            w.fluid.flow[k] = match &link.check_valve {
+                None => drop * conductance,
+                Some(_) if conductance == 0.0 => T::zero(),
+                Some(valve) => valve.flow_behind(1.0 / conductance, drop),
+            };
         }
         let q = w.fluid.flow[k];
         deliver(link.from, -q, w);
@@ -171,7 +176,17 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     }
 }
 
-/// What drives flow over a link: the pressure drop, or that of Ψ, [E55].
+/// What drives flow over a link: the drop over it and what its pump adds.
+#[inline]
+pub fn driving<T: Scalar>(wet: &Wet, link: &MeshLink, now: &TimeData, w: &Workspace<T>) -> T {
+    let drop = drop_over(wet, link, now, w);
+    match link.pump {
+        None => drop,
+        Some(pump) => drop + now.pump_pressure[pump],
+    }
+}
+
+/// The pressure drop over a link, or that of Ψ, [E55].
 #[inline]
 pub fn drop_over<T: Scalar>(wet: &Wet, link: &MeshLink, now: &TimeData, w: &Workspace<T>) -> T {
     match &wet.compression {

@@ -1,7 +1,7 @@
 //! The equations, one block after the other.
 
 use super::around::{self, node_tangent};
-use super::fluid::{bridge_drops, drop_over, pressure_at};
+use super::fluid::{bridge_drops, driving, pressure_at};
 use crate::discrete::attached::at_node;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, Place};
 use crate::discrete::ledger::EnergyRate;
@@ -237,14 +237,19 @@ pub fn lumped<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
     }
 }
 
-/// Flows into a junction sum to zero. Where only tubes with inertia meet, the pressure follows from their accelerations, and the sum keeps
+/// Flows into a junction sum to zero, into an accumulator to the rate of its volume. Where only tubes with inertia meet, the pressure follows from their accelerations, and the sum keeps
 /// to zero by itself: `Σ q + Σ q'/ω = 0`, ω the characteristic frequency.
 pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     let rows = system.layout.network.junction.clone();
     r[rows.clone()].copy_from_slice(&w.fluid.junction_inflow);
-    let Some(fluid) = system.fluid.as_ref().filter(|fluid| fluid.flows > 0) else {
+    let Some(fluid) = &system.fluid else { return };
+    for (one, rate) in fluid.accumulators.iter().zip(&w.fluid.accumulated_rate) {
+        let row = &mut r[rows.start + one.junction];
+        *row = *rate - *row;
+    }
+    if fluid.flows == 0 {
         return;
-    };
+    }
     let delay = 1.0 / system.model.scales.frequency;
     for link in &fluid.links {
         let Some(flow) = link.flow else { continue };
@@ -269,7 +274,10 @@ pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &m
             continue;
         };
         let q = w.fluid.flow[k];
-        let mut lacking = q * link.half_cells + tube.loss(q) - drop_over(wet, link, now, w);
+        let mut lacking = q * (link.half_cells + link.of_pump) + tube.loss(q) - driving(wet, link, now, w);
+        if let Some(valve) = &link.check_valve {
+            lacking += valve.drop(q);
+        }
         if tube.inertance > 0.0 {
             lacking += w.fluid.flow_rate[number] * tube.inertance;
         }

@@ -53,6 +53,11 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
             first = unknowns.end;
         }
         copy(&mut w.fluid.junction, y, &l.network.junction);
+        for (k, one) in fluid.accumulators.iter().enumerate() {
+            let unknown = l.network.junction.start + one.junction;
+            (w.fluid.accumulated[k], w.fluid.accumulated_rate[k]) = (y[unknown], yp[unknown]);
+            w.fluid.junction[one.junction] = one.law.pressure(y[unknown]);
+        }
         copy(&mut w.fluid.bridge, y, &l.network.bridge);
         for (link, q) in fluid.links.iter().zip(&mut w.fluid.flow) {
             if let Some(flow) = link.flow {

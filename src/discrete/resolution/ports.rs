@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use crate::case::schema::{BladderEnd, Case};
 use crate::functions::signals::Signal;
 use crate::model::Wet;
-use crate::model::network::{Node, PressurePort, Source};
+use crate::model::network::{Feed, Node, PressurePort, Source};
 
 /// Part of the depth that a wave gets into a bladder which half a cell of that depth leaves out; measured with 1 to 32 cells.
 const LEFT_OUT: f64 = 1.0 / 3.0;
@@ -63,7 +63,7 @@ pub fn ports(case: &Case, wet: &Wet) -> Vec<Port> {
     };
     let falls = falls(end, wet);
     let pressures = network.ports.iter().map(|port| (&port.name, &port.pressure));
-    let flows = network.sources.iter().map(|source| (&source.name, &source.flow));
+    let flows = network.sources.iter().map(|source| (&source.name, source.feed.signal()));
     let all = pressures.chain(flows).zip(falls);
     all.map(|((name, signal), falls)| Port {
         name: name.clone(),
@@ -98,12 +98,12 @@ fn falls(end: f64, wet: &Wet) -> Vec<f64> {
     };
     let ports = network.ports.len();
     let of_flow = |(k, source): (usize, &Source)| {
-        let (ways, flow) = (&ways[ports + k], size(&source.flow));
+        let (ways, flow) = (&ways[ports + k], source.feed.largest_flow(end));
         let out = network.ports.iter().zip(ways);
         let out = out.filter(|(_, way)| way.is_finite() && flow > 0.0);
         let out = out.map(|(port, way)| flow * bladder / (flow * way + size(&port.pressure)));
         let taken = network.sources.iter().zip(&ways[ports..]);
-        let taken = taken.filter(|(other, way)| way.is_finite() && against(&source.flow, &other.flow, end));
+        let taken = taken.filter(|(other, way)| way.is_finite() && against(&source.feed, &other.feed, end));
         out.chain(taken.map(|(_, way)| 2.0 * bladder / way)).fold(0.0, f64::max)
     };
     let pressures = network.ports.iter().enumerate().map(of_pressure);
@@ -111,8 +111,11 @@ fn falls(end: f64, wet: &Wet) -> Vec<f64> {
     pressures.chain(flows).collect()
 }
 
-/// Whether one flow comes in while the other may go out.
-fn against(a: &Signal, b: &Signal, end: f64) -> bool {
+/// Whether one flow comes in while the other may go out; of volumes, of whose rates there are no bounds, always.
+fn against(a: &Feed, b: &Feed, end: f64) -> bool {
+    let (Feed::Flow(a), Feed::Flow(b)) = (a, b) else {
+        return true;
+    };
     let (a, b) = (a.range(0.0, end), b.range(0.0, end));
     (a.high > 0.0 && b.low < 0.0) || (a.low < 0.0 && b.high > 0.0)
 }

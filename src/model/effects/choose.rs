@@ -7,6 +7,7 @@ use super::{Decision, EffectSet, Scene};
 use crate::case::schema::{Case, Choice, Coupling, Effect, EffectChoices, Effects, Fluid, FluidKind, Load};
 use crate::error::{Code, Violation};
 use crate::model::Network;
+use crate::model::network::Link;
 
 /// What decisions are made from.
 pub(super) struct Chooser<'a> {
@@ -66,13 +67,11 @@ impl<'a> Chooser<'a> {
             return (false, why);
         }
         let decided = self.decide_possible(effect);
-        if effect == Effect::Compressibility && decided.0 && self.network.is_some_and(|n| !n.bridges.is_empty()) {
-            let what = "fluid that is compressed does not flow through check valves of rectifiers";
-            self.refuse(
-                effect,
-                what,
-                "give an ideal rectifier or none, or set compressibility to \"off\"",
-            );
+        let through = self.network.and_then(incompressible).filter(|_| decided.0);
+        if let (Effect::Compressibility, Some(through)) = (effect, through) {
+            let what = format!("fluid that is compressed is not simulated in {through}");
+            let hint = format!("leave out {through}, or set compressibility to \"off\"");
+            self.refuse(effect, &what, &hint);
         }
         decided
     }
@@ -270,6 +269,18 @@ impl<'a> Chooser<'a> {
             _ => (true, Cause::Given(true)),
         }
     }
+}
+
+/// What a network has that takes incompressible fluid alone.
+fn incompressible(network: &Network) -> Option<&'static str> {
+    let in_tubes = |what: fn(&Link) -> bool| network.links.iter().any(what);
+    let all = [
+        (!network.bridges.is_empty(), "rectifiers of real check valves"),
+        (in_tubes(|link| link.check_valve.is_some()), "check valves"),
+        (in_tubes(|link| link.pump.is_some()), "pumps"),
+        (!network.accumulators.is_empty(), "accumulators"),
+    ];
+    all.into_iter().find_map(|(there, what)| there.then_some(what))
 }
 
 /// Whether numbers of a beam that nothing is attached to decide on an effect.

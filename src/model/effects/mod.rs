@@ -41,7 +41,8 @@ pub struct Decision {
 /// The effects that a model contains.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EffectSet {
-    on: [bool; Effect::ALL.len()],
+    /// A bit for each, in the order of [`Effect::ALL`].
+    on: u64,
     /// Every decision, in the order of [`Effect::ALL`].
     pub decisions: Vec<Decision>,
     /// Why a case is refused: effects that were to be left out and cannot be.
@@ -63,7 +64,7 @@ impl EffectSet {
     /// Whether the model contains an effect.
     #[inline]
     pub const fn has(&self, effect: Effect) -> bool {
-        self.on[effect as usize]
+        self.on & bit(effect) != 0
     }
 
     /// What was decided on an effect, which an equilibrium may leave out beyond that.
@@ -74,7 +75,7 @@ impl EffectSet {
     /// The same without inertia of the solid.
     pub fn at_rest(mut self) -> Self {
         for inertia in [Effect::SolidInertia, Effect::AxialInertia, Effect::RotaryInertia] {
-            self.on[inertia as usize] = false;
+            self.on &= !bit(inertia);
         }
         self
     }
@@ -82,12 +83,20 @@ impl EffectSet {
     /// The same without unsteady friction, unless that is asked for by name.
     pub fn forgetting(mut self) -> Self {
         let memory = Effect::UnsteadyFriction;
-        self.on[memory as usize] &= self.decision(memory).cause == Cause::Asked;
+        if self.decision(memory).cause != Cause::Asked {
+            self.on &= !bit(memory);
+        }
         self
     }
 
     fn push(&mut self, decision: Decision) {
-        self.on[decision.effect as usize] = decision.on;
+        if decision.on {
+            self.on |= bit(decision.effect);
+        }
         self.decisions.push(decision);
     }
+}
+
+const fn bit(effect: Effect) -> u64 {
+    1 << effect as u32
 }

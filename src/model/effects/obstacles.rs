@@ -3,6 +3,7 @@
 use crate::case::schema::{Attachment, Case, Formulation, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::profile::Profile;
+use crate::model::network::Feed;
 use crate::model::{LumpedNetwork, Network};
 
 /// Why an effect must stay, and what to do.
@@ -156,11 +157,18 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
 
 /// A prescribed flow must have somewhere to go.
 pub fn flow(network: &Network) -> Option<Obstacle> {
-    let source = network.sources.first()?;
-    obstacle(
-        format!("the port \"{}\" prescribes a flow", source.name),
-        "remove the port, or leave flow on",
-    )
+    if let Some(source) = network.sources.first() {
+        let given = match source.feed {
+            Feed::Flow(_) => "flow",
+            Feed::Volume(_) => "volume",
+        };
+        let what = format!("the port \"{}\" prescribes a {given}", source.name);
+        return obstacle(what, "remove the port, or leave flow on");
+    }
+    if network.links.iter().any(|link| link.pump.is_some()) {
+        return obstacle("a pump drives it", "remove the pump, or leave flow on");
+    }
+    None
 }
 
 /// Every network must be able to have one pressure.

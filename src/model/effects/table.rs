@@ -253,6 +253,34 @@ pub fn about(effect: Effect) -> About {
                 network.is_some_and(|n| n.links.iter().any(|l| l.opening.is_some()))
             }),
         },
+        Effect::CheckValves => About {
+            adds: "q = G_r Δ + (G_f - G_r) s(Δ - p_c) in series with the tube",
+            brings: "a conductance that its pressure drop changes, linear and quadratic in pieces",
+            number: "present where given",
+            cost: "a root a valve; steps where it opens and shuts",
+            needs: &[Fluid, Flow, NetworkPressureDifferences],
+            presence: Presence::Given(|_, network| {
+                network.is_some_and(|n| n.links.iter().any(|l| l.check_valve.is_some()))
+            }),
+        },
+        Effect::Pumps => About {
+            adds: "p_a - p_b + p_pump(t) - R_pump q along a tube",
+            brings: "a pressure that drives flow",
+            number: "present where given",
+            cost: "a signal a pump",
+            needs: &[Fluid, Flow, NetworkPressureDifferences],
+            presence: Presence::Given(|_, network| {
+                network.is_some_and(|n| n.links.iter().any(|l| l.pump.is_some()))
+            }),
+        },
+        Effect::Accumulators => About {
+            adds: "dV/dt = Σ q, p = p(V)",
+            brings: "a volume each, in place of the pressure of a junction",
+            number: "present where given",
+            cost: "an unknown each",
+            needs: &[Fluid, Flow, NetworkPressureDifferences],
+            presence: Presence::Given(|_, network| network.is_some_and(|n| !n.accumulators.is_empty())),
+        },
         Effect::Turbines => About {
             adds: "q = G (p_a - p_b), and a bridge of check valves where given",
             brings: "conductances; a pressure drop behind each real rectifier",

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::{
-    Bridge, CheckValve, Link, LinkKind, Network, Node, PressurePort, Source, TubeFlow, Turbine, bladder_permeability,
-    components,
+    Accumulator, AccumulatorLaw, Bridge, CheckValve, Feed, Link, LinkKind, Network, Node, PressurePort, Pump, Source,
+    TubeFlow, Turbine, bladder_permeability, components,
 };
 use crate::case::schema::{Bladders, Fluid, Rectifier, TurbineConductance};
 use crate::case::wiring::{Bore, Given, Point, Tube, Wiring};
-use crate::functions::signals::Signal;
 use crate::model::duct;
 use crate::model::mapping::TABLE_TUBE_RATIO;
 
@@ -17,7 +16,8 @@ enum Thing<'a> {
     Tube { to: Point, tube: &'a Tube<'a> },
     Turbine { to: Point, index: usize },
     Pressure { port: usize },
-    Flow { name: String, flow: &'a Signal },
+    Source { name: String, feed: Feed },
+    Accumulator { index: usize },
 }
 
 /// The graph of a network whose permeabilities are scaled by `factor`.
@@ -59,6 +59,11 @@ pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Blad
                 opening: (!tube.opening.is_one()).then(|| tube.opening.clone()),
                 kind: LinkKind::Tube,
                 tube: Some(TubeFlow::new(tube, self::permeability(tube.bore), fluid)),
+                check_valve: tube.check_valve.map(CheckValve::from),
+                pump: tube.pump.map(|pump| Pump {
+                    pressure: pump.pressure_pa.clone(),
+                    resistance: pump.resistance_pa_s_m3,
+                }),
             }),
             Thing::Turbine { to, index } => join(
                 &mut network,
@@ -71,11 +76,18 @@ pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Blad
                     network.links.push(opening(from, Node::Port(port)));
                 }
             }
-            Thing::Flow { name, flow } => network.sources.push(Source {
-                into: from,
-                flow: flow.clone(),
-                name,
-            }),
+            Thing::Source { name, feed } => network.sources.push(Source { into: from, feed, name }),
+            Thing::Accumulator { index } => {
+                if let Node::Junction(junction) = from {
+                    let written = wiring.accumulators[index].1;
+                    network.accumulators.push(Accumulator {
+                        name: written.name.clone().unwrap_or_else(|| wiring.label(at)),
+                        junction,
+                        start_pressure: written.start_pressure_pa,
+                        law: AccumulatorLaw::new(written, fluid.ambient_pressure()),
+                    });
+                }
+            }
         }
     }
     components::find(&mut network, 2 * bladders.per_row);
@@ -101,7 +113,14 @@ fn things<'a>(wiring: &'a Wiring<'a>, ports: &mut Vec<PressurePort>) -> Vec<(Poi
     for port in wiring.chain_ports.iter().chain(&wiring.ports) {
         let name = port.name.map_or_else(|| wiring.label(port.at), str::to_owned);
         let thing = match port.given {
-            Given::Flow(flow) => Thing::Flow { name, flow },
+            Given::Flow(flow) => Thing::Source {
+                name,
+                feed: Feed::Flow(flow.clone()),
+            },
+            Given::Volume(volume) => Thing::Source {
+                name,
+                feed: Feed::Volume(volume.clone()),
+            },
             Given::Pressure(pressure) => {
                 let pressure = pressure.clone();
                 ports.push(PressurePort { pressure, name });
@@ -113,6 +132,9 @@ fn things<'a>(wiring: &'a Wiring<'a>, ports: &mut Vec<PressurePort>) -> Vec<(Poi
     for (index, &([from, to], _)) in wiring.turbines.iter().enumerate() {
         things.push((from, Thing::Turbine { to, index }));
     }
+    for (index, &(at, _)) in wiring.accumulators.iter().enumerate() {
+        things.push((at, Thing::Accumulator { index }));
+    }
     things.sort_by_key(|(at, _)| *at);
     things
 }
@@ -120,7 +142,7 @@ fn things<'a>(wiring: &'a Wiring<'a>, ports: &mut Vec<PressurePort>) -> Vec<(Poi
 /// The node of every point where something is attached. Where several things meet, or a real rectifier needs a pressure, that
 /// is a junction or a port, into which a bladder opens.
 fn nodes(wiring: &Wiring, things: &[(Point, Thing)], network: &mut Network) -> BTreeMap<Point, Node> {
-    let real = |index: usize| matches!(wiring.turbines[index].1.rectifier, Rectifier::CheckValves { .. });
+    let real = |index: usize| matches!(wiring.turbines[index].1.rectifier, Rectifier::CheckValves(_));
     let mut meeting: BTreeMap<Point, (usize, bool)> = BTreeMap::new();
     let mut held: BTreeMap<Point, usize> = BTreeMap::new();
     let mut count = |point: Point, needs_node: bool| {
@@ -136,7 +158,8 @@ fn nodes(wiring: &Wiring, things: &[(Point, Thing)], network: &mut Network) -> B
                 held.entry(*at).or_insert(*port);
                 (None, false)
             }
-            Thing::Flow { .. } => (None, false),
+            Thing::Source { .. } => (None, false),
+            Thing::Accumulator { .. } => (None, true),
         };
         count(*at, needs_node);
         to.into_iter().for_each(|to| count(to, needs_node));
@@ -169,12 +192,14 @@ fn opening(cell: Node, here: Node) -> Link {
         opening: None,
         kind: LinkKind::Opening,
         tube: None,
+        check_valve: None,
+        pump: None,
     }
 }
 
 /// A turbine between two points, behind check valves where it has some.
 fn join(network: &mut Network, [from, to]: [Node; 2], index: usize, rectifier: &Rectifier) {
-    match *rectifier {
+    match rectifier {
         Rectifier::Ideal => network.links.push(Link {
             from,
             to,
@@ -182,22 +207,14 @@ fn join(network: &mut Network, [from, to]: [Node; 2], index: usize, rectifier: &
             opening: None,
             kind: LinkKind::Turbine(index),
             tube: None,
+            check_valve: None,
+            pump: None,
         }),
-        Rectifier::CheckValves {
-            cracking_pressure_pa,
-            forward_conductance_m3_s_pa,
-            reverse_conductance_m3_s_pa,
-            smoothing_pa,
-        } => network.bridges.push(Bridge {
+        Rectifier::CheckValves(valve) => network.bridges.push(Bridge {
             from,
             to,
             turbine: index,
-            valve: CheckValve {
-                cracking_pressure: cracking_pressure_pa,
-                forward: forward_conductance_m3_s_pa,
-                reverse: reverse_conductance_m3_s_pa,
-                width: smoothing_pa,
-            },
+            valve: valve.into(),
         }),
     }
 }

@@ -1,21 +1,27 @@
 //! The network as a graph: bladder ends, junctions and ports joined by conductances.
 //!
 //! ```text
-//! graph       the graph of what a case has resolved: a pressure of its own where several things meet
-//! components  what is joined to what
-//! tube        what flow in a tube needs beyond creeping
+//! graph        the graph of what a case has resolved: a pressure of its own where several things meet
+//! components   what is joined to what
+//! tube         what flow in a tube needs beyond creeping
+//! check_valve  valves that open by themselves
+//! accumulator  vessels that take in fluid as their pressure rises
 //! ```
 
+mod accumulator;
+mod check_valve;
 mod components;
 mod graph;
 pub mod tube;
 
-use super::duct;
+use super::{Wet, duct};
 use crate::case::schema::{BladderEnd, Bladders, Case};
 use crate::case::wiring::Wiring;
 use crate::error::Result;
 use crate::functions::signals::Signal;
 
+pub use accumulator::{Accumulator, AccumulatorLaw};
+pub use check_valve::CheckValve;
 pub use tube::TubeFlow;
 
 /// A point of the graph.
@@ -45,11 +51,13 @@ pub enum LinkKind {
     Turbine(usize),
 }
 
-/// `[E6]` Two points and what lies between them (A.13, A.67), a valve of opening `o` included:
+/// `[E6]` Two points and what lies between them (A.13, A.67), a valve of opening `o` and a pump included:
 ///
 /// ```text
-/// q = g (p_a - p_b)    g = o/(o (R_half,a + R_half,b) + R)    R = μ l_c/q1c
+/// q = g (p_a - p_b + p_pump)    g = o/(o (R_half,a + R_half,b + R_pump) + R)    R = μ l_c/q1c
 /// ```
+///
+/// A check valve in it is in series with all of that, [E7].
 #[derive(Clone, Debug)]
 pub struct Link {
     /// Where positive flow comes from.
@@ -64,6 +72,19 @@ pub struct Link {
     pub kind: LinkKind,
     /// Inertia and losses of a tube in which flow does not creep.
     pub tube: Option<TubeFlow>,
+    /// Check valve in it.
+    pub check_valve: Option<CheckValve>,
+    /// Pump in it.
+    pub pump: Option<Pump>,
+}
+
+/// A pump by a straight curve: the pressure that it adds falls with its flow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pump {
+    /// `p_pump`, the pressure that it adds where nothing flows [Pa].
+    pub pressure: Signal,
+    /// `R_pump`: what that falls by with flow [Pa s/m^3].
+    pub resistance: f64,
 }
 
 impl Link {
@@ -79,10 +100,41 @@ impl Link {
 pub struct Source {
     /// Where it enters: a cell or a junction.
     pub into: Node,
-    /// Flow [m^3/s].
-    pub flow: Signal,
+    /// What is given of it.
+    pub feed: Feed,
     /// Name.
     pub name: String,
+}
+
+/// What a source gives.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Feed {
+    /// Its flow [m^3/s].
+    Flow(Signal),
+    /// The volume that it has let in [m^3], of which its flow is the rate.
+    Volume(Signal),
+}
+
+impl Feed {
+    /// The signal.
+    pub const fn signal(&self) -> &Signal {
+        let (Self::Flow(signal) | Self::Volume(signal)) = self;
+        signal
+    }
+
+    /// The signal.
+    pub const fn signal_mut(&mut self) -> &mut Signal {
+        let (Self::Flow(signal) | Self::Volume(signal)) = self;
+        signal
+    }
+
+    /// The largest flow from t = 0 to an end [m^3/s].
+    pub fn largest_flow(&self, end: f64) -> f64 {
+        match self {
+            Self::Flow(flow) => flow.largest(end).value,
+            Self::Volume(volume) => volume.largest(end).rate,
+        }
+    }
 }
 
 /// A prescribed pressure.
@@ -105,35 +157,6 @@ pub struct Bridge {
     pub turbine: usize,
     /// Law of one valve.
     pub valve: CheckValve,
-}
-
-/// `[E7]` A real check valve, smooth over `width`:
-///
-/// ```text
-/// q(Δ) = G_r Δ + (G_f - G_r) w [ln(1 + e^((Δ - p_c)/w)) - ln(1 + e^(-p_c/w))]
-/// ```
-///
-/// so that `q(0) = 0`, and `q Δ ≥ 0` always.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CheckValve {
-    /// `p_c` [Pa].
-    pub cracking_pressure: f64,
-    /// `G_f` [m^3/(s Pa)].
-    pub forward: f64,
-    /// `G_r` [m^3/(s Pa)].
-    pub reverse: f64,
-    /// `w` [Pa].
-    pub width: f64,
-}
-
-impl CheckValve {
-    /// Flow under the pressure drop `drop`.
-    #[inline]
-    pub fn flow<T: crate::numerics::Scalar>(&self, drop: T) -> T {
-        let closed = f64::ln_1p((-self.cracking_pressure / self.width).exp());
-        let open = ((drop - self.cracking_pressure) * (1.0 / self.width)).softplus() - closed;
-        drop * self.reverse + open * ((self.forward - self.reverse) * self.width)
-    }
 }
 
 /// A turbine: conductance and name.
@@ -162,6 +185,10 @@ pub struct Network {
     pub turbines: Vec<Turbine>,
     /// Real rectifiers.
     pub bridges: Vec<Bridge>,
+    /// Accumulators, each the whole of a junction.
+    pub accumulators: Vec<Accumulator>,
+    /// Whether nothing flows in, however volumes that sources give grow: for equilibria.
+    pub still: bool,
     /// Component of each bladder; components are joined by links, not through pressure ports.
     pub component_of_bladder: Vec<usize>,
     /// Component of each junction.
@@ -212,6 +239,20 @@ impl Network {
             let bridged = self.bridges.iter().any(|b| here(b.from, b.to));
             matches!(source.into, Node::Junction(_)) && !bridged && links.all(|link| link.tube.is_some())
         })
+    }
+
+    /// Whether something drives flow whose pressure nothing tells beforehand: sources, pumps.
+    pub fn pumped(&self) -> bool {
+        !self.sources.is_empty() || self.links.iter().any(|link| link.pump.is_some())
+    }
+
+    /// Volume that everything joined to a point takes in per pressure, at ambient pressure [m^3/Pa].
+    pub(super) fn compliance_at(&self, node: Node, wet: &Wet) -> f64 {
+        let own = self.component_of(node);
+        let here = |component: &&usize| Some(**component) == own;
+        let bladders = self.component_of_bladder.iter().filter(here).count();
+        let vessels = self.accumulators.iter().filter(|one| here(&&self.component_of_junction[one.junction]));
+        bladders as f64 * wet.compliance() * wet.bladder_length + vessels.map(|one| one.law.compliance(0.0)).sum::<f64>()
     }
 
     /// Number of a link among the tubes.

@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::signals::{is_zero, peak, words};
-use crate::case::schema::{BladderEnd, ChainEnd, Load, Rectifier};
-use crate::case::wiring::{Given, Point, Wiring};
+use crate::case::schema::{AccumulatorKind, BladderEnd, ChainEnd, Load, Rectifier};
+use crate::case::wiring::{Given, Point, Tube, Wiring};
 use crate::case::{Case, ResolvedEnd, Rotation, Translation};
 use crate::functions::{Profile, Signal};
 use crate::model::Network;
@@ -66,17 +66,41 @@ fn wiring(case: &Case) -> Option<Value> {
             ChainEnd::Connected => json!({"kind": "connected"}),
             ChainEnd::PressurePa(p) => json!({"kind": "pressure", "words": pressure(p)}),
             ChainEnd::FlowM3S(f) => json!({"kind": "flow", "words": flow(f)}),
+            ChainEnd::VolumeM3(v) => json!({"kind": "flow", "words": volume(v)}),
         });
         json!({"bladders": bladders, "ends": ends.collect::<Vec<_>>(), "valve": valve(&chain.opening)})
     });
+    let within = |tube: &Tube| {
+        let check = tube.check_valve.map(|valve| match valve.cracking_pressure_pa {
+            0.0 => "check valve".to_owned(),
+            cracking => format!("check valve, opens at {}", q(cracking, "Pa")),
+        });
+        let pump = tube
+            .pump
+            .map(|pump| format!("pump, {}", words(&pump.pressure_pa, "Pa")));
+        let all: Vec<String> = [valve(tube.opening), check, pump].into_iter().flatten().collect();
+        (!all.is_empty()).then(|| all.join("; "))
+    };
     let tubes = found
         .tubes
         .iter()
-        .map(|t| json!({"from": point(&t.points[0]), "to": point(&t.points[1]), "valve": valve(t.opening)}));
+        .map(|t| json!({"from": point(&t.points[0]), "to": point(&t.points[1]), "valve": within(t)}));
+    let accumulators = found.accumulators.iter().map(|(at, one)| {
+        let words = match one.kind {
+            AccumulatorKind::Elastic { compliance_m3_pa } => {
+                format!("accumulator, {} m³/Pa", significant(compliance_m3_pa, 3))
+            }
+            AccumulatorKind::Gas { volume_m3, .. } => {
+                format!("accumulator, {} ml of gas", significant(volume_m3 * 1e6, 3))
+            }
+        };
+        json!({"name": one.name, "at": point(at), "kind": "accumulator", "words": words})
+    });
     let ports = found.ports.iter().map(|p| {
         let (kind, words) = match p.given {
             Given::Pressure(signal) => ("pressure", pressure(signal)),
             Given::Flow(signal) => ("flow", flow(signal)),
+            Given::Volume(signal) => ("flow", volume(signal)),
         };
         json!({"name": p.name, "at": point(&p.at), "kind": kind, "words": words})
     });
@@ -87,7 +111,7 @@ fn wiring(case: &Case) -> Option<Value> {
         "chains": chains.collect::<Vec<_>>(),
         "junctions": found.junctions,
         "tubes": tubes.collect::<Vec<_>>(),
-        "ports": ports.collect::<Vec<_>>(),
+        "ports": ports.chain(accumulators).collect::<Vec<_>>(),
         "turbines": turbines.collect::<Vec<_>>(),
     }))
 }
@@ -106,6 +130,12 @@ fn flow(signal: &Signal) -> String {
         Signal::Constant(x) => format!("{} µl/s", significant(x * 1e9, 3)),
         _ => format!("flow up to {} µl/s", significant(peak(&scaled, 1e3).abs(), 3)),
     }
+}
+
+/// Volume let in through a port, in microlitres.
+fn volume(signal: &Signal) -> String {
+    let scaled = Signal::Product(vec![Signal::Constant(1e9), signal.clone()]);
+    format!("syringe, up to {} µl", significant(peak(&scaled, 1e3).abs(), 3))
 }
 
 /// An end: its form, what is held, what drives it, what loads it.

@@ -143,6 +143,7 @@ fn growing(case: &Case, mut model: Model, at_s: f64) -> error::Result<System> {
     let section = &mut model.section;
     (section.drag, section.axial_damping_time, section.bending_damping_time) = (0.0, 0.0, 0.0);
     if let Some(wet) = model.wet.as_mut().filter(|wet| wet.flows) {
+        wet.network.still = true;
         wet.storage.fill(Storage::Flowing);
         wet.lumped.clear();
     }

@@ -170,6 +170,9 @@ fn fluid(w: &Workspace<f64>, to: &System, z: &mut [f64]) {
     for (k, &junction) in fluid.junctions.iter().enumerate() {
         z[l.junction.start + k] = w.fluid.junction.get(junction).copied().unwrap_or(0.0);
     }
+    for (one, &volume) in fluid.accumulators.iter().zip(&w.fluid.accumulated) {
+        z[l.junction.start + one.junction] = volume;
+    }
     for (k, drop) in w.fluid.bridge.iter().take(fluid.bridges.len()).enumerate() {
         z[l.bridge.start + k] = *drop;
     }

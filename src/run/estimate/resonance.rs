@@ -109,7 +109,9 @@ pub fn tones(system: &System) -> [Vec<f64>; 2] {
     if let Some(wet) = &model.wet {
         let network = &wet.network;
         let ports = network.ports.iter().map(|port| &port.pressure);
-        for signal in ports.chain(network.sources.iter().map(|source| &source.flow)) {
+        let sources = network.sources.iter().map(|source| source.feed.signal());
+        let pumps = network.links.iter().filter_map(|link| link.pump.as_ref());
+        for signal in ports.chain(sources).chain(pumps.map(|pump| &pump.pressure)) {
             hear(&mut across, signal);
             hear(&mut along, signal);
         }

@@ -258,6 +258,8 @@ impl<'a> Scene<'a> {
         let Some(wet) = self.wet else { return true };
         let network = &wet.network;
         let plain = network.junctions.is_empty() && network.bridges.is_empty() && network.sources.is_empty();
+        let oriented = |link: &Link| link.check_valve.is_some() || link.pump.is_some();
+        let plain = plain && !network.links.iter().any(oriented);
         let quiet_start = self.case.start.pressures.is_empty();
         let other = |bladder: usize| (bladder + wet.per_row) % (2 * wet.per_row);
         // a link by what it does: its ends in any order, whatever way a bladder is passed
@@ -298,7 +300,11 @@ impl<'a> Scene<'a> {
             let pressed = |signal: &Signal| {
                 signal.largest(self.case.time.end_s).value > 0.0 || self.case.held_at_start(signal) != 0.0
             };
-            n.ports.iter().any(|p| pressed(&p.pressure)) || !n.sources.is_empty() || !n.turbines.is_empty()
+            n.ports.iter().any(|p| pressed(&p.pressure))
+                || !n.sources.is_empty()
+                || !n.turbines.is_empty()
+                || n.links.iter().any(|link| link.pump.is_some())
+                || n.accumulators.iter().any(|one| one.start_pressure != 0.0)
         })
     }
 
@@ -343,7 +349,7 @@ impl<'a> Scene<'a> {
     /// Moment and force that pressure causes, over those of the loads at the least; over the whole run where vibrations are damped by it.
     pub fn strains_of_pressure(&self) -> [f64; 2] {
         let Some(wet) = self.wet else { return [0.0; 2] };
-        if !wet.network.sources.is_empty() {
+        if wet.network.pumped() {
             return [f64::INFINITY; 2];
         }
         let p = self.scales.pressure;

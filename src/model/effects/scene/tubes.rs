@@ -87,7 +87,8 @@ impl Scene<'_> {
             return Tubes::default();
         };
         let compliance = wet.area.per_pressure * wet.bladder_length;
-        let relaxation = 1.0 / (link.resistance * compliance);
+        let resistance = link.resistance;
+        let relaxation = 1.0 / (resistance * compliance);
         let rate = if self.inertia_ratio(relaxation) > tolerance {
             fastest.max(relaxation)
         } else {
@@ -96,9 +97,9 @@ impl Scene<'_> {
         let flow = self.largest_flow(wet, link, rate * compliance);
         let womersley_squared = rate / tube.viscous_rate;
         Tubes {
-            inertia: rate * tube.steady_inertance() / link.resistance,
+            inertia: rate * tube.steady_inertance() / resistance,
             memory: womersley_squared * womersley_squared / 1152.0,
-            losses: tube.loss(flow) / (link.resistance * flow).max(f64::MIN_POSITIVE),
+            losses: tube.loss(flow) / (resistance * flow).max(f64::MIN_POSITIVE),
         }
     }
 
@@ -111,7 +112,7 @@ impl Scene<'_> {
             .network
             .sources
             .iter()
-            .map(|source| source.flow.largest(end).value)
+            .map(|source| source.feed.largest_flow(end))
             .sum();
         MARGIN * self.scales.pressure * (1.0 / link.resistance).min(bladders * given_up) + pumped
     }

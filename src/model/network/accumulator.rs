@@ -1,0 +1,157 @@
+//! Vessels at points of the network that take in fluid as their pressure rises.
+
+use crate::case::schema::{Accumulator as Written, AccumulatorKind};
+use crate::numerics::Scalar;
+
+/// `[E60]` An accumulator at a junction: the volume V that it holds beyond that at ambient pressure is an unknown, in place of the
+/// junction's pressure p,
+///
+/// ```text
+/// dV/dt = Σ q
+/// elastic   p = V/C                                    E = V²/(2C)
+/// gas       p = p_0 ((1 - V/V_0)^-n - 1)               E = p_0 V_0 (((1 - V/V_0)^(1-n) - 1)/(n - 1) - V/V_0)
+/// ```
+///
+/// `V_0` the volume of the gas above the fluid at the ambient pressure `p_0`, which presses it together by `p_abs V^n` = const;
+/// `n = 1`: `E = -p_0 V_0 (ln(1 - V/V_0) + V/V_0)`. E is the work `∫ p dV`: an accumulator dissipates nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Accumulator {
+    /// Its name.
+    pub name: String,
+    /// Number of the junction that it is.
+    pub junction: usize,
+    /// Gauge pressure at the start [Pa].
+    pub start_pressure: f64,
+    /// Law.
+    pub law: AccumulatorLaw,
+}
+
+/// Pressure of an accumulator by what it holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AccumulatorLaw {
+    /// Of elastic walls.
+    Elastic {
+        /// `C` [m^3/Pa].
+        compliance: f64,
+    },
+    /// Of gas above the fluid.
+    Gas {
+        /// `V_0` [m^3].
+        volume: f64,
+        /// `p_0`, absolute [Pa].
+        ambient: f64,
+        /// `n`.
+        exponent: f64,
+    },
+}
+
+impl AccumulatorLaw {
+    /// As a case writes it; `ambient` is the absolute ambient pressure [Pa].
+    pub(super) fn new(written: &Written, ambient: f64) -> Self {
+        match written.kind {
+            AccumulatorKind::Elastic { compliance_m3_pa } => Self::Elastic {
+                compliance: compliance_m3_pa,
+            },
+            AccumulatorKind::Gas {
+                volume_m3,
+                polytropic_exponent,
+            } => Self::Gas {
+                volume: volume_m3,
+                ambient,
+                exponent: polytropic_exponent,
+            },
+        }
+    }
+
+    /// Gauge pressure [Pa] by the volume [m^3]; not a number where there is no gas left.
+    #[inline]
+    pub fn pressure<T: Scalar>(&self, volume: T) -> T {
+        match *self {
+            Self::Elastic { compliance } => volume * (1.0 / compliance),
+            Self::Gas {
+                volume: of_gas,
+                ambient,
+                exponent,
+            } => volume.lift(|volume| {
+                let left = 1.0 - volume / of_gas;
+                if left <= 0.0 {
+                    return (f64::NAN, f64::NAN);
+                }
+                let logarithm = (-volume / of_gas).ln_1p();
+                let pressure = ambient * (-exponent * logarithm).exp_m1();
+                (pressure, exponent * (pressure + ambient) / (of_gas * left))
+            }),
+        }
+    }
+
+    /// Volume [m^3] by gauge pressure [Pa].
+    pub fn volume(&self, pressure: f64) -> f64 {
+        match *self {
+            Self::Elastic { compliance } => compliance * pressure,
+            Self::Gas {
+                volume,
+                ambient,
+                exponent,
+            } => -volume * (-(pressure / ambient).ln_1p() / exponent).exp_m1(),
+        }
+    }
+
+    /// Volume taken in per pressure [m^3/Pa] at a gauge pressure [Pa].
+    pub fn compliance(&self, pressure: f64) -> f64 {
+        match *self {
+            Self::Elastic { compliance } => compliance,
+            Self::Gas {
+                volume,
+                ambient,
+                exponent,
+            } => (volume - self.volume(pressure)) / (exponent * (ambient + pressure)),
+        }
+    }
+
+    /// Energy that it stores, `∫ p dV` from ambient pressure on [J].
+    pub fn energy(&self, volume: f64) -> f64 {
+        match *self {
+            Self::Elastic { compliance } => 0.5 * volume * volume / compliance,
+            Self::Gas {
+                volume: of_gas,
+                ambient,
+                exponent,
+            } => {
+                let (share, logarithm) = (volume / of_gas, (-volume / of_gas).ln_1p());
+                let worked = if exponent == 1.0 {
+                    -logarithm
+                } else {
+                    ((1.0 - exponent) * logarithm).exp_m1() / (exponent - 1.0)
+                };
+                ambient * of_gas * (worked - share)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::Dual;
+
+    /// Goal: pressure, volume, compliance and energy are of one law.
+    #[test]
+    fn laws_agree_with_themselves() {
+        let gas = |exponent| AccumulatorLaw::Gas {
+            volume: 2e-6,
+            ambient: 101_325.0,
+            exponent,
+        };
+        for law in [AccumulatorLaw::Elastic { compliance: 1e-12 }, gas(1.0), gas(1.4)] {
+            for pressure in [-9e4, -1e3, 0.0, 1.0, 1e4, 1e6] {
+                let volume = law.volume(pressure);
+                assert!((law.pressure(volume) - pressure).abs() <= 1e-9 * pressure.abs());
+                let slope = law.pressure(Dual { value: volume, derivative: [1.0] }).derivative[0];
+                assert!((slope * law.compliance(pressure) - 1.0).abs() < 1e-12);
+                let h = 1e-3 * law.compliance(pressure) * 1e3;
+                let power = (law.energy(volume + h) - law.energy(volume - h)) / (2.0 * h);
+                assert!((power - pressure).abs() <= 1e-5 * pressure.abs() + 1e-3, "{law:?} {pressure}: {power}");
+            }
+        }
+    }
+}
