@@ -4,6 +4,7 @@ pub mod beam;
 pub mod perturbed;
 pub mod statics;
 pub mod trace;
+mod valves;
 
 pub use beam::BeamDae;
 pub use perturbed::PerturbedSystems;
@@ -60,6 +61,17 @@ pub trait Dae {
         seeds: Seeds<'_>,
         values: &mut [f64],
     ) -> Result<(), EvaluationError>;
+
+    /// Whether laws of the system change so abruptly that a Jacobian may be [outdated](Dae::outdated) without Newton's iteration seeing it.
+    fn switches(&self) -> bool {
+        false
+    }
+
+    /// Whether the last Jacobian is that of another state of such a law than the last residual is: an iteration with it may seem to
+    /// converge where it does not.
+    fn outdated(&self) -> bool {
+        false
+    }
 
     /// Number of integrals that the solver carries along without feedback, `I' = g(t, y, y')`.
     fn integrals(&self) -> usize {

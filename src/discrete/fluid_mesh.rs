@@ -48,11 +48,6 @@ impl MeshLink {
     pub fn in_series(&self) -> f64 {
         self.half_cells + self.of_pump + self.resistance
     }
-
-    /// What falls over its check valve where a flow passes [Pa].
-    pub fn over_check_valve(&self, flow: f64) -> f64 {
-        self.check_valve.map_or(0.0, |valve| valve.drop(flow))
-    }
 }
 
 /// The flow of a tube as an unknown.

@@ -293,7 +293,8 @@ impl Network {
         let flow = build.block(|build| {
             for (link, MeshFlow { tube, .. }) in flows() {
                 let name = Name::Flow("flow [m^3/s]", wet.network.tube(link.number));
-                build.push(name, moved(link), s.pressure, tube.inertance > 0.0);
+                let row = if link.check_valve.is_some() { moved(link) } else { s.pressure };
+                build.push(name, moved(link), row, tube.inertance > 0.0);
             }
         });
         let branch = build.block(|build| {

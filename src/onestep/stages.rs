@@ -164,11 +164,19 @@ impl<D: Dae> OneStep<D> {
         self.matrix
             .prepare(&mut self.equations, state, cj, self.options.matrix_band)?;
         let tolerance = self.options.newton_tolerance;
+        let switches = self.equations.dae.switches();
         let mut before: Option<f64> = None;
         for iteration in 0..ITERATIONS {
             self.newton_iterations += 1;
             self.equations
                 .residual(t, &self.now.y[i], &self.work.yp, &mut self.work.r)?;
+            if switches && self.equations.dae.outdated() {
+                let state = (t, self.now.y[i].as_slice(), self.work.yp.as_slice());
+                self.matrix.stale = true;
+                self.matrix
+                    .prepare(&mut self.equations, state, cj, self.options.matrix_band)?;
+                before = None;
+            }
             let factor = -self.matrix.solve(&mut self.work.r, cj);
             self.work.r.iter_mut().for_each(|r| *r *= factor);
             let x = &mut self.now.x[i];
@@ -194,7 +202,8 @@ impl<D: Dae> OneStep<D> {
                 }
             }
             let rate = self.matrix.rate;
-            if rate / (1.0 - rate) * size <= tolerance {
+            // a first correction that seems small may have passed a switch
+            if rate / (1.0 - rate) * size <= tolerance && !(switches && before.is_none()) {
                 if before.is_none() {
                     self.matrix.trust_less();
                 }

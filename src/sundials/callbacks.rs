@@ -3,8 +3,10 @@
 //! Codes: 0 done, +1 try a shorter step, -1 stop. The first fatal fault or panic is kept in the [`Bridge`].
 
 use std::any::Any;
+use std::cell::Cell;
 use std::ffi::{c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use sundials_sys::{N_Vector, SUNMatrix};
@@ -46,6 +48,10 @@ pub(super) struct Bridge<D> {
     pub jacobian_wall: Duration,
     /// Wall time of integrands.
     pub integrand_wall: Duration,
+    /// Whether the last Jacobian, made at another time, is outdated: what the linear solver heeds.
+    pub outdated: Rc<Cell<bool>>,
+    /// Time of the last Jacobian [s].
+    made: f64,
     /// Derivatives of the residual by parameters, at the state of the last step.
     pub slopes: Slopes,
 }
@@ -64,6 +70,8 @@ impl<D: Dae> Bridge<D> {
             residual_wall: Duration::ZERO,
             jacobian_wall: Duration::ZERO,
             integrand_wall: Duration::ZERO,
+            outdated: Rc::default(),
+            made: f64::NAN,
             slopes: Slopes::default(),
         }
     }
@@ -124,6 +132,8 @@ pub(super) unsafe extern "C" fn residual<D: Dae>(
             ))),
         }
     });
+    // One that was made in this attempt is the best there is.
+    bridge.outdated.set(bridge.made != t && bridge.dae.outdated());
     bridge.residuals += 1;
     bridge.residual_wall += begin.elapsed();
     code
@@ -154,6 +164,8 @@ pub(super) unsafe extern "C" fn jacobian<D: Dae>(
             Some(entry) => Err(EvaluationError::Recoverable(not_finite(dae, entry, t))),
         }
     });
+    bridge.outdated.set(false);
+    bridge.made = t;
     bridge.jacobians += 1;
     bridge.jacobian_wall += begin.elapsed();
     code

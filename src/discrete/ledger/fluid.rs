@@ -5,8 +5,8 @@ use std::ops::Range;
 use super::{ENERGY_RATES, EnergyRate, add, compressed, tubes};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
-use crate::discrete::residual::fluid::{bridge_drops, driving, pressure_at};
-use crate::discrete::residual::rows::{mean_force, mean_moment};
+use crate::discrete::residual::fluid::{bridge_drops, pressure_at};
+use crate::discrete::residual::rows::{driven, mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
 use crate::model::bladder::{kink_curvature, kink_slope};
@@ -233,17 +233,11 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         if let Some(pump) = link.pump {
             add(out, EnergyRate::Ports, q * now.pump_pressure[pump]);
         }
-        let in_valve = q * link.over_check_valve(q);
-        add(out, EnergyRate::Rectifiers, in_valve);
-        let rest = match &link.flow {
-            None => between - in_valve,
-            Some(flow) => {
-                let in_pump = q * link.of_pump;
-                let before = q * link.half_cells + in_pump + link.over_check_valve(q);
-                let drop = driving(wet, link, now, w) - before;
-                q * in_pump + tubes::dissipation(link, flow, [now.resistance[n], q, drop], w)
-            }
+        let [in_valve, rest] = match &link.flow {
+            None => tubes::creeping(link, [conductance, q, between]),
+            Some(flow) => tubes::dissipation(link, flow, [now.resistance[n], q, driven(wet, link, now, w, n)], w),
         };
+        add(out, EnergyRate::Rectifiers, in_valve);
         add(
             out,
             if matches!(link.kind, LinkKind::Turbine(_)) {

@@ -7,26 +7,41 @@ use crate::model::network::tube::BRANCHES;
 /// A valve that is open by less than this tells what it dissipates by the pressure drop over it: its flow is too small to.
 const NEARLY_SHUT: f64 = 0.01;
 
-/// What a tube dissipates, [E51]: its resistance R/o at its opening [Pa s/m^3], flow [m^3/s], and pressure drop between its ends [Pa].
-pub fn dissipation(link: &MeshLink, flow: &MeshFlow, [resistance, q, drop]: [f64; 3], w: &Workspace<f64>) -> f64 {
-    let (mut slips, mut shear) = (0.0, 0.0);
-    for (r, slip, ..) in self::slips(flow, q, w) {
-        slips += r * slip * slip;
-        shear += r * slip;
+/// What a check valve and the rest of a link dissipate where flow creeps, of its conductance without the valve [m^3/(s Pa)], flow
+/// [m^3/s], and all that is lost outside half cells [W].
+pub fn creeping(link: &MeshLink, [conductance, q, lost]: [f64; 3]) -> [f64; 2] {
+    if link.check_valve.is_none() {
+        return [0.0, lost];
     }
-    let loss = flow.tube.loss(q);
-    let steady = if NEARLY_SHUT * resistance > link.resistance {
-        let rate = if flow.tube.inertance > 0.0 {
-            w.fluid.flow_rate[flow.number]
-        } else {
-            0.0
-        };
-        let over_valve = drop - flow.tube.inertance * rate - shear - loss;
-        over_valve * over_valve / resistance
-    } else {
-        q * q * resistance
+    let rest = if conductance > 0.0 { q * q * (1.0 / conductance - link.half_cells) } else { 0.0 };
+    [lost - rest, rest]
+}
+
+/// The same of a tube in which flow is an unknown, [E51]: its resistance R/o at its opening [Pa s/m^3], flow [m^3/s], and what is
+/// left to drive it [Pa].
+pub fn dissipation(link: &MeshLink, flow: &MeshFlow, [resistance, q, driven]: [f64; 3], w: &Workspace<f64>) -> [f64; 2] {
+    let slips: f64 = self::slips(flow, q, w).map(|(r, slip, ..)| r * slip * slip).sum();
+    let left = driven - q * (link.half_cells + link.of_pump);
+    let nearly_shut = NEARLY_SHUT * resistance > link.resistance;
+    let (in_valve, steady) = match &link.check_valve {
+        None if nearly_shut => (0.0, left * left / resistance),
+        None => (0.0, q * q * resistance),
+        // a flow that leaks back tells its pressure drop less well than the rest does
+        Some(valve) if valve.is_shut(q) => {
+            let steady = if nearly_shut { 0.0 } else { q * q * resistance };
+            (q * left - steady, steady)
+        }
+        Some(valve) => {
+            let drop: f64 = valve.drop(q);
+            let steady = if nearly_shut {
+                (left - drop) * (left - drop) / resistance
+            } else {
+                q * q * resistance
+            };
+            (q * drop, steady)
+        }
     };
-    steady + q * loss + slips
+    [in_valve, q * q * link.of_pump + steady + q * flow.tube.loss(q) + slips]
 }
 
 /// Of each branch of a tube's friction: resistance, `q - j`, rate, and `j`.

@@ -3,10 +3,10 @@
 use super::around::{self, node_tangent};
 use super::fluid::{bridge_drops, driving, pressure_at};
 use crate::discrete::attached::at_node;
-use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, Place};
+use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, MeshLink, Place};
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::{Kinematics, LumpedKind};
+use crate::model::{Kinematics, LumpedKind, Wet};
 use crate::numerics::{Planar, Scalar};
 
 /// `[E14]` Momentum of each node (A.5), in the conservative form telescoping:
@@ -263,7 +263,7 @@ pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     }
 }
 
-/// Flow of each tube in which it does not creep, [E51].
+/// Flow of each tube in which it does not creep, [E51]; behind a check valve that which [E7] lets through.
 pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -274,22 +274,37 @@ pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &m
             continue;
         };
         let q = w.fluid.flow[k];
-        let mut lacking = q * (link.half_cells + link.of_pump) + tube.loss(q) - driving(wet, link, now, w);
-        if let Some(valve) = &link.check_valve {
-            lacking += valve.drop(q);
-        }
-        if tube.inertance > 0.0 {
-            lacking += w.fluid.flow_rate[number] * tube.inertance;
-        }
         if let Some(first) = branch {
-            for (i, (resistance, rate)) in (first..).zip(tube.branches()) {
-                let slip = q - w.fluid.branch[i];
-                lacking += slip * resistance;
-                r[own.branch.start + i] = w.fluid.branch_rate[i] - slip * rate;
+            for (i, (_, rate)) in (first..).zip(tube.branches()) {
+                r[own.branch.start + i] = w.fluid.branch_rate[i] - (q - w.fluid.branch[i]) * rate;
             }
         }
-        r[own.flow.start + number] = lacking * now.opening[k] + q * link.resistance;
+        let driven = driven(wet, link, now, w, k);
+        r[own.flow.start + number] = match &link.check_valve {
+            None => (q * (link.half_cells + link.of_pump) - driven) * now.opening[k] + q * link.resistance,
+            Some(valve) => q - valve.flow_behind(1.0 / now.conductance[k], driven),
+        };
     }
+}
+
+/// What is left of what drives the flow of a tube that does not creep, for its check valve and all linear resistance [Pa].
+#[inline]
+pub fn driven<T: Scalar>(wet: &Wet, link: &MeshLink, now: &TimeData, w: &Workspace<T>, k: usize) -> T {
+    let mut left = driving(wet, link, now, w);
+    let Some(MeshFlow { number, branch, tube }) = link.flow else {
+        return left;
+    };
+    let q = w.fluid.flow[k];
+    left -= tube.loss(q);
+    if tube.inertance > 0.0 {
+        left -= w.fluid.flow_rate[number] * tube.inertance;
+    }
+    if let Some(first) = branch {
+        for (i, (resistance, _)) in (first..).zip(tube.branches()) {
+            left -= (q - w.fluid.branch[i]) * resistance;
+        }
+    }
+    left
 }
 
 /// `[E18]` What flows through the valves of a bridge flows through its turbine:

@@ -44,10 +44,12 @@ impl CheckValve {
     /// Flow under a pressure drop over the valve and a resistance [Pa s/m^3] before it.
     #[inline]
     pub fn flow_behind<T: Scalar>(&self, resistance: f64, drop: T) -> T {
-        drop.lift(|drop| {
-            let (flow, slope) = self.at(self.share(resistance, drop));
-            (flow, slope / (1.0 + resistance * slope))
-        })
+        drop.lift(|drop| self.behind(resistance, drop))
+    }
+
+    /// The slope of that.
+    pub fn slope_behind(&self, resistance: f64, drop: f64) -> f64 {
+        self.behind(resistance, drop).1
     }
 
     /// The pressure drop that a flow takes.
@@ -57,6 +59,16 @@ impl CheckValve {
             let drop = self.drop_of(flow);
             (drop, 1.0 / self.at(drop).1)
         })
+    }
+
+    /// Whether it is shut under a flow, but for its leakage.
+    pub fn is_shut(&self, flow: f64) -> bool {
+        flow <= self.reverse * self.cracking_pressure
+    }
+
+    fn behind(&self, resistance: f64, drop: f64) -> (f64, f64) {
+        let (flow, slope) = self.at(self.share(resistance, drop));
+        (flow, slope / (1.0 + resistance * slope))
     }
 
     /// Flow and its slope.

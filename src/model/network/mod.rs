@@ -234,6 +234,10 @@ impl Network {
     /// A prescribed flow into a junction where only tubes meet: their inertia does not let it follow at once.
     pub fn fed_junction(&self) -> Option<&Source> {
         self.sources.iter().find(|source| {
+            let stores = self.accumulators.iter();
+            if stores.into_iter().any(|one| Node::Junction(one.junction) == source.into) {
+                return false;
+            }
             let here = |from: Node, to: Node| from == source.into || to == source.into;
             let mut links = self.links.iter().filter(|l| !l.is_shut() && here(l.from, l.to));
             let bridged = self.bridges.iter().any(|b| here(b.from, b.to));
