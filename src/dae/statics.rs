@@ -146,7 +146,12 @@ fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
     }
     let given = sets.root(given);
     let mut closed: Vec<(usize, Closed)> = vec![];
-    let unit = layout.network.area.clone().next().map_or(1.0, |cell| layout.scales[cell] * fluid.ds);
+    let unit = layout
+        .network
+        .area
+        .clone()
+        .next()
+        .map_or(1.0, |cell| layout.scales[cell] * fluid.ds);
     let cells = layout.network.area.clone().zip(flowing_cells(fluid));
     let vessels = fluid.accumulators.iter().map(|one| {
         let unknown = layout.network.junction.start + one.junction;
@@ -237,7 +242,10 @@ impl Dae for StaticBeam {
         for closed in &self.closed {
             let sum: f64 = closed.parts.iter().map(|&(part, weight)| weight * y[part]).sum();
             let (sources, unit) = &closed.volumes;
-            let let_in: f64 = sources.iter().map(|&source| self.beam.now().source_volume[source]).sum();
+            let let_in: f64 = sources
+                .iter()
+                .map(|&source| self.beam.now().source_volume[source])
+                .sum();
             residual[closed.row] = sum - t * closed.sum - let_in / unit;
         }
         for (r, more) in residual.iter_mut().zip(&self.imperfection) {

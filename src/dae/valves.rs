@@ -54,6 +54,7 @@ impl Valves {
         let link = &fluid.links[k];
         let driven = driven(wet, link, now, w, k);
         let resistance = 1.0 / now.conductance[k];
-        link.check_valve.map_or(0.0, |valve| valve.slope_behind(resistance, driven))
+        link.check_valve
+            .map_or(0.0, |valve| valve.slope_behind(resistance, driven))
     }
 }

@@ -286,14 +286,16 @@ impl Network {
                 build.push(Name::Bridge(bridge.number), s.pressure, s.pressure * conductance, false);
             }
         });
-        let moved = |link: &MeshLink| {
-            (stored * wet.bladder_length * s.frequency).min(s.pressure / link.in_series())
-        };
+        let moved = |link: &MeshLink| (stored * wet.bladder_length * s.frequency).min(s.pressure / link.in_series());
         let flows = || fluid.links.iter().filter_map(|link| Some((link, link.flow?)));
         let flow = build.block(|build| {
             for (link, MeshFlow { tube, .. }) in flows() {
                 let name = Name::Flow("flow [m^3/s]", wet.network.tube(link.number));
-                let row = if link.check_valve.is_some() { moved(link) } else { s.pressure };
+                let row = if link.check_valve.is_some() {
+                    moved(link)
+                } else {
+                    s.pressure
+                };
                 build.push(name, moved(link), row, tube.inertance > 0.0);
             }
         });

@@ -193,7 +193,10 @@ impl Scales {
             }
             for source in &wet.network.sources {
                 if let Feed::Volume(volume) = &source.feed {
-                    let volume = volume.largest(case.time.end_s).value.max(case.held_at_start(volume).abs());
+                    let volume = volume
+                        .largest(case.time.end_s)
+                        .value
+                        .max(case.held_at_start(volume).abs());
                     d.pressure = d.pressure.max(volume / wet.network.compliance_at(source.into, wet));
                 }
             }

@@ -79,7 +79,11 @@ impl LumpedNetwork {
                 _ => None,
             }));
         }
-        if network.accumulators.iter().any(|one| inside(Node::Junction(one.junction))) {
+        if network
+            .accumulators
+            .iter()
+            .any(|one| inside(Node::Junction(one.junction)))
+        {
             return Err("an accumulator needs them".into());
         }
         if bridged {

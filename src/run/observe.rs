@@ -6,7 +6,7 @@ use crate::case::schema::{Case, Thinning};
 use crate::dae::BeamDae;
 use crate::discrete::glance::{Glance, Watched};
 use crate::discrete::ledger::{self, EnergyBalance, Invariants};
-use crate::discrete::quantities::{self, Extremes, Look, Observable, Row, probes};
+use crate::discrete::quantities::{self, Extremes, Look, Observable, Row, probes, stations};
 use crate::discrete::{State, System, TimeData};
 use crate::error::Result;
 use crate::model::mapping::NetworkCoordinate;
@@ -137,7 +137,10 @@ impl Observer {
             len: field.len(system),
         };
         let own = Observable::of(system).into_iter().map(Column::from);
-        let columns: Vec<Column> = own.chain(probes::columns(system).map(Column::from)).collect();
+        let columns: Vec<Column> = own
+            .chain(stations::columns(system, false).into_iter().map(Column::from))
+            .chain(probes::columns(system).map(Column::from))
+            .collect();
         let envelope = match case.time.history {
             Thinning::All => vec![],
             _ => stretch::names(&columns),

@@ -301,10 +301,7 @@ impl<'a> Rules<'a, '_> {
                 self.fault(format!("{pointer}/at"), what);
             }
             if self.joined.held.contains(&at) {
-                let what = format!(
-                    "an accumulator at {}, where a port gives the pressure",
-                    self.words(at)
-                );
+                let what = format!("an accumulator at {}, where a port gives the pressure", self.words(at));
                 self.fault(format!("{pointer}/at"), what);
             }
             self.joined.stores.insert(at);

@@ -1,6 +1,6 @@
 //! What is done in no time: work at a switch, where a solid without inertia jumps with its load and ends turn with their moment.
 
-use super::{EnergyRate, add, complete, fluid, solid};
+use super::{EnergyRate, add, complete, fluid, ports, solid};
 use crate::discrete::kick::{self, Nodal};
 use crate::discrete::{System, TimeData, Workspace};
 use crate::functions::signals::Jet;
@@ -42,6 +42,7 @@ pub fn side(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>,
     let rates = fluid::rates(system, w, out);
     solid::flows(system, now, rates, w, out);
     fluid::lumped_jump(system, now, w, out);
+    ports::lumped_jump(system, w, out);
     for flow in [
         EnergyRate::Damping,
         EnergyRate::ImpulseX,

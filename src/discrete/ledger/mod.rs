@@ -3,6 +3,7 @@
 mod compressed;
 mod fluid;
 mod jump;
+pub mod ports;
 mod reactions;
 mod solid;
 mod tubes;
@@ -49,7 +50,7 @@ pub enum EnergyRate {
 }
 
 /// All flows, in the order in which they are stored; outflow and throughput of every open network follow, then of each what its
-/// ports' law gives and how finely that can be known.
+/// ports' law gives and how finely that can be known, then what has come in through each port by itself.
 pub const ENERGY_RATES: [EnergyRate; 13] = [
     EnergyRate::Loads,
     EnergyRate::Ends,
@@ -165,7 +166,8 @@ pub fn balance(stored: Energies, at_start: f64, integrals: &[f64]) -> EnergyBala
 
 /// Number of integrated rates of a system.
 pub fn rate_count(system: &System) -> usize {
-    ENERGY_RATES.len() + 4 * system.model.wet.as_ref().map_or(0, |w| w.network.open.len())
+    let wet = system.model.wet.as_ref();
+    wet.map_or(ENERGY_RATES.len(), |wet| ports::first(wet) + ports::count(wet))
 }
 
 /// Volume that has left the `open`-th open network through its ports, and volume that has passed them either way [m^3].
@@ -197,6 +199,7 @@ pub fn flows(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>
     let rates = fluid::rates(system, &state, out);
     solid::flows(system, now, rates, &state, out);
     fluid::flows(system, now, w, out);
+    ports::rates(system, now, w, out);
 }
 
 /// What balances and samples need and no equation does: rates of strain, means, motion along where it has no unknowns.

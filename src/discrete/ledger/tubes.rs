@@ -13,13 +13,22 @@ pub fn creeping(link: &MeshLink, [conductance, q, lost]: [f64; 3]) -> [f64; 2] {
     if link.check_valve.is_none() {
         return [0.0, lost];
     }
-    let rest = if conductance > 0.0 { q * q * (1.0 / conductance - link.half_cells) } else { 0.0 };
+    let rest = if conductance > 0.0 {
+        q * q * (1.0 / conductance - link.half_cells)
+    } else {
+        0.0
+    };
     [lost - rest, rest]
 }
 
 /// The same of a tube in which flow is an unknown, [E51]: its resistance R/o at its opening [Pa s/m^3], flow [m^3/s], and what is
 /// left to drive it [Pa].
-pub fn dissipation(link: &MeshLink, flow: &MeshFlow, [resistance, q, driven]: [f64; 3], w: &Workspace<f64>) -> [f64; 2] {
+pub fn dissipation(
+    link: &MeshLink,
+    flow: &MeshFlow,
+    [resistance, q, driven]: [f64; 3],
+    w: &Workspace<f64>,
+) -> [f64; 2] {
     let slips: f64 = self::slips(flow, q, w).map(|(r, slip, ..)| r * slip * slip).sum();
     let left = driven - q * (link.half_cells + link.of_pump);
     let nearly_shut = NEARLY_SHUT * resistance > link.resistance;

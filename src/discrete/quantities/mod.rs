@@ -5,6 +5,7 @@
 //! interest      in the end: the quantities of the summary
 //! fields        along the beam and the network, with their axes
 //! probes        over time, at places that the case names
+//! stations      over time, at ports and in accumulators
 //! look          how a state is read
 //! row           the values of all of them at one instant
 //! ```
@@ -18,6 +19,7 @@ pub mod look;
 pub mod observables;
 pub mod probes;
 pub mod row;
+pub mod stations;
 
 pub use fields::{Axis, Field};
 pub use interest::{Interest, Source};

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::look::Look;
 use crate::case::schema::Effect;
 use crate::discrete::System;
-use crate::discrete::ledger::{ENERGY_RATES, EnergyRate, passed};
+use crate::discrete::ledger::{EnergyRate, passed};
 use crate::model::effects::Cause;
 
 /// What a quantity is read off.
@@ -17,6 +17,8 @@ pub enum Read {
     State(fn(&Look) -> f64),
     /// What has flowed since the start, of the integrals of [`crate::discrete::ledger::flows`].
     Integral(fn(&[f64]) -> f64),
+    /// The same, with the system that tells where it stands among them.
+    Through(fn(&System, &[f64]) -> f64),
     /// What the balance of energy leaves open [J].
     Open,
 }
@@ -106,6 +108,13 @@ fn relaxing(system: &System) -> bool {
     !system.model.relaxation.is_empty()
 }
 
+fn accumulating(system: &System) -> bool {
+    system
+        .fluid
+        .as_ref()
+        .is_some_and(|fluid| !fluid.accumulators.is_empty())
+}
+
 fn compressed(system: &System) -> bool {
     system.model.wet.as_ref().is_some_and(|wet| wet.compression.is_some())
 }
@@ -116,8 +125,8 @@ fn open(system: &System) -> bool {
 }
 
 /// Volume that all open networks together have taken in [m^3].
-fn injected(integrals: &[f64]) -> f64 {
-    let networks = (integrals.len() - ENERGY_RATES.len()) / 4;
+fn injected(system: &System, integrals: &[f64]) -> f64 {
+    let networks = system.model.wet.as_ref().map_or(0, |wet| wet.network.open.len());
     -(0..networks).map(|network| passed(integrals, network).0).sum::<f64>()
 }
 
@@ -130,7 +139,11 @@ fn port_flow(look: &Look) -> f64 {
     let cells = (0..fluid.bladders)
         .filter(open)
         .flat_map(|bladder| fluid.cells_of(bladder));
-    cells.map(|cell| look.w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds
+    let stored = cells.map(|cell| look.w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds;
+    let vessels = fluid.accumulators.iter().zip(&look.w.fluid.accumulated_rate);
+    let open = |junction: usize| wet.network.open.contains(&wet.network.component_of_junction[junction]);
+    let vessels = vessels.filter(|(one, _)| open(fluid.junctions[one.junction]));
+    stored + vessels.map(|(_, rate)| rate).sum::<f64>()
 }
 
 /// One row of the table.
@@ -191,7 +204,7 @@ observables! {
         "smallest bladder cross-section over that at rest; 0 is closed";
     PortFlow: "port_flow" ["m^3/s"], "flow through ports", "the flow through ports", Ports, Recorded, open, Read::State(port_flow),
         "flow through all ports into the networks";
-    InjectedVolume: "injected_volume" ["m^3"], "volume let in", "volume let in", Ports, Recorded, open, Read::Integral(injected),
+    InjectedVolume: "injected_volume" ["m^3"], "volume let in", "volume let in", Ports, Recorded, open, Read::Through(injected),
         "volume let in through all ports since the start, less what left through them";
     KineticEnergy: "kinetic_energy" ["J"], "kinetic energy", "kinetic energy", Stored, Studied, always, Read::State(|look| look.stored.kinetic),
         "kinetic energy of the beam's translation";
@@ -207,6 +220,8 @@ observables! {
         "energy of the section at finite strain, beyond those that are quadratic";
     RelaxingEnergy: "relaxing_energy" ["J"], "relaxing energy", "energy of what relaxes", Stored, Recorded, relaxing, Read::State(|look| look.stored.relaxing),
         "energy of the parts of moments and normal forces that relax";
+    AccumulatorEnergy: "accumulator_energy" ["J"], "accumulator energy", "energy in accumulators", Stored, Recorded, accumulating, Read::State(|look| look.stored.accumulators),
+        "energy in accumulators";
     CompressionEnergy: "compression_energy" ["J"], "compression energy", "energy of compressed fluid", Stored, Recorded, compressed, Read::State(|look| look.stored.compression),
         "energy of compressed fluid, relative to ambient pressure";
     TubeEnergy: "tube_energy" ["J"], "tube energy", "energy of the fluid in tubes", Stored, Recorded, inert, Read::State(|look| look.stored.tubes),
@@ -314,6 +329,7 @@ impl Observable {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::discrete::ledger::ENERGY_RATES;
 
     /// Goal: each energy that flows is in one column, and enters the balance as its group says.
     #[test]

@@ -2,36 +2,47 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Group, Look, Observable, Read, probes};
+use super::{Group, Look, Observable, Read, probes, stations};
 use crate::discrete::System;
 
-/// Values of the quantities over time at one instant, then those of probes.
+/// Values of the quantities over time at one instant, then those of ports and accumulators, then those of probes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     columns: Vec<Observable>,
+    /// How many values are those of ports and accumulators.
+    stations: usize,
     values: Vec<f64>,
 }
 
 impl Row {
     /// Of a system, zero yet.
     pub fn of(system: &System) -> Self {
-        Self::new(Observable::of(system), probes::columns(system).count())
+        Self::new(system, Observable::of(system), stations::columns(system, false).len())
     }
 
-    /// Of columns and so many of probes, zero yet.
-    pub fn new(columns: Vec<Observable>, probes: usize) -> Self {
-        let values = vec![0.0; columns.len() + probes];
-        Self { columns, values }
+    /// Of columns, so many of ports and accumulators, and those of probes, zero yet.
+    pub fn new(system: &System, columns: Vec<Observable>, stations: usize) -> Self {
+        let values = vec![0.0; columns.len() + stations + probes::columns(system).count()];
+        Self {
+            columns,
+            stations,
+            values,
+        }
     }
 
     /// Reads a state at a time [s], with what has flowed up to then and what the balance of energy leaves open [J].
     pub fn take(&mut self, t: f64, look: &Look, integrals: &[f64], open: f64) {
-        let (values, at_probes) = self.values.split_at_mut(self.columns.len());
+        let (values, rest) = self.values.split_at_mut(self.columns.len());
+        let (at_stations, at_probes) = rest.split_at_mut(self.stations);
+        if !at_stations.is_empty() {
+            stations::values(look, Some(integrals).filter(|all| !all.is_empty()), at_stations);
+        }
         for (value, column) in values.iter_mut().zip(&self.columns) {
             *value = match column.read() {
                 Read::Time => t,
                 Read::State(read) => read(look),
                 Read::Integral(of) => of(integrals),
+                Read::Through(of) => of(look.system, integrals),
                 Read::Open => open,
             };
         }
@@ -52,7 +63,7 @@ impl Row {
 
     /// Its values at probes.
     pub fn at_probes(&self) -> &[f64] {
-        &self.values[self.columns.len()..]
+        &self.values[self.columns.len() + self.stations..]
     }
 
     /// Time [s].

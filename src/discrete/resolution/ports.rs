@@ -63,7 +63,10 @@ pub fn ports(case: &Case, wet: &Wet) -> Vec<Port> {
     };
     let falls = falls(end, wet);
     let pressures = network.ports.iter().map(|port| (&port.name, &port.pressure));
-    let flows = network.sources.iter().map(|source| (&source.name, source.feed.signal()));
+    let flows = network
+        .sources
+        .iter()
+        .map(|source| (&source.name, source.feed.signal()));
     let all = pressures.chain(flows).zip(falls);
     all.map(|((name, signal), falls)| Port {
         name: name.clone(),

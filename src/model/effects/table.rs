@@ -269,9 +269,7 @@ pub fn about(effect: Effect) -> About {
             number: "present where given",
             cost: "a signal a pump",
             needs: &[Fluid, Flow, NetworkPressureDifferences],
-            presence: Presence::Given(|_, network| {
-                network.is_some_and(|n| n.links.iter().any(|l| l.pump.is_some()))
-            }),
+            presence: Presence::Given(|_, network| network.is_some_and(|n| n.links.iter().any(|l| l.pump.is_some()))),
         },
         Effect::Accumulators => About {
             adds: "dV/dt = Σ q, p = p(V)",

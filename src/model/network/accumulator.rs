@@ -146,11 +146,19 @@ mod tests {
             for pressure in [-9e4, -1e3, 0.0, 1.0, 1e4, 1e6] {
                 let volume = law.volume(pressure);
                 assert!((law.pressure(volume) - pressure).abs() <= 1e-9 * pressure.abs());
-                let slope = law.pressure(Dual { value: volume, derivative: [1.0] }).derivative[0];
+                let slope = law
+                    .pressure(Dual {
+                        value: volume,
+                        derivative: [1.0],
+                    })
+                    .derivative[0];
                 assert!((slope * law.compliance(pressure) - 1.0).abs() < 1e-12);
                 let h = 1e-3 * law.compliance(pressure) * 1e3;
                 let power = (law.energy(volume + h) - law.energy(volume - h)) / (2.0 * h);
-                assert!((power - pressure).abs() <= 1e-5 * pressure.abs() + 1e-3, "{law:?} {pressure}: {power}");
+                assert!(
+                    (power - pressure).abs() <= 1e-5 * pressure.abs() + 1e-3,
+                    "{law:?} {pressure}: {power}"
+                );
             }
         }
     }

@@ -116,9 +116,24 @@ mod tests {
     use crate::numerics::Dual;
 
     const VALVES: [CheckValve; 3] = [
-        CheckValve { cracking_pressure: 0.0, forward: 1e-9, reverse: 1e-15, width: 10.0 },
-        CheckValve { cracking_pressure: 2e3, forward: 3e-10, reverse: 1e-12, width: 500.0 },
-        CheckValve { cracking_pressure: 1.0, forward: 1e-9, reverse: 1e-9, width: 1.0 },
+        CheckValve {
+            cracking_pressure: 0.0,
+            forward: 1e-9,
+            reverse: 1e-15,
+            width: 10.0,
+        },
+        CheckValve {
+            cracking_pressure: 2e3,
+            forward: 3e-10,
+            reverse: 1e-12,
+            width: 500.0,
+        },
+        CheckValve {
+            cracking_pressure: 1.0,
+            forward: 1e-9,
+            reverse: 1e-9,
+            width: 1.0,
+        },
     ];
     const DROPS: [f64; 12] = [-1e6, -3e3, -1.0, 0.0, 1e-9, 0.5, 5.0, 10.0, 2e3, 2.2e3, 2.5e3, 1e6];
 
@@ -130,14 +145,20 @@ mod tests {
                 let flow = valve.flow(drop);
                 assert!(flow * drop >= 0.0);
                 let back: f64 = valve.drop(flow);
-                assert!((back - drop).abs() <= 1e-9 * (drop.abs() + 1.0), "{valve:?} {drop}: {back}");
+                assert!(
+                    (back - drop).abs() <= 1e-9 * (drop.abs() + 1.0),
+                    "{valve:?} {drop}: {back}"
+                );
                 for resistance in [0.0, 1e6, 1e9, 1e13] {
                     let q: f64 = valve.flow_behind(resistance, drop);
                     let left = drop - resistance * q;
                     let off = valve.flow(left) - q;
                     // what round-off of the larger of both drops makes of a flow
                     let noise = 1e-14 * (drop.abs() + resistance * q.abs()) * valve.forward;
-                    assert!(off.abs() <= noise + 1e-12 * q.abs(), "{valve:?} {drop} {resistance}: {off:e} of {q:e}");
+                    assert!(
+                        off.abs() <= noise + 1e-12 * q.abs(),
+                        "{valve:?} {drop} {resistance}: {off:e} of {q:e}"
+                    );
                 }
             }
         }
@@ -150,12 +171,19 @@ mod tests {
             for drop in DROPS.into_iter().filter(|drop| drop.abs() > 1e-6) {
                 let h = 1e-6 * drop;
                 let along = |function: &dyn Fn(Dual<1>) -> Dual<1>, at: f64| {
-                    function(Dual { value: at, derivative: [1.0] }).derivative[0]
+                    function(Dual {
+                        value: at,
+                        derivative: [1.0],
+                    })
+                    .derivative[0]
                 };
                 let flow = |x: f64| -> f64 { valve.flow_behind(1e9, x) };
                 let slope = along(&|x| valve.flow_behind(1e9, x), drop);
                 let difference = (flow(drop + h) - flow(drop - h)) / (2.0 * h);
-                assert!((slope / difference - 1.0).abs() < 1e-2, "{valve:?} {drop}: {slope:e} {difference:e}");
+                assert!(
+                    (slope / difference - 1.0).abs() < 1e-2,
+                    "{valve:?} {drop}: {slope:e} {difference:e}"
+                );
                 let q = valve.flow(drop);
                 let product = along(&|q| valve.drop(q), q) * along(&|x| valve.flow(x), drop);
                 assert!((product - 1.0).abs() < 1e-6, "{valve:?} {drop}: {product}");

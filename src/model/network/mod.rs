@@ -235,7 +235,10 @@ impl Network {
     pub fn fed_junction(&self) -> Option<&Source> {
         self.sources.iter().find(|source| {
             let stores = self.accumulators.iter();
-            if stores.into_iter().any(|one| Node::Junction(one.junction) == source.into) {
+            if stores
+                .into_iter()
+                .any(|one| Node::Junction(one.junction) == source.into)
+            {
                 return false;
             }
             let here = |from: Node, to: Node| from == source.into || to == source.into;
@@ -255,8 +258,12 @@ impl Network {
         let own = self.component_of(node);
         let here = |component: &&usize| Some(**component) == own;
         let bladders = self.component_of_bladder.iter().filter(here).count();
-        let vessels = self.accumulators.iter().filter(|one| here(&&self.component_of_junction[one.junction]));
-        bladders as f64 * wet.compliance() * wet.bladder_length + vessels.map(|one| one.law.compliance(0.0)).sum::<f64>()
+        let vessels = self
+            .accumulators
+            .iter()
+            .filter(|one| here(&&self.component_of_junction[one.junction]));
+        bladders as f64 * wet.compliance() * wet.bladder_length
+            + vessels.map(|one| one.law.compliance(0.0)).sum::<f64>()
     }
 
     /// Number of a link among the tubes.

@@ -4,7 +4,7 @@ use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
 use crate::discrete::glance::Glance;
 use crate::discrete::layout::Line;
 use crate::discrete::ledger;
-use crate::discrete::quantities::{Extremes, Look, Observable, Row, probes};
+use crate::discrete::quantities::{Extremes, Look, Observable, Row, probes, stations};
 use crate::discrete::residual::relaxation;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::run::range::Limits;
@@ -57,6 +57,7 @@ pub fn columns(system: &System) -> Vec<Column> {
         about: "load factor".into(),
     };
     let all = at_rest(system).into_iter().map(Column::from);
+    let all = all.chain(stations::columns(system, true).into_iter().map(Column::from));
     let all = all.chain(probes::columns(system).map(Column::from));
     std::iter::once(share).chain(all).collect()
 }
@@ -74,7 +75,7 @@ impl State {
             stored: ledger::energies(system, now, w),
             at: Extremes::of(system, &w),
         };
-        let mut read = Row::new(at_rest(system), probes::columns(system).count());
+        let mut read = Row::new(system, at_rest(system), stations::columns(system, true).len());
         read.take(share, &look, &[], 0.0);
         let row = std::iter::once(share).chain(read.values().iter().copied()).collect();
         Self {

@@ -346,6 +346,7 @@ impl<'a> Forward<'a> {
             let mut slopes = slopes.iter().copied();
             let of = |one: &Observable| match one.read() {
                 Read::Integral(of) => of(integrals),
+                Read::Through(of) => of(dae.system(), integrals),
                 _ => slopes.next().unwrap_or(0.0),
             };
             let first = self.row.len();

@@ -1,0 +1,120 @@
+//! What passes each port by itself.
+
+use super::{ENERGY_RATES, compressed, rate_count};
+use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
+use crate::discrete::residual::fluid::{bridge_drops, pressure_at};
+use crate::discrete::{System, TimeData, Workspace};
+use crate::model::{LumpedKind, Storage, Wet};
+
+/// Number of ports of a network: those that give a pressure first, then those that give flow or volume.
+pub fn count(wet: &Wet) -> usize {
+    wet.network.ports.len() + wet.network.sources.len()
+}
+
+/// Where the volumes that have come in through ports stand among the integrals.
+pub fn first(wet: &Wet) -> usize {
+    ENERGY_RATES.len() + 4 * wet.network.open.len()
+}
+
+/// Volume that has come in through a port [m^3].
+pub fn let_in(system: &System, integrals: &[f64], port: usize) -> f64 {
+    let wet = system.model.wet.as_ref();
+    wet.and_then(|wet| integrals.get(first(wet) + port))
+        .copied()
+        .unwrap_or(0.0)
+}
+
+/// Adds the flow that comes in through each port [m^3/s].
+pub fn flows(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
+    let mut across = |from: Place, to: Place, q: f64| {
+        for (place, sign) in [(from, 1.0), (to, -1.0)] {
+            if let Place::Port(port) = place {
+                out[port] += sign * q;
+            }
+        }
+    };
+    for (link, &q) in fluid.links.iter().zip(&w.fluid.flow) {
+        across(link.from, link.to, q);
+    }
+    for (&MeshBridge { number, from, to }, &drop) in fluid.bridges.iter().zip(&w.fluid.bridge) {
+        let valve = &wet.network.bridges[number].valve;
+        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), drop);
+        across(from, to, valve.flow(forward) - valve.flow(backward));
+    }
+    of_lumped(system, w, out);
+    for (out, &flow) in out[wet.network.ports.len()..].iter_mut().zip(&now.source_flow) {
+        *out += flow;
+    }
+}
+
+/// Of networks of one pressure, whose ports let in what they store.
+fn of_lumped(system: &System, w: &Workspace<f64>, out: &mut [f64]) {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
+    for lumped in &wet.lumped {
+        if let LumpedKind::Port(port) = lumped.kind {
+            let cells = lumped.bladders.iter().flat_map(|&b| fluid.cells_of(b));
+            out[port] += cells.map(|cell| w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds;
+        }
+    }
+}
+
+/// What comes in through ports in no time, into networks of one pressure that jumps.
+pub(super) fn lumped_jump(system: &System, w: &Workspace<f64>, out: &mut [f64]) {
+    if let Some(wet) = &system.model.wet {
+        of_lumped(system, w, &mut out[first(wet)..]);
+    }
+}
+
+/// The flows of [`flows`] among the rates of all integrals.
+pub(super) fn rates(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
+    if let Some(wet) = &system.model.wet {
+        let first = first(wet);
+        flows(system, now, w, &mut out[first..rate_count(system)]);
+    }
+}
+
+/// Pressure at a port, outside of the half cell behind it [Pa], and the power of a flow that comes in through it [W].
+pub fn pressure_and_power(system: &System, now: &TimeData, w: &Workspace<f64>, port: usize, flow: f64) -> [f64; 2] {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return [0.0; 2];
+    };
+    let ports = wet.network.ports.len();
+    if port < ports {
+        let pressure = now.port_pressure[port];
+        return [pressure, wet.enthalpy(pressure) * flow];
+    }
+    let source = |one: &&MeshSource| one.number == port - ports;
+    match fluid.sources.iter().find(source) {
+        Some(&MeshSource { into, .. }) => {
+            let half = if matches!(into, Place::Cell(_)) {
+                0.5 / fluid.conductance
+            } else {
+                0.0
+            };
+            let inside = pressure_at(into, now, w);
+            let outside = match &wet.compression {
+                None => inside + half * flow,
+                Some(compression) => compression.pressure_of_potential(compression.potential(inside) + half * flow),
+            };
+            [outside, compressed::fed(wet, inside, half, flow)[0]]
+        }
+        // in a network of one pressure
+        None => {
+            let component = wet.network.component_of(wet.network.sources[port - ports].into);
+            let own = |bladder: &usize| Some(wet.network.component_of_bladder[*bladder]) == component;
+            let shares = (0..fluid.bladders)
+                .filter(own)
+                .find_map(|bladder| match wet.storage[bladder] {
+                    Storage::Shared(lumped) => Some(w.fluid.lumped[lumped]),
+                    _ => None,
+                });
+            let pressure = shares.unwrap_or(0.0);
+            [pressure, wet.enthalpy(pressure) * flow]
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Quantities at each port and in each accumulator.
+
+use super::look::Look;
+use super::probes::ProbeColumn;
+use crate::discrete::System;
+use crate::discrete::ledger::ports;
+
+/// Columns of all ports and accumulators of a system; at rest, those that a state at rest has.
+pub fn columns(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return vec![];
+    };
+    let network = &wet.network;
+    let names = network.ports.iter().map(|port| &port.name);
+    let names = names.chain(network.sources.iter().map(|source| &source.name));
+    let kept = fluid
+        .accumulators
+        .iter()
+        .map(|one| &network.accumulators[one.number].name);
+    let mut all = vec![];
+    for (name, short) in short("port", names) {
+        let column = |what: &str, unit, about: &str| ProbeColumn {
+            name: format!("{short}_{what}"),
+            unit,
+            about: format!("{about} the port \"{name}\""),
+        };
+        all.push(column("pressure", "Pa", "pressure at"));
+        all.push(column("flow", "m^3/s", "flow in through"));
+        all.push(column("power", "W", "power that comes in through"));
+        if !at_rest {
+            all.push(column(
+                "volume",
+                "m^3",
+                "volume that has come in since the start through",
+            ));
+        }
+    }
+    for (name, short) in short("accumulator", kept) {
+        let column = |what: &str, unit, about: &str| ProbeColumn {
+            name: format!("{short}_{what}"),
+            unit,
+            about: format!("{about} the accumulator \"{name}\""),
+        };
+        all.push(column("pressure", "Pa", "pressure in"));
+        all.push(column(
+            "volume",
+            "m^3",
+            "volume held beyond that at ambient pressure by",
+        ));
+    }
+    all
+}
+
+/// Their values in a state; without integrals those of a state at rest.
+pub fn values(look: &Look, integrals: Option<&[f64]>, out: &mut [f64]) {
+    let (Some(wet), Some(fluid)) = (&look.system.model.wet, &look.system.fluid) else {
+        return;
+    };
+    let mut flows = vec![0.0; ports::count(wet)];
+    ports::flows(look.system, look.now, &look.w, &mut flows);
+    let mut out = out.iter_mut();
+    let mut put = |value: f64| {
+        if let Some(place) = out.next() {
+            *place = value;
+        }
+    };
+    for (port, &flow) in flows.iter().enumerate() {
+        let [pressure, power] = ports::pressure_and_power(look.system, look.now, &look.w, port, flow);
+        put(pressure);
+        put(flow);
+        put(power);
+        if let Some(integrals) = integrals {
+            put(ports::let_in(look.system, integrals, port));
+        }
+    }
+    for (one, &volume) in fluid.accumulators.iter().zip(&look.w.fluid.accumulated) {
+        put(look.w.fluid.junction[one.junction]);
+        put(volume);
+    }
+}
+
+/// Each name with what its columns begin with: letters and digits of it, and a number where that is taken.
+fn short<'a>(kind: &str, names: impl Iterator<Item = &'a String>) -> Vec<(&'a String, String)> {
+    let mut all: Vec<(&String, String)> = vec![];
+    for name in names {
+        let plain: String = name
+            .chars()
+            .map(|c| {
+                if c.is_alphanumeric() {
+                    c.to_ascii_lowercase()
+                } else {
+                    '_'
+                }
+            })
+            .collect();
+        let taken = |one: &String| all.iter().any(|(_, other)| other == one);
+        let numbered = (2..).map(|k| format!("{kind}_{plain}_{k}"));
+        let mut candidates = std::iter::once(format!("{kind}_{plain}")).chain(numbered);
+        let own = candidates.find(|one| !taken(one)).unwrap_or_default();
+        all.push((name, own));
+    }
+    all
+}
