@@ -1,6 +1,5 @@
 //! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
 
-use super::valves::Valves;
 use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds, trace};
 use crate::discrete::layout::Line;
 use crate::discrete::{State, System, TimeData, Workspace, kick, ledger, residual, start};
@@ -22,9 +21,6 @@ pub struct BeamDae {
     plain: Buffers<f64>,
     dual: Buffers<Dual<LANES>>,
     perturbed: Vec<PerturbedSystems>,
-    valves: Valves,
-    /// Whether the last residual was that of another state of the valves than the last Jacobian.
-    outdated: bool,
     /// Time at which the workspace holds everything about a state, its integrands included.
     held: Option<f64>,
 }
@@ -87,7 +83,6 @@ impl BeamDae {
             sweeps[c / LANES].push((column, c % LANES));
         }
         let (plain, dual) = (Buffers::new(&system), Buffers::new(&system));
-        let valves = Valves::of(&system);
         Self {
             system,
             within: 0.0,
@@ -97,8 +92,6 @@ impl BeamDae {
             plain,
             dual,
             perturbed: vec![],
-            valves,
-            outdated: false,
             held: None,
         }
     }
@@ -268,16 +261,11 @@ impl Dae for BeamDae {
         for (k, row) in self.system.layout.row_scales.iter().enumerate() {
             residual[k] = b.residual[k] / row;
         }
-        self.outdated = self.valves.changed(&self.system, &self.now, &b.workspace);
         Ok(())
     }
 
-    fn switches(&self) -> bool {
-        self.valves.any()
-    }
-
-    fn outdated(&self) -> bool {
-        self.outdated
+    fn approach(&mut self, cj: f64) {
+        self.now.cj = cj;
     }
 
     fn jacobian(
@@ -291,12 +279,6 @@ impl Dae for BeamDae {
         self.unscale(t, y, yp);
         let scales = &self.system.layout.scales;
         let rows = &self.system.layout.row_scales;
-        if self.valves.any() {
-            let b = &mut self.plain;
-            residual::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
-            self.valves.note(&self.system, &self.now, &b.workspace);
-            self.outdated = false;
-        }
         let b = &mut self.dual;
         b.take(&self.plain);
         for sweep in &self.sweeps {
@@ -364,7 +346,11 @@ impl Dae for BeamDae {
         yp: &[f64],
         out: &mut [f64],
     ) -> Result<(), EvaluationError> {
-        self.perturbed[k].derivative(out, |_, beam, out| beam.residual(t, y, yp, out))
+        let cj = self.now.cj;
+        self.perturbed[k].derivative(out, |_, beam, out| {
+            beam.approach(cj);
+            beam.residual(t, y, yp, out)
+        })
     }
 
     fn integrand_derivative(

@@ -4,7 +4,6 @@ pub mod beam;
 pub mod perturbed;
 pub mod statics;
 pub mod trace;
-mod valves;
 
 pub use beam::BeamDae;
 pub use perturbed::PerturbedSystems;
@@ -62,16 +61,9 @@ pub trait Dae {
         values: &mut [f64],
     ) -> Result<(), EvaluationError>;
 
-    /// Whether laws of the system change so abruptly that a Jacobian may be [outdated](Dae::outdated) without Newton's iteration seeing it.
-    fn switches(&self) -> bool {
-        false
-    }
-
-    /// Whether the last Jacobian is that of another state of such a law than the last residual is: an iteration with it may seem to
-    /// converge where it does not.
-    fn outdated(&self) -> bool {
-        false
-    }
+    /// Tells `c_j` of the implicit step for which residuals and Jacobians are asked for from now on: the rate of an unknown moves by so
+    /// much with it. Equations may be written so that they are nearly linear along such a step; their roots are the same.
+    fn approach(&mut self, _cj: f64) {}
 
     /// Number of integrals that the solver carries along without feedback, `I' = g(t, y, y')`.
     fn integrals(&self) -> usize {

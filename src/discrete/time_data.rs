@@ -111,6 +111,8 @@ impl Frame {
 #[derive(Clone, Debug)]
 pub struct TimeData {
     clock: Option<Clock>,
+    /// `c_j` of the implicit step that is tried, [`crate::dae::Dae::approach`]; 0 before there is one [1/s].
+    pub cj: f64,
     /// Root and tip.
     pub ends: [EndData; 2],
     /// Force per length at each node [N/m].
@@ -157,6 +159,7 @@ impl TimeData {
         let curved = system.loads.iter().any(|load| load.kind == LoadKind::RestCurvature);
         Self {
             clock: None,
+            cj: 0.0,
             ends: [EndData::default(); 2],
             force: vec![Planar::default(); system.mesh.nodes],
             moment: vec![Planar::default(); system.mesh.cells],

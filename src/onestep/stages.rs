@@ -91,6 +91,7 @@ impl<D: Dae> OneStep<D> {
         self.matrix.begin();
         (self.now.t, self.now.h) = (self.time, h);
         let cj = 1.0 / (h * self.tableau.gamma());
+        self.equations.dae.approach(cj);
         for ((scale, inverse), &mask) in (self.work.scale.iter_mut().zip(&mut self.work.inverse)).zip(&self.mask) {
             let differential = mask > 0.0;
             *scale = if differential { h * self.tableau.gamma() } else { 1.0 };
@@ -164,19 +165,11 @@ impl<D: Dae> OneStep<D> {
         self.matrix
             .prepare(&mut self.equations, state, cj, self.options.matrix_band)?;
         let tolerance = self.options.newton_tolerance;
-        let switches = self.equations.dae.switches();
         let mut before: Option<f64> = None;
         for iteration in 0..ITERATIONS {
             self.newton_iterations += 1;
             self.equations
                 .residual(t, &self.now.y[i], &self.work.yp, &mut self.work.r)?;
-            if switches && self.equations.dae.outdated() {
-                let state = (t, self.now.y[i].as_slice(), self.work.yp.as_slice());
-                self.matrix.stale = true;
-                self.matrix
-                    .prepare(&mut self.equations, state, cj, self.options.matrix_band)?;
-                before = None;
-            }
             let factor = -self.matrix.solve(&mut self.work.r, cj);
             self.work.r.iter_mut().for_each(|r| *r *= factor);
             let x = &mut self.now.x[i];
@@ -202,8 +195,7 @@ impl<D: Dae> OneStep<D> {
                 }
             }
             let rate = self.matrix.rate;
-            // a first correction that seems small may have passed a switch
-            if rate / (1.0 - rate) * size <= tolerance && !(switches && before.is_none()) {
+            if rate / (1.0 - rate) * size <= tolerance {
                 if before.is_none() {
                     self.matrix.trust_less();
                 }

@@ -3,12 +3,11 @@
 //! Codes: 0 done, +1 try a shorter step, -1 stop. The first fatal fault or panic is kept in the [`Bridge`].
 
 use std::any::Any;
-use std::cell::Cell;
 use std::ffi::{c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::rc::Rc;
 use std::time::{Duration, Instant};
 
+use sundials_sys as s;
 use sundials_sys::{N_Vector, SUNMatrix};
 
 use super::linear_solver::system_of;
@@ -48,10 +47,8 @@ pub(super) struct Bridge<D> {
     pub jacobian_wall: Duration,
     /// Wall time of integrands.
     pub integrand_wall: Duration,
-    /// Whether the last Jacobian, made at another time, is outdated: what the linear solver heeds.
-    pub outdated: Rc<Cell<bool>>,
-    /// Time of the last Jacobian [s].
-    made: f64,
+    /// Memory of IDA, to be asked for `c_j` of the step that it tries; null without.
+    pub ida: *mut c_void,
     /// Derivatives of the residual by parameters, at the state of the last step.
     pub slopes: Slopes,
 }
@@ -70,8 +67,7 @@ impl<D: Dae> Bridge<D> {
             residual_wall: Duration::ZERO,
             jacobian_wall: Duration::ZERO,
             integrand_wall: Duration::ZERO,
-            outdated: Rc::default(),
-            made: f64::NAN,
+            ida: std::ptr::null_mut(),
             slopes: Slopes::default(),
         }
     }
@@ -121,6 +117,11 @@ pub(super) unsafe extern "C" fn residual<D: Dae>(
     // SAFETY: user data is the bridge, borrowed by nobody else while C runs; the vectors are different serial ones.
     let ((bridge, y, yp), out) = unsafe { (seen::<D>(data, y, yp), entries_mut(out)) };
     let begin = Instant::now();
+    let mut cj = 0.0;
+    // SAFETY: IDA calls with its memory alive, which is only read; `cj` is a place to write to.
+    if !bridge.ida.is_null() && unsafe { s::IDAGetCurrentCj(bridge.ida, &raw mut cj) } == s::IDA_SUCCESS {
+        bridge.dae.approach(cj);
+    }
     let code = bridge.call(|dae| {
         dae.residual(t, y, yp, out)?;
         match kernels::first_not_finite(out) {
@@ -132,8 +133,6 @@ pub(super) unsafe extern "C" fn residual<D: Dae>(
             ))),
         }
     });
-    // One that was made in this attempt is the best there is.
-    bridge.outdated.set(bridge.made != t && bridge.dae.outdated());
     bridge.residuals += 1;
     bridge.residual_wall += begin.elapsed();
     code
@@ -164,8 +163,6 @@ pub(super) unsafe extern "C" fn jacobian<D: Dae>(
             Some(entry) => Err(EvaluationError::Recoverable(not_finite(dae, entry, t))),
         }
     });
-    bridge.outdated.set(false);
-    bridge.made = t;
     bridge.jacobians += 1;
     bridge.jacobian_wall += begin.elapsed();
     code

@@ -84,13 +84,12 @@ impl<D: Dae> Ida<D> {
             Some(vector(&vec![0.0; integrals])?)
         };
         let solver = LinearSolver::new(klu, context.raw()).map_err(refuse)?;
-        let mut bridge = Bridge::new(dae, options.relative, options.absolute.each(n));
-        bridge.outdated = solver.system().outdated.clone();
-        let bridge = Shared::new(bridge);
+        let mut bridge = Shared::new(Bridge::new(dae, options.relative, options.absolute.each(n)));
         let messages = Shared::new(Messages::default());
         // SAFETY: the context is alive; null is checked.
         let raw = unsafe { s::IDACreate(context.raw()) };
         let memory = Memory(raw);
+        bridge.get_mut().ida = raw;
         if raw.is_null() {
             return Err(refuse("no memory for the integrator".to_owned()));
         }

@@ -4,10 +4,8 @@
 //! notice stale pivots. Here the matrix is a handle to values owned by Rust; nothing in the library touches them.
 
 use std::any::Any;
-use std::cell::Cell;
 use std::ffi::{c_int, c_long};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use sundials_sys as s;
@@ -26,8 +24,6 @@ pub(super) struct LinearSystem {
     pub klu: Klu,
     /// Column of the last matrix that was singular; cleared by the next that is not.
     pub singular: Option<usize>,
-    /// Whether the matrix is that of another state, [`crate::dae::Dae::outdated`]: what residuals tell.
-    pub outdated: Rc<Cell<bool>>,
     /// Linear solves.
     pub solves: u64,
     /// Wall time of factorisations and solves.
@@ -50,7 +46,6 @@ impl LinearSolver {
             values: vec![0.0; klu.entries()],
             klu,
             singular: None,
-            outdated: Rc::default(),
             solves: 0,
             wall: Duration::ZERO,
             panic: None,
@@ -153,14 +148,11 @@ unsafe extern "C" fn setup(solver: SUNLinearSolver, _: SUNMatrix) -> c_int {
     unsafe { with_system(solver, factor) }
 }
 
-/// Solves `A x = b`; not with an outdated matrix, in place of which SUNDIALS then asks for a new one.
+/// Solves `A x = b`.
 unsafe extern "C" fn solve(solver: SUNLinearSolver, _: SUNMatrix, x: N_Vector, b: N_Vector, _: f64) -> c_int {
     // SAFETY: SUNDIALS passes two living serial vectors of one length; x is another than b.
     let (x, b) = unsafe { (entries_mut(x), entries(b)) };
     let solve = |system: &mut LinearSystem| {
-        if system.outdated.get() {
-            return s::SUNLS_PACKAGE_FAIL_REC as c_int;
-        }
         system.solves += 1;
         x.copy_from_slice(b);
         let done = system.klu.solve(x) && kernels::all_finite(x);

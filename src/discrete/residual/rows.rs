@@ -263,7 +263,9 @@ pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     }
 }
 
-/// Flow of each tube in which it does not creep, [E51]; behind a check valve that which [E7] lets through.
+/// Flow of each tube in which it does not creep, [E51]; behind a check valve that which [E7] lets through, `q = q_v(R, Δ)`, written as
+/// `q = q_v(R + κ, Δ + κ q)`. With κ what inertia and the memory of friction resist along an implicit step, the right-hand side does
+/// not depend on q there, and Newton's iteration does not see the valve snap.
 pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -282,7 +284,10 @@ pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &m
         let driven = driven(wet, link, now, w, k);
         r[own.flow.start + number] = match &link.check_valve {
             None => (q * (link.half_cells + link.of_pump) - driven) * now.opening[k] + q * link.resistance,
-            Some(valve) => q - valve.flow_behind(1.0 / now.conductance[k], driven),
+            Some(valve) => {
+                let along = tube.resistance_along_a_step(now.cj);
+                q - valve.flow_behind(1.0 / now.conductance[k] + along, driven + q * along)
+            }
         };
     }
 }

@@ -47,11 +47,6 @@ impl CheckValve {
         drop.lift(|drop| self.behind(resistance, drop))
     }
 
-    /// The slope of that.
-    pub fn slope_behind(&self, resistance: f64, drop: f64) -> f64 {
-        self.behind(resistance, drop).1
-    }
-
     /// The pressure drop that a flow takes.
     #[inline]
     pub fn drop<T: Scalar>(&self, flow: T) -> T {

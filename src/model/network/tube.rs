@@ -135,6 +135,14 @@ impl TubeFlow {
         PARABOLIC * self.inertance
     }
 
+    /// What inertia and the memory of friction add to the pressure drop over a change of flow along an implicit step, `I c_j + Σ r_i
+    /// c_j/(c_j + n_i ν/r²)` [Pa s/m^3].
+    pub fn resistance_along_a_step(&self, cj: f64) -> f64 {
+        let memory = |(resistance, rate): (f64, f64)| resistance * cj / (cj + rate);
+        let branches = self.branches().filter(|_| self.remembers());
+        self.inertance * cj + branches.map(memory).sum::<f64>()
+    }
+
     /// Whether friction has a memory.
     pub fn remembers(&self) -> bool {
         self.laminar > 0.0
