@@ -137,7 +137,10 @@ fn junctions_chain_ends_and_ports() {
     let (pointer, _, what) = tour(&[("\"flow_m3_s\"", "\"pressure_pa\": 0, \"flow_m3_s\"")]);
     assert_eq!(
         (pointer.as_str(), what.as_str()),
-        ("/network/ports/1", "a port with pressure and flow")
+        (
+            "/network/ports/1",
+            "a port with more than one of pressure, flow and volume"
+        )
     );
     let (pointer, _, what) = tour(&[(
         "{\"bladder\": -10, \"end\": \"outlet\"}",
@@ -162,7 +165,7 @@ fn a_junction_that_is_cut_off_is_dead() {
         only(&text),
         "/network/junctions/0",
         "\"tee\"",
-        "reaches neither a bladder nor a pressure port at 0.25",
+        "reaches no bladder, accumulator or pressure port at 0.25",
     );
 }
 

@@ -173,6 +173,7 @@ const INDEX: [(&str, &str, &str); 59] = [
         "tests/rest_curvature.rs",
         "what_nothing_acts_on_has_its_own_shape",
     ),
+    ("[E60]", "tests/components/stores.rs", "vessels_fill_as_their_laws_say"),
 ];
 
 #[test]
@@ -408,7 +409,7 @@ const VALVE: CheckValve = CheckValve {
     width: 5.0,
 };
 
-/// `[E7]` No flow without a drop, never against it; forward slope far beyond cracking, reverse slope below.
+/// `[E7]` No flow without a drop, never against it; forward slope beyond opening, reverse slope below cracking.
 #[test]
 fn check_valves_are_passive() {
     assert_eq!(VALVE.flow(0.0), 0.0);
@@ -417,7 +418,6 @@ fn check_valves_are_passive() {
         assert!(VALVE.flow(drop) * drop >= 0.0, "{drop}");
         assert!(VALVE.flow(drop + 1.0) > VALVE.flow(drop), "{drop}");
     }
-    // e^(-36): beyond 36 widths from cracking the slopes are met to round-off.
     close(VALVE.flow(1001.0) - VALVE.flow(1000.0), VALVE.forward, 1e-9);
     close(VALVE.flow(-1000.0) - VALVE.flow(-1001.0), VALVE.reverse, 1e-6);
 }

@@ -221,6 +221,7 @@ impl<D: Dae> StepMap<D> {
         let scale = h * self.tableau.gamma();
         let mut r = vec![0.0; y.len()];
         let mut before = f64::INFINITY;
+        self.equations.dae.approach(1.0 / scale);
         self.lay(scale, base, x, y, yp);
         if !self.slots[slot].factored {
             self.factor(slot, t, y, yp, scale)?;

@@ -92,7 +92,7 @@ fn what_cannot_be_is_refused() {
         assert!(found.next().is_some(), "{set}: {:?}", told.violations);
     };
     let both = r#"/network/ports/0={"name": "both", "at": {"junction": "line"}, "volume_m3": 0, "flow_m3_s": 0}"#;
-    refused(FINGER, both, "/network/ports/0", "more than one thing");
+    refused(FINGER, both, "/network/ports/0", "more than one of");
     let jumps = r#"/network/ports/0/volume_m3={"ramp": {"from": 0, "to": 1e-7, "start_s": 1, "duration_s": 0}}"#;
     refused(FINGER, jumps, "/network/ports/0/volume_m3", "the volume jumps");
     refused(

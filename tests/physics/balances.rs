@@ -135,7 +135,13 @@ fn balances_of_loaded_beams_close() {
 /// Bladders that equalise, a ring, and everything a network may be made of.
 #[test]
 fn balances_of_networks_close() {
-    for (name, end) in [("two-bladders", 0.002), ("ring-network", 0.002), ("network-tour", 0.3)] {
+    for (name, end) in [
+        ("two-bladders", 0.002),
+        ("ring-network", 0.002),
+        ("network-tour", 0.3),
+        ("bladder-pump", 0.1),
+        ("syringe-finger", 0.5),
+    ] {
         closes(name, end);
     }
 }

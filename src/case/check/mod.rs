@@ -15,6 +15,7 @@ mod size;
 mod start;
 mod strength;
 mod time;
+mod tubes;
 
 use super::faults::Violations;
 use super::schema::Case;

@@ -4,15 +4,13 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::bladders::two_permeabilities;
 use super::junctions;
+use super::tubes::{loss_coefficient, radius, roughness, size};
 use crate::case::faults::Violations;
-use crate::case::schema::{self, BladderEnd, Case, ChainEnd, CrossSection, Endpoint, Network, TubeDefaults};
+use crate::case::schema::{self, BladderEnd, Case, ChainEnd, Endpoint, Network, TubeDefaults};
 use crate::case::wiring::{Bore, Given, Point, Port, Tube, Wiring, bladder_index, bladder_label};
 use crate::case::wording::nearest;
 use crate::error::{Code, Violation};
 use crate::functions::signals::Signal;
-
-/// Loss of a tube that says nothing else, in dynamic pressures of its mean velocity: sharp entrance 0.5, exit 1.
-const SHARP_EDGED: f64 = 1.5;
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     let (_, joined) = resolve(case, faults);
@@ -80,34 +78,6 @@ fn chain_end(chain: &schema::Chain, k: usize) -> Option<(i64, BladderEnd)> {
         0 => Some((*chain.bladders.first()?, BladderEnd::Inlet)),
         _ => Some((*chain.bladders.last()?, BladderEnd::Outlet)),
     }
-}
-
-/// Radius of a tube's circle: its own, or that of `/tubes` where the tube says nothing of its inside.
-fn radius(tube: &schema::Tube, usual: Option<&TubeDefaults>) -> Option<f64> {
-    match (&tube.cross_section, tube.permeability_m4) {
-        (Some(CrossSection::Circle { radius_m }), _) => Some(*radius_m),
-        (None, None) => usual.map(|usual| usual.radius_m),
-        _ => None,
-    }
-}
-
-/// Losses of a tube: its own, those of `/tubes`, or those of sharp edges.
-fn loss_coefficient(own: Option<f64>, usual: Option<&TubeDefaults>) -> f64 {
-    own.or_else(|| usual?.loss_coefficient).unwrap_or(SHARP_EDGED)
-}
-
-/// Roughness of a tube's wall [m]: its own, that of `/tubes`, or none.
-fn roughness(own: Option<f64>, usual: Option<&TubeDefaults>) -> f64 {
-    own.or_else(|| usual?.roughness_m).unwrap_or(0.0)
-}
-
-/// Length [m] and bore of a tube, its own or the usual ones.
-fn size<'a>(tube: &'a schema::Tube, usual: Option<&TubeDefaults>) -> Option<(f64, Bore<'a>)> {
-    let own = tube.permeability_m4.map(Bore::Permeability);
-    let bore = own
-        .or_else(|| tube.cross_section.as_ref().map(Bore::CrossSection))
-        .or_else(|| usual.map(Bore::usual))?;
-    Some((tube.length_m.or_else(|| usual.map(|tubes| tubes.length_m))?, bore))
 }
 
 struct Rules<'a, 'f> {
@@ -263,7 +233,7 @@ impl<'a> Rules<'a, '_> {
             if given.len() != 1 {
                 let what = match given.len() {
                     0 => "a port with neither pressure, flow nor volume",
-                    _ => "a port of which more than one thing is given",
+                    _ => "a port with more than one of pressure, flow and volume",
                 };
                 let fault = Violation::new(Code::Wiring, pointer.clone(), what);
                 self.faults

@@ -11,7 +11,7 @@ use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
 use crate::model::bladder::{kink_curvature, kink_slope};
 use crate::model::network::{LinkKind, Node};
-use crate::model::{AreaLaw, Coupling, LumpedKind, LumpedNetwork, ROWS, Storage, Wet};
+use crate::model::{AreaLaw, Coupling, LumpedKind, LumpedNetwork, Storage, Wet};
 
 /// What no equation needs but the balances: means, rates of lumped networks' pressures and of their bladders' areas.
 pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>) {
@@ -361,49 +361,4 @@ fn surplus(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
             w.fluid.port_conductance[component] += conductance;
         }
     }
-}
-
-/// Energy stored in the bladders, the same for both couplings:
-///
-/// ```text
-/// l_b Σ_{j,R} [ mean_k(a_p p_k²/2) + pbar (Nbar A_N'(Nbar) + Mbar (R A_M)'(Mbar)) ]
-/// ```
-pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
-        return 0.0;
-    };
-    let mut sum = 0.0;
-    for j in 0..wet.per_row {
-        for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
-            let cells = &w.fluid.pressure[fluid.cells_of(bladder)];
-            let squares: f64 = cells.iter().map(|p| p * p).sum();
-            let mixed = w.coupling.mean_force[j] * wet.area.force_slope(w.coupling.mean_force[j])
-                + w.coupling.mean_moment[j] * wet.area.moment_slope(w.coupling.mean_moment[j], row);
-            sum += 0.5 * wet.area.per_pressure * squares / cells.len() as f64 + w.fluid.mean_pressure[bladder] * mixed;
-        }
-    }
-    wet.bladder_length * sum
-}
-
-/// Energy in accumulators, [E60].
-pub fn accumulated(system: &System, w: &Workspace<f64>) -> f64 {
-    let accumulators = system.fluid.iter().flat_map(|fluid| &fluid.accumulators);
-    let volumes = accumulators.zip(&w.fluid.accumulated);
-    volumes.map(|(one, &volume)| one.law.energy(volume)).sum()
-}
-
-/// Volume change stored in each component.
-pub fn volumes(system: &System, w: &Workspace<f64>) -> Vec<f64> {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
-        return vec![];
-    };
-    let mut volumes = vec![0.0; wet.network.components];
-    for bladder in 0..fluid.bladders {
-        let stored: f64 = w.fluid.area[fluid.cells_of(bladder)].iter().sum();
-        volumes[wet.network.component_of_bladder[bladder]] += stored * fluid.ds;
-    }
-    for (one, volume) in fluid.accumulators.iter().zip(&w.fluid.accumulated) {
-        volumes[wet.network.component_of_junction[fluid.junctions[one.junction]]] += volume;
-    }
-    volumes
 }

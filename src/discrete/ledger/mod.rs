@@ -6,6 +6,7 @@ mod jump;
 pub mod ports;
 mod reactions;
 mod solid;
+mod stored;
 mod tubes;
 
 pub use compressed::{area_rate, lost, pressure_rate};
@@ -216,9 +217,9 @@ pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Work
 /// Energies of a state.
 pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     let mut e = solid::energies(system, now, &w);
-    e.bladders = fluid::energy(system, &w);
+    e.bladders = stored::energy(system, &w);
     e.compression = compressed::energy(system, &w);
-    e.accumulators = fluid::accumulated(system, &w);
+    e.accumulators = stored::accumulated(system, &w);
     e.tubes = tubes::kinetic(system, &w);
     e.springs = system.attached.iter().map(|attached| attached.energy(system, &w)).sum();
     e.relaxing = residual::relaxation::energy_and_loss(system, now, &w)[0];
@@ -235,7 +236,7 @@ pub fn invariants(system: &System, now: &TimeData, w: State) -> Invariants {
     Invariants {
         momentum: [momentum.x, momentum.z],
         angular_momentum,
-        volumes: fluid::volumes(system, &w),
+        volumes: stored::volumes(system, &w),
     }
 }
 

@@ -1,0 +1,35 @@
+//! What a tube is: what it says itself, or what `/tubes` says of all.
+
+use crate::case::schema::{self, CrossSection, TubeDefaults};
+use crate::case::wiring::Bore;
+
+/// Loss of a tube that says nothing else, in dynamic pressures of its mean velocity: sharp entrance 0.5, exit 1.
+const SHARP_EDGED: f64 = 1.5;
+
+/// Radius of a tube's circle: its own, or that of `/tubes` where the tube says nothing of its inside.
+pub(super) fn radius(tube: &schema::Tube, usual: Option<&TubeDefaults>) -> Option<f64> {
+    match (&tube.cross_section, tube.permeability_m4) {
+        (Some(CrossSection::Circle { radius_m }), _) => Some(*radius_m),
+        (None, None) => usual.map(|usual| usual.radius_m),
+        _ => None,
+    }
+}
+
+/// Losses of a tube: its own, those of `/tubes`, or those of sharp edges.
+pub(super) fn loss_coefficient(own: Option<f64>, usual: Option<&TubeDefaults>) -> f64 {
+    own.or_else(|| usual?.loss_coefficient).unwrap_or(SHARP_EDGED)
+}
+
+/// Roughness of a tube's wall [m]: its own, that of `/tubes`, or none.
+pub(super) fn roughness(own: Option<f64>, usual: Option<&TubeDefaults>) -> f64 {
+    own.or_else(|| usual?.roughness_m).unwrap_or(0.0)
+}
+
+/// Length [m] and bore of a tube, its own or the usual ones.
+pub(super) fn size<'a>(tube: &'a schema::Tube, usual: Option<&TubeDefaults>) -> Option<(f64, Bore<'a>)> {
+    let own = tube.permeability_m4.map(Bore::Permeability);
+    let bore = own
+        .or_else(|| tube.cross_section.as_ref().map(Bore::CrossSection))
+        .or_else(|| usual.map(Bore::usual))?;
+    Some((tube.length_m.or_else(|| usual.map(|tubes| tubes.length_m))?, bore))
+}

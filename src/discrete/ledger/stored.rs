@@ -1,0 +1,49 @@
+//! What the fluid's parts store: energy and volume.
+
+use crate::discrete::{System, Workspace};
+use crate::model::ROWS;
+
+/// Energy stored in the bladders, the same for both couplings:
+///
+/// ```text
+/// l_b Σ_{j,R} [ mean_k(a_p p_k²/2) + pbar (Nbar A_N'(Nbar) + Mbar (R A_M)'(Mbar)) ]
+/// ```
+pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return 0.0;
+    };
+    let mut sum = 0.0;
+    for j in 0..wet.per_row {
+        for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
+            let cells = &w.fluid.pressure[fluid.cells_of(bladder)];
+            let squares: f64 = cells.iter().map(|p| p * p).sum();
+            let mixed = w.coupling.mean_force[j] * wet.area.force_slope(w.coupling.mean_force[j])
+                + w.coupling.mean_moment[j] * wet.area.moment_slope(w.coupling.mean_moment[j], row);
+            sum += 0.5 * wet.area.per_pressure * squares / cells.len() as f64 + w.fluid.mean_pressure[bladder] * mixed;
+        }
+    }
+    wet.bladder_length * sum
+}
+
+/// Energy in accumulators, [E60].
+pub fn accumulated(system: &System, w: &Workspace<f64>) -> f64 {
+    let accumulators = system.fluid.iter().flat_map(|fluid| &fluid.accumulators);
+    let volumes = accumulators.zip(&w.fluid.accumulated);
+    volumes.map(|(one, &volume)| one.law.energy(volume)).sum()
+}
+
+/// Volume change stored in each component.
+pub fn volumes(system: &System, w: &Workspace<f64>) -> Vec<f64> {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return vec![];
+    };
+    let mut volumes = vec![0.0; wet.network.components];
+    for bladder in 0..fluid.bladders {
+        let stored: f64 = w.fluid.area[fluid.cells_of(bladder)].iter().sum();
+        volumes[wet.network.component_of_bladder[bladder]] += stored * fluid.ds;
+    }
+    for (one, volume) in fluid.accumulators.iter().zip(&w.fluid.accumulated) {
+        volumes[wet.network.component_of_junction[fluid.junctions[one.junction]]] += volume;
+    }
+    volumes
+}
