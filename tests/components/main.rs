@@ -29,11 +29,13 @@ pub const RIG: &str = r#"{
     "time": {"end_s": 1.0, "output_interval_s": 0.01}, "solver": {"rtol": 1e-9}
 }"#;
 
+/// A case of a text, changed.
 pub fn read(text: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     case::parse(text, Path::new("mine.json"), Path::new(""), &sets).unwrap()
 }
 
+/// Runs it to its end.
 pub fn run(text: &str, sets: &[&str]) -> (Memory, Summary) {
     let mut memory = Memory::default();
     let summary = dynamics::run(&read(text, sets), &mut memory).unwrap().summary;
