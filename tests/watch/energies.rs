@@ -22,7 +22,7 @@ fn followed(rows: &[[f64; 8]]) -> (Energies, BTreeMap<String, Quantity>) {
     energies["window_start"] = 1.0.into();
     energies["turbines"] = true.into();
     let mut energies: Energies = serde_json::from_value(energies).unwrap();
-    let mut row = Row::new(COLUMNS.to_vec(), 0);
+    let mut row = Row::new(COLUMNS.to_vec(), [0, 0]);
     for values in rows {
         for (column, value) in COLUMNS.into_iter().zip(values) {
             row.set(column, *value);

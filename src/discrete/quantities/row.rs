@@ -17,12 +17,13 @@ pub struct Row {
 impl Row {
     /// Of a system, zero yet.
     pub fn of(system: &System) -> Self {
-        Self::new(system, Observable::of(system), stations::columns(system, false).len())
+        let stations = stations::columns(system, false).len();
+        Self::new(Observable::of(system), [stations, probes::columns(system).count()])
     }
 
-    /// Of columns, so many of ports and accumulators, and those of probes, zero yet.
-    pub fn new(system: &System, columns: Vec<Observable>, stations: usize) -> Self {
-        let values = vec![0.0; columns.len() + stations + probes::columns(system).count()];
+    /// Of columns, so many of ports and accumulators, and so many of probes, zero yet.
+    pub fn new(columns: Vec<Observable>, [stations, probes]: [usize; 2]) -> Self {
+        let values = vec![0.0; columns.len() + stations + probes];
         Self {
             columns,
             stations,

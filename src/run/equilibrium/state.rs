@@ -75,7 +75,8 @@ impl State {
             stored: ledger::energies(system, now, w),
             at: Extremes::of(system, &w),
         };
-        let mut read = Row::new(system, at_rest(system), stations::columns(system, true).len());
+        let others = [stations::columns(system, true).len(), probes::columns(system).count()];
+        let mut read = Row::new(at_rest(system), others);
         read.take(share, &look, &[], 0.0);
         let row = std::iter::once(share).chain(read.values().iter().copied()).collect();
         Self {
