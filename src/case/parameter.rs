@@ -12,7 +12,7 @@ use super::{parse, section};
 use crate::error::{Error, Result};
 
 /// Parts of a case that describe what is simulated, not how.
-const PARTS: [&str; 10] = [
+const PARTS: [&str; 11] = [
     "beam",
     "fluid",
     "bladders",
@@ -20,6 +20,7 @@ const PARTS: [&str; 10] = [
     "network",
     "loads",
     "attachments",
+    "contacts",
     "surroundings",
     "ends",
     "start",

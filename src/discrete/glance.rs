@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::quantities::look;
 use super::workspace::Motion;
-use super::{State, System, TimeData, Workspace, ledger};
+use super::{State, System, TimeData, Workspace, ledger, touching};
 use crate::discrete::residual::solid::node_stretch;
 use crate::discrete::residual::{nonlinear, relaxation};
 use crate::model::Kinematics;
@@ -62,11 +62,13 @@ pub enum Watched {
     Outermost,
     /// Largest `|q| √r'/r` of a tube, r that where it is least: times `√ρ_0/A` its Mach number [m^3/(s Pa^(1/2))].
     Mach,
+    /// Largest depth behind the face of a wall [m].
+    Depth,
 }
 
 impl Watched {
     /// How many there are.
-    pub const COUNT: usize = 15;
+    pub const COUNT: usize = 16;
 }
 
 impl Glance {
@@ -102,6 +104,7 @@ impl Glance {
         g.strained = node;
         g.moving[Watched::Strain as usize] = [strain, strain_rate(now, node, last, half_height, w)];
         g.moving[Watched::Outermost as usize] = nonlinear::outermost(system, w);
+        g.moving[Watched::Depth as usize] = touching::deepest(system, w);
         g.fluid(system, now, w);
         g
     }

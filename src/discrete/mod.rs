@@ -15,6 +15,7 @@ pub mod start;
 pub mod statics;
 pub mod straight;
 pub mod time_data;
+pub mod touching;
 pub mod waves;
 pub mod workspace;
 
@@ -30,6 +31,7 @@ pub use mesh::Mesh;
 pub use quantities::Probe;
 pub use statics::Statics;
 pub use time_data::{SampledLoad, TimeData};
+pub use touching::Touching;
 pub use workspace::{State, Workspace};
 
 /// A model on a mesh: everything the residual needs besides time and state.
@@ -47,6 +49,8 @@ pub struct System {
     pub loads: Vec<SampledLoad>,
     /// What is attached to the beam, in the order of places.
     pub attached: Vec<Attached>,
+    /// Where walls are felt, in the order of places.
+    pub touching: Vec<Touching>,
     /// Places that are recorded.
     pub probes: Vec<Probe>,
     /// Masses of the nodes [kg].
@@ -144,6 +148,7 @@ impl System {
             .iter()
             .any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ));
         let (attached, masses) = Attached::all(&model.attachments, &model.section, &mesh);
+        let touching = Touching::all(&model.contacts, &mesh);
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
         Self {
             model,
@@ -153,6 +158,7 @@ impl System {
             layout,
             loads,
             attached,
+            touching,
             masses,
             has_moments,
             damped,

@@ -32,7 +32,7 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
 /// Smallest damping ratio among the waves that the mesh carries: `ζ = c/(2 m ω) + ω τ/2`, bending and axial. Masses and
 /// springs that are attached swing with less, by how much is not known: 0.
 pub fn least_damping_ratio(system: &System) -> f64 {
-    if !system.attached.is_empty() {
+    if !system.attached.is_empty() || !system.touching.is_empty() {
         return 0.0;
     }
     let s = &system.model.section;

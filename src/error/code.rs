@@ -88,6 +88,7 @@ codes! {
     FastGas = "W024", "Gas that flows nearly as fast as sound.";
     LostModes = "W025", "Modes that were not found again.";
     PartOfStream = "W026", "A stream of which the model has a part.";
+    DeepContact = "W027", "A wall that the beam is deep in.";
 }
 
 impl Code {

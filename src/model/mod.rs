@@ -8,6 +8,7 @@ pub mod beam;
 pub mod bladder;
 pub mod characteristic;
 pub mod compression;
+pub mod contact;
 pub mod coupling;
 pub mod duct;
 pub mod effects;
@@ -33,6 +34,7 @@ pub use attachments::Attachment;
 pub use beam::Section;
 pub use bladder::AreaLaw;
 pub use compression::Compression;
+pub use contact::Contact;
 pub use coupling::Coupling;
 pub use effects::{Decision, EffectSet, Scene};
 pub use kinematics::Kinematics;
@@ -207,6 +209,8 @@ pub struct Model {
     pub loads: Vec<Load>,
     /// What is attached to the beam at places.
     pub attachments: Vec<Attachment>,
+    /// Walls that the beam may come to lie against.
+    pub contacts: Vec<Contact>,
     /// Branches of a solid that relaxes.
     pub relaxation: Vec<Branch>,
     /// What the beam moves through.
@@ -291,6 +295,7 @@ impl Model {
             ends,
             loads,
             attachments: Attachment::all(case),
+            contacts: Contact::all(case),
             relaxation: (case.beam.viscoelasticity.as_ref())
                 .and_then(Viscoelasticity::branches)
                 .unwrap_or_default(),

@@ -43,6 +43,7 @@ const TURNING: [Watched; Watched::COUNT] = [
     Watched::Pressed,
     Watched::Outermost,
     Watched::Mach,
+    Watched::Depth,
 ];
 /// Turning points closer than this part of the step are looked at as one.
 const APART: f64 = 0.05;

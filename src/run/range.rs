@@ -41,6 +41,8 @@ pub struct Limits {
     mach_per_flow: f64,
     /// Pressure at which gas is as good as gone [Pa].
     vacuum: f64,
+    /// Whether the start is an equilibrium.
+    at_rest: bool,
 }
 
 /// A limit that was passed: the largest value with its time and place, and when it began.
@@ -60,6 +62,11 @@ pub struct Range {
     #[serde(default)]
     mach: Passed,
     pressed: Passed,
+    #[serde(default)]
+    touched: Passed,
+    /// Depth behind a wall at the start, where no equilibrium has found it [m].
+    #[serde(default)]
+    begun: f64,
 }
 
 impl Passed {
@@ -117,6 +124,7 @@ impl Limits {
                 (Some(f), Some(t)) => f.density_kg_m3.sqrt() / (std::f64::consts::PI * t.radius_m * t.radius_m),
                 _ => 0.0,
             },
+            at_rest: case.start.equilibrium.is_some(),
             vacuum: wet
                 .and_then(|wet| wet.compression.as_ref())
                 .map_or(f64::NEG_INFINITY, |compression| compression.lowest() * (1.0 - VACUUM)),
@@ -204,6 +212,7 @@ impl Limits {
             Watched::Flow => larger(seen.reynolds.largest, value * self.reynolds_per_flow, REYNOLDS),
             Watched::Mach => larger(seen.mach.largest, value * self.mach_per_flow, MACH),
             Watched::Outermost => value > 0.95,
+            Watched::Depth => larger(seen.touched.largest, value, self.half_height),
             Watched::Pressed => larger(seen.pressed.largest, value, self.convex_up_to),
             _ => false,
         }
@@ -222,6 +231,11 @@ impl Range {
             .take(Watched::Mach, limits.mach_per_flow, MACH, before, now, now.tube);
         self.pressed
             .take(Watched::Pressed, 1.0, limits.convex_up_to, before, now, 0);
+        self.touched
+            .take(Watched::Depth, 1.0, limits.half_height, before, now, 0);
+        if now.t == 0.0 && !limits.at_rest {
+            self.begun = self.begun.max(now.of(Watched::Depth)[0]);
+        }
     }
 
     /// Limits that were passed.
@@ -241,6 +255,20 @@ impl Range {
             all.push(Code::FastGas.warning(format!(
                 "range of the model: the Mach number {told}; flow is meant to creep, and a tube passes no more than at 1, so that real flow \
                  is slower than this"
+            )));
+        }
+        if self.begun > 0.0 {
+            all.push(Code::DeepContact.warning(format!(
+                "contact: the beam begins {:.3e} m behind the face of a wall, and is thrown off; begin in front of it, or with \
+                 /start/equilibrium",
+                self.begun
+            )));
+        }
+        if let Some(began) = self.touched.began {
+            all.push(Code::DeepContact.warning(format!(
+                "contact: the beam is pressed {:.3e} m into a wall at t = {:.4} s, by more than half its height from t = {began:.4} s on; a \
+                 stiffer wall holds it",
+                self.touched.largest, self.touched.t
             )));
         }
         if let Some(began) = self.pressed.began {

@@ -3,6 +3,7 @@
 mod attachments;
 mod bladders;
 mod coefficients;
+mod contacts;
 mod ends;
 mod fluid;
 mod functions;
@@ -25,7 +26,7 @@ use crate::error::{Code, Violation};
 type Rule = fn(&Case, &mut Violations);
 
 /// All rules, each with the sections of the case that it compares.
-const RULES: [(Rule, &[&str]); 16] = [
+const RULES: [(Rule, &[&str]); 17] = [
     (name, &[]),
     (plausible::sizes, &[]),
     (plausible::proportions, &["beam", "tubes", "network"]),
@@ -37,6 +38,7 @@ const RULES: [(Rule, &[&str]); 16] = [
     (network::check, &["bladders", "tubes", "network", "time"]),
     (ends::check, &[]),
     (attachments::check, &[]),
+    (contacts::check, &[]),
     (probes::check, &[]),
     (relaxation::check, &["beam"]),
     (probes::step, &["step_response", "time"]),

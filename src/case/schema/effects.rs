@@ -157,6 +157,8 @@ effects! {
         Gravity gravity,
         /// Point masses, springs, dashpots and forces at places along the beam.
         Attachments attachments,
+        /// Walls that the beam may come to lie against.
+        Contacts contacts,
         /// Fluid around the beam: its inertia and stream.
         Surroundings surroundings,
     }

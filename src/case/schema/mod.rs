@@ -17,6 +17,7 @@ use crate::functions::signals::{Clock, Signal};
 mod attachments;
 mod beam;
 mod bladders;
+mod contacts;
 mod effects;
 mod loads;
 mod network;
@@ -28,6 +29,7 @@ mod viscoelasticity;
 pub use attachments::*;
 pub use beam::*;
 pub use bladders::*;
+pub use contacts::*;
 pub use effects::*;
 pub use loads::*;
 pub use network::*;
@@ -80,6 +82,10 @@ pub struct Case {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 1000))]
     pub attachments: Vec<Attachment>,
+    /// Walls that the beam may come to lie against.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 100))]
+    pub contacts: Vec<Contact>,
     /// What the beam moves through. Absent: nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surroundings: Option<Surroundings>,

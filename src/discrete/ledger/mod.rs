@@ -17,7 +17,7 @@ pub use reactions::compared;
 use crate::case::schema::Effect;
 use serde::{Deserialize, Serialize};
 
-use super::{State, System, TimeData, Workspace, residual};
+use super::{State, System, TimeData, Workspace, residual, touching};
 
 /// Rates that are integrated along the run, and what they add up to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,6 +107,9 @@ pub struct Energies {
     /// In accumulators.
     #[serde(default)]
     pub accumulators: f64,
+    /// Of walls that are pressed.
+    #[serde(default)]
+    pub contacts: f64,
     /// Of springs to ground.
     #[serde(default)]
     pub springs: f64,
@@ -128,6 +131,7 @@ impl Energies {
             + self.compression
             + self.section
             + self.accumulators
+            + self.contacts
             + self.springs
             + self.around
     }
@@ -221,6 +225,7 @@ pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     e.compression = compressed::energy(system, &w);
     e.accumulators = stored::accumulated(system, &w);
     e.tubes = tubes::kinetic(system, &w);
+    e.contacts = touching::energy(system, &w);
     e.springs = system.attached.iter().map(|attached| attached.energy(system, &w)).sum();
     e.relaxing = residual::relaxation::energy_and_loss(system, now, &w)[0];
     e.section = residual::nonlinear::energy(system, &w);

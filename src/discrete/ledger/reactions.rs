@@ -20,7 +20,7 @@ pub fn compared(system: &System, now: &TimeData, w: State) -> [f64; 2] {
             .enumerate()
             .any(|(k, weight)| weight > 0.0 && near(a.node + k))
     };
-    if mesh.cells < 2 || system.attached.iter().any(inner) {
+    if mesh.cells < 2 || !system.touching.is_empty() || system.attached.iter().any(inner) {
         return squares;
     }
     for (node, near, next) in [(0, 0, 1), (mesh.nodes - 1, mesh.cells - 1, mesh.cells - 2)] {

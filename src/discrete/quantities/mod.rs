@@ -5,7 +5,7 @@
 //! interest      in the end: the quantities of the summary
 //! fields        along the beam and the network, with their axes
 //! probes        over time, at places that the case names
-//! stations      over time, at ports and in accumulators
+//! stations      over time, at ports, in accumulators and at walls
 //! look          how a state is read
 //! row           the values of all of them at one instant
 //! ```

@@ -108,6 +108,10 @@ fn relaxing(system: &System) -> bool {
     !system.model.relaxation.is_empty()
 }
 
+fn touching(system: &System) -> bool {
+    !system.touching.is_empty()
+}
+
 fn accumulating(system: &System) -> bool {
     system
         .fluid
@@ -226,6 +230,8 @@ observables! {
         "energy of compressed fluid, relative to ambient pressure";
     TubeEnergy: "tube_energy" ["J"], "tube energy", "energy of the fluid in tubes", Stored, Recorded, inert, Read::State(|look| look.stored.tubes),
         "kinetic energy of the fluid in tubes";
+    ContactEnergy: "contact_energy" ["J"], "contact energy", "energy of walls that are pressed", Stored, Recorded, touching, Read::State(|look| look.stored.contacts),
+        "energy of walls that are pressed";
     SpringEnergy: "spring_energy" ["J"], "spring energy", "energy of springs to ground", Stored, Recorded, attached, Read::State(|look| look.stored.springs),
         "energy of what holds the beam elastically at places";
     SurroundingEnergy: "surrounding_energy" ["J"], "energy around", "energy of the fluid around the beam", Stored, Recorded, around, Read::State(|look| look.stored.around),

@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::{Group, Look, Observable, Read, probes, stations};
 use crate::discrete::System;
 
-/// Values of the quantities over time at one instant, then those of ports and accumulators, then those of probes.
+/// Values of the quantities over time at one instant, then those of ports, accumulators and walls, then those of probes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     columns: Vec<Observable>,
-    /// How many values are those of ports and accumulators.
+    /// How many values are those of ports, accumulators and walls.
     stations: usize,
     values: Vec<f64>,
 }
@@ -21,7 +21,7 @@ impl Row {
         Self::new(Observable::of(system), [stations, probes::columns(system).count()])
     }
 
-    /// Of columns, so many of ports and accumulators, and so many of probes, zero yet.
+    /// Of columns, so many of ports, accumulators and walls, and so many of probes, zero yet.
     pub fn new(columns: Vec<Observable>, [stations, probes]: [usize; 2]) -> Self {
         let values = vec![0.0; columns.len() + stations + probes];
         Self {

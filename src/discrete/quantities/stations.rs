@@ -1,12 +1,34 @@
-//! Quantities at each port and in each accumulator.
+//! Quantities at each port, in each accumulator and at each wall.
 
 use super::look::Look;
 use super::probes::ProbeColumn;
-use crate::discrete::System;
 use crate::discrete::ledger::ports;
+use crate::discrete::{System, touching};
 
-/// Columns of all ports and accumulators of a system; at rest, those that a state at rest has.
+/// Columns of all ports, accumulators and walls of a system; at rest, those that a state at rest has.
 pub fn columns(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
+    let mut all = of_network(system, at_rest);
+    let walls = system.model.contacts.iter().map(|wall| &wall.name);
+    for (name, short) in short("contact", walls) {
+        let column = |what: &str, unit, about: &str| ProbeColumn {
+            name: format!("{short}_{what}"),
+            unit,
+            about: format!("{about} the wall \"{name}\""),
+        };
+        all.push(column("normal_force", "N", "force on the beam out of"));
+        if !at_rest {
+            all.push(column("friction_force", "N", "force on the beam along the face of"));
+        }
+        all.push(column(
+            "depth",
+            "m",
+            "largest depth, below 0 least distance, behind the face of",
+        ));
+    }
+    all
+}
+
+fn of_network(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return vec![];
     };
@@ -53,17 +75,29 @@ pub fn columns(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
 
 /// Their values in a state; without integrals those of a state at rest.
 pub fn values(look: &Look, integrals: Option<&[f64]>, out: &mut [f64]) {
-    let (Some(wet), Some(fluid)) = (&look.system.model.wet, &look.system.fluid) else {
-        return;
-    };
-    let mut flows = vec![0.0; ports::count(wet)];
-    ports::flows(look.system, look.now, &look.w, &mut flows);
     let mut out = out.iter_mut();
     let mut put = |value: f64| {
         if let Some(place) = out.next() {
             *place = value;
         }
     };
+    network_values(look, integrals, &mut put);
+    for wall in 0..look.system.model.contacts.len() {
+        let [normal, friction, depth] = touching::felt(look.system, &look.w, wall);
+        put(normal);
+        if integrals.is_some() {
+            put(friction);
+        }
+        put(depth);
+    }
+}
+
+fn network_values(look: &Look, integrals: Option<&[f64]>, put: &mut impl FnMut(f64)) {
+    let (Some(wet), Some(fluid)) = (&look.system.model.wet, &look.system.fluid) else {
+        return;
+    };
+    let mut flows = vec![0.0; ports::count(wet)];
+    ports::flows(look.system, look.now, &look.w, &mut flows);
     for (port, &flow) in flows.iter().enumerate() {
         let [pressure, power] = ports::pressure_and_power(look.system, look.now, &look.w, port, flow);
         put(pressure);

@@ -5,7 +5,7 @@ use super::fluid::{bridge_drops, driving, pressure_at};
 use crate::discrete::attached::at_node;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, MeshLink, Place};
 use crate::discrete::ledger::EnergyRate;
-use crate::discrete::{System, TimeData, Workspace};
+use crate::discrete::{System, TimeData, Workspace, touching};
 use crate::model::{Kinematics, LumpedKind, Wet};
 use crate::numerics::{Planar, Scalar};
 
@@ -74,6 +74,9 @@ pub fn outer_forces<T: Scalar>(
         each(Some(EnergyRate::Loads), Planar::constant(given));
         each(None, attached.spring(w) * weight);
         each(Some(EnergyRate::Damping), attached.dashpot(w) * weight);
+    }
+    if !system.touching.is_empty() {
+        touching::forces(system, w, node, &mut each);
     }
 }
 

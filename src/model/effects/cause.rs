@@ -137,6 +137,8 @@ pub enum Keeps {
     Gas,
     /// Something is attached to the beam, which the scene's numbers do not know.
     Attachments,
+    /// The beam may strike walls, which the scene's numbers do not know.
+    Contacts,
     /// A fluid is around the beam, which the scene's numbers do not know.
     Surroundings,
     /// The beam is curved at rest, which the scene's numbers do not know.
@@ -229,6 +231,7 @@ impl Display for Keeps {
             Self::UnevenStart => "the start has differences along a bladder",
             Self::FiniteStrain => "the section is not linear at these loads",
             Self::Attachments => "what is attached to the beam has no bound here",
+            Self::Contacts => "what walls do to the beam has no bound here",
             Self::Gas => "the fluid is a gas",
             Self::Surroundings => "the fluid around the beam has no bound here",
             Self::RestCurvature => "a beam that is curved at rest has no bound here",

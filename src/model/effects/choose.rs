@@ -199,6 +199,7 @@ impl<'a> Chooser<'a> {
         };
         match effect {
             _ if !self.case.attachments.is_empty() && by_motion(effect) => kept(Keeps::Attachments),
+            _ if !self.case.contacts.is_empty() && by_motion(effect) => kept(Keeps::Contacts),
             _ if self.case.loads.iter().any(Load::is_rest) && by_motion(effect) => kept(Keeps::RestCurvature),
             _ if self.case.beam.viscoelasticity.is_some() && by_motion(effect) => kept(Keeps::Viscoelasticity),
             _ if self.case.surroundings.is_some() && by_motion(effect) => kept(Keeps::Surroundings),

@@ -1,6 +1,6 @@
 //! What stands against leaving an effect out: something in the case that has a meaning only with it.
 
-use crate::case::schema::{Attachment, Case, Formulation, Load};
+use crate::case::schema::{Attachment, Case, Contact, Formulation, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::profile::Profile;
 use crate::model::network::Feed;
@@ -34,6 +34,9 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
     };
     if let Some(k) = case.loads.iter().position(across) {
         return obstacle(format!("/loads/{k} acts across the beam"), HINT);
+    }
+    if let Some(wall) = case.contacts.first() {
+        return obstacle(format!("the wall \"{}\" may push the beam across", wall.name), HINT);
     }
     let pushed = |a: &Attachment| a.force_x_n.as_ref().is_some_and(|signal| !signal.is_zero());
     if let Some(k) = case.attachments.iter().position(pushed) {
@@ -85,6 +88,15 @@ pub fn axial_force_on_bending(finite_rotation: bool) -> Option<Obstacle> {
 
 /// Dashpots at places resist the motion of their nodes alone.
 pub fn solid_inertia(case: &Case) -> Option<Obstacle> {
+    if let Some(wall) = lossy(case) {
+        return obstacle(
+            format!(
+                "the wall \"{}\" has damping or friction, which is nothing where masses do not move",
+                wall.name
+            ),
+            "remove them, or leave solid_inertia on",
+        );
+    }
     let damped = |a: &Attachment| a.damping_x_n_s_m > 0.0 || a.damping_z_n_s_m > 0.0;
     let k = case.attachments.iter().position(damped)?;
     obstacle(
@@ -105,6 +117,12 @@ pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
             "leave finite_rotation out too, or axial_inertia on",
         );
     }
+    if let Some(wall) = lossy(case) {
+        return obstacle(
+            format!("the wall \"{}\" has damping or friction", wall.name),
+            "remove them, or leave axial_inertia on",
+        );
+    }
     if let Some(k) = case.attachments.iter().position(|a| a.damping_z_n_s_m > 0.0) {
         return obstacle(
             format!("/attachments/{k} has a dashpot along"),
@@ -121,6 +139,12 @@ pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
     )
 }
 
+/// A wall that loses energy.
+fn lossy(case: &Case) -> Option<&Contact> {
+    let lossy = |wall: &&Contact| wall.damping_s_m > 0.0 || wall.friction_coefficient > 0.0;
+    case.contacts.iter().find(lossy)
+}
+
 /// The normal force must follow from the loads.
 pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool) -> Option<Obstacle> {
     const HINT: &str = "leave axial_stretch on";
@@ -132,6 +156,13 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
             "finite_rotation is on, which couples stretch and bending",
             "leave finite_rotation out too",
         );
+    }
+    if let Some(wall) = case.contacts.first() {
+        let what = format!(
+            "the wall \"{}\" may push the beam along, so the normal force does not follow from the loads",
+            wall.name
+        );
+        return obstacle(what, HINT);
     }
     let holds = |a: &Attachment| a.stiffness_z_n_m > 0.0 || a.damping_z_n_s_m > 0.0;
     if let Some(k) = case.attachments.iter().position(holds) {

@@ -311,6 +311,14 @@ pub fn about(effect: Effect) -> About {
             needs: &[],
             presence: Presence::Given(|case, _| !case.attachments.is_empty()),
         },
+        Effect::Contacts => About {
+            adds: "k s(g) n behind a wall, damped, with friction",
+            brings: "forces that set in at depth 0",
+            number: "present where given; what is decided by the scene's numbers stays then",
+            cost: "arithmetic in every node, or in two; steps where the beam strikes",
+            needs: &[],
+            presence: Presence::Given(|case, _| !case.contacts.is_empty()),
+        },
         Effect::Surroundings => About {
             adds: "-m_a (v·e_n)_t e_n, drag on v less the stream's velocity, -ρ h_s w_s g",
             brings: "accelerations of both directions coupled in every node",

@@ -1,0 +1,55 @@
+//! Walls: which way they face, what presses where, and what friction needs.
+
+use std::collections::HashMap;
+
+use crate::case::faults::Violations;
+use crate::case::schema::Case;
+use crate::error::{Code, Violation};
+
+pub(super) fn check(case: &Case, faults: &mut Violations) {
+    let mut known = HashMap::new();
+    for (i, contact) in case.contacts.iter().enumerate() {
+        let pointer = format!("/contacts/{i}");
+        let mut fault = |key: &str, what: &str, hint: &str| {
+            let at = if key.is_empty() {
+                pointer.clone()
+            } else {
+                format!("{pointer}/{key}")
+            };
+            faults.push(Violation::new(Code::Together, at, what).hint(hint));
+        };
+        if contact.normal.iter().all(|x| *x == 0.0) {
+            fault(
+                "normal",
+                "a normal without a direction",
+                "[1, 0] is a wall below the beam, [-1, 0] one above it",
+            );
+        }
+        match (contact.stiffness_pa, contact.at, contact.stiffness_n_m) {
+            (Some(_), None, None) | (None, Some(_), Some(_)) => {}
+            _ => fault(
+                "",
+                "a wall whose stiffness is not clear",
+                "give stiffness_pa for a wall all along the beam, or at and stiffness_n_m for one that touches it at a place",
+            ),
+        }
+        if contact.friction_coefficient > 0.0 && contact.friction_velocity_m_s.is_none() {
+            fault(
+                "friction_coefficient",
+                "friction without the velocity below which it lets go",
+                "give friction_velocity_m_s, a hundredth of the velocity with which the beam slides",
+            );
+        }
+        if contact.friction_coefficient == 0.0 && contact.friction_velocity_m_s.is_some() {
+            fault(
+                "friction_velocity_m_s",
+                "a velocity of friction without friction",
+                "give friction_coefficient, or leave it out",
+            );
+        }
+        if let Some(first) = known.insert(&contact.name, i) {
+            let what = format!("a second contact \"{}\", the first is /contacts/{first}", contact.name);
+            fault("name", &what, "names tell columns of outputs apart");
+        }
+    }
+}

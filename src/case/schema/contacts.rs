@@ -1,0 +1,47 @@
+//! What the beam may come to lie against.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::is_zero;
+
+/// A wall that does not move: the half-plane behind a point, seen against a normal. It presses on the line of the beam's centre, all
+/// along with `stiffness_pa`, or at one place with `at` and `stiffness_n_m`. A beam that is away from it feels nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    /// Name in outputs.
+    pub name: String,
+    /// A point of the wall's face, x and z [m].
+    pub point_m: [f64; 2],
+    /// Direction out of the wall, towards the free side, x and z; of any length but 0.
+    pub normal: [f64; 2],
+    /// Stiffness all along the beam: force per length over how deep it is pressed in [Pa].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub stiffness_pa: Option<f64>,
+    /// The one place `theta/l_s` that it touches, 0 at the root and 1 at the tip.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub at: Option<f64>,
+    /// Stiffness at that place: force over how deep it is pressed in [N/m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub stiffness_n_m: Option<f64>,
+    /// Depth over which the stiffness comes in [m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub smoothing_m: f64,
+    /// Damping, by the rate at which the beam is pressed in: the force is `1 + c d/dt(depth)` times as large, and never pulls (Hunt &
+    /// Crossley 1975) [s/m].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub damping_s_m: f64,
+    /// Coulomb's coefficient of friction.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub friction_coefficient: f64,
+    /// Velocity below which friction falls with the velocity instead of holding: with friction, far below that of sliding [m/s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub friction_velocity_m_s: Option<f64>,
+}

@@ -1,0 +1,134 @@
+//! Walls on a mesh.
+
+use super::ledger::EnergyRate;
+use super::{Mesh, System, Workspace};
+use crate::model::Contact;
+use crate::model::contact::Pressed;
+use crate::numerics::{Planar, Scalar};
+
+/// `[E62]` Where a wall is felt: at every node with its length, or at the place that it touches, between two nodes,
+///
+/// ```text
+/// x̄ = Σ hat_i x_i      f_i = hat_i w f(x̄, v̄)      E gains w k S(g)        w = h_i, at a place 1
+/// ```
+///
+/// x the place of a node, `(u1, θ + u3)`: force, work and energy go together on every mesh.
+#[derive(Clone, Debug)]
+pub struct Touching {
+    /// Number of the wall in the model.
+    pub number: usize,
+    /// The node before it.
+    node: usize,
+    /// Weights of that node and the next.
+    weights: [f64; 2],
+    /// `w`: the length for which it stands [m], 1 at a place.
+    measure: f64,
+    /// Where it is in the straight beam [m].
+    coordinate: f64,
+}
+
+impl Touching {
+    /// All of a model in the order of their places.
+    pub fn all(contacts: &[Contact], mesh: &Mesh) -> Vec<Self> {
+        let mut all = vec![];
+        for (number, contact) in contacts.iter().enumerate() {
+            let mut push = |place: f64, measure: f64| {
+                let node = (place as usize).min(mesh.cells - 1);
+                let share = place - node as f64;
+                all.push(Self {
+                    number,
+                    node,
+                    weights: [1.0 - share, share],
+                    measure,
+                    coordinate: place * mesh.h,
+                });
+            };
+            match contact.at {
+                Some(at) => push(at * mesh.cells as f64, 1.0),
+                None => (0..mesh.nodes).for_each(|i| push(i as f64, mesh.node_length(i))),
+            }
+        }
+        all.sort_by_key(|one| one.node);
+        all
+    }
+
+    fn between<T: Scalar>(&self, values: &[Planar<T>]) -> Planar<T> {
+        values[self.node] * self.weights[0] + values[self.node + 1] * self.weights[1]
+    }
+
+    fn place<T: Scalar>(&self, w: &Workspace<T>) -> Planar<T> {
+        let u = self.between(&w.motion.u);
+        Planar::new(u.x, u.z + self.coordinate)
+    }
+
+    /// Forces there [N].
+    pub fn forces<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> Pressed<T> {
+        let law = &system.model.contacts[self.number];
+        let Pressed {
+            elastic,
+            damping,
+            friction,
+        } = law.forces(self.place(w), self.between(&w.motion.v));
+        Pressed {
+            elastic: elastic * self.measure,
+            damping: damping * self.measure,
+            friction: friction * self.measure,
+        }
+    }
+
+    /// How deep it is pressed in, and how fast [m, m/s].
+    pub fn depth(&self, system: &System, w: &Workspace<f64>) -> [f64; 2] {
+        let law = &system.model.contacts[self.number];
+        [law.depth(self.place(w)), -self.between(&w.motion.v).dot(law.normal)]
+    }
+}
+
+/// Forces of walls on a node, each with the account of its work; none where it is stored.
+#[inline]
+pub fn forces<T: Scalar>(
+    system: &System,
+    w: &Workspace<T>,
+    node: usize,
+    each: &mut impl FnMut(Option<EnergyRate>, Planar<T>),
+) {
+    let first = system.touching.partition_point(|one| one.node + 1 < node);
+    for one in system.touching[first..].iter().take_while(|one| one.node <= node) {
+        let weight = one.weights[node - one.node];
+        if weight == 0.0 {
+            continue;
+        }
+        let f = one.forces(system, w);
+        each(None, f.elastic * weight);
+        if system.model.contacts[one.number].is_lossy() {
+            each(Some(EnergyRate::Damping), (f.damping + f.friction) * weight);
+        }
+    }
+}
+
+/// Energy that walls store [J].
+pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
+    let each = system.touching.iter().map(|one| {
+        let [depth, _] = one.depth(system, w);
+        one.measure * system.model.contacts[one.number].energy(depth)
+    });
+    each.sum()
+}
+
+/// Of a wall: normal force, force along its face, and largest depth [N, N, m]; the depth below 0 is the distance.
+pub fn felt(system: &System, w: &Workspace<f64>, number: usize) -> [f64; 3] {
+    let law = &system.model.contacts[number];
+    let mut felt = [0.0, 0.0, f64::NEG_INFINITY];
+    for one in system.touching.iter().filter(|one| one.number == number) {
+        let f = one.forces(system, w);
+        felt[0] += (f.elastic + f.damping).dot(law.normal);
+        felt[1] += f.friction.dot(law.normal.normal());
+        felt[2] = felt[2].max(one.depth(system, w)[0]);
+    }
+    felt
+}
+
+/// Largest depth at any wall, and its rate [m, m/s]; nothing before anything is touched.
+pub fn deepest(system: &System, w: &Workspace<f64>) -> [f64; 2] {
+    let depths = system.touching.iter().map(|one| one.depth(system, w));
+    depths.fold([0.0; 2], |a, b| if b[0] > a[0] { b } else { a })
+}

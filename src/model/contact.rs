@@ -1,0 +1,200 @@
+//! Walls that the beam may come to lie against.
+
+use crate::case::schema::{Case, Contact as Written};
+use crate::numerics::{Planar, Scalar};
+
+/// `[E61]` A wall: the half-plane behind the face through `x_0` with the outward normal n. Where the line of the beam is behind it by
+/// `g = n·(x_0 - x) > 0`, per length or at a place, k its stiffness and d its smoothing,
+///
+/// ```text
+/// f = k s(g) [m(1 + c g_t) n - μ m(1 + c g_t) v_t/√(v_t² + v_0²) t]      s(g) = g²/(2d) up to d, g - d/2 beyond      m(1) = 1
+/// E = k S(g),  S' = s      D = k s [(m - 1) g_t + μ m v_t²/√(v_t² + v_0²)]
+/// ```
+///
+/// t along the face, `m(y)` is y, but smoothly not below 0: a wall never pulls. D ≥ 0: damping (Hunt & Crossley, J. Appl. Mech. 42 (1975) 440)
+/// and friction lose energy, k s(g) stores it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// Its name.
+    pub name: String,
+    /// The place `θ/l_s` that it touches; none: all along.
+    pub at: Option<f64>,
+    /// `x_0` [m].
+    pub point: Planar<f64>,
+    /// `n`, of length 1.
+    pub normal: Planar<f64>,
+    /// `k` [Pa], at a place [N/m].
+    pub stiffness: f64,
+    /// `d` [m].
+    pub smoothing: f64,
+    /// `c` [s/m].
+    pub damping: f64,
+    /// `μ`.
+    pub friction: f64,
+    /// `v_0` [m/s].
+    pub slow: f64,
+}
+
+/// Forces of a wall per what stands for its measure: elastic, of damping, of friction.
+#[derive(Clone, Copy, Debug)]
+pub struct Pressed<T> {
+    /// Along the normal, stored.
+    pub elastic: Planar<T>,
+    /// Along the normal, lost.
+    pub damping: Planar<T>,
+    /// Along the face.
+    pub friction: Planar<T>,
+}
+
+impl Contact {
+    /// All of a case.
+    pub fn all(case: &Case) -> Vec<Self> {
+        case.contacts.iter().map(Self::new).collect()
+    }
+
+    fn new(written: &Written) -> Self {
+        let [x, z] = written.normal;
+        let length = x.hypot(z);
+        Self {
+            name: written.name.clone(),
+            at: written.at,
+            point: Planar {
+                x: written.point_m[0],
+                z: written.point_m[1],
+            },
+            normal: Planar {
+                x: x / length,
+                z: z / length,
+            },
+            stiffness: written.stiffness_pa.or(written.stiffness_n_m).unwrap_or(0.0),
+            smoothing: written.smoothing_m,
+            damping: written.damping_s_m,
+            friction: written.friction_coefficient,
+            slow: written.friction_velocity_m_s.unwrap_or(1.0),
+        }
+    }
+
+    /// Whether it loses energy.
+    pub fn is_lossy(&self) -> bool {
+        self.damping > 0.0 || self.friction > 0.0
+    }
+
+    /// How deep a point is behind the face [m]; below 0 in front of it.
+    #[inline]
+    pub fn depth<T: Scalar>(&self, at: Planar<T>) -> T {
+        (Planar::constant(self.point) - at).dot(Planar::constant(self.normal))
+    }
+
+    /// Forces on a point that moves.
+    #[inline]
+    pub fn forces<T: Scalar>(&self, at: Planar<T>, velocity: Planar<T>) -> Pressed<T> {
+        let normal = Planar::constant(self.normal);
+        let elastic = self.depth(at).lift(|g| self.ramp(g)) * self.stiffness;
+        let mut pressed = Pressed {
+            elastic: normal.times(elastic),
+            damping: Planar::zero(),
+            friction: Planar::zero(),
+        };
+        let mut whole = elastic;
+        if self.damping > 0.0 {
+            let more = (velocity.dot(normal) * -self.damping).lift(not_below) * elastic;
+            pressed.damping = normal.times(more);
+            whole += more;
+        }
+        if self.friction > 0.0 {
+            let face = normal.normal();
+            let along = velocity.dot(face);
+            let share = along / (along.squared() + self.slow * self.slow).sqrt();
+            pressed.friction = face.times(share * whole * -self.friction);
+        }
+        pressed
+    }
+
+    /// `k S(g)`.
+    pub fn energy(&self, depth: f64) -> f64 {
+        let d = self.smoothing;
+        let stored = match depth {
+            g if g <= 0.0 => 0.0,
+            g if g < d => g * g * g / (6.0 * d),
+            g => 0.5 * g * (g - d) + d * d / 6.0,
+        };
+        self.stiffness * stored
+    }
+
+    /// `s` and its slope.
+    fn ramp(&self, depth: f64) -> (f64, f64) {
+        let d = self.smoothing;
+        match depth {
+            g if g <= 0.0 => (0.0, 0.0),
+            g if g < d => (0.5 * g * g / d, g / d),
+            g => (g - 0.5 * d, 1.0),
+        }
+    }
+}
+
+/// `m(1 + x) - 1` and its slope: x, but smoothly not below -1: from -1/2 on down a parabola, which ends at -3/2.
+fn not_below(x: f64) -> (f64, f64) {
+    match x {
+        x if x >= -0.5 => (x, 1.0),
+        x if x > -1.5 => (0.5 * (x + 1.5) * (x + 1.5) - 1.0, x + 1.5),
+        _ => (-1.0, 0.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WALL: Contact = Contact {
+        name: String::new(),
+        at: None,
+        point: Planar { x: 0.1, z: 0.0 },
+        normal: Planar { x: -0.6, z: 0.8 },
+        stiffness: 1e5,
+        smoothing: 1e-3,
+        damping: 2.0,
+        friction: 0.3,
+        slow: 1e-3,
+    };
+
+    /// Goal: nothing in front of the wall, pressed out and never pulled behind it, energy that is the work of the elastic part, and losses
+    /// of one sign.
+    #[test]
+    fn a_wall_presses_and_never_pulls() {
+        let face = WALL.normal.normal();
+        for depth in [-1.0, 0.0, 1e-5, 5e-4, 1e-3, 2e-3, 0.1] {
+            let at = WALL.point - WALL.normal * depth;
+            assert!((WALL.depth(at) - depth).abs() < 1e-15);
+            for (inwards, along) in [(0.0, 0.0), (10.0, 1.0), (-0.1, -1.0), (-0.4, 1e-4), (-10.0, 5.0)] {
+                let velocity = WALL.normal * -inwards + face * along;
+                let f = WALL.forces(at, velocity);
+                let whole = (f.elastic + f.damping).dot(WALL.normal);
+                assert!(
+                    whole >= -1e-12 && (depth > 0.0 || whole == 0.0),
+                    "{depth} {inwards}: {whole}"
+                );
+                assert!(f.damping.dot(velocity) <= 0.0 && f.friction.dot(velocity) <= 0.0);
+                assert!(f.friction.squared().sqrt() <= 0.3 * whole + 1e-12);
+            }
+            let h = 1e-7;
+            let power = (WALL.energy(depth + h) - WALL.energy(depth - h)) / (2.0 * h);
+            let elastic = WALL.forces(at, Planar::default()).elastic.dot(WALL.normal);
+            assert!(
+                (power - elastic).abs() < 1e-3 * (1.0 + elastic),
+                "{depth}: {power} {elastic}"
+            );
+        }
+    }
+
+    /// Goal: the damping's factor is continuous with its slope.
+    #[test]
+    fn damping_has_no_kinks() {
+        for seam in [-0.5, -1.5] {
+            let (a, b) = (not_below(seam - 1e-9), not_below(seam + 1e-9));
+            assert!(
+                (a.0 - b.0).abs() < 1e-8 && (a.1 - b.1).abs() < 1e-8,
+                "{seam}: {a:?} {b:?}"
+            );
+        }
+    }
+}
