@@ -204,7 +204,10 @@ fn the_page_of_data_names_everything() {
         (Some(rest), Some((_, what))) if rest != "flow" => format!("port_NAME_{what}"),
         _ => name.to_owned(),
     };
-    let columns = header.columns.iter().map(|c| format!("`{} [{}]`", named(&c.name), c.unit));
+    let columns = header
+        .columns
+        .iter()
+        .map(|c| format!("`{} [{}]`", named(&c.name), c.unit));
     let axes = header.axes.iter().map(|a| format!("`{}`", a.name));
     let fields = header.fields.iter().map(|f| format!("`{}`", f.name));
     let missing: Vec<String> = columns
