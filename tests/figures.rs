@@ -199,7 +199,15 @@ fn the_page_of_data_names_everything() {
     let page = fs::read_to_string("docs/data.md").unwrap();
     let case = case::load(Path::new("cases/wiring-3.json"), &[]).unwrap();
     let header = Observer::header(&case, &System::new(&case).unwrap());
-    let columns = header.columns.iter().map(|c| format!("`{} [{}]`", c.name, c.unit));
+    // columns of ports are told once for all
+    let named = |name: &str| match (name.strip_prefix("port_"), name.rsplit_once('_')) {
+        (Some(rest), Some((_, what))) if rest != "flow" => format!("port_NAME_{what}"),
+        _ => name.to_owned(),
+    };
+    let columns = header
+        .columns
+        .iter()
+        .map(|c| format!("`{} [{}]`", named(&c.name), c.unit));
     let axes = header.axes.iter().map(|a| format!("`{}`", a.name));
     let fields = header.fields.iter().map(|f| format!("`{}`", f.name));
     let missing: Vec<String> = columns

@@ -47,9 +47,9 @@ fn of_network(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
             about: format!("{about} the port \"{name}\""),
         };
         all.push(column("pressure", "Pa", "pressure at"));
-        all.push(column("flow", "m^3/s", "flow in through"));
-        all.push(column("power", "W", "power that comes in through"));
         if !at_rest {
+            all.push(column("flow", "m^3/s", "flow in through"));
+            all.push(column("power", "W", "power that comes in through"));
             all.push(column(
                 "volume",
                 "m^3",
@@ -101,9 +101,9 @@ fn network_values(look: &Look, integrals: Option<&[f64]>, put: &mut impl FnMut(f
     for (port, &flow) in flows.iter().enumerate() {
         let [pressure, power] = ports::pressure_and_power(look.system, look.now, &look.w, port, flow);
         put(pressure);
-        put(flow);
-        put(power);
         if let Some(integrals) = integrals {
+            put(flow);
+            put(power);
             put(ports::let_in(look.system, integrals, port));
         }
     }
