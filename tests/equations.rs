@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 60] = [
+const INDEX: [(&str, &str, &str); 62] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -174,6 +174,12 @@ const INDEX: [(&str, &str, &str); 60] = [
         "what_nothing_acts_on_has_its_own_shape",
     ),
     ("[E60]", "tests/components/stores.rs", "vessels_fill_as_their_laws_say"),
+    (
+        "[E61]",
+        "tests/contact/bodies.rs",
+        "a_beam_that_falls_flat_bounces_as_one_body",
+    ),
+    ("[E62]", "tests/contact/main.rs", "a_stop_holds_a_cantilever"),
 ];
 
 #[test]

@@ -124,6 +124,8 @@ fn balances_of_loaded_beams_close() {
         ("silicone-strip", 0.5),
         ("snap-arch", 1.0),
         ("air-actuator", 0.2),
+        ("stop-harvester", 0.3),
+        ("finger-wall", 0.8),
         ("tour-beam", 0.1),
         ("section-actuator", 0.3),
         ("section-finite", 0.3),

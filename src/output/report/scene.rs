@@ -7,7 +7,7 @@ use crate::case::schema::{AccumulatorKind, BladderEnd, ChainEnd, Load, Rectifier
 use crate::case::wiring::{Given, Point, Tube, Wiring};
 use crate::case::{Case, ResolvedEnd, Rotation, Translation};
 use crate::functions::{Profile, Signal};
-use crate::model::Network;
+use crate::model::{Contact, Network};
 use crate::output::numbers::{quantity, significant, trimmed};
 
 /// Places along the beam at which a load is drawn.
@@ -40,7 +40,30 @@ pub fn of(case: &Case) -> Option<Value> {
         "wiring": case.bladders.as_ref().and(wiring(case)),
         "ends": [end(&case.ends.root.resolve(), case.ends.root.form().0), end(&case.ends.tip.resolve(), case.ends.tip.form().0)],
         "loads": case.loads.iter().map(|l| load(l, end_s)).collect::<Vec<_>>(),
+        "walls": Contact::all(case).iter().map(wall).collect::<Vec<_>>(),
     }))
+}
+
+/// A wall: its face and what it is.
+fn wall(wall: &Contact) -> Value {
+    let stiffness = match wall.at {
+        None => format!("all along, {}", q(wall.stiffness, "Pa")),
+        Some(at) => format!(
+            "at {} of the length, {}",
+            trimmed(&significant(at, 3)),
+            q(wall.stiffness, "N/m")
+        ),
+    };
+    let lossy = [("damping", wall.damping), ("friction", wall.friction)];
+    let lossy = lossy
+        .iter()
+        .filter(|(_, size)| *size > 0.0)
+        .map(|(what, _)| format!(", with {what}"));
+    json!({
+        "point": [wall.point.x, wall.point.z],
+        "normal": [wall.normal.x, wall.normal.z],
+        "words": format!("“{}”: {stiffness}{}", wall.name, lossy.collect::<String>()),
+    })
 }
 
 fn q(x: f64, unit: &str) -> String {

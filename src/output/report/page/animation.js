@@ -38,6 +38,23 @@ function factorControl(label, start, act) {
   return el("label", {}, label, slider, shown);
 }
 
+/** Faces of walls, where displacements along are drawn as they are. */
+function paintWalls(ctx, view, scene, factor, [s1, s3]) {
+  if (factor.along !== 1) return;
+  ctx.save();
+  ctx.strokeStyle = css("--faint");
+  ctx.lineWidth = 3;
+  for (const { point, normal } of scene.walls || []) {
+    const far = 4 * scene.length;
+    const at = (k) => [view.X(point[1] - s3 + k * far * normal[0]), view.Y((point[0] - s1 - k * far * normal[1]) * factor.across)];
+    ctx.beginPath();
+    ctx.moveTo(...at(-1));
+    ctx.lineTo(...at(1));
+    ctx.stroke();
+  }
+  ctx.restore();
+}
+
 function showAnimation(host, scene, motion, clock) {
   const layout = layOut(scene);
   const root = (f) => [motion.u1[f * motion.nodes], motion.u3[f * motion.nodes]];
@@ -109,6 +126,7 @@ function showAnimation(host, scene, motion, clock) {
       ctx.setTransform(1, 0, 0, 1, 0, 0);
       ctx.drawImage(ghost, 0, 0);
       ctx.restore();
+      paintWalls(ctx, view, scene, factor, shift(f));
       const pressure = scale ? (b) => motion.ofBladder[f * motion.bladders + b] / scale.limit : null;
       paintBeam(ctx, view, shape(f, w), scene, layout, pressure);
     });

@@ -72,6 +72,7 @@ function sceneWords(scene, layout) {
     if (end.moment) out.push([push.cloneNode(true), which, `moment: ${end.moment}`]);
     if (end.follower) out.push([push.cloneNode(true), which, `forces that turn with it, ${end.follower}`]);
   });
+  for (const one of scene.walls || []) out.push([wall.cloneNode(true), "Wall", one.words]);
   for (const load of scene.loads) out.push([push.cloneNode(true), "Load", load.words]);
   return out;
 }
