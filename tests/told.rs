@@ -255,3 +255,56 @@ fn prescribed_flows_have_a_reynolds_number() {
     let found = estimate(&apart);
     assert!(found < 0.1 * wanted, "{found:.1}");
 }
+
+/// Goal: effects by name that contradict each other, or for which nothing is given, are refused at their place with what to do, and not
+/// passed over; what the program itself leaves out takes along what needs it.
+#[test]
+fn effects_that_contradict_are_refused() {
+    let water = json!({"density_kg_m3": 1000, "viscosity_pa_s": 8.68e-4});
+    let ends = [json!("sealed"), json!("sealed")];
+    let of = |effects: Value| {
+        let text = joined(water.clone(), ends.clone(), effects).to_string();
+        let case = slcbeam::case::parse(&text, Path::new("joined.json"), Path::new(""), &[]).unwrap();
+        slcbeam::discrete::System::new(&case).map(|_| ())
+    };
+    for (effects, pointer, hint) in [
+        (
+            json!({"unsteady_friction": "on", "tube_inertia": "off"}),
+            "unsteady_friction",
+            "tube_inertia",
+        ),
+        (
+            json!({"unsteady_friction": "on", "flow": "off"}),
+            "unsteady_friction",
+            "set flow to \"on\"",
+        ),
+        (
+            json!({"rotary_inertia": "on", "solid_inertia": "off"}),
+            "rotary_inertia",
+            "solid_inertia",
+        ),
+        (json!({"compressibility": "on"}), "compressibility", "bulk_modulus_pa"),
+        (
+            json!({"nonlinear_section": "on"}),
+            "nonlinear_section",
+            "/bladders/strain_energy",
+        ),
+    ] {
+        match of(effects.clone()) {
+            Err(slcbeam::error::Error::Case(fault)) => {
+                let all = &fault.violations;
+                assert_eq!(all.len(), 1, "{effects}: {all:?}");
+                assert_eq!(all[0].pointer, format!("/effects/{pointer}"));
+                assert!(all[0].hint.as_ref().unwrap().contains(hint), "{effects}: {all:?}");
+            }
+            other => panic!("{effects}: {other:?}"),
+        }
+    }
+    for effects in [
+        json!({"unsteady_friction": "on", "tube_inertia": "on"}),
+        json!({"unsteady_friction": "off", "tube_inertia": "off", "compressibility": "off"}),
+        json!({"solid_inertia": "off", "rotary_inertia": "off"}),
+    ] {
+        assert!(of(effects.clone()).is_ok(), "{effects}");
+    }
+}
