@@ -336,3 +336,27 @@ fn nothing_happens_between_stretches() {
         );
     }
 }
+
+/// Goal: how long a sine lasts is `∫ |s| dt = 2/π` of the time, however many whole cycles it has: evenly spaced places meet whole cycles
+/// in their zeros. Tolerance: of 32 places in a cycle, 0.2 %.
+#[test]
+fn sines_of_whole_cycles_last() {
+    for cycles in [1, 4, 8, 32, 36, 64, 72, 500, 2048, 32_768, 65_536, 131_072, 1_000_000] {
+        let (cycles, end) = (f64::from(cycles), END);
+        for phase in [0.0, 0.4] {
+            let sine = format!(
+                r#"{{"sine":{{"amplitude":-3.0,"frequency_hz":{},"phase_rad":{phase}}}}}"#,
+                cycles / end
+            );
+            let both = format!(r#"{{"product":[2.0,{sine}]}}"#);
+            for (json, size) in [(sine.as_str(), 3.0), (both.as_str(), 6.0)] {
+                let [most, lasts] = signal(json).lasting(end, end);
+                let wanted = size * std::f64::consts::FRAC_2_PI;
+                assert!((most / size - 1.0).abs() < 1e-3, "{json}: {most}");
+                assert!((lasts / wanted - 1.0).abs() < 2e-3, "{json}: {lasts}, wanted {wanted}");
+            }
+        }
+    }
+    let [_, lasts] = signal("-0.7").lasting(END, END);
+    assert!((lasts - 0.7).abs() < 1e-12, "{lasts}");
+}

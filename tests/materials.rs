@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 use slcbeam::case::fluids::NamedFluid;
 use slcbeam::case::{self, Case, Origin};
-use slcbeam::error::{Error, Violation};
+use slcbeam::error::{Code, Error, Violation};
 use slcbeam_section::finite::law::Law;
 use slcbeam_section::input::Material;
 use slcbeam_section::materials::{INCOMPRESSIBLE, Preset, Published};
@@ -191,7 +191,25 @@ fn a_case_names_its_fluid() {
     assert_eq!(own.origins.words().get("/fluid/density_kg_m3"), None);
     let over = with(json!({"preset": "air"})).unwrap();
     assert!(over.fluid.as_ref().unwrap().density_kg_m3 < 1.3);
+    // p/(R T): a gas has its density at the ambient pressure, a liquid everywhere
+    let density = |fluid: Value| with(fluid).unwrap().fluid.unwrap().density_kg_m3;
+    let high = density(json!({"preset": "air", "temperature_c": 60, "ambient_pressure_pa": 26_500}));
+    assert!((high / (26_500.0 / (287.05 * 333.15)) - 1.0).abs() < 1e-12, "{high}");
+    let wet = json!({"preset": "water", "gas_fraction": 0.01, "ambient_pressure_pa": 26_500});
+    assert_eq!(density(wet), NamedFluid::Water.at(20.0).density_kg_m3);
     let refuse = |fluid: Value| refused(move |case| case["fluid"] = fluid.clone());
+    for (named, kind) in [("water", "gas"), ("air", "liquid")] {
+        let contradicts = refuse(json!({"preset": named, "kind": kind}));
+        assert_eq!(
+            (contradicts.pointer.as_str(), contradicts.code),
+            ("/fluid/kind", Code::Together)
+        );
+        let what = format!("{named} is a ");
+        assert!(
+            contradicts.what.contains(&what) && contradicts.hint.is_some(),
+            "{contradicts:?}"
+        );
+    }
     assert_eq!(
         refuse(json!({"preset": "water", "temperature_c": 120})).pointer,
         "/fluid/temperature_c"

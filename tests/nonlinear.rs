@@ -50,7 +50,7 @@ fn at_rest(sets: &[&str], name: &str) -> (f64, Option<String>) {
     assert!(path.fault.is_none(), "{:?}", path.fault);
     let columns = equilibrium::columns(&equilibrium::system(&case, 1.0).unwrap());
     let place = columns.iter().position(|column| column.name == name).unwrap();
-    (path.last().row[place], path.warning())
+    (path.last().row[place], path.warnings().pop())
 }
 
 /// Source: [E48]. Goal: a beam on which nothing acts but pressure has everywhere the curvature of its cell at rest under that pressure,

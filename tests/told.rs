@@ -184,3 +184,127 @@ fn cells_are_refined_where_it_helps() {
         "{accuracy:#}"
     );
 }
+
+/// The paper's beam with a chain that ports join to the outside.
+fn joined(fluid: Value, ends: [Value; 2], effects: Value) -> Value {
+    json!({
+        "name": "joined", "preset": "matia-gat-beam", "fluid": fluid,
+        "network": {"chains": [{"bladders": [1, 2, 3, 4], "ends": ends}]}, "effects": effects,
+        "ends": {"root": "clamped", "tip": "free"}, "probes": [{"name": "far", "at": 0.95}], "time": {"end_s": 0.5}
+    })
+}
+
+/// Goal: fluid at rest has no flow, and a beam that pressure bends no forces: what is left of them is round-off, of which no mesh is
+/// told to be coarse, and no flow to be fast. Before, a Reynolds number of 6767 and mesh errors of 1e286 were told of air at rest.
+#[test]
+fn rest_is_told_nothing_of_flows() {
+    let at = json!({"pressure_pa": 4e4});
+    for fluid in [json!({"preset": "air"}), json!({"preset": "water"})] {
+        for ends in [[at.clone(), json!("sealed")], [at.clone(), at.clone()]] {
+            let case = joined(fluid.clone(), ends, json!("auto"));
+            let said = say("equilibrium", &case, &[]);
+            for code in ["W003", "W021"] {
+                let found = warned(&said, code);
+                assert!(found.is_none(), "{fluid}: {found:?}");
+            }
+            // what swings about rest does so by as little as one likes
+            let modes = say("modes", &case, &["--at", "0.5", "--count", "2"]);
+            assert!(!modes.out.contains("reynolds_estimate"), "{}", modes.out);
+        }
+    }
+}
+
+/// Source: Kirchhoff's equations of equal resistances. Goal: an equilibrium with a steady flow tells the Reynolds number of that flow, where the
+/// model has not what comes of it.
+#[test]
+fn steady_flow_is_told_when_fast() {
+    let ends = [json!({"pressure_pa": 1000}), json!({"pressure_pa": 0})];
+    let creeping = json!({"tube_inertia": "off", "tube_losses": "off"});
+    let water = json!({"density_kg_m3": 1000, "viscosity_pa_s": 8.68e-4});
+    let said = say("equilibrium", &joined(water.clone(), ends.clone(), creeping), &[]);
+    let told = warned(&said, "W003").expect("a warning");
+    let resistance = 8.68e-4 * (4.0 * 0.046 / 1.55e-12 + 3.0 * 0.020 / 6.72e-13);
+    let reynolds = 2.0 * 1000.0 / (std::f64::consts::PI * 8.68e-4 * 1e-3) * 1000.0 / resistance;
+    assert!(
+        told.contains(&format!("reached {reynolds:.0} at load factor 1.0")),
+        "{reynolds}: {told}"
+    );
+    let said = say("equilibrium", &joined(water, ends, json!("full")), &[]);
+    assert!(warned(&said, "W003").is_none());
+}
+
+/// Goal: `check` sees flows that ports prescribe: no less than the largest of them in a network with tubes, and none where no tube takes it.
+#[test]
+fn prescribed_flows_have_a_reynolds_number() {
+    let water = json!({"density_kg_m3": 1000, "viscosity_pa_s": 8.68e-4});
+    let sine = json!({"flow_m3_s": {"sine": {"amplitude": 3e-4, "frequency_hz": 0.1}}});
+    let creeping = json!({"tube_inertia": "off", "tube_losses": "off"});
+    let case = joined(water, [sine.clone(), json!({"pressure_pa": 0})], creeping);
+    // a tenth of a hertz over half a second: sin(0.1 π) of the amplitude
+    let flow = 3e-4 * (0.1 * std::f64::consts::PI).sin();
+    let wanted = 2.0 * 1000.0 * flow / (std::f64::consts::PI * 8.68e-4 * 1e-3);
+    let estimate = |case: &Value| {
+        let case = slcbeam::case::parse(&case.to_string(), Path::new("joined.json"), Path::new(""), &[]).unwrap();
+        let model = slcbeam::model::Model::new(&case).unwrap();
+        slcbeam::model::characteristic::numbers(&case, &model)["reynolds_estimate"]
+    };
+    let found = estimate(&case);
+    assert!((found / wanted - 1.0).abs() < 1e-3, "{found:.1}, wanted {wanted:.1}");
+    let mut apart = case.clone();
+    apart["network"]["chains"] = json!([{"bladders": [1], "ends": [sine, {"pressure_pa": 0}]}, {"bladders": [2, 3]}]);
+    let found = estimate(&apart);
+    assert!(found < 0.1 * wanted, "{found:.1}");
+}
+
+/// Goal: effects by name that contradict each other, or for which nothing is given, are refused at their place with what to do, and not
+/// passed over; what the program itself leaves out takes along what needs it.
+#[test]
+fn effects_that_contradict_are_refused() {
+    let water = json!({"density_kg_m3": 1000, "viscosity_pa_s": 8.68e-4});
+    let ends = [json!("sealed"), json!("sealed")];
+    let of = |effects: Value| {
+        let text = joined(water.clone(), ends.clone(), effects).to_string();
+        let case = slcbeam::case::parse(&text, Path::new("joined.json"), Path::new(""), &[]).unwrap();
+        slcbeam::discrete::System::new(&case).map(|_| ())
+    };
+    for (effects, pointer, hint) in [
+        (
+            json!({"unsteady_friction": "on", "tube_inertia": "off"}),
+            "unsteady_friction",
+            "tube_inertia",
+        ),
+        (
+            json!({"unsteady_friction": "on", "flow": "off"}),
+            "unsteady_friction",
+            "set flow to \"on\"",
+        ),
+        (
+            json!({"rotary_inertia": "on", "solid_inertia": "off"}),
+            "rotary_inertia",
+            "solid_inertia",
+        ),
+        (json!({"compressibility": "on"}), "compressibility", "bulk_modulus_pa"),
+        (
+            json!({"nonlinear_section": "on"}),
+            "nonlinear_section",
+            "/bladders/strain_energy",
+        ),
+    ] {
+        match of(effects.clone()) {
+            Err(slcbeam::error::Error::Case(fault)) => {
+                let all = &fault.violations;
+                assert_eq!(all.len(), 1, "{effects}: {all:?}");
+                assert_eq!(all[0].pointer, format!("/effects/{pointer}"));
+                assert!(all[0].hint.as_ref().unwrap().contains(hint), "{effects}: {all:?}");
+            }
+            other => panic!("{effects}: {other:?}"),
+        }
+    }
+    for effects in [
+        json!({"unsteady_friction": "on", "tube_inertia": "on"}),
+        json!({"unsteady_friction": "off", "tube_inertia": "off", "compressibility": "off"}),
+        json!({"solid_inertia": "off", "rotary_inertia": "off"}),
+    ] {
+        assert!(of(effects.clone()).is_ok(), "{effects}");
+    }
+}

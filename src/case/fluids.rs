@@ -9,7 +9,7 @@
 //!                  mu   Cheng 2008, Ind. Eng. Chem. Res. 47, 3285, doi:10.1021/ie071349z, 1.3 to 5 %    0 to 100 C
 //! silicone_oil     mu, rho  Shin-Etsu, Silicone Fluid KF-96, performance test results, from 100 mm2/s   -25 to 250 C
 //! air              mu   Sutherland, U.S. Standard Atmosphere 1976, 2 %                                 -50 to 500 C
-//!                  rho  ideal gas, R = 287.05 J/(kg K), 101325 Pa
+//!                  rho  ideal gas, p/(R T), R = 287.05 J/(kg K), at the ambient pressure
 //! ```
 
 use schemars::JsonSchema;
@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::faults::Violations;
+use super::schema::{ATMOSPHERE, FluidKind};
 use crate::error::{Code, Violation};
 
 /// Where it stands.
@@ -31,7 +32,7 @@ const ZERO_CELSIUS_K: f64 = 273.15;
 pub enum NamedFluid {
     /// Water at atmospheric pressure, 0 to 100 C: density by Kell 1975, doi:10.1021/je60064a005, viscosity by IAPWS SR6-08(2011).
     Water,
-    /// Air at 101325 Pa, -50 to 500 C: a gas, ideal, viscosity by Sutherland's law (U.S. Standard Atmosphere 1976).
+    /// Air at ambient pressure, -50 to 500 C: a gas, ideal, viscosity by Sutherland's law (U.S. Standard Atmosphere 1976).
     Air,
     /// Glycerol in water, 15 to 30 C: density by Volk and Kaehler 2018, doi:10.1007/s00348-018-2527-y, viscosity by Cheng 2008, doi:10.1021/ie071349z.
     GlycerolWater {
@@ -87,13 +88,34 @@ impl NamedFluid {
         }
     }
 
-    /// Density and viscosity at a temperature [C] in [`Self::range_c`].
+    /// What it is.
+    pub fn kind(self) -> FluidKind {
+        match self {
+            Self::Air => FluidKind::Gas,
+            Self::Water | Self::GlycerolWater { .. } | Self::SiliconeOil { .. } => FluidKind::Liquid,
+        }
+    }
+
+    /// Density and viscosity at a temperature [C] in [`Self::range_c`] and at an absolute pressure [Pa]: the density of a gas goes with
+    /// it, its viscosity and what a liquid has do not.
+    pub fn at_pressure(self, t: f64, pressure: f64) -> Properties {
+        let standard = self.at(t);
+        match self.kind() {
+            FluidKind::Gas => Properties {
+                density_kg_m3: standard.density_kg_m3 * pressure / ATMOSPHERE,
+                ..standard
+            },
+            FluidKind::Liquid => standard,
+        }
+    }
+
+    /// Density and viscosity at a temperature [C] in [`Self::range_c`], at 101325 Pa.
     pub fn at(self, t: f64) -> Properties {
         let kelvin = t + ZERO_CELSIUS_K;
         let (density_kg_m3, viscosity_pa_s) = match self {
             Self::Water => (water_density(t), water_viscosity(kelvin)),
             Self::Air => (
-                101_325.0 / (287.05 * kelvin),
+                ATMOSPHERE / (287.05 * kelvin),
                 1.458e-6 * kelvin.powf(1.5) / (kelvin + 110.4),
             ),
             Self::GlycerolWater {
@@ -174,12 +196,14 @@ pub(super) fn of(case: &Value) -> Option<Brought> {
         let [low, high] = fluid.range_c();
         (low..=high).contains(&temperature_c)
     });
-    let found = in_range.map(|fluid| fluid.at(temperature_c));
+    let ambient = fluid.get("ambient_pressure_pa").and_then(Value::as_f64);
+    let ambient = ambient.filter(|pressure| *pressure > 0.0).unwrap_or(ATMOSPHERE);
+    let found = in_range.map(|fluid| fluid.at_pressure(temperature_c, ambient));
     let found = found.filter(|p| p.density_kg_m3.is_normal() && p.density_kg_m3 > 0.0 && p.viscosity_pa_s.is_normal());
     let found = found.unwrap_or(NamedFluid::Water.at(ROOM_C));
     let mut values = json!({"density_kg_m3": found.density_kg_m3, "viscosity_pa_s": found.viscosity_pa_s});
-    if named == Some(NamedFluid::Air) {
-        values["kind"] = json!("gas");
+    if named.is_some_and(|fluid| fluid.kind() == FluidKind::Gas) {
+        values["kind"] = json!(FluidKind::Gas);
     }
     Some(Brought {
         fluid: named,

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::origins::Origin;
-use super::schema::Case;
+use super::schema::{Case, FluidKind};
 use super::wording::nearest;
 use super::{parse, section};
 use crate::error::{Error, Result};
@@ -56,6 +56,13 @@ impl Parameter {
         let stiffness = case.origins.get("/beam/axial_stiffness_factor");
         if section::SIZES.contains(&pointer) && matches!(stiffness, Some(Origin::Section { .. })) {
             return usage("the section has it: coefficients that are computed from it would not follow".into());
+        }
+        let density = case.origins.get("/fluid/density_kg_m3");
+        if pointer == "/fluid/ambient_pressure_pa"
+            && matches!(density, Some(Origin::Fluid(..)))
+            && case.fluid.as_ref().is_some_and(|fluid| fluid.kind == FluidKind::Gas)
+        {
+            return usage("the density of a gas by name goes with it and would not follow; give density_kg_m3".into());
         }
         match resolved.pointer(pointer) {
             Some(Value::Number(number)) if number.is_f64() => {

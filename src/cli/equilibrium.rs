@@ -51,8 +51,8 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     } else {
         None
     };
-    let mut warnings = known::without_outputs(case, &system);
-    warnings.extend(path.warning());
+    let mut warnings = known::at_rest(case, &system);
+    warnings.extend(path.warnings());
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.and_then(refine::warning));
     let sensitivities = match path.states.last() {

@@ -61,7 +61,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         state,
         sensitivities: &sensitivities,
         accuracy: refined.as_ref().map(|(_, accuracy)| accuracy),
-        known: &known::without_outputs(case, &system),
+        known: &known::at_rest(case, &system),
     };
     files::write(&mut folder, &report)?;
     report::complete(&folder, case)?;

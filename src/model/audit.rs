@@ -248,13 +248,12 @@ const OUTPUTS_A_WINDOW: f64 = 10.0;
 /// Output times in a period of the drive below which its peaks are missed.
 const OUTPUTS_A_PERIOD: f64 = 10.0;
 
-/// Warning of a run with derivatives: of largest values and means they are those of the output times.
+/// Warning of a run with derivatives: of root mean squares they are those of the output times.
 pub fn derivatives(case: &Case) -> Option<String> {
     let within = case.time.window() / case.time.output_interval();
     (within < OUTPUTS_A_WINDOW).then(|| {
         Code::FewOutputs.warning(format!(
-            "output: {within:.1} output times in the window: derivatives of what is largest in it, and of its root mean squares, are told \
-             from these"
+            "output: {within:.1} output times in the window: derivatives of its root mean squares are told from these"
         ))
     })
 }

@@ -135,7 +135,8 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
                         tubes.radius_m * (2.0 * PI * f * fluid.density_kg_m3 / fluid.viscosity_pa_s).sqrt(),
                     );
                 }
-                let flow = model.scales.frequency * wet.compliance() * wet.bladder_length * model.scales.pressure;
+                let pumped = model.scales.frequency * wet.compliance() * wet.bladder_length * model.scales.pressure;
+                let flow = pumped.max(wet.network.fed_tubes(case.time.end_s));
                 put(
                     "reynolds_estimate",
                     2.0 * fluid.density_kg_m3 * flow / (PI * fluid.viscosity_pa_s * tubes.radius_m),

@@ -124,6 +124,11 @@ impl Figures {
         worth
     }
 
+    /// Instants after a time [s] at which largest values were reached.
+    pub fn reached(&self, after: f64) -> impl Iterator<Item = f64> {
+        self.tracks.iter().flat_map(move |track| track.reached(after))
+    }
+
     fn track(&self, of: Interest) -> Option<&Track> {
         let place = Interest::of(self.has).position(|one| one == of)?;
         self.tracks.get(place)

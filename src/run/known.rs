@@ -17,10 +17,18 @@ pub fn warnings(case: &Case, system: &System) -> Vec<String> {
     with_the_mesh(audit::warnings(case, &system.model, &numbers), case, system)
 }
 
-/// The same of what has no output times: an equilibrium, modes, multipliers.
+/// The same of what has no output times: a cycle, multipliers.
 pub fn without_outputs(case: &Case, system: &System) -> Vec<String> {
     let mut all = warnings(case, system);
     all.retain(|warning| !warning.starts_with(Code::FewOutputs.id()));
+    all
+}
+
+/// The same of a state at rest, and of what swings about it by as little as one likes: numbers of motions that the case expects say
+/// nothing of its flows.
+pub fn at_rest(case: &Case, system: &System) -> Vec<String> {
+    let mut all = without_outputs(case, system);
+    all.retain(|warning| !warning.starts_with(Code::FastFlow.id()));
     all
 }
 

@@ -225,6 +225,19 @@ impl Observer {
         }
     }
 
+    /// Instants after a time [s], in order, at which largest values were reached.
+    pub fn reached(&self, after: f64) -> Vec<f64> {
+        let mut all: Vec<f64> = self
+            .seen
+            .figures
+            .reached(after)
+            .chain(self.seen.probes.reached(after))
+            .collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    }
+
     /// What lies beyond the model in a state, if anything; nothing is kept.
     pub fn beyond(&self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64]) -> Option<String> {
         let (system, now, w) = dae.evaluate(t, y, yp);

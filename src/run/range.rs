@@ -12,7 +12,7 @@ use crate::model::audit;
 /// Fibre strain above which a run warns.
 const STRAIN: f64 = 0.5;
 /// Reynolds number above which a run warns.
-const REYNOLDS: f64 = 100.0;
+pub const REYNOLDS: f64 = 100.0;
 /// Mach number above which a run warns.
 const MACH: f64 = 0.3;
 /// Part of ambient pressure, absolute, below which gas ends a run.
@@ -129,6 +129,11 @@ impl Limits {
                 .and_then(|wet| wet.compression.as_ref())
                 .map_or(f64::NEG_INFINITY, |compression| compression.lowest() * (1.0 - VACUUM)),
         }
+    }
+
+    /// Reynolds number of the fastest flow through a tube in a state; 0 where the model has what comes of it.
+    pub fn reynolds(&self, g: &Glance) -> f64 {
+        self.reynolds_per_flow * g.of(Watched::Flow)[0]
     }
 
     /// Whether a state lies within the model.

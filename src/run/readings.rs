@@ -137,6 +137,11 @@ impl ProbeFigures {
         }
     }
 
+    /// Instants after a time [s] at which largest values were reached.
+    pub fn reached(&self, after: f64) -> impl Iterator<Item = f64> {
+        self.tracks.iter().flat_map(move |track| track.reached(after))
+    }
+
     /// The figures by name.
     pub fn quantities(&self) -> BTreeMap<String, Quantity> {
         let of = |(name, track): (&String, &Track)| {

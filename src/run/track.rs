@@ -16,6 +16,9 @@ pub struct Track {
     /// When that was first reached [s].
     max_abs_at: f64,
     window_max_abs: f64,
+    /// When that was first reached [s]; asked for within its step alone.
+    #[serde(skip)]
+    window_max_abs_at: f64,
     window_start: Option<f64>,
     /// Integral of the square over the window, as far as it has been followed.
     window_squares: f64,
@@ -35,14 +38,20 @@ impl Track {
         if size > self.max_abs {
             (self.max_abs, self.max_abs_at) = (size, t);
         }
-        if in_window {
-            self.window_max_abs = self.window_max_abs.max(size);
+        if in_window && size > self.window_max_abs {
+            (self.window_max_abs, self.window_max_abs_at) = (size, t);
         }
     }
 
     /// Adds to the integral of the square over the window.
     pub fn square(&mut self, integral: f64) {
         self.window_squares += integral;
+    }
+
+    /// Instants after a time [s] at which the largest values of run and window were reached.
+    pub fn reached(&self, after: f64) -> impl Iterator<Item = f64> + use<> {
+        let both = [self.max_abs_at, self.window_max_abs_at];
+        both.into_iter().filter(move |t| *t > after)
     }
 
     /// What was taken last.

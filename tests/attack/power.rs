@@ -2,9 +2,12 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 
 use crate::program::{LONG, run_long, same, start, stderr, wait};
+
+/// Readings of a disk until two agree.
+const READINGS: u32 = 100;
 
 /// An ext4 file system in a file, in use until dropped.
 struct Disk {
@@ -43,12 +46,27 @@ impl Disk {
         Self::mount(image)
     }
 
-    /// The disk as it would be found if the power failed now.
+    /// The disk as it would be found if the power failed now: one instant of it, which two readings in a row agree on. A copy of blocks
+    /// from before a write and from after it is no state that a disk is ever in.
     fn copy(&self, name: &str) -> Option<Self> {
         let copy = self.image.with_file_name(name);
-        fs::copy(&self.image, &copy).ok()?;
-        Self::mount(&copy)
+        let mut found = fs::read(&self.image).ok()?;
+        for _ in 0..READINGS {
+            let again = fs::read(&self.image).ok()?;
+            if again == found {
+                fs::write(&copy, found).ok()?;
+                return Self::mount(&copy);
+            }
+            found = again;
+        }
+        panic!("the disk never rests");
     }
+}
+
+/// Sends a signal to a program; one that has ended meanwhile takes none.
+fn signal(child: &Child, which: &str) {
+    let pid = child.id().to_string();
+    quietly("kill", &[Path::new(which), Path::new(&pid)]);
 }
 
 impl Drop for Disk {
@@ -80,7 +98,10 @@ fn what_was_told_survives_a_power_cut() {
         let out = disk.place.join(&name);
         let mut child = start(&out, &LONG);
         wait(&mut child, || out.join("checkpoint-before.json").exists());
+        // it writes no more while the disk is read; what the kernel has of it may still be on its way
+        signal(&child, "-STOP");
         let found = disk.copy(&format!("{name}.img")).expect("a copy");
+        signal(&child, "-CONT");
         child.wait().expect("it ends");
         let found = found.place.join(&name);
         let again = run_long(&found, &["--resume"]);

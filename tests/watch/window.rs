@@ -44,7 +44,7 @@ fn harvest_in_a_window_without_outputs() {
     alike("wiring-2", &window, "1e-4", &["0.01", "0.04", "0.1"]);
 }
 
-/// Goal: derivatives of what is largest in a window, and of means, are those of the output times alone, and that is said.
+/// Goal: derivatives of root mean squares in a window are those of the output times alone, and that is said.
 #[test]
 fn derivatives_in_a_window_without_outputs_are_warned_of() {
     use slcbeam::case::parameter::Parameter;

@@ -23,6 +23,15 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         ("polytropic_exponent", fluid.polytropic_exponent),
         ("ambient_pressure_pa", fluid.ambient_pressure_pa),
     ];
+    if let Some(named) = fluid.preset.filter(|named| named.kind() != fluid.kind) {
+        let word = |kind: FluidKind| if kind == FluidKind::Gas { "gas" } else { "liquid" };
+        let (is, given) = (word(named.kind()), word(fluid.kind));
+        let what = format!("{} is a {is}, kind says {given}", named.name());
+        let fault = Violation::new(Code::Together, "/fluid/kind", what).allowed(format!("\"{is}\", or no kind"));
+        let hint = "leave kind out, name another fluid, or give density_kg_m3 and viscosity_pa_s in place of preset";
+        faults.push_at_key(fault.hint(hint));
+        return;
+    }
     let mut refuse = |key: &str, what: &str, hint: &str| {
         let fault = Violation::new(Code::Together, format!("/fluid/{key}"), what);
         faults.push_at_key(fault.hint(hint));

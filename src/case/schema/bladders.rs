@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::case::fluids::NamedFluid;
 
 /// Standard atmosphere [Pa].
-const ATMOSPHERE: f64 = 101_325.0;
+pub const ATMOSPHERE: f64 = 101_325.0;
 
 /// Newtonian fluid in creeping flow.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -27,6 +27,13 @@ use search::{Search, overflows, reached, sizes};
 pub use stretches::{Stretch, merged};
 pub use variation::Variation;
 
+/// Places in a cycle, and in what has none, at which a signal is looked at for how long it lasts.
+const PLACES: f64 = 32.0;
+/// Such places at most, however many cycles there are.
+const MOST_PLACES: f64 = 65_536.0;
+/// Steps of this part of 1 come near every part of it, and to none twice.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
 /// Largest magnitudes of a signal over the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sizes {
@@ -146,14 +153,21 @@ impl Signal {
     }
 
     /// Its largest magnitude until `end` [s], and that times how long it lasts in units of `time` [s], `∫ |s| dt`, where that is less: of a
-    /// pulse. Between breaks the integral is a sum over a few places, an estimate; [`Self::impulse`], a bound, counts what terms cancel.
+    /// pulse. Between breaks the integral is a sum over places that follow its highest tone, an estimate; [`Self::impulse`], a bound,
+    /// counts what terms cancel.
     pub fn lasting(&self, end: f64, time: f64) -> [f64; 2] {
-        const PLACES: usize = 8;
         let size = self.largest(end).value;
+        let tone = self.highest_tone_hz().unwrap_or(0.0);
         let over = |(from, to): (f64, f64)| {
-            let at = |k: usize| from + (to - from) * (k as f64 + 0.5) / PLACES as f64;
-            let sum: f64 = (0..PLACES).map(|k| self.value(at(k)).abs()).sum();
-            sum * (to - from) / PLACES as f64
+            let places = (PLACES * ((to - from) * tone + 1.0)).min(MOST_PLACES).ceil();
+            let within = |k: f64| match places < MOST_PLACES {
+                true => 0.5,
+                // more cycles than places, evenly, would be met at the same phase again and again
+                false => (k * GOLDEN).fract(),
+            };
+            let at = |k: f64| from + (to - from) * (k + within(k)) / places;
+            let sum: f64 = (0..places as u32).map(|k| self.value(at(f64::from(k))).abs()).sum();
+            sum * (to - from) / places
         };
         let amount: f64 = self.smooth_intervals(end).into_iter().map(over).sum();
         [size, size.min(amount / time)]

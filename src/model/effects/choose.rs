@@ -60,9 +60,8 @@ impl<'a> Chooser<'a> {
     /// case is refused if that was asked for.
     fn decide(&mut self, effect: Effect) -> (bool, Cause) {
         if let Err(why) = self.possible(effect) {
-            if why == Cause::Compressed && self.choices.of(effect) == Choice::On {
-                let what = format!("{effect} of a fluid that is compressed is not simulated");
-                self.refuse(effect, &what, "leave it out, or set compressibility to \"off\"");
+            if self.choices.of(effect) == Choice::On {
+                self.contradicts(effect, &why);
             }
             return (false, why);
         }
@@ -74,6 +73,44 @@ impl<'a> Chooser<'a> {
             self.refuse(effect, &what, &hint);
         }
         decided
+    }
+
+    /// Refuses an effect that is asked for by name where the case itself leaves it without a meaning: what it needs is off by name,
+    /// what it is about is not given, or it is not simulated with what is. Where the program leaves out what it needs it goes along.
+    fn contradicts(&mut self, effect: Effect, why: &Cause) {
+        let (what, hint) = match why {
+            Cause::Compressed => (
+                format!("{effect} of a fluid that is compressed is not simulated"),
+                "leave it out, or set compressibility to \"off\"".into(),
+            ),
+            Cause::Needs(missing) => {
+                let Some(off) = self.off_by_name(*missing) else {
+                    return;
+                };
+                let hint = format!("leave it out, or set {off} to \"on\"");
+                (format!("{effect} is on without {off}, which it needs"), hint)
+            }
+            Cause::Given(false) if effect == Effect::Compressibility => (
+                format!("{effect} is on, and nothing is given that is compressed"),
+                "give bulk_modulus_pa or gas_fraction of the liquid, or a gas, in /fluid; or leave it out".into(),
+            ),
+            Cause::Given(false) => (
+                format!("{effect} is on, and no strain_energy is given"),
+                "give /bladders/strain_energy, or a section that brings it; or leave it out".into(),
+            ),
+            _ => return,
+        };
+        self.refuse(effect, &what, &hint);
+    }
+
+    /// What is off by name, of an effect that is off and of all that it needs; but the fluid, which takes along all that is about it.
+    fn off_by_name(&self, missing: Effect) -> Option<Effect> {
+        match self.set.decision(missing).cause {
+            Cause::LeftOut if missing == Effect::Fluid => None,
+            Cause::LeftOut => Some(missing),
+            Cause::Needs(further) => self.off_by_name(further),
+            _ => None,
+        }
     }
 
     fn refuse(&mut self, effect: Effect, what: &str, hint: &str) {

@@ -266,6 +266,42 @@ impl Network {
             + vessels.map(|one| one.law.compliance(0.0)).sum::<f64>()
     }
 
+    /// The most that prescribed flows bring into one of the networks that have tubes until `end` [s]: no more than that has to pass
+    /// one of these [m^3/s].
+    pub fn fed_tubes(&self, end: f64) -> f64 {
+        let mut fed = vec![0.0; self.components];
+        for source in &self.sources {
+            if let Some(component) = self.component_of(source.into) {
+                fed[component] += source.feed.largest_flow(end);
+            }
+        }
+        let tubes = self
+            .links
+            .iter()
+            .filter(|link| link.kind == LinkKind::Tube && !link.is_shut());
+        let of = |link: &Link| {
+            [link.from, link.to]
+                .into_iter()
+                .find_map(|node| self.component_of(node))
+        };
+        tubes.filter_map(of).map(|component| fed[component]).fold(0.0, f64::max)
+    }
+
+    /// What all links, valves open, and a bladder between two cells of a length [m] let through together under one pressure
+    /// difference [m^3/(s Pa)]: an upper bound of what flows by it.
+    pub fn conductance(&self, cell: f64) -> f64 {
+        let within = self.bladder_mobility / cell;
+        let of = |link: &Link| {
+            let cells = [link.from, link.to]
+                .into_iter()
+                .filter(|n| matches!(n, Node::Cell { .. }));
+            (0.5 * cells.count() as f64 / within + link.resistance).recip()
+        };
+        let links = self.links.iter().filter(|link| !link.is_shut()).map(of);
+        let valves = self.bridges.iter().map(|bridge| 2.0 * bridge.valve.forward);
+        within + links.chain(valves).filter(|g| g.is_finite()).sum::<f64>()
+    }
+
     /// Number of a link among the tubes.
     pub fn tube(&self, link: usize) -> usize {
         let tubes = self.links[..link].iter().filter(|l| l.kind == LinkKind::Tube);

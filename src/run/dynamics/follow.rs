@@ -6,6 +6,7 @@ use super::faults::beyond;
 use super::{End, Run};
 use crate::dae::BeamDae;
 use crate::error::Result;
+use crate::integrate::IntegrationError;
 use crate::run::method::Integrator;
 use crate::run::record::{Control, Progress, Recorder};
 use crate::run::schedule::Due;
@@ -77,6 +78,11 @@ impl Run<'_> {
                     .read(solver.dae_mut(), k == 1, t, &self.state, &self.rates);
             }
         }
+        if left.is_none()
+            && let Some(end) = self.largest(solver, from)
+        {
+            return Ok(Some(end));
+        }
         match left {
             None => self.sample(solver, from, now, recorder),
             Some((t, what)) => {
@@ -90,6 +96,22 @@ impl Run<'_> {
                 }
             }
         }
+    }
+
+    /// Reads derivatives of what has become largest since a time [s], at the instants within the step at which it did.
+    fn largest(&mut self, solver: &mut Integrator<BeamDae>, from: f64) -> Option<End> {
+        self.forward.as_ref()?;
+        for t in self.observer.reached(from) {
+            if let Err(end) = self.read(solver, t) {
+                return Some(end);
+            }
+            if let (Some(forward), Some(ida)) = (&mut self.forward, solver.ida_mut())
+                && let Err(failure) = forward.see(ida, t, [&self.state, &self.rates])
+            {
+                return Some(unread(t, &failure));
+            }
+        }
+        None
     }
 
     /// Reads state, rates and integrals at a time within the last step from the integrator's own polynomial, or as they are at
@@ -217,13 +239,13 @@ impl Run<'_> {
             match forward.sample(ida, t, [&self.state, &self.rates], self.observer.row()) {
                 Ok(row) if written => recorder.sensitivities(row)?,
                 Ok(_) => {}
-                Err(failure) => {
-                    return Ok(Some(End::Stopped(format!(
-                        "sensitivities at t = {t:.6} s could not be read: {failure}"
-                    ))));
-                }
+                Err(failure) => return Ok(Some(unread(t, &failure))),
             }
         }
         Ok(None)
     }
+}
+
+fn unread(t: f64, failure: &IntegrationError) -> End {
+    End::Stopped(format!("sensitivities at t = {t:.6} s could not be read: {failure}"))
 }

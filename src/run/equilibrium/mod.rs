@@ -29,6 +29,7 @@ use crate::error::{self, At, Code, SolverError};
 use crate::functions::signals::Polynomial;
 use crate::functions::{Clock, Signal};
 use crate::model::{Model, Storage};
+use crate::run::range::REYNOLDS;
 use crate::run::record::Control;
 use crate::sundials::Solution;
 
@@ -76,6 +77,8 @@ pub struct Path {
     pub fault: Option<SolverError>,
     /// What of the first state lies beyond the model, where one does.
     pub beyond: Option<String>,
+    /// The largest Reynolds number of steady flow through a tube, and the share of the loads at which it is reached.
+    pub reynolds: [f64; 2],
 }
 
 /// A remarkable point of a path.
@@ -110,9 +113,19 @@ impl Event {
 
 impl Path {
     /// That states are not what the model describes.
-    pub fn warning(&self) -> Option<String> {
-        let beyond = self.beyond.as_ref()?;
-        Some(Code::BeyondRange.warning(format!("{beyond}; states from there on are not to be trusted")))
+    pub fn warnings(&self) -> Vec<String> {
+        let beyond = self.beyond.iter().map(|beyond| {
+            let what = format!("{beyond}; states from there on are not to be trusted");
+            Code::BeyondRange.warning(what)
+        });
+        let [reynolds, share] = self.reynolds;
+        let fast = (reynolds > REYNOLDS).then(|| {
+            Code::FastFlow.warning(format!(
+                "range of the model: the Reynolds number of steady flow in a tube reached {reynolds:.0} at load factor {share:.4} (above \
+                 {REYNOLDS}); flow is meant to creep"
+            ))
+        });
+        beyond.chain(fast).collect()
     }
 
     /// The last state.

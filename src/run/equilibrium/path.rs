@@ -295,8 +295,12 @@ impl Follower<'_> {
     /// Keeps a state and shows it.
     pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), End> {
         let state = State::read(self.solver.dae_mut().statics(), x);
+        let (beyond, reynolds) = state::within(self.solver.dae_mut().statics(), x, &self.limits);
         if self.path.beyond.is_none() {
-            self.path.beyond = state::beyond(self.solver.dae_mut().statics(), x, &self.limits);
+            self.path.beyond = beyond;
+        }
+        if reynolds > self.path.reynolds[0] {
+            self.path.reynolds = [reynolds, state.share];
         }
         let control = (self.watch)(&state);
         if let [.., a, b] = &self.path.states[self.branch..]

@@ -90,12 +90,13 @@ impl State {
     }
 }
 
-/// What lies beyond the model in a state, if anything does.
-pub fn beyond(statics: &mut StaticBeam, x: &[f64], limits: &Limits) -> Option<String> {
+/// What lies beyond the model in a state, if anything does, and the largest Reynolds number of its flows through tubes.
+pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits) -> (Option<String>, f64) {
     let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
     let (system, now, w) = statics.beam().evaluate(share, y, &vec![0.0; y.len()]);
     let glance = Glance::new(system, now, share, limits.half_height, w);
-    limits.beyond_at(&glance, &format!("load factor {share:.4}"))
+    let beyond = limits.beyond_at(&glance, &format!("load factor {share:.4}"));
+    (beyond, limits.reynolds(&glance))
 }
 
 impl Stability {

@@ -1,5 +1,6 @@
-//! Derivatives of the quantities of interest, followed as the history is: of largest values and means over the output times, which must
-//! be close enough for these to be those of the motion; of last values and increments at the ends of the run and of the window.
+//! Derivatives of the quantities of interest, followed as the motion is: of largest values at the instants at which they are reached, of
+//! last values and increments at the ends of the run and of the window; of root mean squares over the output times, which must be close
+//! enough for these to be those of the motion.
 
 use std::collections::BTreeMap;
 
@@ -40,17 +41,10 @@ impl Track {
     /// Takes a value with its derivative.
     fn take(&mut self, t: f64, now: [f64; 2], in_window: bool) {
         let [value, slope] = now;
-        let size = [value.abs(), slope * value.signum()];
-        let larger = |old: &mut [f64; 2]| {
-            if size[0] > old[0] {
-                *old = size;
-            }
-        };
         self.last = now;
-        larger(&mut self.largest);
+        self.see(now, in_window);
         if in_window {
             self.first.get_or_insert(now);
-            larger(&mut self.window_largest);
             let here = [t, value * value, value * slope];
             if let Some(before) = self.before {
                 let half = 0.5 * (t - before[0]);
@@ -59,6 +53,20 @@ impl Track {
                 self.time += 2.0 * half;
             }
             self.before = Some(here);
+        }
+    }
+
+    /// Takes a value with its derivative at any time, as far as it is the largest.
+    fn see(&mut self, [value, slope]: [f64; 2], in_window: bool) {
+        let size = [value.abs(), slope * value.signum()];
+        let larger = |old: &mut [f64; 2]| {
+            if size[0] > old[0] {
+                *old = size;
+            }
+        };
+        larger(&mut self.largest);
+        if in_window {
+            larger(&mut self.window_largest);
         }
     }
 
@@ -125,15 +133,10 @@ impl Figures {
         };
         let sum = |group: Group| Observable::grouped(group).fold([0.0; 2], |sum, of| add(sum, 1.0, of));
         for one in Interest::of([true, self.turbines]) {
-            let now = match (one.source(), one.columns()) {
-                (Source::Motion(_), [column]) => at(*column),
-                (Source::Motion(_), columns) => {
-                    let all = columns.iter().filter_map(|column| at(*column));
-                    let larger = all.reduce(|a, b| if b[0].abs() > a[0].abs() { b } else { a });
-                    larger.map(|[value, slope]| [value.abs(), slope * value.signum()])
-                }
-                (Source::Energy(group), _) => Some(sum(group)),
-                (Source::Efficiency, _) => None,
+            let now = match one.source() {
+                Source::Motion(_) => motion(one, &at),
+                Source::Energy(group) => Some(sum(group)),
+                Source::Efficiency => None,
             };
             if let Some(now) = now {
                 self.tracks.entry(one).or_default().take(t, now, in_window);
@@ -143,6 +146,26 @@ impl Figures {
             let spent = Observable::grouped(Group::Lost).fold(sum(Group::Harvested), |sum, of| add(sum, 1.0, of));
             let spent = Observable::grouped(Group::Added).fold(spent, |sum, of| add(sum, -1.0, of));
             self.spent.take(t, spent, in_window);
+        }
+    }
+
+    /// Takes an instant at which something may be largest: what swings as [`Figures::take`], and what is recorded at probes.
+    pub fn see(
+        &mut self,
+        t: f64,
+        at: impl Fn(Observable) -> Option<[f64; 2]>,
+        probes: impl ExactSizeIterator<Item = [f64; 2]>,
+    ) {
+        let in_window = t >= self.window_start;
+        let swings = Interest::of([true, self.turbines]).filter(|one| matches!(one.source(), Source::Motion(_)));
+        for one in swings {
+            if let Some(now) = motion(one, &at) {
+                self.tracks.entry(one).or_default().see(now, in_window);
+            }
+        }
+        self.probes.resize(probes.len(), Track::default());
+        for (track, now) in self.probes.iter_mut().zip(probes) {
+            track.see(now, in_window);
         }
     }
 
@@ -180,6 +203,18 @@ impl Figures {
             all.insert(Interest::Efficiency.name().into(), efficiency);
         }
         all
+    }
+}
+
+/// What swings, with its derivative, from its columns: of several the larger in size.
+fn motion(one: Interest, at: &impl Fn(Observable) -> Option<[f64; 2]>) -> Option<[f64; 2]> {
+    match one.columns() {
+        [column] => at(*column),
+        columns => {
+            let all = columns.iter().filter_map(|column| at(*column));
+            let larger = all.reduce(|a, b| if b[0].abs() > a[0].abs() { b } else { a });
+            larger.map(|[value, slope]| [value.abs(), slope * value.signum()])
+        }
     }
 }
 

@@ -10,9 +10,9 @@ use super::kept::Kept;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, PerturbedSystems};
+use crate::discrete::quantities::Observable;
 use crate::discrete::quantities::probes::{self, ProbeColumn};
-use crate::discrete::quantities::{Extremes, Look, Observable, Read, Row};
-use crate::discrete::{ledger, start};
+use crate::discrete::start;
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::integrate::{IntegrationError, consistent_sensitivities};
 use crate::run::equilibrium;
@@ -21,21 +21,21 @@ use crate::sundials::Ida;
 
 /// Sensitivities of a run to some numbers of its case.
 pub struct Forward<'a> {
-    parameters: &'a [Parameter],
+    pub(super) parameters: &'a [Parameter],
     /// The changed cases, a number's four in the order of [`STEPS`].
     cases: Vec<[Case; 4]>,
     /// Their stops.
     stops: Vec<[Vec<Stop>; 4]>,
     /// The quantities of the history that are differentiated.
-    columns: Vec<Observable>,
+    pub(super) columns: Vec<Observable>,
     /// Those at probes.
-    probes: Vec<ProbeColumn>,
-    s: Vec<Vec<f64>>,
-    sp: Vec<Vec<f64>>,
+    pub(super) probes: Vec<ProbeColumn>,
+    pub(super) s: Vec<Vec<f64>>,
+    pub(super) sp: Vec<Vec<f64>>,
     /// Derivatives of the integrals up to the last restart.
-    carried: Vec<Vec<f64>>,
-    figures: Vec<Figures>,
-    row: Vec<f64>,
+    pub(super) carried: Vec<Vec<f64>>,
+    pub(super) figures: Vec<Figures>,
+    pub(super) row: Vec<f64>,
 }
 
 /// What must be known of the moment before a switch.
@@ -160,23 +160,6 @@ impl<'a> Forward<'a> {
         }
     }
 
-    /// Reads sensitivities off the integrator at a time [s] within its last step, and those of integrals into `integrals`.
-    fn read(
-        &mut self,
-        ida: &mut Ida<BeamDae>,
-        t: f64,
-        integrals: &mut [Vec<f64>],
-    ) -> std::result::Result<(), Box<IntegrationError>> {
-        for (k, integrals) in integrals.iter_mut().enumerate() {
-            ida.sensitivity(k, t, [&mut self.s[k], &mut self.sp[k]])?;
-            ida.integral_sensitivity(k, t, integrals)?;
-            for (total, carried) in integrals.iter_mut().zip(&self.carried[k]) {
-                *total += carried;
-            }
-        }
-        Ok(())
-    }
-
     /// Leaves a stop's left side, at the state that the integrator has reached there.
     pub fn leave(
         &mut self,
@@ -297,71 +280,6 @@ impl<'a> Forward<'a> {
     /// Passes a stop at which nothing switches.
     pub fn go_on(&self, dae: &mut BeamDae, stop: usize) {
         self.look(dae, stop + 1);
-    }
-
-    /// Takes a sample at a state within the last step, whose row of the history is `row`; returns the row of derivatives.
-    pub fn sample(
-        &mut self,
-        ida: &mut Ida<BeamDae>,
-        t: f64,
-        [y, yp]: [&[f64]; 2],
-        row: &Row,
-    ) -> std::result::Result<&[f64], Box<IntegrationError>> {
-        let mut integrals = self.carried.clone();
-        self.read(ida, t, &mut integrals)?;
-        let dae = ida.dae_mut();
-        let (system, _, w) = dae.evaluate(t, y, yp);
-        let at = Extremes::of(system, &w);
-        let reads = self.columns.iter().filter_map(|one| match one.read() {
-            Read::State(read) => Some(read),
-            _ => None,
-        });
-        let reads: Vec<fn(&Look) -> f64> = reads.collect();
-        self.row.clear();
-        self.row.push(t);
-        let mut slopes = vec![0.0; reads.len() + self.probes.len()];
-        for (k, (parameter, integrals)) in self.parameters.iter().zip(&integrals).enumerate() {
-            dae.read_slope(
-                k,
-                t,
-                [y, yp],
-                [&self.s[k], &self.sp[k]],
-                &mut slopes,
-                |system, now, rates, w, out| {
-                    let w = ledger::complete(system, now, rates, w);
-                    let stored = ledger::energies(system, now, w);
-                    let look = Look {
-                        system,
-                        now,
-                        w,
-                        stored,
-                        at,
-                    };
-                    let (own, probed) = out.split_at_mut(reads.len());
-                    own.iter_mut().zip(&reads).for_each(|(out, read)| *out = read(&look));
-                    let values = probes::values(&look);
-                    probed.iter_mut().zip(values).for_each(|(out, value)| *out = value);
-                },
-            );
-            let mut slopes = slopes.iter().copied();
-            let of = |one: &Observable| match one.read() {
-                Read::Integral(of) => of(integrals),
-                Read::Through(of) => of(dae.system(), integrals),
-                _ => slopes.next().unwrap_or(0.0),
-            };
-            let first = self.row.len();
-            let derivatives = self.columns.iter().map(of).map(|slope| slope / parameter.value);
-            self.row.extend(derivatives);
-            self.row.extend(slopes.map(|slope| slope / parameter.value));
-            let (columns, derivatives) = (&self.columns, &self.row[first..]);
-            let probed = derivatives[columns.len()..].iter().zip(row.at_probes());
-            self.figures[k].take_probes(t, probed.map(|(slope, value)| [*value, *slope]));
-            self.figures[k].take(t, |which| {
-                let i = columns.iter().position(|one| *one == which)?;
-                Some([row.get(which)?, derivatives[i]])
-            });
-        }
-        Ok(&self.row)
     }
 
     /// What the summary says.

@@ -3,3 +3,4 @@
 pub mod figures;
 pub mod forward;
 pub mod kept;
+mod read;

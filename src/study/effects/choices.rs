@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
 use crate::error;
-use crate::model::effects::{Cause, EffectSet, Scene};
+use crate::model::effects::{Cause, EffectSet, Scene, about};
 use crate::model::{Model, Network};
 
 /// An effect, and what leaving it out takes.
@@ -58,7 +58,12 @@ pub fn without(case: &Case, off: &[Effect]) -> error::Result<Case> {
     let full = EffectSet::whole(&with(case, Effects::Full), Network::of(case)?.as_ref());
     let mut choices = EffectChoices::default();
     for &effect in Effect::CHOSEN {
-        let choice = match off.contains(&effect) {
+        // what needs what is left out goes along, and is not asked for
+        let along = about(effect)
+            .needs
+            .iter()
+            .any(|needed| choices.of(*needed) == Choice::Off);
+        let choice = match along || off.contains(&effect) {
             true => Choice::Off,
             false if full.has(effect) || named.of(effect) == Choice::On => Choice::On,
             false => Choice::Off,

@@ -17,7 +17,7 @@ use crate::study::counted::{Floors, counted};
 
 /// Numbers of a unit below this part of others are round-off.
 const NOTHING: f64 = 1e-6;
-/// Strain whose energy is round-off beside that of moving as a whole.
+/// Strain that is round-off beside moving as a whole.
 const STRAIN: f64 = 1e-9;
 /// Multipliers below this are of what is gone after a period.
 const GONE: f64 = 0.01;
@@ -49,12 +49,23 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
         same.map(|((_, factor), x)| factor * x.abs()).fold(0.0, f64::max)
     };
     // what nothing moves or presses is round-off, and so is all that is made of it
-    let (floors, section) = (Floors::of(case)?, Model::new(case)?.section);
+    let (floors, model) = (Floors::of(case)?, Model::new(case)?);
+    // pressures that differ by no more are equal, and drive no flow
+    let even = (NOTHING * largest("Pa")).max(floors.pressure);
+    let conductance = model.wet.as_ref().map_or(0.0, |wet| {
+        wet.network
+            .conductance(wet.bladder_length / case.mesh.cells_per_bladder as f64)
+    });
     let floor = |unit: &str| match unit {
         "m" => floors.displacement,
         "Pa" => floors.pressure,
-        "J" => section.axial_stiffness * length * STRAIN * STRAIN,
+        "1/m" => floors.displacement / (length * length),
+        "N" => (model.section.axial_stiffness * STRAIN).min(NOTHING * model.scales.force),
+        "N m" => (model.section.bending_stiffness / length * STRAIN).min(NOTHING * model.scales.moment),
+        "J" => model.section.axial_stiffness * length * STRAIN * STRAIN,
+        "m^3/s" => conductance * even,
         "W" if largest("Pa") <= floors.pressure => f64::INFINITY,
+        "W" => conductance * even * even,
         _ => 0.0,
     };
     let number = |unit: &'static str, value: f64| {

@@ -1,0 +1,161 @@
+//! What is read off sensitivities within a step: derivatives of the history at output times, and of what is largest when it is.
+
+use super::forward::Forward;
+use crate::dae::BeamDae;
+use crate::discrete::ledger;
+use crate::discrete::quantities::{Extremes, Look, Observable, Read, Row, probes};
+use crate::integrate::IntegrationError;
+use crate::sundials::Ida;
+
+/// Reads a number off a state.
+type Reads = Vec<fn(&Look) -> f64>;
+
+impl Forward<'_> {
+    /// Reads sensitivities off the integrator at a time [s] within its last step, and those of integrals into `integrals`.
+    pub(super) fn read(
+        &mut self,
+        ida: &mut Ida<BeamDae>,
+        t: f64,
+        integrals: &mut [Vec<f64>],
+    ) -> std::result::Result<(), Box<IntegrationError>> {
+        for (k, integrals) in integrals.iter_mut().enumerate() {
+            ida.sensitivity(k, t, [&mut self.s[k], &mut self.sp[k]])?;
+            ida.integral_sensitivity(k, t, integrals)?;
+            for (total, carried) in integrals.iter_mut().zip(&self.carried[k]) {
+                *total += carried;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes a sample at a state within the last step, whose row of the history is `row`; returns the row of derivatives.
+    pub fn sample(
+        &mut self,
+        ida: &mut Ida<BeamDae>,
+        t: f64,
+        state: [&[f64]; 2],
+        row: &Row,
+    ) -> std::result::Result<&[f64], Box<IntegrationError>> {
+        self.derive(ida, t, state)?;
+        let columns = &self.columns;
+        for (figures, derivatives) in self
+            .figures
+            .iter_mut()
+            .zip(parts(&self.row, columns.len() + self.probes.len()))
+        {
+            let probed = derivatives[columns.len()..].iter().zip(row.at_probes());
+            figures.take_probes(t, probed.map(|(slope, value)| [*value, *slope]));
+            figures.take(t, |which| {
+                let i = columns.iter().position(|one| *one == which)?;
+                Some([row.get(which)?, derivatives[i]])
+            });
+        }
+        Ok(&self.row)
+    }
+
+    /// Looks at a state within the last step at which something is larger than before: its derivative is that of the largest value, for
+    /// where it turns nothing comes of when it does.
+    pub fn see(
+        &mut self,
+        ida: &mut Ida<BeamDae>,
+        t: f64,
+        state: [&[f64]; 2],
+    ) -> std::result::Result<(), Box<IntegrationError>> {
+        self.derive(ida, t, state)?;
+        let reads = self.reads();
+        let (system, now, w) = ida.dae_mut().evaluate(t, state[0], state[1]);
+        let look = Look {
+            system,
+            now,
+            w,
+            stored: ledger::energies(system, now, w),
+            at: Extremes::of(system, &w),
+        };
+        let own: Vec<f64> = reads.iter().map(|read| read(&look)).collect();
+        let probed: Vec<f64> = probes::values(&look).collect();
+        let columns = &self.columns;
+        let read_off = |one: &&Observable| matches!(one.read(), Read::State(_));
+        for (figures, derivatives) in self
+            .figures
+            .iter_mut()
+            .zip(parts(&self.row, columns.len() + self.probes.len()))
+        {
+            let value = |which| {
+                let k = columns.iter().filter(read_off).position(|one| *one == which)?;
+                Some([own[k], derivatives[columns.iter().position(|one| *one == which)?]])
+            };
+            let slopes = &derivatives[columns.len()..];
+            figures.see(
+                t,
+                value,
+                probed.iter().zip(slopes).map(|(value, slope)| [*value, *slope]),
+            );
+        }
+        Ok(())
+    }
+
+    fn reads(&self) -> Reads {
+        let reads = self.columns.iter().filter_map(|one| match one.read() {
+            Read::State(read) => Some(read),
+            _ => None,
+        });
+        reads.collect()
+    }
+
+    /// Fills the row of derivatives at a state within the last step: its time, then of each number those of the columns and at probes.
+    fn derive(
+        &mut self,
+        ida: &mut Ida<BeamDae>,
+        t: f64,
+        [y, yp]: [&[f64]; 2],
+    ) -> std::result::Result<(), Box<IntegrationError>> {
+        let mut integrals = self.carried.clone();
+        self.read(ida, t, &mut integrals)?;
+        let dae = ida.dae_mut();
+        let (system, _, w) = dae.evaluate(t, y, yp);
+        let at = Extremes::of(system, &w);
+        let reads = self.reads();
+        self.row.clear();
+        self.row.push(t);
+        let mut slopes = vec![0.0; reads.len() + self.probes.len()];
+        for (k, (parameter, integrals)) in self.parameters.iter().zip(&integrals).enumerate() {
+            dae.read_slope(
+                k,
+                t,
+                [y, yp],
+                [&self.s[k], &self.sp[k]],
+                &mut slopes,
+                |system, now, rates, w, out| {
+                    let w = ledger::complete(system, now, rates, w);
+                    let stored = ledger::energies(system, now, w);
+                    let look = Look {
+                        system,
+                        now,
+                        w,
+                        stored,
+                        at,
+                    };
+                    let (own, probed) = out.split_at_mut(reads.len());
+                    own.iter_mut().zip(&reads).for_each(|(out, read)| *out = read(&look));
+                    let values = probes::values(&look);
+                    probed.iter_mut().zip(values).for_each(|(out, value)| *out = value);
+                },
+            );
+            let mut slopes = slopes.iter().copied();
+            let of = |one: &Observable| match one.read() {
+                Read::Integral(of) => of(integrals),
+                Read::Through(of) => of(dae.system(), integrals),
+                _ => slopes.next().unwrap_or(0.0),
+            };
+            let derivatives = self.columns.iter().map(of).map(|slope| slope / parameter.value);
+            self.row.extend(derivatives);
+            self.row.extend(slopes.map(|slope| slope / parameter.value));
+        }
+        Ok(())
+    }
+}
+
+/// The parts of a row of derivatives, one a number.
+fn parts(row: &[f64], each: usize) -> std::slice::ChunksExact<'_, f64> {
+    row[1..].chunks_exact(each.max(1))
+}
