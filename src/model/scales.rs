@@ -158,6 +158,11 @@ impl Scales {
     /// Estimates every size: motions from loads by the linear cantilever, pressures from forces by the sealed bladder,
     /// deflections from pressures; never below a small fraction of the largest sensible size.
     pub fn estimate(case: &Case, section: &Section, wet: Option<&Wet>) -> Self {
+        Self::pumped(case, section, wet, 0.0)
+    }
+
+    /// The same where fluid that is pumped makes a pressure [Pa].
+    pub fn pumped(case: &Case, section: &Section, wet: Option<&Wet>, pressure: f64) -> Self {
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
         let mut d = Drive::of(case, section, &ends);
         let l = case.beam.length_m;
@@ -184,6 +189,7 @@ impl Scales {
                 let held = case.held_at_start(&port.pressure).abs();
                 d.pressure = d.pressure.max(port.pressure.largest(case.time.end_s).value).max(held);
             }
+            d.pressure = d.pressure.max(pressure);
             for pump in wet.network.links.iter().filter_map(|link| link.pump.as_ref()) {
                 let held = case.held_at_start(&pump.pressure).abs();
                 d.pressure = d.pressure.max(pump.pressure.largest(case.time.end_s).value).max(held);

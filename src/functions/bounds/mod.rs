@@ -152,6 +152,25 @@ impl Signal {
             .sum()
     }
 
+    /// A bound of `|∫ s dt|` from 0 to any instant until `end` [s]: of each tone `(2 |E| + ∫ |E'| dt)/W`, or that of [`Self::impulse`].
+    pub fn largest_integral(&self, end: f64) -> f64 {
+        let of = |tone: &tones::Tone| {
+            let (size, moved, amount) = match tone.envelope.0.as_slice() {
+                [] => (1.0, 0.0, end),
+                _ => {
+                    let v = Variation::of(&tone.envelope, end);
+                    (v.size[0], v.integral[1] + v.jumps[0], v.integral[0])
+                }
+            };
+            let swings = match tone.omega {
+                0.0 => f64::INFINITY,
+                omega => (2.0 * size + moved) / omega,
+            };
+            tone.gain.abs() * amount.min(swings)
+        };
+        tones::Tone::all(self).iter().map(of).sum()
+    }
+
     /// Its largest magnitude until `end` [s], and that times how long it lasts in units of `time` [s], `∫ |s| dt`, where that is less: of a
     /// pulse. Between breaks the integral is a sum over places that follow its highest tone, an estimate; [`Self::impulse`], a bound,
     /// counts what terms cancel.

@@ -253,6 +253,34 @@ impl Network {
         !self.sources.is_empty() || self.links.iter().any(|link| link.pump.is_some())
     }
 
+    /// A bound of the pressure that sources make [Pa], each all by itself in the one bladder that it fills, or on its way out through
+    /// everything that it is joined to, if there is a way out that no valve shuts by itself.
+    pub(super) fn pumped_pressure(&self, wet: &Wet, end: f64) -> f64 {
+        let bladder = wet.bladder_length / self.bladder_mobility;
+        let of = |source: &Source| {
+            let own = self.component_of(source.into);
+            let inside = |node: Node| self.component_of(node) == own;
+            let volume = match &source.feed {
+                Feed::Flow(flow) => flow.largest_integral(end),
+                Feed::Volume(volume) => volume.largest(end).value,
+            };
+            let filled = volume / (wet.compliance() * wet.bladder_length);
+            let mut links = self.links.iter().filter(|l| inside(l.from) || inside(l.to));
+            let lets_out = |l: &Link| matches!((l.from, l.to), (Node::Port(_), _) | (_, Node::Port(_)));
+            let steady = |l: &Link| l.check_valve.is_none() && l.opening.is_none();
+            let open = links.clone().any(lets_out) && links.clone().all(steady);
+            let in_series = links.try_fold(0.0, |sum, link| {
+                (link.resistance.is_finite()).then_some(sum + link.resistance)
+            });
+            let bladders = self.component_of_bladder.iter().filter(|c| Some(**c) == own).count();
+            match in_series {
+                Some(sum) if open => filled.min(source.feed.largest_flow(end) * (sum + bladders as f64 * bladder)),
+                _ => filled,
+            }
+        };
+        self.sources.iter().map(of).sum()
+    }
+
     /// Volume that everything joined to a point takes in per pressure, at ambient pressure [m^3/Pa].
     pub(super) fn compliance_at(&self, node: Node, wet: &Wet) -> f64 {
         let own = self.component_of(node);

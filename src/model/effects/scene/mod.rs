@@ -88,6 +88,7 @@ impl<'a> Scene<'a> {
                 others.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
             },
         );
+        let pumped = wet.map_or(0.0, |wet| wet.network.pumped_pressure(wet, case.time.end_s));
         Self {
             wet,
             loads,
@@ -98,7 +99,7 @@ impl<'a> Scene<'a> {
             instability: OnceCell::new(),
             least: OnceCell::new(),
             tubes: OnceCell::new(),
-            scales: Scales::estimate(case, section, wet),
+            scales: Scales::pumped(case, section, wet, pumped),
             bending: beta * beta * (section.bending_stiffness / mass).sqrt(),
             axial: quarter / length * (section.axial_stiffness / mass).sqrt(),
             buckling: FRAC_PI_2.powi(2) * section.bending_stiffness / (length * length),
