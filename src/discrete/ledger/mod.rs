@@ -13,6 +13,7 @@ pub use compressed::{area_rate, lost, pressure_rate};
 pub use fluid::pressure_rates;
 pub use jump::{side, strokes, travel};
 pub use reactions::compared;
+pub use solid::reaction;
 
 use crate::case::schema::Effect;
 use serde::{Deserialize, Serialize};

@@ -29,12 +29,8 @@ pub fn flows(
             }
             f += force;
         });
-        // Reaction of a driven end: what is missing in its momentum balance.
         let inertia = system.masses[i];
-        let none = Planar::default();
-        let right = w.forces.section.get(i).copied().unwrap_or(none);
-        let left = if i > 0 { w.forces.section[i - 1] } else { none };
-        let missing = a * inertia - f - right + left;
+        let missing = missing(system, w, i, f);
         if l.inertia && l.lines[1].v.is_none() {
             add(
                 out,
@@ -64,6 +60,21 @@ pub fn flows(
     add(out, EnergyRate::AngularImpulse, attached::torque(system, w));
     add(out, EnergyRate::Damping, relaxation::energy_and_loss(system, now, w)[1]);
     cells(system, now, w, published, out);
+}
+
+/// Reaction of a driven end: what is missing in the balance of momentum of a node on which a force acts besides its sections.
+fn missing(system: &System, w: &Workspace<f64>, i: usize, force: Planar<f64>) -> Planar<f64> {
+    let none = Planar::default();
+    let right = w.forces.section.get(i).copied().unwrap_or(none);
+    let left = if i > 0 { w.forces.section[i - 1] } else { none };
+    w.motion.a[i] * system.masses[i] - force - right + left
+}
+
+/// Force of what holds an end on the beam, where its motion is given [N].
+pub fn reaction(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> Planar<f64> {
+    let mut f = Planar::default();
+    outer_forces(system, now, w, node, |_, force| f += force);
+    missing(system, w, node, f)
 }
 
 /// End moments, viscous moments, and the published curvature measure, at one node.

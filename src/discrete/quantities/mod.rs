@@ -6,6 +6,7 @@
 //! fields        along the beam and the network, with their axes
 //! probes        over time, at places that the case names
 //! stations      over time, at ports, in accumulators and at walls
+//! reactions     over time, of what holds the beam
 //! look          how a state is read
 //! row           the values of all of them at one instant
 //! ```
@@ -18,6 +19,7 @@ pub mod interest;
 pub mod look;
 pub mod observables;
 pub mod probes;
+mod reactions;
 pub mod row;
 pub mod stations;
 

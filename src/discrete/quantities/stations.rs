@@ -1,13 +1,15 @@
-//! Quantities at each port, in each accumulator and at each wall.
+//! Quantities at each port, in each accumulator, at each wall, and of what holds the beam.
 
 use super::look::Look;
 use super::probes::ProbeColumn;
+use super::reactions;
 use crate::discrete::ledger::ports;
 use crate::discrete::{System, touching};
 
-/// Columns of all ports, accumulators and walls of a system; at rest, those that a state at rest has.
+/// Columns of all ports, accumulators, walls and reactions of a system; at rest, those that a state at rest has.
 pub fn columns(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
     let mut all = of_network(system, at_rest);
+    all.extend(reactions::columns(system));
     let walls = system.model.contacts.iter().map(|wall| &wall.name);
     for (name, short) in short("contact", walls) {
         let column = |what: &str, unit, about: &str| ProbeColumn {
@@ -82,6 +84,7 @@ pub fn values(look: &Look, integrals: Option<&[f64]>, out: &mut [f64]) {
         }
     };
     network_values(look, integrals, &mut put);
+    reactions::values(look, &mut put);
     for wall in 0..look.system.model.contacts.len() {
         let [normal, friction, depth] = touching::felt(look.system, &look.w, wall);
         put(normal);

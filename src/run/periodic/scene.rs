@@ -214,7 +214,7 @@ fn guess(system: &System, case: &Case) -> Vec<f64> {
     y
 }
 
-/// The volume of every closed network whose areas are unknowns, as a weight of every unknown.
+/// The volume of every closed network whose volumes are unknowns, as a weight of every unknown.
 fn conserved(system: &System) -> Vec<Vec<f64>> {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return vec![];
@@ -224,17 +224,22 @@ fn conserved(system: &System) -> Vec<Vec<f64>> {
     closed
         .filter_map(|component| {
             let mut w = vec![0.0; l.len];
-            let mut count = 0;
             for (slot, &bladder) in fluid.flowing.iter().enumerate() {
                 if wet.network.component_of_bladder[bladder] == component {
                     let first = l.network.area.start + slot * fluid.cells_per_bladder;
-                    w[first..first + fluid.cells_per_bladder].fill(1.0);
-                    count += fluid.cells_per_bladder;
+                    let cells = first..first + fluid.cells_per_bladder;
+                    w[cells.clone()].fill(l.scales[first] * fluid.ds);
                 }
             }
-            let size = (count as f64).sqrt();
+            for one in &fluid.accumulators {
+                if wet.network.component_of_junction[fluid.junctions[one.junction]] == component {
+                    let unknown = l.network.junction.start + one.junction;
+                    w[unknown] = l.scales[unknown];
+                }
+            }
+            let size = w.iter().map(|w| w * w).sum::<f64>().sqrt();
             w.iter_mut().for_each(|w| *w /= size);
-            (count > 0).then_some(w)
+            (size > 0.0).then_some(w)
         })
         .collect()
 }

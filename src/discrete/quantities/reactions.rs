@@ -1,0 +1,122 @@
+//! What holds the beam: forces and couples at ends whose motion is given, at springs and dashpots, and angles of ends that turn.
+
+use super::look::Look;
+use super::probes::ProbeColumn;
+use crate::discrete::System;
+use crate::discrete::ledger::reaction;
+use crate::discrete::residual::rows::end_tangent;
+use crate::model::Kinematics;
+
+/// What is told of an end or an attachment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Told {
+    /// Force of what holds an end on the beam, across (0) or along (1).
+    End(usize, usize),
+    /// Couple of what holds an end, in the sense of growing φ.
+    Couple(usize),
+    /// Angle of an end that turns.
+    Angle(usize),
+    /// Force of springs and dashpots, across (0) or along (1), of an attachment.
+    Attached(usize, usize),
+}
+
+const ENDS: [&str; 2] = ["root", "tip"];
+const AXES: [&str; 2] = ["x", "z"];
+
+/// All that a system has, ends first.
+fn all(system: &System) -> Vec<Told> {
+    let bends = system.model.kinematics != Kinematics::Bar;
+    let mut all = vec![];
+    for (k, end) in system.model.ends.iter().enumerate() {
+        let lines = &system.layout.lines;
+        let held = |axis: usize| {
+            let moves = end_motion(system, k, axis);
+            let there = axis == 1 || bends;
+            moves && there && (axis == 0 || !lines[1].free.is_empty())
+        };
+        all.extend((0..2).filter(|&axis| held(axis)).map(|axis| Told::End(k, axis)));
+        match &end.rotation {
+            crate::case::Rotation::Slope(_) if bends => all.push(Told::Couple(k)),
+            // the tip's is a quantity of its own
+            crate::case::Rotation::Moment(_) if bends && k == 0 => all.push(Told::Angle(k)),
+            _ => {}
+        }
+    }
+    for (k, attachment) in system.model.attachments.iter().enumerate() {
+        for axis in 0..2 {
+            let holds = attachment.stiffness[axis] > 0.0 || attachment.damping[axis] > 0.0;
+            let there = axis == 1 || bends;
+            all.extend((holds && there).then_some(Told::Attached(k, axis)));
+        }
+    }
+    all
+}
+
+/// Whether the motion of an end is given.
+fn end_motion(system: &System, end: usize, axis: usize) -> bool {
+    let end = &system.model.ends[end];
+    let motion = if axis == 0 { &end.transverse } else { &end.axial };
+    matches!(motion, crate::case::Translation::Displacement(_))
+}
+
+/// Columns of a system.
+pub fn columns(system: &System) -> impl Iterator<Item = ProbeColumn> {
+    all(system).into_iter().map(|one| {
+        let (name, unit, about) = match one {
+            Told::End(k, axis) => (
+                format!("reaction_{}_{}", ENDS[k], AXES[axis]),
+                "N",
+                format!("force in {} of what holds the {} on the beam", AXES[axis], ENDS[k]),
+            ),
+            Told::Couple(k) => (
+                format!("reaction_{}_couple", ENDS[k]),
+                "N m",
+                format!(
+                    "couple of what holds the {} on the beam, in the sense of growing phi",
+                    ENDS[k]
+                ),
+            ),
+            Told::Angle(k) => (
+                format!("turned_{}", ENDS[k]),
+                "rad",
+                format!("slope angle phi of the {}, which turns", ENDS[k]),
+            ),
+            Told::Attached(k, axis) => (
+                format!("reaction_attachment_{}_{}", k + 1, AXES[axis]),
+                "N",
+                format!(
+                    "force in {} of springs and dashpots of attachment {}",
+                    AXES[axis],
+                    k + 1
+                ),
+            ),
+        };
+        ProbeColumn { name, unit, about }
+    })
+}
+
+/// Their values in a state.
+pub fn values(look: &Look, put: &mut impl FnMut(f64)) {
+    let (system, now, w) = (look.system, look.now, &*look.w);
+    let node = |end: usize| end * (system.mesh.nodes - 1);
+    for one in all(system) {
+        put(match one {
+            Told::End(k, axis) => reaction(system, now, w, node(k))[axis],
+            Told::Couple(k) => {
+                let part = |moments: &[f64]| moments.get(node(k)).copied().unwrap_or(0.0);
+                let f = &w.forces;
+                let moment = f.moment[node(k)] + f.viscous_moment[node(k)];
+                let moment = moment + part(&f.nonlinear_moment) + part(&f.relaxing_moment);
+                if k == 0 { moment } else { -moment }
+            }
+            Told::Angle(k) => {
+                let tangent = end_tangent(system, now, w, node(k));
+                tangent.x.atan2(tangent.z)
+            }
+            Told::Attached(k, axis) => {
+                let own = system.attached.iter().filter(|attached| attached.number == k);
+                own.map(|a| a.spring(w)[axis] + a.dashpot(w)[axis]).sum()
+            }
+        });
+    }
+}
