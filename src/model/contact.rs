@@ -3,8 +3,8 @@
 use crate::case::schema::{Case, Contact as Written};
 use crate::numerics::{Planar, Scalar};
 
-/// `[E61]` A wall: the half-plane behind the face through `x_0` with the outward normal n. Where the line of the beam is behind it by
-/// `g = n·(x_0 - x) > 0`, per length or at a place, k its stiffness and d its smoothing,
+/// `[E61]` A wall: the half-plane behind the face through `x_0` with the outward normal n. Where the surface of the beam, at r from its line,
+/// is behind it by `g = n·(x_0 - x) + r > 0`, per length or at a place, k its stiffness and d its smoothing,
 ///
 /// ```text
 /// f = k s(g) [m(1 + c g_t) n - μ m(1 + c g_t) v_t/√(v_t² + v_0²) t]      s(g) = g²/(2d) up to d, g - d/2 beyond      m(1) = 1
@@ -21,6 +21,8 @@ pub struct Contact {
     pub at: Option<f64>,
     /// `x_0` [m].
     pub point: Planar<f64>,
+    /// `r` [m].
+    pub reach: f64,
     /// `n`, of length 1.
     pub normal: Planar<f64>,
     /// `k` [Pa], at a place [N/m].
@@ -49,10 +51,11 @@ pub struct Pressed<T> {
 impl Contact {
     /// All of a case.
     pub fn all(case: &Case) -> Vec<Self> {
-        case.contacts.iter().map(Self::new).collect()
+        let reach = 0.5 * case.beam.height_m;
+        case.contacts.iter().map(|written| Self::new(written, reach)).collect()
     }
 
-    fn new(written: &Written) -> Self {
+    fn new(written: &Written, reach: f64) -> Self {
         let [x, z] = written.normal;
         let length = x.hypot(z);
         Self {
@@ -62,6 +65,7 @@ impl Contact {
                 x: written.point_m[0],
                 z: written.point_m[1],
             },
+            reach: written.reach_m.unwrap_or(reach),
             normal: Planar {
                 x: x / length,
                 z: z / length,
@@ -79,10 +83,10 @@ impl Contact {
         self.damping > 0.0 || self.friction > 0.0
     }
 
-    /// How deep a point is behind the face [m]; below 0 in front of it.
+    /// How deep the surface of the beam is behind the face, where its line is at a point [m]; below 0 in front of it.
     #[inline]
     pub fn depth<T: Scalar>(&self, at: Planar<T>) -> T {
-        (Planar::constant(self.point) - at).dot(Planar::constant(self.normal))
+        (Planar::constant(self.point) - at).dot(Planar::constant(self.normal)) + self.reach
     }
 
     /// Forces on a point that moves.
@@ -149,6 +153,7 @@ mod tests {
         name: String::new(),
         at: None,
         point: Planar { x: 0.1, z: 0.0 },
+        reach: 0.0,
         normal: Planar { x: -0.6, z: 0.8 },
         stiffness: 1e5,
         smoothing: 1e-3,

@@ -24,8 +24,7 @@ fn integrated(times: &[f64], start: [f64; 2], f: impl Fn([f64; 2]) -> [f64; 2]) 
 }
 
 fn floor(more: Value) -> Value {
-    let mut wall =
-        json!({"name": "floor", "point_m": [-0.01, 0], "normal": [1, 0], "stiffness_pa": 1e4, "smoothing_m": 2e-3});
+    let mut wall = json!({"name": "floor", "point_m": [-0.01, 0], "normal": [1, 0], "stiffness_pa": 1e4, "reach_m": 0, "smoothing_m": 2e-3});
     for (key, value) in more.as_object().unwrap() {
         wall[key] = value.clone();
     }

@@ -55,7 +55,7 @@ pub fn beam(root: Value, tip: Value, contacts: Value) -> Value {
 /// cantilever; the wall's force is what it tells, and the recorded depth is that of the tip.
 #[test]
 fn a_stop_holds_a_cantilever() {
-    let stop = json!([{"name": "stop", "point_m": [1e-3, 1], "normal": [-1, 0], "at": 1, "stiffness_n_m": 500, "smoothing_m": 1e-5}]);
+    let stop = json!([{"name": "stop", "point_m": [1e-3, 1], "normal": [-1, 0], "at": 1, "stiffness_n_m": 500, "reach_m": 0, "smoothing_m": 1e-5}]);
     let mut case = beam(json!("clamped"), json!({"free": {"force_x_n": 0.1}}), stop);
     case["effects"] = json!({"finite_rotation": "off", "axial_force_on_bending": "off"});
     let case = parse(&case);
@@ -74,9 +74,9 @@ fn a_stop_holds_a_cantilever() {
 #[test]
 fn the_jacobian_is_that_of_the_residual() {
     let walls = json!([
-        {"name": "floor", "point_m": [0.01, 0.2], "normal": [-2, 1], "stiffness_pa": 100, "smoothing_m": 0.05, "damping_s_m": 1,
+        {"name": "floor", "point_m": [0.01, 0.2], "normal": [-2, 1], "stiffness_pa": 100, "reach_m": 0, "smoothing_m": 0.05, "damping_s_m": 1,
          "friction_coefficient": 0.4, "friction_velocity_m_s": 0.3},
-        {"name": "stop", "point_m": [-0.01, 1], "normal": [1, 0], "at": 0.83, "stiffness_n_m": 40, "smoothing_m": 0.02, "damping_s_m": 0.5}
+        {"name": "stop", "point_m": [-0.01, 1], "normal": [1, 0], "at": 0.83, "stiffness_n_m": 40, "reach_m": 0, "smoothing_m": 0.02, "damping_s_m": 0.5}
     ]);
     for (effects, formulation) in [
         (json!("full"), "conservative"),
@@ -101,7 +101,7 @@ fn the_jacobian_is_that_of_the_residual() {
 /// Goal: a wall brings no unknown; one that is never touched changes nothing, to the last digit.
 #[test]
 fn a_wall_far_away_is_not_felt() {
-    let far = json!([{"name": "far", "point_m": [-1, 0], "normal": [1, 0], "stiffness_pa": 1e5, "smoothing_m": 1e-3}]);
+    let far = json!([{"name": "far", "point_m": [-1, 0], "normal": [1, 0], "stiffness_pa": 1e5, "reach_m": 0, "smoothing_m": 1e-3}]);
     let drive = json!({"clamped": {"u1_m": {"sine": {"amplitude": 0.01, "frequency_hz": 1}}}});
     let mut with = beam(drive.clone(), json!("free"), far);
     let mut without = beam(drive, json!("free"), json!([]));
@@ -133,7 +133,7 @@ fn what_is_not_clear_is_refused() {
             told.violations
         );
     };
-    let wall = json!({"name": "w", "point_m": [-0.1, 0], "normal": [1, 0], "stiffness_pa": 1e3, "smoothing_m": 1e-3});
+    let wall = json!({"name": "w", "point_m": [-0.1, 0], "normal": [1, 0], "stiffness_pa": 1e3, "reach_m": 0, "smoothing_m": 1e-3});
     let with = |key: &str, value: Value| {
         let mut wall = wall.clone();
         wall[key] = value;
@@ -170,8 +170,7 @@ fn what_is_not_clear_is_refused() {
 #[test]
 fn deep_contact_is_told() {
     let warns = |point: f64, velocity: f64| {
-        let wall =
-            json!([{"name": "soft", "point_m": [point, 0], "normal": [1, 0], "stiffness_pa": 10, "smoothing_m": 1e-3}]);
+        let wall = json!([{"name": "soft", "point_m": [point, 0], "normal": [1, 0], "stiffness_pa": 10, "reach_m": 0, "smoothing_m": 1e-3}]);
         let mut case = beam(json!("free"), json!("free"), wall);
         case["start"] = json!({"u1_rate_m_s": velocity});
         case["solver"] = json!({"rtol": 1e-4});
@@ -184,4 +183,16 @@ fn deep_contact_is_told() {
     assert!(warns(-0.01, 0.0).is_empty());
     assert!(warns(1e-3, 0.0)[0].contains("begins"));
     assert!(warns(-0.01, -0.3)[0].contains("half its height"));
+}
+
+/// Goal: a beam touches with its surface unless it says otherwise: half its height in front of the line of its centre.
+#[test]
+fn a_beam_touches_with_its_surface() {
+    let wall = json!([{"name": "w", "point_m": [-0.1, 0], "normal": [3, 0], "stiffness_pa": 1e3, "smoothing_m": 1e-3}]);
+    let mut case = beam(json!("clamped"), json!("free"), wall);
+    let half_height = 0.5 * case["beam"]["height_m"].as_f64().unwrap();
+    let depth = |case: &Value| run(case).0.column("contact_w_depth").unwrap()[0];
+    assert!((depth(&case) - (half_height - 0.1)).abs() < 1e-15);
+    case["contacts"][0]["reach_m"] = json!(0.03);
+    assert!((depth(&case) + 0.07).abs() < 1e-15);
 }

@@ -8,7 +8,7 @@ use super::{beam, run};
 /// tolerance says, by each kind of method.
 #[test]
 fn striking_a_stop_keeps_energy() {
-    let stop = json!([{"name": "stop", "point_m": [-0.01, 1], "normal": [1, 0], "at": 1, "stiffness_n_m": 1e4, "smoothing_m": 1e-4}]);
+    let stop = json!([{"name": "stop", "point_m": [-0.01, 1], "normal": [1, 0], "at": 1, "stiffness_n_m": 1e4, "reach_m": 0, "smoothing_m": 1e-4}]);
     for method in ["ida", "esdirk46"] {
         let mut open = vec![];
         for rtol in [1e-5, 1e-7] {
@@ -50,7 +50,7 @@ fn hard_strikes_end() {
         for lossy in [false, true] {
             for (method, rtol, most) in [("ida", 1e-3, 0.1), ("esdirk46", 1e-3, 0.1), ("auto", 1e-5, 1e-2)] {
                 let wall = |name: &str, x: f64| {
-                    let mut wall = json!({"name": name, "point_m": [x, 0], "normal": [-x.signum(), 0.05], "stiffness_pa": stiffness, "smoothing_m": smoothing});
+                    let mut wall = json!({"name": name, "point_m": [x, 0], "normal": [-x.signum(), 0.05], "stiffness_pa": stiffness, "reach_m": 0, "smoothing_m": smoothing});
                     if lossy {
                         wall["damping_s_m"] = json!(0.3);
                         wall["friction_coefficient"] = json!(0.3);

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::is_zero;
 
-/// A wall that does not move: the half-plane behind a point, seen against a normal. It presses on the line of the beam's centre, all
-/// along with `stiffness_pa`, or at one place with `at` and `stiffness_n_m`. A beam that is away from it feels nothing.
+/// A wall that does not move: the half-plane behind a point, seen against a normal. It presses on the beam all along with
+/// `stiffness_pa`, or at one place with `at` and `stiffness_n_m`. A beam that is away from it feels nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
@@ -16,6 +16,10 @@ pub struct Contact {
     pub point_m: [f64; 2],
     /// Direction out of the wall, towards the free side, x and z; of any length but 0.
     pub normal: [f64; 2],
+    /// How far from the line of its centre the beam touches [m]; absent: half its height, its surface.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub reach_m: Option<f64>,
     /// Stiffness all along the beam: force per length over how deep it is pressed in [Pa].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]

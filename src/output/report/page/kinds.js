@@ -57,7 +57,7 @@ function sceneWords(scene, layout) {
     for (const wire of layout.wires.filter((w) => w.turbine).slice(0, 10)) out.push([line(wireColour(-2), "2 5"), "Turbine", wire.words.replace(/^Turbine /, "")]);
     for (const mark of layout.marks.filter((m) => m.letter).slice(0, 16)) {
       const shape = mark.kind === "pressure" ? svg("circle", { cx: 13, cy: 7, r: 5.5, style: `fill:none;stroke:${wireColour(mark.colour)};stroke-width:2` }) : svg("path", { d: "M7 12H19L13 2Z", style: `fill:none;stroke:${wireColour(mark.colour)};stroke-width:2` });
-      out.push([swatch(shape), `Port ${mark.letter}`, `${mark.name ? `“${mark.name}” ` : ""}at ${mark.where}: ${mark.words}`]);
+      out.push([swatch(shape), `${mark.kind === "accumulator" ? "Accumulator" : "Port"} ${mark.letter}`, `${mark.name ? `“${mark.name}” ` : ""}at ${mark.where}: ${mark.words}`]);
     }
   }
   const wall = swatch(svg("path", { d: "M13 0V14", style: `stroke:${css("--faint")};stroke-width:4` }));
