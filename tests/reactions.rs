@@ -58,7 +58,7 @@ fn a_root_holds_what_pulls_at_the_tip() {
     assert!(x > 0.5, "{x}");
     assert!((read("reaction_root_x") + 2.0).abs() < 1e-9);
     assert!((read("reaction_root_z") - 1.0).abs() < 1e-9);
-    let about = z * 2.0 - x * -1.0;
+    let about = z * 2.0 + x;
     assert!(
         (read("reaction_root_couple") + about).abs() < 1e-8,
         "{} {about}",
