@@ -122,9 +122,6 @@ impl Scalar for Trace {
     fn sin_cos(self) -> (Self, Self) {
         (self, self)
     }
-    fn softplus(self) -> Self {
-        self
-    }
     fn lift(self, _: impl Fn(f64) -> (f64, f64)) -> Self {
         self
     }

@@ -1,7 +1,7 @@
 //! Walls that the beam may come to lie against.
 
 use crate::case::schema::{Case, Contact as Written};
-use crate::numerics::{Planar, Scalar};
+use crate::numerics::{Planar, Scalar, ramp};
 
 /// `[E61]` A wall: the half-plane behind the face through `x_0` with the outward normal n. Where the surface of the beam, at r from its line,
 /// is behind it by `g = n·(x_0 - x) + r > 0`, per length or at a place, k its stiffness and d its smoothing,
@@ -93,7 +93,7 @@ impl Contact {
     #[inline]
     pub fn forces<T: Scalar>(&self, at: Planar<T>, velocity: Planar<T>) -> Pressed<T> {
         let normal = Planar::constant(self.normal);
-        let elastic = self.depth(at).lift(|g| self.ramp(g)) * self.stiffness;
+        let elastic = self.depth(at).lift(|g| ramp(g, self.smoothing)) * self.stiffness;
         let mut pressed = Pressed {
             elastic: normal.times(elastic),
             damping: Planar::zero(),
@@ -123,16 +123,6 @@ impl Contact {
             g => 0.5 * g * (g - d) + d * d / 6.0,
         };
         self.stiffness * stored
-    }
-
-    /// `s` and its slope.
-    fn ramp(&self, depth: f64) -> (f64, f64) {
-        let d = self.smoothing;
-        match depth {
-            g if g <= 0.0 => (0.0, 0.0),
-            g if g < d => (0.5 * g * g / d, g / d),
-            g => (g - 0.5 * d, 1.0),
-        }
     }
 }
 

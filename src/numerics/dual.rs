@@ -149,11 +149,6 @@ impl<const L: usize> Scalar for Dual<L> {
         (self.chain(sine, cosine), self.chain(cosine, -sine))
     }
     #[inline(always)]
-    fn softplus(self) -> Self {
-        let slope = 1.0 / (1.0 + (-self.value).exp());
-        self.chain(Scalar::softplus(self.value), slope)
-    }
-    #[inline(always)]
     fn lift(self, function: impl Fn(f64) -> (f64, f64)) -> Self {
         let (value, slope) = function(self.value);
         self.chain(value, slope)

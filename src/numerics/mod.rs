@@ -7,6 +7,7 @@
 //! | [`planar`] | vectors in the plane |
 //! | [`kernels`] | loops over vectors |
 //! | `gauss` | Gauss' quadrature |
+//! | `ramp` | a ramp with a round foot |
 //! | [`regression`], [`student`] | least squares with covariance, and intervals by Student's distribution |
 //! | [`krylov`] | linear systems and eigenvalues of a map known only by what it does |
 
@@ -15,10 +16,12 @@ pub mod gauss;
 pub mod kernels;
 pub mod krylov;
 pub mod planar;
+mod ramp;
 pub mod regression;
 pub mod scalar;
 pub mod student;
 
 pub use dual::Dual;
 pub use planar::Planar;
+pub use ramp::ramp;
 pub use scalar::Scalar;

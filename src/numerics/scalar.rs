@@ -25,8 +25,6 @@ pub trait Scalar:
     fn atan2(self, x: Self) -> Self;
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
-    /// `ln(1 + e^self)`, the smooth ramp.
-    fn softplus(self) -> Self;
     /// A function of it, by value and derivative.
     fn lift(self, function: impl Fn(f64) -> (f64, f64)) -> Self;
     /// A function of it and another, by value and both derivatives.
@@ -57,10 +55,6 @@ impl Scalar for f64 {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         f64::sin_cos(self)
-    }
-    #[inline(always)]
-    fn softplus(self) -> Self {
-        self.max(0.0) + (-self.abs()).exp().ln_1p()
     }
     #[inline(always)]
     fn lift(self, function: impl Fn(f64) -> (f64, f64)) -> Self {

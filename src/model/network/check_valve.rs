@@ -1,7 +1,7 @@
 //! Check valves and relief valves: what opens under a pressure drop, by itself.
 
 use crate::case::schema::CheckValve as Written;
-use crate::numerics::Scalar;
+use crate::numerics::{Scalar, ramp};
 
 /// `[E7]` A valve that opens from its cracking pressure `p_c ≥ 0` on, over a range w of pressure:
 ///
@@ -68,12 +68,8 @@ impl CheckValve {
 
     /// Flow and its slope.
     fn at(&self, drop: f64) -> (f64, f64) {
-        let (over, more) = (drop - self.cracking_pressure, self.forward - self.reverse);
-        let (open, share) = match over {
-            x if x <= 0.0 => (0.0, 0.0),
-            x if x < self.width => (0.5 * x * x / self.width, x / self.width),
-            x => (x - 0.5 * self.width, 1.0),
-        };
+        let more = self.forward - self.reverse;
+        let (open, share) = ramp(drop - self.cracking_pressure, self.width);
         (self.reverse * drop + more * open, self.reverse + more * share)
     }
 
