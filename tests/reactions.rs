@@ -93,6 +93,31 @@ fn supports_hold_what_the_tables_say() {
     assert!((held + read("reaction_root_x") + 1e-3).abs() < 1e-9);
 }
 
+/// Goal: reduced models hold their ends with the same forces: columns are the same, and what pulls is held.
+#[test]
+fn reduced_models_hold_as_much() {
+    for effects in [
+        json!("full"),
+        json!({"finite_rotation": "off"}),
+        json!({"finite_rotation": "off", "axial_stretch": "off"}),
+    ] {
+        let tip = json!({"free": {"force_x_n": 2e-3, "force_z_n": -0.1}});
+        let read = at_rest(&beam(json!("clamped"), tip, &json!({"effects": effects})));
+        assert!((read("reaction_root_x") + 2e-3).abs() < 1e-11, "{effects}");
+        assert!(
+            (read("reaction_root_z") - 0.1).abs() < 1e-9,
+            "{effects}: {}",
+            read("reaction_root_z")
+        );
+        assert!(read("reaction_root_couple") < -2e-3, "{effects}");
+    }
+    let tip = json!({"free": {"force_z_n": -0.1}});
+    let bar = json!({"effects": {"transverse_motion": "off"}});
+    let read = at_rest(&beam(json!("clamped"), tip, &bar));
+    assert!((read("reaction_root_z") - 0.1).abs() < 1e-9);
+    assert!(read("reaction_root_x") == 0.0 && read("reaction_root_couple") == 0.0);
+}
+
 /// Goal: the reaction of a shaken root is the force that does its work: `∫ R v dt = W`, to the trapezoid rule over outputs.
 #[test]
 fn a_shaken_root_works_by_its_reaction() {

@@ -50,7 +50,7 @@ fn command_fills_its_folder() {
     assert!(json["stability"]["stable"].as_bool().expect("a verdict"));
     assert!(json["quantities"]["tip_u1_m"].as_f64().expect("a number") > 0.5);
     let table = std::fs::read_to_string(out.path().join("path.csv")).expect("a file");
-    let head = "load_factor [1],tip_u1 [m],tip_u3 [m],tip_angle [rad],axial_energy [J],bending_energy [J],bladder_energy [J],unstable_modes [1]";
+    let head = "load_factor [1],tip_u1 [m],tip_u3 [m],tip_angle [rad],axial_energy [J],bending_energy [J],bladder_energy [J],reaction_root_x [N],reaction_root_z [N],reaction_root_couple [N m],unstable_modes [1]";
     assert_eq!(table.lines().next(), Some(head));
 }
 

@@ -50,7 +50,9 @@ fn sensitivities_are_those_of_differences() {
                 path_of(&changed, &options).last().row.clone()
             };
             let rows = [at(1.0), at(-1.0), at(2.0), at(-2.0)];
-            for k in 0..base.last().row.len() {
+            // what holds a beam that nothing but pressure bends is round-off
+            let round_off = |k: usize| names[k].name.starts_with("reaction_") && base.last().row[k].abs() < 1e-9;
+            for k in (0..base.last().row.len()).filter(|k| !round_off(*k)) {
                 let difference =
                     (8.0 * (rows[0][k] - rows[1][k]) - (rows[2][k] - rows[3][k])) / (12e-3 * s.parameter.value);
                 // Round-off is that of the largest of its unit: of a vented bladder's pressure the pressures of the others.

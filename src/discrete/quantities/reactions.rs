@@ -2,10 +2,10 @@
 
 use super::look::Look;
 use super::probes::ProbeColumn;
+use crate::case::{Rotation, Translation};
 use crate::discrete::System;
 use crate::discrete::ledger::reaction;
 use crate::discrete::residual::rows::end_tangent;
-use crate::model::Kinematics;
 
 /// What is told of an end or an attachment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,40 +23,28 @@ enum Told {
 const ENDS: [&str; 2] = ["root", "tip"];
 const AXES: [&str; 2] = ["x", "z"];
 
-/// All that a system has, ends first.
+/// All that a system has, ends first; those of a reduced model are those of the full one.
 fn all(system: &System) -> Vec<Told> {
-    let bends = system.model.kinematics != Kinematics::Bar;
+    let given = |motion: &Translation| matches!(motion, Translation::Displacement(_));
     let mut all = vec![];
     for (k, end) in system.model.ends.iter().enumerate() {
-        let lines = &system.layout.lines;
-        let held = |axis: usize| {
-            let moves = end_motion(system, k, axis);
-            let there = axis == 1 || bends;
-            moves && there && (axis == 0 || !lines[1].free.is_empty())
-        };
-        all.extend((0..2).filter(|&axis| held(axis)).map(|axis| Told::End(k, axis)));
+        let held = [&end.transverse, &end.axial].into_iter().enumerate();
+        all.extend(
+            held.filter(|(_, motion)| given(motion))
+                .map(|(axis, _)| Told::End(k, axis)),
+        );
         match &end.rotation {
-            crate::case::Rotation::Slope(_) if bends => all.push(Told::Couple(k)),
+            Rotation::Slope(_) => all.push(Told::Couple(k)),
             // the tip's is a quantity of its own
-            crate::case::Rotation::Moment(_) if bends && k == 0 => all.push(Told::Angle(k)),
-            _ => {}
+            Rotation::Moment(_) if k == 0 => all.push(Told::Angle(k)),
+            Rotation::Moment(_) => {}
         }
     }
     for (k, attachment) in system.model.attachments.iter().enumerate() {
-        for axis in 0..2 {
-            let holds = attachment.stiffness[axis] > 0.0 || attachment.damping[axis] > 0.0;
-            let there = axis == 1 || bends;
-            all.extend((holds && there).then_some(Told::Attached(k, axis)));
-        }
+        let holds = |axis: &usize| attachment.stiffness[*axis] > 0.0 || attachment.damping[*axis] > 0.0;
+        all.extend((0..2).filter(holds).map(|axis| Told::Attached(k, axis)));
     }
     all
-}
-
-/// Whether the motion of an end is given.
-fn end_motion(system: &System, end: usize, axis: usize) -> bool {
-    let end = &system.model.ends[end];
-    let motion = if axis == 0 { &end.transverse } else { &end.axial };
-    matches!(motion, crate::case::Translation::Displacement(_))
 }
 
 /// Columns of a system.

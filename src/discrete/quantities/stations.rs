@@ -75,6 +75,13 @@ fn of_network(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
     all
 }
 
+/// Of each column while something moves, the port of which it is the volume, where it is one: that is an integral and no part of a state.
+pub fn integrated(system: &System) -> Vec<Option<usize>> {
+    let ports = system.model.wet.as_ref().map_or(0, ports::count);
+    let volume = |column: usize| (column < 4 * ports && column % 4 == 3).then_some(column / 4);
+    (0..columns(system, false).len()).map(volume).collect()
+}
+
 /// Their values in a state; without integrals those of a state at rest.
 pub fn values(look: &Look, integrals: Option<&[f64]>, out: &mut [f64]) {
     let mut out = out.iter_mut();

@@ -12,6 +12,7 @@ use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, PerturbedSystems};
 use crate::discrete::quantities::Observable;
 use crate::discrete::quantities::probes::{self, ProbeColumn};
+use crate::discrete::quantities::stations;
 use crate::discrete::start;
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::integrate::{IntegrationError, consistent_sensitivities};
@@ -28,6 +29,10 @@ pub struct Forward<'a> {
     stops: Vec<[Vec<Stop>; 4]>,
     /// The quantities of the history that are differentiated.
     pub(super) columns: Vec<Observable>,
+    /// Columns of ports, accumulators, walls and reactions.
+    pub(super) stations: Vec<ProbeColumn>,
+    /// Of each of these, the port of which it is the volume.
+    pub(super) volumes: Vec<Option<usize>>,
     /// Those at probes.
     pub(super) probes: Vec<ProbeColumn>,
     pub(super) s: Vec<Vec<f64>>,
@@ -90,6 +95,8 @@ impl<'a> Forward<'a> {
             cases: all_cases,
             stops: all_stops,
             columns,
+            stations: stations::columns(dae.system(), false),
+            volumes: stations::integrated(dae.system()),
             probes: probes::columns(dae.system()).collect(),
             s: vec![vec![0.0; dae.len()]; count],
             sp: vec![vec![0.0; dae.len()]; count],
@@ -105,8 +112,10 @@ impl<'a> Forward<'a> {
         let of = |parameter: &Parameter| -> Vec<String> {
             let name = |(name, unit)| format!("d {name}/d {} [{unit} per unit]", parameter.pointer);
             let own = self.columns.iter().map(|one| (one.name(), one.unit()));
-            let probed = self.probes.iter().map(|one| (one.name.as_str(), one.unit));
-            own.chain(probed).map(name).collect()
+            let behind = self.stations.iter().chain(&self.probes);
+            own.chain(behind.map(|one| (one.name.as_str(), one.unit)))
+                .map(name)
+                .collect()
         };
         let names = self.parameters.iter().flat_map(of);
         std::iter::once("t [s]".to_owned()).chain(names).collect()

@@ -2,8 +2,8 @@
 
 use super::forward::Forward;
 use crate::dae::BeamDae;
-use crate::discrete::ledger;
-use crate::discrete::quantities::{Extremes, Look, Observable, Read, Row, probes};
+use crate::discrete::ledger::{self, ports};
+use crate::discrete::quantities::{Extremes, Look, Observable, Read, Row, probes, stations};
 use crate::integrate::IntegrationError;
 use crate::sundials::Ida;
 
@@ -37,13 +37,9 @@ impl Forward<'_> {
         row: &Row,
     ) -> std::result::Result<&[f64], Box<IntegrationError>> {
         self.derive(ida, t, state)?;
-        let columns = &self.columns;
-        for (figures, derivatives) in self
-            .figures
-            .iter_mut()
-            .zip(parts(&self.row, columns.len() + self.probes.len()))
-        {
-            let probed = derivatives[columns.len()..].iter().zip(row.at_probes());
+        let (columns, each, behind) = (&self.columns, self.each(), self.before_probes());
+        for (figures, derivatives) in self.figures.iter_mut().zip(parts(&self.row, each)) {
+            let probed = derivatives[behind..].iter().zip(row.at_probes());
             figures.take_probes(t, probed.map(|(slope, value)| [*value, *slope]));
             figures.take(t, |which| {
                 let i = columns.iter().position(|one| *one == which)?;
@@ -73,18 +69,14 @@ impl Forward<'_> {
         };
         let own: Vec<f64> = reads.iter().map(|read| read(&look)).collect();
         let probed: Vec<f64> = probes::values(&look).collect();
-        let columns = &self.columns;
+        let (columns, each, behind) = (&self.columns, self.each(), self.before_probes());
         let read_off = |one: &&Observable| matches!(one.read(), Read::State(_));
-        for (figures, derivatives) in self
-            .figures
-            .iter_mut()
-            .zip(parts(&self.row, columns.len() + self.probes.len()))
-        {
+        for (figures, derivatives) in self.figures.iter_mut().zip(parts(&self.row, each)) {
             let value = |which| {
                 let k = columns.iter().filter(read_off).position(|one| *one == which)?;
                 Some([own[k], derivatives[columns.iter().position(|one| *one == which)?]])
             };
-            let slopes = &derivatives[columns.len()..];
+            let slopes = &derivatives[behind..];
             figures.see(
                 t,
                 value,
@@ -92,6 +84,15 @@ impl Forward<'_> {
             );
         }
         Ok(())
+    }
+
+    /// Derivatives by one number in a row.
+    fn each(&self) -> usize {
+        self.before_probes() + self.probes.len()
+    }
+
+    fn before_probes(&self) -> usize {
+        self.columns.len() + self.stations.len()
     }
 
     fn reads(&self) -> Reads {
@@ -117,7 +118,7 @@ impl Forward<'_> {
         let reads = self.reads();
         self.row.clear();
         self.row.push(t);
-        let mut slopes = vec![0.0; reads.len() + self.probes.len()];
+        let mut slopes = vec![0.0; reads.len() + self.stations.len() + self.probes.len()];
         for (k, (parameter, integrals)) in self.parameters.iter().zip(&integrals).enumerate() {
             dae.read_slope(
                 k,
@@ -135,8 +136,11 @@ impl Forward<'_> {
                         stored,
                         at,
                     };
-                    let (own, probed) = out.split_at_mut(reads.len());
+                    let (own, rest) = out.split_at_mut(reads.len());
+                    let (at_stations, probed) = rest.split_at_mut(self.stations.len());
                     own.iter_mut().zip(&reads).for_each(|(out, read)| *out = read(&look));
+                    // volumes are filled in below
+                    stations::values(&look, Some(&[]), at_stations);
                     let values = probes::values(&look);
                     probed.iter_mut().zip(values).for_each(|(out, value)| *out = value);
                 },
@@ -149,7 +153,12 @@ impl Forward<'_> {
             };
             let derivatives = self.columns.iter().map(of).map(|slope| slope / parameter.value);
             self.row.extend(derivatives);
-            self.row.extend(slopes.map(|slope| slope / parameter.value));
+            let volumes = self.volumes.iter().map(Some).chain(std::iter::repeat(None));
+            let behind = slopes.zip(volumes).map(|(slope, volume)| match volume {
+                Some(Some(port)) => ports::let_in(dae.system(), integrals, *port),
+                _ => slope,
+            });
+            self.row.extend(behind.map(|slope| slope / parameter.value));
         }
         Ok(())
     }
