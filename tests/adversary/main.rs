@@ -16,6 +16,7 @@ mod digits;
 mod further;
 mod judge;
 mod network;
+mod parts;
 mod profiles;
 mod promise;
 mod reference;
@@ -90,6 +91,16 @@ fn no_scene_with_further_effects_is_silently_wrong() {
     none_silent(&lines);
 }
 
+/// Goal: of 300 scenes with walls, check valves, pumps, vessels and syringes none is silently wrong.
+#[test]
+#[ignore = "takes minutes"]
+fn no_scene_with_parts_is_silently_wrong() {
+    let (count, first) = (number("SLCBEAM_ADVERSARY"), number("SLCBEAM_ADVERSARY_FIRST"));
+    let lines = tally::run(Kind::Parts, first.unwrap_or(1), count.unwrap_or(300), true);
+    println!("{}", tally::table(&lines));
+    none_silent(&lines);
+}
+
 /// Goal: of 200 sane scenes at most 5 % carry a warning that the reference shows to be needless, and none is silently wrong.
 #[test]
 #[ignore = "takes a quarter of an hour"]
@@ -105,11 +116,12 @@ fn sane_scenes_are_rarely_warned_needlessly() {
     none_silent(&lines);
 }
 
-/// Of which scenes a seed is: of those that `SLCBEAM_ADVERSARY_KIND` names, `sane` or `further`.
+/// Of which scenes a seed is: of those that `SLCBEAM_ADVERSARY_KIND` names, `sane`, `further` or `parts`.
 fn kind() -> Kind {
     match std::env::var("SLCBEAM_ADVERSARY_KIND").as_deref() {
         Ok("sane") => Kind::Sane,
         Ok("further") => Kind::Further,
+        Ok("parts") => Kind::Parts,
         _ => Kind::Extreme,
     }
 }

@@ -8,6 +8,7 @@ use crate::chance::Random;
 use crate::digits::short;
 use crate::further;
 use crate::network;
+use crate::parts;
 use crate::profiles;
 use crate::signals::{self, Times};
 
@@ -38,6 +39,8 @@ pub enum Kind {
     Extreme,
     /// The same with further effects.
     Further,
+    /// The same with walls and parts of networks.
+    Parts,
     /// Sizes and loads like those of the shipped cases.
     Sane,
 }
@@ -71,6 +74,9 @@ pub fn draw(seed: u64, kind: Kind) -> Value {
     }
     if kind == Kind::Further {
         further::add(r, &b, &mut case, wet);
+    }
+    if kind == Kind::Parts {
+        parts::add(r, &b, &mut case, wet);
     }
     case
 }

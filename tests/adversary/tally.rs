@@ -110,6 +110,7 @@ pub fn name(kind: Kind, seed: u64) -> String {
     let of = match kind {
         Kind::Sane => "sane",
         Kind::Further => "further",
+        Kind::Parts => "parts",
         Kind::Extreme => "scene",
     };
     format!("{of}-{seed}")
