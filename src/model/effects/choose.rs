@@ -276,6 +276,10 @@ impl<'a> Chooser<'a> {
                 match self.network.map_or((0, 0), count) {
                     _ if scene.fed() => kept(Keeps::Fed),
                     (sealed, all) if sealed == all => (true, Cause::Sealed(all)),
+                    // what bends a beam that nothing acts on across is the flow alone, however little
+                    _ if !scene.mirrored() && obstacles::transverse_motion(self.case).is_none() => {
+                        kept(Keeps::RowsDiffer)
+                    }
                     (sealed, all) => {
                         let leaks = weighed(Number::Leakage, scene.leakage());
                         (leaks.on(), Cause::PartlySealed { sealed, all, leaks })
