@@ -108,6 +108,15 @@ fn what_cannot_be_is_refused() {
     refused(FINGER, twice, "/network/accumulators/1/at", "a second accumulator");
     let held = r#"/network/accumulators/0/at={"junction": "tank"}"#;
     refused(FINGER, held, "/network/accumulators/0/at", "a port gives the pressure");
+    let litres = r#"/network/ports/0/volume_m3={"ramp": {"from": 0, "to": 1, "start_s": 0, "duration_s": 1, "shape": "smooth"}}"#;
+    refused(FINGER, litres, "/network/ports/0/volume_m3", "before sound has crossed");
+    let turned = "/network/tubes/0/check_valve/reverse_conductance_m3_s_pa=1e-8";
+    refused(
+        PUMP,
+        turned,
+        "/network/tubes/0/check_valve/reverse_conductance_m3_s_pa",
+        "leaks more",
+    );
     let vacuum = "/network/accumulators/0/start_pressure_pa=-2e5";
     refused(PUMP, vacuum, "/network/accumulators/0/start_pressure_pa", "vacuum");
     let soft = "/fluid/bulk_modulus_pa=1e5";

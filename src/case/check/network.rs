@@ -6,7 +6,7 @@ use super::bladders::two_permeabilities;
 use super::junctions;
 use super::tubes::{loss_coefficient, radius, roughness, size};
 use crate::case::faults::Violations;
-use crate::case::schema::{self, BladderEnd, Case, ChainEnd, Endpoint, Network, TubeDefaults};
+use crate::case::schema::{self, BladderEnd, Case, ChainEnd, CheckValve, Endpoint, Network, Rectifier, TubeDefaults};
 use crate::case::wiring::{Bore, Given, Point, Port, Tube, Wiring, bladder_index, bladder_label};
 use crate::case::wording::nearest;
 use crate::error::{Code, Violation};
@@ -183,6 +183,9 @@ impl<'a> Rules<'a, '_> {
         for (i, tube) in self.network.tubes.iter().enumerate() {
             let pointer = format!("/network/tubes/{i}");
             let points = self.branch([&tube.from, &tube.to], Some(&tube.opening), &pointer, "tube");
+            if let Some(valve) = &tube.check_valve {
+                self.valve(valve, &format!("{pointer}/check_valve"));
+            }
             if tube.permeability_m4.is_some() && tube.cross_section.is_some() {
                 two_permeabilities(&pointer, self.faults);
             }
@@ -285,9 +288,26 @@ impl<'a> Rules<'a, '_> {
         for (i, turbine) in self.network.turbines.iter().enumerate() {
             let pointer = format!("/network/turbines/{i}");
             let points = self.branch([&turbine.from, &turbine.to], None, &pointer, "turbine");
+            if let Rectifier::CheckValves(valve) = &turbine.rectifier {
+                self.valve(valve, &format!("{pointer}/rectifier/check_valves"));
+            }
             found.extend(points.map(|points| (points, turbine)));
         }
         found
+    }
+
+    /// A valve lets more through than it leaks.
+    fn valve(&mut self, valve: &CheckValve, pointer: &str) {
+        if valve.reverse_conductance_m3_s_pa > valve.forward_conductance_m3_s_pa {
+            let what = "a check valve that leaks more than it lets through";
+            let fault = Violation::new(Code::Wiring, format!("{pointer}/reverse_conductance_m3_s_pa"), what);
+            let allowed = format!("up to its forward conductance, {}", valve.forward_conductance_m3_s_pa);
+            self.faults.push(
+                fault
+                    .allowed(allowed)
+                    .hint("it lets fluid through from \"from\" to \"to\": turn the tube round"),
+            );
+        }
     }
 
     fn chains(&mut self, wiring: &mut Wiring<'a>) {

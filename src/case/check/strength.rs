@@ -3,7 +3,7 @@
 use super::size::{size_along, size_of, size_of_integral};
 use crate::case::faults::Violations;
 use crate::case::numbers::plain;
-use crate::case::schema::{Bladders, Case, ChainEnd, Load, Rectifier};
+use crate::case::schema::{AccumulatorKind, Bladders, Case, ChainEnd, Load, Rectifier};
 use crate::error::{Code, Violation};
 use crate::functions::signals::Signal;
 
@@ -173,8 +173,15 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     let sound = (beam.young_modulus_pa / beam.density_kg_m3).sqrt();
     let largest = FASTEST_FILL * volume * sound / beam.height_m;
     let hint = "flows are in m^3/s; a ml/s is 1e-6";
-    for (pointer, signal) in &found.flows {
-        let size = size_of(signal, end);
+    let of_flows = found
+        .flows
+        .iter()
+        .map(|(pointer, signal)| (pointer, size_of(signal, end)));
+    let of_volumes = found
+        .volumes
+        .iter()
+        .map(|(pointer, signal)| (pointer, signal.largest(end).rate));
+    for (pointer, size) in of_flows.chain(of_volumes) {
         if size > largest && size.is_finite() && !faults.has(pointer) {
             let what = format!(
                 "{} m^3/s fills all bladders, {} m^3, before sound has crossed the beam",
@@ -190,7 +197,25 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
         }
     }
     let room = MOST * beam.young_modulus_pa * bladders.area_per_pressure_m2_per_pa * bladders.length_m;
-    let room = room * 2.0 * bladders.per_row as f64;
+    let vessels = case.network.iter().flat_map(|network| &network.accumulators);
+    let vessels = vessels.map(|one| match one.kind {
+        AccumulatorKind::Elastic { compliance_m3_pa } => MOST * beam.young_modulus_pa * compliance_m3_pa,
+        AccumulatorKind::Gas { volume_m3, .. } => volume_m3,
+    });
+    let room = room * 2.0 * bladders.per_row as f64 + vessels.sum::<f64>();
+    for (pointer, signal) in found.volumes.iter().filter(|_| found.pressures.is_empty()) {
+        let size = size_of(signal, end);
+        if size > room && !faults.has(pointer) {
+            let what = format!(
+                "{} m^3 let into bladders of {} m^3, more than ten times Young's modulus presses in",
+                plain(rounded(size)),
+                plain(rounded(volume))
+            );
+            let fault = Violation::new(Code::Implausible, pointer, what);
+            let allowed = format!("up to {} m^3", plain(rounded(room)));
+            faults.push(fault.allowed(allowed).hint("volumes are in m^3; a ml is 1e-6"));
+        }
+    }
     let all: Vec<&Signal> = found.flows.iter().map(|(_, signal)| *signal).collect();
     let size = |(_, signal): &(String, &Signal)| size_of(signal, end);
     let main = found.flows.iter().max_by(|a, b| size(a).total_cmp(&size(b)));

@@ -11,6 +11,7 @@ use super::is_zero;
 #[serde(deny_unknown_fields)]
 pub struct Contact {
     /// Name in outputs.
+    #[schemars(length(min = 1))]
     pub name: String,
     /// A point of the wall's face, x and z [m].
     pub point_m: [f64; 2],
