@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use serde_json::Value;
 
+use super::numbers::digits;
 use super::origins::Origin;
 use super::own_cell::OwnCell;
 use super::presets::Preset;
@@ -212,16 +213,6 @@ fn instead(pointer: &str, own: f64, inherited: f64) -> String {
         digits(own),
         digits(inherited)
     )
-}
-
-/// Three digits, as a case would have them.
-fn digits(x: f64) -> String {
-    let rounded: f64 = format!("{x:.2e}").parse().unwrap_or(x);
-    if (1e-3..1e6).contains(&rounded.abs()) {
-        rounded.to_string()
-    } else {
-        format!("{rounded:e}")
-    }
 }
 
 fn same(mine: Option<Vec<f64>>, theirs: Option<Vec<f64>>) -> bool {

@@ -50,3 +50,8 @@ pub fn plain(number: f64) -> String {
         format!("{number:e}")
     }
 }
+
+/// Three digits of a number, which are enough to be told by.
+pub fn digits(number: f64) -> String {
+    plain(format!("{number:.2e}").parse().unwrap_or(number))
+}

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::case::faults::Violations;
-use crate::case::numbers::plain;
+use crate::case::numbers::{digits, plain};
 use crate::case::schema::{Case, Coupling};
 use crate::error::{Code, Violation};
 
@@ -26,9 +26,8 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
                 plain(value),
                 value / suggested
             );
-            let rounded: f64 = format!("{largest:.2e}").parse().unwrap_or(largest);
             let fault = Violation::new(Code::Implausible, pointer, what);
-            faults.push(fault.allowed(format!("up to {} {unit}", plain(rounded))).hint(hint));
+            faults.push(fault.allowed(format!("up to {} {unit}", digits(largest))).hint(hint));
         }
     };
     let duct = "permeabilities are in m^4; a circle has pi r^4/8, r in metres";

@@ -2,7 +2,7 @@
 
 use super::size::{size_along, size_of, size_of_integral};
 use crate::case::faults::Violations;
-use crate::case::numbers::plain;
+use crate::case::numbers::digits;
 use crate::case::schema::{AccumulatorKind, Bladders, Case, ChainEnd, Load, Rectifier};
 use crate::error::{Code, Violation};
 use crate::functions::signals::Signal;
@@ -85,14 +85,10 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     let bounds = Bounds::new(case);
     let end = case.time.end_s;
     let mut look = |pointer: String, size: f64, bound: &Bound| {
-        if size > bound.largest && bound.largest.is_finite() && size.is_finite() && !faults.has(&pointer) {
-            let what = format!("{} {} is more than {}", plain(rounded(size)), bound.unit, bound.meaning);
-            let allowed = format!("up to {} {}", plain(rounded(bound.largest)), bound.unit);
-            faults.push(
-                Violation::new(Code::Implausible, pointer, what)
-                    .allowed(allowed)
-                    .hint(bound.hint),
-            );
+        if size > bound.largest && bound.largest.is_finite() && size.is_finite() {
+            let what = format!("{} {} is more than {}", digits(size), bound.unit, bound.meaning);
+            let allowed = format!("up to {} {}", digits(bound.largest), bound.unit);
+            refuse(faults, &pointer, what, allowed, bound.hint);
         }
     };
     for (side, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
@@ -164,71 +160,64 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// Flows that fill the bladders within what sound takes across the beam, and those that leave more in them over the run than
-/// ten times Young's modulus presses in, where no port with a pressure lets it out.
+/// Flows that fill the bladders within what sound takes across the beam, and what leaves more in bladders and accumulators than ten times
+/// Young's modulus presses in, where no port with a pressure lets it out.
 fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
+    const FLOW: &str = "flows are in m^3/s; a ml/s is 1e-6";
+    const VOLUME: &str = "volumes are in m^3; a ml is 1e-6";
     let (beam, end) = (&case.beam, case.time.end_s);
     let found = inlets(case);
     let volume = bladders.height_m * bladders.width_m * bladders.length_m * 2.0 * bladders.per_row as f64;
     let sound = (beam.young_modulus_pa / beam.density_kg_m3).sqrt();
     let largest = FASTEST_FILL * volume * sound / beam.height_m;
-    let hint = "flows are in m^3/s; a ml/s is 1e-6";
-    let of_flows = found
-        .flows
-        .iter()
-        .map(|(pointer, signal)| (pointer, size_of(signal, end)));
-    let of_volumes = found
-        .volumes
-        .iter()
-        .map(|(pointer, signal)| (pointer, signal.largest(end).rate));
-    for (pointer, size) in of_flows.chain(of_volumes) {
-        if size > largest && size.is_finite() && !faults.has(pointer) {
-            let what = format!(
-                "{} m^3/s fills all bladders, {} m^3, before sound has crossed the beam",
-                plain(rounded(size)),
-                plain(rounded(volume))
-            );
-            let allowed = format!("up to {} m^3/s", plain(rounded(largest)));
-            faults.push(
-                Violation::new(Code::Implausible, pointer, what)
-                    .allowed(allowed)
-                    .hint(hint),
-            );
+    let of_flows = found.flows.iter().map(|(at, signal)| (at, size_of(signal, end), FLOW));
+    let of_volumes = found.volumes.iter();
+    let of_volumes = of_volumes.map(|(at, signal)| (at, signal.largest(end).rate, VOLUME));
+    for (pointer, size, hint) in of_flows.chain(of_volumes) {
+        if size > largest && size.is_finite() {
+            let (size, volume) = (digits(size), digits(volume));
+            let what = format!("{size} m^3/s fills all bladders, {volume} m^3, before sound has crossed the beam");
+            refuse(faults, pointer, what, format!("up to {} m^3/s", digits(largest)), hint);
         }
     }
-    let room = MOST * beam.young_modulus_pa * bladders.area_per_pressure_m2_per_pa * bladders.length_m;
+    if !found.pressures.is_empty() {
+        return;
+    }
+    let pressure = MOST * beam.young_modulus_pa;
+    let in_bladders =
+        pressure * bladders.area_per_pressure_m2_per_pa * bladders.length_m * 2.0 * bladders.per_row as f64;
     let vessels = case.network.iter().flat_map(|network| &network.accumulators);
     let vessels = vessels.map(|one| match one.kind {
-        AccumulatorKind::Elastic { compliance_m3_pa } => MOST * beam.young_modulus_pa * compliance_m3_pa,
+        AccumulatorKind::Elastic { compliance_m3_pa } => pressure * compliance_m3_pa,
         AccumulatorKind::Gas { volume_m3, .. } => volume_m3,
     });
-    let room = room * 2.0 * bladders.per_row as f64 + vessels.sum::<f64>();
-    for (pointer, signal) in found.volumes.iter().filter(|_| found.pressures.is_empty()) {
+    let room = in_bladders + vessels.sum::<f64>();
+    let beyond = format!(
+        "bladders of {} m^3, more than ten times Young's modulus presses in",
+        digits(volume)
+    );
+    for (pointer, signal) in &found.volumes {
         let size = size_of(signal, end);
-        if size > room && !faults.has(pointer) {
-            let what = format!(
-                "{} m^3 let into bladders of {} m^3, more than ten times Young's modulus presses in",
-                plain(rounded(size)),
-                plain(rounded(volume))
-            );
-            let fault = Violation::new(Code::Implausible, pointer, what);
-            let allowed = format!("up to {} m^3", plain(rounded(room)));
-            faults.push(fault.allowed(allowed).hint("volumes are in m^3; a ml is 1e-6"));
+        if size > room {
+            let what = format!("{} m^3 let into {beyond}", digits(size));
+            refuse(faults, pointer, what, format!("up to {} m^3", digits(room)), VOLUME);
         }
     }
     let all: Vec<&Signal> = found.flows.iter().map(|(_, signal)| *signal).collect();
     let size = |(_, signal): &(String, &Signal)| size_of(signal, end);
     let main = found.flows.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
-    if let (true, Some((pointer, _)), Some(left)) = (found.pressures.is_empty(), main, size_of_integral(&all, end))
+    if let (Some((pointer, _)), Some(left)) = (main, size_of_integral(&all, end))
         && left > room
-        && !faults.has(pointer)
     {
-        let what = format!(
-            "flows leave {} m^3 in bladders of {} m^3, more than ten times Young's modulus presses in",
-            plain(rounded(left)),
-            plain(rounded(volume))
-        );
-        let allowed = format!("up to {} m^3 by the end of the run", plain(rounded(room)));
+        let what = format!("flows leave {} m^3 in {beyond}", digits(left));
+        let allowed = format!("up to {} m^3 by the end of the run", digits(room));
+        refuse(faults, pointer, what, allowed, FLOW);
+    }
+}
+
+/// Refuses what is implausible, where nothing else was found at its place.
+fn refuse(faults: &mut Violations, pointer: &str, what: String, allowed: String, hint: &str) {
+    if !faults.has(pointer) {
         faults.push(
             Violation::new(Code::Implausible, pointer, what)
                 .allowed(allowed)
@@ -271,9 +260,4 @@ pub(super) fn inlets(case: &Case) -> Inlets<'_> {
             .extend(port.flow_m3_s.iter().map(|s| (format!("{at}/flow_m3_s"), s)));
     }
     all
-}
-
-/// Three digits are enough to be told by.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.2e}").parse().unwrap_or(x)
 }
