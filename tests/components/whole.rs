@@ -12,6 +12,7 @@ use super::{read, run};
 
 const PUMP: &str = include_str!("../../cases/bladder-pump.json");
 const FINGER: &str = include_str!("../../cases/syringe-finger.json");
+const TOUR: &str = include_str!("../../cases/network-tour.json");
 
 /// Goal: the Jacobian is that of the residual, valves open and shut, flow creeping and not.
 #[test]
@@ -110,6 +111,14 @@ fn what_cannot_be_is_refused() {
     refused(FINGER, held, "/network/accumulators/0/at", "a port gives the pressure");
     let litres = r#"/network/ports/0/volume_m3={"ramp": {"from": 0, "to": 1, "start_s": 0, "duration_s": 1, "shape": "smooth"}}"#;
     refused(FINGER, litres, "/network/ports/0/volume_m3", "before sound has crossed");
+    let at = r#"{"name": "tank", "at": {"junction": "tank"}"#;
+    let no_way_out = FINGER.replace(&format!("{at}, \"pressure_pa\": 0"), &format!("{at}, \"volume_m3\": 0"));
+    let slowly = r#"/network/ports/0/volume_m3={"ramp": {"from": 0, "to": 0.01, "start_s": 0, "duration_s": 4, "shape": "smooth"}}"#;
+    refused(&no_way_out, slowly, "/network/ports/0/volume_m3", "let into bladders");
+    // a large accumulator has room for it
+    let roomy = "/network/accumulators/0/kind/elastic/compliance_m3_pa=2e-8";
+    let sets = [slowly.to_owned(), roomy.to_owned()];
+    case::parse(&no_way_out, "mine.json".as_ref(), "".as_ref(), &sets).unwrap();
     let turned = "/network/tubes/0/check_valve/reverse_conductance_m3_s_pa=1e-8";
     refused(
         PUMP,
@@ -117,6 +126,8 @@ fn what_cannot_be_is_refused() {
         "/network/tubes/0/check_valve/reverse_conductance_m3_s_pa",
         "leaks more",
     );
+    let in_bridge = "/network/turbines/0/rectifier/check_valves/reverse_conductance_m3_s_pa";
+    refused(TOUR, &format!("{in_bridge}=1e-7"), in_bridge, "leaks more");
     let vacuum = "/network/accumulators/0/start_pressure_pa=-2e5";
     refused(PUMP, vacuum, "/network/accumulators/0/start_pressure_pa", "vacuum");
     let soft = "/fluid/bulk_modulus_pa=1e5";

@@ -6,6 +6,7 @@ use super::bladders::two_permeabilities;
 use super::junctions;
 use super::tubes::{loss_coefficient, radius, roughness, size};
 use crate::case::faults::Violations;
+use crate::case::numbers::plain;
 use crate::case::schema::{self, BladderEnd, Case, ChainEnd, CheckValve, Endpoint, Network, Rectifier, TubeDefaults};
 use crate::case::wiring::{Bore, Given, Point, Port, Tube, Wiring, bladder_index, bladder_label};
 use crate::case::wording::nearest;
@@ -301,11 +302,14 @@ impl<'a> Rules<'a, '_> {
         if valve.reverse_conductance_m3_s_pa > valve.forward_conductance_m3_s_pa {
             let what = "a check valve that leaks more than it lets through";
             let fault = Violation::new(Code::Wiring, format!("{pointer}/reverse_conductance_m3_s_pa"), what);
-            let allowed = format!("up to its forward conductance, {}", valve.forward_conductance_m3_s_pa);
+            let allowed = format!(
+                "up to its forward conductance, {}",
+                plain(valve.forward_conductance_m3_s_pa)
+            );
             self.faults.push(
                 fault
                     .allowed(allowed)
-                    .hint("it lets fluid through from \"from\" to \"to\": turn the tube round"),
+                    .hint("are the two conductances the wrong way round? A tube's valve opens from \"from\" to \"to\""),
             );
         }
     }
