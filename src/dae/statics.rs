@@ -12,10 +12,8 @@ use crate::model::network::Feed;
 /// Σ Δs (a1 - t a1(0)) + Σ (V - t V(0)) = Σ V_port  in place of the storage of one of its cells
 /// ```
 ///
-/// V those of accumulators, `V_port` what ports that prescribe a volume have let in,
-///
-/// for these storage equations are dependent: flows inside a closed network sum to zero whatever the pressures are. A
-/// network through which ports or turbines drive a steady flow is at rest too. Forces on unknowns, constant in time, may be
+/// with V the volumes of accumulators and `V_port` what ports that prescribe a volume have let in; for these storage
+/// equations are dependent: flows inside a closed network sum to zero whatever the pressures are. A network through which ports or turbines drive a steady flow is at rest too. Forces on unknowns, constant in time, may be
 /// added (an imperfection).
 #[derive(Clone, Debug)]
 pub struct StaticBeam {
@@ -49,8 +47,10 @@ struct Closed {
     parts: Vec<(usize, f64)>,
     /// Sum of their volumes at the start, over that of a cell.
     sum: f64,
-    /// Sources that prescribe volumes, and the volume of a cell [m^3].
-    volumes: (Vec<usize>, f64),
+    /// Sources that prescribe volumes.
+    sources: Vec<usize>,
+    /// The volume of a cell that the others are over [m^3].
+    unit: f64,
     /// What ports of prescribed flow feed into them at t = 1, all together [m^3/s].
     inflow: f64,
 }
@@ -70,7 +70,10 @@ impl StaticBeam {
             let kept = inner.column(column).map(|e| (inner.rows[e], e));
             let kept = kept.filter(|(row, _)| replaced(*row as usize).is_none());
             let mut entries: Vec<(i64, Entry)> = kept.map(|(row, entry)| (row, Entry::Own(entry))).collect();
-            let weight = |c: &Closed| c.parts.iter().find(|(part, _)| *part == column).map(|part| part.1);
+            let weight = |c: &Closed| {
+                let found = c.parts.binary_search_by_key(&column, |(part, _)| *part);
+                found.ok().map(|k| c.parts[k].1)
+            };
             let volumes = closed.iter().filter_map(|c| Some((c.row as i64, weight(c)?)));
             entries.extend(volumes.map(|(row, weight)| (row, Entry::Volume(weight))));
             entries.sort_unstable_by_key(|(row, _)| *row);
@@ -106,7 +109,7 @@ impl StaticBeam {
         let layout = &self.system().layout;
         let mut scales = layout.row_scales.clone();
         for closed in &self.closed {
-            scales[closed.row] = closed.volumes.1;
+            scales[closed.row] = closed.unit;
         }
         scales
     }
@@ -167,7 +170,8 @@ fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
                 row: unknown,
                 parts: vec![],
                 sum: 0.0,
-                volumes: (vec![], unit),
+                sources: vec![],
+                unit,
                 inflow: 0.0,
             };
             closed.push((root, empty));
@@ -183,7 +187,7 @@ fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
         let root = sets.root(index(source.into));
         if let Some(k) = closed.iter().position(|(r, _)| *r == root) {
             if matches!(sources[source.number].feed, Feed::Volume(_)) {
-                closed[k].1.volumes.0.push(source.number);
+                closed[k].1.sources.push(source.number);
             }
             closed[k].1.inflow += now.source_flow[source.number];
             passed[k] += now.source_flow[source.number].abs();
@@ -241,12 +245,9 @@ impl Dae for StaticBeam {
         self.beam.residual(t, y, &self.zeros, residual)?;
         for closed in &self.closed {
             let sum: f64 = closed.parts.iter().map(|&(part, weight)| weight * y[part]).sum();
-            let (sources, unit) = &closed.volumes;
-            let let_in: f64 = sources
-                .iter()
-                .map(|&source| self.beam.now().source_volume[source])
-                .sum();
-            residual[closed.row] = sum - t * closed.sum - let_in / unit;
+            let volumes = &self.beam.now().source_volume;
+            let let_in: f64 = closed.sources.iter().map(|&source| volumes[source]).sum();
+            residual[closed.row] = sum - t * closed.sum - let_in / closed.unit;
         }
         for (r, more) in residual.iter_mut().zip(&self.imperfection) {
             *r += more;

@@ -68,6 +68,8 @@ pub struct MeshSource {
     pub number: usize,
     /// Where it enters.
     pub into: Place,
+    /// Resistance of the half cell behind [Pa s/m^3].
+    pub half_cell: f64,
 }
 
 /// An accumulator on the mesh.
@@ -77,6 +79,8 @@ pub struct MeshAccumulator {
     pub number: usize,
     /// Its place among the junctions of the mesh.
     pub junction: usize,
+    /// The component of the network that it is part of.
+    pub component: usize,
     /// Its law.
     pub law: AccumulatorLaw,
 }
@@ -189,7 +193,12 @@ impl FluidMesh {
         let links: Vec<MeshLink> = links.collect();
         let sources = network.sources.iter().enumerate().filter_map(|(number, source)| {
             let into = place(source.into)?;
-            Some(MeshSource { number, into })
+            let half_cell = half_of(into);
+            Some(MeshSource {
+                number,
+                into,
+                half_cell,
+            })
         });
         let bridges = network.bridges.iter().enumerate().filter_map(|(number, bridge)| {
             let (from, to) = (place(bridge.from)?, place(bridge.to)?);
@@ -202,6 +211,7 @@ impl FluidMesh {
             Some(MeshAccumulator {
                 number,
                 junction,
+                component: network.component_of_junction[one.junction],
                 law: one.law,
             })
         });

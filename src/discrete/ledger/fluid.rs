@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{ENERGY_RATES, EnergyRate, add, compressed, tubes};
 use crate::case::schema::Effect;
-use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
+use crate::discrete::fluid_mesh::{MeshBridge, Place};
 use crate::discrete::residual::fluid::{bridge_drops, pressure_at};
 use crate::discrete::residual::rows::{driven, mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, small};
@@ -258,14 +258,9 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         let size = ends[0].max(ends[1]);
         cross(link.from, link.to, [q - surplus, q, conductance * size], out);
     }
-    for &MeshSource { number, into: place } in &fluid.sources {
-        let q = now.source_flow[number];
-        let half = if matches!(place, Place::Cell(_)) {
-            0.5 / fluid.conductance
-        } else {
-            0.0
-        };
-        let [power, lost] = compressed::fed(wet, pressure_at(place, now, w), half, q);
+    for source in &fluid.sources {
+        let (q, place) = (now.source_flow[source.number], source.into);
+        let [power, lost] = compressed::fed(wet, pressure_at(place, now, w), source.half_cell, q);
         add(out, EnergyRate::Ports, power);
         add(out, EnergyRate::Bladders, lost);
         if let Some(c) = component(place) {
@@ -287,6 +282,12 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     }
 }
 
+/// Rate of what the bladders of a lumped network store [m^3/s].
+pub fn stored_rate(fluid: &FluidMesh, w: &Workspace<f64>, lumped: &LumpedNetwork) -> f64 {
+    let cells = lumped.bladders.iter().flat_map(|&b| fluid.cells_of(b));
+    cells.map(|cell| w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds
+}
+
 /// Power and outflow of a lumped network through its ports, and volume that passes them.
 fn lumped_ports(
     wet: &Wet,
@@ -299,10 +300,7 @@ fn lumped_ports(
     let gain = match &lumped.kind {
         LumpedKind::Closed => 0.0,
         LumpedKind::Fed(sources) => sources.iter().map(|&s| now.source_flow[s]).sum(),
-        LumpedKind::Port(_) => {
-            let cells = lumped.bladders.iter().flat_map(|&b| fluid.cells_of(b));
-            cells.map(|cell| w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds
-        }
+        LumpedKind::Port(_) => stored_rate(fluid, w, lumped),
     };
     (wet.enthalpy(w.fluid.lumped[k]) * gain, -gain)
 }
@@ -348,8 +346,7 @@ fn surplus(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
         w.fluid.volume_defect[network.component_of_junction[junction]] += inflow;
     }
     for (one, rate) in fluid.accumulators.iter().zip(&w.fluid.accumulated_rate) {
-        let junction = fluid.junctions[one.junction];
-        w.fluid.volume_defect[network.component_of_junction[junction]] -= rate;
+        w.fluid.volume_defect[one.component] -= rate;
     }
     for (link, conductance) in fluid.links.iter().zip(&now.conductance) {
         let link = &network.links[link.number];

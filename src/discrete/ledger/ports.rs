@@ -1,10 +1,11 @@
 //! What passes each port by itself.
 
+use super::fluid::stored_rate;
 use super::{ENERGY_RATES, compressed, rate_count};
-use crate::discrete::fluid_mesh::{MeshBridge, MeshSource, Place};
+use crate::discrete::fluid_mesh::{MeshBridge, Place};
 use crate::discrete::residual::fluid::{bridge_drops, pressure_at};
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::{LumpedKind, Storage, Wet};
+use crate::model::{LumpedKind, Wet};
 
 /// Number of ports of a network: those that give a pressure first, then those that give flow or volume.
 pub fn count(wet: &Wet) -> usize {
@@ -57,8 +58,7 @@ fn of_lumped(system: &System, w: &Workspace<f64>, out: &mut [f64]) {
     };
     for lumped in &wet.lumped {
         if let LumpedKind::Port(port) = lumped.kind {
-            let cells = lumped.bladders.iter().flat_map(|&b| fluid.cells_of(b));
-            out[port] += cells.map(|cell| w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds;
+            out[port] += stored_rate(fluid, w, lumped);
         }
     }
 }
@@ -88,15 +88,11 @@ pub fn pressure_and_power(system: &System, now: &TimeData, w: &Workspace<f64>, p
         let pressure = now.port_pressure[port];
         return [pressure, wet.enthalpy(pressure) * flow];
     }
-    let source = |one: &&MeshSource| one.number == port - ports;
-    match fluid.sources.iter().find(source) {
-        Some(&MeshSource { into, .. }) => {
-            let half = if matches!(into, Place::Cell(_)) {
-                0.5 / fluid.conductance
-            } else {
-                0.0
-            };
-            let inside = pressure_at(into, now, w);
+    let source = port - ports;
+    match fluid.sources.iter().find(|one| one.number == source) {
+        Some(own) => {
+            let half = own.half_cell;
+            let inside = pressure_at(own.into, now, w);
             let outside = match &wet.compression {
                 None => inside + half * flow,
                 Some(compression) => compression.pressure_of_potential(compression.potential(inside) + half * flow),
@@ -105,15 +101,9 @@ pub fn pressure_and_power(system: &System, now: &TimeData, w: &Workspace<f64>, p
         }
         // in a network of one pressure
         None => {
-            let component = wet.network.component_of(wet.network.sources[port - ports].into);
-            let own = |bladder: &usize| Some(wet.network.component_of_bladder[*bladder]) == component;
-            let shares = (0..fluid.bladders)
-                .filter(own)
-                .find_map(|bladder| match wet.storage[bladder] {
-                    Storage::Shared(lumped) => Some(w.fluid.lumped[lumped]),
-                    _ => None,
-                });
-            let pressure = shares.unwrap_or(0.0);
+            let component = wet.network.component_of(wet.network.sources[source].into);
+            let own = wet.lumped.iter().position(|lumped| Some(lumped.component) == component);
+            let pressure = own.map_or(0.0, |lumped| w.fluid.lumped[lumped]);
             [pressure, wet.enthalpy(pressure) * flow]
         }
     }

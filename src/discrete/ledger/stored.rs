@@ -43,7 +43,7 @@ pub fn volumes(system: &System, w: &Workspace<f64>) -> Vec<f64> {
         volumes[wet.network.component_of_bladder[bladder]] += stored * fluid.ds;
     }
     for (one, volume) in fluid.accumulators.iter().zip(&w.fluid.accumulated) {
-        volumes[wet.network.component_of_junction[fluid.junctions[one.junction]]] += volume;
+        volumes[one.component] += volume;
     }
     volumes
 }

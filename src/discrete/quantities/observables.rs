@@ -145,8 +145,7 @@ fn port_flow(look: &Look) -> f64 {
         .flat_map(|bladder| fluid.cells_of(bladder));
     let stored = cells.map(|cell| look.w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds;
     let vessels = fluid.accumulators.iter().zip(&look.w.fluid.accumulated_rate);
-    let open = |junction: usize| wet.network.open.contains(&wet.network.component_of_junction[junction]);
-    let vessels = vessels.filter(|(one, _)| open(fluid.junctions[one.junction]));
+    let vessels = vessels.filter(|(one, _)| wet.network.open.contains(&one.component));
     stored + vessels.map(|(_, rate)| rate).sum::<f64>()
 }
 

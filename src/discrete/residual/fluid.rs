@@ -164,7 +164,7 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
         deliver(link.from, -q, w);
         deliver(link.to, q, w);
     }
-    for &MeshSource { number, into } in &fluid.sources {
+    for &MeshSource { number, into, .. } in &fluid.sources {
         deliver(into, T::constant(now.source_flow[number]), w);
     }
     for (k, &MeshBridge { number, from, to }) in fluid.bridges.iter().enumerate() {

@@ -232,7 +232,7 @@ fn conserved(system: &System) -> Vec<Vec<f64>> {
                 }
             }
             for one in &fluid.accumulators {
-                if wet.network.component_of_junction[fluid.junctions[one.junction]] == component {
+                if one.component == component {
                     let unknown = l.network.junction.start + one.junction;
                     w[unknown] = l.scales[unknown];
                 }
