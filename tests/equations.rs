@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 62] = [
+const INDEX: [(&str, &str, &str); 63] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -180,6 +180,7 @@ const INDEX: [(&str, &str, &str); 62] = [
         "a_beam_that_falls_flat_bounces_as_one_body",
     ),
     ("[E62]", "tests/contact/main.rs", "a_stop_holds_a_cantilever"),
+    ("[E63]", "tests/shear/statics.rs", "a_large_tip_force"),
 ];
 
 #[test]

@@ -64,9 +64,10 @@ impl PartialEq for Origins {
 }
 
 /// Coefficients of the section: those that follow from its sizes and material and that the program takes as given.
-const COEFFICIENTS: [&str; 12] = [
+const COEFFICIENTS: [&str; 13] = [
     "/beam/axial_stiffness_factor",
     "/beam/bending_stiffness_factor",
+    "/beam/shear_stiffness_n",
     "/beam/mass_factor",
     "/bladders/permeability_m4",
     "/bladders/area_per_pressure_m2_per_pa",

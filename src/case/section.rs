@@ -208,6 +208,7 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
     let worst = [
         ("axial_stiffness_factor", e.axial_stiffness_factor),
         ("bending_stiffness_factor", e.bending_stiffness_factor),
+        ("shear_stiffness_n", e.shear_stiffness_n),
         ("area_per_pressure_m2_per_pa", e.area_per_pressure_m2_per_pa),
         ("area_per_moment_m2_per_n_m", e.area_per_moment_m2_per_n_m),
         ("area_per_force_m2_per_n", e.area_per_force_m2_per_n),
@@ -234,6 +235,7 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
         "density_kg_m3": density,
         "axial_stiffness_factor": c.axial_stiffness_factor,
         "bending_stiffness_factor": c.bending_stiffness_factor,
+        "shear_stiffness_n": c.shear_stiffness_n,
     }});
     if c.force_curvature_coupling.abs() > ALIKE {
         let what = format!(

@@ -1,7 +1,6 @@
 //! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
 
 use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds, trace};
-use crate::discrete::layout::Line;
 use crate::discrete::{State, System, TimeData, Workspace, kick, ledger, residual, start};
 use crate::functions::signals::Clock;
 use crate::numerics::Dual;
@@ -167,7 +166,7 @@ impl BeamDae {
                 b.yp[k] = (after[k] - before[k]) * scale;
             }
             // Velocities become what displacements jump by, and nothing is accelerated.
-            for (_, u, v) in l.lines.iter().flat_map(Line::unknowns) {
+            for (u, v) in l.moved() {
                 if let Some(v) = v {
                     b.y[v] = b.yp[u];
                     b.yp[v] = 0.0;

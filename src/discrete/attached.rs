@@ -104,7 +104,9 @@ impl Attached {
     /// Angle at its rotational spring.
     #[inline]
     fn angle<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> T {
+        let sections = &w.shape.sections.angle;
         let [a, b] = self.cells.map(|(cell, weight)| match system.model.kinematics {
+            _ if !sections.is_empty() => sections[cell] * weight,
             Kinematics::Bar => T::zero(),
             Kinematics::FiniteRotation => w.shape.tangent[cell].x.atan2(w.shape.tangent[cell].z) * weight,
             Kinematics::Linear | Kinematics::SmallRotation => w.shape.d3[cell].x * weight,

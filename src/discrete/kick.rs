@@ -15,7 +15,6 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::residual::around::node_tangent;
 use super::{System, TimeData, Workspace};
-use crate::case::schema::Effect;
 use crate::model::Kinematics;
 use crate::numerics::Planar;
 
@@ -33,7 +32,7 @@ pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f6
     let l = &system.layout;
     let around = system.model.surroundings.as_ref();
     // the fluid around couples both directions of a node, sections that turn couple nodes
-    let coupled = system.model.effects.has(Effect::RotaryInertia) || around.is_some_and(|s| s.added_mass > 0.0);
+    let coupled = system.turns_with_its_line() || around.is_some_and(|s| s.added_mass > 0.0);
     if !l.inertia || !coupled || system.model.kinematics == Kinematics::Bar {
         return None;
     }
@@ -94,7 +93,7 @@ fn added(system: &System, w: &Workspace<f64>, node: usize) -> Matrix2<f64> {
 /// `J/h n nᵀ` of a cell.
 fn coupling(system: &System, w: &Workspace<f64>, c: usize) -> Matrix2<f64> {
     let section = &system.model.section;
-    if !system.model.effects.has(Effect::RotaryInertia) || system.model.kinematics == Kinematics::Bar {
+    if !system.turns_with_its_line() || system.model.kinematics == Kinematics::Bar {
         return Matrix2::zeros();
     }
     let mut inertia = section.mass_per_length * section.gyration_radius_squared / system.mesh.h;

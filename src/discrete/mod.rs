@@ -16,6 +16,7 @@ pub mod statics;
 pub mod straight;
 pub mod time_data;
 pub mod touching;
+pub mod turning;
 pub mod waves;
 pub mod workspace;
 
@@ -100,6 +101,12 @@ impl System {
             true => Ok(self),
             false => Err(case.source.fault(faults)),
         }
+    }
+
+    /// Whether rotary inertia resists the turning of the beam's line: sections that shear turn by themselves.
+    #[inline]
+    pub fn turns_with_its_line(&self) -> bool {
+        self.model.effects.has(Effect::RotaryInertia) && !self.model.effects.has(Effect::Shear)
     }
 
     /// A junction of tubes with inertia alone into which a port prescribes the flow: the tubes would have to jump with it.

@@ -1,6 +1,6 @@
 //! The state at t = 0 (A.55-A.58, A.70).
 
-use super::{System, TimeData, Workspace, residual, shapes};
+use super::{System, TimeData, Workspace, residual, shapes, turning};
 use crate::case::schema::Case;
 use crate::case::wiring::bladder_index;
 use crate::functions::profile::Profile;
@@ -36,11 +36,17 @@ pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
         }
     }
     let mut w = Workspace::new(system);
+    turning::across(system, now, &mut y, &mut w);
     if !system.model.relaxation.is_empty() {
         residual::evaluate(system, now, &y, &vec![0.0; l.len], &mut w);
         residual::relaxation::settle(system, now, &w, &mut y);
     }
     fill_bladders(system, case, now, &mut y, &mut w);
+    if !l.turning.angle.is_empty() {
+        turning::balance(system, now, &mut y, &mut w);
+        residual::relaxation::settle(system, now, &w, &mut y);
+        fill_bladders(system, case, now, &mut y, &mut w);
+    }
     for (value, scale) in y.iter_mut().zip(&l.scales) {
         *value /= scale;
     }

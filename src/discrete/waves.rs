@@ -30,12 +30,17 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
 }
 
 /// Smallest damping ratio among the waves that the mesh carries: `ζ = c/(2 m ω) + ω τ/2`, bending and axial. Masses and
-/// springs that are attached swing with less, by how much is not known: 0.
+/// springs that are attached swing with less, by how much is not known: 0. So do sections that shear by themselves: nothing but the damping of
+/// bending damps them.
 pub fn least_damping_ratio(system: &System) -> f64 {
     if !system.attached.is_empty() || !system.touching.is_empty() {
         return 0.0;
     }
     let s = &system.model.section;
+    let swings = system.layout.turning.rate.is_some();
+    if swings && s.bending_damping_time == 0.0 {
+        return 0.0;
+    }
     let (m, h, l) = (s.mass_per_length, system.mesh.h, system.model.length);
     let bending = (s.bending_stiffness / m).sqrt();
     let axial = (s.axial_stiffness / m).sqrt();
@@ -43,7 +48,11 @@ pub fn least_damping_ratio(system: &System) -> f64 {
         (
             s.bending_damping_time,
             3.516 * bending / (l * l),
-            4.0 * bending / (h * h),
+            if swings {
+                shearing(system)
+            } else {
+                4.0 * bending / (h * h)
+            },
         ),
         (s.axial_damping_time, 1.571 * axial / l, 2.0 * axial / h),
     ];
@@ -69,8 +78,20 @@ pub fn least_damping_ratio(system: &System) -> f64 {
 pub fn highest_frequency(system: &System) -> f64 {
     let s = &system.model.section;
     let h = system.mesh.h;
-    let bending = 4.0 / (h * h) * (s.stiffening * s.bending_stiffness / s.mass_per_length).sqrt();
+    let bending = match system.layout.turning.rate {
+        Some(_) => s.stiffening.sqrt() * shearing(system),
+        None => 4.0 / (h * h) * (s.stiffening * s.bending_stiffness / s.mass_per_length).sqrt(),
+    };
     let axial = 2.0 / h * (s.stiffening * s.axial_stiffness / s.mass_per_length).sqrt();
     let carried = [bending, axial].into_iter().zip(system.layout.waves());
     carried.filter(|(_, waves)| *waves).map(|(f, _)| f).fold(0.0, f64::max)
+}
+
+/// Highest angular frequency of sections that shear [1/s], at most: `ω² ≤ 4 kGA/(h² m) + kGA/(m y11) + 4 EI/(h² m y11)`, from what each of
+/// displacements and angles alone has.
+fn shearing(system: &System) -> f64 {
+    let (s, h) = (&system.model.section, system.mesh.h);
+    let (m, rotary) = (s.mass_per_length, s.mass_per_length * s.gyration_radius_squared);
+    let per = 4.0 / (h * h);
+    (per * s.shear_stiffness / m + s.shear_stiffness / rotary + per * s.bending_stiffness / rotary).sqrt()
 }

@@ -42,16 +42,33 @@ pub struct Shape<T> {
     pub stretch: Vec<T>,
     /// `lambda - 1`, without cancellation.
     pub strain: Vec<T>,
-    /// Unit tangent `e_t`.
+    /// Unit tangent `e_t` of the beam's line.
     pub tangent: Vec<Planar<T>>,
     /// `d lambda/dt`.
     pub stretch_rate: Vec<T>,
-    /// `d phi/dt`.
+    /// `d phi/dt`, of sections that shear `d theta/dt`.
     pub angle_rate: Vec<T>,
     /// Curvature `kappa` [1/m].
     pub kappa: Vec<T>,
     /// `d kappa/dt` [1/(m s)].
     pub kappa_rate: Vec<T>,
+    /// How sections turn that shear.
+    pub sections: Sections<T>,
+}
+
+/// Sections of cells that shear; empty where they stay across the beam.
+#[derive(Clone, Debug)]
+pub struct Sections<T> {
+    /// Their angles θ [rad].
+    pub angle: Vec<T>,
+    /// `d²θ/dt²` [rad/s^2], where that is resisted.
+    pub acceleration: Vec<T>,
+    /// Their normals `(sin θ, cos θ)`.
+    pub normal: Vec<Planar<T>>,
+    /// Shear strain γ.
+    pub shear: Vec<T>,
+    /// `d gamma/dt` [1/s].
+    pub shear_rate: Vec<T>,
 }
 
 /// Of the branches of a solid that relaxes, one after the other; empty without.
@@ -65,6 +82,10 @@ pub struct Relaxed<T> {
     pub stretch: Vec<T>,
     /// Their rates [1/s].
     pub stretch_rate: Vec<T>,
+    /// Shear strains `γ_k` of cells.
+    pub shear: Vec<T>,
+    /// Their rates [1/s].
+    pub shear_rate: Vec<T>,
 }
 
 /// Moments at nodes, forces in cells.
@@ -86,6 +107,10 @@ pub struct Forces<T> {
     pub relaxing_moment: Vec<T>,
     /// And of the normal force [N].
     pub relaxing_normal: Vec<T>,
+    /// And of the shear force [N].
+    pub relaxing_shear: Vec<T>,
+    /// What turns the section of each cell that shears [N m]; empty without.
+    pub turning: Vec<T>,
     /// What the section's energy beyond its quadratic part adds to the moment [N m]; empty without.
     pub nonlinear_moment: Vec<T>,
     /// And to the normal force [N].
@@ -224,6 +249,7 @@ impl<T: Scalar> Workspace<T> {
             0
         };
         let relaxation = &system.layout.relaxation;
+        let sheared = system.layout.turning.angle.len();
         let fluid = system.fluid.as_ref();
         let (cells, bladders) = fluid.map_or((0, 0), |f| (f.cells, f.bladders));
         let (junctions, bridges) = fluid.map_or((0, 0), |f| (f.junctions.len(), f.bridges.len()));
@@ -250,12 +276,21 @@ impl<T: Scalar> Workspace<T> {
                 angle_rate: zeros(c),
                 kappa: zeros(n),
                 kappa_rate: zeros(n),
+                sections: Sections {
+                    angle: zeros(sheared),
+                    acceleration: zeros(sheared),
+                    normal: vectors(sheared),
+                    shear: zeros(sheared),
+                    shear_rate: zeros(sheared),
+                },
             },
             relaxed: Relaxed {
                 curvature: zeros(relaxation.curvature.len()),
                 curvature_rate: zeros(relaxation.curvature.len()),
                 stretch: zeros(relaxation.stretch.len()),
                 stretch_rate: zeros(relaxation.stretch.len()),
+                shear: zeros(relaxation.shear.len()),
+                shear_rate: zeros(relaxation.shear.len()),
             },
             forces: Forces {
                 moment: zeros(n),
@@ -266,6 +301,8 @@ impl<T: Scalar> Workspace<T> {
                 section: vectors(c),
                 relaxing_moment: zeros(relaxation.curvature.len().min(n)),
                 relaxing_normal: zeros(relaxation.stretch.len().min(c)),
+                relaxing_shear: zeros(relaxation.shear.len().min(c)),
+                turning: zeros(sheared),
                 nonlinear_moment: zeros(nonlinear * n),
                 nonlinear_normal: zeros(nonlinear * c),
             },

@@ -295,10 +295,10 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         )));
     }
     if let Some(&slender) = numbers.get("slenderness")
-        && slender < 4.0
+        && slender < if model.effects.has(Effect::Shear) { 2.0 } else { 4.0 }
     {
         all.push(Code::Stocky.warning(format!(
-            "range of the model: length over height is {slender:.2}; a rod model wants 5 or more"
+            "range of the model: length over height is {slender:.2}; a rod model wants 5 or more, one that shears 2"
         )));
     }
     all

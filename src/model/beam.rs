@@ -14,6 +14,8 @@ pub struct Section {
     pub axial_stiffness: f64,
     /// `EI = E (w_s h_s^3/12) f_i` [N m^2] (A.38).
     pub bending_stiffness: f64,
+    /// `kGA` [N]; infinite where sections stay across the beam.
+    pub shear_stiffness: f64,
     /// `y11 = (rho_s/m) (w_s h_s^3/12) f_i` [m^2].
     pub gyration_radius_squared: f64,
     /// `tau_a` [s].
@@ -34,6 +36,12 @@ impl Section {
     /// Whether forces of the straight beam depend on velocities of its nodes.
     pub fn resists_motion(&self) -> bool {
         self.drag > 0.0 || self.quadratic_drag > 0.0 || self.axial_damping_time > 0.0
+    }
+
+    /// What shear makes of an angular frequency of bending [1/s]: `ω²/(1 + EI k²/(kGA))`, `k² = ω √(m/EI)`, exact between pins.
+    pub fn sheared(&self, omega: f64) -> f64 {
+        let squared = omega * (self.mass_per_length / self.bending_stiffness).sqrt();
+        omega / (1.0 + self.bending_stiffness * squared / self.shear_stiffness).sqrt()
     }
 
     /// `[E1]` (2, A.1):
@@ -64,6 +72,7 @@ impl Section {
             mass_per_length,
             axial_stiffness: beam.young_modulus_pa * beam.height_m * beam.width_m * beam.axial_stiffness_factor,
             bending_stiffness: beam.young_modulus_pa * second_moment,
+            shear_stiffness: beam.shear_stiffness_n.unwrap_or(f64::INFINITY),
             weighing_per_length: mass_per_length - displaced(case.surroundings.as_ref(), beam),
             gyration_radius_squared: beam.density_kg_m3 / mass_per_length * second_moment,
             axial_damping_time: beam.damping.axial_time_s,

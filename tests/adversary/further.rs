@@ -1,4 +1,4 @@
-//! Further effects of a scene: what is attached, what is around, a solid that relaxes or is curved at rest, fluid that is compressed.
+//! Further effects of a scene: what is attached, what is around, a solid that relaxes, is curved at rest or shears, fluid that is compressed.
 
 use std::f64::consts::PI;
 
@@ -13,10 +13,10 @@ use crate::signals;
 
 /// Adds one of them at least.
 pub fn add(r: &mut Random, b: &Beam, case: &mut Value, wet: bool) {
-    let first = r.below(if wet { 5 } else { 4 });
+    let first = r.below(if wet { 6 } else { 5 });
     let mut takes = |which: usize| which == first || r.one_in(5);
-    let [attached, around, relaxing, curved] = [0, 1, 2, 3].map(&mut takes);
-    let compressed = wet && takes(4);
+    let [attached, around, relaxing, curved, sheared] = [0, 1, 2, 3, 4].map(&mut takes);
+    let compressed = wet && takes(5);
     if attached {
         case["attachments"] = (0..1 + r.below(2)).map(|_| attachment(r, b)).collect();
     }
@@ -30,6 +30,10 @@ pub fn add(r: &mut Random, b: &Beam, case: &mut Value, wet: bool) {
         let signal = signals::load(r, b.times, 0.5 / b.length);
         let load = json!({"rest_curvature_1_m": {"signal": signal, "profile": profiles::profile(r, b.times.sane)}});
         case["loads"].as_array_mut().expect("loads").push(load);
+        case.as_object_mut().expect("a case").remove("formulation");
+    }
+    if sheared {
+        case["beam"]["shear_stiffness_n"] = short(b.ea * r.log(0.02, 0.5));
         case.as_object_mut().expect("a case").remove("formulation");
     }
     if compressed {

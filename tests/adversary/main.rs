@@ -81,7 +81,7 @@ fn no_scene_of_five_thousand_is_silently_wrong() {
     none_silent(&lines);
 }
 
-/// Goal: of 300 scenes with what is attached, around, relaxes, is curved at rest or compressed none is silently wrong.
+/// Goal: of 300 scenes with what is attached, around, relaxes, is curved at rest, shears or is compressed none is silently wrong.
 #[test]
 #[ignore = "takes minutes"]
 fn no_scene_with_further_effects_is_silently_wrong() {

@@ -118,6 +118,7 @@ fn balances_of_loaded_beams_close() {
         ("tour-actuator", 0.1),
         ("tour-harvester", 0.1),
         ("tour-sensor", 0.1),
+        ("bend-sheared", 0.08),
         ("tip-mass", 0.6),
         ("water-in-tubes", 0.1),
         ("fin-in-water", 2.0),

@@ -108,3 +108,20 @@ fn the_ledger_closes_without_rotary_inertia() {
 fn the_ledger_closes_for_a_quasi_static_solid() {
     all_combinations(r#"{"solid_inertia":"off"}"#, 0..3);
 }
+
+/// Goal: the same where sections shear, with fluid, whatever they turn against and however small rotations are.
+#[test]
+fn the_ledger_closes_with_shear() {
+    let small = r#"{"shear":"on","finite_rotation":"off","rotary_inertia":"on"}"#;
+    for (what, ends) in &ENDS {
+        for effects in [
+            r#"{"shear":"on","rotary_inertia":"on"}"#,
+            r#"{"shear":"on","rotary_inertia":"off"}"#,
+            small,
+        ] {
+            println!("{what}; {effects}");
+            let residuals = residuals(ends, "/beam/shear_stiffness_n=300", RECIPROCAL, effects);
+            assert!(residuals.iter().all(|r| *r < 3e-8), "{what}: {residuals:?}");
+        }
+    }
+}

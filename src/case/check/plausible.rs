@@ -19,6 +19,10 @@ impl Range {
     const fn new(low: f64, high: f64, unit: &'static str, hint: &'static str) -> Self {
         Self { low, high, unit, hint }
     }
+
+    fn times(&self, size: f64) -> Self {
+        Self::new(self.low * size, self.high * size, self.unit, self.hint)
+    }
 }
 
 const BEAM_LENGTH: Range = Range::new(1e-6, 1e3, "m", MILLIMETRES);
@@ -39,6 +43,13 @@ const SOFTNESS: Range = Range::new(
     "area in m^2 per pressure in Pa; is this per MPa or in mm^2?",
 );
 const FACTOR: Range = Range::new(1e-6, 1e3, "1", "a ratio to the full section, near 1");
+/// Over Young's modulus times the area of the full section.
+const SHEAR: Range = Range::new(
+    1e-6,
+    1e3,
+    "N",
+    "a force: about 5/6 of the area times the shear modulus, a third of Young's modulus where nothing is compressed",
+);
 const RELAXATION: Range = Range::new(1e-9, 1e9, "s", "times are in seconds");
 const DURATION: Range = Range::new(1e-9, 1e7, "s", "times are in seconds");
 
@@ -68,6 +79,9 @@ pub(super) fn sizes(case: &Case, faults: &mut Violations) {
     look("/beam/density_kg_m3", beam.density_kg_m3, &SOLID_DENSITY);
     look("/beam/axial_stiffness_factor", beam.axial_stiffness_factor, &FACTOR);
     look("/beam/bending_stiffness_factor", beam.bending_stiffness_factor, &FACTOR);
+    let full = beam.young_modulus_pa * beam.height_m * beam.width_m;
+    let shear = beam.shear_stiffness_n.unwrap_or(full);
+    look("/beam/shear_stiffness_n", shear, &SHEAR.times(full));
     look("/beam/mass_factor", beam.mass_factor.unwrap_or(1.0), &FACTOR);
     let branches = beam.viscoelasticity.iter().flat_map(|relaxing| &relaxing.prony);
     for (k, branch) in branches.enumerate() {

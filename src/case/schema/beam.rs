@@ -32,6 +32,11 @@ pub struct Beam {
     #[serde(default = "one")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub bending_stiffness_factor: f64,
+    /// `kGA`: shear force over shear strain of the section, of a full rectangle about 5/6 of its area times the shear modulus; absent:
+    /// sections stay across the beam [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub shear_stiffness_n: Option<f64>,
     /// `f_m`: mass over that of a full section of the solid, `m = rho_s w_s h_s f_m`; absent: from bladders and fluid, 1 when dry.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]

@@ -94,6 +94,9 @@ effects! {
         /// Stretch along the beam; off: the beam draws in only as it bends, and the normal force follows from the loads. Needs
         /// `finite_rotation` off, one end that holds or drives `u3`, and one that is free along.
         AxialStretch axial_stretch,
+        /// Shear: sections turn by angles of their own; off: they stay across the beam. Needs `shear_stiffness_n` of the beam and the
+        /// conservative formulation.
+        Shear shear,
         /// Inertia of the solid; off: quasi-static solid.
         SolidInertia solid_inertia,
         /// Inertia along the beam, axial waves; off: the beam is carried along by its driven ends, with the force that this

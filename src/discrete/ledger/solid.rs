@@ -151,6 +151,10 @@ fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, o
             EnergyRate::Damping,
             h * w.forces.viscous_normal[c] * w.shape.stretch_rate[c],
         );
+        if let Some(rate) = w.shape.sections.shear_rate.get(c) {
+            let viscous = section.shear_stiffness * section.bending_damping_time;
+            add(out, EnergyRate::Damping, h * viscous * rate * rate);
+        }
         if turned_across(system) {
             let turning = (w.motion.v[c + 1].z - w.motion.v[c].z) * turning_rate(system, w, c);
             add(out, EnergyRate::AngularImpulse, rotary * turning);
@@ -173,7 +177,7 @@ fn carried(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> 
 /// Whether sections turn finitely but have the rotary inertia of `[E27]`.
 fn turned_across(system: &System) -> bool {
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
-    finite && system.model.effects.has(Effect::RotaryInertia) && system.layout.lines[1].v.is_none()
+    finite && system.turns_with_its_line() && system.layout.lines[1].v.is_none()
 }
 
 /// Rate of turning that rotary inertia resists: `φ_t`, without axial inertia `x'_t`.
@@ -185,7 +189,7 @@ fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
     }
 }
 
-/// Kinetic and elastic energy.
+/// Kinetic and elastic energy, that of shear with that of bending.
 pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies {
     let (mesh, section) = (&system.mesh, &system.model.section);
     let mut e = Energies::default();
@@ -200,6 +204,9 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies
     for c in 0..mesh.cells {
         if system.model.effects.has(Effect::AxialStretch) {
             e.axial += 0.5 * mesh.h * w.forces.normal[c] * w.forces.normal[c] / section.axial_stiffness;
+        }
+        if let Some(shear) = w.shape.sections.shear.get(c) {
+            e.bending += 0.5 * mesh.h * section.shear_stiffness * shear * shear;
         }
         if system.model.effects.has(Effect::RotaryInertia) {
             e.rotary += 0.5 * mesh.h * spin(system, w, c) * turning_rate(system, w, c);

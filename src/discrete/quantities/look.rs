@@ -115,8 +115,11 @@ pub(in crate::discrete) fn tip_angle(system: &System, w: &Workspace<f64>) -> f64
     first_angle(system, w) - system.mesh.h * (interior + 0.5 * w.shape.kappa[last])
 }
 
-/// `φ` of the first cell.
+/// `φ` of the first cell, of sections that shear θ.
 pub(super) fn first_angle(system: &System, w: &Workspace<f64>) -> f64 {
+    if let Some(angle) = w.shape.sections.angle.first() {
+        return *angle;
+    }
     match system.model.kinematics {
         Kinematics::Bar | Kinematics::FiniteRotation => w.shape.tangent[0].x.atan2(w.shape.tangent[0].z),
         Kinematics::Linear | Kinematics::SmallRotation => w.shape.d3[0].x,

@@ -6,11 +6,13 @@ pub mod fluid;
 pub mod nonlinear;
 pub mod relaxation;
 pub mod rows;
+pub mod sheared;
 pub mod small;
 pub mod solid;
 mod unpack;
 
 use super::{System, TimeData, Workspace};
+use crate::case::schema::Effect;
 use crate::model::Kinematics;
 use crate::numerics::Scalar;
 
@@ -22,6 +24,7 @@ pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
     fluid::pressures(system, w);
     fluid::pressure_strains(system, w);
     nonlinear::forces(system, w);
+    let sheared = system.model.effects.has(Effect::Shear);
     match system.model.kinematics {
         Kinematics::Bar => {
             bar::kinematics(system, w);
@@ -32,11 +35,28 @@ pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
         }
         Kinematics::Linear | Kinematics::SmallRotation => {
             small::kinematics(system, now, w);
+            if sheared {
+                sheared::kinematics(system, now, w);
+            }
             small::rates(system, now, w);
             small::normal_forces(system, now, w);
             relaxation::normal_forces(system, w);
             solid::moments(system, now, w);
-            small::section_forces(system, now, w);
+            if sheared {
+                sheared::shears(system, w);
+                sheared::section_forces(system, now, w);
+            } else {
+                small::section_forces(system, now, w);
+            }
+        }
+        Kinematics::FiniteRotation if sheared => {
+            sheared::kinematics(system, now, w);
+            solid::rates(system, now, w);
+            solid::normal_forces(system, w);
+            relaxation::normal_forces(system, w);
+            solid::moments(system, now, w);
+            sheared::shears(system, w);
+            sheared::section_forces(system, now, w);
         }
         Kinematics::FiniteRotation => {
             solid::kinematics(system, now, w);
@@ -66,6 +86,7 @@ pub fn residual<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
     evaluate(system, now, y, yp, w);
     rows::momentum(system, now, w, r);
     rows::motion(system, y, yp, r);
+    sheared::rows(system, w, r);
     relaxation::rows(system, now, w, r);
     rows::means(system, w, r);
     nonlinear::areas(system, w, r);

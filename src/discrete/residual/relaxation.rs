@@ -10,6 +10,7 @@ use crate::numerics::Scalar;
 /// ```text
 /// M_total = M + EI Σ g_k (κ - κ_k)      dκ_k/dt = (κ - κ_k)/τ_k
 /// N_total = N + EA Σ g_k (ε - ε_k)      dε_k/dt = (ε - ε_k)/τ_k        ε = λ - 1
+/// V_total = V + kGA Σ g_k (γ - γ_k)     dγ_k/dt = (γ - γ_k)/τ_k        where sections shear, likewise in E and D
 /// E gains Σ h_i EI g_k (κ - κ_k)²/2 + Σ h EA g_k (ε - ε_k)²/2        D = Σ h_i EI g_k (κ - κ_k) dκ_k/dt + Σ h EA g_k (ε - ε_k) dε_k/dt
 /// ```
 ///
@@ -22,9 +23,11 @@ pub fn rows<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mu
     let own = &system.layout.relaxation;
     let curvatures = [&w.relaxed.curvature, &w.relaxed.curvature_rate];
     let stretches = [&w.relaxed.stretch, &w.relaxed.stretch_rate];
+    let shears = [&w.relaxed.shear, &w.relaxed.shear_rate];
     for (rows, strain, rest, [kept, rate]) in [
         (&own.curvature, &w.shape.kappa, &now.rest_curvature[0][..], curvatures),
         (&own.stretch, &w.shape.strain, &[], stretches),
+        (&own.shear, &w.shape.sections.shear, &[], shears),
     ] {
         let mut all = rows.clone().zip(kept).zip(rate);
         for branch in &system.model.relaxation {
@@ -44,6 +47,18 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
         (&w.shape.strain, &[]),
         &w.relaxed.stretch,
         &mut w.forces.relaxing_normal,
+    );
+}
+
+/// Parts of shear forces that relax.
+pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+    let stiffness = system.model.section.shear_stiffness;
+    relaxing(
+        system,
+        stiffness,
+        (&w.shape.sections.shear, &[]),
+        &w.relaxed.shear,
+        &mut w.forces.relaxing_shear,
     );
 }
 
@@ -113,7 +128,7 @@ pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>) -> [
     let (mesh, section, relaxed) = (&system.mesh, &system.model.section, &w.relaxed);
     let mut sums = [0.0; 2];
     let mut add = |strain: &[f64], rest: &[f64], [kept, rate]: [&[f64]; 2], stiffness: &dyn Fn(usize) -> f64| {
-        let count = strain.len();
+        let count = strain.len().max(1);
         let branches = kept.chunks_exact(count).zip(rate.chunks_exact(count));
         for (branch, (kept, rate)) in system.model.relaxation.iter().zip(branches) {
             for (place, (kept, rate)) in kept.iter().zip(rate).enumerate() {
@@ -134,6 +149,13 @@ pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>) -> [
         [&relaxed.stretch, &relaxed.stretch_rate],
         &of_stretch,
     );
+    let of_shear = |_| mesh.h * section.shear_stiffness;
+    add(
+        &w.shape.sections.shear,
+        &[],
+        [&relaxed.shear, &relaxed.shear_rate],
+        &of_shear,
+    );
     sums
 }
 
@@ -142,6 +164,9 @@ pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>) -> [
 pub fn settle(system: &System, now: &TimeData, w: &Workspace<f64>, y: &mut [f64]) {
     let (own, last) = (&system.layout.relaxation, system.mesh.nodes - 1);
     for (unknown, strain) in own.stretch.clone().zip(w.shape.strain.iter().cycle()) {
+        y[unknown] = *strain;
+    }
+    for (unknown, strain) in own.shear.clone().zip(w.shape.sections.shear.iter().cycle()) {
         y[unknown] = *strain;
     }
     for (k, unknown) in own.curvature.clone().enumerate() {

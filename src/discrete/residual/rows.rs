@@ -112,6 +112,9 @@ pub fn end_tangent<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>,
     }
     let cell = if at_tip { last - 1 } else { 0 };
     let half = if at_tip { -0.5 } else { 0.5 } * system.mesh.h;
+    if let Some(angle) = w.shape.sections.angle.get(cell) {
+        return Planar::tangent(*angle + w.shape.kappa[node] * half);
+    }
     let (sine, cosine) = (w.shape.kappa[node] * half).sin_cos();
     let tangent = w.shape.tangent[cell];
     tangent.times(cosine) - tangent.normal().times(sine)
@@ -123,12 +126,9 @@ fn end_angle<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node:
     if let Some(slope) = now.ends[usize::from(at_tip)].slope {
         return T::constant(slope.value);
     }
-    let half = 0.5 * system.mesh.h;
-    if at_tip {
-        w.shape.d3[node - 1].x - w.shape.kappa[node] * half
-    } else {
-        w.shape.d3[0].x + w.shape.kappa[0] * half
-    }
+    let (cell, half) = if at_tip { (node - 1, -0.5) } else { (0, 0.5) };
+    let angle = w.shape.sections.angle.get(cell).copied();
+    angle.unwrap_or(w.shape.d3[cell].x) + w.shape.kappa[node] * (half * system.mesh.h)
 }
 
 /// `[E15]` What the published form adds to the conservative one at a node:
@@ -155,11 +155,9 @@ pub fn published_force<T: Scalar>(system: &System, w: &Workspace<T>, i: usize) -
 
 /// `u' = v`, where velocities are unknowns.
 pub fn motion<T: Scalar>(system: &System, y: &[T], yp: &[T], r: &mut [T]) {
-    for line in &system.layout.lines {
-        for (_, u, v) in line.unknowns() {
-            if let Some(v) = v {
-                r[u] = yp[u] - y[v];
-            }
+    for (u, v) in system.layout.moved() {
+        if let Some(v) = v {
+            r[u] = yp[u] - y[v];
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The beam that turns little: von Karman's, and the linear one.
 
+use super::sheared;
 use super::solid::{self, couple, curvature_rates, normal_force, total_moment_drop};
 use crate::case::Translation;
 use crate::case::schema::Effect;
@@ -33,7 +34,9 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
         w.shape.strain[c] = e;
         w.shape.stretch[c] = e + 1.0;
     }
-    curvatures(system, now, w);
+    if system.layout.turning.angle.is_empty() {
+        curvatures(system, now, w);
+    }
 }
 
 /// `κ` at nodes from the angles of cells and prescribed slopes.
@@ -62,9 +65,15 @@ pub fn rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
 pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
+    let sheared = system.model.effects.has(Effect::Shear);
+    if sheared {
+        sheared::strain_rates(system, w);
+    }
     for c in 0..system.mesh.cells {
         let turning = (w.motion.v[c + 1].x - w.motion.v[c].x) * inverse;
-        w.shape.angle_rate[c] = turning;
+        if !sheared {
+            w.shape.angle_rate[c] = turning;
+        }
         w.shape.stretch_rate[c] = (w.motion.v[c + 1].z - w.motion.v[c].z) * inverse;
         if tension {
             w.shape.stretch_rate[c] += w.shape.d3[c].x * turning;
@@ -105,7 +114,7 @@ pub fn foreshorten(system: &System, stretch_rate: impl Fn(&Workspace<f64>, usize
         }
         if tension {
             u -= outward * h * 0.5 * w.shape.d3[cell].x * w.shape.d3[cell].x;
-            v -= outward * h * w.shape.d3[cell].x * w.shape.angle_rate[cell];
+            v -= outward * w.shape.d3[cell].x * (w.motion.v[cell + 1].x - w.motion.v[cell].x);
         }
         (w.motion.u[node].z, w.motion.v[node].z) = (u, v);
     }

@@ -1,6 +1,6 @@
 //! Kinematics, resultants and section forces of the beam.
 
-use super::relaxation;
+use super::{relaxation, sheared};
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace, attached};
 use crate::model::Kinematics;
@@ -44,7 +44,7 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
 
 /// Rates of stretch, angle and curvature, where something depends on them: `λ_t = e_t·d3_t`, `φ_t = d1·d3_t/λ²`.
 pub fn rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let turned = system.model.effects.has(Effect::RotaryInertia) && system.layout.lines[1].v.is_some();
+    let turned = system.turns_with_its_line() && system.layout.lines[1].v.is_some();
     if !(turned || system.damped) {
         return;
     }
@@ -53,9 +53,13 @@ pub fn rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
 
 /// Rates of stretch, angle and curvature, always.
 pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    for c in 0..system.mesh.cells {
-        w.shape.stretch_rate[c] = w.shape.tangent[c].dot(director_rate(system, w, c));
-        w.shape.angle_rate[c] = angle_rate(system, w, c);
+    if system.model.effects.has(Effect::Shear) {
+        sheared::strain_rates(system, w);
+    } else {
+        for c in 0..system.mesh.cells {
+            w.shape.stretch_rate[c] = w.shape.tangent[c].dot(director_rate(system, w, c));
+            w.shape.angle_rate[c] = angle_rate(system, w, c);
+        }
     }
     curvature_rates(system, now, w);
 }
@@ -65,7 +69,7 @@ fn director_rate<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> Plan
     (w.motion.v[c + 1] - w.motion.v[c]) * (1.0 / system.mesh.h)
 }
 
-/// `φ_t` of a cell [1/s].
+/// `φ_t` of a cell's line [1/s].
 pub fn angle_rate<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
     w.shape.tangent[c].cross(director_rate(system, w, c)) / w.shape.stretch[c]
 }

@@ -34,10 +34,21 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
             carry(&frame, system, axis, motion);
         }
     }
+    let sections = &mut w.shape.sections;
+    copy(&mut sections.angle, y, &l.turning.angle);
+    match &l.turning.rate {
+        Some(rate) => {
+            copy(&mut w.shape.angle_rate, y, rate);
+            copy(&mut sections.acceleration, yp, rate);
+        }
+        None => copy(&mut w.shape.angle_rate, yp, &l.turning.angle),
+    }
     copy(&mut w.relaxed.curvature, y, &l.relaxation.curvature);
     copy(&mut w.relaxed.curvature_rate, yp, &l.relaxation.curvature);
     copy(&mut w.relaxed.stretch, y, &l.relaxation.stretch);
     copy(&mut w.relaxed.stretch_rate, yp, &l.relaxation.stretch);
+    copy(&mut w.relaxed.shear, y, &l.relaxation.shear);
+    copy(&mut w.relaxed.shear_rate, yp, &l.relaxation.shear);
     if let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) {
         copy(&mut w.coupling.mean_moment, y, &l.coupling.mean_moment);
         copy(&mut w.coupling.mean_force, y, &l.coupling.mean_force);

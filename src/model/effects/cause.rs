@@ -24,6 +24,8 @@ pub enum Cause {
     FedJunction,
     /// Inertia and losses of flow in tubes stand against it, and matter more.
     Yields,
+    /// The published form has no shear.
+    Unsheared,
     /// The fluid has no mass.
     Massless,
     /// The case gives it, or not.
@@ -92,6 +94,8 @@ pub enum Number {
     AxialWaves,
     /// Phase of the second bending mode in the whole run.
     RotaryInertia,
+    /// Shear in the second bending mode, at rest and in the whole run.
+    Shear,
     /// What leaks in the whole run.
     Leakage,
     /// A bladder's own time against that of the motion.
@@ -163,6 +167,7 @@ impl Display for Cause {
             Self::Yields => f.write_str(
                 "left out for inertia and losses of flow in tubes, which are not simulated with it and matter more",
             ),
+            Self::Unsheared => f.write_str("the published form does not shear"),
             Self::Massless => f.write_str("the fluid has no mass"),
             Self::FedJunction => f.write_str("left out: the flow of a port enters a junction where only tubes meet"),
             Self::Given(true) => f.write_str("given"),
@@ -205,6 +210,7 @@ impl Display for Number {
             Self::BendingInertia => "inertia of bending over its stiffness",
             Self::AxialWaves => "axial waves over the stretch without them",
             Self::RotaryInertia => "phase of the second bending mode in the whole run",
+            Self::Shear => "deflection and phase of the second bending mode by shear",
             Self::Leakage => "what leaks in the whole run",
             Self::LagAlongBladders => "a bladder's own time against that of the motion",
             Self::Inertance => "inertia of the fluid in a tube over its resistance",

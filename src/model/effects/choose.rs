@@ -4,7 +4,9 @@ use super::cause::{Cause, Keeps, Number, Weighed};
 use super::obstacles::{self, Obstacle};
 use super::table::{Presence, about};
 use super::{Decision, EffectSet, Scene};
-use crate::case::schema::{Case, Choice, Coupling, Effect, EffectChoices, Effects, Fluid, FluidKind, Load};
+use crate::case::schema::{
+    Case, Choice, Coupling, Effect, EffectChoices, Effects, Fluid, FluidKind, Formulation, Load,
+};
 use crate::error::{Code, Violation};
 use crate::model::Network;
 use crate::model::network::Link;
@@ -94,6 +96,16 @@ impl<'a> Chooser<'a> {
                 format!("{effect} is on, and nothing is given that is compressed"),
                 "give bulk_modulus_pa or gas_fraction of the liquid, or a gas, in /fluid; or leave it out".into(),
             ),
+            Cause::Unsheared => (
+                format!("{effect} is on, and the published form does not shear"),
+                "leave it out, or set \"formulation\" to \"conservative\"".into(),
+            ),
+            Cause::Given(false) if effect == Effect::Shear => (
+                format!("{effect} is on, and no shear_stiffness_n is given"),
+                "give /beam/shear_stiffness_n, of a full rectangle about 5/6 of its area times the shear modulus, or a section that \
+                 brings it; or leave it out"
+                    .into(),
+            ),
             Cause::Given(false) => (
                 format!("{effect} is on, and no strain_energy is given"),
                 "give /bladders/strain_energy, or a section that brings it; or leave it out".into(),
@@ -152,6 +164,8 @@ impl<'a> Chooser<'a> {
         let bladders = self.case.bladders.as_ref();
         match effect {
             Effect::NonlinearSection if bladders.is_none_or(|b| b.strain_energy.is_none()) => Err(Cause::Given(false)),
+            Effect::Shear if self.case.formulation == Formulation::Published => Err(Cause::Unsheared),
+            Effect::Shear if self.case.beam.shear_stiffness_n.is_none() => Err(Cause::Given(false)),
             Effect::Compressibility if self.fluid().is_none_or(|fluid| !fluid.is_compressible()) => {
                 Err(Cause::Given(false))
             }
@@ -269,6 +283,8 @@ impl<'a> Chooser<'a> {
                 let shortening = if across { scene.shortening() } else { 0.0 };
                 weigh(Number::AxialWaves, scene.axial_waves().max(shortening))
             }
+            Effect::Shear if scene.sudden(self.tolerance) => kept(Keeps::Sudden),
+            Effect::Shear => bending(weigh(Number::Shear, scene.shear())),
             Effect::RotaryInertia if scene.sudden(self.tolerance) => kept(Keeps::Sudden),
             Effect::RotaryInertia => weigh(Number::RotaryInertia, scene.rotary()),
             Effect::Flow => {

@@ -69,6 +69,14 @@ pub fn about(effect: Effect) -> About {
             needs: &[],
             presence: Presence::Chosen,
         },
+        Effect::Shear => About {
+            adds: "V = kGA γ, γ the angle between a section's normal and the beam; without it V = -M'/λ",
+            brings: "an angle of every cell; with rotary_inertia its rate",
+            number: "EI k²/(kGA) (1 + r ω T/2), k and ω of the second bending mode, T the run, r the part that vibrates; kept where something acts suddenly",
+            cost: "a third more unknowns of the solid; fast waves of sections that swing",
+            needs: &[TransverseMotion],
+            presence: Presence::Chosen,
+        },
         Effect::SolidInertia => About {
             adds: "m a",
             brings: "v1, v3 of every node",

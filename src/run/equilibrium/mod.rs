@@ -199,8 +199,8 @@ pub fn at_start_watched(
     let (system, now) = dae.instant(0.0);
     let mut z = restate(&mut from, last.share, &last.y, system, now);
     let l = &system.layout;
-    for velocities in l.lines.iter().filter_map(|line| line.v.clone()) {
-        z[velocities.clone()].copy_from_slice(&y[velocities]);
+    for velocity in l.velocities() {
+        z[velocity] = y[velocity];
     }
     Ok(z)
 }

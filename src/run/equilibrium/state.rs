@@ -128,6 +128,7 @@ pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &Tim
     let (_, _, w) = from.evaluate(share, y, &zeros);
     let mut z = vec![0.0; to.layout.len];
     displacements(&w, to, now, &mut z);
+    z[to.layout.turning.angle.clone()].copy_from_slice(&w.shape.sections.angle);
     relaxation::settle(to, now, &w, &mut z);
     fluid(&w, to, &mut z);
     for (z, scale) in z.iter_mut().zip(&to.layout.scales) {

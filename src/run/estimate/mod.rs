@@ -39,7 +39,7 @@ use super::floors::Floors;
 use super::growth::{Growth, Linear};
 use super::summary::Quantity;
 use crate::case::relaxation;
-use crate::case::schema::Case;
+use crate::case::schema::{Case, Effect};
 use crate::discrete::System;
 use crate::discrete::quantities::Interest;
 use crate::discrete::straight::meshed::{self, SmallMode};
@@ -144,7 +144,10 @@ impl Estimator {
         let one = |mode: SmallMode, which: usize| {
             let line = &layout.lines[which];
             let [size, rate] = [Some(&line.u), line.v.as_ref()].map(|of| of.map_or(1.0, |of| layout.scales[of.start]));
-            let [frequency, relaxing] = relaxation::vibration(&model.relaxation, mode.frequency * units[which]);
+            let rigid = mode.frequency * units[which];
+            let sheared = which == 0 && model.effects.has(Effect::Shear);
+            let frequency = if sheared { s.sheared(rigid) } else { rigid };
+            let [frequency, relaxing] = relaxation::vibration(&model.relaxation, frequency);
             let frequencies = [frequency, frequency * stiffer[which]];
             let material = [s.bending_damping_time, s.axial_damping_time][which];
             let weight = |node: usize| {

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use super::words::LARGE;
+use crate::case::schema::Effect;
 use crate::case::{Rotation, Translation, relaxation};
 use crate::discrete::System;
 use crate::discrete::straight::meshed::{self, SmallMode};
@@ -55,12 +56,14 @@ pub fn nearest(system: &System) -> Option<Near> {
     let length = system.model.length;
     let unit = (s.bending_stiffness / s.mass_per_length).sqrt() / (length * length);
     let fine = (system.mesh.h / length).powi(2);
+    let sheared = system.model.effects.has(Effect::Shear);
     let modes = wave_numbers(&meshed::bending(&system.model.ends));
     let mut worst: Option<Near> = None;
     for drive_hz in tones(system)[0].iter().copied() {
         let drive = TAU * drive_hz;
         for (beta, mesh) in &modes {
-            let omega = beta * beta * unit;
+            let rigid = beta * beta * unit;
+            let omega = if sheared { s.sheared(rigid) } else { rigid };
             let damping = s.drag / s.mass_per_length + s.bending_damping_time * omega * omega;
             let [storage, loss] =
                 relaxation::dynamic_modulus(&system.model.relaxation, drive).map(|e| e * omega * omega);

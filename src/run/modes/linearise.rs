@@ -86,8 +86,8 @@ fn held(case: &Case, at: f64) -> Result<BeamDae> {
 
 fn about(mut dae: BeamDae, at: f64, mut y: Vec<f64>) -> Result<Linearised> {
     let l = dae.system().layout.clone();
-    for velocities in l.lines.iter().filter_map(|line| line.v.clone()) {
-        y[velocities].fill(0.0);
+    for velocity in l.velocities() {
+        y[velocity] = 0.0;
     }
     let mut yp = vec![0.0; l.len];
     let fault = |what: String, unknown| {

@@ -3,6 +3,7 @@
 
 mod least;
 mod pace;
+mod sections;
 mod stability;
 mod tubes;
 
@@ -33,11 +34,11 @@ pub struct Scene<'a> {
     around: Option<Surroundings>,
     scales: Scales,
     drive: Drive,
-    /// First bending frequency of the drained beam [1/s].
+    /// First bending frequency of the drained beam [1/s]; where it shears, no more than that (Dunkerley).
     bending: f64,
     /// First axial frequency [1/s].
     axial: f64,
-    /// Least buckling load that the ends allow [N].
+    /// Least buckling load that the ends allow, with shear by Engesser [N].
     buckling: f64,
     /// Of the motions along that ends prescribe.
     driven_along: Vec<Pace>,
@@ -88,6 +89,9 @@ impl<'a> Scene<'a> {
                 others.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
             },
         );
+        let unsheared = beta * beta * (section.bending_stiffness / mass).sqrt();
+        let in_shear = FRAC_PI_2 / length * (section.shear_stiffness / mass).sqrt();
+        let euler = FRAC_PI_2.powi(2) * section.bending_stiffness / (length * length);
         let pumped = wet.map_or(0.0, |wet| wet.network.pumped_pressure(wet, case.time.end_s));
         Self {
             wet,
@@ -100,9 +104,9 @@ impl<'a> Scene<'a> {
             least: OnceCell::new(),
             tubes: OnceCell::new(),
             scales: Scales::pumped(case, section, wet, pumped),
-            bending: beta * beta * (section.bending_stiffness / mass).sqrt(),
+            bending: unsheared / (1.0 + (unsheared / in_shear).powi(2)).sqrt(),
             axial: quarter / length * (section.axial_stiffness / mass).sqrt(),
-            buckling: FRAC_PI_2.powi(2) * section.bending_stiffness / (length * length),
+            buckling: euler / (1.0 + euler / section.shear_stiffness),
             drive,
             ends,
             case,
@@ -193,24 +197,6 @@ impl<'a> Scene<'a> {
     /// What the loads do at the least.
     fn least(&self) -> &Least {
         self.least.get_or_init(|| Least::of(self))
-    }
-
-    /// Second bending frequency [1/s], and its wavenumber [1/m].
-    fn second_mode(&self) -> (f64, f64) {
-        let k = 4.694_091_132_974 / self.case.beam.length_m;
-        let stiffness = self.section.bending_stiffness / self.section.mass_per_length;
-        (k * k * stiffness.sqrt(), k)
-    }
-
-    /// Whether something acts suddenly enough to excite bending waves of every length.
-    pub fn sudden(&self, tolerance: f64) -> bool {
-        self.inertia_ratio(self.second_mode().0) >= tolerance
-    }
-
-    /// `y11 k²/2 (1 + ω T)`, the phase that rotary inertia changes a vibration of the second bending mode by in the whole run.
-    pub fn rotary(&self) -> f64 {
-        let (omega, k) = self.second_mode();
-        0.5 * self.section.gyration_radius_squared * k * k * (1.0 + omega * self.case.time.end_s)
     }
 
     /// Whether a bladder begins with pressures that differ along it.

@@ -1,0 +1,175 @@
+//! Which unknowns there are, in which order, what they are called and how large they are.
+//!
+//! An absent effect is an absent unknown: a driven end has no position, a quasi-static solid no velocities, a dry beam
+//! no fluid. Equation i belongs to unknown i. Unknowns come in blocks, [`Line`], [`Turning`], [`Coupling`], [`Network`]; each knows its own.
+
+mod solid;
+mod wet;
+
+use std::ops::Range;
+
+use super::{FluidMesh, Mesh};
+use crate::case::schema::Effect;
+use crate::case::wiring::bladder_label;
+use crate::model::Model;
+
+pub use solid::{Line, Relaxation, Turning};
+pub use wet::{Coupling, Network};
+
+/// Blocks of unknowns, in this order; what each unknown is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    /// Motion of the beam across (`u1`) and along (`u3`).
+    pub lines: [Line; 2],
+    /// Turning of sections that shear.
+    pub turning: Turning,
+    /// What a solid that relaxes remembers.
+    pub relaxation: Relaxation,
+    /// What beam and bladders know of each other.
+    pub coupling: Coupling,
+    /// Bladders and what joins them.
+    pub network: Network,
+    /// Number of unknowns.
+    pub len: usize,
+    /// Whether masses resist acceleration.
+    pub inertia: bool,
+    /// Characteristic size of each unknown, in its unit.
+    pub scales: Vec<f64>,
+    /// Characteristic size of each equation.
+    pub row_scales: Vec<f64>,
+    /// Whether each unknown is differential.
+    pub differential: Vec<bool>,
+    names: Vec<Name>,
+    per_row: usize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Name {
+    Node(&'static str, usize),
+    Cell(&'static str, usize),
+    Relaxed(&'static str, usize, usize),
+    Segment(&'static str, usize),
+    Area(usize, usize),
+    NonlinearArea(usize),
+    Junction(usize),
+    Accumulator(usize),
+    Bridge(usize),
+    Flow(&'static str, usize),
+    LumpedNetwork(&'static str, usize),
+}
+
+impl Layout {
+    /// Unknowns of a model on a mesh.
+    pub fn new(model: &Model, mesh: &Mesh, fluid: Option<&FluidMesh>) -> Self {
+        let mut build = Builder::default();
+        let lines = Line::both(model, mesh, &mut build);
+        let turning = Turning::new(model, mesh, &mut build);
+        let relaxation = Relaxation::new(model, mesh, &mut build);
+        let wet = model.wet.as_ref().zip(fluid);
+        let coupling = wet.map_or_else(Default::default, |(wet, _)| Coupling::new(model, wet, mesh, &mut build));
+        let network = wet.map_or_else(Default::default, |(wet, fluid)| {
+            Network::new(model, wet, fluid, &mut build)
+        });
+        Self {
+            lines,
+            turning,
+            relaxation,
+            coupling,
+            network,
+            len: build.len(),
+            inertia: model.effects.has(Effect::SolidInertia),
+            scales: build.scales,
+            row_scales: build.row_scales,
+            differential: build.differential,
+            names: build.names,
+            per_row: wet.map_or(0, |(wet, _)| wet.per_row),
+        }
+    }
+
+    /// Whether velocities across and along are unknowns.
+    pub fn waves(&self) -> [bool; 2] {
+        self.lines.each_ref().map(|line| line.v.is_some())
+    }
+
+    /// Every unknown that is moved, with its velocity where that is an unknown.
+    pub fn moved(&self) -> impl Iterator<Item = (usize, Option<usize>)> + '_ {
+        let nodes = self.lines.iter().flat_map(Line::unknowns).map(|(_, u, v)| (u, v));
+        nodes.chain(self.turning.unknowns())
+    }
+
+    /// Velocities among the unknowns.
+    pub fn velocities(&self) -> impl Iterator<Item = usize> + '_ {
+        self.moved().filter_map(|(_, velocity)| velocity)
+    }
+
+    /// Name of an unknown with unit and place.
+    pub fn name(&self, unknown: usize) -> String {
+        let bladder = |b: usize| bladder_label(b, self.per_row);
+        match self.names[unknown] {
+            Name::Node(what, node) => format!("{what} of node {node}"),
+            Name::Cell(what, cell) => format!("{what} of cell {}", cell + 1),
+            Name::Relaxed(what, branch, place) => format!("{what} {place} in branch {} of relaxation", branch + 1),
+            Name::Segment(what, segment) => format!("{what} of segment {}", segment + 1),
+            Name::Area(b, cell) => format!("area change [m^2] of bladder {}, cell {}", bladder(b), cell + 1),
+            Name::NonlinearArea(b) => format!("nonlinear area change [m^2] of bladder {}", bladder(b)),
+            Name::Junction(j) => format!("pressure [Pa] of junction {}", j + 1),
+            Name::Accumulator(k) => format!("volume [m^3] in accumulator {}", k + 1),
+            Name::LumpedNetwork(what, component) => format!("{what} of network {}", component + 1),
+            Name::Flow(what, tube) => format!("{what} of tube {}", tube + 1),
+            Name::Bridge(k) => format!("pressure drop [Pa] of turbine behind rectifier {}", k + 1),
+        }
+    }
+}
+
+#[derive(Default)]
+struct Builder {
+    scales: Vec<f64>,
+    row_scales: Vec<f64>,
+    differential: Vec<bool>,
+    names: Vec<Name>,
+}
+
+impl Builder {
+    fn len(&self) -> usize {
+        self.scales.len()
+    }
+
+    /// Adds an unknown; its index.
+    fn push(&mut self, name: Name, scale: f64, row_scale: f64, differential: bool) -> usize {
+        self.scales.push(scale);
+        self.row_scales.push(row_scale);
+        self.differential.push(differential);
+        self.names.push(name);
+        self.len() - 1
+    }
+
+    /// What `add` adds.
+    fn block(&mut self, add: impl FnOnce(&mut Self)) -> Range<usize> {
+        let first = self.len();
+        add(self);
+        first..self.len()
+    }
+
+    fn nodes(
+        &mut self,
+        what: &'static str,
+        nodes: &Range<usize>,
+        scale: f64,
+        row: f64,
+        differential: bool,
+    ) -> Range<usize> {
+        self.block(|build| {
+            for node in nodes.clone() {
+                build.push(Name::Node(what, node), scale, row, differential);
+            }
+        })
+    }
+
+    fn segments(&mut self, what: &'static str, segments: usize, scale: f64) -> Range<usize> {
+        self.block(|build| {
+            for segment in 0..segments {
+                build.push(Name::Segment(what, segment), scale, scale, false);
+            }
+        })
+    }
+}

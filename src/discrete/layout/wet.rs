@@ -1,0 +1,127 @@
+//! Unknowns of bladders and of what joins them.
+
+use std::ops::Range;
+
+use super::{Builder, Name};
+use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
+use crate::discrete::{FluidMesh, Mesh};
+use crate::model::{LumpedKind, Model, Wet};
+
+/// Means of segments that bladders feel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Coupling {
+    /// Mean moments `Mbar_j`.
+    pub mean_moment: Range<usize>,
+    /// Mean forces `Nbar_j`.
+    pub mean_force: Range<usize>,
+    /// Area changes of bladders that the section's energy beyond its quadratic part makes.
+    pub nonlinear_area: Range<usize>,
+}
+
+/// Unknowns of the fluid.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Network {
+    /// Stored areas of cells.
+    pub area: Range<usize>,
+    /// Pressures of junctions; of those that are accumulators, their volumes.
+    pub junction: Range<usize>,
+    /// Pressure drops of turbines behind real rectifiers.
+    pub bridge: Range<usize>,
+    /// Flows of tubes that do not follow from pressures alone.
+    pub flow: Range<usize>,
+    /// Flows of the branches of their friction.
+    pub branch: Range<usize>,
+    /// Pressure of each lumped network, where it is unknown.
+    pub lumped_pressure: Vec<Option<usize>>,
+    /// Volume of each lumped network, where it is unknown.
+    pub lumped_volume: Vec<Option<usize>>,
+}
+
+impl Coupling {
+    pub(super) fn new(model: &Model, wet: &Wet, mesh: &Mesh, build: &mut Builder) -> Self {
+        let segments = |takes: bool| if takes { mesh.segments } else { 0 };
+        Self {
+            mean_moment: build.segments("mean moment [N m]", segments(wet.takes_moments), model.scales.moment),
+            mean_force: build.segments("mean normal force [N]", segments(wet.takes_forces), model.scales.force),
+            nonlinear_area: build.block(|build| {
+                let scale = wet.area.per_pressure * model.scales.pressure;
+                for bladder in (0..2 * wet.per_row).filter(|_| wet.strain_energy.is_some()) {
+                    build.push(Name::NonlinearArea(bladder), scale, scale, false);
+                }
+            }),
+        }
+    }
+}
+
+impl Network {
+    pub(super) fn new(model: &Model, wet: &Wet, fluid: &FluidMesh, build: &mut Builder) -> Self {
+        let s = &model.scales;
+        let stored = wet.compliance() * s.pressure;
+        let area = build.block(|build| {
+            for &bladder in &fluid.flowing {
+                for cell in 0..fluid.cells_per_bladder {
+                    let name = Name::Area(bladder, cell);
+                    build.push(name, stored, stored * fluid.ds * s.frequency, true);
+                }
+            }
+        });
+        let junction = build.block(|build| {
+            for (k, &j) in fluid.junctions.iter().enumerate() {
+                match fluid.accumulators.iter().find(|one| one.junction == k) {
+                    None => build.push(Name::Junction(j), s.pressure, s.pressure * fluid.conductance, false),
+                    Some(one) => {
+                        let volume = one.law.volume(s.pressure);
+                        build.push(Name::Accumulator(one.number), volume, volume * s.frequency, true)
+                    }
+                };
+            }
+        });
+        let bridge = build.block(|build| {
+            for bridge in &fluid.bridges {
+                let turbine = wet.network.bridges[bridge.number].turbine;
+                let conductance = wet.network.turbines[turbine].conductance;
+                build.push(Name::Bridge(bridge.number), s.pressure, s.pressure * conductance, false);
+            }
+        });
+        let moved = |link: &MeshLink| (stored * wet.bladder_length * s.frequency).min(s.pressure / link.in_series());
+        let flows = || fluid.links.iter().filter_map(|link| Some((link, link.flow?)));
+        let flow = build.block(|build| {
+            for (link, MeshFlow { tube, .. }) in flows() {
+                let name = Name::Flow("flow [m^3/s]", wet.network.tube(link.number));
+                let row = if link.check_valve.is_some() {
+                    moved(link)
+                } else {
+                    s.pressure
+                };
+                build.push(name, moved(link), row, tube.inertance > 0.0);
+            }
+        });
+        let branch = build.block(|build| {
+            for (link, MeshFlow { tube, .. }) in flows().filter(|(_, flow)| flow.branch.is_some()) {
+                let name = Name::Flow("flow [m^3/s] in the memory of friction", wet.network.tube(link.number));
+                for (_, rate) in tube.branches() {
+                    build.push(name, moved(link), moved(link) * rate.max(s.frequency), true);
+                }
+            }
+        });
+        let (mut lumped_pressure, mut lumped_volume) = (vec![], vec![]);
+        for lumped in &wet.lumped {
+            let volume = stored * wet.bladder_length * lumped.bladders.len() as f64;
+            let name = |what| Name::LumpedNetwork(what, lumped.component);
+            let closed = lumped.kind == LumpedKind::Closed;
+            let fed = matches!(lumped.kind, LumpedKind::Fed(_));
+            lumped_pressure.push((closed || fed).then(|| build.push(name("pressure [Pa]"), s.pressure, volume, false)));
+            let rate = volume * s.frequency;
+            lumped_volume.push(fed.then(|| build.push(name("volume change [m^3]"), volume, rate, true)));
+        }
+        Self {
+            area,
+            junction,
+            bridge,
+            flow,
+            branch,
+            lumped_pressure,
+            lumped_volume,
+        }
+    }
+}

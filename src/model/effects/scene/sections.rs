@@ -1,0 +1,32 @@
+//! Sections that turn: rotary inertia and shear, of which the second bending mode decides.
+
+use super::Scene;
+
+impl Scene<'_> {
+    /// Second bending frequency [1/s], and its wavenumber [1/m].
+    fn second_mode(&self) -> (f64, f64) {
+        let k = 4.694_091_132_974 / self.case.beam.length_m;
+        let stiffness = self.section.bending_stiffness / self.section.mass_per_length;
+        (k * k * stiffness.sqrt(), k)
+    }
+
+    /// Whether something acts suddenly enough to excite bending waves of every length.
+    pub fn sudden(&self, tolerance: f64) -> bool {
+        self.inertia_ratio(self.second_mode().0) >= tolerance
+    }
+
+    /// `y11 k²/2 (1 + ω T)`, the phase that rotary inertia changes a vibration of the second bending mode by in the whole run.
+    pub fn rotary(&self) -> f64 {
+        let (omega, k) = self.second_mode();
+        0.5 * self.section.gyration_radius_squared * k * k * (1.0 + omega * self.case.time.end_s)
+    }
+
+    /// `EI k²/(kGA) (1 + r ω T/2)`, what shear adds to a deflection in the shape of the second bending mode, and the phase that it changes
+    /// its vibration by in the whole run, r the part of the deflection that vibrates.
+    pub fn shear(&self) -> f64 {
+        let (omega, k) = self.second_mode();
+        let softer = self.section.bending_stiffness * k * k / self.section.shear_stiffness;
+        let vibrates = self.inertia_ratio(self.bending).min(1.0);
+        softer * (1.0 + 0.5 * vibrates * omega * self.case.time.end_s)
+    }
+}
