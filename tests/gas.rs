@@ -6,12 +6,15 @@ mod differences;
 #[path = "common/scene.rs"]
 mod scene;
 
+use std::collections::BTreeMap;
+
 use differences::worst_difference;
 use scene::{finished, parse};
 use serde_json::{Value, json};
 use slcbeam::case::schema::Effect;
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
+use slcbeam::model::audit;
 use slcbeam::run::modes::{self, Plan};
 
 const AIR: f64 = 1.8e-5;
@@ -234,6 +237,20 @@ fn a_bulk_modulus_leaves_inertia_in_tubes_alone() {
         [true, false, false]
     );
     assert_eq!(has(gas(1.0), json!("full")), [true, false, false]);
+}
+
+/// Goal: compression that stands back for inertia in tubes is told where it would change results (W028), and only there.
+#[test]
+fn compression_that_is_left_out_is_told() {
+    let told = |modulus: f64| {
+        let fluid = json!({"density_kg_m3": 1000, "viscosity_pa_s": 1e-3, "bulk_modulus_pa": modulus});
+        let case = parse(&actuator(fluid, json!({"effects": "auto"})));
+        let model = System::new(&case).unwrap().model;
+        assert!(model.effects.has(Effect::TubeInertia) && !model.effects.has(Effect::Compressibility));
+        let warnings = audit::warnings(&case, &model, &BTreeMap::new());
+        warnings.iter().filter(|warning| warning.starts_with("W028")).count()
+    };
+    assert_eq!((told(2.2e10), told(2e7)), (0, 1));
 }
 
 /// Goal: fluid without mass has neither inertia nor losses in tubes, and runs.

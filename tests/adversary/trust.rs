@@ -21,7 +21,7 @@ pub enum Cause {
 }
 
 /// What a warning names: a list of causes, or everything.
-const TRUST: [(Code, &[Cause]); 11] = [
+const TRUST: [(Code, &[Cause]); 12] = [
     // The balance is off by the steps' error; what jumps without inertia shows there too.
     (Code::EnergyOpen, &[Cause::Time]),
     (Code::MomentumOpen, &[Cause::Time]),
@@ -34,6 +34,8 @@ const TRUST: [(Code, &[Cause]); 11] = [
     (Code::Accuracy, ALL),
     (Code::FewOutputs, &[Cause::Outputs]),
     (Code::Unresolved, &[Cause::Space]),
+    // Compression is not in the model.
+    (Code::Uncompressed, &[Cause::Effects]),
     // Only figures of energy, whatever made them wrong.
     (Code::EnergyFigure, ALL),
     (Code::ErrorEstimate, &[Cause::Time, Cause::Space]),

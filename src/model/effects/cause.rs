@@ -22,8 +22,8 @@ pub enum Cause {
     Compressed,
     /// A port's flow enters a junction where only tubes meet, whose inertia does not let it.
     FedJunction,
-    /// Inertia and losses of flow in tubes stand against it, and matter more.
-    Yields,
+    /// Inertia and losses of flow in tubes stand against it, and matter more; its own number.
+    Yields(Weighed),
     /// The published form has no shear.
     Unsheared,
     /// The fluid has no mass.
@@ -164,9 +164,14 @@ impl Display for Cause {
             Self::Unasked => {
                 f.write_str("flow in tubes creeps in the published form, unless this is asked for by name")
             }
-            Self::Yields => f.write_str(
-                "left out for inertia and losses of flow in tubes, which are not simulated with it and matter more",
-            ),
+            Self::Yields(own) => {
+                f.write_str("left out for inertia and losses of flow in tubes, which are not simulated with it")?;
+                if own.value.is_nan() {
+                    Ok(())
+                } else {
+                    write!(f, " and matter more; {own}")
+                }
+            }
             Self::Unsheared => f.write_str("the published form does not shear"),
             Self::Massless => f.write_str("the fluid has no mass"),
             Self::FedJunction => f.write_str("left out: the flow of a port enters a junction where only tubes meet"),

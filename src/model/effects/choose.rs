@@ -142,7 +142,12 @@ impl<'a> Chooser<'a> {
                 }
             },
             Choice::Auto if effect.by_name(self.case.formulation) => (false, Cause::Unasked),
-            Choice::Auto if effect == Effect::Compressibility && self.yields() => (false, Cause::Yields),
+            Choice::Auto if effect == Effect::Compressibility && self.yields() => {
+                let value = self.scene.map_or(f64::NAN, Scene::compression_of_fluid);
+                let (what, tolerance) = (Number::Compression, self.tolerance);
+                let own = Weighed { what, value, tolerance };
+                (false, Cause::Yields(own))
+            }
             Choice::Auto if effect.of_inertial_tubes() && self.network.is_some_and(|n| n.fed_junction().is_some()) => {
                 (false, Cause::FedJunction)
             }

@@ -16,7 +16,7 @@ use crate::functions::Signal;
 use crate::model::characteristic::first_wave_number;
 use crate::model::network::{Link, Node};
 use crate::model::scales::Drive;
-use crate::model::{Attachment, Load, Network, Scales, Section, Surroundings, Wet, each_signal};
+use crate::model::{Attachment, Compression, Load, Network, Scales, Section, Surroundings, Wet, each_signal};
 
 use least::Least;
 use pace::Pace;
@@ -328,7 +328,11 @@ impl<'a> Scene<'a> {
     /// stiffness of what vibrates.
     pub fn compression_of_fluid(&self) -> f64 {
         let Some(wet) = self.wet else { return 0.0 };
-        let share = self.compliances(wet)[1] / wet.area.per_pressure - 1.0;
+        // whether or not the whole model has it, which takes inertia in tubes instead
+        let fluid = self.case.fluid.as_ref();
+        let compression = fluid.and_then(|fluid| Compression::new(fluid, wet.area_at_rest));
+        let stored = compression.map_or(0.0, |compression| compression.compliance(-self.scales.pressure));
+        let share = stored / wet.area.per_pressure;
         let [bent, stretched] = self.stiffness_of_fluid(wet);
         share * (1.0 + self.at_once(bent * self.bending + stretched * self.axial) * self.case.time.end_s)
     }
