@@ -265,7 +265,7 @@ pub fn mathieu(model: &Model) -> Option<Mathieu> {
         frequency: sine.frequency_hz,
         modulation: MATHIEU_COUPLING * acceleration / (model.length * first * first),
         growth_rate: mathieu_growth(first * first, MATHIEU_COUPLING * acceleration / model.length, omega),
-        growth_bound: tongue::growth_bound(s, model.length, sine.amplitude, omega),
+        growth_bound: tongue::growth_bound(s, model.length, sine.amplitude, omega, model.effects.has(Effect::Shear)),
     })
 }
 

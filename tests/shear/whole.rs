@@ -82,6 +82,26 @@ fn unknowns_and_their_jacobian() {
     }
 }
 
+/// Goal: the same with fluid, whose pressures bend what is damped.
+#[test]
+fn the_jacobian_with_fluid() {
+    let ends = json!(["connected", "sealed"]);
+    let turbine = json!({"from": {"bladder": 1, "end": "inlet"}, "to": {"bladder": -1, "end": "inlet"}, "conductance": {"m3_s_pa": 5e-10}});
+    let case = json!({
+        "name": "shaken", "preset": "matia-gat-beam", "fluid": {"viscosity_pa_s": 0.05},
+        "beam": {"shear_stiffness_n": 91.2, "damping": {"bending_time_s": 2e-3, "axial_time_s": 2e-3}},
+        "network": {"chains": [{"bladders": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10], "ends": ends},
+                               {"bladders": [-1, -2, -3, -4, -5, -6, -7, -8, -9, -10], "ends": ends}], "turbines": [turbine]},
+        "ends": {"root": {"clamped": {"u1_m": {"sine": {"amplitude": 1e-3, "frequency_hz": 11}}}}, "tip": "free"},
+        "time": {"end_s": 1}
+    });
+    for seed in 1..=4 {
+        let mut dae = BeamDae::new(System::new(&parse(&case)).unwrap());
+        let worst = worst_difference(&mut dae, seed, 0.3);
+        assert!(worst < 1e-6, "{worst:e}");
+    }
+}
+
 /// Goal: energy, momentum and angular momentum close with everything at once that turns sections, to 1e-6.
 #[test]
 fn balances_close() {

@@ -36,6 +36,8 @@ pub struct Scene<'a> {
     drive: Drive,
     /// First bending frequency of the drained beam [1/s]; where it shears, no more than that (Dunkerley).
     bending: f64,
+    /// The square of that without shear over its own.
+    softened: f64,
     /// First axial frequency [1/s].
     axial: f64,
     /// Least buckling load that the ends allow, with shear by Engesser [N].
@@ -91,6 +93,7 @@ impl<'a> Scene<'a> {
         );
         let unsheared = beta * beta * (section.bending_stiffness / mass).sqrt();
         let in_shear = FRAC_PI_2 / length * (section.shear_stiffness / mass).sqrt();
+        let softened = 1.0 + (unsheared / in_shear).powi(2);
         let euler = FRAC_PI_2.powi(2) * section.bending_stiffness / (length * length);
         let pumped = wet.map_or(0.0, |wet| wet.network.pumped_pressure(wet, case.time.end_s));
         Self {
@@ -104,7 +107,8 @@ impl<'a> Scene<'a> {
             least: OnceCell::new(),
             tubes: OnceCell::new(),
             scales: Scales::pumped(case, section, wet, pumped),
-            bending: unsheared / (1.0 + (unsheared / in_shear).powi(2)).sqrt(),
+            bending: unsheared / softened.sqrt(),
+            softened,
             axial: quarter / length * (section.axial_stiffness / mass).sqrt(),
             buckling: euler / (1.0 + euler / section.shear_stiffness),
             drive,
