@@ -47,6 +47,10 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
     put("axial_stiffness_n", ea);
     put("bending_stiffness_n_m2", ei);
     put("gyration_radius_squared_m2", s.gyration_radius_squared);
+    if s.shear_stiffness.is_finite() {
+        put("shear_stiffness_n", s.shear_stiffness);
+        put("shear_flexibility", ei / (s.shear_stiffness * l * l));
+    }
     put("slenderness", l / case.beam.height_m);
     let solid_time = (m * l.powi(4) / ei).sqrt();
     put("t_s_s", solid_time);
@@ -66,6 +70,12 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
     if let Some(beta) = first {
         let dry = beta * beta / (2.0 * PI * solid_time);
         put("first_bending_frequency_hz", dry);
+        if model.effects.has(Effect::Shear) {
+            put(
+                "first_bending_frequency_in_shear_hz",
+                s.sheared(2.0 * PI * dry) / (2.0 * PI),
+            );
+        }
         if !model.relaxation.is_empty() {
             let [omega, decay] = relaxation::vibration(&model.relaxation, 2.0 * PI * dry);
             put("first_bending_frequency_relaxing_hz", omega / (2.0 * PI));

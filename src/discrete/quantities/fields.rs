@@ -35,6 +35,8 @@ pub enum Field {
     V3,
     /// Curvature.
     Curvature,
+    /// Angle of sections that shear.
+    SectionAngle,
     /// Bending moment.
     Moment,
     /// Normal force.
@@ -57,12 +59,13 @@ type Entry = (
 
 impl Field {
     /// All of them, in the order in which they are recorded.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::U1,
         Self::U3,
         Self::V1,
         Self::V3,
         Self::Curvature,
+        Self::SectionAngle,
         Self::Moment,
         Self::NormalForce,
         Self::Pressure,
@@ -79,6 +82,7 @@ impl Field {
             Self::V1 => ("v1_m_s", "m/s", Nodes, Studied, "transverse velocity", |w| w.motion.v.iter().map(|v| v.x).collect()),
             Self::V3 => ("v3_m_s", "m/s", Nodes, Studied, "axial velocity", |w| w.motion.v.iter().map(|v| v.z).collect()),
             Self::Curvature => ("curvature_1_m", "1/m", Nodes, Recorded, "curvature, positive with the +x fibre in tension", |w| Cow::Borrowed(&w.shape.kappa)),
+            Self::SectionAngle => ("section_angle_rad", "rad", Cells, Recorded, "angle of the section, where sections shear", |w| Cow::Borrowed(&w.shape.sections.angle)),
             Self::Moment => ("moment_n_m", "N m", Nodes, Recorded, "bending moment", |w| w.forces.moments()),
             Self::NormalForce => ("normal_force_n", "N", Cells, Recorded, "normal force", |w| w.forces.normals()),
             Self::Pressure => ("pressure_pa", "Pa", Network, Recorded, "pressure of the bladder cells", |w| Cow::Borrowed(&w.fluid.pressure)),
@@ -133,9 +137,10 @@ impl Field {
     /// Those that a system has.
     pub fn of(system: &System) -> impl Iterator<Item = Self> {
         let wet = system.fluid.is_some();
+        let shears = !system.layout.turning.angle.is_empty();
         Self::ALL
             .into_iter()
-            .filter(move |field| wet || field.axis() != Axis::Network)
+            .filter(move |field| (wet || field.axis() != Axis::Network) && (shears || *field != Self::SectionAngle))
     }
 
     /// Numbers that it has in a system.

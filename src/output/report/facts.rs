@@ -28,6 +28,7 @@ first_axial_frequency_hz | Hz | lowest frequency of waves along the beam
 first_bending_damping_ratio | 1 | damping ratio of that vibration by relaxation
 first_bending_frequency_hz | Hz | lowest frequency of bending
 first_bending_frequency_in_fluid_hz | Hz | the same with the added mass of the fluid around
+first_bending_frequency_in_shear_hz | Hz | the same with shear, exact between pins
 first_bending_frequency_relaxing_hz | Hz | the same of a solid that relaxes, stiffer than in the long term
 force_scale_n | N | force that is expected in the beam
 forcing_frequency_hz | Hz | frequency of the drive
@@ -43,6 +44,8 @@ mathieu_growth_rate_per_s | 1/s | growth of the first bending mode by shaking al
 mathieu_modulation | 1 | how strongly shaking along changes the bending stiffness
 reynolds_estimate | 1 | inertia over viscosity in the tubes; creeping flow needs it small
 self_weight_buckling_load_n_m | N/m | load along the beam under which it buckles
+shear_flexibility | 1 | shear over bending, EI/(kGA l^2); small where sections stay across the beam
+shear_stiffness_n | N | resistance to shear, kGA
 slenderness | 1 | length over height
 storage_modulus_from_pa | Pa | storage modulus at the lower end of the loss factor's band
 storage_modulus_to_pa | Pa | storage modulus at its upper end

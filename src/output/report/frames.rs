@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::pack;
+use crate::discrete::quantities::Field;
 use crate::output::arrays::TIMES;
 use crate::output::folder::damaged;
 use crate::output::npz::Npz;
@@ -61,11 +62,16 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
     }
     let nodes = thinned(theta.len(), MOST_NODES);
     let groups = pressure_groups(&contents);
-    let a_frame = 3 * nodes.len() + groups.len();
+    let a_frame = 4 * nodes.len() + groups.len();
     let most = (MOST_NUMBERS / a_frame).clamp(2, MOST_FRAMES);
     let chosen = thinned(times.len(), most);
     let kept: Vec<f64> = chosen.iter().map(|&k| times[k]).collect();
     let alone: Vec<Vec<usize>> = nodes.iter().map(|&k| vec![k]).collect();
+    // of the cells beside each node
+    let last = theta.len().saturating_sub(2);
+    let beside: Vec<Vec<usize>> = (nodes.iter())
+        .map(|&k| vec![k.saturating_sub(1).min(last), k.min(last)])
+        .collect();
     let mut field = |name: &str, groups: &[Vec<usize>]| -> io::Result<Value> {
         let Some(entry) = npz.entry(name) else {
             return Ok(Value::Null);
@@ -89,6 +95,7 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
         "u1": field("u1_m", &alone)?,
         "u3": field("u3_m", &alone)?,
         "curvature": field("curvature_1_m", &alone)?,
+        "angle": field(Field::SectionAngle.name(), &beside)?,
         "pressure": field("pressure_pa", &groups)?,
         "x_f": first("x_f"),
         "bladder": first("bladder"),

@@ -4,7 +4,7 @@
 function unpackMotion(m) {
   if (!m || !m.times) return null;
   const out = { ...m };
-  for (const key of ["times", "theta", "u1", "u3", "curvature", "pressure", "x_f", "bladder", "array"]) out[key] = floats(m[key]);
+  for (const key of ["times", "theta", "u1", "u3", "curvature", "angle", "pressure", "x_f", "bladder", "array"]) out[key] = floats(m[key]);
   out.frames = out.times.length;
   out.nodes = out.theta.length;
   out.cells = out.pressure ? out.pressure.length / out.frames : 0;
@@ -74,12 +74,14 @@ function showAnimation(host, scene, motion, clock) {
     const n = motion.nodes;
     const g = Math.min(f + 1, motion.frames - 1);
     const [u1, u3] = [new Float64Array(n), new Float64Array(n)];
+    const angle = motion.angle ? new Float64Array(n) : null;
     const [s, t] = [shift(f), shift(g)];
     for (let k = 0; k < n; k++) {
       u1[k] = (motion.u1[f * n + k] - s[0]) * (1 - w) + (motion.u1[g * n + k] - t[0]) * w;
       u3[k] = (motion.u3[f * n + k] - s[1]) * (1 - w) + (motion.u3[g * n + k] - t[1]) * w;
+      if (angle) angle[k] = motion.angle[f * n + k] * (1 - w) + motion.angle[g * n + k] * w;
     }
-    return curveOf(motion.theta, u1, u3, factor);
+    return curveOf(motion.theta, u1, u3, factor, angle);
   };
   const prepare = () => {
     const bounds = { x0: 0, x1: scene.length, y0: 0, y1: 0 };

@@ -1,7 +1,7 @@
 // A deformed beam on a canvas: a band as high as the beam, its bladders coloured by pressure, its tubes as lines.
 
-/** Positions and unit normals of the nodes of a shape: x along, y across. */
-function curveOf(theta, u1, u3, factor) {
+/** Positions of the nodes of a shape and the unit vectors along which its sections lie: x along, y across. `angle`: of sections that shear. */
+function curveOf(theta, u1, u3, factor, angle) {
   const n = theta.length;
   const out = { theta, n, x: new Float64Array(n), y: new Float64Array(n), nx: new Float64Array(n), ny: new Float64Array(n) };
   for (let k = 0; k < n; k++) {
@@ -10,7 +10,7 @@ function curveOf(theta, u1, u3, factor) {
   }
   for (let k = 0; k < n; k++) {
     const [a, b] = [Math.max(k - 1, 0), Math.min(k + 1, n - 1)];
-    const [dx, dy] = [out.x[b] - out.x[a], out.y[b] - out.y[a]];
+    const [dx, dy] = angle ? [Math.cos(angle[k]), factor.across * Math.sin(angle[k])] : [out.x[b] - out.x[a], out.y[b] - out.y[a]];
     const size = Math.hypot(dx, dy) || 1;
     out.nx[k] = -dy / size;
     out.ny[k] = dx / size;
