@@ -43,29 +43,27 @@ pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
             relaxation::normal_forces(system, w);
             solid::moments(system, now, w);
             if sheared {
-                sheared::shears(system, w);
-                sheared::section_forces(system, now, w);
+                sheared::forces(system, now, w);
             } else {
                 small::section_forces(system, now, w);
             }
         }
-        Kinematics::FiniteRotation if sheared => {
-            sheared::kinematics(system, now, w);
-            solid::rates(system, now, w);
-            solid::normal_forces(system, w);
-            relaxation::normal_forces(system, w);
-            solid::moments(system, now, w);
-            sheared::shears(system, w);
-            sheared::section_forces(system, now, w);
-        }
         Kinematics::FiniteRotation => {
-            solid::kinematics(system, now, w);
+            if sheared {
+                sheared::kinematics(system, now, w);
+            } else {
+                solid::kinematics(system, now, w);
+            }
             solid::rates(system, now, w);
             solid::normal_forces(system, w);
             relaxation::normal_forces(system, w);
             solid::moments(system, now, w);
-            solid::shears(system, w);
-            solid::section_forces(system, now, w);
+            if sheared {
+                sheared::forces(system, now, w);
+            } else {
+                solid::shears(system, w);
+                solid::section_forces(system, now, w);
+            }
         }
     }
     fluid::flows(system, now, w);

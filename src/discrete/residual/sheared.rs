@@ -1,7 +1,7 @@
 //! The beam that shears: its sections turn by angles of their own.
 
 use super::relaxation;
-use super::solid::{couple, normal_force, total_moment_drop};
+use super::solid::{couple, line, normal_force, total_moment_drop};
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace, attached};
 use crate::model::Kinematics;
@@ -28,24 +28,20 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
     let inverse = 1.0 / system.mesh.h;
     let (u, shape) = (&w.motion.u, &mut w.shape);
-    let sections = &mut shape.sections;
     if finite {
         for c in 0..system.mesh.cells {
-            let e = (u[c + 1] - u[c]) * inverse;
-            let d3 = Planar::new(e.x, e.z + 1.0);
-            let stretch = d3.squared().sqrt();
-            shape.d3[c] = d3;
-            shape.stretch[c] = stretch;
-            shape.tangent[c] = d3.times(T::constant(1.0) / stretch);
+            let e = line(u, c, inverse, shape);
+            let sections = &mut shape.sections;
             let (s, c_half) = (sections.angle[c] * 0.5).sin_cos();
             // cos θ - 1, without cancellation
             let less = s * s * -2.0;
             let normal = Planar::new(s * c_half * 2.0, less + 1.0);
             sections.normal[c] = normal;
             shape.strain[c] = e.x * normal.x + e.z * normal.z + less;
-            sections.shear[c] = d3.dot(normal.normal());
+            sections.shear[c] = shape.d3[c].dot(normal.normal());
         }
     } else {
+        let sections = &mut shape.sections;
         for ((shear, angle), d3) in sections.shear.iter_mut().zip(&sections.angle).zip(&shape.d3) {
             *shear = *angle - d3.x;
         }
@@ -86,8 +82,14 @@ pub fn strain_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     }
 }
 
+/// Shear forces, section forces, and what turns sections.
+pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    shears(system, w);
+    section_forces(system, now, w);
+}
+
 /// Shear forces with their viscous and relaxing parts.
-pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let section = &system.model.section;
     let viscous = section.shear_stiffness * section.bending_damping_time;
     let sections = &w.shape.sections;
@@ -106,7 +108,7 @@ pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 }
 
 /// Section forces in lab axes, and what turns sections, [E63].
-pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let h = system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
     let finite = system.model.kinematics == Kinematics::FiniteRotation;

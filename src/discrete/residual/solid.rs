@@ -2,6 +2,7 @@
 
 use super::{relaxation, sheared};
 use crate::case::schema::Effect;
+use crate::discrete::workspace::Shape;
 use crate::discrete::{System, TimeData, Workspace, attached};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
@@ -19,13 +20,8 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     let inverse = 1.0 / system.mesh.h;
     let (u, shape) = (&w.motion.u, &mut w.shape);
     for c in 0..system.mesh.cells {
-        let e = (u[c + 1] - u[c]) * inverse;
-        let d3 = Planar::new(e.x, e.z + 1.0);
-        let stretch = d3.squared().sqrt();
-        shape.d3[c] = d3;
-        shape.stretch[c] = stretch;
-        shape.strain[c] = (e.x.squared() + e.z * (e.z + 2.0)) / (stretch + 1.0);
-        shape.tangent[c] = d3.times(T::constant(1.0) / stretch);
+        let e = line(u, c, inverse, shape);
+        shape.strain[c] = (e.x.squared() + e.z * (e.z + 2.0)) / (shape.stretch[c] + 1.0);
     }
     let last = system.mesh.nodes - 1;
     let tangent = &shape.tangent;
@@ -40,6 +36,18 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
         let given = Planar::constant(Planar::tangent(slope.value));
         shape.kappa[last] = -tangent[last - 1].angle_to(given) * (2.0 * inverse);
     }
+}
+
+/// Director, length and tangent of a cell's line; `u'`, by which the director differs from that at rest.
+#[inline(always)]
+pub fn line<T: Scalar>(u: &[Planar<T>], c: usize, inverse: f64, shape: &mut Shape<T>) -> Planar<T> {
+    let e = (u[c + 1] - u[c]) * inverse;
+    let d3 = Planar::new(e.x, e.z + 1.0);
+    let stretch = d3.squared().sqrt();
+    shape.d3[c] = d3;
+    shape.stretch[c] = stretch;
+    shape.tangent[c] = d3.times(T::constant(1.0) / stretch);
+    e
 }
 
 /// Rates of stretch, angle and curvature, where something depends on them: `λ_t = e_t·d3_t`, `φ_t = d1·d3_t/λ²`.

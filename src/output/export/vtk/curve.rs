@@ -30,9 +30,10 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// From displacements [m] and curvature [1/m] at the nodes: the angle of an inner node is the mean of its two
-    /// neighbouring cells', that of an end follows from the curvature there, `kappa = -phi'`.
-    pub fn new(theta: &[f64], u1: &[f64], u3: &[f64], curvature: &[f64]) -> Self {
+    /// From displacements [m] and curvature [1/m] at the nodes, and the angles of sections of cells that shear, none of
+    /// others: the angle of an inner node is the mean of its two neighbouring cells', that of an end follows from the
+    /// curvature there, `kappa = -phi'`.
+    pub fn new(theta: &[f64], u1: &[f64], u3: &[f64], curvature: &[f64], sections: &[f64]) -> Self {
         let mut nodes: Vec<Section> = theta
             .iter()
             .zip(u1.iter().zip(u3))
@@ -43,8 +44,8 @@ impl Curve {
                 angle: 0.0,
             })
             .collect();
-        let mut cells: Vec<f64> = vec![];
-        for pair in nodes.windows(2) {
+        let mut cells: Vec<f64> = sections.to_vec();
+        for pair in nodes.windows(2).skip(cells.len()) {
             let direction = (pair[1].x - pair[0].x).atan2(pair[1].z - pair[0].z);
             // Counted over full turns: a strip may be rolled up.
             let turned = |last: f64| last + (direction - last + PI).rem_euclid(TAU) - PI;
@@ -99,5 +100,22 @@ impl Curve {
         let middle = 0.5 * (from + to);
         let next = self.nodes.partition_point(|s| s.theta < middle);
         next.clamp(1, self.nodes.len() - 1) - 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Curve;
+
+    /// Goal: sections that shear stand as they are, others across the line.
+    #[test]
+    fn sections_that_shear_keep_their_angles() {
+        let (theta, rises, still) = ([0.0, 1.0, 2.0], [0.0, 0.1, 0.2], [0.0; 3]);
+        let angles = |sections: &[f64]| -> Vec<f64> {
+            let curve = Curve::new(&theta, &rises, &still, &still, sections);
+            curve.nodes.iter().map(|section| section.angle).collect()
+        };
+        assert_eq!(angles(&[0.0, 0.0]), [0.0; 3]);
+        assert!(angles(&[]).iter().all(|angle| (angle - 0.1_f64.atan()).abs() < 1e-15));
     }
 }

@@ -132,7 +132,8 @@ impl<'a> Scene<'a> {
     fn at(&self, instant: usize) -> Vec<Surface> {
         let row = |name: &str| self.from.field(name).map_or(&[][..], |f| f.row(instant));
         let theta = self.from.axis("theta_node_m").unwrap_or_default();
-        let curve = Curve::new(theta, row("u1_m"), row("u3_m"), row("curvature_1_m"));
+        let angles = row("section_angle_rad");
+        let curve = Curve::new(theta, row("u1_m"), row("u3_m"), row("curvature_1_m"), angles);
         let sections = curve.sections(&self.stations);
         let fields = beam::Fields {
             u: [row("u3_m"), row("u1_m")],
