@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 63] = [
+const INDEX: [(&str, &str, &str); 67] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -159,9 +159,9 @@ const INDEX: [(&str, &str, &str); 63] = [
     ("[E51]", "tests/tubes.rs", "the_impedance_of_a_tube_is_womersleys"),
     ("[E52]", "tests/tubes.rs", "friction_is_churchills"),
     ("[E53]", "tests/surroundings.rs", "frequencies_fall_with_the_added_mass"),
-    ("[E54]", "tests/gas.rs", "a_bladder_blows_down_through_a_capillary"),
-    ("[E55]", "tests/gas.rs", "a_bladder_blows_down_through_a_capillary"),
-    ("[E56]", "tests/gas.rs", "balances_close_with_compression"),
+    ("[E54]", "tests/gas/main.rs", "a_bladder_blows_down_through_a_capillary"),
+    ("[E55]", "tests/gas/main.rs", "a_bladder_blows_down_through_a_capillary"),
+    ("[E56]", "tests/gas/main.rs", "balances_close_with_compression"),
     (
         "[E57]",
         "tests/viscoelastic/branches.rs",
@@ -181,6 +181,10 @@ const INDEX: [(&str, &str, &str); 63] = [
     ),
     ("[E62]", "tests/contact/main.rs", "a_stop_holds_a_cantilever"),
     ("[E63]", "tests/shear/statics.rs", "a_large_tip_force"),
+    ("[E64]", "tests/gas/vessels.rs", "valves_and_pumps_work_with_air"),
+    ("[E65]", "tests/gas/moving.rs", "balances_close_with_inertia"),
+    ("[E66]", "tests/gas/moving.rs", "air_swings_between_tanks"),
+    ("[E67]", "tests/gas/vessels.rs", "a_tank_blows_down"),
 ];
 
 #[test]

@@ -72,11 +72,11 @@ pub struct MeshSource {
     pub half_cell: f64,
 }
 
-/// An accumulator on the mesh.
+/// An accumulator on the mesh, or what fluid that is compressed stores where tubes with inertia meet.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshAccumulator {
-    /// Number among the network's accumulators.
-    pub number: usize,
+    /// Number among the network's accumulators; none of a meeting of tubes.
+    pub number: Option<usize>,
     /// Its place among the junctions of the mesh.
     pub junction: usize,
     /// The component of the network that it is part of.
@@ -209,13 +209,13 @@ impl FluidMesh {
         let accumulators = accumulators.filter_map(|(number, one)| {
             let junction = junctions.iter().position(|&j| j == one.junction)?;
             Some(MeshAccumulator {
-                number,
+                number: Some(number),
                 junction,
                 component: network.component_of_junction[one.junction],
                 law: one.law,
             })
         });
-        let accumulators: Vec<MeshAccumulator> = accumulators.collect();
+        let mut accumulators: Vec<MeshAccumulator> = accumulators.collect();
         let accelerated = (0..junctions.len()).map(|j| {
             let here = Place::Junction(j);
             let stores = accumulators.iter().any(|one| one.junction == j);
@@ -224,7 +224,20 @@ impl FluidMesh {
             let inert = |link: &MeshLink| link.flow.is_some_and(|flow| flow.tube.inertance > 0.0);
             !stores && !bridged && links.iter().filter(own).all(inert)
         });
-        let accelerated: Vec<bool> = accelerated.collect();
+        let mut accelerated: Vec<bool> = accelerated.collect();
+        if wet.compression.is_some() {
+            for (junction, accelerated) in accelerated.iter_mut().enumerate().filter(|(_, there)| **there) {
+                *accelerated = false;
+                accumulators.push(MeshAccumulator {
+                    number: None,
+                    junction,
+                    component: network.component_of_junction[junctions[junction]],
+                    law: AccumulatorLaw::Rigid {
+                        holds: halves_of_tubes(&links, Place::Junction(junction)),
+                    },
+                });
+            }
+        }
         Self {
             bladders,
             cells_per_bladder,
@@ -264,11 +277,40 @@ impl FluidMesh {
         }
     }
 
+    /// Mean pressure at the other ends of what meets at a junction, of those of cells and ports [Pa].
+    pub fn around(&self, junction: usize, cells: &[f64], ports: &[f64]) -> f64 {
+        let here = Place::Junction(junction);
+        let known = self.links.iter().filter_map(|link| {
+            let other = match here {
+                _ if link.from == here => link.to,
+                _ if link.to == here => link.from,
+                _ => return None,
+            };
+            match other {
+                Place::Cell(cell) => Some(cells[cell]),
+                Place::Port(port) => Some(ports[port]),
+                Place::Junction(_) => None,
+            }
+        });
+        let (sum, count) = known.fold((0.0, 0), |(sum, count), pressure| (sum + pressure, count + 1));
+        sum / f64::from(count.max(1))
+    }
+
     /// Cells of a bladder.
     #[inline]
     pub fn cells_of(&self, bladder: usize) -> Range<usize> {
         bladder * self.cells_per_bladder..(bladder + 1) * self.cells_per_bladder
     }
+}
+
+/// `[E65]` Volume of the halves of all tubes that meet at a junction [m^3]. Where these have inertia alone, and fluid is compressed, that is what
+/// stores there: the pressure follows from what has come together, and flows into it need not sum to zero.
+fn halves_of_tubes(links: &[MeshLink], here: Place) -> f64 {
+    let volume = |link: &MeshLink| {
+        let ends = usize::from(link.from == here) + usize::from(link.to == here);
+        0.5 * ends as f64 * link.flow.map_or(0.0, |flow| flow.tube.volume)
+    };
+    links.iter().map(volume).sum()
 }
 
 /// Ranges of the cells of bladders, those of neighbours in one.

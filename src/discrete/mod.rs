@@ -115,7 +115,7 @@ impl System {
             .model
             .wet
             .as_ref()
-            .filter(|_| self.model.effects.has(Effect::TubeInertia))?;
+            .filter(|wet| self.model.effects.has(Effect::TubeInertia) && wet.compression.is_none())?;
         let name = &wet.network.fed_junction()?.name;
         let what = format!("the flow of port \"{name}\" enters a junction where only tubes with inertia meet");
         let fault = Violation::new(Code::Effect, "/effects/tube_inertia", what);

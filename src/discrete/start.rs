@@ -129,8 +129,11 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64], w:
         *value = w.fluid.junction.get(junction).copied().unwrap_or(0.0);
     }
     for one in &fluid.accumulators {
-        let pressure = wet.network.accumulators[one.number].start_pressure;
-        y[l.network.junction.start + one.junction] = one.law.volume(pressure);
+        let pressure = match one.number {
+            Some(number) => wet.network.accumulators[number].start_pressure,
+            None => fluid.around(one.junction, &pressure, &now.port_pressure),
+        };
+        y[l.network.junction.start + one.junction] = wet.vessel_content(&one.law, pressure);
     }
 }
 

@@ -169,10 +169,16 @@ pub struct Fluid<T> {
     pub lumped_rate: Vec<T>,
     /// Turbine drops behind real rectifiers [Pa].
     pub bridge: Vec<T>,
-    /// Flow of each link, towards its end [m^3/s].
+    /// Pressure drop over each link, that of [E64] where fluid is compressed [Pa].
+    pub drop: Vec<T>,
+    /// Mean density along each link over that at ambient pressure, [E64]; empty where fluid is not compressed.
+    pub density: Vec<T>,
+    /// Flow of each link, towards its end, counted at ambient density [m^3/s].
     pub flow: Vec<T>,
-    /// Rates of those flows that are unknowns [m^3/s^2].
-    pub flow_rate: Vec<T>,
+    /// Those flows that are unknowns, over the root of the mean density [m^3/s].
+    pub moving: Vec<T>,
+    /// Their rates [m^3/s^2].
+    pub moving_rate: Vec<T>,
     /// Flows of the branches of their friction [m^3/s].
     pub branch: Vec<T>,
     /// Their rates [m^3/s^2].
@@ -203,6 +209,32 @@ impl std::ops::Deref for State<'_> {
     type Target = Workspace<f64>;
     fn deref(&self) -> &Workspace<f64> {
         self.0
+    }
+}
+
+impl<T: Scalar> Fluid<T> {
+    /// The volume that flows along a link at its mean density, of a flow at ambient density [m^3/s].
+    #[inline]
+    pub fn at_mean_density(&self, link: usize, flow: T) -> T {
+        match self.density.get(link) {
+            None => flow,
+            Some(density) => flow / *density,
+        }
+    }
+
+    /// The flow at ambient density of a volume that flows along a link at its mean density [m^3/s].
+    #[inline]
+    pub fn at_ambient_density(&self, link: usize, volume: T) -> T {
+        match self.density.get(link) {
+            None => volume,
+            Some(density) => volume * *density,
+        }
+    }
+
+    /// Root of the mean density along a link; none where fluid is not compressed.
+    #[inline]
+    pub fn root_of_density(&self, link: usize) -> Option<T> {
+        self.density.get(link).map(|density| density.sqrt())
     }
 }
 
@@ -254,6 +286,7 @@ impl<T: Scalar> Workspace<T> {
         let (cells, bladders) = fluid.map_or((0, 0), |f| (f.cells, f.bladders));
         let (junctions, bridges) = fluid.map_or((0, 0), |f| (f.junctions.len(), f.bridges.len()));
         let accumulators = fluid.map_or(0, |f| f.accumulators.len());
+        let links = fluid.map_or(0, |f| f.links.len());
         let components = system.model.wet.as_ref().map_or(0, |w| w.network.components);
         let lumped = fluid.map_or(0, |f| f.volume_at_start.len());
         let wet = system.model.wet.as_ref();
@@ -331,8 +364,11 @@ impl<T: Scalar> Workspace<T> {
                 lumped: zeros(lumped),
                 lumped_rate: zeros(lumped),
                 bridge: zeros(bridges),
-                flow: zeros(fluid.map_or(0, |f| f.links.len())),
-                flow_rate: zeros(fluid.map_or(0, |f| f.flows)),
+                drop: zeros(links),
+                density: zeros(compressed * links),
+                flow: zeros(links),
+                moving: zeros(fluid.map_or(0, |f| f.flows)),
+                moving_rate: zeros(fluid.map_or(0, |f| f.flows)),
                 branch: zeros(fluid.map_or(0, |f| f.branches)),
                 branch_rate: zeros(fluid.map_or(0, |f| f.branches)),
                 inflow: zeros(cells),

@@ -89,7 +89,6 @@ codes! {
     LostModes = "W025", "Modes that were not found again.";
     PartOfStream = "W026", "A stream of which the model has a part.";
     DeepContact = "W027", "A wall that the beam is deep in.";
-    Uncompressed = "W028", "Compression that is left out and is not small.";
 }
 
 impl Code {

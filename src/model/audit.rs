@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::effects::Cause;
 use super::{Coupling, Model, Wet};
 use crate::case::inherited;
 use crate::case::schema::Effect;
@@ -277,7 +276,6 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         all.extend(over(numbers, Code::FastFlow, "womersley", 1.0, what));
     }
     all.extend(stream(model));
-    all.extend(uncompressed(model));
     if let Some(&f) = numbers.get("forcing_frequency_hz") {
         let outputs = 1.0 / (f * case.time.output_interval());
         if outputs < OUTPUTS_A_PERIOD {
@@ -304,23 +302,6 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         )));
     }
     all
-}
-
-/// Warning of compression that matters, where it stood back for inertia and losses of flow in tubes.
-fn uncompressed(model: &Model) -> Option<String> {
-    let own = match &model.effects.decision(Effect::Compressibility).cause {
-        Cause::Yields(own) if own.on() => own,
-        _ => return None,
-    };
-    let by_how_much = if own.value.is_nan() {
-        String::new()
-    } else {
-        format!(" ({own})")
-    };
-    Some(Code::Uncompressed.warning(format!(
-        "effects: compression of the fluid is left out{by_how_much}, as it is not simulated with inertia and losses of flow in tubes; what \
-         it would change is not in the results"
-    )))
 }
 
 /// Warnings of a stream of which the model has a part.

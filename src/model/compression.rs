@@ -2,6 +2,7 @@
 
 use crate::case::schema::Fluid;
 use crate::model::AreaLaw;
+use crate::model::network::AccumulatorLaw;
 use crate::numerics::Scalar;
 use crate::numerics::gauss::Gauss;
 
@@ -9,6 +10,8 @@ use crate::numerics::gauss::Gauss;
 const VACUUM: f64 = 1e-9;
 /// Points of the quadrature of Ψ where it has no closed form.
 const POINTS: usize = 16;
+/// Change of density between two ends below which the mean is that at the mean pressure: off by a 24th of its square.
+const ALIKE: f64 = 1e-4;
 
 /// `[E54]` Fluid whose density follows its pressure, p above ambient, `P_0` ambient, x the part of its volume at ambient pressure that is gas,
 /// K the bulk modulus of the liquid, n the gas's polytropic exponent:
@@ -89,6 +92,34 @@ impl Compression {
         (density, -slope * density * density)
     }
 
+    /// Mean density between two ends of a duct over that at ambient pressure, [E64]: `r̄² = (Ψ_a - Ψ_b)/(h_a - h_b)`.
+    #[inline]
+    pub fn mean_density<T: Scalar>(&self, a: T, b: T) -> T {
+        a.lift_with(b, |a, b| self.mean(a, b))
+    }
+
+    fn mean(&self, a: f64, b: f64) -> (f64, [f64; 2]) {
+        let [a, b] = [a, b].map(|p| p.max(self.lowest()));
+        let (density, slope) = self.density(0.5 * (a + b));
+        if ((a - b) * slope).abs() <= ALIKE * density {
+            return (density, [0.5 * slope; 2]);
+        }
+        let potential = self.integral(a) - self.integral(b);
+        let enthalpy = self.enthalpy(a) - self.enthalpy(b);
+        let mean = (potential / enthalpy).sqrt();
+        let slope = |p: f64| {
+            let (density, _) = self.density(p);
+            0.5 * mean * (density / potential - 1.0 / (density * enthalpy))
+        };
+        (mean, [slope(a), -slope(b)])
+    }
+
+    /// `h` at a pressure, [`Self::enthalpy`].
+    #[inline]
+    pub fn brought<T: Scalar>(&self, p: T) -> T {
+        p.lift(|p| (self.enthalpy(p), 1.0 / self.density(p).0))
+    }
+
     /// `h = ∫ dp/r` from ambient pressure [Pa]: what a volume of fluid at ambient density brings along.
     pub fn enthalpy(&self, p: f64) -> f64 {
         let p = p.max(self.lowest());
@@ -163,25 +194,36 @@ impl Compression {
     /// isothermal gas as soft as this fluid; the root with its derivatives by c and A.
     fn root(&self, a_p: f64, content: f64, imposed: f64) -> (f64, [f64; 2]) {
         let amount = self.area_at_rest + content;
-        if self.gas > 0.0 && amount <= 0.0 {
-            return (self.lowest(), [0.0; 2]);
-        }
-        let lowest = self.lowest();
         let softness = -self.expansion(0.0).1;
         let (lacking, linear) = (content - imposed, a_p + (self.area_at_rest + imposed) * softness);
         let inside = linear * linear + 4.0 * a_p * softness * lacking;
-        let mut p = 2.0 * lacking / (linear + inside.max(0.0).sqrt());
+        let begin = 2.0 * lacking / (linear + inside.max(0.0).sqrt());
+        match self.filled(amount, begin, |p| (a_p * p - lacking, a_p)) {
+            None => (self.lowest(), [0.0; 2]),
+            Some((p, stiffness)) => (p, [(1.0 + self.expansion(p).0) * stiffness, -stiffness]),
+        }
+    }
+
+    /// The pressure at which `swollen(p) = amount (1/r - 1)`, of a function that grows and is straight or concave, and `1/d(swollen - amount/r)/dp`
+    /// there; none where that is absolute vacuum.
+    fn filled(&self, amount: f64, begin: f64, swollen: impl Fn(f64) -> (f64, f64)) -> Option<(f64, f64)> {
+        let lowest = self.lowest();
+        if self.gas > 0.0 && amount <= 0.0 {
+            return None;
+        }
+        let mut p = begin;
         if p <= lowest {
             p = -0.9 * self.ambient;
         }
         for _ in 0..100 {
             let (expansion, slope) = self.expansion(p);
-            let step = (a_p * p - lacking - amount * expansion) / (a_p - amount * slope);
+            let (swelling, steep) = swollen(p);
+            let step = (swelling - amount * expansion) / (steep - amount * slope);
             let next = p - step;
             if next <= lowest {
                 p = 0.1 * p - 0.9 * self.ambient;
                 if p <= lowest {
-                    return (lowest, [0.0; 2]);
+                    return None;
                 }
                 continue;
             }
@@ -190,9 +232,19 @@ impl Compression {
                 break;
             }
         }
-        let (expansion, slope) = self.expansion(p);
-        let stiffness = 1.0 / (a_p - amount * slope);
-        (p, [(1.0 + expansion) * stiffness, -stiffness])
+        Some((p, 1.0 / (swollen(p).1 - amount * self.expansion(p).1)))
+    }
+
+    /// Pressure in a vessel of walls of a law, by what it holds beyond that at ambient pressure [m^3], [E67]: the root of
+    /// `V(p) - c = (V_0 + c) (1/r - 1)`.
+    pub fn in_vessel<T: Scalar>(&self, law: &AccumulatorLaw, content: T) -> T {
+        content.lift(|content| {
+            let walls = |p: f64| (law.volume(p) - content, law.compliance(p));
+            match self.filled(law.volume_at_rest() + content, 0.0, walls) {
+                None => (self.lowest(), 0.0),
+                Some((p, stiffness)) => (p, (1.0 + self.expansion(p).0) * stiffness),
+            }
+        })
     }
 
     /// What a cell stores at a pressure, c, `[E54]`.

@@ -23,6 +23,7 @@ pub mod storage;
 pub mod strain_energy;
 pub mod surroundings;
 pub mod tongue;
+mod vessels;
 
 use crate::case::ResolvedEnd;
 use crate::case::schema::Effect;

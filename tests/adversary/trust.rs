@@ -34,8 +34,6 @@ const TRUST: [(Code, &[Cause]); 12] = [
     (Code::Accuracy, ALL),
     (Code::FewOutputs, &[Cause::Outputs]),
     (Code::Unresolved, &[Cause::Space]),
-    // Compression is not in the model.
-    (Code::Uncompressed, &[Cause::Effects]),
     // Only figures of energy, whatever made them wrong.
     (Code::EnergyFigure, ALL),
     (Code::ErrorEstimate, &[Cause::Time, Cause::Space]),

@@ -130,10 +130,8 @@ fn what_cannot_be_is_refused() {
     refused(TOUR, &format!("{in_bridge}=1e-7"), in_bridge, "leaks more");
     let vacuum = "/network/accumulators/0/start_pressure_pa=-2e5";
     refused(PUMP, vacuum, "/network/accumulators/0/start_pressure_pa", "vacuum");
-    let soft = "/fluid/bulk_modulus_pa=1e5";
     for text in [PUMP, FINGER] {
-        let text = text.replace("\"time\":", "\"effects\": {\"compressibility\": \"on\", \"tube_inertia\": \"off\", \"tube_losses\": \"off\"}, \"time\":");
-        refused(&text, soft, "/effects", "compressed");
+        let text = text.replace("\"time\":", "\"effects\": \"auto\", \"time\":");
         let lumped = "/effects={\"network_pressure_differences\": \"off\"}";
         refused(&text, lumped, "/effects", "needs them");
     }

@@ -10,6 +10,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     let Some(fluid) = &case.fluid else { return };
     let gas = fluid.kind == FluidKind::Gas;
     let some_gas = fluid.gas() > 0.0;
+    vessels(case, fluid, faults);
     let accumulators = case.network.iter().flat_map(|network| &network.accumulators);
     let cushions: Vec<_> = (0..)
         .zip(accumulators)
@@ -54,6 +55,34 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
     if some_gas {
         pressures(case, fluid, faults);
+    }
+}
+
+/// A tank is of fluid that is compressed; a vessel of gas holds some at ambient pressure.
+fn vessels(case: &Case, fluid: &Fluid, faults: &mut Violations) {
+    let all = case.network.iter().flat_map(|network| &network.accumulators);
+    for (i, one) in all.enumerate() {
+        let pointer = format!("/network/accumulators/{i}");
+        let start = format!("{pointer}/start_pressure_pa");
+        match one.kind {
+            AccumulatorKind::Tank { .. } if !fluid.is_compressible() => {
+                let what = "a tank of fluid that is not compressed, which stores nothing";
+                let fault = Violation::new(Code::Together, format!("{pointer}/kind/tank"), what);
+                let hint = "give \"elastic\" or \"gas\" in its place, or bulk_modulus_pa or gas_fraction in /fluid, or kind \"gas\" there";
+                faults.push_at_key(fault.hint(hint));
+            }
+            AccumulatorKind::Elastic { volume_m3: 0.0, .. } if fluid.kind == FluidKind::Gas => {
+                let what = "an elastic vessel of gas that holds none at ambient pressure";
+                let fault = Violation::new(Code::Together, format!("{pointer}/kind/elastic"), what);
+                faults.push_at_key(
+                    fault.hint("give its volume_m3: gas in it is compressed as well as its walls stretched"),
+                );
+            }
+            AccumulatorKind::Tank { .. } | AccumulatorKind::Elastic { .. } if fluid.gas() > 0.0 => {
+                above_vacuum(fluid, start, one.start_pressure_pa, faults);
+            }
+            _ => {}
+        }
     }
 }
 

@@ -186,9 +186,17 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     let pressure = MOST * beam.young_modulus_pa;
     let in_bladders =
         pressure * bladders.area_per_pressure_m2_per_pa * bladders.length_m * 2.0 * bladders.per_row as f64;
+    let softness = case.fluid.as_ref().map_or(0.0, |fluid| {
+        fluid.gas() / fluid.ambient_pressure() + fluid.bulk_modulus_pa.map_or(0.0, f64::recip)
+    });
+    let compressed = |volume: f64| volume * softness * pressure;
     let vessels = case.network.iter().flat_map(|network| &network.accumulators);
     let vessels = vessels.map(|one| match one.kind {
-        AccumulatorKind::Elastic { compliance_m3_pa } => pressure * compliance_m3_pa,
+        AccumulatorKind::Elastic {
+            compliance_m3_pa,
+            volume_m3,
+        } => pressure * compliance_m3_pa + compressed(volume_m3),
+        AccumulatorKind::Tank { volume_m3 } => compressed(volume_m3),
         AccumulatorKind::Gas { volume_m3, .. } => volume_m3,
     });
     let room = in_bladders + vessels.sum::<f64>();

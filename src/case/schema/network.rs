@@ -286,6 +286,16 @@ pub enum AccumulatorKind {
         /// `C` [m^3/Pa].
         #[schemars(extend("exclusiveMinimum" = 0))]
         compliance_m3_pa: f64,
+        /// Fluid in it at ambient pressure [m^3]: it counts where that is compressed, and a vessel of gas must say it.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        #[schemars(range(min = 0.0))]
+        volume_m3: f64,
+    },
+    /// A rigid tank, of fluid that is compressed: of compressed air, say.
+    Tank {
+        /// Its volume [m^3].
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        volume_m3: f64,
     },
     /// Gas above the fluid.
     Gas {

@@ -70,8 +70,9 @@ impl Network {
                 match fluid.accumulators.iter().find(|one| one.junction == k) {
                     None => build.push(Name::Junction(j), s.pressure, s.pressure * fluid.conductance, false),
                     Some(one) => {
-                        let volume = one.law.volume(s.pressure);
-                        build.push(Name::Accumulator(one.number), volume, volume * s.frequency, true)
+                        let name = one.number.map_or(Name::Stored(j), Name::Accumulator);
+                        let volume = wet.vessel_content(&one.law, s.pressure);
+                        build.push(name, volume, volume * s.frequency, true)
                     }
                 };
             }

@@ -3,9 +3,7 @@
 use std::ops::Range;
 
 use super::fluid::imposed_rate;
-use crate::discrete::fluid_mesh::{MeshLink, Place};
-use crate::discrete::residual::fluid::{driving, potential_at, pressure_at};
-use crate::discrete::{FluidMesh, System, TimeData, Workspace};
+use crate::discrete::{FluidMesh, System, Workspace};
 use crate::model::{Compression, Storage, Wet};
 
 /// Rate of what a cell stores [m^2/s], from those of its pressure and of what is imposed on its area.
@@ -70,32 +68,6 @@ pub fn lost_between(wet: &Wet, w: &Workspace<f64>, conductance: f64, [a, b]: [us
     }
 }
 
-/// Lost in the half cells at the ends of a link, and between these [W].
-pub fn lost(wet: &Wet, link: &MeshLink, q: f64, now: &TimeData, w: &Workspace<f64>) -> [f64; 2] {
-    let Some(compression) = &wet.compression else {
-        let in_halves = q * q * link.half_cells;
-        return [in_halves, q * driving(wet, link, now, w) - in_halves];
-    };
-    let ends = [link.from, link.to];
-    let cells = ends.iter().filter(|place| matches!(place, Place::Cell(_))).count();
-    let half = link.half_cells / cells.max(1) as f64;
-    let at = |place: Place, towards: f64| {
-        let outer = compression.enthalpy(pressure_at(place, now, w));
-        match place {
-            Place::Cell(_) => [
-                outer,
-                behind(
-                    compression,
-                    potential_at(compression, place, now, w) + towards * half * q,
-                ),
-            ],
-            _ => [outer; 2],
-        }
-    };
-    let [[a, inner_a], [b, inner_b]] = [at(link.from, -1.0), at(link.to, 1.0)];
-    [q * ((a - inner_a) + (inner_b - b)), q * (inner_a - inner_b)]
-}
-
 /// `h` where Ψ has a value.
 fn behind(compression: &Compression, potential: f64) -> f64 {
     compression.enthalpy(compression.pressure_of_potential(potential))
@@ -121,5 +93,7 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
         return 0.0;
     };
     let cells = w.fluid.pressure.iter().zip(&w.fluid.swelling);
-    cells.map(|(&p, &area)| compression.energy(p, area)).sum::<f64>() * fluid.ds
+    let in_cells: f64 = cells.map(|(&p, &area)| compression.energy(p, area)).sum();
+    let [_, in_vessels] = super::stored::in_vessels(system, w);
+    in_cells * fluid.ds + in_vessels
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{ENERGY_RATES, EnergyRate, add, compressed, tubes};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, Place};
-use crate::discrete::residual::fluid::{bridge_drops, pressure_at};
+use crate::discrete::residual::fluid::{driving, over_bridge, pressure_at, through_bridge};
 use crate::discrete::residual::rows::{driven, mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
@@ -228,14 +228,18 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     };
     for (n, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
         let q = w.fluid.flow[n];
-        let [in_halves, between] = compressed::lost(wet, link, q, now, w);
+        let volume = w.fluid.at_mean_density(n, q);
+        let in_halves = volume * volume * link.half_cells;
         add(out, EnergyRate::Bladders, in_halves);
         if let Some(pump) = link.pump {
-            add(out, EnergyRate::Ports, q * now.pump_pressure[pump]);
+            add(out, EnergyRate::Ports, volume * now.pump_pressure[pump]);
         }
         let [in_valve, rest] = match &link.flow {
-            None => tubes::creeping(link, [conductance, q, between]),
-            Some(flow) => tubes::dissipation(link, flow, [now.resistance[n], q, driven(wet, link, now, w, n)], w),
+            None => {
+                let between = volume * driving(link, now, w, n) - in_halves;
+                tubes::creeping(link, [conductance, volume, between])
+            }
+            Some(flow) => tubes::dissipation(link, flow, [now.resistance[n], volume, driven(link, now, w, n)], n, w),
         };
         add(out, EnergyRate::Rectifiers, in_valve);
         add(
@@ -269,7 +273,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     }
     for (b, &MeshBridge { number, from, to }) in fluid.bridges.iter().enumerate() {
         let bridge = &network.bridges[number];
-        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.fluid.bridge[b]);
+        let ((forward, backward), _) = over_bridge(wet, fluid, b, now, w);
         let (qf, qb) = (bridge.valve.flow(forward), bridge.valve.flow(backward));
         let conductance = network.turbines[bridge.turbine].conductance;
         add(
@@ -278,7 +282,8 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
             conductance * w.fluid.bridge[b] * w.fluid.bridge[b],
         );
         add(out, EnergyRate::Rectifiers, 2.0 * (qf * forward + qb * backward));
-        cross(from, to, [qf - qb, qf - qb, 0.0], out);
+        let q = through_bridge(wet, fluid, b, now, w);
+        cross(from, to, [q, q, 0.0], out);
     }
 }
 

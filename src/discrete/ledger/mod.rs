@@ -9,7 +9,7 @@ mod solid;
 mod stored;
 mod tubes;
 
-pub use compressed::{area_rate, lost, pressure_rate};
+pub use compressed::{area_rate, pressure_rate};
 pub use fluid::pressure_rates;
 pub use jump::{side, strokes, travel};
 pub use reactions::compared;
@@ -224,7 +224,7 @@ pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     let mut e = solid::energies(system, now, &w);
     e.bladders = stored::energy(system, &w);
     e.compression = compressed::energy(system, &w);
-    e.accumulators = stored::accumulated(system, &w);
+    [e.accumulators, _] = stored::in_vessels(system, &w);
     e.tubes = tubes::kinetic(system, &w);
     e.contacts = touching::energy(system, &w);
     e.springs = system.attached.iter().map(|attached| attached.energy(system, &w)).sum();

@@ -3,7 +3,7 @@
 use super::fluid::stored_rate;
 use super::{ENERGY_RATES, compressed, rate_count};
 use crate::discrete::fluid_mesh::{MeshBridge, Place};
-use crate::discrete::residual::fluid::{bridge_drops, pressure_at};
+use crate::discrete::residual::fluid::{pressure_at, through_bridge};
 use crate::discrete::{System, TimeData, Workspace};
 use crate::model::{LumpedKind, Wet};
 
@@ -40,10 +40,8 @@ pub fn flows(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64
     for (link, &q) in fluid.links.iter().zip(&w.fluid.flow) {
         across(link.from, link.to, q);
     }
-    for (&MeshBridge { number, from, to }, &drop) in fluid.bridges.iter().zip(&w.fluid.bridge) {
-        let valve = &wet.network.bridges[number].valve;
-        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), drop);
-        across(from, to, valve.flow(forward) - valve.flow(backward));
+    for (k, &MeshBridge { from, to, .. }) in fluid.bridges.iter().enumerate() {
+        across(from, to, through_bridge(wet, fluid, k, now, w));
     }
     of_lumped(system, w, out);
     for (out, &flow) in out[wet.network.ports.len()..].iter_mut().zip(&now.source_flow) {

@@ -25,11 +25,18 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     wet.bladder_length * sum
 }
 
-/// Energy in accumulators, [E60].
-pub fn accumulated(system: &System, w: &Workspace<f64>) -> f64 {
-    let accumulators = system.fluid.iter().flat_map(|fluid| &fluid.accumulators);
-    let volumes = accumulators.zip(&w.fluid.accumulated);
-    volumes.map(|(one, &volume)| one.law.energy(volume)).sum()
+/// Energy of accumulators, [E60], and of compressed fluid in them, [E67].
+pub fn in_vessels(system: &System, w: &Workspace<f64>) -> [f64; 2] {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return [0.0; 2];
+    };
+    let mut sums = [0.0; 2];
+    for (one, &content) in fluid.accumulators.iter().zip(&w.fluid.accumulated) {
+        let pressure = w.fluid.junction[one.junction];
+        let energies = wet.vessel_energy(&one.law, content, pressure);
+        sums = [sums[0] + energies[0], sums[1] + energies[1]];
+    }
+    sums
 }
 
 /// Volume change stored in each component.

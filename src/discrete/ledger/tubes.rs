@@ -21,15 +21,18 @@ pub fn creeping(link: &MeshLink, [conductance, q, lost]: [f64; 3]) -> [f64; 2] {
     [lost - rest, rest]
 }
 
-/// The same of a tube in which flow is an unknown, [E51]: its resistance R/o at its opening [Pa s/m^3], flow [m^3/s], and what is
-/// left to drive it [Pa].
+/// The same of a tube in which flow is an unknown, [E51]: its resistance R/o at its opening [Pa s/m^3], flow at its mean density [m^3/s], and
+/// what is left to drive it [Pa]; k its number among the links.
 pub fn dissipation(
     link: &MeshLink,
     flow: &MeshFlow,
     [resistance, q, driven]: [f64; 3],
+    k: usize,
     w: &Workspace<f64>,
 ) -> [f64; 2] {
-    let slips: f64 = self::slips(flow, q, w).map(|(r, slip, ..)| r * slip * slip).sum();
+    let slips: f64 = self::slips(flow, w).map(|(r, slip, ..)| r * slip * slip).sum();
+    let slips = w.fluid.at_mean_density(k, slips);
+    let lost = w.fluid.at_mean_density(k, flow.tube.loss(w.fluid.flow[k]));
     let left = driven - q * (link.half_cells + link.of_pump);
     let nearly_shut = NEARLY_SHUT * resistance > link.resistance;
     let (in_valve, steady) = match &link.check_valve {
@@ -50,27 +53,27 @@ pub fn dissipation(
             (q * drop, steady)
         }
     };
-    [in_valve, q * q * link.of_pump + steady + q * flow.tube.loss(q) + slips]
+    [in_valve, q * q * link.of_pump + steady + q * lost + slips]
 }
 
-/// Of each branch of a tube's friction: resistance, `q - j`, rate, and `j`.
-fn slips(flow: &MeshFlow, q: f64, w: &Workspace<f64>) -> impl Iterator<Item = (f64, f64, f64, f64)> {
+/// Of each branch of a tube's friction: resistance, `y - k` of [E66], rate, and `k`.
+fn slips(flow: &MeshFlow, w: &Workspace<f64>) -> impl Iterator<Item = (f64, f64, f64, f64)> {
+    let moving = w.fluid.moving[flow.number];
     let own = flow
         .branch
         .map_or(&[][..], |first| &w.fluid.branch[first..first + BRANCHES]);
     let laws = flow.tube.branches();
     laws.zip(own)
-        .map(move |((resistance, rate), &j)| (resistance, q - j, rate, j))
+        .map(move |((resistance, rate), &j)| (resistance, moving - j, rate, j))
 }
 
-/// Kinetic energy of the fluid in tubes: `Σ I q²/2`, and what the branches of friction store, [E51].
+/// Kinetic energy of the fluid in tubes: `Σ I y²/2`, y = q without compression, and what the branches of friction store, [E51] [E66].
 pub fn kinetic(system: &System, w: &Workspace<f64>) -> f64 {
     let Some(fluid) = &system.fluid else { return 0.0 };
-    let flows = fluid.links.iter().zip(&w.fluid.flow);
-    let flows = flows.filter_map(|(link, &q)| Some((link.flow?, q)));
-    let each = flows.map(|(flow, q)| {
-        let branches = slips(&flow, q, w).map(|(resistance, _, rate, j)| resistance / rate * j * j);
-        0.5 * (flow.tube.inertance * q * q + branches.sum::<f64>())
+    let each = fluid.links.iter().filter_map(|link| link.flow).map(|flow| {
+        let moving = w.fluid.moving[flow.number];
+        let branches = slips(&flow, w).map(|(resistance, _, rate, j)| resistance / rate * j * j);
+        0.5 * (flow.tube.inertance * moving * moving + branches.sum::<f64>())
     });
     each.sum()
 }

@@ -92,12 +92,10 @@ impl Look<'_> {
             return 0.0;
         };
         let mut power = 0.0;
-        for (link, q) in fluid.links.iter().zip(&w.fluid.flow) {
+        for (k, (link, &q)) in fluid.links.iter().zip(&w.fluid.flow).enumerate() {
             if matches!(link.kind, LinkKind::Turbine(_)) {
-                power += match wet.compression {
-                    None => q * q * link.resistance,
-                    Some(_) => ledger::lost(wet, link, *q, self.now, &w)[1],
-                };
+                let volume = w.fluid.at_mean_density(k, q);
+                power += volume * volume * link.resistance;
             }
         }
         for (bridge, drop) in fluid.bridges.iter().zip(&w.fluid.bridge) {
@@ -141,7 +139,7 @@ pub fn largest_flow(system: &System, now: &TimeData, w: &Workspace<f64>) -> Opti
         Place::Junction(_) => 0.0,
     };
     let rate = match link.flow.filter(|flow| flow.tube.inertance > 0.0) {
-        Some(flow) => w.fluid.flow_rate[flow.number],
+        Some(flow) => w.fluid.moving_rate[flow.number],
         None => g * (rate(link.from) - rate(link.to)),
     };
     Some((q.abs(), q.signum() * rate, wet.network.tube(link.number)))

@@ -116,7 +116,7 @@ fn accumulating(system: &System) -> bool {
     system
         .fluid
         .as_ref()
-        .is_some_and(|fluid| !fluid.accumulators.is_empty())
+        .is_some_and(|fluid| fluid.accumulators.iter().any(|one| one.number.is_some()))
 }
 
 fn compressed(system: &System) -> bool {

@@ -40,7 +40,7 @@ fn of_network(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
     let kept = fluid
         .accumulators
         .iter()
-        .map(|one| &network.accumulators[one.number].name);
+        .filter_map(|one| Some(&network.accumulators[one.number?].name));
     let mut all = vec![];
     for (name, short) in short("port", names) {
         let column = |what: &str, unit, about: &str| ProbeColumn {
@@ -117,7 +117,8 @@ fn network_values(look: &Look, integrals: Option<&[f64]>, put: &mut impl FnMut(f
             put(ports::let_in(look.system, integrals, port));
         }
     }
-    for (one, &volume) in fluid.accumulators.iter().zip(&look.w.fluid.accumulated) {
+    let vessels = fluid.accumulators.iter().zip(&look.w.fluid.accumulated);
+    for (one, &volume) in vessels.filter(|(one, _)| one.number.is_some()) {
         put(look.w.fluid.junction[one.junction]);
         put(volume);
     }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshLink, MeshSource, Place};
-use crate::discrete::{System, TimeData, Workspace};
+use crate::discrete::{FluidMesh, System, TimeData, Workspace};
 use crate::model::{Compression, ROWS, Storage, Wet};
 use crate::numerics::Scalar;
 
@@ -152,25 +152,35 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
         }
     }
     for (k, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
-        if link.flow.is_none() {
-            let drop = driving(wet, link, now, w);
-            w.fluid.flow[k] = match &link.check_valve {
-                None => drop * conductance,
-                Some(_) if conductance == 0.0 => T::zero(),
-                Some(valve) => valve.flow_behind(1.0 / conductance, drop),
-            };
+        let (drop, density) = along(wet, link.from, link.to, now, w);
+        w.fluid.drop[k] = drop;
+        if let Some(density) = density {
+            w.fluid.density[k] = density;
         }
-        let q = w.fluid.flow[k];
+        let q = match link.flow {
+            None => {
+                let driving = driving(link, now, w, k);
+                let volume = match &link.check_valve {
+                    None => driving * conductance,
+                    Some(_) if conductance == 0.0 => T::zero(),
+                    Some(valve) => valve.flow_behind(1.0 / conductance, driving),
+                };
+                w.fluid.at_ambient_density(k, volume)
+            }
+            Some(flow) => {
+                let moving = w.fluid.moving[flow.number];
+                w.fluid.root_of_density(k).map_or(moving, |root| moving * root)
+            }
+        };
+        w.fluid.flow[k] = q;
         deliver(link.from, -q, w);
         deliver(link.to, q, w);
     }
     for &MeshSource { number, into, .. } in &fluid.sources {
         deliver(into, T::constant(now.source_flow[number]), w);
     }
-    for (k, &MeshBridge { number, from, to }) in fluid.bridges.iter().enumerate() {
-        let bridge = &wet.network.bridges[number];
-        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.fluid.bridge[k]);
-        let q = bridge.valve.flow(forward) - bridge.valve.flow(backward);
+    for (k, &MeshBridge { from, to, .. }) in fluid.bridges.iter().enumerate() {
+        let q = through_bridge(wet, fluid, k, now, w);
         deliver(from, -q, w);
         deliver(to, q, w);
     }
@@ -178,30 +188,58 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
 
 /// What drives flow over a link: the drop over it and what its pump adds.
 #[inline]
-pub fn driving<T: Scalar>(wet: &Wet, link: &MeshLink, now: &TimeData, w: &Workspace<T>) -> T {
-    let drop = drop_over(wet, link, now, w);
+pub fn driving<T: Scalar>(link: &MeshLink, now: &TimeData, w: &Workspace<T>, k: usize) -> T {
+    let drop = w.fluid.drop[k];
     match link.pump {
         None => drop,
         Some(pump) => drop + now.pump_pressure[pump],
     }
 }
 
-/// The pressure drop over a link, or that of Ψ, [E55].
+/// `[E64]` Pressure drop between two places, and the mean density between them over that at ambient pressure, where fluid is compressed:
+///
+/// ```text
+/// r̄² = (Ψ_a - Ψ_b)/(h_a - h_b)      D = r̄ (h_a - h_b) = (Ψ_a - Ψ_b)/r̄      q = r̄ Q
+/// ```
+///
+/// Q is the volume that flows at that density. Then `Q = D/R` is [E55], and `q (h_a - h_b) = Q D`: all that lies between the places takes
+/// the pressure drop D under the flow Q as it does of incompressible fluid, in energy too.
 #[inline]
-pub fn drop_over<T: Scalar>(wet: &Wet, link: &MeshLink, now: &TimeData, w: &Workspace<T>) -> T {
+pub fn along<T: Scalar>(wet: &Wet, from: Place, to: Place, now: &TimeData, w: &Workspace<T>) -> (T, Option<T>) {
+    let (a, b) = (pressure_at(from, now, w), pressure_at(to, now, w));
     match &wet.compression {
-        None => pressure_at(link.from, now, w) - pressure_at(link.to, now, w),
-        Some(compression) => potential_at(compression, link.from, now, w) - potential_at(compression, link.to, now, w),
+        None => (a - b, None),
+        Some(compression) => {
+            let density = compression.mean_density(a, b);
+            (
+                (compression.brought(a) - compression.brought(b)) * density,
+                Some(density),
+            )
+        }
     }
 }
 
-/// `Ψ` at a place.
+/// Pressure drops over the two pairs of valves of a bridge, and mean density, [E10] [E64].
 #[inline]
-pub fn potential_at<T: Scalar>(compression: &Compression, place: Place, now: &TimeData, w: &Workspace<T>) -> T {
-    match place {
-        Place::Cell(c) => w.fluid.potential[c],
-        Place::Junction(_) | Place::Port(_) => compression.potential(pressure_at(place, now, w)),
-    }
+pub fn over_bridge<T: Scalar>(
+    wet: &Wet,
+    fluid: &FluidMesh,
+    k: usize,
+    now: &TimeData,
+    w: &Workspace<T>,
+) -> ((T, T), Option<T>) {
+    let MeshBridge { from, to, .. } = fluid.bridges[k];
+    let (drop, density) = along(wet, from, to, now, w);
+    (bridge_drops(drop, w.fluid.bridge[k]), density)
+}
+
+/// Flow through a bridge, counted at ambient density [m^3/s].
+#[inline]
+pub fn through_bridge<T: Scalar>(wet: &Wet, fluid: &FluidMesh, k: usize, now: &TimeData, w: &Workspace<T>) -> T {
+    let valve = &wet.network.bridges[fluid.bridges[k].number].valve;
+    let ((forward, backward), density) = over_bridge(wet, fluid, k, now, w);
+    let volume = valve.flow(forward) - valve.flow(backward);
+    density.map_or(volume, |density| volume * density)
 }
 
 /// `[E10]` Pressure drops over the two pairs of valves of a symmetric bridge, `d` between its ports and `w` over the

@@ -1,12 +1,12 @@
 //! The equations, one block after the other.
 
 use super::around::{self, node_tangent};
-use super::fluid::{bridge_drops, driving, pressure_at};
+use super::fluid::{driving, over_bridge};
 use crate::discrete::attached::at_node;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, MeshLink, Place};
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace, touching};
-use crate::model::{Kinematics, LumpedKind, Wet};
+use crate::model::{Kinematics, LumpedKind};
 use crate::numerics::{Planar, Scalar};
 
 /// `[E14]` Momentum of each node (A.5), in the conservative form telescoping:
@@ -258,36 +258,43 @@ pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
             if let Place::Junction(j) = place
                 && fluid.accelerated[j]
             {
-                r[rows.start + j] += w.fluid.flow_rate[flow.number] * sign;
+                r[rows.start + j] += w.fluid.moving_rate[flow.number] * sign;
             }
         }
     }
 }
 
-/// Flow of each tube in which it does not creep, [E51]; behind a check valve that which [E7] lets through, `q = q_v(R, Δ)`, written as
-/// `q = q_v(R + κ, Δ + κ q)`. With κ what inertia and the memory of friction resist along an implicit step, the right-hand side does
-/// not depend on q there, and Newton's iteration does not see the valve snap.
+/// `[E66]` Flow of each tube in which it does not creep, [E51]. Where fluid is compressed it is written in `y = q/√r̄` and `k_i = j_i/√r̄`, r̄ and D of
+/// [E64], viscosity and losses at the mean density:
+///
+/// ```text
+/// √r̄ I dy/dt + Σ_i r_i (y - k_i)/√r̄ + Δp_loss(q)/r̄ + (R_half + R/o) Q = D      Q = y/√r̄      dk_i/dt = n_i (ν/r²) (y - k_i)/r̄
+/// ```
+///
+/// so that what is stored, `I y²/2 + Σ r_i r² k_i²/(2 n_i ν)`, changes by `Q D` less what is lost, whatever the density does. Behind a check
+/// valve it is the flow which [E7] lets through, `Q = q_v(R, Δ)`, written as `Q = q_v(R + κ, Δ + κ Q)`. With κ what inertia and the memory of
+/// friction resist along an implicit step, the right-hand side does not depend on Q there, and Newton's iteration does not see the valve snap.
 pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
-        return;
-    };
+    let Some(fluid) = &system.fluid else { return };
     let own = &system.layout.network;
     for (k, link) in fluid.links.iter().enumerate() {
         let Some(MeshFlow { number, branch, tube }) = link.flow else {
             continue;
         };
-        let q = w.fluid.flow[k];
+        let moving = w.fluid.moving[number];
         if let Some(first) = branch {
             for (i, (_, rate)) in (first..).zip(tube.branches()) {
-                r[own.branch.start + i] = w.fluid.branch_rate[i] - (q - w.fluid.branch[i]) * rate;
+                let pulled = w.fluid.at_mean_density(k, (moving - w.fluid.branch[i]) * rate);
+                r[own.branch.start + i] = w.fluid.branch_rate[i] - pulled;
             }
         }
-        let driven = driven(wet, link, now, w, k);
+        let driven = driven(link, now, w, k);
+        let volume = w.fluid.root_of_density(k).map_or(moving, |root| moving / root);
         r[own.flow.start + number] = match &link.check_valve {
-            None => (q * (link.half_cells + link.of_pump) - driven) * now.opening[k] + q * link.resistance,
+            None => (volume * (link.half_cells + link.of_pump) - driven) * now.opening[k] + volume * link.resistance,
             Some(valve) => {
                 let along = tube.resistance_along_a_step(now.cj);
-                q - valve.flow_behind(1.0 / now.conductance[k] + along, driven + q * along)
+                volume - valve.flow_behind(1.0 / now.conductance[k] + along, driven + volume * along)
             }
         };
     }
@@ -295,20 +302,23 @@ pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &m
 
 /// What is left of what drives the flow of a tube that does not creep, for its check valve and all linear resistance [Pa].
 #[inline]
-pub fn driven<T: Scalar>(wet: &Wet, link: &MeshLink, now: &TimeData, w: &Workspace<T>, k: usize) -> T {
-    let mut left = driving(wet, link, now, w);
+pub fn driven<T: Scalar>(link: &MeshLink, now: &TimeData, w: &Workspace<T>, k: usize) -> T {
+    let mut left = driving(link, now, w, k);
     let Some(MeshFlow { number, branch, tube }) = link.flow else {
         return left;
     };
-    let q = w.fluid.flow[k];
-    left -= tube.loss(q);
+    left -= w.fluid.at_mean_density(k, tube.loss(w.fluid.flow[k]));
+    let root = w.fluid.root_of_density(k);
     if tube.inertance > 0.0 {
-        left -= w.fluid.flow_rate[number] * tube.inertance;
+        let accelerates = w.fluid.moving_rate[number] * tube.inertance;
+        left -= root.map_or(accelerates, |root| accelerates * root);
     }
     if let Some(first) = branch {
+        let mut lags = T::zero();
         for (i, (resistance, _)) in (first..).zip(tube.branches()) {
-            left -= (q - w.fluid.branch[i]) * resistance;
+            lags += (w.fluid.moving[number] - w.fluid.branch[i]) * resistance;
         }
+        left -= root.map_or(lags, |root| lags / root);
     }
     left
 }
@@ -319,9 +329,9 @@ pub fn bridges<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: 
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
-    for (k, &MeshBridge { number, from, to }) in fluid.bridges.iter().enumerate() {
+    for (k, &MeshBridge { number, .. }) in fluid.bridges.iter().enumerate() {
         let bridge = &wet.network.bridges[number];
-        let (forward, backward) = bridge_drops(pressure_at(from, now, w) - pressure_at(to, now, w), w.fluid.bridge[k]);
+        let ((forward, backward), _) = over_bridge(wet, fluid, k, now, w);
         let through = w.fluid.bridge[k] * wet.network.turbines[bridge.turbine].conductance;
         r[system.layout.network.bridge.start + k] = bridge.valve.flow(forward) + bridge.valve.flow(backward) - through;
     }

@@ -67,15 +67,11 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
         for (k, one) in fluid.accumulators.iter().enumerate() {
             let unknown = l.network.junction.start + one.junction;
             (w.fluid.accumulated[k], w.fluid.accumulated_rate[k]) = (y[unknown], yp[unknown]);
-            w.fluid.junction[one.junction] = one.law.pressure(y[unknown]);
+            w.fluid.junction[one.junction] = wet.vessel_pressure(&one.law, y[unknown]);
         }
         copy(&mut w.fluid.bridge, y, &l.network.bridge);
-        for (link, q) in fluid.links.iter().zip(&mut w.fluid.flow) {
-            if let Some(flow) = link.flow {
-                *q = y[l.network.flow.start + flow.number];
-            }
-        }
-        copy(&mut w.fluid.flow_rate, yp, &l.network.flow);
+        copy(&mut w.fluid.moving, y, &l.network.flow);
+        copy(&mut w.fluid.moving_rate, yp, &l.network.flow);
         copy(&mut w.fluid.branch, y, &l.network.branch);
         copy(&mut w.fluid.branch_rate, yp, &l.network.branch);
         for (k, lumped) in wet.lumped.iter().enumerate() {

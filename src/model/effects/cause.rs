@@ -18,12 +18,8 @@ pub enum Cause {
     Refused(Obstacle),
     /// It comes by name only, and was not asked for.
     Unasked,
-    /// The program has it for incompressible fluid alone.
-    Compressed,
     /// A port's flow enters a junction where only tubes meet, whose inertia does not let it.
     FedJunction,
-    /// Inertia and losses of flow in tubes stand against it, and matter more; its own number.
-    Yields(Weighed),
     /// The published form has no shear.
     Unsheared,
     /// The fluid has no mass.
@@ -160,17 +156,8 @@ impl Display for Cause {
             Self::Asked => f.write_str("asked for"),
             Self::LeftOut => f.write_str("left out as asked"),
             Self::Refused(obstacle) => write!(f, "cannot be left out: {}", obstacle.what),
-            Self::Compressed => f.write_str("the fluid is compressed, and its flow creeps"),
             Self::Unasked => {
                 f.write_str("flow in tubes creeps in the published form, unless this is asked for by name")
-            }
-            Self::Yields(own) => {
-                f.write_str("left out for inertia and losses of flow in tubes, which are not simulated with it")?;
-                if own.value.is_nan() {
-                    Ok(())
-                } else {
-                    write!(f, " and matter more; {own}")
-                }
             }
             Self::Unsheared => f.write_str("the published form does not shear"),
             Self::Massless => f.write_str("the fluid has no mass"),

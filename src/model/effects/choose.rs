@@ -9,7 +9,6 @@ use crate::case::schema::{
 };
 use crate::error::{Code, Violation};
 use crate::model::Network;
-use crate::model::network::Link;
 
 /// What decisions are made from.
 pub(super) struct Chooser<'a> {
@@ -67,24 +66,13 @@ impl<'a> Chooser<'a> {
             }
             return (false, why);
         }
-        let decided = self.decide_possible(effect);
-        let through = self.network.and_then(incompressible).filter(|_| decided.0);
-        if let (Effect::Compressibility, Some(through)) = (effect, through) {
-            let what = format!("fluid that is compressed is not simulated in {through}");
-            let hint = format!("leave out {through}, or set compressibility to \"off\"");
-            self.refuse(effect, &what, &hint);
-        }
-        decided
+        self.decide_possible(effect)
     }
 
     /// Refuses an effect that is asked for by name where the case itself leaves it without a meaning: what it needs is off by name,
     /// what it is about is not given, or it is not simulated with what is. Where the program leaves out what it needs it goes along.
     fn contradicts(&mut self, effect: Effect, why: &Cause) {
         let (what, hint) = match why {
-            Cause::Compressed => (
-                format!("{effect} of a fluid that is compressed is not simulated"),
-                "leave it out, or set compressibility to \"off\"".into(),
-            ),
             Cause::Needs(missing) => {
                 let Some(off) = self.off_by_name(*missing) else {
                     return;
@@ -142,15 +130,7 @@ impl<'a> Chooser<'a> {
                 }
             },
             Choice::Auto if effect.by_name(self.case.formulation) => (false, Cause::Unasked),
-            Choice::Auto if effect == Effect::Compressibility && self.yields() => {
-                let value = self.scene.map_or(f64::NAN, Scene::compression_of_fluid);
-                let (what, tolerance) = (Number::Compression, self.tolerance);
-                let own = Weighed { what, value, tolerance };
-                (false, Cause::Yields(own))
-            }
-            Choice::Auto if effect.of_inertial_tubes() && self.network.is_some_and(|n| n.fed_junction().is_some()) => {
-                (false, Cause::FedJunction)
-            }
+            Choice::Auto if effect.of_inertial_tubes() && self.feeds_junction() => (false, Cause::FedJunction),
             Choice::Auto => match self.scene {
                 None => (true, Cause::Full),
                 Some(scene) => match self.obstacle(effect) {
@@ -174,7 +154,6 @@ impl<'a> Chooser<'a> {
             Effect::Compressibility if self.fluid().is_none_or(|fluid| !fluid.is_compressible()) => {
                 Err(Cause::Given(false))
             }
-            _ if effect.of_tubes() && self.set.has(Effect::Compressibility) => Err(Cause::Compressed),
             _ if effect.of_tubes() && self.fluid().is_some_and(|fluid| fluid.density_kg_m3 == 0.0) => {
                 Err(Cause::Massless)
             }
@@ -184,32 +163,10 @@ impl<'a> Chooser<'a> {
         }
     }
 
-    /// Whether compression of a liquid is left out for inertia and losses of flow in tubes, with which it is not simulated: where these
-    /// are asked for, where they are larger by the scene's numbers, and in the full model where the liquid holds no gas.
-    fn yields(&self) -> bool {
-        let Some(liquid) = self.fluid().filter(|fluid| fluid.kind == FluidKind::Liquid) else {
-            return false;
-        };
-        if Effect::OF_TUBES
-            .iter()
-            .any(|effect| self.choices.of(*effect) == Choice::On)
-        {
-            return true;
-        }
-        let unasked = Effect::TubeInertia.by_name(self.case.formulation);
-        let left_out = Effect::OF_TUBES
-            .iter()
-            .all(|effect| self.choices.of(*effect) == Choice::Off);
-        if unasked || left_out || self.network.is_none_or(|network| network.tubes == 0) || liquid.density_kg_m3 == 0.0 {
-            return false;
-        }
-        match self.scene {
-            None => liquid.gas() == 0.0,
-            Some(scene) => {
-                let tubes = scene.tubes(self.tolerance);
-                tubes.inertia.max(tubes.losses) > scene.compression_of_fluid()
-            }
-        }
+    /// Whether a port's flow enters a junction of tubes alone, in which nothing is compressed that would take it up.
+    fn feeds_junction(&self) -> bool {
+        let stores = self.set.has(Effect::Compressibility);
+        !stores && self.network.is_some_and(|network| network.fed_junction().is_some())
     }
 
     fn fluid(&self) -> Option<&Fluid> {
@@ -332,18 +289,6 @@ impl<'a> Chooser<'a> {
             _ => (true, Cause::Given(true)),
         }
     }
-}
-
-/// What a network has that takes incompressible fluid alone.
-fn incompressible(network: &Network) -> Option<&'static str> {
-    let in_tubes = |what: fn(&Link) -> bool| network.links.iter().any(what);
-    let all = [
-        (!network.bridges.is_empty(), "rectifiers of real check valves"),
-        (in_tubes(|link| link.check_valve.is_some()), "check valves"),
-        (in_tubes(|link| link.pump.is_some()), "pumps"),
-        (!network.accumulators.is_empty(), "accumulators"),
-    ];
-    all.into_iter().find_map(|(there, what)| there.then_some(what))
 }
 
 /// Whether numbers of a beam that nothing is attached to decide on an effect.

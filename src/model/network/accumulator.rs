@@ -10,10 +10,12 @@ use crate::numerics::Scalar;
 /// dV/dt = Σ q
 /// elastic   p = V/C                                    E = V²/(2C)
 /// gas       p = p_0 ((1 - V/V_0)^-n - 1)               E = p_0 V_0 (((1 - V/V_0)^(1-n) - 1)/(n - 1) - V/V_0)
+/// rigid     V = 0                                      E = 0
 /// ```
 ///
 /// `V_0` the volume of the gas above the fluid at the ambient pressure `p_0`, which presses it together by `p_abs V^n` = const;
-/// `n = 1`: `E = -p_0 V_0 (ln(1 - V/V_0) + V/V_0)`. E is the work `∫ p dV`: an accumulator dissipates nothing.
+/// `n = 1`: `E = -p_0 V_0 (ln(1 - V/V_0) + V/V_0)`. E is the work `∫ p dV`: an accumulator dissipates nothing. What fluid that is compressed
+/// does in it is [`crate::model::Compression::in_vessel`]; a rigid tank stores nothing else.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Accumulator {
     /// Its name.
@@ -33,6 +35,13 @@ pub enum AccumulatorLaw {
     Elastic {
         /// `C` [m^3/Pa].
         compliance: f64,
+        /// Fluid in it at ambient pressure [m^3], which counts where that is compressed.
+        holds: f64,
+    },
+    /// Of a tank whose walls do not give way.
+    Rigid {
+        /// Fluid in it at ambient pressure [m^3].
+        holds: f64,
     },
     /// Of gas above the fluid.
     Gas {
@@ -49,9 +58,14 @@ impl AccumulatorLaw {
     /// As a case writes it; `ambient` is the absolute ambient pressure [Pa].
     pub(super) fn new(written: &Written, ambient: f64) -> Self {
         match written.kind {
-            AccumulatorKind::Elastic { compliance_m3_pa } => Self::Elastic {
+            AccumulatorKind::Elastic {
+                compliance_m3_pa,
+                volume_m3,
+            } => Self::Elastic {
                 compliance: compliance_m3_pa,
+                holds: volume_m3,
             },
+            AccumulatorKind::Tank { volume_m3 } => Self::Rigid { holds: volume_m3 },
             AccumulatorKind::Gas {
                 volume_m3,
                 polytropic_exponent,
@@ -63,11 +77,20 @@ impl AccumulatorLaw {
         }
     }
 
-    /// Gauge pressure [Pa] by the volume [m^3]; not a number where there is no gas left.
+    /// Fluid in it at ambient pressure [m^3].
+    pub fn volume_at_rest(&self) -> f64 {
+        match *self {
+            Self::Elastic { holds, .. } | Self::Rigid { holds } => holds,
+            Self::Gas { .. } => 0.0,
+        }
+    }
+
+    /// Gauge pressure [Pa] by the volume [m^3]; not a number where there is no gas left, and in a tank, whose volume says nothing of it.
     #[inline]
     pub fn pressure<T: Scalar>(&self, volume: T) -> T {
         match *self {
-            Self::Elastic { compliance } => volume * (1.0 / compliance),
+            Self::Elastic { compliance, .. } => volume * (1.0 / compliance),
+            Self::Rigid { .. } => T::constant(f64::NAN),
             Self::Gas {
                 volume: of_gas,
                 ambient,
@@ -87,7 +110,8 @@ impl AccumulatorLaw {
     /// Volume [m^3] by gauge pressure [Pa].
     pub fn volume(&self, pressure: f64) -> f64 {
         match *self {
-            Self::Elastic { compliance } => compliance * pressure,
+            Self::Elastic { compliance, .. } => compliance * pressure,
+            Self::Rigid { .. } => 0.0,
             Self::Gas {
                 volume,
                 ambient,
@@ -99,7 +123,8 @@ impl AccumulatorLaw {
     /// Volume taken in per pressure [m^3/Pa] at a gauge pressure [Pa].
     pub fn compliance(&self, pressure: f64) -> f64 {
         match *self {
-            Self::Elastic { compliance } => compliance,
+            Self::Elastic { compliance, .. } => compliance,
+            Self::Rigid { .. } => 0.0,
             Self::Gas {
                 volume,
                 ambient,
@@ -111,7 +136,8 @@ impl AccumulatorLaw {
     /// Energy that it stores, `∫ p dV` from ambient pressure on [J].
     pub fn energy(&self, volume: f64) -> f64 {
         match *self {
-            Self::Elastic { compliance } => 0.5 * volume * volume / compliance,
+            Self::Elastic { compliance, .. } => 0.5 * volume * volume / compliance,
+            Self::Rigid { .. } => 0.0,
             Self::Gas {
                 volume: of_gas,
                 ambient,
@@ -142,7 +168,11 @@ mod tests {
             ambient: 101_325.0,
             exponent,
         };
-        for law in [AccumulatorLaw::Elastic { compliance: 1e-12 }, gas(1.0), gas(1.4)] {
+        let elastic = AccumulatorLaw::Elastic {
+            compliance: 1e-12,
+            holds: 0.0,
+        };
+        for law in [elastic, gas(1.0), gas(1.4)] {
             for pressure in [-9e4, -1e3, 0.0, 1.0, 1e4, 1e6] {
                 let volume = law.volume(pressure);
                 assert!((law.pressure(volume) - pressure).abs() <= 1e-9 * pressure.abs());

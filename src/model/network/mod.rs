@@ -291,7 +291,7 @@ impl Network {
             .iter()
             .filter(|one| here(&&self.component_of_junction[one.junction]));
         bladders as f64 * wet.compliance() * wet.bladder_length
-            + vessels.map(|one| one.law.compliance(0.0)).sum::<f64>()
+            + vessels.map(|one| wet.vessel_compliance(&one.law, 0.0)).sum::<f64>()
     }
 
     /// The most that prescribed flows bring into one of the networks that have tubes until `end` [s]: no more than that has to pass

@@ -47,6 +47,8 @@ const SLOW: f64 = 1e-3;
 pub struct TubeFlow {
     /// Radius of the circle [m].
     pub radius: f64,
+    /// `A l` [m^3].
+    pub volume: f64,
     /// `I` [kg/m^4]; 0 where the fluid has no inertia.
     pub inertance: f64,
     /// `ν/r²` [1/s].
@@ -104,6 +106,7 @@ impl TubeFlow {
         let laminar = viscosity * tube.length_m / duct::circle(radius);
         Self {
             radius,
+            volume: area * tube.length_m,
             inertance: density * tube.length_m / area,
             viscous_rate: viscosity / (density * radius * radius),
             laminar,

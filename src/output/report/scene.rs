@@ -110,9 +110,10 @@ fn wiring(case: &Case) -> Option<Value> {
         .map(|t| json!({"from": point(&t.points[0]), "to": point(&t.points[1]), "valve": within(t)}));
     let accumulators = found.accumulators.iter().map(|(at, one)| {
         let words = match one.kind {
-            AccumulatorKind::Elastic { compliance_m3_pa } => {
+            AccumulatorKind::Elastic { compliance_m3_pa, .. } => {
                 format!("accumulator, {} m³/Pa", significant(compliance_m3_pa, 3))
             }
+            AccumulatorKind::Tank { volume_m3 } => format!("tank, {} ml", significant(volume_m3 * 1e6, 3)),
             AccumulatorKind::Gas { volume_m3, .. } => {
                 format!("accumulator, {} ml of gas", significant(volume_m3 * 1e6, 3))
             }

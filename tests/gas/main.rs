@@ -1,12 +1,15 @@
-//! Fluid that is compressed: gas, liquid that yields, liquid with free gas, [E54] [E55] [E56].
+//! Fluid that is compressed: gas, liquid that yields, liquid with free gas, [E54] [E55] [E56]; what it does in valves and pumps [E64], in vessels [E67], where
+//! tubes meet [E65], and where it has inertia [E66].
 
-#[path = "common/chance.rs"]
+#[path = "../common/chance.rs"]
 mod chance;
+#[path = "../differences/mod.rs"]
 mod differences;
-#[path = "common/scene.rs"]
+mod hard;
+mod moving;
+#[path = "../common/scene.rs"]
 mod scene;
-
-use std::collections::BTreeMap;
+mod vessels;
 
 use differences::worst_difference;
 use scene::{finished, parse};
@@ -14,7 +17,6 @@ use serde_json::{Value, json};
 use slcbeam::case::schema::Effect;
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
-use slcbeam::model::audit;
 use slcbeam::run::modes::{self, Plan};
 
 const AIR: f64 = 1.8e-5;
@@ -41,6 +43,7 @@ fn behind_a_capillary(fluid: Value, start: f64, radius: f64, end: f64) -> Value 
                     "tubes": [{"from": {"bladder": 1, "end": "outlet"}, "to": {"junction": "mouth"}, "length_m": 0.02,
                                "cross_section": {"circle": {"radius_m": radius}}}]},
         "ends": {"root": "clamped", "tip": "free"},
+        "effects": {"tube_inertia": "off", "tube_losses": "off"},
         "start": {"pressures": [{"bladders": [1], "pressure_pa": start}]},
         "mesh": {"cells_per_segment": 2, "cells_per_bladder": 1},
         "time": {"end_s": end, "output_interval_s": end / 20.0},
@@ -150,7 +153,7 @@ fn unknowns_and_their_jacobian() {
             BeamDae::new(System::new(&parse(&actuator(gas(exponent), json!({"effects": effects})))).unwrap())
         };
         let mut dae = of(json!("full"));
-        let without = json!({"compressibility": "off", "tube_inertia": "off", "tube_losses": "off", "finite_rotation": "on",
+        let without = json!({"compressibility": "off", "tube_inertia": "on", "unsteady_friction": "on", "tube_losses": "on", "finite_rotation": "on",
             "axial_force_on_bending": "on", "axial_stretch": "on", "axial_inertia": "on", "rotary_inertia": "on", "flow_along_bladders": "on"});
         assert_eq!(dae.len(), of(without).len());
         for (seed, size) in [(1, 0.3), (2, 0.1)] {
@@ -219,38 +222,18 @@ fn sealed_gas_softens_a_beam_by_its_compliance() {
     assert!(hard / air > 1.001, "{hard} {air}");
 }
 
-/// Goal: a liquid that yields a little does not take away the inertia of its flow in tubes: that of water, whose bulk modulus is given, stays in
-/// `auto`, in the full model, and where it is asked for; compression that is asked for, and gas, stay.
+/// Goal: compression of a liquid and inertia of its flow in tubes are each decided by their own numbers.
 #[test]
 fn a_bulk_modulus_leaves_inertia_in_tubes_alone() {
     let water = |modulus: f64| json!({"density_kg_m3": 1000, "viscosity_pa_s": 1e-3, "bulk_modulus_pa": modulus});
     let has = |fluid: Value, effects: Value| {
         let system = System::new(&parse(&actuator(fluid, json!({"effects": effects})))).unwrap();
-        [Effect::Compressibility, Effect::TubeInertia, Effect::TubeLosses]
-            .map(|effect| system.model.effects.has(effect))
+        [Effect::Compressibility, Effect::TubeInertia].map(|effect| system.model.effects.has(effect))
     };
-    for effects in [json!("auto"), json!("full"), json!({"tube_losses": "on"})] {
-        assert_eq!(has(water(2.2e9), effects.clone())[..2], [false, true], "{effects}");
-    }
-    assert_eq!(
-        has(water(2.2e9), json!({"compressibility": "on"})),
-        [true, false, false]
-    );
-    assert_eq!(has(gas(1.0), json!("full")), [true, false, false]);
-}
-
-/// Goal: compression that stands back for inertia in tubes is told where it would change results (W028), and only there.
-#[test]
-fn compression_that_is_left_out_is_told() {
-    let told = |modulus: f64| {
-        let fluid = json!({"density_kg_m3": 1000, "viscosity_pa_s": 1e-3, "bulk_modulus_pa": modulus});
-        let case = parse(&actuator(fluid, json!({"effects": "auto"})));
-        let model = System::new(&case).unwrap().model;
-        assert!(model.effects.has(Effect::TubeInertia) && !model.effects.has(Effect::Compressibility));
-        let warnings = audit::warnings(&case, &model, &BTreeMap::new());
-        warnings.iter().filter(|warning| warning.starts_with("W028")).count()
-    };
-    assert_eq!((told(2.2e10), told(2e7)), (0, 1));
+    assert_eq!(has(water(2.2e10), json!("auto")), [false, true]);
+    assert_eq!(has(water(2e7), json!("auto")), [true, true]);
+    assert_eq!(has(water(2.2e9), json!("full")), [true, true]);
+    assert_eq!(has(gas(1.0), json!("full")), [true, true]);
 }
 
 /// Goal: fluid without mass has neither inertia nor losses in tubes, and runs.

@@ -1,0 +1,56 @@
+//! What vessels of the network hold, of fluid that is compressed or not.
+
+use super::Wet;
+use super::network::AccumulatorLaw;
+use crate::numerics::Scalar;
+
+/// `[E67]` A vessel whose walls give way by V(p), [E60], of fluid of which it has V_0 at ambient pressure. What it holds is counted beyond that and at
+/// ambient density, as what cells hold is, [E54]:
+///
+/// ```text
+/// c = r(p) (V_0 + V(p)) - V_0      dc/dt = Σ q      E = E_walls(V) + (V_0 + V) (r h - p)      dE = h dc
+/// ```
+///
+/// Incompressible fluid has `c = V`.
+impl Wet {
+    /// Pressure by what it holds.
+    #[inline]
+    pub fn vessel_pressure<T: Scalar>(&self, law: &AccumulatorLaw, content: T) -> T {
+        match &self.compression {
+            None => law.pressure(content),
+            Some(compression) => compression.in_vessel(law, content),
+        }
+    }
+
+    /// What it holds at a pressure [m^3].
+    pub fn vessel_content(&self, law: &AccumulatorLaw, pressure: f64) -> f64 {
+        match &self.compression {
+            None => law.volume(pressure),
+            Some(compression) => {
+                let at_rest = law.volume_at_rest();
+                compression.density(pressure).0 * (at_rest + law.volume(pressure)) - at_rest
+            }
+        }
+    }
+
+    /// What it takes in per pressure [m^3/Pa].
+    pub fn vessel_compliance(&self, law: &AccumulatorLaw, pressure: f64) -> f64 {
+        match &self.compression {
+            None => law.compliance(pressure),
+            Some(compression) => {
+                let (density, slope) = compression.density(pressure);
+                slope * (law.volume_at_rest() + law.volume(pressure)) + density * law.compliance(pressure)
+            }
+        }
+    }
+
+    /// Energy of its walls, and of the compression of what it holds, at a pressure [J].
+    pub fn vessel_energy(&self, law: &AccumulatorLaw, content: f64, pressure: f64) -> [f64; 2] {
+        let Some(compression) = &self.compression else {
+            return [law.energy(content), 0.0];
+        };
+        let (volume, density) = (law.volume(pressure), compression.density(pressure).0);
+        let of_fluid = density * compression.enthalpy(pressure) - pressure;
+        [law.energy(volume), (law.volume_at_rest() + volume) * of_fluid]
+    }
+}
