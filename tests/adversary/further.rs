@@ -92,7 +92,7 @@ fn viscoelasticity(r: &mut Random, b: &Beam) -> Value {
     json!({"prony": (0..1 + r.below(3)).map(|_| branch(r)).collect::<Vec<_>>()})
 }
 
-fn compression(r: &mut Random, pressure: f64) -> Map<String, Value> {
+pub fn compression(r: &mut Random, pressure: f64) -> Map<String, Value> {
     let ambient = short((10.0 * pressure).max(1e5));
     let fluid = match r.below(3) {
         0 => json!({"bulk_modulus_pa": short(pressure * r.log(3.0, 1e4))}),

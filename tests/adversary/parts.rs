@@ -1,9 +1,10 @@
-//! Parts of a scene: walls, and in the network check valves, pumps, vessels and syringes.
+//! Parts of a scene: walls, and in the network check valves, pumps, vessels and syringes, of fluid that may be compressed.
 
 use serde_json::{Value, json};
 
 use crate::chance::Random;
 use crate::digits::short;
+use crate::further;
 use crate::network;
 use crate::scene::Beam;
 use crate::signals;
@@ -15,6 +16,11 @@ pub fn add(r: &mut Random, b: &Beam, case: &mut Value, wet: bool) {
         case["contacts"] = (0..1 + r.below(2)).map(|k| wall(r, b, k)).collect();
     }
     if wet && (!walled || r.one_in(2)) {
+        let pressure = network::pressure(case);
+        if r.one_in(3) {
+            let fluid = case["fluid"].as_object_mut().expect("a fluid");
+            fluid.extend(further::compression(r, pressure));
+        }
         supplied(r, b, case);
     }
 }
@@ -86,8 +92,19 @@ fn supplied(r: &mut Random, b: &Beam, case: &mut Value) {
         }
         case["network"]["tubes"].as_array_mut().expect("tubes").push(tube);
     }
-    let kind = match r.below(2) {
-        0 => json!({"elastic": {"compliance_m3_pa": short(compliance * r.log(1e-1, 1e2))}}),
+    let compressed = ["kind", "bulk_modulus_pa", "gas_fraction"]
+        .iter()
+        .any(|key| case["fluid"].get(key).is_some());
+    let room = short(compliance * 1e5 * r.log(1e-1, 1e2));
+    let kind = match r.below(if compressed { 3 } else { 2 }) {
+        0 => {
+            let mut elastic = json!({"compliance_m3_pa": short(compliance * r.log(1e-1, 1e2))});
+            if compressed {
+                elastic["volume_m3"] = room;
+            }
+            json!({"elastic": elastic})
+        }
+        2 => json!({"tank": {"volume_m3": room}}),
         _ => {
             json!({"gas": {"volume_m3": short(compliance * 1e5 * r.log(1.0, 1e2)), "polytropic_exponent": short(r.between(1.0, 1.4))}})
         }

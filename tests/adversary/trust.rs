@@ -21,7 +21,7 @@ pub enum Cause {
 }
 
 /// What a warning names: a list of causes, or everything.
-const TRUST: [(Code, &[Cause]); 12] = [
+const TRUST: [(Code, &[Cause]); 11] = [
     // The balance is off by the steps' error; what jumps without inertia shows there too.
     (Code::EnergyOpen, &[Cause::Time]),
     (Code::MomentumOpen, &[Cause::Time]),

@@ -3,10 +3,12 @@
 use std::f64::consts::PI;
 
 use serde_json::{Value, json};
+use slcbeam::case::schema::Effect;
+use slcbeam::discrete::System;
 use slcbeam::run::record::Memory;
 use slcbeam::run::summary::Summary;
 
-use super::scene::finished;
+use super::scene::{finished, parse};
 use super::{AIR, AMBIENT, gas};
 
 /// Resistance of the rig's tube [Pa s/m^3].
@@ -217,4 +219,13 @@ fn vessels_that_cannot_be_are_refused() {
         "{told}"
     );
     assert_eq!(refused(gas(1.0), json!({"tank": {"volume_m3": 1e-5}})), "");
+    // a liquid too stiff to matter, by itself, and left out by name
+    let stiff = json!({"density_kg_m3": 1000, "viscosity_pa_s": 1e-3, "bulk_modulus_pa": 1e12});
+    let tank = json!({"accumulators": at_b(json!({"tank": {"volume_m3": 1e-5}}), 0.0), "ports": held(json!(0))});
+    let mut case = rig(stiff, tank, 1.0);
+    let has = |case: &Value| System::new(&parse(case)).map(|system| system.model.effects.has(Effect::Compressibility));
+    assert!(has(&case).unwrap());
+    case["effects"]["compressibility"] = json!("off");
+    let told = has(&case).unwrap_err().to_string();
+    assert!(told.contains("1 fault"), "{told}");
 }

@@ -186,6 +186,7 @@ impl<'a> Chooser<'a> {
             Effect::AxialInertia => obstacles::axial_inertia(case, turning),
             Effect::Flow => network.and_then(obstacles::flow),
             Effect::NetworkPressureDifferences => network.and_then(obstacles::network_pressure_differences),
+            Effect::Compressibility => network.and_then(obstacles::compressibility),
             _ => None,
         }
     }

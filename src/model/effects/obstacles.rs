@@ -3,7 +3,7 @@
 use crate::case::schema::{Attachment, Case, Contact, Formulation, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::profile::Profile;
-use crate::model::network::Feed;
+use crate::model::network::{AccumulatorLaw, Feed};
 use crate::model::{LumpedNetwork, Network};
 
 /// Why an effect must stay, and what to do.
@@ -200,6 +200,14 @@ pub fn flow(network: &Network) -> Option<Obstacle> {
         return obstacle("a pump drives it", "remove the pump, or leave flow on");
     }
     None
+}
+
+/// A tank must have something to store.
+pub fn compressibility(network: &Network) -> Option<Obstacle> {
+    let rigid = |law| matches!(law, AccumulatorLaw::Rigid { .. });
+    let tank = network.accumulators.iter().find(|one| rigid(one.law))?;
+    let what = format!("the tank \"{}\" stores nothing else", tank.name);
+    obstacle(what, "remove the tank, or leave compressibility on")
 }
 
 /// Every network must be able to have one pressure.
