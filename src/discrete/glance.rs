@@ -21,8 +21,10 @@ pub struct Glance {
     pub moving: [Moving; Watched::COUNT],
     /// Node of the largest strain.
     pub strained: usize,
-    /// Tube of the largest flow.
+    /// Tube of the largest Reynolds number.
     pub tube: usize,
+    /// Tube of the largest Mach number.
+    pub fast: usize,
     /// Largest `|u1 - u1(root)|` [m].
     pub deflection: f64,
     /// Largest distance by which a node has moved against the root [m].
@@ -54,13 +56,13 @@ pub enum Watched {
     Swelling,
     /// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`.
     Strain,
-    /// Largest flow through a tube [m^3/s].
+    /// Largest flow through a tube over its radius [m^2/s]: times `2 ρ_0/(π μ)` its Reynolds number.
     Flow,
     /// Largest `p_u + p_d` of a segment [Pa].
     Pressed,
     /// How far out a section is in what is known of its energy at finite strain; 1 at the border.
     Outermost,
-    /// Largest `|q| √r'/r` of a tube, r that where it is least: times `√ρ_0/A` its Mach number [m^3/(s Pa^(1/2))].
+    /// Largest `|q| √r'/(r A)` of a tube, r the density over `ρ_0` where it is least: times `√ρ_0` its Mach number [m/(s Pa^(1/2))].
     Mach,
     /// Largest depth behind the face of a wall [m].
     Depth,
@@ -141,11 +143,13 @@ impl Glance {
             };
             set(Watched::Pressed, [sum, wet.pair(j).map(mean).iter().sum()]);
         }
-        if let Some((flow, flow_rate, tube)) = look::largest_flow(system, now, w) {
-            set(Watched::Flow, [flow, flow_rate]);
-            let fast = look::largest_mach(system, now, w);
-            set(Watched::Mach, [fast, fast * flow_rate / flow.max(f64::MIN_POSITIVE)]);
+        if let Some((flow, tube)) = look::largest_flow(system, now, w) {
+            set(Watched::Flow, flow);
             self.tube = tube;
+        }
+        if let Some((fast, tube)) = look::largest_mach(system, now, w) {
+            self.moving[Watched::Mach as usize] = fast;
+            self.fast = tube;
         }
     }
 }

@@ -35,9 +35,9 @@ pub struct Limits {
     swelling: f64,
     /// `p_u + p_d` up to which the potential is convex [Pa].
     convex_up_to: f64,
-    /// `2 ρ/(π μ r_c)`: Reynolds number of a tube over its flow [s/m^3].
+    /// `2 ρ/(π μ)`: Reynolds number of a tube over its flow by radius [s/m^2]; 0 where the model has what comes of it.
     reynolds_per_flow: f64,
-    /// `√ρ_0/(π r_c²)`: Mach number of a tube over what is watched of it.
+    /// `√ρ_0`: Mach number of a tube over what is watched of it.
     mach_per_flow: f64,
     /// Pressure at which gas is as good as gone [Pa].
     vacuum: f64,
@@ -115,15 +115,13 @@ impl Limits {
             modulus: case.beam.young_modulus_pa,
             swelling: wet.map_or(f64::INFINITY, |wet| half_section - wet.area_at_rest),
             convex_up_to,
-            reynolds_per_flow: match (&case.fluid, &case.tubes) {
-                _ if system.model.effects.has(Effect::TubeLosses) => 0.0,
-                (Some(f), Some(t)) => 2.0 * f.density_kg_m3 / (std::f64::consts::PI * f.viscosity_pa_s * t.radius_m),
+            reynolds_per_flow: match &case.fluid {
+                Some(f) if !system.model.effects.has(Effect::TubeLosses) => {
+                    2.0 * f.density_kg_m3 / (std::f64::consts::PI * f.viscosity_pa_s)
+                }
                 _ => 0.0,
             },
-            mach_per_flow: match (&case.fluid, &case.tubes) {
-                (Some(f), Some(t)) => f.density_kg_m3.sqrt() / (std::f64::consts::PI * t.radius_m * t.radius_m),
-                _ => 0.0,
-            },
+            mach_per_flow: case.fluid.as_ref().map_or(0.0, |f| f.density_kg_m3.sqrt()),
             at_rest: case.start.equilibrium.is_some(),
             vacuum: wet
                 .and_then(|wet| wet.compression.as_ref())
@@ -233,7 +231,7 @@ impl Range {
         self.reynolds
             .take(Watched::Flow, factor, REYNOLDS, before, now, now.tube);
         self.mach
-            .take(Watched::Mach, limits.mach_per_flow, MACH, before, now, now.tube);
+            .take(Watched::Mach, limits.mach_per_flow, MACH, before, now, now.fast);
         self.pressed
             .take(Watched::Pressed, 1.0, limits.convex_up_to, before, now, 0);
         self.touched

@@ -1,6 +1,7 @@
 //! How a state is read.
 
-use crate::discrete::fluid_mesh::Place;
+use crate::discrete::fluid_mesh::{MeshLink, Place};
+use crate::discrete::glance::Moving;
 use crate::discrete::ledger::{self, Energies};
 use crate::discrete::residual::fluid::pressure_at;
 use crate::discrete::residual::solid::node_stretch;
@@ -124,13 +125,38 @@ pub(super) fn first_angle(system: &System, w: &Workspace<f64>) -> f64 {
     }
 }
 
-/// Largest flow through a tube [m^3/s], its rate as far as bladders and ports make it, and the tube's number among the tubes.
-pub fn largest_flow(system: &System, now: &TimeData, w: &Workspace<f64>) -> Option<(f64, f64, usize)> {
+/// `|q|/r` of the tube in which it is largest, r its radius [m^2/s]: times `2 ρ_0/(π μ)` its Reynolds number.
+pub fn largest_flow(system: &System, now: &TimeData, w: &Workspace<f64>) -> Option<(Moving, usize)> {
+    largest_in_tubes(system, now, w, |_, radius| radius.recip())
+}
+
+/// `|q| √r'/(r A)` of the tube in which it is largest, r the density over `ρ_0` at its end where it is least, A its cross-section
+/// [m/(s Pa^(1/2))]: times `√ρ_0` its Mach number; none where fluid is not compressed.
+pub fn largest_mach(system: &System, now: &TimeData, w: &Workspace<f64>) -> Option<(Moving, usize)> {
+    let compression = system.model.wet.as_ref()?.compression.as_ref()?;
+    largest_in_tubes(system, now, w, |link, radius| {
+        let [a, b] = [link.from, link.to].map(|place| pressure_at(place, now, w));
+        let (density, slope) = compression.density(a.min(b));
+        slope.sqrt() / (density * std::f64::consts::PI * radius * radius)
+    })
+}
+
+/// Flow times a factor of the tube, of its link and its radius, in the tube in which that is largest: its size, its rate as far as flow makes it and
+/// bladders and ports make flow, and the tube's number among the tubes.
+fn largest_in_tubes(
+    system: &System,
+    now: &TimeData,
+    w: &Workspace<f64>,
+    factor: impl Fn(&MeshLink, f64) -> f64,
+) -> Option<(Moving, usize)> {
     let (wet, fluid) = (system.model.wet.as_ref()?, system.fluid.as_ref()?);
     let tubes = fluid.links.iter().zip(&now.conductance).zip(&w.fluid.flow);
-    let (q, link, g) = tubes
+    let (value, factor, link, g) = tubes
         .filter(|((link, _), _)| link.kind == LinkKind::Tube)
-        .map(|((link, g), q)| (*q, link, g))
+        .map(|((link, g), q)| {
+            let factor = factor(link, wet.network.links[link.number].radius);
+            (factor * q, factor, link, g)
+        })
         .reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a })?;
     let density = |p: f64| wet.compression.as_ref().map_or(1.0, |c| c.density(p).0);
     let rate = |place: Place| match place {
@@ -142,25 +168,8 @@ pub fn largest_flow(system: &System, now: &TimeData, w: &Workspace<f64>) -> Opti
         Some(flow) => w.fluid.moving_rate[flow.number],
         None => g * (rate(link.from) - rate(link.to)),
     };
-    Some((q.abs(), q.signum() * rate, wet.network.tube(link.number)))
-}
-
-/// Largest `|q| √r'/r` of a tube, by the density where it is least; 0 where fluid is not compressed.
-pub fn largest_mach(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
-        return 0.0;
-    };
-    let Some(compression) = &wet.compression else {
-        return 0.0;
-    };
-    let tubes = fluid.links.iter().zip(&w.fluid.flow);
-    let tubes = tubes.filter(|(link, _)| link.kind == LinkKind::Tube);
-    let each = tubes.map(|(link, q)| {
-        let [a, b] = [link.from, link.to].map(|place| pressure_at(place, now, w));
-        let (density, slope) = compression.density(a.min(b));
-        q.abs() * slope.sqrt() / density
-    });
-    each.fold(0.0, f64::max)
+    let moving = [value.abs(), value.signum() * factor * rate];
+    Some((moving, wet.network.tube(link.number)))
 }
 
 /// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`, κ beyond that at rest, and the node where it is.

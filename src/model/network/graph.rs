@@ -58,7 +58,8 @@ pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Blad
                 resistance: resistance(tube),
                 opening: (!tube.opening.is_one()).then(|| tube.opening.clone()),
                 kind: LinkKind::Tube,
-                tube: Some(TubeFlow::new(tube, self::permeability(tube.bore), fluid)),
+                radius: radius(tube),
+                tube: Some(TubeFlow::new(tube, radius(tube), fluid)),
                 check_valve: tube.check_valve.map(CheckValve::from),
                 pump: tube.pump.map(|pump| Pump {
                     pressure: pump.pressure_pa.clone(),
@@ -101,6 +102,11 @@ fn permeability(bore: Bore) -> f64 {
         Bore::CrossSection(section) => duct::permeability(section),
         Bore::Radius(radius) => duct::circle(radius),
     }
+}
+
+/// Radius of a tube, or of the round one of its permeability [m].
+fn radius(tube: &Tube) -> f64 {
+    tube.radius_m.unwrap_or_else(|| duct::radius(permeability(tube.bore)))
 }
 
 /// Everything that is attached, point by point; pressures are put among the ports.
@@ -191,6 +197,7 @@ fn opening(cell: Node, here: Node) -> Link {
         resistance: 0.0,
         opening: None,
         kind: LinkKind::Opening,
+        radius: 0.0,
         tube: None,
         check_valve: None,
         pump: None,
@@ -206,6 +213,7 @@ fn join(network: &mut Network, [from, to]: [Node; 2], index: usize, rectifier: &
             resistance: 1.0 / network.turbines[index].conductance,
             opening: None,
             kind: LinkKind::Turbine(index),
+            radius: 0.0,
             tube: None,
             check_valve: None,
             pump: None,

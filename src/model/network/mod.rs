@@ -70,6 +70,8 @@ pub struct Link {
     pub opening: Option<Signal>,
     /// What it is.
     pub kind: LinkKind,
+    /// Radius of a tube, or of the round one of its permeability [m]; 0 of what is none.
+    pub radius: f64,
     /// Inertia and losses of a tube in which flow does not creep.
     pub tube: Option<TubeFlow>,
     /// Check valve in it.

@@ -98,10 +98,9 @@ pub fn friction_ratio(reynolds: f64, roughness: f64) -> (f64, f64) {
 }
 
 impl TubeFlow {
-    /// Of a tube of a case, everything included.
-    pub(super) fn new(tube: &Tube, permeability: f64, fluid: &Fluid) -> Self {
+    /// Of a tube of a case with its radius [m], everything included.
+    pub(super) fn new(tube: &Tube, radius: f64, fluid: &Fluid) -> Self {
         let (density, viscosity) = (fluid.density_kg_m3, fluid.viscosity_pa_s);
-        let radius = tube.radius_m.unwrap_or_else(|| duct::radius(permeability));
         let area = PI * radius * radius;
         let laminar = viscosity * tube.length_m / duct::circle(radius);
         Self {
