@@ -126,7 +126,7 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64], w:
         }
     }
     for (junction, value) in y[l.network.junction.clone()].iter_mut().enumerate() {
-        *value = w.fluid.junction.get(junction).copied().unwrap_or(0.0);
+        *value = w.fluid.junction.get(junction).map_or(0.0, |&p| wet.potential(p));
     }
     for one in &fluid.accumulators {
         let pressure = match one.number {

@@ -182,6 +182,16 @@ impl Compression {
         p
     }
 
+    /// The same with its derivative `1/r`: the pressure of a junction, whose unknown is Ψ. In it the flows that meet are linear; in the pressure
+    /// they lose their slope towards vacuum, and with it Newton's iteration.
+    #[inline]
+    pub fn at_potential<T: Scalar>(&self, potential: T) -> T {
+        potential.lift(|potential| {
+            let p = self.pressure_of_potential(potential);
+            (p, 1.0 / self.density(p).0)
+        })
+    }
+
     /// Pressure of a cell that stores `content`, where bending and force account for `imposed` of its area, `[E54]`.
     #[inline]
     pub fn pressure<T: Scalar>(&self, law: &AreaLaw, content: T, imposed: T) -> T {

@@ -16,6 +16,7 @@ mod fluid;
 mod fuzz;
 mod fuzz_case;
 mod fuzz_text;
+mod gas;
 mod growth;
 mod harness;
 mod limits;

@@ -64,6 +64,11 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
             first = unknowns.end;
         }
         copy(&mut w.fluid.junction, y, &l.network.junction);
+        if let Some(compression) = &wet.compression {
+            for pressure in &mut w.fluid.junction {
+                *pressure = compression.at_potential(*pressure);
+            }
+        }
         for (k, one) in fluid.accumulators.iter().enumerate() {
             let unknown = l.network.junction.start + one.junction;
             (w.fluid.accumulated[k], w.fluid.accumulated_rate[k]) = (y[unknown], yp[unknown]);

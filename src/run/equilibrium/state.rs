@@ -172,7 +172,7 @@ fn fluid(w: &Workspace<f64>, to: &System, z: &mut [f64]) {
         }
     }
     for (k, &junction) in fluid.junctions.iter().enumerate() {
-        z[l.junction.start + k] = w.fluid.junction.get(junction).copied().unwrap_or(0.0);
+        z[l.junction.start + k] = w.fluid.junction.get(junction).map_or(0.0, |&p| wet.potential(p));
     }
     for (one, &volume) in fluid.accumulators.iter().zip(&w.fluid.accumulated) {
         z[l.junction.start + one.junction] = volume;
