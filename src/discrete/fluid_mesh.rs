@@ -44,6 +44,11 @@ pub struct MeshLink {
 }
 
 impl MeshLink {
+    /// Whether it is nothing but a resistance.
+    pub fn is_plain(&self) -> bool {
+        self.flow.is_none() && self.check_valve.is_none() && self.pump.is_none()
+    }
+
     /// All resistance along it, valves wide open [Pa s/m^3].
     pub fn in_series(&self) -> f64 {
         self.half_cells + self.of_pump + self.resistance

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{ENERGY_RATES, EnergyRate, add, compressed, tubes};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, Place};
-use crate::discrete::residual::fluid::{driving, over_bridge, pressure_at, through_bridge};
+use crate::discrete::residual::fluid::{driving, look_along, over_bridge, pressure_at, through_bridge};
 use crate::discrete::residual::rows::{driven, mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
@@ -32,6 +32,12 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
             Some(&given) => given,
             None => rate(&own.mean_force),
         };
+    }
+    // equations take Ψ of these
+    if wet.compression.is_some() {
+        for (k, link) in fluid.links.iter().enumerate().filter(|(_, link)| link.is_plain()) {
+            look_along(wet, link, now, w, k);
+        }
     }
     let excess = &system.layout.coupling.nonlinear_area;
     w.coupling.excess_area_rate.copy_from_slice(&yp[excess.clone()]);

@@ -152,13 +152,14 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
         }
     }
     for (k, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
-        let (drop, density) = along(wet, link.from, link.to, now, w);
-        w.fluid.drop[k] = drop;
-        if let Some(density) = density {
-            w.fluid.density[k] = density;
-        }
-        let q = match link.flow {
-            None => {
+        let q = match (link.flow, &wet.compression) {
+            // [E55], which Newton's iteration follows down to vacuum
+            (None, Some(compression)) if link.is_plain() => {
+                let ends = [link.from, link.to].map(|place| potential_at(compression, place, now, w));
+                (ends[0] - ends[1]) * conductance
+            }
+            (None, _) => {
+                look_along(wet, link, now, w, k);
                 let driving = driving(link, now, w, k);
                 let volume = match &link.check_valve {
                     None => driving * conductance,
@@ -167,7 +168,8 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
                 };
                 w.fluid.at_ambient_density(k, volume)
             }
-            Some(flow) => {
+            (Some(flow), _) => {
+                look_along(wet, link, now, w, k);
                 let moving = w.fluid.moving[flow.number];
                 w.fluid.root_of_density(k).map_or(moving, |root| moving * root)
             }
@@ -216,6 +218,25 @@ pub fn along<T: Scalar>(wet: &Wet, from: Place, to: Place, now: &TimeData, w: &W
                 Some(density),
             )
         }
+    }
+}
+
+/// What [`along`] says of a link, into the workspace.
+#[inline]
+pub fn look_along<T: Scalar>(wet: &Wet, link: &MeshLink, now: &TimeData, w: &mut Workspace<T>, k: usize) {
+    let (drop, density) = along(wet, link.from, link.to, now, w);
+    w.fluid.drop[k] = drop;
+    if let Some(density) = density {
+        w.fluid.density[k] = density;
+    }
+}
+
+/// `Ψ` at a place.
+#[inline]
+fn potential_at<T: Scalar>(compression: &Compression, place: Place, now: &TimeData, w: &Workspace<T>) -> T {
+    match place {
+        Place::Cell(c) => w.fluid.potential[c],
+        Place::Junction(_) | Place::Port(_) => compression.potential(pressure_at(place, now, w)),
     }
 }
 
