@@ -148,12 +148,12 @@ const INDEX: [(&str, &str, &str); 67] = [
     ),
     (
         "[E49]",
-        "tests/attachments.rs",
+        "tests/attachments/main.rs",
         "a_cantilever_with_a_tip_mass_swings_as_slowly_as_it_must",
     ),
     (
         "[E50]",
-        "tests/attachments.rs",
+        "tests/attachments/main.rs",
         "a_rotational_spring_at_a_pinned_root_swings_as_it_must",
     ),
     ("[E51]", "tests/tubes.rs", "the_impedance_of_a_tube_is_womersleys"),
@@ -185,6 +185,11 @@ const INDEX: [(&str, &str, &str); 67] = [
     ("[E65]", "tests/gas/moving.rs", "balances_close_with_inertia"),
     ("[E66]", "tests/gas/moving.rs", "air_swings_between_tanks"),
     ("[E67]", "tests/gas/vessels.rs", "a_tank_blows_down"),
+    (
+        "[E68]",
+        "tests/attachments/followers.rs",
+        "a_column_that_a_follower_pushes_at_a_place",
+    ),
 ];
 
 #[test]

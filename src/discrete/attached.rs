@@ -1,6 +1,7 @@
 //! What is attached to the beam, on a mesh.
 
-use super::{Mesh, System, Workspace};
+use super::residual::rows;
+use super::{Mesh, System, TimeData, Workspace};
 use crate::model::{Attachment, Kinematics, Section};
 use crate::numerics::{Planar, Scalar};
 
@@ -11,6 +12,13 @@ use crate::numerics::{Planar, Scalar};
 ///
 /// ```text
 /// ū = Σ hat_i u_i      F = f - k ū - c ū_t      f_i = hat_i F      m h_i gains hat_i M      E gains k ū²/2
+/// ```
+///
+/// `[E68]` A follower turns with the beam, or with its section where that shears, at the angle of its place, and is shared likewise:
+///
+/// ```text
+/// F gains T e_t(φ) + S e_n(φ)      φ = φ_c - (θ - θ_c) κ_i, c its cell and i the node beside it; at ends the angle of [E11]
+/// small rotations   F gains (g T φ - S, T)
 /// ```
 ///
 /// `[E50]` A rotational spring takes the angle between the midpoints of its two cells, and its couple is shared among them; the beam between
@@ -32,6 +40,8 @@ pub struct Attached {
     pub stiffness: Planar<f64>,
     /// Dashpots across and along [N s/m].
     pub damping: Planar<f64>,
+    /// A cell, a node at one of its ends, and how far beyond the cell's midpoint it is [m].
+    beyond: (usize, usize, f64),
     /// Two cells with their weights.
     cells: [(usize, f64); 2],
     /// `K` [N m].
@@ -69,9 +79,12 @@ impl Attached {
             let s = place - 0.5 - cell as f64;
             ([(cell, 1.0 - s), (cell + 1, s)], s * (1.0 - s))
         };
+        let nearest = (place as usize).min(mesh.cells - 1);
+        let by = place - (nearest as f64 + 0.5);
         let k = attachment.turning_stiffness;
         Self {
             number,
+            beyond: (nearest, nearest + usize::from(by > 0.0), by * mesh.h),
             node,
             weights: [1.0 - share, share],
             stiffness: attachment.stiffness,
@@ -85,6 +98,24 @@ impl Attached {
     #[inline]
     pub fn between<T: Scalar>(&self, values: &[Planar<T>]) -> Planar<T> {
         values[self.node] * self.weights[0] + values[self.node + 1] * self.weights[1]
+    }
+
+    /// Forces that are given, those that turn with the beam at the angle of its place [N].
+    #[inline]
+    pub fn given<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> Planar<T> {
+        let given = now.point_force[self.number];
+        let dead = Planar::constant(given.dead);
+        if given.follower == Planar::default() {
+            return dead;
+        }
+        let (cell, node, by) = self.beyond;
+        let sizes = [given.follower.z, given.follower.x];
+        dead + rows::follower(
+            system,
+            sizes,
+            || rows::tangent_beyond(w, cell, node, by),
+            || rows::angle_beyond(w, cell, node, by),
+        )
     }
 
     /// Force of its springs [N].

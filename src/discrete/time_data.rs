@@ -4,6 +4,7 @@ use super::{Statics, System, shapes};
 use crate::case::{Rotation, Translation};
 use crate::functions::signals::{Clock, Jet, Signal};
 use crate::model::Load;
+use crate::model::attachments::Acting;
 use crate::model::loads::LoadKind;
 use crate::model::network::Feed;
 use crate::numerics::Planar;
@@ -65,6 +66,15 @@ pub struct EndData {
     pub follower: Option<(f64, f64)>,
 }
 
+/// Forces at an attachment [N].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PointForces {
+    /// In lab axes.
+    pub dead: Planar<f64>,
+    /// Along `e_n` and `e_t` of the place.
+    pub follower: Planar<f64>,
+}
+
 /// Motion of the straight line through the displacements that the ends prescribe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
@@ -121,8 +131,8 @@ pub struct TimeData {
     pub moment: Vec<Planar<f64>>,
     /// Curvature of the beam at rest at each node [1/m], and its rate [1/(m s)]; empty where it is straight.
     pub rest_curvature: [Vec<f64>; 2],
-    /// Forces at attachments, in the order of the model [N].
-    pub point_force: Vec<Planar<f64>>,
+    /// Forces at attachments, in the order of the model.
+    pub point_force: Vec<PointForces>,
     /// Velocity of the stream around the beam [m/s].
     pub stream: Planar<f64>,
     /// Its rate [m/s^2].
@@ -164,7 +174,7 @@ impl TimeData {
             force: vec![Planar::default(); system.mesh.nodes],
             moment: vec![Planar::default(); system.mesh.cells],
             rest_curvature: [(); 2].map(|()| vec![0.0; if curved { system.mesh.nodes } else { 0 }]),
-            point_force: vec![Planar::default(); system.model.attachments.len()],
+            point_force: vec![PointForces::default(); system.model.attachments.len()],
             stream: Planar::default(),
             stream_rate: Planar::default(),
             statics: Statics::new(system),
@@ -279,10 +289,14 @@ impl TimeData {
     }
 
     fn point_forces(&mut self, system: &System, clock: Clock) {
-        self.point_force.fill(Planar::default());
+        self.point_force.fill(PointForces::default());
         for (total, attachment) in self.point_force.iter_mut().zip(&system.model.attachments) {
             for given in &attachment.forces {
-                total[given.axis] += given.factor * given.signal.jet(clock).value;
+                let size = given.factor * given.signal.jet(clock).value;
+                match given.acting {
+                    Acting::Dead => total.dead[given.axis] += size,
+                    Acting::Follower => total.follower[given.axis] += size,
+                }
             }
         }
     }

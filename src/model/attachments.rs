@@ -23,11 +23,22 @@ pub struct Attachment {
     pub forces: Vec<PointForce>,
 }
 
+/// How the direction of a force at a place goes with the beam.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Acting {
+    /// Stays as it is, along x (0) or z (1).
+    Dead,
+    /// Turns with the beam: along `e_n` (0) or `e_t` (1).
+    Follower,
+}
+
 /// `factor signal(t)` across (0) or along (1).
 #[derive(Clone, Debug)]
 pub struct PointForce {
     /// Across or along.
     pub axis: usize,
+    /// Dead or a follower.
+    pub acting: Acting,
     /// 1 for what is given, `M b` for body forces on a point mass [kg].
     pub factor: f64,
     /// Time function.
@@ -35,6 +46,11 @@ pub struct PointForce {
 }
 
 impl Attachment {
+    /// Whether some force turns with the beam.
+    pub fn follows(&self) -> bool {
+        self.forces.iter().any(|force| force.acting == Acting::Follower)
+    }
+
     /// All of a case.
     pub fn all(case: &Case) -> Vec<Self> {
         case.attachments
@@ -44,10 +60,16 @@ impl Attachment {
     }
 
     fn new(case: &Case, written: &Written) -> Self {
-        let given = [&written.force_x_n, &written.force_z_n].into_iter().enumerate();
-        let given = given.filter_map(|(axis, signal)| {
+        let given = [
+            (Acting::Dead, 0, &written.force_x_n),
+            (Acting::Dead, 1, &written.force_z_n),
+            (Acting::Follower, 0, &written.force_normal_n),
+            (Acting::Follower, 1, &written.force_tangential_n),
+        ];
+        let given = given.into_iter().filter_map(|(acting, axis, signal)| {
             Some(PointForce {
                 axis,
+                acting,
                 factor: 1.0,
                 signal: signal.clone()?,
             })
@@ -59,6 +81,7 @@ impl Attachment {
             .flat_map(|load| Load::on(load, [written.mass_kg; 2]))
             .map(|load| PointForce {
                 axis: usize::from(load.kind == LoadKind::ForceZ),
+                acting: Acting::Dead,
                 factor: load.factor * load.profile.value(written.at),
                 signal: load.signal,
             });

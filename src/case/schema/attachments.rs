@@ -44,12 +44,23 @@ pub struct Attachment {
     /// Dead force in z [N].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_z_n: Option<Signal>,
+    /// Force along the tangent `e_t = (sin phi, cos phi)`, which turns with the beam; below 0 it pushes towards the root [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_tangential_n: Option<Signal>,
+    /// Force along the normal `e_n = (-cos phi, sin phi)`, which turns with the beam; above 0 it pushes a straight beam towards -x [N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force_normal_n: Option<Signal>,
 }
 
 impl Attachment {
     /// The forces that are given, with their keys.
     pub fn forces(&self) -> impl Iterator<Item = (&'static str, &Signal)> {
-        given([("force_x_n", &self.force_x_n), ("force_z_n", &self.force_z_n)])
+        given([
+            ("force_x_n", &self.force_x_n),
+            ("force_z_n", &self.force_z_n),
+            ("force_tangential_n", &self.force_tangential_n),
+            ("force_normal_n", &self.force_normal_n),
+        ])
     }
 
     /// Whether it does nothing to the beam.

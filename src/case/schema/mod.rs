@@ -176,8 +176,10 @@ fn one() -> f64 {
 }
 
 /// The signals of a pair that are given, with their keys.
-fn given<'a>(pair: [(&'static str, &'a Option<Signal>); 2]) -> impl Iterator<Item = (&'static str, &'a Signal)> {
-    pair.into_iter()
+fn given<'a, const N: usize>(
+    all: [(&'static str, &'a Option<Signal>); N],
+) -> impl Iterator<Item = (&'static str, &'a Signal)> {
+    all.into_iter()
         .filter_map(|(key, signal)| Some((key, signal.as_ref()?)))
 }
 

@@ -70,8 +70,8 @@ pub fn outer_forces<T: Scalar>(
     }
     around::forces(system, now, w, node, length, &mut each);
     for (attached, weight) in at_node(&system.attached, node) {
-        let given = now.point_force[attached.number] * weight;
-        each(Some(EnergyRate::Loads), Planar::constant(given));
+        let given = attached.given(system, now, w);
+        each(Some(EnergyRate::Loads), given * weight);
         each(None, attached.spring(w) * weight);
         each(Some(EnergyRate::Damping), attached.dashpot(w) * weight);
     }
@@ -91,16 +91,32 @@ pub fn end_force<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, n
     };
     let outward = if node == last { 1.0 } else { -1.0 };
     let (normal, shear) = (outward * normal, outward * shear);
-    let own = match system.model.kinematics {
+    let own = follower(
+        system,
+        [normal, shear],
+        || end_tangent(system, now, w, node),
+        || end_angle(system, now, w, node),
+    );
+    dead + own
+}
+
+/// `N e_t + V e_n` at a place with this tangent, or this angle of a beam that turns little.
+#[inline]
+pub fn follower<T: Scalar>(
+    system: &System,
+    [normal, shear]: [f64; 2],
+    tangent: impl FnOnce() -> Planar<T>,
+    angle: impl FnOnce() -> T,
+) -> Planar<T> {
+    match system.model.kinematics {
         Kinematics::FiniteRotation => {
-            let tangent = end_tangent(system, now, w, node);
+            let tangent = tangent();
             tangent * normal + tangent.normal() * shear
         }
         // n_x = g N φ - V, n_z = N, as [E26] has it in every section.
-        Kinematics::SmallRotation => Planar::new(end_angle(system, now, w, node) * normal - shear, T::constant(normal)),
+        Kinematics::SmallRotation => Planar::new(angle() * normal - shear, T::constant(normal)),
         Kinematics::Linear | Kinematics::Bar => Planar::constant(Planar { x: -shear, z: normal }),
-    };
-    dead + own
+    }
 }
 
 /// Unit tangent at an end: prescribed, or `φ_0 = φ_{1/2} + (h/2) κ_0`, `φ_n = φ_{n-1/2} - (h/2) κ_n`.
@@ -111,13 +127,26 @@ pub fn end_tangent<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>,
         return Planar::constant(Planar::tangent(slope.value));
     }
     let cell = if at_tip { last - 1 } else { 0 };
-    let half = if at_tip { -0.5 } else { 0.5 } * system.mesh.h;
+    let half = if at_tip { 0.5 } else { -0.5 } * system.mesh.h;
+    tangent_beyond(w, cell, node, half)
+}
+
+/// Unit tangent `by` beyond the midpoint of a cell, towards or away from a node at one of its ends: `φ = φ_c - by κ_node`.
+#[inline]
+pub fn tangent_beyond<T: Scalar>(w: &Workspace<T>, cell: usize, node: usize, by: f64) -> Planar<T> {
     if let Some(angle) = w.shape.sections.angle.get(cell) {
-        return Planar::tangent(*angle + w.shape.kappa[node] * half);
+        return Planar::tangent(*angle - w.shape.kappa[node] * by);
     }
-    let (sine, cosine) = (w.shape.kappa[node] * half).sin_cos();
+    let (sine, cosine) = (w.shape.kappa[node] * -by).sin_cos();
     let tangent = w.shape.tangent[cell];
     tangent.times(cosine) - tangent.normal().times(sine)
+}
+
+/// The same angle of a beam that turns little.
+#[inline]
+pub fn angle_beyond<T: Scalar>(w: &Workspace<T>, cell: usize, node: usize, by: f64) -> T {
+    let angle = w.shape.sections.angle.get(cell).copied();
+    angle.unwrap_or(w.shape.d3[cell].x) - w.shape.kappa[node] * by
 }
 
 /// Angle at an end of a beam that turns little, as [`end_tangent`] has it.
@@ -126,9 +155,8 @@ fn end_angle<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node:
     if let Some(slope) = now.ends[usize::from(at_tip)].slope {
         return T::constant(slope.value);
     }
-    let (cell, half) = if at_tip { (node - 1, -0.5) } else { (0, 0.5) };
-    let angle = w.shape.sections.angle.get(cell).copied();
-    angle.unwrap_or(w.shape.d3[cell].x) + w.shape.kappa[node] * (half * system.mesh.h)
+    let (cell, half) = if at_tip { (node - 1, 0.5) } else { (0, -0.5) };
+    angle_beyond(w, cell, node, half * system.mesh.h)
 }
 
 /// `[E15]` What the published form adds to the conservative one at a node:

@@ -38,7 +38,10 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
     if let Some(wall) = case.contacts.first() {
         return obstacle(format!("the wall \"{}\" may push the beam across", wall.name), HINT);
     }
-    let pushed = |a: &Attachment| a.force_x_n.as_ref().is_some_and(|signal| !signal.is_zero());
+    let pushed = |a: &Attachment| {
+        let across = [&a.force_x_n, &a.force_normal_n];
+        across.into_iter().flatten().any(|signal| !signal.is_zero())
+    };
     if let Some(k) = case.attachments.iter().position(pushed) {
         return obstacle(format!("/attachments/{k} pushes the beam across"), HINT);
     }

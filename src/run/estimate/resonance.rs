@@ -101,6 +101,10 @@ pub fn tones(system: &System) -> [Vec<f64>; 2] {
             hear(&mut along, &follower.normal);
         }
     }
+    for force in model.attachments.iter().flat_map(|attachment| &attachment.forces) {
+        let tones = if force.axis == 1 { &mut along } else { &mut across };
+        hear(tones, &force.signal);
+    }
     for load in &model.loads {
         let tones = if load.kind == LoadKind::ForceZ {
             &mut along

@@ -6,6 +6,7 @@ use super::Scene;
 use super::pace::Pace;
 use crate::case::Translation;
 use crate::functions::Signal;
+use crate::model::Attachment;
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
 use crate::model::loads::LoadKind;
 
@@ -78,7 +79,7 @@ impl Scene<'_> {
                 "normal forces may reach {compression:.1e} of the buckling load"
             ));
         }
-        if self.ends.iter().any(|e| e.follower.is_some()) {
+        if self.ends.iter().any(|e| e.follower.is_some()) || self.attachments.iter().any(Attachment::follows) {
             return Some("follower loads may make it flutter".into());
         }
         let shaken = self.ends.iter().find_map(|e| match &e.axial {
