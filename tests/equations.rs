@@ -190,6 +190,16 @@ const INDEX: [(&str, &str, &str); 67] = [
         "tests/attachments/followers.rs",
         "a_column_that_a_follower_pushes_at_a_place",
     ),
+    (
+        "[E69]",
+        "tests/attachments/solids.rs",
+        "a_cantilever_swings_with_a_body",
+    ),
+    (
+        "[E70]",
+        "tests/attachments/solids.rs",
+        "a_weight_beside_the_tip_bends_the_beam",
+    ),
 ];
 
 #[test]

@@ -67,8 +67,7 @@ impl Attached {
 
     fn new(number: usize, attachment: &Attachment, section: &Section, mesh: &Mesh) -> Self {
         let place = attachment.at * mesh.cells as f64;
-        let node = (place as usize).min(mesh.cells - 1);
-        let share = place - node as f64;
+        let (node, weights) = share(place, mesh.cells);
         let (first, last) = (0.5, mesh.cells as f64 - 0.5);
         let (cells, in_series) = if place <= first {
             ([(0, 1.0), (0, 0.0)], first - place)
@@ -86,7 +85,7 @@ impl Attached {
             number,
             beyond: (nearest, nearest + usize::from(by > 0.0), by * mesh.h),
             node,
-            weights: [1.0 - share, share],
+            weights,
             stiffness: attachment.stiffness,
             damping: attachment.damping,
             cells,
@@ -151,6 +150,13 @@ impl Attached {
         let turning = self.turning_stiffness * angle * angle;
         0.5 * (self.stiffness.x * u.x * u.x + self.stiffness.z * u.z * u.z + turning)
     }
+}
+
+/// The node before a place in units of cells, and the weights of that node and the next.
+pub(super) fn share(place: f64, cells: usize) -> (usize, [f64; 2]) {
+    let node = (place as usize).min(cells - 1);
+    let share = place - node as f64;
+    (node, [1.0 - share, share])
 }
 
 /// What is attached next to a node, with the node's weight.

@@ -1,6 +1,7 @@
 //! Space: the mesh, the unknowns, the semi-discrete equations in the paper's order, and their exact balances.
 
 pub mod attached;
+pub mod bodies;
 pub mod fluid_mesh;
 pub mod glance;
 pub mod kick;
@@ -26,6 +27,7 @@ use crate::model::loads::LoadKind;
 use crate::model::{Model, Storage, audit};
 
 pub use attached::Attached;
+pub use bodies::Body;
 pub use fluid_mesh::FluidMesh;
 pub use layout::Layout;
 pub use mesh::Mesh;
@@ -50,6 +52,8 @@ pub struct System {
     pub loads: Vec<SampledLoad>,
     /// What is attached to the beam, in the order of places.
     pub attached: Vec<Attached>,
+    /// Those of them that resist turning.
+    pub bodies: Vec<Body>,
     /// Where walls are felt, in the order of places.
     pub touching: Vec<Touching>,
     /// Places that are recorded.
@@ -155,6 +159,7 @@ impl System {
             .iter()
             .any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ));
         let (attached, masses) = Attached::all(&model.attachments, &model.section, &mesh);
+        let bodies = Body::all(&model.attachments, &model.ends, model.kinematics, &mesh);
         let touching = Touching::all(&model.contacts, &mesh);
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
         Self {
@@ -165,6 +170,7 @@ impl System {
             layout,
             loads,
             attached,
+            bodies,
             touching,
             masses,
             has_moments,

@@ -73,6 +73,8 @@ pub struct PointForces {
     pub dead: Planar<f64>,
     /// Along `e_n` and `e_t` of the place.
     pub follower: Planar<f64>,
+    /// What of `dead` acts on the mass.
+    pub weight: Planar<f64>,
 }
 
 /// Motion of the straight line through the displacements that the ends prescribe.
@@ -295,6 +297,10 @@ impl TimeData {
                 let size = given.factor * given.signal.jet(clock).value;
                 match given.acting {
                     Acting::Dead => total.dead[given.axis] += size,
+                    Acting::Weight => {
+                        total.dead[given.axis] += size;
+                        total.weight[given.axis] += size;
+                    }
                     Acting::Follower => total.follower[given.axis] += size,
                 }
             }

@@ -13,6 +13,10 @@ pub struct Attachment {
     pub at: f64,
     /// Mass [kg].
     pub mass: f64,
+    /// Rotary inertia about the mass centre [kg m²].
+    pub inertia: f64,
+    /// From the place to the mass centre, across and along [m].
+    pub offset: Planar<f64>,
     /// Springs across and along [N/m].
     pub stiffness: Planar<f64>,
     /// Rotational spring [N m].
@@ -28,6 +32,8 @@ pub struct Attachment {
 pub enum Acting {
     /// Stays as it is, along x (0) or z (1).
     Dead,
+    /// The same, on the mass.
+    Weight,
     /// Turns with the beam: along `e_n` (0) or `e_t` (1).
     Follower,
 }
@@ -46,6 +52,11 @@ pub struct PointForce {
 }
 
 impl Attachment {
+    /// Whether it resists turning, or its mass is turned about its place.
+    pub fn is_body(&self) -> bool {
+        self.inertia > 0.0 || self.offset != Planar::default()
+    }
+
     /// Whether some force turns with the beam.
     pub fn follows(&self) -> bool {
         self.forces.iter().any(|force| force.acting == Acting::Follower)
@@ -81,13 +92,18 @@ impl Attachment {
             .flat_map(|load| Load::on(load, [written.mass_kg; 2]))
             .map(|load| PointForce {
                 axis: usize::from(load.kind == LoadKind::ForceZ),
-                acting: Acting::Dead,
+                acting: Acting::Weight,
                 factor: load.factor * load.profile.value(written.at),
                 signal: load.signal,
             });
         Self {
             at: written.at,
             mass: written.mass_kg,
+            inertia: written.rotary_inertia_kg_m2,
+            offset: Planar {
+                x: written.offset_across_m,
+                z: written.offset_along_m,
+            },
             stiffness: Planar {
                 x: written.stiffness_x_n_m,
                 z: written.stiffness_z_n_m,

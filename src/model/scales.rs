@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use super::attachments::Acting;
 use super::{Attachment, Section, Wet};
 use crate::case::schema::{Case, Distributed, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
@@ -100,6 +101,10 @@ impl Drive {
         }
         for attachment in Attachment::all(case) {
             for force in &attachment.forces {
+                if force.acting == Acting::Weight {
+                    let arm = attachment.offset.x.hypot(attachment.offset.z);
+                    d.moment += arm * force.factor.abs() * size(&force.signal);
+                }
                 match force.axis {
                     0 => d.transverse_force += force.factor.abs() * bends(&force.signal),
                     _ => d.axial_force += force.factor.abs() * size(&force.signal),

@@ -37,7 +37,7 @@ fn slowest(case: &Value) -> [f64; 2] {
 }
 
 /// Value and first three derivatives a length `x` on, of `d⁴w = ω² w - p d²w`.
-fn onward(start: [f64; 4], p: f64, squared: f64, x: f64) -> [f64; 4] {
+pub fn onward(start: [f64; 4], p: f64, squared: f64, x: f64) -> [f64; 4] {
     let mut c = vec![start[0], start[1], start[2] / 2.0, start[3] / 6.0];
     for k in 0..60 {
         let n = k as f64;

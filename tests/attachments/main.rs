@@ -1,4 +1,4 @@
-//! What is attached to the beam, [E49] and [E50]: point masses, springs and dashpots to ground, forces at places; followers, [E68].
+//! What is attached to the beam, [E49] and [E50]: point masses, springs and dashpots to ground, forces at places; followers, [E68], bodies, [E69], [E70].
 //!
 //! Sources: Euler-Bernoulli's beam, whose frequency equations (Blevins 1979, Formulas for Natural Frequency and Mode Shape, chapter 8) are
 //! solved here by bisection; its static deflections; conservation laws; differences.
@@ -9,6 +9,7 @@ mod chance;
 mod differences;
 mod followers;
 mod refused;
+mod solids;
 
 use std::path::Path;
 
@@ -177,10 +178,10 @@ fn everything(sets: Value) -> Case {
         "attachments": [
             {"at": 0.0, "mass_kg": 0.004, "stiffness_rotation_n_m_rad": 0.02},
             {"at": 0.333, "stiffness_x_n_m": 2.0, "damping_x_n_s_m": 0.02, "stiffness_rotation_n_m_rad": 0.01},
-            {"at": 0.71, "mass_kg": 0.01, "stiffness_z_n_m": 3.0, "damping_z_n_s_m": 0.03,
+            {"at": 0.71, "mass_kg": 0.01, "rotary_inertia_kg_m2": 4e-6, "offset_across_m": 0.012, "offset_along_m": -0.007, "stiffness_z_n_m": 3.0, "damping_z_n_s_m": 0.03,
              "force_x_n": {"sine": {"amplitude": 0.05, "frequency_hz": 5}}, "force_z_n": {"sine": {"amplitude": 0.03, "frequency_hz": 8}}},
             {"at": 0.86, "force_tangential_n": {"sine": {"amplitude": 0.02, "frequency_hz": 6}}, "force_normal_n": {"sine": {"amplitude": 0.01, "frequency_hz": 4}}},
-            {"at": 1.0, "mass_kg": 0.005, "force_tangential_n": -0.02}],
+            {"at": 1.0, "mass_kg": 0.005, "rotary_inertia_kg_m2": 2e-6, "offset_along_m": 0.01, "force_tangential_n": -0.02}],
         "formulation": "conservative",
         "effects": "full",
         "mesh": {"segments": 8, "cells_per_segment": 1},
@@ -204,8 +205,14 @@ fn balances_close_with_everything_attached() {
     // under its weight it would snap on the soft spring at the root
     let mut stiff = no_dashpots.clone();
     stiff[0]["stiffness_rotation_n_m_rad"] = json!(0.2);
+    let mut heavy = stiff.clone();
+    heavy[1]["mass_kg"] = json!(0.01);
+    heavy[1]["offset_across_m"] = json!(0.01);
+    heavy[4]["offset_along_m"] = json!(-0.01);
     let along = json!([{"at": 0.0, "mass_kg": 0.004}, {"at": 0.333, "stiffness_z_n_m": 20.0, "damping_z_n_s_m": 0.02},
         {"at": 0.71, "mass_kg": 0.01, "force_z_n": {"sine": {"amplitude": 0.03, "frequency_hz": 8}}}]);
+    let sheared = json!({"length_m": 0.1, "height_m": 0.01, "width_m": 0.02, "young_modulus_pa": 2e6, "density_kg_m3": 950,
+        "shear_stiffness_n": 100});
     let cases = [
         ("finite rotation", json!({})),
         ("published", json!({"formulation": "published"})),
@@ -227,6 +234,11 @@ fn balances_close_with_everything_attached() {
             json!({"attachments": along, "loads": [{"gravity": {"z_m_s2": -9.81}}], "effects": {"transverse_motion": "off"},
             "ends": {"root": {"pinned": {"u3_m": {"sine": {"amplitude": 1e-3, "frequency_hz": 9}}}}, "tip": "free"}}),
         ),
+        ("sheared", json!({"beam": sheared})),
+        (
+            "sheared, small rotation",
+            json!({"beam": sheared, "effects": {"finite_rotation": "off"}}),
+        ),
         (
             "kicked",
             json!({"ends": {"root": {"pinned": {"u1_m": {"ramp": {"to": 2e-3, "start_s": 0.05, "duration_s": 0.05, "shape": "linear"}}}}, "tip": "free"}}),
@@ -234,6 +246,10 @@ fn balances_close_with_everything_attached() {
         (
             "at rest",
             json!({"attachments": stiff, "effects": {"solid_inertia": "off"}}),
+        ),
+        (
+            "bodies at rest",
+            json!({"attachments": heavy, "effects": {"solid_inertia": "off"}}),
         ),
     ];
     for (what, sets) in cases {

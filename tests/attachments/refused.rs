@@ -34,6 +34,18 @@ fn what_cannot_be_attached_is_refused() {
         ),
         (json!({"at": 0.5, "force_x_n": 1e12}), "/attachments/0/force_x_n"),
         (
+            json!({"at": 0.5, "rotary_inertia_kg_m2": -1}),
+            "/attachments/0/rotary_inertia_kg_m2",
+        ),
+        (
+            json!({"at": 0.5, "stiffness_x_n_m": 1, "offset_along_m": 0.1}),
+            "/attachments/0/offset_along_m",
+        ),
+        (
+            json!({"at": 0.5, "mass_kg": 1, "offset_across_m": -11}),
+            "/attachments/0/offset_across_m",
+        ),
+        (
             json!({"at": 0.5, "force_tangential_n": 1e12}),
             "/attachments/0/force_tangential_n",
         ),
@@ -59,6 +71,26 @@ fn effects_that_attachments_need_stay() {
             "/effects/transverse_motion",
         ),
         (
+            json!({"transverse_motion": "off"}),
+            json!({"at": 0.5, "mass_kg": 0.1, "offset_across_m": 0.1}),
+            "/effects/transverse_motion",
+        ),
+        (
+            json!({"axial_inertia": "off"}),
+            json!({"at": 0.5, "rotary_inertia_kg_m2": 1e-3}),
+            "/effects/axial_inertia",
+        ),
+        (
+            json!({"finite_rotation": "off", "axial_stretch": "off"}),
+            json!({"at": 0.5, "mass_kg": 0.1, "offset_along_m": 0.1}),
+            "/effects/axial_stretch",
+        ),
+        (
+            json!({"shear": "on", "rotary_inertia": "off"}),
+            json!({"at": 0.5, "rotary_inertia_kg_m2": 1e-3}),
+            "/effects/rotary_inertia",
+        ),
+        (
             json!({"solid_inertia": "off"}),
             json!({"at": 0.5, "damping_x_n_s_m": 1}),
             "/effects/solid_inertia",
@@ -75,6 +107,9 @@ fn effects_that_attachments_need_stay() {
         ),
     ] {
         let mut case = slender(json!("clamped"), json!("free"), json!([attachment]), 4);
+        if effects["shear"] == "on" {
+            case["beam"]["shear_stiffness_n"] = json!(5e4);
+        }
         case["effects"] = effects;
         let error = System::new(&parse(&case)).unwrap_err();
         assert_eq!(places(faults(&error)), [kept]);

@@ -4,13 +4,31 @@ use crate::case::faults::Violations;
 use crate::case::schema::Case;
 use crate::error::{Code, Violation};
 
+/// Lengths of the beam beyond which no mass centre lies.
+const FAR: f64 = 10.0;
+
 pub(super) fn check(case: &Case, faults: &mut Violations) {
-    for (i, attachment) in case.attachments.iter().enumerate().filter(|(_, a)| a.is_empty()) {
-        let what = format!("nothing is attached at {}", attachment.at);
-        faults.push(
-            Violation::new(Code::Missing, format!("/attachments/{i}"), what)
-                .allowed("mass_kg, stiffness_x_n_m, stiffness_z_n_m, stiffness_rotation_n_m_rad, damping_x_n_s_m, damping_z_n_s_m above 0; force_x_n, force_z_n, force_tangential_n, force_normal_n")
-                .hint("give one of them, or remove the entry"),
-        );
+    let far = FAR * case.beam.length_m;
+    for (i, attachment) in case.attachments.iter().enumerate() {
+        let pointer = format!("/attachments/{i}");
+        for (key, offset) in attachment.offsets().into_iter().filter(|(_, offset)| *offset != 0.0) {
+            let at = format!("{pointer}/{key}");
+            if attachment.mass_kg == 0.0 {
+                let fault = Violation::new(Code::Together, at, "an offset without a mass");
+                faults.push(fault.hint("give mass_kg, or leave it out"));
+            } else if offset.abs() > far {
+                let what = format!("a mass centre {offset} m from its place");
+                let fault = Violation::new(Code::Implausible, at, what);
+                faults.push(fault.allowed(format!("-{far} to {far} m, ten lengths of the beam")));
+            }
+        }
+        if attachment.is_empty() {
+            let what = format!("nothing is attached at {}", attachment.at);
+            faults.push(
+                Violation::new(Code::Missing, pointer, what)
+                    .allowed("mass_kg, rotary_inertia_kg_m2, stiffness_x_n_m, stiffness_z_n_m, stiffness_rotation_n_m_rad, damping_x_n_s_m, damping_z_n_s_m above 0; force_x_n, force_z_n, force_tangential_n, force_normal_n")
+                    .hint("give one of them, or remove the entry"),
+            );
+        }
     }
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{given, is_zero};
 use crate::functions::signals::Signal;
 
-/// Something attached to the beam at one place: a point mass, springs and dashpots to ground, forces; one of them at least. Springs are
+/// Something attached to the beam at one place: a mass with rotary inertia, at its place or beside it, springs and dashpots to ground, forces; one of them at least. Springs are
 /// at rest in the straight beam.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -14,10 +14,20 @@ pub struct Attachment {
     /// Place `theta/l_s`, 0 at the root and 1 at the tip.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub at: f64,
-    /// Point mass; gravity and body forces act on it [kg].
+    /// Mass; gravity and body forces act on it [kg].
     #[serde(default, skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0.0))]
     pub mass_kg: f64,
+    /// Rotary inertia about the mass centre [kg m^2].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub rotary_inertia_kg_m2: f64,
+    /// From the place to the mass centre, across: on the side of +x in a straight beam, and turning with it [m].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub offset_across_m: f64,
+    /// From the place to the mass centre, along: towards the tip and beyond, and turning with the beam [m].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub offset_along_m: f64,
     /// Spring to ground across, force `-k u1` [N/m].
     #[serde(default, skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0.0))]
@@ -63,10 +73,24 @@ impl Attachment {
         ])
     }
 
+    /// How far the mass centre is from the place, with their keys [m].
+    pub fn offsets(&self) -> [(&'static str, f64); 2] {
+        [
+            ("offset_across_m", self.offset_across_m),
+            ("offset_along_m", self.offset_along_m),
+        ]
+    }
+
+    /// Whether its mass centre lies beside its place.
+    pub fn is_eccentric(&self) -> bool {
+        self.offsets().iter().any(|(_, offset)| *offset != 0.0)
+    }
+
     /// Whether it does nothing to the beam.
     pub fn is_empty(&self) -> bool {
         let sizes = [
             self.mass_kg,
+            self.rotary_inertia_kg_m2,
             self.stiffness_x_n_m,
             self.stiffness_z_n_m,
             self.stiffness_rotation_n_m_rad,

@@ -158,7 +158,7 @@ effects! {
         Loads loads,
         /// Weight.
         Gravity gravity,
-        /// Point masses, springs, dashpots and forces at places along the beam.
+        /// Masses, springs, dashpots and forces at places along the beam.
         Attachments attachments,
         /// Walls that the beam may come to lie against.
         Contacts contacts,

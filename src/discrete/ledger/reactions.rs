@@ -1,7 +1,7 @@
 //! Reactions of driven ends, told in two ways that a mesh makes differ.
 
 use crate::case::schema::Effect;
-use crate::discrete::{Attached, State, System, TimeData};
+use crate::discrete::{Attached, Body, State, System, TimeData};
 use crate::model::Kinematics;
 
 /// Squares of reactions and of what they differ by [N^2], added over driven ends and directions; with the reactions stand the end's
@@ -20,7 +20,12 @@ pub fn compared(system: &System, now: &TimeData, w: State) -> [f64; 2] {
             .enumerate()
             .any(|(k, weight)| weight > 0.0 && near(a.node + k))
     };
-    if mesh.cells < 2 || !system.touching.is_empty() || system.attached.iter().any(inner) {
+    let turned = |body: &Body| body.cells().any(|(cell, _)| cell < 2 || cell + 2 >= mesh.cells);
+    if mesh.cells < 2
+        || !system.touching.is_empty()
+        || system.attached.iter().any(inner)
+        || system.bodies.iter().any(turned)
+    {
         return squares;
     }
     for (node, near, next) in [(0, 0, 1), (mesh.nodes - 1, mesh.cells - 1, mesh.cells - 2)] {

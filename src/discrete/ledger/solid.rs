@@ -58,8 +58,28 @@ pub fn flows(
         }
     }
     add(out, EnergyRate::AngularImpulse, attached::torque(system, w));
+    bodies(system, now, w, out);
     add(out, EnergyRate::Damping, relaxation::energy_and_loss(system, now, w)[1]);
     cells(system, now, w, published, out);
+}
+
+/// Work and torque of bodies that turn with the beam, whose own momentum is no force from outside.
+fn bodies(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
+    for body in &system.bodies {
+        add(out, EnergyRate::Loads, body.weight_power(system, now, w));
+        let (force, torque) = body.outside(system, now, w);
+        let arm = body.at_place(|i| arms(system, w, i).0);
+        let arm_rate = body.at_place(|i| arms(system, w, i).1);
+        let (momentum, _) = body.momenta(system, w);
+        add(out, EnergyRate::ImpulseX, -force.x);
+        add(out, EnergyRate::ImpulseZ, -force.z);
+        let turned = if system.layout.inertia {
+            arm_rate.cross(momentum) - arm.cross(force)
+        } else {
+            0.0
+        };
+        add(out, EnergyRate::AngularImpulse, torque + turned);
+    }
 }
 
 /// Reaction of a driven end: what is missing in the balance of momentum of a node on which a force acts besides its sections.
@@ -201,6 +221,13 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies
         }
         e.bending += 0.5 * length * w.forces.moment[i] * w.forces.moment[i] / section.bending_stiffness;
     }
+    if system.layout.inertia {
+        for body in &system.bodies {
+            let [kinetic, rotary] = body.energies(system, w);
+            e.kinetic += kinetic;
+            e.rotary += rotary;
+        }
+    }
     for c in 0..mesh.cells {
         if system.model.effects.has(Effect::AxialStretch) {
             e.axial += 0.5 * mesh.h * w.forces.normal[c] * w.forces.normal[c] / section.axial_stiffness;
@@ -257,6 +284,11 @@ pub fn momenta(system: &System, now: &TimeData, w: &Workspace<f64>) -> (Planar<f
         } * mass;
         momentum += own;
         angular += arms(system, w, i).0.cross(own);
+    }
+    for body in &system.bodies {
+        let (own, about) = body.momenta(system, w);
+        momentum += own;
+        angular += body.at_place(|i| arms(system, w, i).0).cross(own) + about;
     }
     if system.model.effects.has(Effect::RotaryInertia) {
         let arm = |c: usize| if turned_across(system) { w.shape.d3[c].z } else { 1.0 };

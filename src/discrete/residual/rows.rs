@@ -5,7 +5,7 @@ use super::fluid::{driving, over_bridge};
 use crate::discrete::attached::at_node;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, MeshLink, Place};
 use crate::discrete::ledger::EnergyRate;
-use crate::discrete::{System, TimeData, Workspace, touching};
+use crate::discrete::{System, TimeData, Workspace, bodies, touching};
 use crate::model::{Kinematics, LumpedKind};
 use crate::numerics::{Planar, Scalar};
 
@@ -74,6 +74,9 @@ pub fn outer_forces<T: Scalar>(
         each(Some(EnergyRate::Loads), given * weight);
         each(None, attached.spring(w) * weight);
         each(Some(EnergyRate::Damping), attached.dashpot(w) * weight);
+    }
+    if !system.bodies.is_empty() {
+        bodies::forces(system, w, node, |force| each(None, force));
     }
     if !system.touching.is_empty() {
         touching::forces(system, w, node, &mut each);

@@ -3,7 +3,7 @@
 use super::relaxation;
 use super::solid::{couple, line, normal_force, total_moment_drop};
 use crate::case::schema::Effect;
-use crate::discrete::{System, TimeData, Workspace, attached};
+use crate::discrete::{System, TimeData, Workspace, attached, bodies};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
 
@@ -133,6 +133,7 @@ fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
         w.forces.turning[c] = total_moment_drop(system, w, c) - turning * h;
     }
     attached::turning(system, w, |couple, c, w| w.forces.turning[c] += couple * -h);
+    bodies::turning(system, now, w, |couple, c, w| w.forces.turning[c] += couple * -h);
 }
 
 /// The balance of moments of each section.

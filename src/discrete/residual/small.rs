@@ -4,7 +4,7 @@ use super::sheared;
 use super::solid::{self, couple, curvature_rates, normal_force, total_moment_drop};
 use crate::case::Translation;
 use crate::case::schema::Effect;
-use crate::discrete::{System, TimeData, Workspace, attached};
+use crate::discrete::{System, TimeData, Workspace, attached, bodies};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
 
@@ -144,4 +144,5 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
         }
     }
     attached::turning(system, w, |couple, c, w| w.forces.section[c].x += couple);
+    bodies::turning(system, now, w, |couple, c, w| w.forces.section[c].x += couple);
 }

@@ -3,7 +3,7 @@
 use super::{relaxation, sheared};
 use crate::case::schema::Effect;
 use crate::discrete::workspace::Shape;
-use crate::discrete::{System, TimeData, Workspace, attached};
+use crate::discrete::{System, TimeData, Workspace, attached, bodies};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
 
@@ -288,6 +288,7 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
         }
     }
     attached::turning(system, w, add_couple);
+    bodies::turning(system, now, w, add_couple);
     if system.model.effects.has(Effect::RotaryInertia) {
         let inertia = section.mass_per_length * section.gyration_radius_squared;
         let inverse = 1.0 / system.mesh.h;

@@ -184,6 +184,7 @@ impl<'a> Chooser<'a> {
             Effect::AxialStretch => obstacles::axial_stretch(case, across, turning),
             Effect::SolidInertia => obstacles::solid_inertia(case),
             Effect::AxialInertia => obstacles::axial_inertia(case, turning),
+            Effect::RotaryInertia => obstacles::rotary_inertia(case, self.set.has(Effect::Shear)),
             Effect::Flow => network.and_then(obstacles::flow),
             Effect::NetworkPressureDifferences => network.and_then(obstacles::network_pressure_differences),
             Effect::Compressibility => network.and_then(obstacles::compressibility),

@@ -45,6 +45,12 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
     if let Some(k) = case.attachments.iter().position(pushed) {
         return obstacle(format!("/attachments/{k} pushes the beam across"), HINT);
     }
+    if let Some(k) = case.attachments.iter().position(|a| a.offset_across_m != 0.0) {
+        return obstacle(
+            format!("the mass of /attachments/{k} lies beside the beam and bends it"),
+            HINT,
+        );
+    }
     if case
         .surroundings
         .as_ref()
@@ -108,6 +114,16 @@ pub fn solid_inertia(case: &Case) -> Option<Obstacle> {
     )
 }
 
+/// Sections that shear have rates to be resisted only with the inertia of their own.
+pub fn rotary_inertia(case: &Case, sheared: bool) -> Option<Obstacle> {
+    let turned = |a: &Attachment| a.is_eccentric() || a.rotary_inertia_kg_m2 > 0.0;
+    let k = case.attachments.iter().position(turned).filter(|_| sheared)?;
+    obstacle(
+        format!("/attachments/{k} resists the turning of sections that shear"),
+        "leave rotary_inertia on, or shear out",
+    )
+}
+
 /// Something must carry the beam along.
 pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
     let inert = case
@@ -130,6 +146,13 @@ pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
         return obstacle(
             format!("/attachments/{k} has a dashpot along"),
             "remove damping_z_n_s_m, or leave axial_inertia on",
+        );
+    }
+    let turned = |a: &Attachment| a.is_eccentric() || finite_rotation && a.rotary_inertia_kg_m2 > 0.0;
+    if let Some(k) = case.attachments.iter().position(turned) {
+        return obstacle(
+            format!("/attachments/{k} turns with the beam and takes its inertia along"),
+            "leave axial_inertia on",
         );
     }
     let held = [&case.ends.root, &case.ends.tip].map(|end| end.resolve().axial);
@@ -166,6 +189,14 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
             wall.name
         );
         return obstacle(what, HINT);
+    }
+    if let Some(k) = case.attachments.iter().position(Attachment::is_eccentric) {
+        return obstacle(
+            format!(
+                "the mass of /attachments/{k} pushes the beam along when it turns, so the normal force does not follow from the loads"
+            ),
+            HINT,
+        );
     }
     let holds = |a: &Attachment| a.stiffness_z_n_m > 0.0 || a.damping_z_n_s_m > 0.0;
     if let Some(k) = case.attachments.iter().position(holds) {

@@ -312,7 +312,7 @@ pub fn about(effect: Effect) -> About {
             presence: Presence::Given(|case, _| case.loads.iter().any(gravity)),
         },
         Effect::Attachments => About {
-            adds: "M a, -k u, -k φ, -c v, dead forces and followers at places along the beam",
+            adds: "M a, J φ_tt, -k u, -k φ, -c v, dead forces and followers at places along the beam, masses beside it",
             brings: "masses of nodes; forces at their neighbours",
             number: "present where given; what is decided by the scene's numbers stays then",
             cost: "arithmetic in two nodes each",

@@ -1,0 +1,326 @@
+//! What is attached to the beam and resists its turning, on a mesh.
+
+use super::attached::share;
+use super::residual::solid;
+use super::{Mesh, System, TimeData, Workspace};
+use crate::case::{ResolvedEnd, Rotation};
+use crate::model::{Attachment, Kinematics};
+use crate::numerics::{Planar, Scalar};
+
+/// A body on the beam: its rotary inertia, and a mass whose centre lies beside the beam's line.
+///
+/// `[E69]` Its angle is that of up to four cells around its place, and its couple is shared among them:
+///
+/// ```text
+/// φ̄ = Σ w_c φ_c      h r_c λ_c² gains w_c J φ̄_tt      E gains J φ̄_t²/2
+/// Σ w_c = 1      Σ w_c θ_c = θ̄      Σ h_i m_i² = θ̄,  m_i = Σ_{c > i} w_c
+/// inside   w = (-γ, 1 - s + γ, s + γ, -γ)   2 γ (1 + γ) = s (1 - s)      one cell from an end   w = (1 - s - γ, s + 2 γ, -γ)   2 γ (s + γ) = s (1 - s)
+/// within half a cell of an end that turns   w = (a, 1 - a)   a² = 3/2 - d/h,  d the distance to the end
+/// ```
+///
+/// A couple bends the beam from its support to its place, so its own angle is `C θ̄/EI`; on the mesh it is `C Σ h_i m_i²/EI`, m_i the share that
+/// a node carries. With weights for which both are the same the beam is neither stiffer nor softer at the place than it is, and
+/// frequencies are of second order. Next to an end that turns the place cannot be kept too: it then is off by less than a third of a cell,
+/// which only what bends the very end can tell.
+///
+/// `[E70]` The mass centre turns with the beam, or with its section where that shears, b across and a along:
+///
+/// ```text
+/// x_G = x̄ + q(φ̄)      q = b (cos φ, -sin φ) + a (sin φ, cos φ)      q' = dq/dφ      f its weight and body force
+/// F gains -M (φ_tt q' + φ_t² q'')      J φ_tt gains M q'·(ū_tt + φ_tt q' + φ_t² q'') - f·q'      E gains M (φ_t q'·ū_t + φ_t² q'²/2)
+/// small rotations   q = (b + a φ - g b φ²/2, a - b φ - g a φ²/2)
+/// ```
+///
+/// Lagrange's equations of these energies, whatever q is: with it the balance of energy is exact in all kinematics.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Number of the attachment in the model.
+    pub number: usize,
+    /// The node before it.
+    pub node: usize,
+    /// Weights of that node and the next.
+    hats: [f64; 2],
+    /// First of its cells.
+    first: usize,
+    /// Weights of its cells; 0 where there are fewer.
+    weights: [f64; 4],
+    /// `J` [kg m²].
+    inertia: f64,
+    /// `M` [kg].
+    mass: f64,
+    /// `(b, a)` [m].
+    offset: Planar<f64>,
+}
+
+/// Derivatives by the angle of where a mass centre is, `q'` and `q''` [m].
+struct Arm<T> {
+    first: Planar<T>,
+    second: Planar<T>,
+}
+
+/// How a body moves.
+struct Motion {
+    arm: Arm<f64>,
+    /// Velocity of the place [m/s].
+    v: Planar<f64>,
+    /// `φ_t` [1/s].
+    turning: f64,
+}
+
+impl Body {
+    /// All of a model that turn.
+    pub fn all(attachments: &[Attachment], ends: &[ResolvedEnd; 2], kinematics: Kinematics, mesh: &Mesh) -> Vec<Self> {
+        if kinematics == Kinematics::Bar {
+            return vec![];
+        }
+        let turns = [&ends[0], &ends[1]].map(|end| matches!(end.rotation, Rotation::Moment(_)));
+        let bodies = attachments.iter().enumerate().filter(|(_, one)| one.is_body());
+        let body = |(number, one): (usize, &Attachment)| {
+            let place = one.at * mesh.cells as f64;
+            let (node, hats) = share(place, mesh.cells);
+            let (first, weights) = cells(place, mesh.cells, turns);
+            Self {
+                number,
+                node,
+                hats,
+                first,
+                weights,
+                inertia: one.inertia,
+                mass: one.mass,
+                offset: one.offset,
+            }
+        };
+        bodies.map(body).collect()
+    }
+
+    /// Its cells with their weights.
+    pub fn cells(&self) -> impl Iterator<Item = (usize, f64)> {
+        (self.first..).zip(self.weights).filter(|(_, weight)| *weight != 0.0)
+    }
+
+    fn is_eccentric(&self) -> bool {
+        self.offset != Planar::default()
+    }
+
+    fn between<T: Scalar>(&self, values: &[Planar<T>]) -> Planar<T> {
+        values[self.node] * self.hats[0] + values[self.node + 1] * self.hats[1]
+    }
+
+    fn mean<T: Scalar>(&self, of: impl Fn(usize) -> T) -> T {
+        let mut mean = T::zero();
+        for (cell, weight) in self.cells() {
+            mean += of(cell) * weight;
+        }
+        mean
+    }
+
+    /// Unit tangent at the mean angle of its cells.
+    fn tangent<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> Planar<T> {
+        let sections = &w.shape.sections.angle;
+        if !sections.is_empty() {
+            return Planar::tangent(self.mean(|cell| sections[cell]));
+        }
+        // from the first cell on, by what nodes between cells turn
+        let mut turn = T::zero();
+        let mut beyond = 1.0 - self.weights[0];
+        for (node, weight) in (self.first + 1..system.mesh.cells).zip(&self.weights[1..]) {
+            if beyond != 0.0 {
+                turn += w.shape.kappa[node] * (beyond * -system.mesh.h);
+            }
+            beyond -= weight;
+        }
+        let (sine, cosine) = turn.sin_cos();
+        let tangent = w.shape.tangent[self.first];
+        tangent.times(cosine) - tangent.normal().times(sine)
+    }
+
+    fn arm<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> Arm<T> {
+        let Planar { x: across, z: along } = self.offset;
+        let kinematics = system.model.kinematics;
+        if kinematics == Kinematics::FiniteRotation {
+            let tangent = self.tangent(system, w);
+            let normal = tangent.normal();
+            return Arm {
+                first: -(tangent * across + normal * along),
+                second: normal * across - tangent * along,
+            };
+        }
+        let first = Planar::constant(Planar { x: along, z: -across });
+        if kinematics != Kinematics::SmallRotation {
+            let second = Planar::zero();
+            return Arm { first, second };
+        }
+        let sections = &w.shape.sections.angle;
+        let angle = self.mean(|cell| sections.get(cell).copied().unwrap_or(w.shape.d3[cell].x));
+        let second = Planar::constant(self.offset) * -1.0;
+        Arm {
+            first: first + second.times(angle),
+            second,
+        }
+    }
+
+    /// `φ_t` of its cells.
+    fn turning<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> T {
+        self.mean(|c| match system.model.kinematics {
+            _ if !w.shape.sections.angle.is_empty() => w.shape.angle_rate[c],
+            Kinematics::FiniteRotation => solid::angle_rate(system, w, c),
+            _ => (w.motion.v[c + 1].x - w.motion.v[c].x) * (1.0 / system.mesh.h),
+        })
+    }
+
+    /// `φ_tt` of its cells, as [E13] has it.
+    fn speeding<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> T {
+        let (inverse, v, a) = (1.0 / system.mesh.h, &w.motion.v, &w.motion.a);
+        self.mean(|c| match system.model.kinematics {
+            _ if !w.shape.sections.angle.is_empty() => w.shape.sections.acceleration[c],
+            Kinematics::FiniteRotation => {
+                let (tangent, stretch) = (w.shape.tangent[c], w.shape.stretch[c]);
+                let stretching = tangent.dot((v[c + 1] - v[c]) * inverse);
+                let across = tangent.cross((a[c + 1] - a[c]) * inverse);
+                (across - stretching * solid::angle_rate(system, w, c) * 2.0) / stretch
+            }
+            _ => (a[c + 1].x - a[c].x) * inverse,
+        })
+    }
+
+    /// Force on its place beside that on its mass as if that were there, `-M (φ_tt q' + φ_t² q'')` [N].
+    fn force<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> Planar<T> {
+        let arm = self.arm(system, w);
+        let turning = self.turning(system, w).squared();
+        let carried = arm.first.times(self.speeding(system, w)) + arm.second.times(turning);
+        carried * -self.mass
+    }
+
+    /// Couple with which it resists to turn [N m].
+    fn couple<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> T {
+        let mut couple = T::zero();
+        let moves = system.layout.inertia;
+        if moves && self.inertia > 0.0 {
+            couple += self.speeding(system, w) * self.inertia;
+        }
+        if self.is_eccentric() {
+            let arm = self.arm(system, w);
+            couple -= arm.first.dot(Planar::constant(now.point_force[self.number].weight));
+            if moves {
+                let own = self.between(&w.motion.a) * self.mass - self.force(system, w);
+                couple += arm.first.dot(own);
+            }
+        }
+        couple
+    }
+
+    fn motion(&self, system: &System, w: &Workspace<f64>) -> Motion {
+        Motion {
+            arm: self.arm(system, w),
+            v: self.between(&w.motion.v),
+            turning: self.turning(system, w),
+        }
+    }
+
+    /// Kinetic energy of the mass beside what it has as if it were at the place, and of the rotary inertia [J].
+    pub fn energies(&self, system: &System, w: &Workspace<f64>) -> [f64; 2] {
+        let Motion { arm, v, turning } = self.motion(system, w);
+        let own = 0.5 * turning * arm.first.squared() + arm.first.dot(v);
+        [self.mass * turning * own, 0.5 * self.inertia * turning * turning]
+    }
+
+    /// Momentum beside that of the mass at the place, and angular momentum about the place [kg m/s, kg m²/s].
+    pub fn momenta(&self, system: &System, w: &Workspace<f64>) -> (Planar<f64>, f64) {
+        let Motion { arm, v, turning } = self.motion(system, w);
+        let moved = v + arm.first * turning;
+        let about = self.mass * arm.first.dot(moved) + self.inertia * turning;
+        (arm.first * (self.mass * turning), about)
+    }
+
+    /// Power of its weight beside that at the place [W].
+    pub fn weight_power(&self, system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
+        let Motion { arm, turning, .. } = self.motion(system, w);
+        arm.first.dot(now.point_force[self.number].weight) * turning
+    }
+
+    /// Force that the balance of momentum of nodes takes for one from outside, and torque about the place that the balance of the beam's
+    /// angular momentum does not know: of its weight, and what small rotations make of its own [N, N m].
+    pub fn outside(&self, system: &System, now: &TimeData, w: &Workspace<f64>) -> (Planar<f64>, f64) {
+        let Motion { arm, v, turning } = self.motion(system, w);
+        let of_weight = arm.first.dot(now.point_force[self.number].weight);
+        if !system.layout.inertia {
+            return (Planar::default(), of_weight);
+        }
+        let moved = v + arm.first * turning;
+        let of_motion = self.mass * turning * arm.second.dot(moved);
+        (self.force(system, w), of_weight + of_motion)
+    }
+
+    /// The mean of what two nodes have.
+    pub fn at_place(&self, of: impl Fn(usize) -> Planar<f64>) -> Planar<f64> {
+        of(self.node) * self.hats[0] + of(self.node + 1) * self.hats[1]
+    }
+}
+
+/// Force of each body on a node, where its mass moves beside the beam's line.
+#[inline]
+pub fn forces<T: Scalar>(system: &System, w: &Workspace<T>, node: usize, mut each: impl FnMut(Planar<T>)) {
+    if !system.layout.inertia {
+        return;
+    }
+    for body in system.bodies.iter().filter(|body| body.is_eccentric()) {
+        if body.node == node || body.node + 1 == node {
+            each(body.force(system, w) * body.hats[node - body.node]);
+        }
+    }
+}
+
+/// Couples per length of all bodies, cell by cell [N].
+#[inline]
+pub fn turning<T: Scalar>(
+    system: &System,
+    now: &TimeData,
+    w: &mut Workspace<T>,
+    mut add: impl FnMut(T, usize, &mut Workspace<T>),
+) {
+    let inverse = 1.0 / system.mesh.h;
+    for body in &system.bodies {
+        let couple = body.couple(system, now, w) * inverse;
+        for (cell, weight) in body.cells() {
+            add(couple * weight, cell, w);
+        }
+    }
+}
+
+/// First cell and weights for a place in units of cells, [E69].
+fn cells(place: f64, cells: usize, turns: [bool; 2]) -> (usize, [f64; 4]) {
+    let last = cells as f64;
+    if place > 0.5 * last {
+        // as seen from the tip
+        let (first, seen) = cells_from_root(last - place, cells, turns[1]);
+        let count = seen.iter().rposition(|weight| *weight != 0.0).map_or(1, |k| k + 1);
+        let mut weights = [0.0; 4];
+        for (k, weight) in seen.into_iter().take(count).enumerate() {
+            weights[count - 1 - k] = weight;
+        }
+        return (cells - count - first, weights);
+    }
+    cells_from_root(place, cells, turns[0])
+}
+
+/// The same for places in the half next to the root.
+fn cells_from_root(place: f64, cells: usize, turns: bool) -> (usize, [f64; 4]) {
+    if cells == 1 {
+        return (0, [1.0, 0.0, 0.0, 0.0]);
+    }
+    if place <= 0.5 {
+        let own = if turns { (1.5 - place).sqrt() } else { 1.0 };
+        return (0, [own, 1.0 - own, 0.0, 0.0]);
+    }
+    let cell = ((place - 0.5) as usize).min(cells - 2);
+    let s = place - 0.5 - cell as f64;
+    if cell >= 1 && cell + 2 < cells {
+        let more = 0.5 * ((1.0 + 2.0 * s * (1.0 - s)).sqrt() - 1.0);
+        return (cell - 1, [-more, 1.0 - s + more, s + more, -more]);
+    }
+    if cell == 0 && cells > 2 {
+        let more = 0.5 * ((2.0 * s - s * s).sqrt() - s);
+        return (0, [1.0 - s - more, s + 2.0 * more, -more, 0.0]);
+    }
+    (cell, [1.0 - s, s, 0.0, 0.0])
+}
