@@ -209,6 +209,27 @@ impl Body {
         couple
     }
 
+    /// Impulses [kg m/s] of nodes over jumps of their velocities.
+    pub fn add_impulses(&self, system: &System, w: &Workspace<f64>, jumps: &[Planar<f64>], all: &mut [Planar<f64>]) {
+        let inverse = 1.0 / system.mesh.h;
+        let turned = |c: usize| match system.model.kinematics {
+            Kinematics::FiniteRotation => w.shape.tangent[c].normal() * (-inverse / w.shape.stretch[c]),
+            _ => Planar { x: inverse, z: 0.0 },
+        };
+        let first = self.arm(system, w).first;
+        let turning = self.mean(|c| turned(c).dot(jumps[c + 1] - jumps[c]));
+        let moved = self.between(jumps) + first * turning;
+        let twist = self.mass * first.dot(moved) + self.inertia * turning;
+        for (k, hat) in self.hats.into_iter().enumerate() {
+            all[self.node + k] += first * (self.mass * turning * hat);
+        }
+        for (c, weight) in self.cells() {
+            let handed = turned(c) * (twist * weight);
+            all[c] -= handed;
+            all[c + 1] += handed;
+        }
+    }
+
     fn motion(&self, system: &System, w: &Workspace<f64>) -> Motion {
         Motion {
             arm: self.arm(system, w),

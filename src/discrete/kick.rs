@@ -8,15 +8,24 @@
 //! J = m y11/λ² (conservative), m y11 (published), n = (cos φ, -sin φ);  m y11, n = (1, 0) where rotary inertia has no axial part
 //! ```
 //!
+//! Bodies that turn with the beam, `[E69]` and `[E70]`, couple the nodes of their cells: these equations are solved by conjugate gradients,
+//! of which each body takes a few, with those above as the preconditioner.
+//!
 //! Along a straight beam it is `Δv = Δv_0 exp(-θ/√y11)` on fine meshes, and the end takes `m √y11` along. The energy gains
 //! `P·(v⁻ + v⁺)/2` at driven ends and nothing elsewhere, the angular momentum what the impulses turn, both exactly.
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::residual::around::node_tangent;
-use super::{System, TimeData, Workspace};
+use super::{Body, System, TimeData, Workspace};
+use crate::case::schema::Effect;
 use crate::model::Kinematics;
 use crate::numerics::Planar;
+
+/// Part of the impulses by which conjugate gradients may be wrong.
+const CLOSE: f64 = 1e-14;
+/// Their steps, at most, for each body: it brings three directions of its own, round-off some more.
+const TRIES: usize = 8;
 
 /// Velocities or impulses of all nodes.
 pub type Nodal = Vec<Planar<f64>>;
@@ -32,7 +41,8 @@ pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f6
     let l = &system.layout;
     let around = system.model.surroundings.as_ref();
     // the fluid around couples both directions of a node, sections that turn couple nodes
-    let coupled = system.turns_with_its_line() || around.is_some_and(|s| s.added_mass > 0.0);
+    let coupled =
+        system.turns_with_its_line() || around.is_some_and(|s| s.added_mass > 0.0) || turned(system).is_some();
     if !l.inertia || !coupled || system.model.kinematics == Kinematics::Bar {
         return None;
     }
@@ -46,7 +56,57 @@ pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f6
         given.iter_mut().for_each(|node| node[1] = Some(0.0));
     }
     let jumps = given.iter().flatten().flatten().any(|jump| *jump != 0.0);
-    jumps.then(|| solve(system, &given, w))
+    jumps.then(|| {
+        let alone = solve(system, &given, None, w);
+        match turned(system) {
+            Some(_) => with_bodies(system, &given, alone, w),
+            None => alone,
+        }
+    })
+}
+
+/// Bodies that turn with the beam's line, where there are some: those on sections that shear turn with these.
+fn turned(system: &System) -> Option<&[Body]> {
+    let with_line = !system.model.effects.has(Effect::Shear) && !system.bodies.is_empty();
+    with_line.then_some(&system.bodies)
+}
+
+/// Conjugate gradients from jumps that are right without bodies: what free nodes still take of impulses goes to nothing.
+fn with_bodies(system: &System, given: &[[Option<f64>; 2]], mut jumps: Nodal, w: &Workspace<f64>) -> Nodal {
+    let still: Vec<_> = given.iter().map(|node| node.map(|jump| jump.map(|_| 0.0))).collect();
+    let taken = |jumps: &Nodal| {
+        let mut all = impulses(system, jumps, w);
+        for ((all, around), given) in all.iter_mut().zip(taken_around(system, jumps, w)).zip(given) {
+            *all += around;
+            *all = Planar {
+                x: if given[0].is_some() { 0.0 } else { all.x },
+                z: if given[1].is_some() { 0.0 } else { all.z },
+            };
+        }
+        all
+    };
+    let dot = |a: &Nodal, b: &Nodal| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum::<f64>();
+    let mut left: Nodal = taken(&jumps).into_iter().map(|impulse| -impulse).collect();
+    let mut way = solve(system, &still, Some(&left), w);
+    let mut size = dot(&left, &way);
+    let enough = size * CLOSE * CLOSE;
+    for _ in 0..TRIES * system.bodies.len() {
+        if size <= enough {
+            break;
+        }
+        let more = taken(&way);
+        let step = size / dot(&way, &more);
+        for (((jump, left), way), more) in jumps.iter_mut().zip(&mut left).zip(&way).zip(&more) {
+            *jump += *way * step;
+            *left -= *more * step;
+        }
+        let next = solve(system, &still, Some(&left), w);
+        let before = std::mem::replace(&mut size, dot(&left, &next));
+        for (way, next) in way.iter_mut().zip(next) {
+            *way = next + *way * (size / before);
+        }
+    }
+    jumps
 }
 
 /// Impulses [kg m/s] that the fluid around takes from nodes over jumps of their velocities.
@@ -67,6 +127,9 @@ pub fn impulses(system: &System, jumps: &[Planar<f64>], w: &Workspace<f64>) -> N
         let handed = planar(coupling(system, w, c) * vector(jumps[c + 1] - jumps[c]));
         all[c] -= handed;
         all[c + 1] += handed;
+    }
+    for body in turned(system).unwrap_or_default() {
+        body.add_impulses(system, w, jumps, &mut all);
     }
     all
 }
@@ -109,8 +172,8 @@ fn coupling(system: &System, w: &Workspace<f64>, c: usize) -> Matrix2<f64> {
     inertia * n * n.transpose()
 }
 
-/// Thomas' algorithm, node by node: no impulse where no jump is given.
-fn solve(system: &System, given: &[[Option<f64>; 2]], w: &Workspace<f64>) -> Nodal {
+/// Thomas' algorithm, node by node, without bodies: these impulses, or none, where no jump is given.
+fn solve(system: &System, given: &[[Option<f64>; 2]], impulses: Option<&Nodal>, w: &Workspace<f64>) -> Nodal {
     let mesh = &system.mesh;
     let beside = |cell: Option<usize>| cell.map_or(Matrix2::zeros(), |cell| coupling(system, w, cell));
     // jumps[i] = sums[i] - upper[i] jumps[i + 1]
@@ -121,6 +184,9 @@ fn solve(system: &System, given: &[[Option<f64>; 2]], w: &Workspace<f64>) -> Nod
         let right = beside(Some(i).filter(|i| *i < mesh.cells));
         let mut pivot = left + right + left * upper + Matrix2::identity() * system.masses[i] + added(system, w, i);
         let (mut next, mut sum) = (-right, left * sums);
+        if let Some(impulses) = impulses {
+            sum += vector(impulses[i]);
+        }
         for (k, jump) in given.iter().enumerate() {
             if let Some(jump) = jump {
                 pivot.set_row(k, &Matrix2::identity().row(k));

@@ -209,6 +209,12 @@ fn balances_close_with_everything_attached() {
     heavy[1]["mass_kg"] = json!(0.01);
     heavy[1]["offset_across_m"] = json!(0.01);
     heavy[4]["offset_along_m"] = json!(-0.01);
+    let near = json!([
+        {"at": 0.06, "mass_kg": 0.004, "rotary_inertia_kg_m2": 4e-6, "offset_across_m": 0.01, "offset_along_m": 0.005},
+        {"at": 0.3, "mass_kg": 0.004, "rotary_inertia_kg_m2": 1e-6, "offset_across_m": -0.01}]);
+    let ramp =
+        |to: f64, start: f64| json!({"ramp": {"to": to, "start_s": start, "duration_s": 0.05, "shape": "linear"}});
+    let kicks = json!({"root": {"pinned": {"u1_m": ramp(2e-3, 0.05), "u3_m": ramp(1e-3, 0.03)}}, "tip": "free"});
     let along = json!([{"at": 0.0, "mass_kg": 0.004}, {"at": 0.333, "stiffness_z_n_m": 20.0, "damping_z_n_s_m": 0.02},
         {"at": 0.71, "mass_kg": 0.01, "force_z_n": {"sine": {"amplitude": 0.03, "frequency_hz": 8}}}]);
     let sheared = json!({"length_m": 0.1, "height_m": 0.01, "width_m": 0.02, "young_modulus_pa": 2e6, "density_kg_m3": 950,
@@ -242,6 +248,11 @@ fn balances_close_with_everything_attached() {
         (
             "kicked",
             json!({"ends": {"root": {"pinned": {"u1_m": {"ramp": {"to": 2e-3, "start_s": 0.05, "duration_s": 0.05, "shape": "linear"}}}}, "tip": "free"}}),
+        ),
+        ("kicked beside bodies", json!({"attachments": near, "ends": kicks})),
+        (
+            "kicked beside bodies, small rotation",
+            json!({"attachments": near, "ends": kicks, "effects": {"finite_rotation": "off", "rotary_inertia": "off"}}),
         ),
         (
             "at rest",
