@@ -20,8 +20,8 @@ use crate::study::refine::{self, meshes::Meshes};
 pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let case = &size::load(&asked.case)?;
     let at_s = asked.at.unwrap_or(case.time.end_s);
+    let options = options(asked, case, at_s)?;
     let system = equilibrium::system(case, at_s)?;
-    let options = options(asked, at_s)?;
     let parameters = Parameter::all(case, &asked.sensitivity)?;
     let mut folder = asked.place.claim(case, Kind::Equilibrium)?;
     let begin = Instant::now();
@@ -35,7 +35,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let stop = interrupt::flag();
     let bar = line::line(asked.quiet);
     let path = equilibrium::follow(case, &options, &mut |state| {
-        bar.set_message(format!("{:.4} of the loads", state.share));
+        bar.set_message(options.place(state.stage, &format!("{:.4}", state.share)));
         bar.tick();
         if interrupt::raised(&stop) {
             Control::Stop("interrupted".into())
@@ -56,7 +56,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.and_then(refine::warning));
     let sensitivities = match path.states.last() {
-        Some(last) if path.fault.is_none() => equilibrium::differentiate(case, &options, last, &parameters)?,
+        Some(_) if path.fault.is_none() => equilibrium::differentiate(case, &options, &path, &parameters)?,
         _ => vec![],
     };
     let found = files::Found {
@@ -86,7 +86,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     }
 }
 
-fn options(asked: &EquilibriumArguments, at_s: f64) -> Result<Options> {
+fn options(asked: &EquilibriumArguments, case: &Case, at_s: f64) -> Result<Options> {
     if !(asked.load_factor.is_finite() && asked.load_factor != 0.0 && at_s.is_finite()) {
         return Err(Error::Usage(
             "--load-factor must be a number that is not 0, --at one in seconds".into(),
@@ -97,8 +97,23 @@ fn options(asked: &EquilibriumArguments, at_s: f64) -> Result<Options> {
     }
     Ok(Options {
         at_s,
+        via_s: asked
+            .via
+            .as_deref()
+            .map_or(Ok(vec![]), |text| via(text, case.time.end_s))?,
         share: asked.load_factor,
         points: Some(asked.points),
         branches: !asked.keep_branch,
+    })
+}
+
+/// Instants of the stages before the last one.
+fn via(text: &str, end: f64) -> Result<Vec<f64>> {
+    let instant = |part: &str| part.trim().parse().ok().filter(|t: &f64| t.is_finite() && *t <= end);
+    let all: Option<Vec<f64>> = text.split(',').map(instant).collect();
+    all.ok_or_else(|| {
+        Error::Usage(format!(
+            "--via {text}: instants in seconds, one or more with commas between, none after the end of the run at {end} s"
+        ))
     })
 }

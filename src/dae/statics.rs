@@ -3,7 +3,6 @@
 use super::{BeamDae, Dae, EvaluationError, Pattern, Seeds};
 use crate::discrete::System;
 use crate::discrete::fluid_mesh::{FluidMesh, Place};
-use crate::model::network::Feed;
 
 /// `[E29]` The equations of a [`System`] without inertia and without rates, where `t` is the load factor that acts:
 ///
@@ -12,9 +11,10 @@ use crate::model::network::Feed;
 /// Σ Δs (a1 - t a1(0)) + Σ (V - t V(0)) = Σ V_port  in place of the storage of one of its cells
 /// ```
 ///
-/// with V the volumes of accumulators and `V_port` what ports that prescribe a volume have let in; for these storage
-/// equations are dependent: flows inside a closed network sum to zero whatever the pressures are. A network through which ports or turbines drive a steady flow is at rest too. Forces on unknowns, constant in time, may be
-/// added (an imperfection).
+/// with V the volumes of accumulators and `V_port` what ports that prescribe a volume or a flow have let in; for these storage
+/// equations are dependent: flows inside a closed network sum to zero whatever the pressures are. A network through which ports or turbines drive a steady flow is at rest too.
+/// Loads that go on from a state at rest ([`StaticBeam::from_state`]) keep the volumes of that state, whatever t. Forces on
+/// unknowns, constant in time, may be added (an imperfection).
 #[derive(Clone, Debug)]
 pub struct StaticBeam {
     beam: BeamDae,
@@ -25,6 +25,12 @@ pub struct StaticBeam {
     zeros: Vec<f64>,
     beam_values: Vec<f64>,
     none: Vec<bool>,
+    /// Whether volumes are there at t = 0 and do not grow with t.
+    kept: bool,
+    /// What each source that prescribes a flow has let in, at t = 0 and at t = 1 [m^3].
+    pumped: Vec<[f64; 2]>,
+    /// What the state at t = 0 leaves of the equations: it goes in proportion while t grows to 1. Empty where nothing is left.
+    left: Vec<f64>,
     /// Added to the residual.
     pub imperfection: Vec<f64>,
 }
@@ -47,7 +53,7 @@ struct Closed {
     parts: Vec<(usize, f64)>,
     /// Sum of their volumes at the start, over that of a cell.
     sum: f64,
-    /// Sources that prescribe volumes.
+    /// Sources that prescribe volumes or flows.
     sources: Vec<usize>,
     /// The volume of a cell that the others are over [m^3].
     unit: f64,
@@ -59,8 +65,30 @@ impl StaticBeam {
     /// Equilibria of a system without inertia, each closed network with the areas of `start`, scaled unknowns of the same
     /// system. Valves are as they are at t = 1.
     pub fn new(system: System, start: &[f64]) -> Self {
+        Self::of(system, start, &[], false)
+    }
+
+    /// Equilibria of loads that go on from a state at rest, scaled unknowns of the same system: closed networks keep what they
+    /// hold in it and take what ports of prescribed volume let in from there on, and ports of prescribed flow: `pumped`
+    /// [m^3], of every source at t = 0 and at t = 1.
+    pub fn from_state(system: System, state: &[f64], pumped: &[[f64; 2]]) -> Self {
+        Self::of(system, state, pumped, true)
+    }
+
+    /// The same where nothing is there yet at t = 0: volumes grow with t to those of `start`, and what was pumped is there at t = 1.
+    pub fn from_nothing(system: System, start: &[f64], pumped: &[[f64; 2]]) -> Self {
+        Self::of(system, start, pumped, false)
+    }
+
+    fn of(system: System, start: &[f64], pumped: &[[f64; 2]], kept: bool) -> Self {
         let mut beam = BeamDae::new(system);
-        let closed = closed(&mut beam, start);
+        let mut closed = closed(&mut beam, start);
+        if kept {
+            let volumes = &beam.instant(0.0).1.source_volume;
+            for one in &mut closed {
+                one.sum -= let_in(one, volumes, pumped, 0.0) / one.unit;
+            }
+        }
         let inner = beam.pattern();
         let n = beam.len();
         let replaced = |row: usize| closed.iter().position(|c| c.row == row);
@@ -90,8 +118,21 @@ impl StaticBeam {
             zeros: vec![0.0; n],
             beam_values,
             none: vec![false; n],
+            kept,
+            pumped: pumped.to_vec(),
+            left: vec![],
             imperfection: vec![0.0; n],
         }
+    }
+
+    /// Lets what a state leaves of the equations at t = 0 go in proportion: the state is the first one of a path that ends in
+    /// equilibrium at t = 1. False where the equations cannot be evaluated.
+    pub fn relax_from(&mut self, state: &[f64]) -> bool {
+        let mut left = vec![0.0; self.len()];
+        self.left.clear();
+        let evaluated = self.residual(0.0, state, &[], &mut left).is_ok();
+        self.left = left;
+        evaluated
     }
 
     /// The beam as a DAE.
@@ -123,10 +164,9 @@ impl StaticBeam {
 /// The sets of joined cells that no prescribed pressure reaches, with what is open at t = 1.
 fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
     let (system, now) = beam.instant(1.0);
-    let (Some(wet), Some(fluid), layout) = (&system.model.wet, &system.fluid, &system.layout) else {
+    let (Some(fluid), layout) = (&system.fluid, &system.layout) else {
         return vec![];
     };
-    let sources = &wet.network.sources;
     // Cells, then junctions, then whatever prescribes a pressure.
     let given = fluid.cells + fluid.junctions.len();
     let mut sets = Sets::new(given + 1);
@@ -186,9 +226,7 @@ fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
     for source in &fluid.sources {
         let root = sets.root(index(source.into));
         if let Some(k) = closed.iter().position(|(r, _)| *r == root) {
-            if matches!(sources[source.number].feed, Feed::Volume(_)) {
-                closed[k].1.sources.push(source.number);
-            }
+            closed[k].1.sources.push(source.number);
             closed[k].1.inflow += now.source_flow[source.number];
             passed[k] += now.source_flow[source.number].abs();
         }
@@ -199,6 +237,16 @@ fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
         }
     }
     closed.into_iter().map(|(_, c)| c).collect()
+}
+
+/// What ports have let into closed cells [m^3]: `volumes` of those that prescribe one, and what the others have pumped.
+fn let_in(closed: &Closed, volumes: &[f64], pumped: &[[f64; 2]], t: f64) -> f64 {
+    let by_flow = |source: usize| pumped.get(source).map_or(0.0, |[from, to]| from + t * (to - from));
+    closed
+        .sources
+        .iter()
+        .map(|&source| volumes[source] + by_flow(source))
+        .sum()
 }
 
 /// Cells whose areas are unknowns, in the order of the unknowns.
@@ -245,9 +293,12 @@ impl Dae for StaticBeam {
         self.beam.residual(t, y, &self.zeros, residual)?;
         for closed in &self.closed {
             let sum: f64 = closed.parts.iter().map(|&(part, weight)| weight * y[part]).sum();
-            let volumes = &self.beam.now().source_volume;
-            let let_in: f64 = closed.sources.iter().map(|&source| volumes[source]).sum();
-            residual[closed.row] = sum - t * closed.sum - let_in / closed.unit;
+            let let_in = let_in(closed, &self.beam.now().source_volume, &self.pumped, t);
+            let grown = if self.kept { 1.0 } else { t };
+            residual[closed.row] = sum - grown * closed.sum - let_in / closed.unit;
+        }
+        for (r, left) in residual.iter_mut().zip(&self.left) {
+            *r -= (1.0 - t) * left;
         }
         for (r, more) in residual.iter_mut().zip(&self.imperfection) {
             *r += more;

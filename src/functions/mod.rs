@@ -3,6 +3,7 @@
 //! | file | what stands there |
 //! |---|---|
 //! | [`signals`], `evaluate` | functions of time: forms, values, derivatives, times at which they switch |
+//! | `integral` | what a function of time adds up to |
 //! | [`profile`] | functions of place: values, integrals, waves |
 //! | `curve` | curves through points: tables of both |
 //! | `jet` | a value with its first three derivatives |
@@ -12,6 +13,7 @@
 pub mod bounds;
 mod curve;
 mod evaluate;
+mod integral;
 mod jet;
 mod number_or_object;
 pub mod profile;

@@ -22,7 +22,10 @@ pub struct Equilibrium {
     pub reason: Option<String>,
     /// Instant of the loads [s].
     pub loads_at_s: f64,
-    /// Share of the loads in the last state; nothing without states.
+    /// Instants whose loads were to be reached before [s].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub via_s: Vec<f64>,
+    /// Load factor of the last state: share of the loads, 1 more for every stage before; nothing without states.
     pub load_factor: Option<f64>,
     /// States on the path.
     pub states: usize,
@@ -64,8 +67,11 @@ pub struct Stability {
 /// Something that happens on the way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// Share of the loads.
+    /// Load factor: share of the loads, 1 more for every stage before.
     pub load_factor: f64,
+    /// Stage in which it happens, from 1, where there are several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stage: Option<usize>,
     /// In words.
     pub what: String,
 }

@@ -54,6 +54,34 @@ fn command_fills_its_folder() {
     assert_eq!(table.lines().next(), Some(head));
 }
 
+/// Goal: files, words and page know of stages.
+#[test]
+fn command_tells_stages() {
+    let out = tempfile::tempdir().expect("a folder");
+    let run = slcbeam(
+        &["equilibrium", "cases/snap-strip.json", "--via", "-2,-1,0"],
+        out.path(),
+    );
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let text = String::from_utf8_lossy(&run.stdout);
+    assert!(
+        text.contains("of stage 4: limit point") && text.contains("1.00000 of stage 4"),
+        "{text}"
+    );
+    let read = |name: &str| std::fs::read_to_string(out.path().join(name)).expect("a file");
+    let json: Value = serde_json::from_str(&read("equilibrium.json")).expect("JSON");
+    assert_eq!(
+        (&json["load_factor"], &json["via_s"]),
+        (&4.0.into(), &serde_json::json!([-2.0, -1.0, 0.0]))
+    );
+    assert_eq!(json["events"][0]["stage"], 4);
+    let table = read("path.csv");
+    let head = table.lines().next().expect("a heading");
+    assert!(head.ends_with("unstable_modes [1],stage [1]"), "{head}");
+    assert!(table.lines().last().expect("a row").ends_with(",4"));
+    assert!(read("path.svg").contains("loads at t = -2 s, -1 s, 0 s, 1 s, one after the other"));
+}
+
 /// Goal: an accuracy is reached on a mesh of its own, and its estimates stand in the file and in the words.
 #[test]
 fn command_refines_until_it_is_accurate() {
@@ -109,6 +137,31 @@ fn command_says_what_cannot_be() {
             vec!["equilibrium", "cases/pluck.json", "--set", "/start/u1_m=0.001"],
             3,
             "/start/equilibrium finds",
+        ),
+        (
+            vec!["equilibrium", "cases/pluck.json", "--via", "soon"],
+            2,
+            "--via soon",
+        ),
+        (
+            vec!["equilibrium", "cases/pluck.json", "--via", ""],
+            2,
+            "instants in seconds",
+        ),
+        (
+            vec!["equilibrium", "cases/pluck.json", "--via", "0.5,1.5"],
+            2,
+            "after the end of the run at 1 s",
+        ),
+        (
+            vec![
+                "equilibrium",
+                "cases/pluck.json",
+                "--set",
+                "/start/equilibrium/via_s=[0, 2]",
+            ],
+            3,
+            "the instant 2 s is not one before the end of the run",
         ),
     ] {
         let run = slcbeam(&arguments, out.path());

@@ -42,7 +42,7 @@ fn sensitivities_are_those_of_differences() {
             .iter()
             .map(|p| Parameter::find(&case, p).expect("a number"))
             .collect();
-        let found = differentiate(&case, &options, base.last(), &parameters).expect("derivatives");
+        let found = differentiate(&case, &options, &base, &parameters).expect("derivatives");
         for s in found {
             let at = |steps: f64| {
                 let value = s.parameter.value * (1.0 + 1e-3 * steps);

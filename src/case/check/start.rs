@@ -62,6 +62,15 @@ fn equilibrium(case: &Case, faults: &mut Violations) {
             "the instant is not a finite number",
         ));
     }
+    for (i, &instant) in start.via_s.iter().enumerate() {
+        // a signal beyond the end of the run is not looked at anywhere else
+        if !(instant.is_finite() && instant <= case.time.end_s) {
+            let pointer = format!("/start/equilibrium/via_s/{i}");
+            let what = format!("the instant {instant} s is not one before the end of the run");
+            let allowed = format!("finite, at most {} s", case.time.end_s);
+            faults.push(Violation::new(Code::Start, pointer, what).allowed(allowed));
+        }
+    }
     for (key, given) in [("u1_m", &case.start.u1_m), ("u3_m", &case.start.u3_m)] {
         if given.is_some() {
             let what = format!("{key} is given, but /start/equilibrium finds the displacements");

@@ -163,6 +163,10 @@ pub struct EquilibriumStart {
     /// at t = 0 lets go what it held.
     #[serde(default)]
     pub loads_at_s: f64,
+    /// Instants whose loads are reached before, one after the other [s]: a preload that decides into which of several equilibria
+    /// the beam goes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub via_s: Vec<f64>,
 }
 
 /// Initial pressure of some bladders.

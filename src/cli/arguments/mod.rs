@@ -155,7 +155,10 @@ pub struct EquilibriumArguments {
     /// Instant whose loads, end motions, port pressures and valves are the full ones [default: the end of the run]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub at: Option<f64>,
-    /// Share of these loads at which the path ends
+    /// Loading in stages: instants whose loads are reached first, one after the other, such as -1 or 0.2,0.5
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub via: Option<String>,
+    /// Share of these loads at which the path ends, of the last stage where there are several
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
     pub load_factor: f64,
     /// Points along the path at least
@@ -333,6 +336,9 @@ pub struct PeriodicArguments {
     /// by their logarithms, such as /network/permeability_factor=0.01:1:25:log
     #[arg(long, value_name = "POINTER=FROM:TO:COUNT[:log]")]
     pub sweep: Option<String>,
+    /// Look for a cycle that comes back after so many periods of what drives the case: 2 for a period that doubles
+    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    pub periods: usize,
     /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
     #[arg(long, value_name = "REL", conflicts_with = "sweep")]
     pub accuracy: Option<f64>,

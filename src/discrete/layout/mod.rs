@@ -103,6 +103,18 @@ impl Layout {
         self.moved().filter_map(|(_, velocity)| velocity)
     }
 
+    /// Scaled unknowns of another layout of the same beam in the scales of this one: 0 for what only this one has, such as the flow through a tube
+    /// that is shut for ever there.
+    pub fn take_over(&self, other: &Self, y: &[f64]) -> Vec<f64> {
+        let mut next = 0;
+        let mut one = |k: usize| {
+            let there = (next..other.len).find(|&j| other.names[j] == self.names[k])?;
+            next = there + 1;
+            Some(y[there] * other.scales[there] / self.scales[k])
+        };
+        (0..self.len).map(|k| one(k).unwrap_or(0.0)).collect()
+    }
+
     /// Name of an unknown with unit and place.
     pub fn name(&self, unknown: usize) -> String {
         let bladder = |b: usize| bladder_label(b, self.per_row);

@@ -69,8 +69,10 @@ pub fn json(found: &Found) -> String {
         unstable_modes: s.unstable,
         softest_1_s2: s.softest,
     };
+    let several = !found.options.via_s.is_empty();
     let event = |e: &Event| kept::Event {
-        load_factor: e.share,
+        load_factor: e.load_factor(),
+        stage: several.then_some(e.stage + 1),
         what: e.words().into(),
     };
     let derivatives = |s: &Sensitivity| {
@@ -82,7 +84,8 @@ pub fn json(found: &Found) -> String {
         status: path.fault.as_ref().map_or(Status::Finished, |_| Status::Failed),
         reason: path.fault.as_ref().map(|f| f.what.clone()),
         loads_at_s: found.options.at_s,
-        load_factor: last.map(|s| s.share),
+        via_s: found.options.via_s.clone(),
+        load_factor: last.map(State::load_factor),
         states: path.states.len(),
         quantities: last.map(|s| keyed(&s.row)),
         stability: last.and_then(|s| s.stability.as_ref()).map(stability),
@@ -127,21 +130,31 @@ pub fn write(folder: &mut ResultFolder, found: &Found) -> Result<Vec<PathBuf>> {
     folder.fill_with(&case, files)
 }
 
-/// One row a state.
+/// One row a state; which stage it belongs to, from 1, where there are several.
 fn table(found: &Found) -> String {
+    let several = !found.options.via_s.is_empty();
     let columns = found.columns.iter().map(|c| format!("{} [{}]", c.name, c.unit));
     let rows = found.path.states.iter().map(|state| {
         let unstable = state.stability.as_ref().map_or(f64::NAN, |s| s.unstable as f64);
-        state.row.iter().chain([&unstable]).map(|&x| shortest(x)).collect()
+        let stage = several.then_some(state.stage as f64 + 1.0);
+        state
+            .row
+            .iter()
+            .copied()
+            .chain([unstable])
+            .chain(stage)
+            .map(shortest)
+            .collect()
     });
-    records::text(columns.chain(["unstable_modes [1]".into()]), rows)
+    let stage = several.then(|| "stage [1]".into());
+    records::text(columns.chain(["unstable_modes [1]".into()]).chain(stage), rows)
 }
 
 /// One row a node: `theta [m]`, then x and z of every state.
 fn shapes(found: &Found) -> String {
     let states = &found.path.states;
     let length = found.case.beam.length_m;
-    let shares = states.iter().map(|state| shortest(state.share));
+    let shares = states.iter().map(|state| shortest(state.load_factor()));
     let columns = shares.flat_map(|share| [format!("x at {share} [m]"), format!("z at {share} [m]")]);
     let nodes = states.first().map_or(0, |s| s.u1.len());
     let rows = (0..nodes).map(|i| {
@@ -152,14 +165,28 @@ fn shapes(found: &Found) -> String {
     records::text(["theta [m]".into()].into_iter().chain(columns), rows)
 }
 
+/// What the loads are those of.
+fn about(options: &Options) -> String {
+    let all = options.via_s.iter().chain([&options.at_s]);
+    let instants: Vec<String> = all.map(|at| format!("{} s", shortest(*at))).collect();
+    match instants.as_slice() {
+        [at] => format!("all loads grown together to those at t = {at}"),
+        _ => format!("loads at t = {}, one after the other", instants.join(", ")),
+    }
+}
+
 /// The picture's data.
 fn drawn(found: &Found) -> LoadPath {
     let states = &found.path.states;
     let stable = |s: &State| s.stability.as_ref().is_none_or(|s| s.unstable == 0);
-    let shown = |name: &str| Observable::named(name).is_some_and(|one| one.role() == Role::Headline);
+    // of probes the deflection: ends may be held
+    let shown = |name: &str| match Observable::named(name) {
+        Some(one) => one.role() == Role::Headline,
+        None => name.ends_with("_u1"),
+    };
     let curves = found.columns.iter().enumerate().filter(|(_, c)| shown(&c.name));
     let nearest = |share: f64| {
-        let far = |k: &usize| (states[*k].share - share).abs();
+        let far = |k: &usize| (states[*k].load_factor() - share).abs();
         (0..states.len()).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0)
     };
     let every = states.len().div_ceil(DRAWN).max(1);
@@ -176,17 +203,14 @@ fn drawn(found: &Found) -> LoadPath {
     };
     LoadPath {
         case: found.case.name.clone(),
-        about: format!(
-            "all loads grown together to those at t = {} s",
-            shortest(found.options.at_s)
-        ),
-        shares: states.iter().map(|s| s.share).collect(),
+        about: about(found.options),
+        shares: states.iter().map(State::load_factor).collect(),
         stable: states.iter().map(stable).collect(),
         curves: curves
             .map(|(k, column)| Curve {
                 name: column.name.replace('_', " "),
                 unit: column.unit.into(),
-                points: states.iter().map(|s| (s.share, s.row[k])).collect(),
+                points: states.iter().map(|s| (s.load_factor(), s.row[k])).collect(),
             })
             .collect(),
         marks: found
@@ -198,7 +222,7 @@ fn drawn(found: &Found) -> LoadPath {
                     Kind::LimitPoint => 'L',
                     Kind::Bifurcation => 'B',
                 };
-                (nearest(e.share), letter)
+                (nearest(e.load_factor()), letter)
             })
             .collect(),
         shapes: chosen.iter().rev().map(shape).collect(),

@@ -16,8 +16,8 @@ pub fn words(found: &Found) -> String {
     let mut text = table(found);
     for event in &path.events {
         text.push_str(&format!(
-            "at {} of the loads: {}\n",
-            significant(event.share, 6),
+            "at {}: {}\n",
+            found.options.place(event.stage, &significant(event.share, 6)),
             event.words()
         ));
     }
@@ -38,9 +38,8 @@ pub fn words(found: &Found) -> String {
             ),
         };
         text.push_str(&format!(
-            "\n{} of the loads at t = {} s, {stability}: {} states, {} Newton steps, {} in all\n",
-            significant(last.share, 6),
-            significant(found.options.at_s, 6),
+            "\n{}, {stability}: {} states, {} Newton steps, {} in all\n",
+            reached(found, last),
             count(path.states.len() as u64),
             count(path.work.iterations),
             quantity(found.wall_s, "s", 3),
@@ -67,6 +66,21 @@ pub fn words(found: &Found) -> String {
         text.push_str(&crate::output::accuracy::words(accuracy));
     }
     text
+}
+
+/// Which loads the last state bears.
+fn reached(found: &Found, last: &State) -> String {
+    let (share, at) = (significant(last.share, 6), |t: &f64| significant(*t, 6));
+    let via: Vec<String> = found.options.via_s.iter().map(at).collect();
+    if via.is_empty() {
+        return format!("{share} of the loads at t = {} s", at(&found.options.at_s));
+    }
+    let stages = via.iter().cloned().chain([at(&found.options.at_s)]);
+    let stages = stages.collect::<Vec<_>>().join(" s, ");
+    format!(
+        "{share} of stage {}, the loads at t = {stages} s one after the other",
+        last.stage + 1
+    )
 }
 
 /// Some of the states, first and last among them.

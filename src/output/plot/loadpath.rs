@@ -38,7 +38,8 @@ pub fn draw(data: &LoadPath) -> Option<String> {
     if data.shares.len() < 2 || curves.is_empty() {
         return None;
     }
-    let columns = curves.len() as f64;
+    // room for the words of the shapes beside a single curve
+    let columns = curves.len().max(2) as f64;
     let sheet = LEFT + columns * (WIDTH + GAP);
     let shapes = Shapes::of(data, sheet - LEFT - GAP);
     let bottom = TOP + HEIGHT + 40.0 + shapes.as_ref().map_or(0.0, |s| 50.0 + s.height);

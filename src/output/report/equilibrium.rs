@@ -42,7 +42,9 @@ pub fn data(place: &Place) -> Result<Page> {
         json!({"word": found.status, "tone": tone, "reason": found.reason}),
     );
     page.warnings.clone_from(&found.warnings);
-    let (share, at) = (found.load_factor.unwrap_or(0.0), found.loads_at_s);
+    let at = found.loads_at_s;
+    // of the last stage, where it was reached
+    let share = found.load_factor.unwrap_or(0.0) - found.via_s.len() as f64;
     page.put("answer", answer(&found, share));
     page.put(
         "facts",
@@ -61,7 +63,11 @@ pub fn data(place: &Place) -> Result<Page> {
             .as_ref()
             .and_then(|all| all.named(name).copied().flatten())
     };
-    let first = tile("Share of the loads", found.load_factor, "1", "at the end of the path");
+    let [label, note] = match found.via_s.len() {
+        0 => ["Share of the loads", "at the end of the path"],
+        _ => ["Load factor", "at the end of the path; every stage before counts 1"],
+    };
+    let first = tile(label, found.load_factor, "1", note);
     let others = TILES
         .iter()
         .map(|(label, name, unit, note)| tile(label, last(name), unit, note));
@@ -72,17 +78,39 @@ pub fn data(place: &Place) -> Result<Page> {
     page.put("shapes", shapes(&place.path(SHAPES)));
     page.put(
         "command",
-        format!("slcbeam equilibrium {CASE} --at {at} --load-factor {share}"),
+        format!(
+            "slcbeam equilibrium {CASE}{} --at {at} --load-factor {share}",
+            via(&found)
+        ),
     );
     Ok(page)
 }
 
+/// The argument that names the stages before the last one.
+fn via(found: &Equilibrium) -> String {
+    let instants: Vec<String> = found.via_s.iter().map(f64::to_string).collect();
+    match instants.as_slice() {
+        [] => String::new(),
+        _ => format!(" --via {}", instants.join(",")),
+    }
+}
+
 fn answer(found: &Equilibrium, share: f64) -> String {
-    let loads = format!(
-        "{} % of the loads at t = {} s",
-        trimmed(&significant(100.0 * share, 4)),
-        trimmed(&significant(found.loads_at_s, 4))
-    );
+    let short = |x: f64| trimmed(&significant(x, 4));
+    let loads = match found.via_s.last() {
+        None => format!(
+            "{} % of the loads at t = {} s",
+            short(100.0 * share),
+            short(found.loads_at_s)
+        ),
+        Some(_) if share < 0.0 => format!("{} of the stages of the loads", short(found.load_factor.unwrap_or(0.0))),
+        Some(before) => format!(
+            "{} % of the way from the loads at t = {} s to those at t = {} s",
+            short(100.0 * share),
+            short(*before),
+            short(found.loads_at_s)
+        ),
+    };
     let stability = match found.stability.map(|s| s.unstable_modes) {
         None => "whether it is stable is not known".to_string(),
         Some(0) => "it is stable".to_string(),

@@ -1,25 +1,26 @@
 //! The beginning of a run: its state and sensitivities, from the start of the case or from a checkpoint.
 
 use super::{End, Run};
+use crate::case::schema::EquilibriumStart;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::System;
 use crate::error::{Result, SolverError};
 use crate::run::checkpoint::Checkpoint;
-use crate::run::equilibrium;
+use crate::run::equilibrium::{self, Options};
 use crate::run::observe::Observer;
 use crate::run::record::{Control, Header, Recorder};
 use crate::run::sensitivity::forward::Before;
 
 impl Run<'_> {
-    /// The equilibrium under the loads of an instant [s]; the recorder is asked at every point of the way to it.
+    /// The equilibrium that the case begins in; the recorder is asked at every point of the way to it.
     pub(super) fn seek(
         &self,
-        loads_at_s: f64,
+        start: &EquilibriumStart,
         dae: &mut BeamDae,
         recorder: &mut dyn Recorder,
     ) -> Result<std::result::Result<Vec<f64>, End>> {
         let mut asked = Ok(Control::Continue);
-        let found = equilibrium::at_start_watched(self.case, loads_at_s, dae, &self.state, &mut || {
+        let found = equilibrium::at_start_watched(self.case, &Options::of_start(start), dae, &self.state, &mut || {
             asked = recorder.progress(&self.latest);
             asked.as_ref().map_or(Control::Stop(String::new()), Control::clone)
         });

@@ -226,7 +226,7 @@ impl Run<'_> {
                 let (system, now) = dae.instant(0.0);
                 self.state = start::state(system, self.case, now);
                 if let Some(start) = &self.case.start.equilibrium {
-                    match self.seek(start.loads_at_s, &mut dae, recorder)? {
+                    match self.seek(start, &mut dae, recorder)? {
                         Ok(state) => self.state = state,
                         Err(end) => return Ok(self.finish(end)),
                     }

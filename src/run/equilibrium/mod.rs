@@ -1,6 +1,7 @@
 //! Static equilibrium: the path from rest to the full load, every point of it solved by KINSOL.
 //!
 //! ```text
+//! stages   loads that follow one another: the whole path
 //! arclength  equilibrium with the load factor as one more unknown: the arc length
 //! natural  coordinates in which paths are nearly straight
 //! predict  where the next point probably is
@@ -11,7 +12,8 @@
 //! ```
 //!
 //! Everything that acts grows in proportion from nothing: loads, motions of the ends, pressures and flows of ports, volumes
-//! of closed networks. Valves stand as they do under the full load.
+//! of closed networks. Valves stand as they do under the full load. Where loads of other instants come first, each stage of the
+//! path goes along the straight line from the loads of one instant to those of the next.
 
 mod arclength;
 mod branch;
@@ -20,29 +22,29 @@ mod natural;
 mod path;
 mod predict;
 mod sensitivity;
+mod stages;
 mod state;
 
-use crate::case::schema::Case;
-use crate::dae::{BeamDae, StaticBeam};
-use crate::discrete::{System, TimeData, start};
+use crate::case::schema::{Case, EquilibriumStart};
+use crate::dae::BeamDae;
+use crate::discrete::System;
 use crate::error::{self, At, Code, SolverError};
-use crate::functions::signals::Polynomial;
-use crate::functions::{Clock, Signal};
-use crate::model::{Model, Storage};
 use crate::run::range::REYNOLDS;
 use crate::run::record::Control;
 use crate::sundials::Solution;
 
-pub use path::follow;
 pub use sensitivity::{Sensitivity, differentiate};
+pub use stages::follow;
 pub use state::{Stability, State, columns, restate};
 
 /// What is asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// TimeData whose loads are the full ones [s].
+    /// Instant whose loads are the full ones [s].
     pub at_s: f64,
-    /// Share of the loads at which the path ends.
+    /// Instants whose loads are reached before, one after the other [s].
+    pub via_s: Vec<f64>,
+    /// Share of the last stage, from the loads before to the full ones, at which the path ends.
     pub share: f64,
     /// Largest share of an arc that a step may take, a number of points at least; none: as far as predictions hold.
     pub points: Option<usize>,
@@ -55,9 +57,27 @@ impl Options {
     pub fn at(at_s: f64) -> Self {
         Self {
             at_s,
+            via_s: vec![],
             share: 1.0,
             points: None,
             branches: true,
+        }
+    }
+
+    /// In which a run starts.
+    pub fn of_start(start: &EquilibriumStart) -> Self {
+        Self {
+            via_s: start.via_s.clone(),
+            ..Self::at(start.loads_at_s)
+        }
+    }
+
+    /// Where on the way a load factor is, for people: `0.25 of the loads`, or of the stage that it belongs to.
+    pub fn place(&self, stage: usize, share: &str) -> String {
+        if self.via_s.is_empty() {
+            format!("{share} of the loads")
+        } else {
+            format!("{share} of stage {}", stage + 1)
         }
     }
 }
@@ -77,14 +97,16 @@ pub struct Path {
     pub fault: Option<SolverError>,
     /// What of the first state lies beyond the model, where one does.
     pub beyond: Option<String>,
-    /// The largest Reynolds number of steady flow through a tube, and the share of the loads at which it is reached.
+    /// The largest Reynolds number of steady flow through a tube, and the load factor at which it is reached.
     pub reynolds: [f64; 2],
 }
 
 /// A remarkable point of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
-    /// Share of the loads.
+    /// Stage of the path, from 0.
+    pub stage: usize,
+    /// Share of the stage.
     pub share: f64,
     /// What is remarkable.
     pub kind: Kind,
@@ -100,6 +122,11 @@ pub enum Kind {
 }
 
 impl Event {
+    /// Load factor: stages before and share of this one.
+    pub fn load_factor(&self) -> f64 {
+        self.stage as f64 + self.share
+    }
+
     /// For people.
     pub fn words(&self) -> &'static str {
         match self.kind {
@@ -140,27 +167,8 @@ impl Path {
 /// # Errors
 /// Those of [`System::new`].
 pub fn system(case: &Case, at_s: f64) -> error::Result<System> {
-    growing(case, Model::whole(case, false)?, at_s)?.accepted(case)
-}
-
-fn growing(case: &Case, mut model: Model, at_s: f64) -> error::Result<System> {
-    let at = |signal: &Signal| signal.jet(Clock { t: at_s, within: at_s }).value;
-    let growing = |signal: &Signal| match at(signal) {
-        0.0 => Signal::Constant(0.0),
-        value => Signal::Polynomial(Polynomial {
-            coefficients: vec![0.0, value],
-        }),
-    };
-    model.replace_signals(growing, |opening| Signal::Constant(at(opening)));
-    model.relaxation.clear();
-    let section = &mut model.section;
-    (section.drag, section.axial_damping_time, section.bending_damping_time) = (0.0, 0.0, 0.0);
-    if let Some(wet) = model.wet.as_mut().filter(|wet| wet.flows) {
-        wet.network.still = true;
-        wet.storage.fill(Storage::Flowing);
-        wet.lumped.clear();
-    }
-    System::with(case, model)
+    let first = stages::Stage::from_nothing(at_s);
+    stages::grow(case, &first).map(|grown| grown.system)
 }
 
 /// The state in which a run begins, where the case asks for an equilibrium: the scaled unknowns of the run's system, with the
@@ -168,8 +176,8 @@ fn growing(case: &Case, mut model: Model, at_s: f64) -> error::Result<System> {
 ///
 /// # Errors
 /// There is no equilibrium, or no way to it from rest.
-pub fn at_start(case: &Case, at_s: f64, dae: &mut BeamDae, y: &[f64]) -> Result<Vec<f64>, SolverError> {
-    at_start_watched(case, at_s, dae, y, &mut || Control::Continue)
+pub fn at_start(case: &Case, options: &Options, dae: &mut BeamDae, y: &[f64]) -> Result<Vec<f64>, SolverError> {
+    at_start_watched(case, options, dae, y, &mut || Control::Continue)
 }
 
 /// The same; `ask` is asked at every point of the path whether to go on.
@@ -178,16 +186,15 @@ pub fn at_start(case: &Case, at_s: f64, dae: &mut BeamDae, y: &[f64]) -> Result<
 /// As [`at_start`], or it was told to stop.
 pub fn at_start_watched(
     case: &Case,
-    at_s: f64,
+    options: &Options,
     dae: &mut BeamDae,
     y: &[f64],
     ask: &mut dyn FnMut() -> Control,
 ) -> Result<Vec<f64>, SolverError> {
-    let at_rest = dae.system().model.at_rest(case);
-    let statics = at_rest.and_then(|model| growing(case, model, at_s));
-    let statics = statics.map_err(|error| path::fault(0.0, &error.to_string()))?;
-    let mut from = BeamDae::new(statics.clone());
-    let path = path::follow_of(case, statics, &Options::at(at_s), false, &mut |_| ask());
+    let model = dae.system().model.clone();
+    let grow = |stage: &stages::Stage| stages::growing(case, model.at_rest(case)?, stage);
+    let path = stages::follow_of(case, &grow, options, false, &mut |_| ask());
+    let path = path.map_err(|error| path::fault(0.0, &error.to_string()))?;
     if let Some(fault) = path.fault {
         return Err(SolverError {
             at: At::Time(0.0),
@@ -195,7 +202,13 @@ pub fn at_start_watched(
             ..fault
         });
     }
-    let last = &path.states[path.states.len() - 1];
+    let last = path.last();
+    let stages = options.stages();
+    let grown = stages
+        .last()
+        .map_or_else(|| stages::Stage::from_nothing(options.at_s), |stage| *stage);
+    let grown = grow(&grown).map_err(|error| path::fault(0.0, &error.to_string()))?;
+    let mut from = BeamDae::new(grown.system);
     let (system, now) = dae.instant(0.0);
     let mut z = restate(&mut from, last.share, &last.y, system, now);
     let l = &system.layout;
@@ -203,13 +216,4 @@ pub fn at_start_watched(
         z[velocity] = y[velocity];
     }
     Ok(z)
-}
-
-/// Scaled unknowns of a static system at rest, and of the state that its volumes are those of.
-fn rest(case: &Case, system: System) -> (StaticBeam, Vec<f64>) {
-    let mut now = TimeData::new(&system);
-    now.update(&system, Clock { t: 0.0, within: 0.0 });
-    let volumes = start::state(&system, case, &now);
-    let y = vec![0.0; volumes.len()];
-    (StaticBeam::new(system, &volumes), y)
 }

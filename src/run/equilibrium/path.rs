@@ -4,10 +4,9 @@ use super::arclength::Arclength;
 use super::natural::Natural;
 use super::predict::Trail;
 use super::state::{self, Stability, State};
-use super::{Event, Kind, Options, Path, rest, system};
-use crate::case::schema::Case;
+use super::{Event, Kind, Options, Path};
 use crate::discrete::System;
-use crate::error::{self, At, Code, SolverError};
+use crate::error::{At, Code, SolverError};
 use crate::run::range::Limits;
 use crate::run::record::Control;
 use crate::sundials::{Kinsol, KinsolError, KinsolOptions};
@@ -20,6 +19,8 @@ const SHORTEST: f64 = 1e-7;
 const ASTRAY: f64 = 0.2;
 /// The same that steps are chosen for.
 const WANTED: f64 = 0.05;
+/// Part of a step below which the way is what was found, not what was foretold.
+const TURN: f64 = 0.02;
 /// Newton steps that steps are chosen for, and largest growth of a step.
 const WANTED_ITERATIONS: f64 = 12.0;
 const GROWTH: f64 = 2.5;
@@ -34,69 +35,9 @@ const MOST_POINTS: usize = 5000;
 /// Shares beyond which a path has lost its way.
 const FURTHEST: f64 = 100.0;
 
-/// Follows the equilibria of a case from rest to a share of its loads. `watch` sees every state and may end the path.
-///
-/// # Errors
-/// Those of [`System::new`]; a path that ends early has its fault.
-pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> Control) -> error::Result<Path> {
-    Ok(follow_of(case, system(case, options.at_s)?, options, true, watch))
-}
-
-/// The same of another static system of the case; whether its states hold is judged where that is wanted.
-pub(super) fn follow_of(
-    case: &Case,
-    system: System,
-    options: &Options,
-    judged: bool,
-    watch: &mut dyn FnMut(&State) -> Control,
-) -> Path {
-    let (statics, y) = rest(case, system);
-    let mut path = Path::default();
-    if let Some(inflow) = statics.fed() {
-        let what =
-            format!("there is no equilibrium: a closed network takes in {inflow:.3e} m^3/s which nothing lets out");
-        path.fault = Some(SolverError {
-            cause: Some("a port of prescribed flow without one of prescribed pressure in the same network".into()),
-            hint: Some("open the network by a port with pressure_pa, or let the flows sum to zero".into()),
-            ..fault(0.0, &what)
-        });
-        return path;
-    }
-    let n = y.len();
-    let weights = weights(statics.system());
-    let limits = Limits::new(case, statics.system());
-    let natural = Natural::of(&statics);
-    match Kinsol::new(Arclength::new(statics)) {
-        Err(failure) => path.fault = Some(fault(0.0, &failure.what)),
-        Ok(solver) => {
-            let mut x = y;
-            x.push(0.0);
-            let mut follower = Follower {
-                orientation: 0,
-                branch: 0,
-                natural,
-                bounds: vec![0],
-                solver,
-                weights,
-                n,
-                options: *options,
-                limits,
-                path: &mut path,
-                watch,
-            };
-            let ended = follower.go(x);
-            if judged {
-                follower.judge();
-            }
-            path.fault = ended.err().map(|End(fault)| fault);
-        }
-    }
-    path
-}
-
 /// Squared weight of each unknown and of the share in the length of a step: displacements in lengths of the beam, root mean
 /// square over its nodes; the others follow from these.
-fn weights(system: &System) -> Vec<f64> {
+pub(super) fn weights(system: &System) -> Vec<f64> {
     let l = &system.layout;
     let mut weights = vec![0.0; l.len + 1];
     for unknown in l.lines.iter().flat_map(|line| line.u.clone()) {
@@ -120,20 +61,22 @@ enum Next {
 }
 
 pub(super) struct Follower<'a> {
+    /// Stage of the path, from 0.
+    pub(super) stage: usize,
     /// Sign of the determinant of the equations: it changes where another path crosses, not at a limit point.
     pub(super) orientation: i8,
     /// State with which the present branch begins.
     pub(super) branch: usize,
-    natural: Natural,
+    pub(super) natural: Natural,
     /// States where stability may change: after a limit point, on a new branch.
     pub(super) bounds: Vec<usize>,
     pub(super) solver: Kinsol<Arclength>,
     pub(super) weights: Vec<f64>,
     pub(super) n: usize,
-    options: Options,
-    limits: Limits,
+    pub(super) options: Options,
+    pub(super) limits: Limits,
     pub(super) path: &'a mut Path,
-    watch: &'a mut dyn FnMut(&State) -> Control,
+    pub(super) watch: &'a mut dyn FnMut(&State) -> Control,
 }
 
 /// The way so far: its last points in natural coordinates, the last one in unknowns too.
@@ -164,11 +107,14 @@ impl Way {
 }
 
 impl Follower<'_> {
-    fn go(&mut self, mut x: Vec<f64>) -> Result<(), End> {
+    /// From a state at share 0 to the end of the stage; the state is kept where it is `new`.
+    pub(super) fn go(&mut self, mut x: Vec<f64>, new: bool) -> Result<(), End> {
         self.solver.dae_mut().at_share(0.0);
         self.solve(&mut x, START_PATIENCE).map_err(|f| self.fail(&f, 0.0))?;
         self.orientation = self.solver.determinant_sign() * self.options.share.signum() as i8;
-        self.keep(&x)?;
+        if new {
+            self.keep(&x)?;
+        }
         let longest = LONGEST.min(self.options.points.map_or(LONGEST, |points| 1.0 / points as f64));
         let mut direction = self.by_share();
         let mut step = (self.options.share.abs() * self.norm(&direction)).min(longest);
@@ -194,15 +140,21 @@ impl Follower<'_> {
         let passes = |share: f64| (share - target) * (last[n] - target) <= 0.0;
         // a point beyond the target that was predicted before it
         let mut passed = false;
+        // where the path turns, seen from its last point
+        let mut turned: Option<Vec<f64>> = None;
+        let asked = step;
         loop {
-            let mut guess = trail.natural.beyond(step);
-            let share = |z: &[f64]| z[z.len() - 1];
-            let arrives = passed || passes(share(&guess));
-            if passes(share(&guess)) {
-                step = crossing(|step| share(&trail.natural.beyond(step)) - target, step);
-                guess = trail.natural.beyond(step);
-            }
-            let guess = self.natural.to_unknowns(self.solver.dae_mut().statics(), &guess);
+            let (guess, arrives) = match &turned {
+                Some(direction) => {
+                    let rate = direction[n];
+                    let arrives = passed || passes(last[n] + step * rate);
+                    if passes(last[n] + step * rate) {
+                        step = (target - last[n]) / rate;
+                    }
+                    (last.iter().zip(direction).map(|(x, d)| x + step * d).collect(), arrives)
+                }
+                None => self.foretold(trail, &mut step, passed),
+            };
             if arrives {
                 self.solver.dae_mut().at_share(target);
             } else {
@@ -233,7 +185,11 @@ impl Follower<'_> {
                 self.orientation = orientation;
                 let taken = self.norm(&difference(&x, &last));
                 let degree = f64::from(trail.natural.degree());
-                trail.push(self, taken, x.clone());
+                if turned.is_some() {
+                    *trail = Way::new(self, last, taken, x.clone());
+                } else {
+                    trail.push(self, taken, x.clone());
+                }
                 self.keep(&x)?;
                 if arrives {
                     return Ok(Next::Arrived);
@@ -248,6 +204,15 @@ impl Follower<'_> {
             self.path.rejected += 1;
             passed = false;
             growth = 1.0;
+            // What points before a sharp turn foretell is wrong by its angle, however short the step: what was found tells the way.
+            let mut found = difference(&x, &last);
+            let distance = self.norm(&found);
+            if solved.is_ok() && step < TURN * asked && distance < 2.0 * step {
+                found.iter_mut().for_each(|x| *x /= distance);
+                if turned.replace(found).is_none() {
+                    continue;
+                }
+            }
             step *= if solved.is_ok() {
                 (0.5 * ASTRAY / off).clamp(0.1, 0.5)
             } else {
@@ -259,6 +224,21 @@ impl Follower<'_> {
                 return Err(self.fail(&solved.err().unwrap_or_else(astray), last[n]));
             }
         }
+    }
+
+    /// The point that the path so far foretells, a step beyond its last one or where it comes to the share that is asked for; whether it
+    /// does.
+    fn foretold(&mut self, trail: &Way, step: &mut f64, passed: bool) -> (Vec<f64>, bool) {
+        let (n, target) = (self.n, self.options.share);
+        let share = |z: &[f64]| z[z.len() - 1];
+        let mut guess = trail.natural.beyond(*step);
+        let passes = (share(&guess) - target) * (trail.last[n] - target) <= 0.0;
+        if passes {
+            *step = crossing(|step| share(&trail.natural.beyond(step)) - target, *step);
+            guess = trail.natural.beyond(*step);
+        }
+        let guess = self.natural.to_unknowns(self.solver.dae_mut().statics(), &guess);
+        (guess, passed || passes)
     }
 
     /// Asks for the point of the path in the plane through the guess, across the chord from the last point to it.
@@ -294,19 +274,20 @@ impl Follower<'_> {
 
     /// Keeps a state and shows it.
     pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), End> {
-        let state = State::read(self.solver.dae_mut().statics(), x);
-        let (beyond, reynolds) = state::within(self.solver.dae_mut().statics(), x, &self.limits);
+        let state = State::read(self.solver.dae_mut().statics(), x, self.stage);
+        let (beyond, reynolds) = state::within(self.solver.dae_mut().statics(), x, &self.limits, state.load_factor());
         if self.path.beyond.is_none() {
             self.path.beyond = beyond;
         }
         if reynolds > self.path.reynolds[0] {
-            self.path.reynolds = [reynolds, state.share];
+            self.path.reynolds = [reynolds, state.load_factor()];
         }
         let control = (self.watch)(&state);
         if let [.., a, b] = &self.path.states[self.branch..]
-            && (b.share - a.share) * (state.share - b.share) < 0.0
+            && (b.load_factor() - a.load_factor()) * (state.load_factor() - b.load_factor()) < 0.0
         {
             self.path.events.push(Event {
+                stage: self.stage,
                 share: b.share,
                 kind: Kind::LimitPoint,
             });
@@ -316,8 +297,7 @@ impl Follower<'_> {
         match control {
             Control::Continue => Ok(()),
             Control::Stop(reason) => {
-                let share = x[self.n];
-                let mut fault = fault(share, &reason);
+                let mut fault = fault(self.stage as f64 + x[self.n], &reason);
                 fault.cause = None;
                 Err(End(fault))
             }
@@ -330,18 +310,20 @@ impl Follower<'_> {
 
     fn lost(&self, share: f64) -> End {
         let points = self.path.states.len();
+        let factor = self.stage as f64 + share;
         let what =
-            format!("the path does not come to the load factor that is asked for: {points} points end at {share:.4}");
-        End(fault(share, &what))
+            format!("the path does not come to the load factor that is asked for: {points} points end at {factor:.4}");
+        End(fault(factor, &what))
     }
 
     pub(super) fn fail(&self, failure: &KinsolError, share: f64) -> End {
         End(SolverError {
             unknown: failure.worst.clone(),
             ..fault(
-                share,
+                self.stage as f64 + share,
                 &format!(
-                    "no equilibrium is found beyond {share:.6} of the loads: {}",
+                    "no equilibrium is found beyond {}: {}",
+                    self.options.place(self.stage, &format!("{share:.6}")),
                     failure.what
                 ),
             )

@@ -1,7 +1,8 @@
 //! Derivatives of an equilibrium with respect to numbers of its case.
 
+use super::stages::{Held, Stage, begin, grow};
 use super::state::State;
-use super::{Options, rest, system};
+use super::{Options, Path};
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{Dae as _, Seeds, StaticBeam};
@@ -19,63 +20,91 @@ pub struct Sensitivity {
     pub row: Vec<f64>,
 }
 
-/// `[E43]` Derivatives of a state of a case by parameters p, exact but for round-off: the tangent is that of the equations,
-/// its factors are made once,
+/// `[E43]` Derivatives of the last state of a path by parameters p, exact but for round-off: the tangent is that of the equations,
+/// its factors are made once a stage,
 ///
 /// ```text
 /// ∂F/∂y dy/dp = -∂F/∂p        dq/dp = ∂q/∂y dy/dp + ∂q/∂p
 /// ```
 ///
-/// and what depends on p alone, without anything to solve, is differenced to fourth order: an error of 1e-12.
+/// and what depends on p alone, without anything to solve, is differenced to fourth order: an error of 1e-12. What a closed network holds in a
+/// later stage depends on p through the state in which that stage began: its derivative is carried from stage to stage.
 ///
 /// # Errors
 /// A changed case that is not valid or has other unknowns, a tangent that is singular.
 pub fn differentiate(
     case: &Case,
     options: &Options,
-    state: &State,
+    path: &Path,
     parameters: &[Parameter],
 ) -> Result<Vec<Sensitivity>> {
-    let (mut statics, _) = rest(case, system(case, options.at_s)?);
-    let mut values = vec![0.0; statics.pattern().entries()];
-    let singular = || Error::Usage("the equilibrium has no derivatives: its tangent is singular".into());
-    statics
-        .jacobian(state.share, &state.y, &[], Seeds::Step { cj: 0.0 }, &mut values)
-        .map_err(|_| singular())?;
-    let mut factors = Klu::new(statics.pattern()).map_err(|_| singular())?;
-    factors.factor(&values).map_err(|_| singular())?;
-    let of = |parameter: &Parameter| -> Result<Sensitivity> {
-        let mut changed = vec![];
-        for (steps, weight) in STEPS {
-            let value = parameter.value * (1.0 + steps * CHANGE);
-            let case = parameter.changed(case, value)?;
-            let (other, _) = rest(&case, system(&case, options.at_s)?);
-            if other.len() != statics.len() {
-                let what = "the number of unknowns depends on it";
-                return Err(Error::Usage(format!("--sensitivity {}: {what}", parameter.pointer)));
+    let mut found: Vec<Sensitivity> = vec![];
+    let mut before: Option<Held> = None;
+    for (number, stage) in options.stages().iter().enumerate() {
+        let Some(state) = path.states.iter().rfind(|state| state.stage == number) else {
+            return Err(singular());
+        };
+        let (mut statics, _) = begin(case, grow(case, stage)?, before.as_ref());
+        let mut values = vec![0.0; statics.pattern().entries()];
+        statics
+            .jacobian(state.share, &state.y, &[], Seeds::Step { cj: 0.0 }, &mut values)
+            .map_err(|_| singular())?;
+        let mut factors = Klu::new(statics.pattern()).map_err(|_| singular())?;
+        factors.factor(&values).map_err(|_| singular())?;
+        let mut now = vec![];
+        for (k, parameter) in parameters.iter().enumerate() {
+            let earlier = before.as_ref().zip(found.get(k)).map(|(held, one)| (held, &*one.y));
+            let mut changed = changed(case, stage, parameter, &statics, earlier)?;
+            let mut y = by_parameter(&statics, &mut changed, state)?;
+            y.iter_mut().for_each(|y| *y = -*y);
+            factors.solve(&mut y);
+            let mut row = vec![0.0; state.row.len()];
+            for (step, weight, other) in &mut changed {
+                let moved = restated(&statics, other, state, |k| state.y[k] + *step * y[k]);
+                let there = State::read(other, &moved, number);
+                row.iter_mut().zip(&there.row).for_each(|(d, q)| *d += *weight * q);
             }
-            changed.push((
-                steps * CHANGE * parameter.value,
-                weight / (CHANGE * parameter.value),
-                other,
-            ));
+            let parameter = parameter.clone();
+            now.push(Sensitivity { parameter, y, row });
         }
-        let mut y = by_parameter(&statics, &mut changed, state)?;
-        y.iter_mut().for_each(|y| *y = -*y);
-        factors.solve(&mut y);
-        let mut row = vec![0.0; state.row.len()];
-        for (step, weight, other) in &mut changed {
-            let moved = restated(&statics, other, state, |k| state.y[k] + *step * y[k]);
-            let there = State::read(other, &moved);
-            row.iter_mut().zip(&there.row).for_each(|(d, q)| *d += *weight * q);
+        found = now;
+        before = Some(Held {
+            y: state.y.clone(),
+            layout: statics.system().layout.clone(),
+        });
+    }
+    Ok(found)
+}
+
+fn singular() -> Error {
+    Error::Usage("the equilibrium has no derivatives: its tangent is singular".into())
+}
+
+/// Steps of a parameter, their weights, and the equations of the stage with them, which begin in the state that the stage before
+/// then ends in: a state and its derivative.
+fn changed(
+    case: &Case,
+    stage: &Stage,
+    parameter: &Parameter,
+    statics: &StaticBeam,
+    before: Option<(&Held, &[f64])>,
+) -> Result<Vec<(f64, f64, StaticBeam)>> {
+    let one = |(steps, weight): (f64, f64)| {
+        let step = steps * CHANGE * parameter.value;
+        let case = parameter.changed(case, parameter.value * (1.0 + steps * CHANGE))?;
+        let held = before.map(|(held, derivative)| Held {
+            y: held.y.iter().zip(derivative).map(|(y, d)| y + step * d).collect(),
+            layout: held.layout.clone(),
+        });
+        let grown = grow(&case, stage)?;
+        if grown.system.layout.len != statics.len() {
+            let what = "the number of unknowns depends on it";
+            return Err(Error::Usage(format!("--sensitivity {}: {what}", parameter.pointer)));
         }
-        Ok(Sensitivity {
-            parameter: parameter.clone(),
-            y,
-            row,
-        })
+        let (other, _) = begin(&case, grown, held.as_ref());
+        Ok((step, weight / (CHANGE * parameter.value), other))
     };
-    parameters.iter().map(of).collect()
+    STEPS.into_iter().map(one).collect()
 }
 
 /// `∂F/∂p` in the scales of the unchanged system: each of `changed` is a step of p, its weight, and the system with it.

@@ -14,7 +14,9 @@ use crate::spectral;
 /// An equilibrium under a load factor.
 #[derive(Clone, Debug)]
 pub struct State {
-    /// Share of the loads.
+    /// Stage of the path, from 0.
+    pub stage: usize,
+    /// Share of the stage.
     pub share: f64,
     /// Scaled unknowns of the static system.
     pub y: Vec<f64>,
@@ -63,8 +65,13 @@ pub fn columns(system: &System) -> Vec<Column> {
 }
 
 impl State {
-    /// Reads the unknowns with the load factor behind them.
-    pub fn read(statics: &mut StaticBeam, x: &[f64]) -> Self {
+    /// Load factor: stages before and share of this one.
+    pub fn load_factor(&self) -> f64 {
+        self.stage as f64 + self.share
+    }
+
+    /// Reads the unknowns with the share of the stage behind them.
+    pub fn read(statics: &mut StaticBeam, x: &[f64], stage: usize) -> Self {
         let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
         let zeros = vec![0.0; y.len()];
         let (system, now, w) = statics.beam().evaluate(share, y, &zeros);
@@ -78,8 +85,11 @@ impl State {
         let others = [stations::columns(system, true).len(), probes::columns(system).count()];
         let mut read = Row::new(at_rest(system), others);
         read.take(share, &look, &[], 0.0);
-        let row = std::iter::once(share).chain(read.values().iter().copied()).collect();
+        let row = std::iter::once(stage as f64 + share)
+            .chain(read.values().iter().copied())
+            .collect();
         Self {
+            stage,
             share,
             y: y.to_vec(),
             row,
@@ -91,11 +101,11 @@ impl State {
 }
 
 /// What lies beyond the model in a state, if anything does, and the largest Reynolds number of its flows through tubes.
-pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits) -> (Option<String>, f64) {
+pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64) -> (Option<String>, f64) {
     let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
     let (system, now, w) = statics.beam().evaluate(share, y, &vec![0.0; y.len()]);
     let glance = Glance::new(system, now, share, limits.half_height, w);
-    let beyond = limits.beyond_at(&glance, &format!("load factor {share:.4}"));
+    let beyond = limits.beyond_at(&glance, &format!("load factor {factor:.4}"));
     (beyond, limits.reynolds(&glance))
 }
 

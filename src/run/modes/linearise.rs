@@ -7,7 +7,7 @@ use crate::error::{At, Code, Error, Result, SolverError};
 use crate::functions::signals::Clock;
 use crate::integrate::{StartOptions, consistent_start};
 use crate::model::Model;
-use crate::run::equilibrium;
+use crate::run::equilibrium::{self, Options};
 use crate::spectral::Pencil;
 
 /// What the fluid does in the linearised equations.
@@ -53,7 +53,7 @@ pub struct Linearised {
 /// [`Error::Solver`] when there are no consistent pressures, or derivatives are not finite.
 pub fn linearise(case: &Case, at: f64, state: Option<&[f64]>) -> Result<Linearised> {
     if let (None, Some(start)) = (state, &case.start.equilibrium) {
-        return at_equilibrium(case, start.loads_at_s);
+        return about_equilibrium(case, &Options::of_start(start));
     }
     let mut dae = held(case, at)?;
     let (system, now) = dae.instant(at);
@@ -66,9 +66,14 @@ pub fn linearise(case: &Case, at: f64, state: Option<&[f64]>) -> Result<Linearis
 /// # Errors
 /// As [`linearise`], and [`Error::Solver`] when there is no equilibrium.
 pub fn at_equilibrium(case: &Case, at: f64) -> Result<Linearised> {
+    about_equilibrium(case, &Options::at(at))
+}
+
+fn about_equilibrium(case: &Case, options: &Options) -> Result<Linearised> {
+    let at = options.at_s;
     let mut dae = held(case, at)?;
     let at_rest = vec![0.0; dae.len()];
-    let y = equilibrium::at_start(case, at, &mut dae, &at_rest).map_err(|mut fault| {
+    let y = equilibrium::at_start(case, options, &mut dae, &at_rest).map_err(|mut fault| {
         fault.at = At::Time(at);
         Error::Solver(Box::new(fault))
     })?;

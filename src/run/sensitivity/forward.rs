@@ -16,7 +16,7 @@ use crate::discrete::quantities::stations;
 use crate::discrete::start;
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::integrate::{IntegrationError, consistent_sensitivities};
-use crate::run::equilibrium;
+use crate::run::equilibrium::{self, Options};
 use crate::run::schedule::{self, Stop};
 use crate::sundials::Ida;
 
@@ -139,7 +139,7 @@ impl<'a> Forward<'a> {
                 let (system, now) = beam.instant(0.0);
                 let mut state = start::state(system, case, now);
                 if let Some(start) = &case.start.equilibrium {
-                    state = equilibrium::at_start(case, start.loads_at_s, beam, &state)?;
+                    state = equilibrium::at_start(case, &Options::of_start(start), beam, &state)?;
                 }
                 out.copy_from_slice(&state);
                 Ok(())

@@ -1,0 +1,289 @@
+//! Loads that follow one another: a path of several stages, each with the state in which the one before ended.
+
+use super::arclength::Arclength;
+use super::natural::Natural;
+use super::path::{End, Follower, fault, weights};
+use super::state::State;
+use super::{Options, Path};
+use crate::case::schema::Case;
+use crate::dae::{Dae as _, StaticBeam};
+use crate::discrete::layout::Layout;
+use crate::discrete::{System, TimeData, start};
+use crate::error::{self, SolverError};
+use crate::functions::signals::Polynomial;
+use crate::functions::{Clock, Signal};
+use crate::model::network::Feed;
+use crate::model::{Model, Storage};
+use crate::run::range::Limits;
+use crate::run::record::Control;
+use crate::sundials::Kinsol;
+
+/// A stretch of the path: signals go along the straight line from what they are at one instant to what they are at another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stage {
+    /// Instant of the loads with which it begins [s]; none: nothing acts.
+    from: Option<f64>,
+    /// Instant of the loads with which it ends [s].
+    to: f64,
+    /// Instant as of which valves stand [s].
+    valves: f64,
+}
+
+impl Stage {
+    /// From nothing to the loads of an instant [s].
+    pub fn from_nothing(to: f64) -> Self {
+        Self {
+            from: None,
+            to,
+            valves: to,
+        }
+    }
+}
+
+impl Options {
+    /// The stages of the path, in order; at least one.
+    pub(super) fn stages(&self) -> Vec<Stage> {
+        let mut from = None;
+        let stage = |&to: &f64| Stage {
+            from: from.replace(to),
+            ..Stage::from_nothing(to)
+        };
+        self.via_s.iter().chain([&self.at_s]).map(stage).collect()
+    }
+}
+
+/// A system whose signals go along with a stage while t goes from 0 to 1.
+pub(super) struct Grown {
+    /// The system.
+    pub system: System,
+    /// What each source that prescribes a flow has let in since t = 0, at both ends of the stage [m^3].
+    pub pumped: Vec<[f64; 2]>,
+}
+
+/// A state at rest between two stages.
+pub(super) struct Held {
+    /// Scaled unknowns.
+    pub y: Vec<f64>,
+    /// Where they stand.
+    pub layout: Layout,
+}
+
+/// The system of a stage of a case: everything that it describes, without inertia and damping, all areas unknowns.
+///
+/// # Errors
+/// Those of [`System::new`].
+pub(super) fn grow(case: &Case, stage: &Stage) -> error::Result<Grown> {
+    let Grown { system, pumped } = growing(case, Model::whole(case, false)?, stage)?;
+    let system = system.accepted(case)?;
+    Ok(Grown { system, pumped })
+}
+
+/// The same of a model of the case.
+pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Result<Grown> {
+    let at = |signal: &Signal, t: f64| signal.jet(Clock { t, within: t }).value;
+    let growing = |signal: &Signal| {
+        let [from, to] = [stage.from.map_or(0.0, |from| at(signal, from)), at(signal, stage.to)];
+        if from == to {
+            Signal::Constant(to)
+        } else {
+            Signal::Polynomial(Polynomial {
+                coefficients: vec![from, to - from],
+            })
+        }
+    };
+    let sources = model.wet.iter().flat_map(|wet| &wet.network.sources);
+    let pumped = sources.map(|source| match &source.feed {
+        Feed::Volume(_) => [0.0; 2],
+        Feed::Flow(flow) => [
+            stage.from.map_or(0.0, |from| flow.integral(from)),
+            flow.integral(stage.to),
+        ],
+    });
+    let pumped = pumped.collect();
+    model.replace_signals(growing, |opening| Signal::Constant(at(opening, stage.valves)));
+    model.relaxation.clear();
+    let section = &mut model.section;
+    (section.drag, section.axial_damping_time, section.bending_damping_time) = (0.0, 0.0, 0.0);
+    if let Some(wet) = model.wet.as_mut().filter(|wet| wet.flows) {
+        wet.network.still = true;
+        wet.storage.fill(Storage::Flowing);
+        wet.lumped.clear();
+    }
+    let system = System::with(case, model)?;
+    Ok(Grown { system, pumped })
+}
+
+/// The equations of a stage, and the scaled unknowns with which it begins: those of a state at rest, or of nothing, with the volumes of
+/// the start of the case to grow to.
+pub(super) fn begin(case: &Case, grown: Grown, held: Option<&Held>) -> (StaticBeam, Vec<f64>) {
+    let Grown { system, pumped } = grown;
+    if let Some(held) = held {
+        let y = system.layout.take_over(&held.layout, &held.y);
+        return (StaticBeam::from_state(system, &y, &pumped), y);
+    }
+    let mut now = TimeData::new(&system);
+    now.update(&system, Clock { t: 0.0, within: 0.0 });
+    let volumes = start::state(&system, case, &now);
+    let y = vec![0.0; volumes.len()];
+    (StaticBeam::from_nothing(system, &volumes, &pumped), y)
+}
+
+/// Follows the equilibria of a case from rest through the loads of one instant after the other to a share of the last ones. `watch`
+/// sees every state and may end the path.
+///
+/// # Errors
+/// Those of [`System::new`]; a path that ends early has its fault.
+pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> Control) -> error::Result<Path> {
+    follow_of(case, &|stage| grow(case, stage), options, true, watch)
+}
+
+/// The same of other static systems of the case; whether its states hold is judged where that is wanted.
+///
+/// Valves that stand otherwise at the end of a stage than at the end of the one before switch when it begins, with the loads
+/// held: what that leaves of the equations goes in proportion, and the stage begins in the equilibrium that is reached.
+pub(super) fn follow_of(
+    case: &Case,
+    grow: &dyn Fn(&Stage) -> error::Result<Grown>,
+    options: &Options,
+    judged: bool,
+    watch: &mut dyn FnMut(&State) -> Control,
+) -> error::Result<Path> {
+    let stages = options.stages();
+    let mut path = Path::default();
+    let mut held: Option<Held> = None;
+    let mut valves = vec![];
+    for (number, stage) in stages.iter().enumerate() {
+        let grown = grow(stage)?;
+        let stand = openings(&grown.system);
+        let mut new = number == 0;
+        if let (Some(before), Some(from)) = (&mut held, stage.from.filter(|_| stand != valves)) {
+            new = true;
+            let switching = Stage { to: from, ..*stage };
+            if let Err(fault) = switch(case, grow(&switching)?, options, number, before) {
+                path.fault = Some(fault);
+                return Ok(path);
+            }
+        }
+        valves = stand;
+        let (statics, y) = begin(case, grown, held.as_ref());
+        if let Some(inflow) = statics.fed() {
+            path.fault = Some(fed(number, inflow));
+            return Ok(path);
+        }
+        let layout = statics.system().layout.clone();
+        let share = if number + 1 < stages.len() { 1.0 } else { options.share };
+        let options = Options {
+            share,
+            ..options.clone()
+        };
+        stretch(case, statics, (y, new), (number, options), judged, &mut path, watch);
+        let Some(last) = path.states.last().filter(|_| path.fault.is_none()) else {
+            return Ok(path);
+        };
+        let y = last.y.clone();
+        held = Some(Held { y, layout });
+    }
+    Ok(path)
+}
+
+/// One stage of a path, from the state with which it begins, which is kept where it is new.
+fn stretch(
+    case: &Case,
+    statics: StaticBeam,
+    (y, new): (Vec<f64>, bool),
+    (stage, options): (usize, Options),
+    judged: bool,
+    path: &mut Path,
+    watch: &mut dyn FnMut(&State) -> Control,
+) {
+    let n = statics.len();
+    let weights = weights(statics.system());
+    let limits = Limits::new(case, statics.system());
+    let natural = Natural::of(&statics);
+    let solver = match Kinsol::new(Arclength::new(statics)) {
+        Err(failure) => {
+            path.fault = Some(fault(stage as f64, &failure.what));
+            return;
+        }
+        Ok(solver) => solver,
+    };
+    let mut x = y;
+    x.push(0.0);
+    // The state between two stages belongs to the first and is where the second turns back from.
+    let begins = path.states.len();
+    let mut follower = Follower {
+        stage,
+        orientation: 0,
+        branch: begins.saturating_sub(usize::from(!new)),
+        natural,
+        bounds: vec![begins],
+        solver,
+        weights,
+        n,
+        options,
+        limits,
+        path,
+        watch,
+    };
+    let ended = follower.go(x, new);
+    if judged {
+        follower.judge();
+    }
+    path.fault = ended.err().map(|End(fault)| fault);
+}
+
+/// Valves switch with the loads held: on from the state before.
+fn switch(
+    case: &Case,
+    grown: Grown,
+    options: &Options,
+    stage: usize,
+    held: &mut Held,
+) -> std::result::Result<(), SolverError> {
+    let (mut statics, y) = begin(case, grown, Some(held));
+    let layout = statics.system().layout.clone();
+    let lost = |what: &str| {
+        fault(
+            stage as f64,
+            &format!("valves switch before stage {}: {what}", stage + 1),
+        )
+    };
+    if !statics.relax_from(&y) {
+        return Err(lost("the equations cannot be evaluated"));
+    }
+    let mut path = Path::default();
+    let options = Options {
+        share: 1.0,
+        points: None,
+        ..options.clone()
+    };
+    let go_on = &mut |_: &State| Control::Continue;
+    stretch(case, statics, (y, true), (stage, options), false, &mut path, go_on);
+    match (path.fault, path.states.last()) {
+        (None, Some(last)) => {
+            let y = last.y.clone();
+            *held = Held { y, layout };
+            Ok(())
+        }
+        (failed, _) => Err(lost(&failed.map_or_else(String::new, |fault| fault.what))),
+    }
+}
+
+/// How far each valve is open, of a system that holds them.
+fn openings(system: &System) -> Vec<f64> {
+    let links = system.model.wet.iter().flat_map(|wet| &wet.network.links);
+    links
+        .filter_map(|link| link.opening.as_ref())
+        .map(|opening| opening.value(0.0))
+        .collect()
+}
+
+/// That a closed network takes in what nothing lets out.
+fn fed(stage: usize, inflow: f64) -> SolverError {
+    let what = format!("there is no equilibrium: a closed network takes in {inflow:.3e} m^3/s which nothing lets out");
+    SolverError {
+        cause: Some("a port of prescribed flow without one of prescribed pressure in the same network".into()),
+        hint: Some("open the network by a port with pressure_pa, or let the flows sum to zero".into()),
+        ..fault(stage as f64, &what)
+    }
+}

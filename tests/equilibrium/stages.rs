@@ -1,0 +1,327 @@
+//! Loads that follow one another: preload, then push.
+
+use std::f64::consts::PI;
+
+use serde_json::{Value, json};
+use slcbeam::case::Case;
+use slcbeam::case::parameter::Parameter;
+use slcbeam::run::equilibrium::{Kind, Options, Path, State, columns, differentiate, system};
+use slcbeam::run::record::Memory;
+use slcbeam::run::{dynamics, summary::Status};
+
+use crate::common::{parse, path_of, shipped};
+
+/// Area, second moment times modulus, length of the strip.
+const EA: f64 = 1e4;
+const EI: f64 = 1e4 * 1e-6 / 12.0;
+const LENGTH: f64 = 0.1;
+/// By how much its ends are moved together.
+const CLOSER: f64 = 1e-4;
+
+/// A pinned strip whose ends come together and which a force pushes across in its middle, both signals; at rest it is curved by up to
+/// `curved` [1/m], one half against the other.
+fn strip(cells: usize, curved: f64, closer: &Value, push: &Value) -> Case {
+    parse(&strip_json(cells, curved, closer, push))
+}
+
+fn strip_json(cells: usize, curved: f64, closer: &Value, push: &Value) -> Value {
+    json!({
+        "name": "strip",
+        "beam": {"length_m": LENGTH, "height_m": 0.001, "width_m": 0.01, "young_modulus_pa": 1e9, "density_kg_m3": 1000},
+        "ends": {"root": "pinned", "tip": {"pinned": {"u3_m": closer}}},
+        "attachments": [{"at": 0.5, "force_x_n": push}],
+        "loads": [{"rest_curvature_1_m": {"signal": curved, "profile": {"polynomial": {"coefficients": [1, -2]}}}}],
+        "mesh": {"segments": cells, "cells_per_segment": 1}, "probes": [{"name": "middle", "at": 0.5}],
+        "time": {"end_s": 3}
+    })
+}
+
+/// A table of values at whole seconds from `first` on.
+fn at_seconds(first: i32, values: &[f64]) -> Value {
+    let times: Vec<i32> = (0..values.len() as i32).map(|k| first + k).collect();
+    json!({"table": {"times_s": times, "values": values, "interpolation": "linear"}})
+}
+
+/// Loads at t = 1, 2, .. one after the other.
+fn by_seconds(case: &Case, count: usize) -> Path {
+    let via_s = (1..count).map(|k| k as f64).collect();
+    let options = Options {
+        via_s,
+        points: Some(16),
+        ..Options::at(count as f64)
+    };
+    let path = path_of(case, &options);
+    assert!(path.fault.is_none(), "{:?}", path.fault);
+    path
+}
+
+/// Deflection of the middle in the last state.
+fn middle(path: &Path) -> f64 {
+    let u1 = &path.last().u1;
+    u1[u1.len() / 2]
+}
+
+fn stable(path: &Path) -> bool {
+    path.last().stability.is_some_and(|s| s.unstable == 0)
+}
+
+/// Source: derived for small rotations. A pinned column of length l whose ends came closer by Δ bears the thrust `P = EI k²` and, pushed
+/// by F in the middle, the shape `w' = (F/2P) (1 - cos kx/cos κ)` up to there, `κ = kl/2`. What bending shortens is `Δ - P l/EA`:
+///
+/// ```text
+/// ∫ w'² dx/2 over the length = (F/2P)² (l/2) (1 - 2 tan κ/κ + (1 + sin 2κ/2κ)/(2 cos² κ)) = Δ - P l/EA
+/// ```
+///
+/// From F = 0 at κ = π/2 on the thrust grows with the push, until at κ = π it is Euler's second load and the column gives way sideways:
+/// there the bracket is 3/2, and `F = 16 π²/√3 EI/l² √(Δ/l - 4 π² EI/(EA l²))`.
+///
+/// Goal: both bifurcations, that of the first stage at Euler's load, within 0.2 % at 80 cells. Cells make the first one (π h/2)²/12, the second one
+/// four times that, 5e-4, of the thrust, and rotations of up to 0.06 rad leave 1e-3 of small ones.
+#[test]
+fn pushed_column_gives_way_at_its_exact_load() {
+    let full = 0.5;
+    let case = strip(80, 0.0, &at_seconds(0, &[0.0, -CLOSER]), &at_seconds(1, &[0.0, -full]));
+    let options = Options {
+        via_s: vec![1.0],
+        points: Some(16),
+        ..Options::at(2.0)
+    };
+    let path = path_of(&case, &options);
+    let crossings = path.events.iter().filter(|e| e.kind == Kind::Bifurcation);
+    let crossings: Vec<(usize, f64)> = crossings.map(|e| (e.stage, e.share)).collect();
+    let euler = PI * PI * EI / (LENGTH * LENGTH * EA) * LENGTH / CLOSER;
+    let bent = CLOSER / LENGTH - 4.0 * PI * PI * EI / (EA * LENGTH * LENGTH);
+    let push = 16.0 * PI * PI / 3.0_f64.sqrt() * EI / (LENGTH * LENGTH) * bent.sqrt();
+    println!("{crossings:?} {euler} {}", push / full);
+    assert_eq!((crossings[0].0, crossings[1].0), (0, 1));
+    assert!((crossings[0].1 / euler - 1.0).abs() < 2e-3, "{crossings:?} {euler}");
+    assert!(
+        (crossings[1].1 * full / push - 1.0).abs() < 2e-3,
+        "{crossings:?} {push}"
+    );
+    assert!(
+        path.states.iter().any(|s| s.stage == 1 && s.u1[40] < 0.0),
+        "it goes through sideways"
+    );
+}
+
+/// Goal: a strip that is not quite straight at rest snaps through at less than the load at which a perfect one gives way, and lies on the other side
+/// then. Both stages end at their loads, and load factors go on.
+#[test]
+fn strip_snaps_through_in_its_second_stage() {
+    let case = strip(40, 0.05, &at_seconds(0, &[0.0, -CLOSER]), &at_seconds(1, &[0.0, -0.5]));
+    let path = by_seconds(&case, 2);
+    let bent = path.states.iter().rfind(|s| s.stage == 0).expect("a first stage");
+    assert_eq!((bent.share, bent.load_factor()), (1.0, 1.0));
+    assert!(bent.u1[20] > 0.0015 && bent.stability.is_some_and(|s| s.unstable == 0));
+    let turns: Vec<_> = path.events.iter().filter(|e| e.kind == Kind::LimitPoint).collect();
+    assert!(
+        turns.len() >= 2 && turns.iter().all(|e| e.stage == 1),
+        "{:?}",
+        path.events
+    );
+    assert!((0.5..1.0).contains(&(turns[0].share * 0.5 / 0.1968)), "{turns:?}");
+    assert_eq!(
+        (path.last().share, path.last().load_factor(), path.last().row[0]),
+        (1.0, 2.0, 2.0)
+    );
+    assert!(middle(&path) < -0.0015 && stable(&path));
+}
+
+/// Goal: where the state is unique the order of the loads does not matter: the push that no strip on the near side bears. Two Newton
+/// iterations that leave 1e-10 of a length.
+#[test]
+fn order_does_not_matter_where_the_state_is_unique() {
+    let closer = |values: &[f64]| at_seconds(0, values);
+    let late = by_seconds(
+        &strip(
+            40,
+            0.05,
+            &closer(&[0.0, -CLOSER, -CLOSER]),
+            &at_seconds(1, &[0.0, -0.5]),
+        ),
+        2,
+    );
+    let early = by_seconds(
+        &strip(40, 0.05, &closer(&[0.0, 0.0, -CLOSER]), &at_seconds(1, &[-0.5, -0.5])),
+        2,
+    );
+    let far = late.last().u1.iter().zip(&early.last().u1).map(|(a, b)| (a - b).abs());
+    let far = far.fold(0.0, f64::max);
+    assert!(far < 1e-9 * LENGTH, "{far:e}");
+    assert!(early.events.is_empty(), "{:?}", early.events);
+}
+
+/// Goal: where two states bear the same loads the order decides. A push too small to snap the bent strip lays the straight one to its own side.
+#[test]
+fn order_decides_between_branches() {
+    let push = -0.03;
+    let of = |closer: [f64; 3], push: [f64; 3]| strip(40, 0.05, &at_seconds(0, &closer), &at_seconds(0, &push));
+    let bent_first = of([0.0, -CLOSER, -CLOSER], [0.0, 0.0, push]);
+    let pushed_first = of([0.0, 0.0, -CLOSER], [0.0, push, push]);
+    let (near, far) = (by_seconds(&bent_first, 2), by_seconds(&pushed_first, 2));
+    assert!(stable(&near) && stable(&far));
+    assert!(
+        middle(&near) > 0.0015 && middle(&far) < -0.0015,
+        "{} {}",
+        middle(&near),
+        middle(&far)
+    );
+}
+
+/// Goal: a run begins in the branch to which a nudge has led that is gone when the run begins, and stays there.
+#[test]
+fn run_starts_on_the_side_of_the_nudge() {
+    for nudge in [0.02, -0.02] {
+        let closer = json!({"ramp": {"to": -CLOSER, "start_s": -2, "duration_s": 1}});
+        let mut case = strip_json(20, 0.05, &closer, &at_seconds(-2, &[nudge, nudge, 0.0]));
+        case["start"] = json!({"equilibrium": {"loads_at_s": 0, "via_s": [-2, -1]}});
+        case["time"]["end_s"] = json!(0.01);
+        let case = parse(&case);
+        let mut record = Memory::default();
+        let outcome = dynamics::run(&case, &mut record).expect("memory");
+        assert_eq!(outcome.summary.status, Status::Finished, "{:?}", outcome.summary.reason);
+        let u1 = record.column("middle_u1").expect("a column");
+        assert!(u1[0] * nudge > 0.0 && u1[0].abs() > 0.0015, "{nudge} {}", u1[0]);
+        assert!(u1.iter().all(|u| (u / u1[0] - 1.0).abs() < 1e-6));
+    }
+}
+
+/// The wet beam of `pluck` whose rows are filled together through a tube with a valve, which shuts between t = 1 s and 2 s; then the lower
+/// row is let out and a force bends the tip.
+fn trapped() -> Case {
+    let chains = json!([
+        {"bladders": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10], "ends": ["connected", "sealed"]},
+        {"bladders": [-1, -2, -3, -4, -5, -6, -7, -8, -9, -10],
+         "ends": [{"pressure_pa": at_seconds(1, &[5000.0, 0.0])}, "connected"]},
+    ]);
+    let opening = json!({"ramp": {"from": 1, "to": 0, "start_s": 1.2, "duration_s": 0.3}});
+    let tubes = json!([{"from": {"bladder": -10, "end": "outlet"}, "to": {"bladder": 1, "end": "inlet"}, "length_m": 0.02,
+                        "cross_section": {"circle": {"radius_m": 1e-3}}, "opening": opening}]);
+    let sets: Vec<String> = vec![
+        format!("/network/chains={chains}"),
+        format!(
+            "/ends/tip={}",
+            json!({"free": {"force_x_n": at_seconds(1, &[0.0, 1.0])}})
+        ),
+        "/start={}".into(),
+        format!("/network/tubes={tubes}"),
+        "/time/end_s=2".into(),
+    ];
+    shipped("pluck", &sets.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+/// Goal: a valve that shuts between two stages keeps what is behind it, to what Newton's iteration leaves, while pressures there rise and the
+/// other row is let out. Without the first stage the valve is shut before anything flows.
+#[test]
+fn a_valve_that_shuts_traps_its_volume() {
+    let case = trapped();
+    let path = by_seconds(&case, 2);
+    let system = system(&case, 2.0).unwrap();
+    let names = columns(&system);
+    let pressure = names.iter().position(|c| c.name == "max_pressure").expect("a column");
+    let areas = system.layout.network.area.clone();
+    let upper = areas.start..areas.start + areas.len() / 2;
+    let filled = path.states.iter().rfind(|s| s.stage == 0).expect("a first stage");
+    // scales are those of the beam and the same in both stages
+    let [before, after] = [filled, path.last()].map(|s| s.y[upper.clone()].iter().sum::<f64>());
+    assert!((after / before - 1.0).abs() < 1e-9, "{before} {after}");
+    let lower = |s: &State| s.y[upper.end..areas.end].iter().sum::<f64>();
+    assert!((lower(path.last()) / lower(filled) - 1.0).abs() > 0.1);
+    assert!((path.last().row[pressure] / 5000.0 - 1.0).abs() > 1e-3);
+    let empty = path_of(&case, &Options::at(2.0));
+    assert!(empty.last().row[pressure] < 0.9 * path.last().row[pressure]);
+}
+
+/// Goal: a valve that opens lets pressures even out with the loads held, and the path goes on from there: the state is that of an open valve all along.
+#[test]
+fn a_valve_that_opens_lets_pressures_even_out() {
+    let mut shut = trapped();
+    let opening = json!({"ramp": {"from": 0, "to": 1, "start_s": 1.2, "duration_s": 0.3}});
+    shut.network.as_mut().expect("a network").tubes[0].opening = serde_json::from_value(opening).expect("a signal");
+    let mut open = shut.clone();
+    open.network.as_mut().expect("a network").tubes[0].opening = slcbeam::functions::Signal::Constant(1.0);
+    let [path, other] = [&shut, &open].map(|case| by_seconds(case, 2));
+    let begins = path.states.iter().find(|s| s.stage == 1).expect("a second stage");
+    assert_eq!(
+        begins.load_factor(),
+        1.0,
+        "where the valve has opened the stage begins anew"
+    );
+    let at_one = other.states.iter().rfind(|s| s.stage == 0).expect("a first stage");
+    for (one, two) in [(begins, at_one), (path.last(), other.last())] {
+        let size = two.row.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let far = one
+            .row
+            .iter()
+            .zip(&two.row)
+            .fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+        assert!(far < 1e-8 * size, "{far:e} {size}");
+    }
+}
+
+/// Goal: what a port of flow has pumped into a closed network is there when it has stopped: as a port that prescribes the volume, 2e-7 m^3 here.
+#[test]
+fn what_was_pumped_counts() {
+    let with = |port: Value| {
+        let chains = format!("/network/chains/0/ends/0={port}");
+        let case = shipped("pluck", &[&chains, "/start={}", "/time/end_s=2"]);
+        let path = path_of(&case, &Options::at(2.0));
+        assert!(path.fault.is_none(), "{:?}", path.fault);
+        path.last().row.clone()
+    };
+    let pumped = with(
+        json!({"flow_m3_s": {"table": {"times_s": [0, 0.5, 1], "values": [0, 4e-7, 0], "interpolation": "linear"}}}),
+    );
+    let let_in = with(json!({"volume_m3": {"ramp": {"to": 2e-7, "duration_s": 1}}}));
+    let sealed = with(json!("sealed"));
+    for k in 1..4 {
+        assert!(
+            (pumped[k] / let_in[k] - 1.0).abs() < 1e-9,
+            "{k}: {} {}",
+            pumped[k],
+            let_in[k]
+        );
+        assert!((pumped[k] - sealed[k]).abs() > 1e-3 * pumped[k].abs());
+    }
+}
+
+/// Goal: derivatives of a state that was reached in stages, what is trapped among it, are those of complete solutions: differences of fourth order over 1e-3
+/// of the parameter, of states to 1e-10.
+#[test]
+fn derivatives_go_through_the_stages() {
+    let case = trapped();
+    let base = by_seconds(&case, 2);
+    let options = Options {
+        via_s: vec![1.0],
+        ..Options::at(2.0)
+    };
+    let pointers = [
+        "/bladders/area_per_pressure_m2_per_pa",
+        "/beam/young_modulus_pa",
+        "/network/chains/1/ends/0/pressure_pa/table/values/0",
+    ];
+    let parameters: Vec<Parameter> = pointers
+        .iter()
+        .map(|p| Parameter::find(&case, p).expect("a number"))
+        .collect();
+    for s in differentiate(&case, &options, &base, &parameters).expect("derivatives") {
+        let at = |steps: f64| {
+            let changed = s
+                .parameter
+                .changed(&case, s.parameter.value * (1.0 + 1e-3 * steps))
+                .expect("a case");
+            by_seconds(&changed, 2).last().row.clone()
+        };
+        let rows = [at(1.0), at(-1.0), at(2.0), at(-2.0)];
+        for k in 1..4 {
+            let d = (8.0 * (rows[0][k] - rows[1][k]) - (rows[2][k] - rows[3][k])) / (12e-3 * s.parameter.value);
+            assert!(
+                (s.row[k] / d - 1.0).abs() < 1e-6,
+                "{} {k}: {} {d}",
+                s.parameter.pointer,
+                s.row[k]
+            );
+        }
+    }
+}
