@@ -220,3 +220,20 @@ fn what_makes_no_sense_is_a_usage_error() {
     let said = say(&["periodic", valves, "--sweep", "/nowhere=1:2:2"], dir.path());
     assert_eq!(said.code, 3, "{}", said.err);
 }
+
+/// Goal: a number of periods that makes no sense, or not there, gets one message.
+#[test]
+fn periods_that_cannot_be_are_refused() {
+    let dir = TempDir::new().unwrap();
+    for (more, words) in [
+        (&["--periods", "0"][..], "--periods 0: from 1 to 64"),
+        (
+            &["--periods", "2", "--sweep", "/network/permeability_factor=0.1:1:2"],
+            "--periods goes with one cycle",
+        ),
+    ] {
+        let said = say(&[&["periodic", "cases/valves-open.json"], more].concat(), dir.path());
+        assert_eq!(said.code, 2, "{}", said.err);
+        assert!(said.err.contains(words), "{}", said.err);
+    }
+}

@@ -63,6 +63,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     let found = Cycle {
         case: case.name.clone(),
         cycle: cycle.search,
+        periods: None,
         floquet: found,
         warnings,
         refined: None,

@@ -14,8 +14,8 @@ use crate::output::report;
 use crate::results;
 use crate::results::cycles::Cycle;
 use crate::run::floquet;
-use crate::run::periodic::scene;
 use crate::run::periodic::{Settled, record, settle};
+use crate::run::periodic::{scene, subharmonic};
 use crate::run::record::Control;
 use crate::run::summary::Status;
 use crate::study::refine::{self, meshes::Meshes};
@@ -29,6 +29,7 @@ const MOST_VALUES: usize = 10_000;
 /// Finds the cycle or the cycles, writes the folder, prints the words.
 pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
     match &asked.sweep {
+        Some(_) if asked.periods != 1 => Err(Error::Usage("--periods goes with one cycle, not with --sweep".into())),
         Some(text) => sweep(asked, text),
         None => one(asked),
     }
@@ -49,10 +50,15 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     bar.set_message("looking for the cycle");
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let asked_for = accuracy
-        .map(|accuracy| refine::refine(&case, accuracy, true, &mut refine::numbers::of_cycle))
+        .map(|accuracy| {
+            refine::refine(&case, accuracy, true, &mut |case| {
+                refine::numbers::of_cycle(case, asked.periods)
+            })
+        })
         .transpose()?;
     let case = asked_for.as_ref().map_or(&case, |(chosen, _)| chosen);
-    let (scene, cycle) = refine::numbers::cycle(case, None)?;
+    let (scene, cycle, periods) = subharmonic::find(case, asked.periods)?;
+    let periods = (asked.periods > 1).then_some(periods);
     let Settled {
         case,
         scene,
@@ -74,7 +80,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         bar.set_message("the same on other meshes");
         let mut here = refine::numbers::of_summary(&case, &outcome.summary)?;
         here.extend(refine::numbers::of_stability(&found));
-        let mut of = |case: &Case| refine::numbers::of_cycle_and_multipliers(case, COUNT);
+        let mut of = |case: &Case| refine::numbers::of_cycle_and_multipliers(case, asked.periods, COUNT);
         Some(refine::meshes::judge(&case, &here, &mut of)?)
     } else {
         None
@@ -86,6 +92,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let told = Cycle {
         case: case.name.clone(),
         cycle: cycle.search,
+        periods,
         floquet: found,
         warnings: outcome.summary.warnings.clone(),
         refined,

@@ -7,6 +7,7 @@ pub use crate::run::floquet::{Floquet, Stability};
 pub use crate::run::periodic::Search;
 use crate::run::periodic::scene::METHOD;
 use crate::run::periodic::settle::Refined;
+use crate::run::periodic::subharmonic::Periods;
 use crate::run::summary::Accuracy;
 use crate::study::refine::meshes::Meshes;
 pub use crate::study::stability::{Along, Map};
@@ -18,6 +19,9 @@ pub struct Cycle {
     pub case: String,
     /// How the cycle was found.
     pub cycle: Search,
+    /// After how many periods it comes back, when several were asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub periods: Option<Periods>,
     /// Its multipliers.
     pub floquet: Floquet,
     /// What to know of case and cycle.

@@ -63,6 +63,9 @@ pub fn words(found: &Cycle) -> String {
         ]
     }));
     text += &aligned(&lines, &[1, 6]);
+    if let Some(periods) = &found.periods {
+        let _ = writeln!(text, "\n{}", periods.words());
+    }
     if *conserved == 1 {
         text += "\nleft out: the multiplier 1 of a conserved volume\n";
     } else if *conserved > 1 {

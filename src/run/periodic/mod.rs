@@ -3,6 +3,7 @@
 //! ```text
 //! scene   a case in the long run: what repeats itself, what is conserved, the period map
 //! shoot   Newton's iteration on the period map
+//! subharmonic  cycles that come back after several periods
 //! record  one period of the cycle as a run
 //! settle  the cycle at a tolerance at which its energies add up
 //! ```
@@ -11,6 +12,7 @@ pub mod record;
 pub mod scene;
 pub mod settle;
 pub mod shoot;
+pub mod subharmonic;
 
 pub use scene::Scene;
 pub use settle::{Settled, settle};

@@ -1,5 +1,6 @@
 //! What repeats itself: a case in the long run, as one map of its state over a period.
 
+use super::shoot::Search;
 use crate::case::Translation;
 use crate::case::schema::{Case, Choice, Effects};
 use crate::dae::BeamDae;
@@ -30,6 +31,8 @@ pub struct Scene {
     pub rtol: f64,
     /// Method of the steps.
     pub method: Method,
+    /// Periods of what drives the case that make up the one of the cycle.
+    pub periods: usize,
     /// State from which the search sets out, scaled: the start of the case, at rest beside its ends.
     pub guess: Vec<f64>,
     /// What is conserved: `w · y` of the scaled unknowns does not change. Of norm one, across each other.
@@ -59,6 +62,7 @@ impl Scene {
             conserved: conserved(&system),
             system,
             drive,
+            periods: 1,
             rtol: case.solver.rtol,
             method: METHOD,
         })
@@ -80,24 +84,59 @@ impl Scene {
         let (mut dae, mut y, mut yp) = (dae, y.to_vec(), vec![0.0; y.len()]);
         consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default())
             .map_err(|failure| StepError::new(0.0, failure.to_string()))?;
-        let options = OneStepOptions {
-            method: self.method,
-            relative: self.rtol,
-            absolute: Absolute::Same(self.rtol),
-            max_step: Some(end / LEAST_STEPS),
-            ..OneStepOptions::default()
-        };
-        let error = |failure: Box<IntegrationError>| StepError::new(failure.time, failure.to_string());
-        let mut solver = OneStep::new(dae, 0.0, &y, &yp, &options).map_err(error)?;
+        let mut solver = OneStep::new(dae, 0.0, &y, &yp, &self.options()).map_err(error)?;
         let mut times = vec![0.0];
         while solver.time() < end {
             times.push(solver.step(end).map_err(error)?.time);
-            if times.len() > MOST_STEPS {
+            if times.len() > self.periods * MOST_STEPS {
                 let what = format!("the motion asks for more than {MOST_STEPS} steps a period");
                 return Err(StepError::new(solver.time(), what));
             }
         }
         StepMap::new(solver.into_dae(), self.method, times)
+    }
+
+    /// The steps that the error test asks for.
+    fn options(&self) -> OneStepOptions {
+        OneStepOptions {
+            method: self.method,
+            relative: self.rtol,
+            absolute: Absolute::Same(self.rtol),
+            max_step: Some(self.drive.period / (LEAST_STEPS * self.periods as f64)),
+            ..OneStepOptions::default()
+        }
+    }
+
+    /// The same over several periods, as one.
+    pub fn over(&self, periods: usize) -> Self {
+        let mut scene = self.clone();
+        scene.drive.period *= periods as f64;
+        scene.periods *= periods;
+        scene
+    }
+
+    /// The state after some periods.
+    ///
+    /// # Errors
+    /// When the integrator cannot follow the motion.
+    pub fn go_on(&self, y: &[f64], periods: usize, search: &mut Search) -> std::result::Result<Vec<f64>, StepError> {
+        let (mut dae, mut y, mut yp) = (self.dae(), y.to_vec(), vec![0.0; y.len()]);
+        consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default())
+            .map_err(|failure| StepError::new(0.0, failure.to_string()))?;
+        let mut solver = OneStep::new(dae, 0.0, &y, &yp, &self.options()).map_err(error)?;
+        for period in 1..=periods {
+            let (end, before) = (self.drive.period * period as f64, solver.steps());
+            while solver.time() < end {
+                solver.step(end).map_err(error)?;
+                if solver.steps() - before > (self.periods * MOST_STEPS) as u64 {
+                    let what = format!("the motion asks for more than {MOST_STEPS} steps a period");
+                    return Err(StepError::new(solver.time(), what));
+                }
+            }
+            search.periods += 1;
+        }
+        search.work.steps += solver.steps();
+        Ok(solver.y().to_vec())
     }
 
     /// Weighted root mean square of a change of state: 1 is the tolerance.
@@ -179,6 +218,10 @@ pub fn system(case: &Case) -> Result<System> {
 pub fn whole(case: &Case) -> Result<Model> {
     let off = matches!(&case.effects, Effects::Chosen(chosen) if chosen.solid_inertia == Choice::Off);
     Model::whole(case, !off)
+}
+
+fn error(failure: Box<IntegrationError>) -> StepError {
+    StepError::new(failure.time, failure.to_string())
 }
 
 /// What happened, as the house says it.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::record;
 use super::scene::Scene;
-use super::shoot::{Cycle, shoot};
+use super::shoot::{Cycle, Search, attempt, shoot};
 use crate::case::schema::Case;
 use crate::error::Result;
 use crate::run::energies::{open_over_window, too_open};
@@ -78,9 +78,12 @@ pub fn settle(case: &Case, scene: Scene, cycle: Cycle) -> Result<Settled> {
         next.solver.rtol = rtol;
         let mut scene = now.scene.clone();
         scene.rtol = rtol;
-        let Ok(cycle) = shoot(&scene, Some(&now.cycle.y)) else {
-            break;
+        // a cycle of several periods is not sought anywhere else: that of one may lie there
+        let found = match scene.periods {
+            1 => shoot(&scene, Some(&now.cycle.y)),
+            _ => attempt(&scene, now.cycle.y.clone(), &mut Search::default()),
         };
+        let Ok(cycle) = found else { break };
         let tried = Settled {
             case: next,
             scene,

@@ -70,28 +70,14 @@ pub fn shoot(scene: &Scene, from: Option<&[f64]>) -> Result<Cycle, StepError> {
     match attempt(scene, begin.to_vec(), &mut search) {
         Ok(cycle) => Ok(cycle),
         Err(_) => {
-            let later = go_on(scene, scene.guess.clone(), PATIENCE, &mut search)?;
+            let later = scene.go_on(&scene.guess, PATIENCE, &mut search)?;
             attempt(scene, later, &mut search)
         }
     }
 }
 
-/// The state after some periods.
-fn go_on(scene: &Scene, mut y: Vec<f64>, periods: usize, search: &mut Search) -> Result<Vec<f64>, StepError> {
-    let mut dae = scene.dae();
-    for _ in 0..periods {
-        let mut march = scene.map(dae, &y)?;
-        let mut yp = vec![0.0; y.len()];
-        let gone = march.go(&mut y, &mut yp);
-        search.periods += 1;
-        search.work += march.work();
-        gone?;
-        dae = march.into_dae();
-    }
-    Ok(y)
-}
-
-fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Result<Cycle, StepError> {
+/// Newton's iteration from one state.
+pub(super) fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Result<Cycle, StepError> {
     let mut march = scene.map(scene.dae(), &y)?;
     let mut fresh = false;
     let mut back = depart(scene, &mut march, &y, search)?;

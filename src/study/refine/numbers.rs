@@ -10,7 +10,7 @@ use crate::run::equilibrium::{self, Options, Path};
 use crate::run::floquet::{self, Floquet};
 use crate::run::modes::{self, Kind, Mode, Plan};
 use crate::run::periodic::scene::fault;
-use crate::run::periodic::{Cycle, Scene, record, shoot};
+use crate::run::periodic::{Cycle, Scene, record, shoot, subharmonic};
 use crate::run::record::{Column, Control, Unrecorded};
 use crate::run::summary::{Status, Summary};
 use crate::study::counted::{Floors, counted};
@@ -123,12 +123,12 @@ pub fn cycle(case: &Case, period: Option<f64>) -> Result<(Scene, Cycle)> {
     Ok((scene, cycle))
 }
 
-/// Figures over the cycle.
+/// Figures over the cycle of so many periods.
 ///
 /// # Errors
 /// As [`cycle`], and where the cycle cannot be followed for a period.
-pub fn of_cycle(case: &Case) -> Result<Numbers> {
-    let (scene, cycle) = cycle(case, None)?;
+pub fn of_cycle(case: &Case, periods: usize) -> Result<Numbers> {
+    let (scene, cycle, _) = subharmonic::find(case, periods)?;
     recorded(case, &scene, &cycle)
 }
 
@@ -159,8 +159,8 @@ pub fn of_summary(case: &Case, summary: &Summary) -> Result<Numbers> {
 ///
 /// # Errors
 /// As [`of_cycle`].
-pub fn of_cycle_and_multipliers(case: &Case, count: usize) -> Result<Numbers> {
-    let (scene, mut cycle) = cycle(case, None)?;
+pub fn of_cycle_and_multipliers(case: &Case, periods: usize, count: usize) -> Result<Numbers> {
+    let (scene, mut cycle, _) = subharmonic::find(case, periods)?;
     let mut all = recorded(case, &scene, &cycle)?;
     all.extend(of_stability(&floquet::multipliers(&scene, &mut cycle, count)));
     Ok(all)

@@ -1,0 +1,172 @@
+//! Cycles of several periods: subharmonics, of which the motion comes back after two periods of what drives it, or three.
+//!
+//! Newton's iteration finds the cycle that is nearest, and a cycle of one period comes back after two as well. The search therefore
+//! starts off it, where the motion itself leads.
+
+use serde::{Deserialize, Serialize};
+
+use super::Scene;
+use super::scene::fault;
+use super::shoot::{Cycle, Search, attempt, shoot};
+use crate::case::schema::Case;
+use crate::discrete::layout::Line;
+use crate::error::{Error, Result};
+use crate::numerics::krylov;
+use crate::onestep::step_map::StepError;
+
+/// Periods of a cycle at most.
+pub const MOST: usize = 64;
+/// Largest displacement of the push off a cycle that does not hold, over the length of the beam.
+const PUSH: f64 = 1e-3;
+/// Cycles of all their periods gone between two tries.
+const PATIENCE: usize = 12;
+/// Tries at most.
+const TRIES: usize = 40;
+/// Tries in a row that find the motion nearer to a cycle of fewer periods each: then it goes nowhere else.
+const NEARER: usize = 3;
+/// What differs by less, in tolerances, is the same.
+const SAME: f64 = 10.0;
+/// Multipliers looked at, the residual of their vectors, and vectors of the space at most.
+const MULTIPLIERS: (usize, f64, usize) = (2, 1e-6, 300);
+
+/// After how many periods a cycle comes back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Periods {
+    /// So many were asked for.
+    pub asked: usize,
+    /// After so many it comes back: a whole part of these.
+    pub shortest: usize,
+    /// Periods gone in wait for the motion to settle.
+    pub waited: usize,
+    /// Whether the cycle of one period does not hold, so that the search set out beside it; else it set out from the start of the case.
+    pub beside: bool,
+}
+
+impl Periods {
+    /// For people.
+    pub fn words(&self) -> String {
+        let Self {
+            asked,
+            shortest,
+            waited,
+            beside,
+        } = self;
+        let times = match shortest {
+            1 => "every period".to_string(),
+            count => format!("after {count} periods, not sooner"),
+        };
+        let from = if *beside {
+            "beside the cycle of one period, which does not hold"
+        } else {
+            "from the start of the case"
+        };
+        if shortest == asked {
+            return format!("comes back {times}; found {waited} periods on {from}");
+        }
+        format!(
+            "a cycle of {asked} periods was asked for, but the one found comes back {times}: {waited} periods on {from} nothing longer was \
+             found; another /start may lead there"
+        )
+    }
+}
+
+/// Finds a cycle that comes back after `asked` periods of what drives a case, and after no fewer if there is one on the way.
+///
+/// ```text
+/// P^N(y) = y, [E37] with the period N T        P^d(y) ≠ y for every d < N that divides N
+/// ```
+///
+/// Where the cycle of one period does not hold, the search sets out beside it, along the multiplier of largest modulus: near -1 or beyond it
+/// the disturbance comes back after two periods. Else, or where none is found, it sets out from the start of the case. The motion is
+/// followed until Newton's iteration from where it is finds a cycle of that many periods.
+///
+/// # Errors
+/// A case without a period, a number of periods out of range, no cycle at all.
+pub fn find(case: &Case, asked: usize) -> Result<(Scene, Cycle, Periods)> {
+    if !(1..=MOST).contains(&asked) {
+        return Err(Error::Usage(format!("--periods {asked}: from 1 to {MOST}")));
+    }
+    let single = Scene::new(case, None)?;
+    single.held(&case.name)?;
+    let of_one = shoot(&single, None);
+    let told = |shortest, waited, beside| Periods {
+        asked,
+        shortest,
+        waited,
+        beside,
+    };
+    if asked == 1 {
+        return Ok((single, of_one.map_err(fault)?, told(1, 0, false)));
+    }
+    let scene = single.over(asked);
+    let pushed = of_one.ok().and_then(|mut cycle| beside(&single, &mut cycle));
+    let off = pushed.is_some();
+    let mut y = pushed.unwrap_or_else(|| single.guess.clone());
+    let mut shorter: Option<(Cycle, usize)> = None;
+    let (mut nearer, mut distance) = (0, f64::INFINITY);
+    let mut last = StepError::new(0.0, "no cycle was found");
+    let mut search = Search::default();
+    for tries in 1..=TRIES {
+        let waited = tries * PATIENCE * asked;
+        y = single.go_on(&y, PATIENCE * asked, &mut search).map_err(fault)?;
+        match attempt(&scene, y.clone(), &mut search) {
+            Err(error) => last = error,
+            Ok(cycle) => match shortest(&single, &cycle.y, asked).map_err(fault)? {
+                count if count == asked => return Ok((scene, cycle, told(asked, waited, off))),
+                count => {
+                    let now = far(&scene, &y, &cycle.y);
+                    nearer = if now < distance { nearer + 1 } else { 0 };
+                    distance = now;
+                    if now < SAME || nearer > NEARER {
+                        return Ok((scene, cycle, told(count, waited, off)));
+                    }
+                    shorter = Some((cycle, count));
+                }
+            },
+        }
+    }
+    let waited = TRIES * PATIENCE * asked;
+    shorter.map_or(Err(fault(last)), |(cycle, count)| {
+        Ok((scene, cycle, told(count, waited, off)))
+    })
+}
+
+/// How far a state is from another, in tolerances.
+fn far(scene: &Scene, y: &[f64], other: &[f64]) -> f64 {
+    let mut change: Vec<f64> = y.iter().zip(other).map(|(a, b)| a - b).collect();
+    scene.admit(&mut change);
+    scene.size(&change, other)
+}
+
+/// After how many periods of those in `asked` a state comes back.
+fn shortest(single: &Scene, y: &[f64], asked: usize) -> std::result::Result<usize, StepError> {
+    for count in (1..asked).filter(|count| asked.is_multiple_of(*count)) {
+        let back = single.go_on(y, count, &mut Search::default())?;
+        if far(single, &back, y) < SAME {
+            return Ok(count);
+        }
+    }
+    Ok(asked)
+}
+
+/// A state beside a cycle along the disturbance that grows most, if one grows.
+fn beside(scene: &Scene, cycle: &mut Cycle) -> Option<Vec<f64>> {
+    let (count, residual, most) = MULTIPLIERS;
+    let mut start = krylov::everything(cycle.y.len());
+    scene.admit(&mut start);
+    let most = scene.dimension().min(most);
+    let map = |v: &mut [f64]| {
+        cycle.march.propagate(v);
+        scene.admit(v);
+    };
+    let found = krylov::largest(map, &start, count.min(most), residual, most);
+    let grows = found.into_iter().find(|eigen| eigen.value.norm() > 1.0)?;
+    let [v, _] = grows.vector;
+    let l = &scene.system.layout;
+    let moved = l.lines.iter().flat_map(Line::unknowns);
+    let largest = moved.map(|(_, u, _)| (v[u] * l.scales[u]).abs()).fold(0.0, f64::max);
+    // what moves fluid alone is pushed by as much of its scales
+    let by_fluid = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let size = (PUSH * scene.system.model.length / largest).min(1.0 / by_fluid.max(f64::MIN_POSITIVE));
+    Some(cycle.y.iter().zip(&v).map(|(y, v)| y + size * v).collect())
+}
