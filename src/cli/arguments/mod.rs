@@ -1,6 +1,7 @@
 //! What can be asked for.
 
 mod map;
+mod periodic;
 
 use std::path::PathBuf;
 
@@ -16,6 +17,7 @@ use super::place::PlaceArguments;
 use super::report::ReportArguments;
 use super::schema::SchemaArguments;
 pub use map::MapArguments;
+pub use periodic::PeriodicArguments;
 
 /// Elastic beams with fluid-filled bladders joined by slender tubes: dynamics with error control.
 #[derive(Debug, Parser)]
@@ -322,33 +324,6 @@ pub struct FloquetArguments {
     #[arg(long)]
     pub quiet: bool,
     /// Print floquet.json or map.json instead of the table
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// `periodic`.
-#[derive(Debug, Args)]
-pub struct PeriodicArguments {
-    /// The case.
-    #[command(flatten)]
-    pub case: CaseArguments,
-    /// Cycles along a parameter, each found from the one before: a JSON pointer, its range and how many values, spread evenly or
-    /// by their logarithms, such as /network/permeability_factor=0.01:1:25:log
-    #[arg(long, value_name = "POINTER=FROM:TO:COUNT[:log]")]
-    pub sweep: Option<String>,
-    /// Look for a cycle that comes back after so many periods of what drives the case: 2 for a period that doubles
-    #[arg(long, value_name = "COUNT", default_value_t = 1)]
-    pub periods: usize,
-    /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
-    #[arg(long, value_name = "REL", conflicts_with = "sweep")]
-    pub accuracy: Option<f64>,
-    /// Where its result goes.
-    #[command(flatten)]
-    pub place: PlaceArguments,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
-    /// Print cycle.json or sweep.json instead of the words
     #[arg(long)]
     pub json: bool,
 }

@@ -1,0 +1,32 @@
+//! What `periodic` can be asked for.
+
+use clap::Args;
+
+use super::{CaseArguments, PlaceArguments};
+
+/// `periodic`.
+#[derive(Debug, Args)]
+pub struct PeriodicArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Cycles along a parameter, each found from the one before: a JSON pointer, its range and how many values, spread evenly or
+    /// by their logarithms, such as /network/permeability_factor=0.01:1:25:log
+    #[arg(long, value_name = "POINTER=FROM:TO:COUNT[:log]")]
+    pub sweep: Option<String>,
+    /// Look for a cycle that comes back after so many periods of what drives the case: 2 for a period that doubles
+    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    pub periods: usize,
+    /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
+    #[arg(long, value_name = "REL", conflicts_with = "sweep")]
+    pub accuracy: Option<f64>,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print cycle.json or sweep.json instead of the words
+    #[arg(long)]
+    pub json: bool,
+}
