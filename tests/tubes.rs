@@ -12,6 +12,7 @@ use nalgebra::Complex;
 use slcbeam::case::{self, Case};
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
+use slcbeam::model::characteristic;
 use slcbeam::model::network::TubeFlow;
 use slcbeam::model::network::tube::friction_ratio;
 use slcbeam::run::dynamics;
@@ -264,4 +265,33 @@ fn root(f: impl Fn(Complex<f64>) -> Complex<f64>, guess: Complex<f64>) -> Comple
         (a, b) = (b, b - at_b * (b - a) / (at_b - at_a));
     }
     b
+}
+
+/// Goal: the numbers that tell at once whether flow creeps are the Womersley number of the widest tube and the Reynolds number of the narrowest, by radii
+/// of their own: with a wide free tube beside those of the chain the one grows with its radius, with a narrow one the other.
+#[test]
+fn estimates_look_at_every_tube() {
+    let told = |radius: Option<f64>| {
+        let free = radius.map(|radius| {
+            format!(
+                r#"/network/tubes=[{{"from": {{"bladder": 1, "end": "inlet"}}, "to": {{"bladder": -1, "end": "inlet"}}, "length_m": 0.02,
+                    "cross_section": {{"circle": {{"radius_m": {radius:e}}}}}}}]"#
+            )
+        });
+        let ends = [
+            r#"/network/chains/0/ends=["connected", "sealed"]"#,
+            r#"/network/chains/1/ends=["connected", "sealed"]"#,
+        ];
+        let mut sets = ends.to_vec();
+        sets.extend(free.as_deref());
+        let case = read(if radius.is_some() { &sets } else { &[] });
+        let numbers = characteristic::numbers(&case, &System::new(&case).unwrap().model);
+        ["womersley", "reynolds_estimate"].map(|key| numbers[key])
+    };
+    let ([womersley, reynolds], wide, narrow) = (told(None), told(Some(3e-3)), told(Some(2e-4)));
+    assert!((wide[0] / womersley - 3.0).abs() < 1e-9 && (narrow[0] / womersley - 1.0).abs() < 1e-9);
+    assert!(
+        (narrow[1] / wide[1] - 5.0).abs() < 0.5 && wide[1] <= 1.5 * reynolds,
+        "{narrow:?} {wide:?} {reynolds}"
+    );
 }

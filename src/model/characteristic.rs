@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, Matrix2};
 
-use super::network::{Network, Node};
+use super::network::{LinkKind, Network, Node};
 use super::{Attachment, Load, Model, Surroundings, Wet, each_signal, tongue};
 use crate::case::relaxation::{self, dynamic_modulus};
 use crate::case::schema::Effect;
@@ -133,30 +133,36 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
             if let Some(f) = forcing {
                 put("f_u", f * fluid_time);
             }
-            let tube = wet
-                .network
-                .links
-                .iter()
-                .find(|k| k.kind == super::network::LinkKind::Tube);
+            let tube = wet.network.links.iter().find(|link| link.kind == LinkKind::Tube);
             if let Some(tube) = tube {
-                if let Some(f) = forcing {
-                    put(
-                        "womersley",
-                        tubes.radius_m * (2.0 * PI * f * fluid.density_kg_m3 / fluid.viscosity_pa_s).sqrt(),
-                    );
-                }
-                let pumped = model.scales.frequency * wet.compliance() * wet.bladder_length * model.scales.pressure;
-                let flow = pumped.max(wet.network.fed_tubes(case.time.end_s));
-                put(
-                    "reynolds_estimate",
-                    2.0 * fluid.density_kg_m3 * flow / (PI * fluid.viscosity_pa_s * tubes.radius_m),
-                );
                 put("tube_resistance_pa_s_m3", tube.resistance);
                 put(
                     "bladder_tube_time_s",
                     wet.compliance() * wet.bladder_length * (bladder_resistance + tube.resistance),
                 );
             }
+        }
+        let tubes = wet
+            .network
+            .links
+            .iter()
+            .filter(|link| link.kind == LinkKind::Tube && !link.is_shut());
+        if let Some([narrow, wide]) = tubes
+            .map(|tube| [tube.radius; 2])
+            .reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+        {
+            if let Some(f) = forcing {
+                put(
+                    "womersley",
+                    wide * (2.0 * PI * f * fluid.density_kg_m3 / fluid.viscosity_pa_s).sqrt(),
+                );
+            }
+            let pumped = model.scales.frequency * wet.compliance() * wet.bladder_length * model.scales.pressure;
+            let flow = pumped.max(wet.network.fed_tubes(case.time.end_s));
+            put(
+                "reynolds_estimate",
+                2.0 * fluid.density_kg_m3 * flow / (PI * fluid.viscosity_pa_s * narrow),
+            );
         }
         for (k, time) in slowest_times(wet).into_iter().enumerate() {
             if let Some(time) = time {

@@ -14,7 +14,7 @@ const STRAIN: f64 = 0.5;
 /// Reynolds number above which a run warns.
 pub const REYNOLDS: f64 = 100.0;
 /// Mach number above which a run warns.
-const MACH: f64 = 0.3;
+pub const MACH: f64 = 0.3;
 /// Part of ambient pressure, absolute, below which gas ends a run.
 const VACUUM: f64 = 1e-3;
 /// Fibre strain above which a linear law means nothing: a fibre pressed by as much has no length left.
@@ -132,6 +132,11 @@ impl Limits {
     /// Reynolds number of the fastest flow through a tube in a state; 0 where the model has what comes of it.
     pub fn reynolds(&self, g: &Glance) -> f64 {
         self.reynolds_per_flow * g.of(Watched::Flow)[0]
+    }
+
+    /// Mach number of the fastest flow of gas through a tube in a state.
+    pub fn mach(&self, g: &Glance) -> f64 {
+        self.mach_per_flow * g.of(Watched::Mach)[0]
     }
 
     /// Whether a state lies within the model.

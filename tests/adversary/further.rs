@@ -59,6 +59,15 @@ fn attachment(r: &mut Random, b: &Beam) -> Value {
     if r.one_in(3) {
         one["mass_kg"] = short(m * r.log(1e-2, 3.0));
     }
+    if r.one_in(5) {
+        let key = *r.of(&["force_tangential_n", "force_normal_n"]);
+        one[key] = signals::load(r, b.times, b.ei / (b.length * b.length));
+    }
+    if one.get("mass_kg").is_some() && r.one_in(3) {
+        one["rotary_inertia_kg_m2"] = short(m * b.length * b.length * r.log(1e-4, 1e-1));
+        let key = *r.of(&["offset_across_m", "offset_along_m"]);
+        one[key] = short(r.sign() * b.length * r.log(1e-3, 0.3));
+    }
     one
 }
 

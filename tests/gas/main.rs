@@ -159,6 +159,7 @@ fn a_row_between_two_orifices() {
         let run = *memory.column("max_pressure").unwrap().last().unwrap();
         let case = parse(&case);
         let path = equilibrium::follow(&case, &Options::at(1.0), &mut |_| Control::Continue).unwrap();
+        assert!(path.warnings().iter().any(|warning| warning.starts_with("W024")));
         let columns = equilibrium::columns(&equilibrium::system(&case, 1.0).unwrap());
         let place = columns.iter().position(|column| column.name == "max_pressure").unwrap();
         let rest = path.last().row[place];

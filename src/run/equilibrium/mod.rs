@@ -29,7 +29,7 @@ use crate::case::schema::{Case, EquilibriumStart};
 use crate::dae::BeamDae;
 use crate::discrete::System;
 use crate::error::{self, At, Code, SolverError};
-use crate::run::range::REYNOLDS;
+use crate::run::range::{MACH, REYNOLDS};
 use crate::run::record::Control;
 use crate::sundials::Solution;
 
@@ -99,6 +99,8 @@ pub struct Path {
     pub beyond: Option<String>,
     /// The largest Reynolds number of steady flow through a tube, and the load factor at which it is reached.
     pub reynolds: [f64; 2],
+    /// Likewise the largest Mach number.
+    pub mach: [f64; 2],
 }
 
 /// A remarkable point of a path.
@@ -152,7 +154,14 @@ impl Path {
                  {REYNOLDS}); flow is meant to creep"
             ))
         });
-        beyond.chain(fast).collect()
+        let [mach, share] = self.mach;
+        let choked = (mach > MACH).then(|| {
+            Code::FastGas.warning(format!(
+                "range of the model: the Mach number of steady flow in a tube reached {mach:.2} at load factor {share:.4} (above {MACH}); a tube \
+                 passes no more than at 1, so that real flow is slower than this"
+            ))
+        });
+        beyond.chain(fast).chain(choked).collect()
     }
 
     /// The last state.

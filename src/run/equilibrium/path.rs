@@ -275,12 +275,15 @@ impl Follower<'_> {
     /// Keeps a state and shows it.
     pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), End> {
         let state = State::read(self.solver.dae_mut().statics(), x, self.stage);
-        let (beyond, reynolds) = state::within(self.solver.dae_mut().statics(), x, &self.limits, state.load_factor());
+        let (beyond, [reynolds, mach]) =
+            state::within(self.solver.dae_mut().statics(), x, &self.limits, state.load_factor());
         if self.path.beyond.is_none() {
             self.path.beyond = beyond;
         }
-        if reynolds > self.path.reynolds[0] {
-            self.path.reynolds = [reynolds, state.load_factor()];
+        for (value, largest) in [(reynolds, &mut self.path.reynolds), (mach, &mut self.path.mach)] {
+            if value > largest[0] {
+                *largest = [value, state.load_factor()];
+            }
         }
         let control = (self.watch)(&state);
         if let [.., a, b] = &self.path.states[self.branch..]
