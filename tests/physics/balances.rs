@@ -125,6 +125,8 @@ fn balances_of_loaded_beams_close() {
         ("silicone-strip", 0.5),
         ("snap-arch", 1.0),
         ("air-actuator", 0.2),
+        ("tank-finger", 0.3),
+        ("snap-strip", 0.1),
         ("stop-harvester", 0.3),
         ("finger-wall", 0.8),
         ("tour-beam", 0.1),

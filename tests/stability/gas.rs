@@ -39,7 +39,7 @@ fn choking_gas() {
         let runs = SOLVERS.map(|(method, rtol, solver)| {
             let ran = run("choking", &[&bores[0], &bores[1], solver])
                 .sound_with(ENERGY, VOLUME)
-                .steps_within(12, 15_000);
+                .steps_within(12, 4_800);
             let mass = ran.summary.balances.volume_residual_relative;
             assert!(mass < VOLUME, "{}: mass {mass:.1e}", ran.name);
             let fast = mach(&ran);
@@ -79,7 +79,7 @@ fn orifices_into_vacuum() {
                 ];
                 let ran = run("choking", &[&sets[0], &sets[1]])
                     .sound_with(ENERGY, VOLUME)
-                    .steps_within(12, 15_000);
+                    .steps_within(12, 4_800);
                 assert!(ran.summary.balances.volume_residual_relative < VOLUME, "{}", ran.name);
                 ran.line("");
             }
