@@ -243,6 +243,8 @@ impl FluidMesh {
                 });
             }
         }
+        // in the order of their unknowns
+        accumulators.sort_by_key(|one| one.junction);
         Self {
             bladders,
             cells_per_bladder,

@@ -25,6 +25,8 @@ pub struct Glance {
     pub tube: usize,
     /// Tube of the largest Mach number.
     pub fast: usize,
+    /// Least pressure of gas in junctions, vessels and where it is pumped [Pa].
+    pub thinnest: f64,
     /// Largest `|u1 - u1(root)|` [m].
     pub deflection: f64,
     /// Largest distance by which a node has moved against the root [m].
@@ -107,6 +109,7 @@ impl Glance {
         g.moving[Watched::Strain as usize] = [strain, strain_rate(now, node, last, half_height, w)];
         g.moving[Watched::Outermost as usize] = nonlinear::outermost(system, w);
         g.moving[Watched::Depth as usize] = touching::deepest(system, w);
+        g.thinnest = look::thinnest(system, now, w);
         g.fluid(system, now, w);
         g
     }

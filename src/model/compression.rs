@@ -208,19 +208,20 @@ impl Compression {
         let (lacking, linear) = (content - imposed, a_p + (self.area_at_rest + imposed) * softness);
         let inside = linear * linear + 4.0 * a_p * softness * lacking;
         let begin = 2.0 * lacking / (linear + inside.max(0.0).sqrt());
-        match self.filled(amount, begin, |p| (a_p * p - lacking, a_p)) {
+        let found = match self.gas > 0.0 && amount <= 0.0 {
+            true => None,
+            false => self.filled(amount, begin, |p| (a_p * p - lacking, a_p)),
+        };
+        match found {
             None => (self.lowest(), [0.0; 2]),
             Some((p, stiffness)) => (p, [(1.0 + self.expansion(p).0) * stiffness, -stiffness]),
         }
     }
 
     /// The pressure at which `swollen(p) = amount (1/r - 1)`, of a function that grows and is straight or concave, and `1/d(swollen - amount/r)/dp`
-    /// there; none where that is absolute vacuum.
+    /// there; none where that is absolute vacuum, or where there is less than nothing of a fluid to fill it.
     fn filled(&self, amount: f64, begin: f64, swollen: impl Fn(f64) -> (f64, f64)) -> Option<(f64, f64)> {
         let lowest = self.lowest();
-        if self.gas > 0.0 && amount <= 0.0 {
-            return None;
-        }
         let mut p = begin;
         if p <= lowest {
             p = -0.9 * self.ambient;
@@ -228,7 +229,11 @@ impl Compression {
         for _ in 0..100 {
             let (expansion, slope) = self.expansion(p);
             let (swelling, steep) = swollen(p);
-            let step = (swelling - amount * expansion) / (steep - amount * slope);
+            let stiff = steep - amount * slope;
+            if stiff <= 0.0 {
+                return None;
+            }
+            let step = (swelling - amount * expansion) / stiff;
             let next = p - step;
             if next <= lowest {
                 p = 0.1 * p - 0.9 * self.ambient;
@@ -246,11 +251,13 @@ impl Compression {
     }
 
     /// Pressure in a vessel of walls of a law, by what it holds beyond that at ambient pressure [m^3], [E67]: the root of
-    /// `V(p) - c = (V_0 + c) (1/r - 1)`.
+    /// `V(p) - c = (V_0 + c) (1/r - 1)`. One that holds nothing at rest may hold a little less, as one of incompressible fluid may.
     pub fn in_vessel<T: Scalar>(&self, law: &AccumulatorLaw, content: T) -> T {
         content.lift(|content| {
             let walls = |p: f64| (law.volume(p) - content, law.compliance(p));
-            match self.filled(law.volume_at_rest() + content, 0.0, walls) {
+            let at_rest = law.volume_at_rest();
+            let emptied = self.gas > 0.0 && at_rest > 0.0 && at_rest + content <= 0.0;
+            match (!emptied).then(|| self.filled(at_rest + content, 0.0, walls)).flatten() {
                 None => (self.lowest(), 0.0),
                 Some((p, stiffness)) => (p, (1.0 + self.expansion(p).0) * stiffness),
             }

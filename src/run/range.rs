@@ -145,6 +145,7 @@ impl Limits {
         let pressure = value(Watched::High).abs().max(value(Watched::Low).abs());
         value(Watched::Opening) > 0.0
             && value(Watched::Low) > self.vacuum
+            && g.thinnest > self.vacuum
             && value(Watched::Swelling) <= self.swelling
             && value(Watched::Strain) <= STRAIN_ENDS
             && value(Watched::Outermost) <= 1.0
@@ -175,6 +176,12 @@ impl Limits {
         if value(Watched::Low) <= self.vacuum {
             return Some(format!(
                 "a bladder is evacuated at {at}: less than a thousandth of ambient pressure is left in it, and no gas to follow"
+            ));
+        }
+        if g.thinnest <= self.vacuum {
+            return Some(format!(
+                "a vessel, a junction, or what a port pumps from is evacuated at {at}: less than a thousandth of ambient pressure is left \
+                 there; a tube passes no more gas than its own pressure drives"
             ));
         }
         let swelling = value(Watched::Swelling);

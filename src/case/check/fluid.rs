@@ -78,6 +78,24 @@ fn vessels(case: &Case, fluid: &Fluid, faults: &mut Violations) {
                     fault.hint("give its volume_m3: gas in it is compressed as well as its walls stretched"),
                 );
             }
+            AccumulatorKind::Elastic {
+                compliance_m3_pa,
+                volume_m3,
+            } if fluid.kind == FluidKind::Gas && volume_m3 + compliance_m3_pa * one.start_pressure_pa <= 0.0 => {
+                let what = format!("{} Pa, at which its walls leave no room", plain(one.start_pressure_pa));
+                let least = format!(
+                    "above -{} Pa, -volume_m3/compliance_m3_pa",
+                    plain(volume_m3 / compliance_m3_pa)
+                );
+                faults.push(Violation::new(Code::Range, start, what).allowed(least));
+            }
+            AccumulatorKind::Gas { .. } if fluid.kind == FluidKind::Gas && one.start_pressure_pa < 0.0 => {
+                let what = format!(
+                    "{} Pa, at which it holds less than nothing of the gas",
+                    plain(one.start_pressure_pa)
+                );
+                faults.push(Violation::new(Code::Range, start, what).allowed("0 Pa or more"));
+            }
             AccumulatorKind::Tank { .. } | AccumulatorKind::Elastic { .. } if fluid.gas() > 0.0 => {
                 above_vacuum(fluid, start, one.start_pressure_pa, faults);
             }

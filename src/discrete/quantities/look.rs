@@ -141,6 +141,26 @@ pub fn largest_mach(system: &System, now: &TimeData, w: &Workspace<f64>) -> Opti
     })
 }
 
+/// Least pressure of junctions, vessels, and ports that give flow or volume, where fluid holds gas; 0 elsewhere [Pa].
+pub fn thinnest(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
+    let Some(wet) = system.model.wet.as_ref() else {
+        return 0.0;
+    };
+    if wet
+        .compression
+        .as_ref()
+        .is_none_or(|compression| compression.lowest() == f64::NEG_INFINITY)
+    {
+        return 0.0;
+    }
+    let ports = wet.network.ports.len();
+    let sources = now.source_flow.iter().enumerate().map(|(source, &flow)| {
+        let [pressure, _] = ledger::ports::pressure_and_power(system, now, w, ports + source, flow);
+        pressure
+    });
+    sources.chain(w.fluid.junction.iter().copied()).fold(0.0, f64::min)
+}
+
 /// Flow times a factor of the tube, of its link and its radius, in the tube in which that is largest: its size, its rate as far as flow makes it and
 /// bladders and ports make flow, and the tube's number among the tubes.
 fn largest_in_tubes(
