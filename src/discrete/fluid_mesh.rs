@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use crate::case::schema::BladderEnd;
 use crate::model::network::tube::BRANCHES;
-use crate::model::network::{AccumulatorLaw, CheckValve, LinkKind, Node, TubeFlow};
-use crate::model::{Storage, Wet};
+use crate::model::network::{AccumulatorLaw, CheckValve, Link, LinkKind, Node, TubeFlow};
+use crate::model::{Network, Storage, Wet};
 
 /// Where a link ends, on the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -238,7 +238,7 @@ impl FluidMesh {
                     junction,
                     component: network.component_of_junction[junctions[junction]],
                     law: AccumulatorLaw::Rigid {
-                        holds: halves_of_tubes(&links, Place::Junction(junction)),
+                        holds: halves_of_tubes(network, junctions[junction]),
                     },
                 });
             }
@@ -310,14 +310,15 @@ impl FluidMesh {
     }
 }
 
-/// `[E65]` Volume of the halves of all tubes that meet at a junction [m^3]. Where these have inertia alone, and fluid is compressed, that is what
-/// stores there: the pressure follows from what has come together, and flows into it need not sum to zero.
-fn halves_of_tubes(links: &[MeshLink], here: Place) -> f64 {
-    let volume = |link: &MeshLink| {
+/// `[E65]` Volume of the halves of all tubes that meet at a junction, shut ones too [m^3]. Where these have inertia alone, and fluid is compressed, that
+/// is what stores there: the pressure follows from what has come together, and flows into it need not sum to zero.
+fn halves_of_tubes(network: &Network, junction: usize) -> f64 {
+    let here = Node::Junction(junction);
+    let volume = |link: &Link| {
         let ends = usize::from(link.from == here) + usize::from(link.to == here);
-        0.5 * ends as f64 * link.flow.map_or(0.0, |flow| flow.tube.volume)
+        0.5 * ends as f64 * link.tube.map_or(0.0, |tube| tube.volume)
     };
-    links.iter().map(volume).sum()
+    network.links.iter().map(volume).sum()
 }
 
 /// Ranges of the cells of bladders, those of neighbours in one.

@@ -5,7 +5,9 @@ use std::f64::consts::{PI, TAU};
 use serde_json::{Value, json};
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
+use slcbeam::run::equilibrium::{self, Options};
 use slcbeam::run::modes::{self, Plan};
+use slcbeam::run::record::Control;
 
 use super::differences::worst_difference;
 use super::scene::{finished, parse};
@@ -189,4 +191,48 @@ fn a_stiff_liquid_with_inertia_is_incompressible() {
         stiff < 1e-2 && (8.0..12.0).contains(&(soft / stiff)),
         "{soft:e} {stiff:e}"
     );
+}
+
+/// Goal: tanks at one pressure beyond a bare junction, wherever that stands in the list of junctions, rest at that pressure less what the halves of tubes
+/// at the junction take: `P (V_a + V_c + V_tubes) = P_0 (V_a + V_c) ..`, isothermal, to 1e-9. Before, the search failed unless the bare junction came last.
+#[test]
+fn the_order_of_junctions_does_not_matter() {
+    let tube = |from: &str| json!({"from": {"junction": from}, "to": {"junction": "b"}, "length_m": 0.1, "cross_section": {"circle": {"radius_m": 1e-3}}});
+    let (start, volume) = (3000.0, 1e-5);
+    let halves = PI * 1e-6 * 0.1;
+    let exact = 2.0 * volume * start / (2.0 * volume + halves);
+    for order in [["a", "b", "c"], ["b", "c", "a"], ["a", "c", "b"]] {
+        let network = json!({"junctions": order, "tubes": [tube("a"), tube("c")],
+            "accumulators": [tank("a", volume, start), tank("c", volume, start)]});
+        let mut case = rig(gas(1.0), network, 0.1);
+        case["effects"] = effects(["on", "on", "on"]);
+        let case = parse(&case);
+        let path = equilibrium::follow(&case, &Options::at(0.1), &mut |_| Control::Continue).unwrap();
+        assert!(path.fault.is_none(), "{order:?}: {:?}", path.fault);
+        let columns = equilibrium::columns(&equilibrium::system(&case, 0.1).unwrap());
+        let place = columns
+            .iter()
+            .position(|column| column.name == "accumulator_c_pressure")
+            .unwrap();
+        let found = path.last().row[place];
+        assert!((found / exact - 1.0).abs() < 1e-9, "{order:?}: {found} {exact}");
+    }
+}
+
+/// Goal: where a valve shuts between two stages of an equilibrium, what is behind it keeps its pressure, what tubes hold included.
+#[test]
+fn a_valve_that_shuts_keeps_what_is_behind_it() {
+    let text = std::fs::read_to_string("cases/tank-finger.json").unwrap();
+    let case = parse(&serde_json::from_str(&text).unwrap());
+    let options = Options {
+        via_s: vec![0.3],
+        ..Options::at(1.0)
+    };
+    let path = equilibrium::follow(&case, &options, &mut |_| Control::Continue).unwrap();
+    assert!(path.fault.is_none(), "{:?}", path.fault);
+    let columns = equilibrium::columns(&equilibrium::system(&case, 1.0).unwrap());
+    let place = columns.iter().position(|column| column.name == "max_pressure").unwrap();
+    let first = path.states.iter().rfind(|state| state.stage == 0).unwrap().row[place];
+    let last = path.last().row[place];
+    assert!((last / first - 1.0).abs() < 1e-8 && last > 4e4, "{first} {last}");
 }

@@ -229,3 +229,46 @@ fn vessels_that_cannot_be_are_refused() {
     let told = has(&case).unwrap_err().to_string();
     assert!(told.contains("1 fault"), "{told}");
 }
+
+/// Goal: vessels that hold nothing at rest begin at the pressure that is given, of a liquid with gas in it and of gas; and where more is drawn than there is,
+/// from a vessel or by a port, the run ends and says so. Before, they began in a vacuum, or went on beyond it without a word.
+#[test]
+fn empty_vessels_begin_as_given_and_emptied_ones_end_a_run() {
+    let foam = json!({"density_kg_m3": 1000, "viscosity_pa_s": 1e-3, "gas_fraction": 0.01});
+    let cushion = json!({"gas": {"volume_m3": 2e-6}});
+    for (fluid, kind) in [
+        (foam.clone(), json!({"elastic": {"compliance_m3_pa": 1e-11}})),
+        (foam, cushion.clone()),
+        (gas(1.0), cushion),
+    ] {
+        let network = json!({"accumulators": at_b(kind, 0.0),
+            "ports": held(json!({"ramp": {"to": 1e3, "duration_s": 0.1, "shape": "smooth"}}))});
+        let (memory, summary) = run(fluid, network, 1.0);
+        let pressures = memory.column("accumulator_b_pressure").unwrap();
+        assert!(
+            pressures[0].abs() < 1e-6 && pressures.iter().all(|p| (-1e-3..=1e3 + 1e-3).contains(p)),
+            "{pressures:?}"
+        );
+        assert!(summary.balances.energy_residual_relative.abs() < 1e-5);
+    }
+    let drawn = json!({"ports": [{"name": "pump", "at": {"junction": "b"}, "flow_m3_s": {"ramp": {"to": -1e-6, "duration_s": 0.5}}},
+        {"name": "a", "at": {"junction": "a"}, "pressure_pa": 0}]});
+    let emptied = json!({"accumulators": at_b(json!({"tank": {"volume_m3": 1e-6}}), 0.0),
+        "ports": [{"name": "pump", "at": {"junction": "b"}, "flow_m3_s": {"ramp": {"to": -1e-4, "duration_s": 0.5}}},
+                  {"name": "a", "at": {"junction": "a"}, "pressure_pa": 0}]});
+    let ends = |network: &Value, end: f64| {
+        let case = parse(&rig(gas(1.0), network.clone(), end));
+        slcbeam::run::dynamics::run(&case, &mut Memory::default())
+            .unwrap()
+            .summary
+    };
+    assert_eq!(ends(&drawn, 0.5).reason, None);
+    let told = ends(&emptied, 0.5).reason.unwrap();
+    assert!(told.contains("evacuated"), "{told}");
+    let more = drawn
+        .to_string()
+        .replace("-1e-6", "-1e-3")
+        .replace("-0.000001", "-0.001");
+    let told = ends(&serde_json::from_str(&more).unwrap(), 0.5).reason.unwrap();
+    assert!(told.contains("evacuated"), "{told}");
+}
