@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 70] = [
+const INDEX: [(&str, &str, &str); 71] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -200,6 +200,7 @@ const INDEX: [(&str, &str, &str); 70] = [
         "tests/attachments/solids.rs",
         "a_weight_beside_the_tip_bends_the_beam",
     ),
+    ("[E71]", "tests/closing.rs", "walls_hold_what_suction_leaves"),
 ];
 
 #[test]

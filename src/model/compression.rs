@@ -264,17 +264,17 @@ impl Compression {
         })
     }
 
-    /// What a cell stores at a pressure, c, `[E54]`.
+    /// What a cell of an area change stores at a pressure, c, `[E54]`.
     #[inline]
-    pub fn content<T: Scalar>(&self, law: &AreaLaw, p: T, imposed: T) -> T {
+    pub fn content<T: Scalar>(&self, p: T, area: T) -> T {
         let density = p.lift(|p| self.density(p));
-        density * (p * law.per_pressure + imposed + self.area_at_rest) - self.area_at_rest
+        density * (area + self.area_at_rest) - self.area_at_rest
     }
 
-    /// Rate of what a cell stores, from those of its pressure and of what is imposed.
-    pub fn content_rate(&self, law: &AreaLaw, [p, area]: [f64; 2], p_t: f64, imposed_t: f64) -> f64 {
+    /// Rate of what a cell stores, from those of its pressure and of its area.
+    pub fn content_rate(&self, [p, area]: [f64; 2], p_t: f64, area_t: f64) -> f64 {
         let (density, slope) = self.density(p);
-        slope * (self.area_at_rest + area) * p_t + density * (law.per_pressure * p_t + imposed_t)
+        slope * (self.area_at_rest + area) * p_t + density * area_t
     }
 
     /// Rate of a cell's pressure, from those of its content and of what is imposed.

@@ -7,6 +7,7 @@ pub mod audit;
 pub mod beam;
 pub mod bladder;
 pub mod characteristic;
+pub mod closing;
 pub mod compression;
 pub mod contact;
 pub mod coupling;
@@ -34,6 +35,7 @@ use crate::numerics::Scalar;
 pub use attachments::Attachment;
 pub use beam::Section;
 pub use bladder::AreaLaw;
+pub use closing::Closing;
 pub use compression::Compression;
 pub use contact::Contact;
 pub use coupling::Coupling;
@@ -58,6 +60,8 @@ pub struct Wet {
     pub area_at_rest: f64,
     /// Area change of a bladder cell; slopes of what does not change areas are zero.
     pub area: AreaLaw,
+    /// How walls of bladders meet; none where that is left open.
+    pub closing: Option<Closing>,
     /// How its fluid is compressed; none of incompressible fluid.
     pub compression: Option<Compression>,
     /// The law whose slopes pressure strains the beam with; those of what it does not strain are zero.
@@ -118,8 +122,17 @@ impl Wet {
     #[inline]
     pub fn content<T: Scalar>(&self, pressure: T, imposed: T) -> T {
         match &self.compression {
+            None => self.swelling(pressure, imposed),
+            Some(compression) => compression.content(pressure, self.swelling(pressure, imposed)),
+        }
+    }
+
+    /// Area change of a cell at a pressure [m^2], likewise.
+    #[inline]
+    pub fn swelling<T: Scalar>(&self, pressure: T, imposed: T) -> T {
+        match &self.closing {
             None => pressure * self.area.per_pressure + imposed,
-            Some(compression) => compression.content(&self.area, pressure, imposed),
+            Some(closing) => closing.swelling(&self.area, pressure, imposed),
         }
     }
 
@@ -148,6 +161,10 @@ impl Wet {
             bladder_length: bladders.length_m,
             area_at_rest,
             area,
+            closing: bladders
+                .closing
+                .as_ref()
+                .map(|written| Closing::new(written, area_at_rest)),
             compression: fluid.and_then(|fluid| Compression::new(fluid, area_at_rest)),
             strains: area,
             coupling: Coupling::new(case, bladders),

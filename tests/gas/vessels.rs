@@ -254,7 +254,7 @@ fn empty_vessels_begin_as_given_and_emptied_ones_end_a_run() {
     let drawn = json!({"ports": [{"name": "pump", "at": {"junction": "b"}, "flow_m3_s": {"ramp": {"to": -1e-6, "duration_s": 0.5}}},
         {"name": "a", "at": {"junction": "a"}, "pressure_pa": 0}]});
     let emptied = json!({"accumulators": at_b(json!({"tank": {"volume_m3": 1e-6}}), 0.0),
-        "ports": [{"name": "pump", "at": {"junction": "b"}, "flow_m3_s": {"ramp": {"to": -1e-4, "duration_s": 0.5}}},
+        "ports": [{"name": "pump", "at": {"junction": "b"}, "flow_m3_s": {"ramp": {"to": -1e-3, "duration_s": 0.5}}},
                   {"name": "a", "at": {"junction": "a"}, "pressure_pa": 0}]});
     let ends = |network: &Value, end: f64| {
         let case = parse(&rig(gas(1.0), network.clone(), end));

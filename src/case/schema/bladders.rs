@@ -119,10 +119,25 @@ pub struct Bladders {
     /// formulation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strain_energy: Option<StrainEnergy>,
+    /// Walls that meet before the cross-section is gone; absent: a run ends where a bladder closes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub closing: Option<Closing>,
     /// Width of the smoothed kink between opening and closing slopes, relative to `EI/l_s` (moment) and `EA` (force).
     #[serde(default = "default_kink_width")]
     #[schemars(extend("exclusiveMinimum" = 0), range(max = 1.0))]
     pub kink_width: f64,
+}
+
+/// Walls that touch, and press on each other with `P (below/x - 1)^2`, x the cross-section over that at rest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Closing {
+    /// Share of the cross-section at rest below which walls touch.
+    #[schemars(extend("exclusiveMinimum" = 0), range(max = 0.9))]
+    pub below: f64,
+    /// `P`: what they press with where half of that is left [Pa].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub stiffness_pa: f64,
 }
 
 /// `P = sum P_k z^k`, `3 <= |k| <= degree`, `k_2 + k_4` even: what a law at finite strain adds to the potential of the section [N]. `z` are

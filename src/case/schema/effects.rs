@@ -144,6 +144,8 @@ effects! {
         Viscoelasticity viscoelasticity,
         /// Drag across the beam that grows with the square of its velocity.
         QuadraticDrag quadratic_drag,
+        /// Walls of bladders that meet.
+        Closing closing,
         /// Valves that move.
         Valves valves,
         /// Check valves and relief valves in tubes.

@@ -57,11 +57,13 @@ impl Network {
     pub(super) fn new(model: &Model, wet: &Wet, fluid: &FluidMesh, build: &mut Builder) -> Self {
         let s = &model.scales;
         let stored = wet.compliance() * s.pressure;
+        // what is left of a cross-section where walls touch is to be known as well as pressures are
+        let area_size = wet.closing.map_or(stored, |closing| stored.min(closing.touching()));
         let area = build.block(|build| {
             for &bladder in &fluid.flowing {
                 for cell in 0..fluid.cells_per_bladder {
                     let name = Name::Area(bladder, cell);
-                    build.push(name, stored, stored * fluid.ds * s.frequency, true);
+                    build.push(name, area_size, area_size * fluid.ds * s.frequency, true);
                 }
             }
         });

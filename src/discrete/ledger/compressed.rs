@@ -6,15 +6,44 @@ use super::fluid::imposed_rate;
 use crate::discrete::{FluidMesh, System, Workspace};
 use crate::model::{Compression, Storage, Wet};
 
-/// Rate of what a cell stores [m^2/s], from those of its pressure and of what is imposed on its area.
-pub fn stored_rate(wet: &Wet, w: &Workspace<f64>, cell: usize, pressure_rate: f64, imposed_rate: f64) -> f64 {
-    match &wet.compression {
-        None => wet.area.per_pressure * pressure_rate + imposed_rate,
-        Some(compression) => {
+/// Rates of a cell's pressure [Pa/s], of that which strains its walls, and of its area [m^2/s], from that of what it stores.
+fn rates(wet: &Wet, w: &Workspace<f64>, cell: usize, stored: f64, imposed: f64) -> [f64; 3] {
+    let (law, closing) = (&wet.area, wet.closing.as_ref());
+    let contact = |area: f64, rate: f64| closing.map_or(0.0, |closing| closing.at(area).1 * rate);
+    match (&wet.compression, closing) {
+        (Some(compression), None) => {
             let state = [w.fluid.pressure[cell], w.fluid.swelling[cell]];
-            compression.content_rate(&wet.area, state, pressure_rate, imposed_rate)
+            let pressure = compression.pressure_rate(law, state, stored, imposed);
+            [pressure, pressure, law.per_pressure * pressure + imposed]
+        }
+        (compression, _) => {
+            let area = w.fluid.area_changes()[cell];
+            let rate = match (compression, closing) {
+                (Some(compression), Some(closing)) => {
+                    let held = area - law.per_pressure * (w.fluid.pressure[cell] + closing.at(area).0);
+                    let (_, [by_area, by_imposed]) = closing.missing(law, compression, area, held);
+                    (stored - by_imposed * imposed) / by_area
+                }
+                _ => stored,
+            };
+            let in_walls = (rate - imposed) / law.per_pressure;
+            [in_walls - contact(area, rate), in_walls, rate]
         }
     }
+}
+
+/// Rates of a cell of a bladder that shares its pressure: of that which strains its walls [Pa/s], and of what it stores [m^2/s], from that
+/// of its pressure.
+pub fn shared_rates(wet: &Wet, w: &Workspace<f64>, cell: usize, pressure: f64, imposed: f64) -> [f64; 2] {
+    let a_p = wet.area.per_pressure;
+    let area = w.fluid.area_changes()[cell];
+    let slope = wet.closing.as_ref().map_or(0.0, |closing| closing.at(area).1);
+    let rate = (a_p * pressure + imposed) / (1.0 - a_p * slope);
+    let stored = match &wet.compression {
+        None => rate,
+        Some(compression) => compression.content_rate([w.fluid.pressure[cell], area], pressure, rate),
+    };
+    [pressure + slope * rate, stored]
 }
 
 /// Rate of a cell's pressure [Pa/s]; needs [`super::complete`].
@@ -22,38 +51,29 @@ pub fn pressure_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usi
     let bladder = cell / fluid.cells_per_bladder;
     match wet.storage[bladder] {
         Storage::Shared(lumped) => w.fluid.lumped_rate[lumped],
-        Storage::Flowing | Storage::Kept => of_content(wet, w, cell, imposed_rate(wet, w, bladder)),
-    }
-}
-
-/// Mean of the cells of a bladder that does not share its pressure.
-pub fn mean_pressure_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize, cells: Range<usize>) -> f64 {
-    let (count, imposed) = (cells.len() as f64, imposed_rate(wet, w, bladder));
-    match &wet.compression {
-        None => (w.fluid.area_rate[cells].iter().sum::<f64>() / count - imposed) / wet.area.per_pressure,
-        Some(_) => cells.map(|cell| of_content(wet, w, cell, imposed)).sum::<f64>() / count,
-    }
-}
-
-fn of_content(wet: &Wet, w: &Workspace<f64>, cell: usize, imposed_rate: f64) -> f64 {
-    match &wet.compression {
-        None => (w.fluid.area_rate[cell] - imposed_rate) / wet.area.per_pressure,
-        Some(compression) => {
-            let state = [w.fluid.pressure[cell], w.fluid.swelling[cell]];
-            compression.pressure_rate(&wet.area, state, w.fluid.area_rate[cell], imposed_rate)
+        Storage::Flowing | Storage::Kept => {
+            rates(wet, w, cell, w.fluid.area_rate[cell], imposed_rate(wet, w, bladder))[0]
         }
     }
+}
+
+/// Mean of the rates of what strains the walls of a bladder.
+pub fn mean_pressure_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize, cells: Range<usize>) -> f64 {
+    let (count, imposed) = (cells.len() as f64, imposed_rate(wet, w, bladder));
+    if let Storage::Shared(lumped) = wet.storage[bladder] {
+        return shared_rates(wet, w, cells.start, w.fluid.lumped_rate[lumped], imposed)[0];
+    }
+    let each = cells.map(|cell| rates(wet, w, cell, w.fluid.area_rate[cell], imposed)[1]);
+    each.sum::<f64>() / count
 }
 
 /// Rate of a cell's area [m^2/s]; needs [`super::complete`].
 pub fn area_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usize) -> f64 {
-    match &wet.compression {
-        None => w.fluid.area_rate[cell],
-        Some(_) => {
-            let imposed = imposed_rate(wet, w, cell / fluid.cells_per_bladder);
-            wet.area.per_pressure * pressure_rate(wet, fluid, w, cell) + imposed
-        }
+    if wet.compression.is_none() {
+        return w.fluid.area_rate[cell];
     }
+    let imposed = imposed_rate(wet, w, cell / fluid.cells_per_bladder);
+    rates(wet, w, cell, w.fluid.area_rate[cell], imposed)[2]
 }
 
 /// Lost between two neighbouring cells [W].

@@ -11,7 +11,7 @@ use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
 use crate::model::bladder::{kink_curvature, kink_slope};
 use crate::model::network::{LinkKind, Node};
-use crate::model::{AreaLaw, Coupling, LumpedKind, LumpedNetwork, Storage, Wet};
+use crate::model::{AreaLaw, Coupling, LumpedKind, LumpedNetwork, Wet};
 
 /// What no equation needs but the balances: means, rates of lumped networks' pressures and of their bladders' areas.
 pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>) {
@@ -49,7 +49,8 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
         };
         for &bladder in &lumped.bladders {
             let rate = imposed_rate(wet, w, bladder);
-            let stored = compressed::stored_rate(wet, w, fluid.cells_of(bladder).start, w.fluid.lumped_rate[k], rate);
+            let cell = fluid.cells_of(bladder).start;
+            let [_, stored] = compressed::shared_rates(wet, w, cell, w.fluid.lumped_rate[k], rate);
             w.fluid.area_rate[fluid.cells_of(bladder)].fill(stored);
         }
     }
@@ -138,13 +139,8 @@ impl SegmentRates {
         let mut pressure_rate = [0.0; 2];
         for (k, bladder) in wet.pair(j).into_iter().enumerate() {
             pressure[k] = w.fluid.mean_pressure[bladder];
-            pressure_rate[k] = match wet.storage[bladder] {
-                Storage::Shared(lumped) => w.fluid.lumped_rate[lumped],
-                Storage::Flowing | Storage::Kept => {
-                    let cells = system.fluid.as_ref().map_or(0..0, |f| f.cells_of(bladder));
-                    compressed::mean_pressure_rate(wet, w, bladder, cells)
-                }
-            };
+            let cells = system.fluid.as_ref().map_or(0..0, |f| f.cells_of(bladder));
+            pressure_rate[k] = compressed::mean_pressure_rate(wet, w, bladder, cells);
         }
         Self {
             moment,

@@ -3,7 +3,7 @@
 use crate::discrete::{System, Workspace};
 use crate::model::ROWS;
 
-/// Energy stored in the bladders, the same for both couplings:
+/// Energy stored in the bladders, walls that meet included, [E71], the same for both couplings; p is what strains the walls:
 ///
 /// ```text
 /// l_b Σ_{j,R} [ mean_k(a_p p_k²/2) + pbar (Nbar A_N'(Nbar) + Mbar (R A_M)'(Mbar)) ]
@@ -15,11 +15,21 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     let mut sum = 0.0;
     for j in 0..wet.per_row {
         for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
-            let cells = &w.fluid.pressure[fluid.cells_of(bladder)];
-            let squares: f64 = cells.iter().map(|p| p * p).sum();
+            let cells = fluid.cells_of(bladder);
+            let (mut squares, mut closed) = (0.0, 0.0);
+            for cell in cells.clone() {
+                let mut in_walls = w.fluid.pressure[cell];
+                if let Some(closing) = &wet.closing {
+                    let area = w.fluid.area_changes()[cell];
+                    in_walls += closing.at(area).0;
+                    closed += closing.energy(area);
+                }
+                squares += in_walls * in_walls;
+            }
             let mixed = w.coupling.mean_force[j] * wet.area.force_slope(w.coupling.mean_force[j])
                 + w.coupling.mean_moment[j] * wet.area.moment_slope(w.coupling.mean_moment[j], row);
-            sum += 0.5 * wet.area.per_pressure * squares / cells.len() as f64 + w.fluid.mean_pressure[bladder] * mixed;
+            let in_walls = 0.5 * wet.area.per_pressure * squares + closed;
+            sum += in_walls / cells.len() as f64 + w.fluid.mean_pressure[bladder] * mixed;
         }
     }
     wet.bladder_length * sum

@@ -38,21 +38,23 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
                     let mut sum = T::zero();
                     for cell in cells {
                         let p = law.pressure(w.fluid.area[cell], imposed);
-                        w.fluid.pressure[cell] = p;
+                        w.fluid.pressure[cell] = pressed(wet, p, w.fluid.area[cell]);
                         sum += p;
                     }
                     sum * share
                 }
                 Storage::Kept => {
-                    let p = law.pressure(w.fluid.area[cells.start], imposed);
-                    w.fluid.pressure[cells].fill(p);
+                    let area = w.fluid.area[cells.start];
+                    let p = law.pressure(area, imposed);
+                    w.fluid.pressure[cells].fill(pressed(wet, p, area));
                     p
                 }
                 Storage::Shared(lumped) => {
                     let p = w.fluid.lumped[lumped];
-                    w.fluid.area[cells.clone()].fill(p * law.per_pressure + imposed);
+                    let area = wet.swelling(p, imposed);
+                    w.fluid.area[cells.clone()].fill(area);
                     w.fluid.pressure[cells].fill(p);
-                    p
+                    wet.closing.map_or(p, |closing| p + closing.pressure(area))
                 }
             };
         }
@@ -68,30 +70,57 @@ fn compressed<T: Scalar>(
     imposed: T,
     w: &mut Workspace<T>,
 ) -> T {
-    let (law, own) = (&wet.area, &mut w.fluid);
-    let p = match wet.storage[bladder] {
+    let own = &mut w.fluid;
+    let (p, in_walls, area) = match wet.storage[bladder] {
         Storage::Flowing => {
             let share = 1.0 / cells.len() as f64;
             let mut sum = T::zero();
             for cell in cells {
-                let p = compression.pressure(law, own.area[cell], imposed);
+                let (p, in_walls, area) = of_content(wet, compression, own.area[cell], imposed);
                 own.pressure[cell] = p;
-                own.swelling[cell] = p * law.per_pressure + imposed;
+                own.swelling[cell] = area;
                 own.potential[cell] = compression.potential(p);
-                sum += p;
+                sum += in_walls;
             }
             return sum * share;
         }
-        Storage::Kept => compression.pressure(law, own.area[cells.start], imposed),
+        Storage::Kept => of_content(wet, compression, own.area[cells.start], imposed),
         Storage::Shared(lumped) => {
             let p = own.lumped[lumped];
-            own.area[cells.clone()].fill(compression.content(law, p, imposed));
-            p
+            let area = wet.swelling(p, imposed);
+            own.area[cells.clone()].fill(compression.content(p, area));
+            (p, wet.closing.map_or(p, |closing| p + closing.pressure(area)), area)
         }
     };
     own.pressure[cells.clone()].fill(p);
-    own.swelling[cells].fill(p * law.per_pressure + imposed);
-    p
+    own.swelling[cells].fill(area);
+    in_walls
+}
+
+/// Pressure of the fluid, pressure that strains the walls, and area change of a cell by what it stores.
+#[inline]
+fn of_content<T: Scalar>(wet: &Wet, compression: &Compression, content: T, imposed: T) -> (T, T, T) {
+    let law = &wet.area;
+    match &wet.closing {
+        None => {
+            let p = compression.pressure(law, content, imposed);
+            (p, p, p * law.per_pressure + imposed)
+        }
+        Some(closing) => {
+            let area = closing.swelling_of(law, compression, content, imposed);
+            let in_walls = law.pressure(area, imposed);
+            (in_walls - closing.pressure(area), in_walls, area)
+        }
+    }
+}
+
+/// Pressure of the fluid in a cell whose walls are strained by a pressure.
+#[inline]
+fn pressed<T: Scalar>(wet: &Wet, in_walls: T, area: T) -> T {
+    match &wet.closing {
+        None => in_walls,
+        Some(closing) => in_walls - closing.pressure(area),
+    }
 }
 
 /// Stretch and curvature of each segment due to pressure, `[E3]`.

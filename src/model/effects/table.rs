@@ -251,6 +251,20 @@ pub fn about(effect: Effect) -> About {
                 case.beam.damping.quadratic_drag_n_s2_m3 > 0.0 || around.is_some_and(|s| s.drag_coefficient > 0.0)
             }),
         },
+        Effect::Closing => About {
+            adds: "p = (a1 - R A_M - A_N)/a_p - P (ε/x - 1)², x = (A_0 + a1)/A_0 < ε",
+            brings: "pressure of walls on each other, which keeps areas positive",
+            number: "present where given",
+            cost: "a comparison in every cell",
+            needs: &[Fluid],
+            presence: Presence::Given(|case, network| {
+                network.is_some()
+                    && case
+                        .bladders
+                        .as_ref()
+                        .is_some_and(|bladders| bladders.closing.is_some())
+            }),
+        },
         Effect::Valves => About {
             adds: "g = o/(o R_half + R), o(t) given",
             brings: "conductances that change in time",

@@ -1,0 +1,140 @@
+//! Bladders whose walls meet.
+
+use super::{AreaLaw, Compression};
+use crate::case::schema::Closing as Written;
+use crate::numerics::Scalar;
+
+/// Share of the area at which walls meet below which the law goes on straight: no state gets there, trial states may.
+const SHUT: f64 = 1e-3;
+
+/// `[E71]` Walls that touch where the cross-section falls below a share ε of that at rest, and press on each other the more the less is left:
+///
+/// ```text
+/// p_c = P (ε/x - 1)²  for x = (A_0 + a1)/A_0 < ε, else 0        p = (a1 - R A_M - A_N)/a_p - p_c
+/// E gains Σ Δs A_0 P [ε²/x - x + 2 ε ln(x/ε)]
+/// ```
+///
+/// `p + p_c` is what strains the walls, and the beam by them. p_c grows beyond all bounds as x falls to 0, and so does the energy of closing: the area
+/// stays positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closing {
+    /// `A_0` [m^2].
+    at_rest: f64,
+    /// `ε`.
+    below: f64,
+    /// `P` [Pa].
+    stiffness: f64,
+}
+
+impl Closing {
+    /// As a case writes it, of bladders of a cross-section [m^2].
+    pub fn new(written: &Written, at_rest: f64) -> Self {
+        Self {
+            at_rest,
+            below: written.below,
+            stiffness: written.stiffness_pa,
+        }
+    }
+
+    /// Cross-section at which walls touch [m^2].
+    pub fn touching(&self) -> f64 {
+        self.below * self.at_rest
+    }
+
+    /// `p_c` [Pa] and its derivative by the area change [Pa/m^2].
+    pub fn at(&self, area: f64) -> (f64, f64) {
+        let x = 1.0 + area / self.at_rest;
+        if x >= self.below {
+            return (0.0, 0.0);
+        }
+        let held = x.max(SHUT * self.below);
+        let over = self.below / held - 1.0;
+        let slope = -2.0 * self.stiffness * over * self.below / (held * held);
+        let pressure = self.stiffness * over * over + slope * (x - held);
+        (pressure, slope / self.at_rest)
+    }
+
+    /// `p_c` of an area change [Pa].
+    #[inline]
+    pub fn pressure<T: Scalar>(&self, area: T) -> T {
+        area.lift(|area| self.at(area))
+    }
+
+    /// Energy of a cell per length [J/m].
+    pub fn energy(&self, area: f64) -> f64 {
+        let (x, e) = (1.0 + area / self.at_rest, self.below);
+        if x >= e {
+            return 0.0;
+        }
+        self.at_rest * self.stiffness * (e * e / x - x + 2.0 * e * (x / e).ln())
+    }
+
+    /// The area change at a pressure of the fluid, where bending and force account for `imposed`.
+    #[inline]
+    pub fn swelling<T: Scalar>(&self, law: &AreaLaw, pressure: T, imposed: T) -> T {
+        let a_p = law.per_pressure;
+        pressure.lift_with(imposed, |pressure, imposed| {
+            let area = self.root(a_p * pressure + imposed, |area| {
+                let (contact, slope) = self.at(area);
+                (area - a_p * (pressure + contact) - imposed, 1.0 - a_p * slope)
+            });
+            let stiffness = 1.0 / (1.0 - a_p * self.at(area).1);
+            (area, [a_p * stiffness, stiffness])
+        })
+    }
+
+    /// The area change of a cell that stores `content` of a fluid that is compressed, [E54].
+    #[inline]
+    pub fn swelling_of<T: Scalar>(&self, law: &AreaLaw, fluid: &Compression, content: T, imposed: T) -> T {
+        content.lift_with(imposed, |content, imposed| {
+            let open = law.per_pressure * fluid.pressure(law, content, imposed) + imposed;
+            let area = self.root(open, |area| {
+                let (missing, [by_area, _]) = self.missing(law, fluid, area, imposed);
+                (missing - content, by_area)
+            });
+            let (_, [by_area, by_imposed]) = self.missing(law, fluid, area, imposed);
+            (area, [1.0 / by_area, -by_imposed / by_area])
+        })
+    }
+
+    /// `r(p) (A_0 + a1) - A_0` and its derivatives by area change and by what is imposed.
+    pub fn missing(&self, law: &AreaLaw, fluid: &Compression, area: f64, imposed: f64) -> (f64, [f64; 2]) {
+        let (contact, slope) = self.at(area);
+        let (density, by_pressure) = fluid.density((area - imposed) / law.per_pressure - contact);
+        let (all, soft) = (self.at_rest + area, 1.0 / law.per_pressure);
+        let by_pressure = by_pressure * all;
+        (
+            density * all - self.at_rest,
+            [density + by_pressure * (soft - slope), -by_pressure * soft],
+        )
+    }
+
+    /// Root of a function that grows, `open` where walls do not touch: Newton's iteration between bounds.
+    fn root(&self, open: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
+        let (mut low, mut high) = (-self.at_rest, self.at_rest * (self.below - 1.0));
+        if open >= high {
+            return open;
+        }
+        low = low.min(open);
+        let mut area = open.max(0.5 * (high - self.at_rest));
+        for _ in 0..100 {
+            let (value, slope) = f(area);
+            if value > 0.0 {
+                high = area;
+            } else {
+                low = area;
+            }
+            let newton = area - value / slope;
+            let next = if newton > low && newton < high {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
+            if (next - area).abs() <= 1e-15 * self.at_rest {
+                return next;
+            }
+            area = next;
+        }
+        area
+    }
+}
