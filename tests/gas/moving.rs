@@ -12,7 +12,7 @@ use slcbeam::run::record::Control;
 use super::differences::worst_difference;
 use super::scene::{finished, parse};
 use super::vessels::{RESISTANCE, rig};
-use super::{AMBIENT, actuator, gas};
+use super::{AMBIENT, actuator, becomes_incompressible, gas};
 
 const RADIUS: f64 = 4e-4;
 
@@ -169,28 +169,7 @@ fn balances_close_with_inertia() {
 /// Goal: with inertia in tubes, too, a liquid whose bulk modulus grows becomes what an incompressible one is, with order one.
 #[test]
 fn a_stiff_liquid_with_inertia_is_incompressible() {
-    let tip = |modulus: Option<f64>| {
-        let mut fluid = json!({"density_kg_m3": 1000, "viscosity_pa_s": 1e-2});
-        let mut tubes = effects(["on", "on", "on"]);
-        if let Some(modulus) = modulus {
-            fluid["bulk_modulus_pa"] = json!(modulus);
-            tubes["compressibility"] = json!("on");
-        }
-        let (memory, _) = finished(&actuator(fluid, json!({"effects": tubes, "solver": {"rtol": 1e-10}})));
-        memory.column("tip_u1").unwrap()
-    };
-    let exact = tip(None);
-    let size = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let error = |modulus| {
-        let off = tip(Some(modulus)).into_iter().zip(&exact).map(|(a, b)| (a - b).abs());
-        off.fold(0.0, f64::max) / size
-    };
-    let (soft, stiff) = (error(1e8), error(1e9));
-    println!("{soft:.1e} {stiff:.1e}");
-    assert!(
-        stiff < 1e-2 && (8.0..12.0).contains(&(soft / stiff)),
-        "{soft:e} {stiff:e}"
-    );
+    becomes_incompressible(&effects(["on", "on", "on"]));
 }
 
 /// Goal: tanks at one pressure beyond a bare junction, wherever that stands in the list of junctions, rest at that pressure less what the halves of tubes

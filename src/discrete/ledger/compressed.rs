@@ -104,7 +104,7 @@ pub fn fed(wet: &Wet, pressure: f64, half: f64, q: f64) -> [f64; 2] {
     }
 }
 
-/// Energy of compressed fluid, [E56].
+/// Energy of compressed fluid in cells, [E56].
 pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return 0.0;
@@ -113,7 +113,5 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
         return 0.0;
     };
     let cells = w.fluid.pressure.iter().zip(&w.fluid.swelling);
-    let in_cells: f64 = cells.map(|(&p, &area)| compression.energy(p, area)).sum();
-    let [_, in_vessels] = super::stored::in_vessels(system, w);
-    in_cells * fluid.ds + in_vessels
+    cells.map(|(&p, &area)| compression.energy(p, area)).sum::<f64>() * fluid.ds
 }

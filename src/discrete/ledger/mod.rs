@@ -223,8 +223,9 @@ pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Work
 pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     let mut e = solid::energies(system, now, &w);
     e.bladders = stored::energy(system, &w);
-    e.compression = compressed::energy(system, &w);
-    [e.accumulators, _] = stored::in_vessels(system, &w);
+    let [walls, held] = stored::in_vessels(system, &w);
+    e.compression = compressed::energy(system, &w) + held;
+    e.accumulators = walls;
     e.tubes = tubes::kinetic(system, &w);
     e.contacts = touching::energy(system, &w);
     e.springs = system.attached.iter().map(|attached| attached.energy(system, &w)).sum();
