@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 71] = [
+const INDEX: [(&str, &str, &str); 74] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -201,6 +201,17 @@ const INDEX: [(&str, &str, &str); 71] = [
         "a_weight_beside_the_tip_bends_the_beam",
     ),
     ("[E71]", "tests/closing.rs", "walls_hold_what_suction_leaves"),
+    (
+        "[E72]",
+        "tests/sloshing.rs",
+        "the_impedance_of_a_rectangular_duct_is_exact_at_both_ends",
+    ),
+    (
+        "[E73]",
+        "tests/sloshing.rs",
+        "the_impedance_of_a_rectangular_duct_is_exact_at_both_ends",
+    ),
+    ("[E74]", "tests/sloshing.rs", "fluid_swings_along_a_bladder"),
 ];
 
 #[test]

@@ -3,6 +3,7 @@
 use super::{BeamDae, Dae, EvaluationError, Pattern, Seeds};
 use crate::discrete::System;
 use crate::discrete::fluid_mesh::{FluidMesh, Place};
+use crate::numerics::sets::Sets;
 
 /// `[E29]` The equations of a [`System`] without inertia and without rates, where `t` is the load factor that acts:
 ///
@@ -175,10 +176,7 @@ fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
         Place::Junction(j) => fluid.cells + j,
         Place::Port(_) => given,
     };
-    for &bladder in &fluid.flowing {
-        let cells = fluid.cells_of(bladder);
-        (cells.start + 1..cells.end).for_each(|c| sets.join(c - 1, c));
-    }
+    fluid.creeping_faces().for_each(|[a, b]| sets.join(a, b));
     for (link, &conductance) in fluid.links.iter().zip(&now.conductance) {
         if conductance > 0.0 {
             sets.join(index(link.from), index(link.to));
@@ -252,28 +250,6 @@ fn let_in(closed: &Closed, volumes: &[f64], pumped: &[[f64; 2]], t: f64) -> f64 
 /// Cells whose areas are unknowns, in the order of the unknowns.
 fn flowing_cells(fluid: &FluidMesh) -> impl Iterator<Item = usize> + '_ {
     fluid.runs.iter().cloned().flatten()
-}
-
-/// Disjoint sets.
-struct Sets(Vec<usize>);
-
-impl Sets {
-    fn new(len: usize) -> Self {
-        Self((0..len).collect())
-    }
-
-    fn root(&mut self, mut i: usize) -> usize {
-        while self.0[i] != i {
-            self.0[i] = self.0[self.0[i]];
-            i = self.0[i];
-        }
-        i
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a] = b;
-    }
 }
 
 impl Dae for StaticBeam {

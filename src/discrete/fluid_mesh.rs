@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use crate::case::schema::BladderEnd;
-use crate::model::network::tube::BRANCHES;
-use crate::model::network::{AccumulatorLaw, CheckValve, Link, LinkKind, Node, TubeFlow};
+use crate::model::network::{AccumulatorLaw, CheckValve, FlowLaw, Link, LinkKind, Node};
 use crate::model::{Network, Storage, Wet};
 
 /// Where a link ends, on the mesh.
@@ -21,13 +20,13 @@ pub enum Place {
 /// A link on the mesh.
 #[derive(Clone, Debug)]
 pub struct MeshLink {
-    /// Number among the network's links.
-    pub number: usize,
+    /// Number among the network's links; none of a face between cells.
+    pub number: Option<usize>,
     /// Where positive flow comes from.
     pub from: Place,
     /// Where it goes.
     pub to: Place,
-    /// Resistance of the half cells at its ends [Pa s/m^3].
+    /// Resistance of the half cells at its ends [Pa s/m^3]; of a face all there is.
     pub half_cells: f64,
     /// Resistance in between, which a valve scales [Pa s/m^3].
     pub resistance: f64,
@@ -37,8 +36,8 @@ pub struct MeshLink {
     pub pump: Option<usize>,
     /// Its check valve.
     pub check_valve: Option<CheckValve>,
-    /// What it is.
-    pub kind: LinkKind,
+    /// What it is; none of a face between cells.
+    pub kind: Option<LinkKind>,
     /// Flow that does not follow from pressures alone.
     pub flow: Option<MeshFlow>,
 }
@@ -55,15 +54,15 @@ impl MeshLink {
     }
 }
 
-/// The flow of a tube as an unknown.
+/// A flow that is an unknown.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshFlow {
     /// Number among the flows that are unknowns.
     pub number: usize,
-    /// Number of its first branch among all, where friction has a memory.
-    pub branch: Option<usize>,
+    /// Number of its first branch among all.
+    pub branch: usize,
     /// Its law.
-    pub tube: TubeFlow,
+    pub law: FlowLaw,
 }
 
 /// A prescribed flow on the mesh.
@@ -114,19 +113,22 @@ pub struct FluidMesh {
     pub ds: f64,
     /// Conductance between neighbouring cells of a bladder, `q1b/(mu ds)` [m^3/(s Pa)].
     pub conductance: f64,
+    /// Whether flow between them creeps: it follows from their pressures then, and is a link where it does not.
+    pub creeping: bool,
     /// Bladders whose cells' areas are unknowns, ascending.
     pub flowing: Vec<usize>,
     /// Their cells, neighbours taken together: the unknowns follow one another in this order.
     pub runs: Vec<Range<usize>>,
     /// Junctions whose pressures are unknowns, by their numbers in the network.
     pub junctions: Vec<usize>,
-    /// Of each of them, whether only tubes with inertia meet there: then it is their accelerations that decide its pressure.
-    pub accelerated: Vec<bool>,
-    /// Flows of tubes that are unknowns.
+    /// Of each of them that is of a group from which only tubes with inertia lead on, the first of the group: it is accelerations that decide the level of
+    /// pressure there.
+    pub adrift: Vec<Option<usize>>,
+    /// Flows that are unknowns.
     pub flows: usize,
     /// Branches of all of them.
     pub branches: usize,
-    /// Links along which fluid flows.
+    /// Links along which fluid flows; behind those of the network faces between cells.
     pub links: Vec<MeshLink>,
     /// Prescribed flows.
     pub sources: Vec<MeshSource>,
@@ -167,7 +169,25 @@ impl FluidMesh {
             Node::Port(p) => wet.flows.then_some(Place::Port(p)),
         };
         let half_of = |p: Place| if let Place::Cell(_) = p { half } else { 0.0 };
-        let (mut flows, mut branches) = (0, 0);
+        let (mut count, mut branches) = (0, 0);
+        let mut flow = |law: FlowLaw| {
+            let (number, branch) = (count, branches);
+            count += 1;
+            branches += law.branches().count();
+            MeshFlow { number, branch, law }
+        };
+        // of a tube, or of whatever else joins bladders and ports, and of half cells at its ends; behind a junction what is no tube goes on creeping, so
+        // that its pressure follows from flows
+        let along = network.along_bladders.as_ref();
+        let law = |link: &Link, ends: [Place; 2]| {
+            let own = link.tube.map(|tube| tube.law);
+            let cells = ends.iter().filter(|end| matches!(end, Place::Cell(_))).count();
+            let at_junction = ends.iter().any(|end| matches!(end, Place::Junction(_)));
+            match along.filter(|_| cells > 0 && (own.is_some() || !at_junction)) {
+                None => own,
+                Some(along) => Some(own.unwrap_or_default().behind(&along.over(0.5 * cells as f64 * ds))),
+            }
+        };
         let mut pumps = vec![];
         let open = network.links.iter().enumerate().filter(|(_, link)| !link.is_shut());
         let links = open.filter_map(|(number, link)| {
@@ -177,7 +197,7 @@ impl FluidMesh {
                 pumps.len() - 1
             });
             Some(MeshLink {
-                number,
+                number: Some(number),
                 from,
                 to,
                 half_cells: half_of(from) + half_of(to),
@@ -185,17 +205,26 @@ impl FluidMesh {
                 of_pump: link.pump.as_ref().map_or(0.0, |pump| pump.resistance),
                 pump,
                 check_valve: link.check_valve,
-                kind: link.kind,
-                flow: link.tube.map(|tube| {
-                    let number = flows;
-                    flows += 1;
-                    let branch = tube.remembers().then_some(branches);
-                    branches += if tube.remembers() { BRANCHES } else { 0 };
-                    MeshFlow { number, branch, tube }
-                }),
+                kind: Some(link.kind),
+                flow: law(link, [from, to]).map(&mut flow),
             })
         });
-        let links: Vec<MeshLink> = links.collect();
+        let mut links: Vec<MeshLink> = links.collect();
+        if let Some(along) = along {
+            let faces = faces(&flowing, cells_per_bladder);
+            links.extend(faces.map(|[from, to]| MeshLink {
+                number: None,
+                from: Place::Cell(from),
+                to: Place::Cell(to),
+                half_cells: 1.0 / conductance,
+                resistance: 0.0,
+                of_pump: 0.0,
+                pump: None,
+                check_valve: None,
+                kind: None,
+                flow: Some(flow(along.over(ds))),
+            }));
+        }
         let sources = network.sources.iter().enumerate().filter_map(|(number, source)| {
             let into = place(source.into)?;
             let half_cell = half_of(into);
@@ -221,26 +250,21 @@ impl FluidMesh {
             })
         });
         let mut accumulators: Vec<MeshAccumulator> = accumulators.collect();
-        let accelerated = (0..junctions.len()).map(|j| {
-            let here = Place::Junction(j);
-            let stores = accumulators.iter().any(|one| one.junction == j);
-            let bridged = bridges.iter().any(|b| b.from == here || b.to == here);
-            let own = |link: &&MeshLink| link.from == here || link.to == here;
-            let inert = |link: &MeshLink| link.flow.is_some_and(|flow| flow.tube.inertance > 0.0);
-            !stores && !bridged && links.iter().filter(own).all(inert)
-        });
-        let mut accelerated: Vec<bool> = accelerated.collect();
-        if wet.compression.is_some() {
-            for (junction, accelerated) in accelerated.iter_mut().enumerate().filter(|(_, there)| **there) {
-                *accelerated = false;
+        let mut adrift = vec![None; junctions.len()];
+        for group in network.adrift() {
+            let members: Vec<usize> = group.iter().filter_map(|j| junctions.binary_search(j).ok()).collect();
+            let Some(&first) = members.first() else { continue };
+            if wet.compression.is_some() {
                 accumulators.push(MeshAccumulator {
                     number: None,
-                    junction,
-                    component: network.component_of_junction[junctions[junction]],
+                    junction: first,
+                    component: network.component_of_junction[junctions[first]],
                     law: AccumulatorLaw::Rigid {
-                        holds: halves_of_tubes(network, junctions[junction]),
+                        holds: group.iter().map(|&j| halves_of_tubes(network, j)).sum(),
                     },
                 });
+            } else {
+                members.into_iter().for_each(|k| adrift[k] = Some(first));
             }
         }
         // in the order of their unknowns
@@ -251,11 +275,12 @@ impl FluidMesh {
             cells: bladders * cells_per_bladder,
             ds,
             conductance,
+            creeping: along.is_none(),
             runs: runs(&flowing, cells_per_bladder),
             flowing,
-            flows,
+            flows: count,
             branches,
-            accelerated,
+            adrift,
             links,
             sources: sources.collect(),
             bridges,
@@ -303,6 +328,13 @@ impl FluidMesh {
         sum / f64::from(count.max(1))
     }
 
+    /// Faces between cells of a bladder through which flow creeps, by the cells on either side.
+    #[inline]
+    pub fn creeping_faces(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        let bladders = if self.creeping { &self.flowing[..] } else { &[] };
+        faces(bladders, self.cells_per_bladder)
+    }
+
     /// Cells of a bladder.
     #[inline]
     pub fn cells_of(&self, bladder: usize) -> Range<usize> {
@@ -319,6 +351,13 @@ fn halves_of_tubes(network: &Network, junction: usize) -> f64 {
         0.5 * ends as f64 * link.tube.map_or(0.0, |tube| tube.volume)
     };
     network.links.iter().map(volume).sum()
+}
+
+/// Faces between cells of bladders, by the cells on either side.
+#[inline]
+fn faces(bladders: &[usize], cells_per_bladder: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
+    let of = move |&bladder: &usize| bladder * cells_per_bladder + 1..(bladder + 1) * cells_per_bladder;
+    bladders.iter().flat_map(of).map(|cell| [cell - 1, cell])
 }
 
 /// Ranges of the cells of bladders, those of neighbours in one.

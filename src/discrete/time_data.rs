@@ -312,7 +312,10 @@ impl TimeData {
             return;
         };
         for (k, mesh_link) in fluid.links.iter().enumerate() {
-            match &wet.network.links[mesh_link.number].opening {
+            match mesh_link
+                .number
+                .and_then(|number| wet.network.links[number].opening.as_ref())
+            {
                 None if !first => {}
                 None => {
                     self.conductance[k] = 1.0 / mesh_link.in_series();

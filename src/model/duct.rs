@@ -1,4 +1,4 @@
-//! Permeability `q1` of straight ducts: flow for `-dp/ds = mu`, no slip at the wall.
+//! Straight ducts, no slip at the wall: permeability `q1`, flow for `-dp/ds = mu`, and what the profile of creeping flow says of its momentum.
 
 use std::f64::consts::PI;
 
@@ -19,6 +19,44 @@ pub fn permeability(section: &CrossSection) -> f64 {
             semi_axis_b_m: b,
         } => PI * (a * b).powi(3) / (4.0 * (a * a + b * b)),
         CrossSection::Triangle { side_m } => 3.0_f64.sqrt() * side_m.powi(4) / 320.0,
+    }
+}
+
+/// `[E73]` β, the mean of the squared velocity of creeping flow through a cross-section over its mean's square:
+///
+/// ```text
+/// circle, ellipse 4/3    equilateral triangle 10/7    rectangle a > b, z = mπa/2b, m odd:
+/// (π²/8) Σ [1 - 3 tanh z/2z + 1/(2 cosh² z)]/m⁶ / (Σ [1 - tanh z/z]/m⁴)²        6/5 between plates
+/// ```
+pub fn momentum_factor(section: &CrossSection) -> f64 {
+    match *section {
+        CrossSection::Circle { .. } | CrossSection::Ellipse { .. } => 4.0 / 3.0,
+        CrossSection::Triangle { .. } => 10.0 / 7.0,
+        CrossSection::Rectangle { height_m, width_m } => {
+            let ratio = height_m.max(width_m) / height_m.min(width_m);
+            let (mut flow, mut squares) = (0.0, 0.0);
+            for i in 0..40 {
+                let m = f64::from(2 * i + 1);
+                let z = m * PI * ratio / 2.0;
+                let (mean, edge) = (z.tanh() / z, 1.0 - z.tanh().powi(2));
+                flow += (1.0 - mean) / m.powi(4);
+                squares += (1.0 - 1.5 * mean + 0.5 * edge) / m.powi(6);
+            }
+            PI * PI / 8.0 * squares / (flow * flow)
+        }
+    }
+}
+
+/// `2A/P` of a cross-section [m]: the radius of a circle. The perimeter of an ellipse is Ramanujan's.
+pub fn hydraulic_radius(section: &CrossSection) -> f64 {
+    match *section {
+        CrossSection::Circle { radius_m } => radius_m,
+        CrossSection::Rectangle { height_m, width_m } => height_m * width_m / (height_m + width_m),
+        CrossSection::Ellipse {
+            semi_axis_a_m: a,
+            semi_axis_b_m: b,
+        } => 2.0 * a * b / (3.0 * (a + b) - ((3.0 * a + b) * (a + 3.0 * b)).sqrt()),
+        CrossSection::Triangle { side_m } => side_m / 12.0_f64.sqrt(),
     }
 }
 

@@ -197,6 +197,8 @@ impl Wet {
         for link in &mut self.network.links {
             link.tube = link.tube.and_then(|tube| tube.reduced(effects));
         }
+        let along = &mut self.network.along_bladders;
+        *along = along.and_then(|along| along.reduced(effects));
         self.strains = self.strains.without(
             !effects.has(Effect::PressureToCurvature),
             !effects.has(Effect::PressureToStretch),

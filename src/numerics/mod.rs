@@ -19,6 +19,7 @@ pub mod planar;
 mod ramp;
 pub mod regression;
 pub mod scalar;
+pub mod sets;
 pub mod student;
 
 pub use dual::Dual;

@@ -118,8 +118,10 @@ effects! {
         Compressibility compressibility,
         /// Inertia of the fluid in tubes: flow is an unknown of each tube. Left out of the published form unless it is named.
         TubeInertia tube_inertia,
-        /// Laminar friction in tubes that depends on how flow has changed, ten states a tube; off: that of Poiseuille's profile. Needs
-        /// `tube_inertia`.
+        /// Inertia of the fluid along bladders: flow is an unknown of each face between cells. Needs `tube_inertia`.
+        BladderInertia bladder_inertia,
+        /// Laminar friction that depends on how flow has changed, ten states a tube, and a face of a bladder with `bladder_inertia`; off:
+        /// that of a steady profile. Needs `tube_inertia`.
         UnsteadyFriction unsteady_friction,
         /// Turbulent friction in tubes, and losses at their ends: `loss_coefficient`, `roughness_m`. Left out of the published form
         /// unless it is named.
@@ -176,22 +178,19 @@ impl std::fmt::Display for Effect {
 }
 
 impl Effect {
-    /// Whether it is there only where a case names it: flow in tubes creeps in the published form.
+    /// Whether it is there only where a case names it: flow creeps in the published form.
     pub fn by_name(self, formulation: Formulation) -> bool {
-        formulation == Formulation::Published && self.of_tubes()
+        formulation == Formulation::Published && self.of_flow()
     }
 
-    /// Those about flow in tubes that does not creep.
-    pub const OF_TUBES: [Self; 3] = [Self::TubeInertia, Self::UnsteadyFriction, Self::TubeLosses];
-
-    /// Whether it is about flow in tubes that does not creep.
-    pub fn of_tubes(self) -> bool {
-        Self::OF_TUBES.contains(&self)
+    /// Whether it is about flow that does not creep.
+    pub const fn of_flow(self) -> bool {
+        self.of_inertia() || matches!(self, Self::TubeLosses)
     }
 
-    /// Whether it takes flow in tubes as what is accelerated.
-    pub const fn of_inertial_tubes(self) -> bool {
-        matches!(self, Self::TubeInertia | Self::UnsteadyFriction)
+    /// Whether it takes flow as what is accelerated.
+    pub const fn of_inertia(self) -> bool {
+        matches!(self, Self::TubeInertia | Self::BladderInertia | Self::UnsteadyFriction)
     }
 
     /// Their names, so joined.

@@ -56,6 +56,7 @@ enum Name {
     Stored(usize),
     Bridge(usize),
     Flow(&'static str, usize),
+    Face(&'static str, usize, usize),
     LumpedNetwork(&'static str, usize),
 }
 
@@ -130,6 +131,11 @@ impl Layout {
             Name::Stored(j) => format!("fluid [m^3] that tubes hold at junction {}", j + 1),
             Name::LumpedNetwork(what, component) => format!("{what} of network {}", component + 1),
             Name::Flow(what, tube) => format!("{what} of tube {}", tube + 1),
+            Name::Face(what, b, face) => format!(
+                "{what} in bladder {}, between cells {face} and {}",
+                bladder(b),
+                face + 1
+            ),
             Name::Bridge(k) => format!("pressure drop [Pa] of turbine behind rectifier {}", k + 1),
         }
     }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{Builder, Name};
-use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
+use crate::discrete::fluid_mesh::{MeshFlow, MeshLink, Place};
 use crate::discrete::{FluidMesh, Mesh};
 use crate::model::{LumpedKind, Model, Wet};
 
@@ -86,23 +86,27 @@ impl Network {
                 build.push(Name::Bridge(bridge.number), s.pressure, s.pressure * conductance, false);
             }
         });
+        let name = |link: &MeshLink, what: &'static str| match (link.number, link.to) {
+            (None, Place::Cell(to)) => Name::Face(what, to / fluid.cells_per_bladder, to % fluid.cells_per_bladder),
+            (number, _) => Name::Flow(what, number.map_or(0, |number| wet.network.tube(number))),
+        };
         let moved = |link: &MeshLink| (stored * wet.bladder_length * s.frequency).min(s.pressure / link.in_series());
         let flows = || fluid.links.iter().filter_map(|link| Some((link, link.flow?)));
         let flow = build.block(|build| {
-            for (link, MeshFlow { tube, .. }) in flows() {
-                let name = Name::Flow("flow [m^3/s]", wet.network.tube(link.number));
+            for (link, MeshFlow { law, .. }) in flows() {
+                let name = name(link, "flow [m^3/s]");
                 let row = if link.check_valve.is_some() {
                     moved(link)
                 } else {
                     s.pressure
                 };
-                build.push(name, moved(link), row, tube.inertance > 0.0);
+                build.push(name, moved(link), row, law.inertance > 0.0);
             }
         });
         let branch = build.block(|build| {
-            for (link, MeshFlow { tube, .. }) in flows().filter(|(_, flow)| flow.branch.is_some()) {
-                let name = Name::Flow("flow [m^3/s] in the memory of friction", wet.network.tube(link.number));
-                for (_, rate) in tube.branches() {
+            for (link, MeshFlow { law, .. }) in flows() {
+                let name = name(link, "flow [m^3/s] in the memory of friction");
+                for (_, rate) in law.branches() {
                     build.push(name, moved(link), moved(link) * rate.max(s.frequency), true);
                 }
             }

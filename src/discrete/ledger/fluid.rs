@@ -189,11 +189,9 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     };
     let network = &wet.network;
     let k = fluid.cells_per_bladder;
-    for &bladder in &fluid.flowing {
-        for cell in bladder * k + 1..(bladder + 1) * k {
-            let lost = compressed::lost_between(wet, w, fluid.conductance, [cell - 1, cell]);
-            add(out, EnergyRate::Bladders, lost);
-        }
+    for face in fluid.creeping_faces() {
+        let lost = compressed::lost_between(wet, w, fluid.conductance, face);
+        add(out, EnergyRate::Bladders, lost);
     }
     let component = |place: Place| match place {
         Place::Cell(c) => Some(network.component_of_bladder[c / k]),
@@ -232,21 +230,21 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         let q = w.fluid.flow[n];
         let volume = w.fluid.at_mean_density(n, q);
         let in_halves = volume * volume * link.half_cells;
-        add(out, EnergyRate::Bladders, in_halves);
         if let Some(pump) = link.pump {
             add(out, EnergyRate::Ports, volume * now.pump_pressure[pump]);
         }
-        let [in_valve, rest] = match &link.flow {
+        let [in_valve, in_bladders, rest] = match &link.flow {
             None => {
                 let between = volume * driving(link, now, w, n) - in_halves;
                 tubes::creeping(link, [conductance, volume, between])
             }
             Some(flow) => tubes::dissipation(link, flow, [now.resistance[n], volume, driven(link, now, w, n)], n, w),
         };
+        add(out, EnergyRate::Bladders, in_halves + in_bladders);
         add(out, EnergyRate::Rectifiers, in_valve);
         add(
             out,
-            if matches!(link.kind, LinkKind::Turbine(_)) {
+            if matches!(link.kind, Some(LinkKind::Turbine(_))) {
                 EnergyRate::Turbines
             } else {
                 EnergyRate::Tubes
@@ -356,7 +354,9 @@ fn surplus(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
         w.fluid.volume_defect[one.component] -= rate;
     }
     for (link, conductance) in fluid.links.iter().zip(&now.conductance) {
-        let link = &network.links[link.number];
+        let Some(link) = link.number.map(|number| &network.links[number]) else {
+            continue;
+        };
         let inside = match (link.from, link.to) {
             (Node::Port(_), node) | (node, Node::Port(_)) => network.component_of(node),
             _ => None,

@@ -93,7 +93,7 @@ pub struct Energies {
     pub bending: f64,
     /// Stored in the bladders.
     pub bladders: f64,
-    /// Kinetic, of the fluid in tubes.
+    /// Kinetic, of the fluid in tubes and along bladders.
     #[serde(default)]
     pub tubes: f64,
     /// Of the section at finite strain, beyond all these.

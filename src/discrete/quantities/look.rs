@@ -94,7 +94,7 @@ impl Look<'_> {
         };
         let mut power = 0.0;
         for (k, (link, &q)) in fluid.links.iter().zip(&w.fluid.flow).enumerate() {
-            if matches!(link.kind, LinkKind::Turbine(_)) {
+            if matches!(link.kind, Some(LinkKind::Turbine(_))) {
                 let volume = w.fluid.at_mean_density(k, q);
                 power += volume * volume * link.resistance;
             }
@@ -170,26 +170,25 @@ fn largest_in_tubes(
     factor: impl Fn(&MeshLink, f64) -> f64,
 ) -> Option<(Moving, usize)> {
     let (wet, fluid) = (system.model.wet.as_ref()?, system.fluid.as_ref()?);
-    let tubes = fluid.links.iter().zip(&now.conductance).zip(&w.fluid.flow);
-    let (value, factor, link, g) = tubes
-        .filter(|((link, _), _)| link.kind == LinkKind::Tube)
-        .map(|((link, g), q)| {
-            let factor = factor(link, wet.network.links[link.number].radius);
-            (factor * q, factor, link, g)
-        })
-        .reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a })?;
+    let links = fluid.links.iter().zip(&now.conductance).zip(&w.fluid.flow);
+    let tubes = links.filter_map(|((link, g), q)| {
+        let number = link.number.filter(|_| link.kind == Some(LinkKind::Tube))?;
+        let factor = factor(link, wet.network.links[number].radius);
+        Some((factor * q, factor, link, g, number))
+    });
+    let (value, factor, link, g, number) = tubes.reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a })?;
     let density = |p: f64| wet.compression.as_ref().map_or(1.0, |c| c.density(p).0);
     let rate = |place: Place| match place {
         Place::Cell(cell) => density(w.fluid.pressure[cell]) * ledger::pressure_rate(wet, fluid, w, cell),
         Place::Port(port) => density(now.port_pressure[port]) * now.port_pressure_rate[port],
         Place::Junction(_) => 0.0,
     };
-    let rate = match link.flow.filter(|flow| flow.tube.inertance > 0.0) {
+    let rate = match link.flow.filter(|flow| flow.law.inertance > 0.0) {
         Some(flow) => w.fluid.moving_rate[flow.number],
         None => g * (rate(link.from) - rate(link.to)),
     };
     let moving = [value.abs(), value.signum() * factor * rate];
-    Some((moving, wet.network.tube(link.number)))
+    Some((moving, wet.network.tube(number)))
 }
 
 /// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`, κ beyond that at rest, and the node where it is.

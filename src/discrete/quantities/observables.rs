@@ -227,8 +227,8 @@ observables! {
         "energy in accumulators";
     CompressionEnergy: "compression_energy" ["J"], "compression energy", "energy of compressed fluid", Stored, Recorded, compressed, Read::State(|look| look.stored.compression),
         "energy of compressed fluid, relative to ambient pressure";
-    TubeEnergy: "tube_energy" ["J"], "tube energy", "energy of the fluid in tubes", Stored, Recorded, inert, Read::State(|look| look.stored.tubes),
-        "kinetic energy of the fluid in tubes";
+    TubeEnergy: "tube_energy" ["J"], "tube energy", "energy of the fluid in tubes and along bladders", Stored, Recorded, inert, Read::State(|look| look.stored.tubes),
+        "kinetic energy of the fluid in tubes and along bladders";
     ContactEnergy: "contact_energy" ["J"], "contact energy", "energy of walls that are pressed", Stored, Recorded, touching, Read::State(|look| look.stored.contacts),
         "energy of walls that are pressed";
     SpringEnergy: "spring_energy" ["J"], "spring energy", "energy of springs to ground", Stored, Recorded, attached, Read::State(|look| look.stored.springs),

@@ -164,7 +164,6 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     if !wet.flows {
         return;
     }
-    let k = fluid.cells_per_bladder;
     w.fluid.inflow.fill(T::zero());
     w.fluid.junction_inflow.fill(T::zero());
     let own = &mut w.fluid;
@@ -173,12 +172,10 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     } else {
         &own.pressure
     };
-    for &bladder in &fluid.flowing {
-        for cell in bladder * k + 1..(bladder + 1) * k {
-            let q = (driven_by[cell - 1] - driven_by[cell]) * fluid.conductance;
-            own.inflow[cell - 1] -= q;
-            own.inflow[cell] += q;
-        }
+    for [from, to] in fluid.creeping_faces() {
+        let q = (driven_by[from] - driven_by[to]) * fluid.conductance;
+        own.inflow[from] -= q;
+        own.inflow[to] += q;
     }
     for (k, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
         let q = match (link.flow, &wet.compression) {

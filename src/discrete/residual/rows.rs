@@ -269,8 +269,8 @@ pub fn lumped<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
     }
 }
 
-/// Flows into a junction sum to zero, into an accumulator to the rate of its volume. Where only tubes with inertia meet, the pressure follows from their accelerations, and the sum keeps
-/// to zero by itself: `Σ q + Σ q'/ω = 0`, ω the characteristic frequency.
+/// Flows into a junction sum to zero, into an accumulator to the rate of its volume. Where only tubes with inertia lead on from some junctions, the level of their
+/// pressures follows from accelerations, and the sum over them keeps to zero by itself: `Σ q + Σ q'/ω = 0`, ω the characteristic frequency, in place of the first one's.
 pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     let rows = system.layout.network.junction.clone();
     r[rows.clone()].copy_from_slice(&w.fluid.junction_inflow);
@@ -283,13 +283,18 @@ pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
         return;
     }
     let delay = 1.0 / system.model.scales.frequency;
+    for (junction, first) in fluid.adrift.iter().enumerate() {
+        if let Some(first) = first.filter(|&first| first != junction) {
+            r[rows.start + first] += w.fluid.junction_inflow[junction];
+        }
+    }
     for link in &fluid.links {
         let Some(flow) = link.flow else { continue };
         for (place, sign) in [(link.from, -delay), (link.to, delay)] {
             if let Place::Junction(j) = place
-                && fluid.accelerated[j]
+                && let Some(first) = fluid.adrift[j]
             {
-                r[rows.start + j] += w.fluid.moving_rate[flow.number] * sign;
+                r[rows.start + first] += w.fluid.moving_rate[flow.number] * sign;
             }
         }
     }
@@ -309,22 +314,20 @@ pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &m
     let Some(fluid) = &system.fluid else { return };
     let own = &system.layout.network;
     for (k, link) in fluid.links.iter().enumerate() {
-        let Some(MeshFlow { number, branch, tube }) = link.flow else {
+        let Some(MeshFlow { number, branch, law }) = link.flow else {
             continue;
         };
         let moving = w.fluid.moving[number];
-        if let Some(first) = branch {
-            for (i, (_, rate)) in (first..).zip(tube.branches()) {
-                let pulled = w.fluid.at_mean_density(k, (moving - w.fluid.branch[i]) * rate);
-                r[own.branch.start + i] = w.fluid.branch_rate[i] - pulled;
-            }
+        for (i, (_, rate)) in (branch..).zip(law.branches()) {
+            let pulled = w.fluid.at_mean_density(k, (moving - w.fluid.branch[i]) * rate);
+            r[own.branch.start + i] = w.fluid.branch_rate[i] - pulled;
         }
         let driven = driven(link, now, w, k);
         let volume = w.fluid.root_of_density(k).map_or(moving, |root| moving / root);
         r[own.flow.start + number] = match &link.check_valve {
             None => (volume * (link.half_cells + link.of_pump) - driven) * now.opening[k] + volume * link.resistance,
             Some(valve) => {
-                let along = tube.resistance_along_a_step(now.cj);
+                let along = law.resistance_along_a_step(now.cj);
                 volume - valve.flow_behind(1.0 / now.conductance[k] + along, driven + volume * along)
             }
         };
@@ -335,23 +338,20 @@ pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &m
 #[inline]
 pub fn driven<T: Scalar>(link: &MeshLink, now: &TimeData, w: &Workspace<T>, k: usize) -> T {
     let mut left = driving(link, now, w, k);
-    let Some(MeshFlow { number, branch, tube }) = link.flow else {
+    let Some(MeshFlow { number, branch, law }) = link.flow else {
         return left;
     };
-    left -= w.fluid.at_mean_density(k, tube.loss(w.fluid.flow[k]));
+    left -= w.fluid.at_mean_density(k, law.loss(w.fluid.flow[k]));
     let root = w.fluid.root_of_density(k);
-    if tube.inertance > 0.0 {
-        let accelerates = w.fluid.moving_rate[number] * tube.inertance;
+    if law.inertance > 0.0 {
+        let accelerates = w.fluid.moving_rate[number] * law.inertance;
         left -= root.map_or(accelerates, |root| accelerates * root);
     }
-    if let Some(first) = branch {
-        let mut lags = T::zero();
-        for (i, (resistance, _)) in (first..).zip(tube.branches()) {
-            lags += (w.fluid.moving[number] - w.fluid.branch[i]) * resistance;
-        }
-        left -= root.map_or(lags, |root| lags / root);
+    let mut lags = T::zero();
+    for (i, (resistance, _)) in (branch..).zip(law.branches()) {
+        lags += (w.fluid.moving[number] - w.fluid.branch[i]) * resistance;
     }
-    left
+    left - root.map_or(lags, |root| lags / root)
 }
 
 /// `[E18]` What flows through the valves of a bridge flows through its turbine:

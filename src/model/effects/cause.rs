@@ -98,7 +98,9 @@ pub enum Number {
     LagAlongBladders,
     /// Inertia of the fluid in a tube over its resistance, at most.
     Inertance,
-    /// Error of Poiseuille's profile in a tube, at most.
+    /// Inertia of the fluid along bladders over what takes up its flow, at most.
+    Sloshing,
+    /// Error of a steady profile in a tube or a bladder, at most.
     UnsteadyFriction,
     /// Losses of a tube over its laminar friction, at most.
     TubeLosses,
@@ -206,7 +208,8 @@ impl Display for Number {
             Self::Leakage => "what leaks in the whole run",
             Self::LagAlongBladders => "a bladder's own time against that of the motion",
             Self::Inertance => "inertia of the fluid in a tube over its resistance",
-            Self::UnsteadyFriction => "error of Poiseuille's profile in a tube",
+            Self::Sloshing => "inertia of the fluid along bladders",
+            Self::UnsteadyFriction => "error of a steady profile in a tube or a bladder",
             Self::TubeLosses => "losses of a tube over its laminar friction",
             Self::PressureStrain => "what pressure does over what loads do",
             Self::Asymmetry => "larger of dm/am, dn/an",

@@ -130,7 +130,7 @@ impl<'a> Chooser<'a> {
                 }
             },
             Choice::Auto if effect.by_name(self.case.formulation) => (false, Cause::Unasked),
-            Choice::Auto if effect.of_inertial_tubes() && self.feeds_junction() => (false, Cause::FedJunction),
+            Choice::Auto if effect.of_inertia() && self.feeds_junction() => (false, Cause::FedJunction),
             Choice::Auto => match self.scene {
                 None => (true, Cause::Full),
                 Some(scene) => match self.obstacle(effect) {
@@ -154,7 +154,7 @@ impl<'a> Chooser<'a> {
             Effect::Compressibility if self.fluid().is_none_or(|fluid| !fluid.is_compressible()) => {
                 Err(Cause::Given(false))
             }
-            _ if effect.of_tubes() && self.fluid().is_some_and(|fluid| fluid.density_kg_m3 == 0.0) => {
+            _ if effect.of_flow() && self.fluid().is_some_and(|fluid| fluid.density_kg_m3 == 0.0) => {
                 Err(Cause::Massless)
             }
             Effect::Fluid if self.case.fluid.is_none() || bladders.is_none() => Err(Cause::Filled(false)),
@@ -276,8 +276,24 @@ impl<'a> Chooser<'a> {
                 kept(Keeps::Gas)
             }
             Effect::Compressibility => weigh(Number::Compression, scene.compression_of_fluid()),
-            Effect::TubeInertia => weigh(Number::Inertance, scene.tubes(self.tolerance).inertia),
-            Effect::UnsteadyFriction => weigh(Number::UnsteadyFriction, scene.tubes(self.tolerance).memory),
+            Effect::TubeInertia => {
+                let (tubes, bladders) = (scene.tubes(self.tolerance).inertia, scene.sloshing(self.tolerance));
+                match self.choices.of(Effect::BladderInertia) {
+                    Choice::Auto if bladders > tubes => weigh(Number::Sloshing, bladders),
+                    _ => weigh(Number::Inertance, tubes),
+                }
+            }
+            Effect::BladderInertia => weigh(Number::Sloshing, scene.sloshing(self.tolerance)),
+            Effect::UnsteadyFriction => {
+                let in_tubes = scene.tubes(self.tolerance).memory;
+                weigh(
+                    Number::UnsteadyFriction,
+                    match self.set.has(Effect::BladderInertia) {
+                        true if in_tubes.is_finite() => in_tubes.max(scene.memory_of_bladders(self.tolerance)),
+                        _ => in_tubes,
+                    },
+                )
+            }
             Effect::TubeLosses => weigh(Number::TubeLosses, scene.tubes(self.tolerance).losses),
             Effect::PressureToCurvature => weigh(Number::PressureStrain, scene.strains_of_pressure()[0]),
             Effect::PressureToStretch => weigh(Number::PressureStrain, scene.strains_of_pressure()[1]),

@@ -1,8 +1,9 @@
-//! What is joined to what, not through ports.
+//! What is joined to what, not through ports; and what is joined by tubes with inertia alone.
 
 use std::collections::BTreeSet;
 
 use super::{Network, Node};
+use crate::numerics::sets::Sets;
 
 /// Numbers the connected components of bladders and junctions, and finds those that a port or a source touches.
 pub(super) fn find(network: &mut Network, bladders: usize) {
@@ -13,17 +14,17 @@ pub(super) fn find(network: &mut Network, bladders: usize) {
         Node::Junction(j) => Some(bladders + j),
         Node::Port(_) => None,
     };
-    let mut parent: Vec<usize> = (0..bladders + network.junctions.len()).collect();
+    let slots = bladders + network.junctions.len();
+    let mut sets = Sets::new(slots);
     for &(from, to) in &joined {
         if let (Some(a), Some(b)) = (slot(from), slot(to)) {
-            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-            parent[a.max(b)] = a.min(b);
+            sets.join(a, b);
         }
     }
     // the root of a component is its first member
     let mut component = vec![];
-    for i in 0..parent.len() {
-        let first = root(&mut parent, i);
+    for i in 0..slots {
+        let first = sets.root(i);
         component.push(if first == i {
             network.components
         } else {
@@ -43,10 +44,34 @@ pub(super) fn find(network: &mut Network, bladders: usize) {
     network.component_of_bladder = component;
 }
 
-fn root(parent: &mut [usize], mut i: usize) -> usize {
-    while parent[i] != i {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
+/// Groups of junctions that are joined by what has no inertia, and from which tubes with inertia alone lead on: no vessel stores there, and no bladder and no
+/// port is reached without a tube. Flows into a group sum to zero, and the level of its pressures follows from accelerations.
+pub fn adrift(network: &Network) -> Vec<Vec<usize>> {
+    let held = network.junctions.len();
+    let slot = |node: Node| match node {
+        Node::Junction(j) => j,
+        Node::Cell { .. } | Node::Port(_) => held,
+    };
+    let mut sets = Sets::new(held + 1);
+    let links = network
+        .links
+        .iter()
+        .filter(|link| !link.is_shut() && !link.has_inertia());
+    let joined = links.map(|link| (link.from, link.to));
+    for (from, to) in joined.chain(network.bridges.iter().map(|bridge| (bridge.from, bridge.to))) {
+        sets.join(slot(from), slot(to));
     }
-    i
+    for one in &network.accumulators {
+        sets.join(one.junction, held);
+    }
+    let held = sets.root(held);
+    let mut groups = vec![vec![]; network.junctions.len()];
+    for junction in 0..network.junctions.len() {
+        let first = sets.root(junction);
+        if first != held {
+            groups[first].push(junction);
+        }
+    }
+    groups.retain(|group| !group.is_empty());
+    groups
 }

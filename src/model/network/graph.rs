@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{
-    Accumulator, AccumulatorLaw, Bridge, CheckValve, Feed, Link, LinkKind, Network, Node, PressurePort, Pump, Source,
-    TubeFlow, Turbine, bladder_permeability, components,
+    Accumulator, AccumulatorLaw, AlongBladder, Bridge, CheckValve, Feed, Link, LinkKind, Network, Node, PressurePort,
+    Pump, Source, TubeFlow, Turbine, bladder_permeability, components,
 };
 use crate::case::schema::{Bladders, Fluid, Rectifier, TurbineConductance};
 use crate::case::wiring::{Bore, Given, Point, Tube, Wiring};
@@ -27,6 +27,7 @@ pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Blad
     let chain_tubes = wiring.chain_tubes.len();
     let mut network = Network {
         bladder_mobility: permeability * factor / viscosity,
+        along_bladders: AlongBladder::new(bladders, fluid),
         chains: wiring.chains.clone(),
         tubes: chain_tubes + wiring.tubes.len(),
         ..Network::default()

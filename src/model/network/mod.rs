@@ -4,14 +4,18 @@
 //! graph        the graph of what a case has resolved: a pressure of its own where several things meet
 //! components   what is joined to what
 //! tube         what flow in a tube needs beyond creeping
+//! along        what flow along a bladder does
+//! ladder       friction with a memory
 //! check_valve  valves that open by themselves
 //! accumulator  vessels that take in fluid as their pressure rises
 //! ```
 
 mod accumulator;
+mod along;
 mod check_valve;
 mod components;
 mod graph;
+mod ladder;
 pub mod tube;
 
 use super::{Wet, duct};
@@ -21,8 +25,10 @@ use crate::error::Result;
 use crate::functions::signals::Signal;
 
 pub use accumulator::{Accumulator, AccumulatorLaw};
+pub use along::AlongBladder;
 pub use check_valve::CheckValve;
-pub use tube::TubeFlow;
+pub use ladder::BRANCHES;
+pub use tube::{FlowLaw, TubeFlow};
 
 /// A point of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,6 +100,11 @@ impl Link {
     pub fn is_shut(&self) -> bool {
         let shut = |o: &Signal| o.is_constant() && o.value(0.0) <= 0.0;
         self.opening.as_ref().is_some_and(shut)
+    }
+
+    /// Whether it is a tube in which fluid has inertia.
+    fn has_inertia(&self) -> bool {
+        self.tube.is_some_and(|tube| tube.law.inertance > 0.0)
     }
 }
 
@@ -175,6 +186,8 @@ pub struct Turbine {
 pub struct Network {
     /// `q1b/mu`, permeability factor included [m^4/(Pa s)].
     pub bladder_mobility: f64,
+    /// Momentum along bladders; none of fluid that creeps there.
+    pub along_bladders: Option<AlongBladder>,
     /// Conductances between points.
     pub links: Vec<Link>,
     /// Prescribed flows.
@@ -233,21 +246,16 @@ impl Network {
         (0..self.component_of_bladder.len()).map(move |bladder| !joined(bladder))
     }
 
-    /// A prescribed flow into a junction where only tubes meet: their inertia does not let it follow at once.
+    /// A prescribed flow into junctions from which only tubes lead on: their inertia does not let it follow at once.
     pub fn fed_junction(&self) -> Option<&Source> {
-        self.sources.iter().find(|source| {
-            let stores = self.accumulators.iter();
-            if stores
-                .into_iter()
-                .any(|one| Node::Junction(one.junction) == source.into)
-            {
-                return false;
-            }
-            let here = |from: Node, to: Node| from == source.into || to == source.into;
-            let mut links = self.links.iter().filter(|l| !l.is_shut() && here(l.from, l.to));
-            let bridged = self.bridges.iter().any(|b| here(b.from, b.to));
-            matches!(source.into, Node::Junction(_)) && !bridged && links.all(|link| link.tube.is_some())
-        })
+        let adrift = self.adrift();
+        let fed = |source: &&Source| adrift.iter().flatten().any(|&j| Node::Junction(j) == source.into);
+        self.sources.iter().find(fed)
+    }
+
+    /// Groups of junctions that are joined by what has no inertia, and from which tubes with inertia alone lead on.
+    pub fn adrift(&self) -> Vec<Vec<usize>> {
+        components::adrift(self)
     }
 
     /// Whether something drives flow whose pressure nothing tells beforehand: sources, pumps.

@@ -2,27 +2,11 @@
 
 use std::f64::consts::PI;
 
+use super::ladder::Ladder;
 use crate::case::schema::{Effect, Fluid};
 use crate::case::wiring::Tube;
 use crate::model::{EffectSet, duct};
 use crate::numerics::Scalar;
-
-/// Rates `n_i` and weights `m_i` of Kagawa et al. (Trans. JSME B 49, 1983) for Zielke's weighting function, `W(τ) = Σ m_i exp(-n_i τ)`.
-const KAGAWA: [(f64, f64); BRANCHES] = [
-    (26.3744, 1.0),
-    (72.8033, 1.16725),
-    (187.424, 2.20064),
-    (536.626, 3.92861),
-    (1570.60, 6.78788),
-    (4618.13, 11.6761),
-    (13601.1, 20.0612),
-    (40082.5, 34.4541),
-    (118_153.0, 59.1642),
-    (348_316.0, 101.590),
-];
-
-/// Branches of the ladder that stands for frequency-dependent friction.
-pub const BRANCHES: usize = 10;
 
 /// Inertance of creeping laminar flow over that of a plug: mean of the squared velocity of Poiseuille's profile over its mean's square.
 const PARABOLIC: f64 = 4.0 / 3.0;
@@ -45,16 +29,23 @@ const SLOW: f64 = 1e-3;
 /// network, which stores `I q²/2 + Σ r_i r² j_i²/(2 n_i ν)` and dissipates `(R/o) q² + q Δp_loss + Σ r_i (q - j_i)²`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TubeFlow {
-    /// Radius of the circle [m].
-    pub radius: f64,
     /// `A l` [m^3].
     pub volume: f64,
-    /// `I` [kg/m^4]; 0 where the fluid has no inertia.
-    pub inertance: f64,
     /// `ν/r²` [1/s].
     pub viscous_rate: f64,
-    /// `R_0` of frequency-dependent friction [Pa s/m^3]; 0 without.
-    pub laminar: f64,
+    /// The law.
+    pub law: FlowLaw,
+}
+
+/// What the flow between two places needs beyond resistance: of a tube, of a part of a bladder, or of both behind each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FlowLaw {
+    /// `I` [kg/m^4]; 0 where the fluid has no inertia.
+    pub inertance: f64,
+    /// Memory of the tube's friction.
+    pub in_tube: Option<Ladder>,
+    /// Memory of that in bladders.
+    pub in_bladders: Option<Ladder>,
     losses: Option<Losses>,
 }
 
@@ -103,61 +94,80 @@ impl TubeFlow {
         let (density, viscosity) = (fluid.density_kg_m3, fluid.viscosity_pa_s);
         let area = PI * radius * radius;
         let laminar = viscosity * tube.length_m / duct::circle(radius);
+        let viscous_rate = viscosity / (density * radius * radius);
         Self {
-            radius,
             volume: area * tube.length_m,
-            inertance: density * tube.length_m / area,
-            viscous_rate: viscosity / (density * radius * radius),
-            laminar,
-            losses: Some(Losses {
-                reynolds_per_flow: 2.0 * density / (PI * viscosity * radius),
-                laminar,
-                local: 0.5 * tube.loss_coefficient * density / (area * area),
-                roughness: 0.5 * tube.roughness_m / radius,
-            }),
+            viscous_rate,
+            law: FlowLaw {
+                inertance: density * tube.length_m / area,
+                in_tube: Some(Ladder::round(laminar, viscous_rate)),
+                in_bladders: None,
+                losses: Some(Losses {
+                    reynolds_per_flow: 2.0 * density / (PI * viscosity * radius),
+                    laminar,
+                    local: 0.5 * tube.loss_coefficient * density / (area * area),
+                    roughness: 0.5 * tube.roughness_m / radius,
+                }),
+            },
         }
     }
 
     /// What effects leave of it; nothing where flow creeps.
     pub(in crate::model) fn reduced(mut self, effects: &EffectSet) -> Option<Self> {
-        let [inertia, memory, losses] = Effect::OF_TUBES.map(|effect| effects.has(effect));
-        if !memory {
-            self.laminar = 0.0;
-            self.inertance *= PARABOLIC;
+        let has = |effect| effects.has(effect);
+        let (inertia, losses) = (has(Effect::TubeInertia), has(Effect::TubeLosses));
+        if !has(Effect::UnsteadyFriction) {
+            self.law.in_tube = None;
+            self.law.inertance = self.steady_inertance();
         }
         if !inertia {
-            self.inertance = 0.0;
+            self.law.inertance = 0.0;
         }
-        self.losses = self.losses.filter(|_| losses);
+        self.law.losses = self.law.losses.filter(|_| losses);
         (inertia || losses).then_some(self)
     }
 
     /// Inertance of Poiseuille's profile [kg/m^4], of a tube from which no effect is left out.
     pub fn steady_inertance(&self) -> f64 {
-        PARABOLIC * self.inertance
+        PARABOLIC * self.law.inertance
+    }
+
+    /// `Δp_loss(q)` [Pa].
+    pub fn loss(&self, flow: f64) -> f64 {
+        self.law.loss(flow)
+    }
+}
+
+impl FlowLaw {
+    /// Of a part of a bladder [kg/m^4].
+    pub(super) fn of_bladder(inertance: f64, memory: Option<Ladder>) -> Self {
+        Self {
+            inertance,
+            in_bladders: memory,
+            ..Self::default()
+        }
+    }
+
+    /// The same behind a part of a bladder.
+    pub fn behind(self, part: &Self) -> Self {
+        Self {
+            inertance: self.inertance + part.inertance,
+            in_bladders: part.in_bladders,
+            ..self
+        }
     }
 
     /// What inertia and the memory of friction add to the pressure drop over a change of flow along an implicit step, `I c_j + Σ r_i
     /// c_j/(c_j + n_i ν/r²)` [Pa s/m^3].
     pub fn resistance_along_a_step(&self, cj: f64) -> f64 {
         let memory = |(resistance, rate): (f64, f64)| resistance * cj / (cj + rate);
-        let branches = self.branches().filter(|_| self.remembers());
-        self.inertance * cj + branches.map(memory).sum::<f64>()
+        self.inertance * cj + self.branches().map(memory).sum::<f64>()
     }
 
-    /// Whether friction has a memory.
-    pub fn remembers(&self) -> bool {
-        self.laminar > 0.0
-    }
-
-    /// Resistances `r_i` [Pa s/m^3] and rates `n_i ν/r²` [1/s] of the branches.
+    /// Resistances `r_i` [Pa s/m^3] and rates `n_i ν/r²` [1/s] of all branches, those of the tube first.
     pub fn branches(&self) -> impl Iterator<Item = (f64, f64)> {
-        let Self {
-            laminar, viscous_rate, ..
-        } = *self;
-        KAGAWA
-            .into_iter()
-            .map(move |(n, m)| (0.5 * m * laminar, n * viscous_rate))
+        let ladders = self.in_tube.into_iter().chain(self.in_bladders);
+        ladders.flat_map(Ladder::branches)
     }
 
     /// `Δp_loss(q)` [Pa].

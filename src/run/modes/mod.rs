@@ -193,6 +193,8 @@ impl Modes {
         }
         let tubes = model.wet.iter().flat_map(|wet| &wet.network.links);
         let rates = tubes.filter_map(|link| Some(link.tube.as_ref()?.viscous_rate));
+        let along = model.wet.iter().filter_map(|wet| wet.network.along_bladders.as_ref());
+        let rates = rates.chain(along.map(|along| along.viscous_rate));
         let slowest = rates.fold(f64::INFINITY, f64::min);
         let swinging = self.modes.iter().filter(|mode| mode.kind.swings());
         let womersley = swinging
@@ -200,7 +202,7 @@ impl Modes {
             .fold(0.0, f64::max);
         (womersley.powi(4) / 1152.0 > FORGOTTEN).then(|| {
             Code::FastFlow.warning(format!(
-                "tubes have Poiseuille's friction here, and Womersley numbers up to {womersley:.1}: frequencies and damping of modes that \
+                "the fluid has the friction of steady profiles here, and Womersley numbers up to {womersley:.1}: frequencies and damping of modes that \
                  move much fluid are off; {{\"unsteady_friction\": \"on\"}} has them right, its own decays among them"
             ))
         })

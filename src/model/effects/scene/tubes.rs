@@ -1,10 +1,11 @@
-//! What flow is late by: along bladders, and in tubes by inertia, unsteady friction and losses.
+//! What flow is late by: along bladders by friction and inertia, and in tubes by inertia, unsteady friction and losses.
 
 use std::f64::consts::PI;
 
 use super::Scene;
+use crate::case::schema::BladderEnd;
 use crate::model::Wet;
-use crate::model::network::Link;
+use crate::model::network::{Link, LinkKind, Node};
 
 /// The largest of all tubes; none where there are no tubes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,13 +31,80 @@ impl Scene<'_> {
             / (PI * PI * wet.network.bladder_mobility)
     }
 
+    /// Inertia of the fluid along bladders over what takes up its flow. A bladder that is fed at one end has `(ω/ω_s)²`, `ω_s = (π/2)/√(I C)`, I and C
+    /// those of its whole length; a row of n bladders, through which flow passes, at most n² of that, and no more than `ω I/R` of the tubes between them.
+    pub fn sloshing(&self, tolerance: f64) -> f64 {
+        let Some(wet) = self.wet else { return 0.0 };
+        let Some(along) = &wet.network.along_bladders else {
+            return 0.0;
+        };
+        if wet.network.sealed().all(|sealed| sealed) {
+            return 0.0;
+        }
+        let inertance = along.steady_inertance() * wet.bladder_length;
+        let compliance = self.compliances(wet)[0] * wet.bladder_length;
+        let tightest = Self::least_resistance_between(wet);
+        let passed = self.most_in_a_row(wet);
+        let of = |rate: f64| {
+            let own = (2.0 * rate / PI).powi(2) * inertance * compliance;
+            own.max((passed * passed * own).min(rate * inertance / tightest))
+        };
+        let relaxation = 1.0 / ((tightest + 0.5 * self.bladder_resistance(wet)) * compliance);
+        let relaxing = if self.inertia_ratio(relaxation) > tolerance {
+            of(relaxation)
+        } else {
+            0.0
+        };
+        relaxing.max(self.at_the_fastest(wet, tolerance, of))
+    }
+
+    /// `Wo⁴/1152` of bladders, times what their inertia does.
+    pub fn memory_of_bladders(&self, tolerance: f64) -> f64 {
+        let along = self
+            .wet
+            .and_then(|wet| Some((wet, wet.network.along_bladders.as_ref()?)));
+        along.map_or(0.0, |(wet, along)| {
+            let womersley_squared = self.fastest(wet, tolerance) / along.viscous_rate;
+            womersley_squared * womersley_squared / 1152.0 * self.sloshing(tolerance)
+        })
+    }
+
+    /// Least resistance of what lies between bladders [Pa s/m^3].
+    fn least_resistance_between(wet: &Wet) -> f64 {
+        let between = wet.network.links.iter().filter(|link| link.kind != LinkKind::Opening);
+        between.map(|link| link.resistance).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Bladders that flow may pass one after the other: all of a component with one that is joined at both ends.
+    fn most_in_a_row(&self, wet: &Wet) -> f64 {
+        let network = &wet.network;
+        let joined = |bladder: usize, at: BladderEnd| {
+            let here = |node: Node| matches!(node, Node::Cell { bladder: b, end } if b == bladder && end == at);
+            network.links.iter().any(|link| here(link.from) || here(link.to))
+                || network.sources.iter().any(|source| here(source.into))
+        };
+        let mut count = vec![0.0; network.components];
+        let mut passed = vec![false; network.components];
+        for (bladder, &component) in network.component_of_bladder.iter().enumerate() {
+            count[component] += 1.0;
+            passed[component] |= joined(bladder, BladderEnd::Inlet) && joined(bladder, BladderEnd::Outlet);
+        }
+        let rows = count.into_iter().zip(passed).filter(|(_, passed)| *passed);
+        rows.map(|(count, _)| count).fold(0.0, f64::max)
+    }
+
     /// ω of the fastest motion that is asked for, with ω (1 + χ i ω T) of vibrations [1/s].
     fn fastest(&self, wet: &Wet, tolerance: f64) -> f64 {
+        self.at_the_fastest(wet, tolerance, |rate| rate)
+    }
+
+    /// The largest that something that grows with ω is at any motion that is asked for, times (1 + χ i ω T) of vibrations.
+    fn at_the_fastest(&self, wet: &Wet, tolerance: f64, of: impl Fn(f64) -> f64) -> f64 {
         let end = self.case.time.end_s;
-        let mut rate = 0.0_f64;
+        let mut most = 0.0_f64;
         self.signals(|signal| {
             if let Some(period) = signal.shortest_time_s(end) {
-                rate = rate.max(2.0 * PI / period);
+                most = most.max(of(2.0 * PI / period));
             }
         });
         let [bent, stretched] = self.stiffness_of_fluid(wet);
@@ -46,10 +114,10 @@ impl Scene<'_> {
         ];
         for (inertia, free, fluid) in waves {
             if inertia > tolerance {
-                rate = rate.max(free * (1.0 + fluid * inertia * free * end));
+                most = most.max(of(free) * (1.0 + fluid * inertia * free * end));
             }
         }
-        rate
+        most
     }
 
     /// Parts χ of curvature and stretch that the pressure of sealed bladders takes back, at most: `EI (∂α_p/∂p_u - ∂α_p/∂p_d) A_M'/a_p`
