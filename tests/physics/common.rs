@@ -20,6 +20,8 @@ pub const CONSERVATIVE: &str = r#"/formulation="conservative""#;
 pub const AS_PUBLISHED: &str = r#"/formulation="published""#;
 /// Flow in tubes creeps, as in the paper, `--set` argument.
 pub const CREEPING: &str = r#"/effects={"tube_inertia":"off","tube_losses":"off"}"#;
+/// Fluid does not swing along bladders, which coarse meshes would see as one mass, `--set` argument.
+pub const STEADY: &str = r#"/effects={"bladder_inertia":"off"}"#;
 /// Young's modulus of the paper's beam [Pa].
 pub const E: f64 = 2e6;
 /// Length of the paper's beam [m].

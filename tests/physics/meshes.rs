@@ -4,7 +4,7 @@
 //! Tolerance: 6 % of the largest deflection, 0.2 % of the largest pressure. Second order makes 2 cells 16 times worse
 //! than 8; the second mode of wiring III has the shortest waves and the largest error.
 
-use super::common::{AS_PUBLISHED, CONSERVATIVE, run_shipped};
+use super::common::{AS_PUBLISHED, CONSERVATIVE, STEADY, run_shipped};
 
 const COARSE: [usize; 2] = [2, 1];
 const FINE: [usize; 2] = [8, 4];
@@ -20,6 +20,7 @@ fn peaks(case: &str, formulation: &str, mesh: [usize; 2], more: &[&str]) -> [f64
         "/time/end_s=0.3",
         "/time/fields_interval_s=0.1",
         "/solver/rtol=1e-6",
+        STEADY,
         &mesh[0],
         &mesh[1],
     ];
