@@ -321,14 +321,12 @@ fn measured_over_predicted_is_what_it_was() {
                     1e3 * AT[k] * linear[w] * softer * grown[w][AT[k] as usize - 1]?,
                 ))
             };
-            for k in 1..4 {
-                let seen = angle(specimen.name, AT[k]) - angle(specimen.name, AT[0]);
+            for (k, &kpa) in AT.iter().enumerate().skip(1) {
+                let seen = angle(specimen.name, kpa) - angle(specimen.name, AT[0]);
                 let ratio = bent(k).map(|own| seen / (own - bent(0).unwrap()));
                 println!(
-                    "  {} {} kPa: measured {seen:.2}, predicted {:.2?}, ratio {ratio:.3?}",
-                    specimen.name,
-                    AT[k],
-                    ratio.map(|r| seen / r)
+                    "  {} {kpa} kPa: measured {seen:.2}, over predicted {ratio:.3?}",
+                    specimen.name
                 );
                 let wanted = reading.found[n][k - 1];
                 assert_eq!(ratio.is_some(), wanted > 0.0);
