@@ -34,7 +34,8 @@ fn closes(name: &str, end: f64) {
     // an energy at finite strain has one coupling and one formulation, curvature at rest too
     let nonlinear = bladders.as_ref().is_some_and(|b| b.strain_energy.is_some());
     let couplings: &[Option<&str>] = match bladders {
-        Some(_) if nonlinear => &[Some(RECIPROCAL)],
+        // the published slopes are another beam's: with them its bladders close within milliseconds
+        Some(_) if nonlinear || name == "ecoflex-actuator" => &[Some(RECIPROCAL)],
         Some(_) => &[Some(PUBLISHED), Some(RECIPROCAL)],
         None => &[None],
     };
@@ -132,6 +133,7 @@ fn balances_of_loaded_beams_close() {
         ("tour-beam", 0.1),
         ("section-actuator", 0.3),
         ("section-finite", 0.3),
+        ("ecoflex-actuator", 0.3),
     ] {
         closes(name, end);
     }
