@@ -57,7 +57,8 @@ fn filled(into: Into, fluid: &str, lumped: bool) -> Value {
                                        {"bladders": [2, 3, 4, 5, 6, 7, 8, 9, 10], "ends": ["connected", "sealed"]}]);
             let valve = json!({"cracking_pressure_pa": 100, "forward_conductance_m3_s_pa": 1e-9, "reverse_conductance_m3_s_pa": 1e-14,
                                "smoothing_pa": 50});
-            network["tubes"][1] = json!({"from": {"bladder": 1, "end": "outlet"}, "to": {"bladder": 2, "end": "inlet"}, "check_valve": valve});
+            network["tubes"] = json!([network["tubes"][0].clone(),
+                {"from": {"bladder": 1, "end": "outlet"}, "to": {"bladder": 2, "end": "inlet"}, "check_valve": valve}]);
         }
     }
     case
