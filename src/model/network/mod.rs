@@ -204,6 +204,8 @@ pub struct Network {
     pub accumulators: Vec<Accumulator>,
     /// Whether nothing flows in, however volumes that sources give grow: for equilibria.
     pub still: bool,
+    /// Whether steps follow volumes that sources give where nothing else asks for it: for runs, whose work is an integral.
+    pub paced: bool,
     /// Component of each bladder; components are joined by links, not through pressure ports.
     pub component_of_bladder: Vec<usize>,
     /// Component of each junction.
@@ -234,6 +236,22 @@ impl Network {
     /// True when no port or flow source touches the component.
     pub fn is_closed(&self, component: usize) -> bool {
         !self.open.contains(&component)
+    }
+
+    /// Whether a port of given pressure is joined to a component: what comes in leaves again.
+    pub fn lets_out(&self, component: usize) -> bool {
+        let inside = |node: Node| self.component_of(node) == Some(component);
+        let port = |node: Node| matches!(node, Node::Port(_));
+        let links = self.links.iter().filter(|link| !link.is_shut()).map(|l| (l.from, l.to));
+        let mut ways = links.chain(self.bridges.iter().map(|b| (b.from, b.to)));
+        ways.any(|(a, b)| inside(a) && port(b) || port(a) && inside(b))
+    }
+
+    /// Whether a component holds what it held at the start, and what ports of prescribed volume have let in.
+    pub fn keeps(&self, component: usize) -> bool {
+        let mut sources = self.sources.iter();
+        let own = |source: &Source| self.component_of(source.into) == Some(component);
+        !self.lets_out(component) && !sources.any(|source| own(source) && matches!(source.feed, Feed::Flow(_)))
     }
 
     /// Of each bladder, whether nothing can ever flow into it or out of it.
@@ -292,7 +310,7 @@ impl Network {
     }
 
     /// Volume that everything joined to a point takes in per pressure, at ambient pressure [m^3/Pa].
-    pub(super) fn compliance_at(&self, node: Node, wet: &Wet) -> f64 {
+    pub fn compliance_at(&self, node: Node, wet: &Wet) -> f64 {
         let own = self.component_of(node);
         let here = |component: &&usize| Some(**component) == own;
         let bladders = self.component_of_bladder.iter().filter(here).count();
