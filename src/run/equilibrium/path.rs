@@ -19,6 +19,9 @@ const SHORTEST: f64 = 1e-7;
 const ASTRAY: f64 = 0.2;
 /// The same that steps are chosen for.
 const WANTED: f64 = 0.05;
+/// Displacements, in lengths of the beam, that count as motion. Where a beam moves little while its loads grow, the length of a step is that
+/// of the loads, and to a path beside is a small part of it: how far a solution lies from its prediction is asked of displacements alone too.
+const MOTION: f64 = 1e-5;
 /// Part of a step below which the way is what was found, not what was foretold.
 const TURN: f64 = 0.02;
 /// Newton steps that steps are chosen for, and largest growth of a step.
@@ -162,7 +165,7 @@ impl Follower<'_> {
             }
             let mut x = guess.clone();
             let solved = self.solve(&mut x, PATIENCE);
-            let off = self.norm(&difference(&x, &guess)) / step;
+            let off = self.off(&x, &guess, &last, step);
             if let Ok(iterations) = solved
                 && off <= ASTRAY
             {
@@ -307,6 +310,14 @@ impl Follower<'_> {
         }
     }
 
+    /// How far a solution lies from its prediction, in steps: of all, or of displacements in what they have moved by.
+    fn off(&self, x: &[f64], guess: &[f64], last: &[f64], step: f64) -> f64 {
+        let off = difference(x, guess);
+        let moved = |x: &[f64]| self.norm(&x[..self.n]);
+        let whole = self.norm(&off) / step;
+        whole.max(moved(&off) / (moved(&difference(guess, last)) + MOTION))
+    }
+
     pub(super) fn norm(&self, x: &[f64]) -> f64 {
         x.iter().zip(&self.weights).map(|(x, w)| w * x * x).sum::<f64>().sqrt()
     }
@@ -334,6 +345,18 @@ impl Follower<'_> {
     }
 }
 
+/// What probably ends a path, and what of a beam without fluid.
+const CAUSE: &str = "two paths that meet, a coupling that is not convex, a bladder that closes";
+const DRY_CAUSE: &str = "two paths that meet or pass close by each other, or loads beyond those that the beam can bear";
+
+/// The same fault of a beam without fluid: neither bladders nor a coupling are a cause.
+pub(super) fn dry(mut fault: SolverError) -> SolverError {
+    if fault.cause.as_deref() == Some(CAUSE) {
+        fault.cause = Some(DRY_CAUSE.into());
+    }
+    fault
+}
+
 pub(super) fn fault(share: f64, what: &str) -> SolverError {
     SolverError {
         code: Code::NoEquilibrium,
@@ -343,7 +366,7 @@ pub(super) fn fault(share: f64, what: &str) -> SolverError {
         cause: Some(if share == 0.0 {
             "nothing holds the beam, or a part of the network has neither bladder nor pressure".into()
         } else {
-            "two paths that meet, a coupling that is not convex, a bladder that closes".to_string()
+            CAUSE.into()
         }),
         hint: Some("look at the states up to there; a small load across tells which way a symmetric beam bends".into()),
     }

@@ -2,7 +2,7 @@
 
 use super::arclength::Arclength;
 use super::natural::Natural;
-use super::path::{End, Follower, fault, weights};
+use super::path::{End, Follower, dry, fault, weights};
 use super::state::State;
 use super::{Options, Path};
 use crate::case::schema::Case;
@@ -197,6 +197,7 @@ fn stretch(
     watch: &mut dyn FnMut(&State) -> Control,
 ) {
     let n = statics.len();
+    let wet = statics.system().model.wet.is_some();
     let weights = weights(statics.system());
     let limits = Limits::new(case, statics.system());
     let natural = Natural::of(&statics);
@@ -229,7 +230,7 @@ fn stretch(
     if judged {
         follower.judge();
     }
-    path.fault = ended.err().map(|End(fault)| fault);
+    path.fault = ended.err().map(|End(fault)| if wet { fault } else { dry(fault) });
 }
 
 /// Valves switch with the loads held: on from the state before.
