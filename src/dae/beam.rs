@@ -197,6 +197,15 @@ impl BeamDae {
         (&self.system, &self.now)
     }
 
+    /// Puts what ports of prescribed volume have let in until `t` [s] in the place of integrals of its rate.
+    pub fn settle(&mut self, t: f64, integrals: &mut [f64]) {
+        if self.held != Some(t) {
+            self.held = None;
+        }
+        self.now.update(&self.system, Clock { t, within: self.within });
+        ledger::ports::settle(&self.system, &self.now, integrals);
+    }
+
     /// Evaluates the model at a scaled state and hands out time's values and the workspace, for balances and samples.
     pub fn evaluate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, State<'_>) {
         self.unscale(t, y, yp);

@@ -1,6 +1,7 @@
 //! Differential-algebraic systems `F(t, y, y') = 0`, and the beam as one of them. Knows no solver.
 
 pub mod beam;
+mod between;
 pub mod perturbed;
 pub mod statics;
 pub mod trace;

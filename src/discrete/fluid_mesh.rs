@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::let_in::{self, Share};
 use crate::case::schema::BladderEnd;
 use crate::model::network::tube::BRANCHES;
 use crate::model::network::{AccumulatorLaw, CheckValve, Link, LinkKind, Node, TubeFlow};
@@ -132,6 +133,8 @@ pub struct FluidMesh {
     pub sources: Vec<MeshSource>,
     /// Bridges of check valves.
     pub bridges: Vec<MeshBridge>,
+    /// Cells and accumulators whose unknowns are counted from what ports of prescribed volume let in.
+    pub shares: Vec<Share>,
     /// Accumulators: their junctions' unknowns are volumes.
     pub accumulators: Vec<MeshAccumulator>,
     /// Links with a pump, in the order of these.
@@ -245,7 +248,7 @@ impl FluidMesh {
         }
         // in the order of their unknowns
         accumulators.sort_by_key(|one| one.junction);
-        Self {
+        let mut mesh = Self {
             bladders,
             cells_per_bladder,
             cells: bladders * cells_per_bladder,
@@ -264,7 +267,10 @@ impl FluidMesh {
             junctions: junctions.clone(),
             volume_at_start: vec![0.0; wet.lumped.len()],
             area_at_start: vec![0.0; bladders * cells_per_bladder],
-        }
+            shares: vec![],
+        };
+        mesh.shares = let_in::shares(&mesh, wet);
+        mesh
     }
 
     /// Keeps the volumes of the start, in bladders and lumped networks that keep theirs. The start may have been made with other cells along

@@ -7,6 +7,7 @@ pub mod glance;
 pub mod kick;
 pub mod layout;
 pub mod ledger;
+pub mod let_in;
 pub mod mesh;
 pub mod quantities;
 pub mod residual;

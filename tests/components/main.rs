@@ -7,6 +7,7 @@ mod differences;
 mod hard;
 mod stores;
 mod valves;
+mod volumes;
 mod whole;
 
 use std::path::Path;

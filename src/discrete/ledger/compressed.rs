@@ -46,6 +46,21 @@ pub fn shared_rates(wet: &Wet, w: &Workspace<f64>, cell: usize, pressure: f64, i
     [pressure + slope * rate, stored]
 }
 
+/// Unknown pressures of lumped networks, and what these take in per pressure where nothing else changes [m^3/Pa].
+pub fn lumped_slopes<'a>(system: &'a System, w: &'a Workspace<f64>) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let wet = system.model.wet.as_ref().zip(system.fluid.as_ref());
+    wet.into_iter().flat_map(move |(wet, fluid)| {
+        let unknowns = system.layout.network.lumped_pressure.iter().zip(&wet.lumped);
+        unknowns.filter_map(move |(unknown, lumped)| {
+            let taken = lumped.bladders.iter().map(|&bladder| {
+                let [_, stored] = shared_rates(wet, w, fluid.cells_of(bladder).start, 1.0, 0.0);
+                stored * wet.bladder_length
+            });
+            unknown.map(|unknown| (unknown, taken.sum()))
+        })
+    })
+}
+
 /// Rate of a cell's pressure [Pa/s]; needs [`super::complete`].
 pub fn pressure_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usize) -> f64 {
     let bladder = cell / fluid.cells_per_bladder;

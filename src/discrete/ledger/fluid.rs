@@ -8,7 +8,7 @@ use crate::discrete::fluid_mesh::{MeshBridge, Place};
 use crate::discrete::residual::fluid::{driving, look_along, over_bridge, pressure_at, through_bridge};
 use crate::discrete::residual::rows::{driven, mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, small};
-use crate::discrete::{FluidMesh, System, TimeData, Workspace};
+use crate::discrete::{FluidMesh, System, TimeData, Workspace, let_in};
 use crate::model::bladder::{kink_curvature, kink_slope};
 use crate::model::network::{LinkKind, Node};
 use crate::model::{AreaLaw, Coupling, LumpedKind, LumpedNetwork, Wet};
@@ -44,7 +44,7 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
     for (k, lumped) in wet.lumped.iter().enumerate() {
         w.fluid.lumped_rate[k] = match (&lumped.kind, system.layout.network.lumped_pressure[k]) {
             (LumpedKind::Port(port), _) => now.port_pressure_rate[*port],
-            (_, Some(unknown)) => yp[unknown],
+            (_, Some(unknown)) => yp[unknown] + let_in::pressing(wet, lumped, now)[1],
             _ => 0.0,
         };
         for &bladder in &lumped.bladders {

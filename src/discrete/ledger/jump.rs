@@ -27,6 +27,7 @@ pub fn travel(now: &mut TimeData, [before, after]: [&TimeData; 2]) {
     let curved = [&before.rest_curvature[0], &after.rest_curvature[0]];
     differences(&mut now.rest_curvature[1], curved[0], curved[1]);
     differences(&mut now.port_pressure_rate, &before.port_pressure, &after.port_pressure);
+    differences(&mut now.source_flow, &before.source_volume, &after.source_volume);
     differences(&mut now.statics.rate, &before.statics.force, &after.statics.force);
     differences(&mut now.statics.mean_rate, &before.statics.mean, &after.statics.mean);
 }

@@ -9,7 +9,7 @@ mod solid;
 mod stored;
 mod tubes;
 
-pub use compressed::{area_rate, pressure_rate};
+pub use compressed::{area_rate, lumped_slopes, pressure_rate};
 pub use fluid::pressure_rates;
 pub use jump::{side, strokes, travel};
 pub use reactions::compared;

@@ -1,10 +1,11 @@
 //! What passes each port by itself.
 
 use super::fluid::stored_rate;
-use super::{ENERGY_RATES, compressed, rate_count};
+use super::{ENERGY_RATES, rate_count};
 use crate::discrete::fluid_mesh::{MeshBridge, Place};
 use crate::discrete::residual::fluid::{pressure_at, through_bridge};
-use crate::discrete::{System, TimeData, Workspace};
+use crate::discrete::{System, TimeData, Workspace, let_in};
+use crate::model::network::Feed;
 use crate::model::{LumpedKind, Wet};
 
 /// Number of ports of a network: those that give a pressure first, then those that give flow or volume.
@@ -68,6 +69,25 @@ pub(super) fn lumped_jump(system: &System, w: &Workspace<f64>, out: &mut [f64]) 
     }
 }
 
+/// What ports of prescribed volume have let in is their signal: puts that in the place of the integral of its rate, of each port by itself
+/// and, where it stays in its network, in what has left that. Elsewhere it is so much more or less that ports of given pressure let out.
+pub fn settle(system: &System, now: &TimeData, integrals: &mut [f64]) {
+    let Some(wet) = &system.model.wet else { return };
+    let (network, own) = (&wet.network, first(wet) + wet.network.ports.len());
+    for (k, source) in network.sources.iter().enumerate() {
+        let Feed::Volume(_) = source.feed else { continue };
+        let more = now.source_volume[k] - integrals[own + k];
+        integrals[own + k] = now.source_volume[k];
+        let component = network.component_of(source.into);
+        if let Some(open) = network.open.iter().position(|&one| Some(one) == component) {
+            let [left, by_law] = [2 * open, 2 * (network.open.len() + open)];
+            for entry in [left, by_law].into_iter().filter(|_| let_in::is_kept(network, k)) {
+                integrals[ENERGY_RATES.len() + entry] -= more;
+            }
+        }
+    }
+}
+
 /// The flows of [`flows`] among the rates of all integrals.
 pub(super) fn rates(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
     if let Some(wet) = &system.model.wet {
@@ -76,33 +96,36 @@ pub(super) fn rates(system: &System, now: &TimeData, w: &Workspace<f64>, out: &m
     }
 }
 
-/// Pressure at a port, outside of the half cell behind it [Pa], and the power of a flow that comes in through it [W].
-pub fn pressure_and_power(system: &System, now: &TimeData, w: &Workspace<f64>, port: usize, flow: f64) -> [f64; 2] {
+/// Pressure at a port, outside of the half cell behind it [Pa], where a flow comes in through it.
+pub fn pressure(system: &System, now: &TimeData, w: &Workspace<f64>, port: usize, flow: f64) -> f64 {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
-        return [0.0; 2];
+        return 0.0;
     };
     let ports = wet.network.ports.len();
     if port < ports {
-        let pressure = now.port_pressure[port];
-        return [pressure, wet.enthalpy(pressure) * flow];
+        return now.port_pressure[port];
     }
     let source = port - ports;
     match fluid.sources.iter().find(|one| one.number == source) {
         Some(own) => {
-            let half = own.half_cell;
-            let inside = pressure_at(own.into, now, w);
-            let outside = match &wet.compression {
-                None => inside + half * flow,
-                Some(compression) => compression.pressure_of_potential(compression.potential(inside) + half * flow),
-            };
-            [outside, compressed::fed(wet, inside, half, flow)[0]]
+            let (inside, lost) = (pressure_at(own.into, now, w), own.half_cell * flow);
+            match &wet.compression {
+                None => inside + lost,
+                Some(compression) => compression.pressure_of_potential(compression.potential(inside) + lost),
+            }
         }
         // in a network of one pressure
         None => {
             let component = wet.network.component_of(wet.network.sources[source].into);
             let own = wet.lumped.iter().position(|lumped| Some(lumped.component) == component);
-            let pressure = own.map_or(0.0, |lumped| w.fluid.lumped[lumped]);
-            [pressure, wet.enthalpy(pressure) * flow]
+            own.map_or(0.0, |lumped| w.fluid.lumped[lumped])
         }
     }
+}
+
+/// The same, and the power of the flow [W].
+pub fn pressure_and_power(system: &System, now: &TimeData, w: &Workspace<f64>, port: usize, flow: f64) -> [f64; 2] {
+    let pressure = pressure(system, now, w, port, flow);
+    let wet = system.model.wet.as_ref();
+    [pressure, wet.map_or(0.0, |wet| wet.enthalpy(pressure) * flow)]
 }

@@ -154,10 +154,8 @@ pub fn thinnest(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
         return 0.0;
     }
     let ports = wet.network.ports.len();
-    let sources = now.source_flow.iter().enumerate().map(|(source, &flow)| {
-        let [pressure, _] = ledger::ports::pressure_and_power(system, now, w, ports + source, flow);
-        pressure
-    });
+    let sources = now.source_flow.iter().enumerate();
+    let sources = sources.map(|(source, &flow)| ledger::ports::pressure(system, now, w, ports + source, flow));
     sources.chain(w.fluid.junction.iter().copied()).fold(0.0, f64::min)
 }
 

@@ -5,7 +5,8 @@ use super::fluid::{driving, over_bridge};
 use crate::discrete::attached::at_node;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, MeshLink, Place};
 use crate::discrete::ledger::EnergyRate;
-use crate::discrete::{System, TimeData, Workspace, bodies, touching};
+use crate::discrete::{System, TimeData, Workspace, bodies, let_in, touching};
+use crate::model::network::Feed;
 use crate::model::{Kinematics, LumpedKind};
 use crate::numerics::{Planar, Scalar};
 
@@ -245,7 +246,8 @@ pub fn storage<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     }
 }
 
-/// Volume of each lumped network whose pressure is unknown, `[E25]`.
+/// Volume of each lumped network whose pressure is unknown, `[E25]`; that of a network that is fed is unknown but for what ports of
+/// prescribed volume have let in.
 pub fn lumped<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &Workspace<T>, r: &mut [T]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -260,9 +262,12 @@ pub fn lumped<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
         let volume = areas * wet.bladder_length;
         r[row] = match (&lumped.kind, l.lumped_volume[k]) {
             (LumpedKind::Fed(sources), Some(unknown)) => {
-                let inflow: f64 = sources.iter().map(|&s| now.source_flow[s]).sum();
-                r[unknown] = yp[unknown] - T::constant(inflow);
-                volume - y[unknown]
+                let pumped = |&s: &usize| match wet.network.sources[s].feed {
+                    Feed::Flow(_) => now.source_flow[s],
+                    Feed::Volume(_) => 0.0,
+                };
+                r[unknown] = yp[unknown] - T::constant(sources.iter().map(pumped).sum());
+                volume - y[unknown] - T::constant(let_in::into_lumped(wet, lumped, now)[0])
             }
             _ => volume - T::constant(fluid.volume_at_start[k]),
         };

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::discrete::let_in::{self, Share, Store};
 use crate::discrete::time_data::Frame;
 use crate::discrete::workspace::Motion;
 use crate::discrete::{System, TimeData, Workspace};
@@ -18,6 +19,15 @@ use crate::numerics::Scalar;
 ///
 /// So the integrator's error in a motion as a whole cannot stretch the beam between a node that is driven exactly and
 /// its neighbour that is integrated.
+///
+/// What cells and accumulators hold is unknown relative to their shares of what ports of prescribed volume V have let in, by compliance C:
+///
+/// ```text
+/// Δs c_k = V C_k/ΣC + Δs y_k     Δs c'_k = V' C_k/ΣC + Δs y'_k
+/// ```
+///
+/// So what has come in is the signal and no integral of its rate: where nothing else comes in or leaves, `Σ Δs y` does not change. The
+/// pressure of a lumped network, [E25], is counted from V/C likewise.
 pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>) {
     let l = &system.layout;
     for (axis, line) in l.lines.iter().enumerate() {
@@ -63,6 +73,19 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
             w.fluid.area_rate[run.clone()].copy_from_slice(&yp[unknowns.clone()]);
             first = unknowns.end;
         }
+        for (k, one) in fluid.accumulators.iter().enumerate() {
+            let unknown = l.network.junction.start + one.junction;
+            (w.fluid.accumulated[k], w.fluid.accumulated_rate[k]) = (y[unknown], yp[unknown]);
+        }
+        for &Share { source, store, share } in &fluid.shares {
+            let own = &mut w.fluid;
+            let (held, rate) = match store {
+                Store::Cell(c) => (&mut own.area[c], &mut own.area_rate[c]),
+                Store::Vessel(k) => (&mut own.accumulated[k], &mut own.accumulated_rate[k]),
+            };
+            *held += T::constant(share * now.source_volume[source]);
+            *rate += T::constant(share * now.source_flow[source]);
+        }
         copy(&mut w.fluid.junction, y, &l.network.junction);
         if let Some(compression) = &wet.compression {
             for pressure in &mut w.fluid.junction {
@@ -70,9 +93,7 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
             }
         }
         for (k, one) in fluid.accumulators.iter().enumerate() {
-            let unknown = l.network.junction.start + one.junction;
-            (w.fluid.accumulated[k], w.fluid.accumulated_rate[k]) = (y[unknown], yp[unknown]);
-            w.fluid.junction[one.junction] = wet.vessel_pressure(&one.law, y[unknown]);
+            w.fluid.junction[one.junction] = wet.vessel_pressure(&one.law, w.fluid.accumulated[k]);
         }
         copy(&mut w.fluid.bridge, y, &l.network.bridge);
         copy(&mut w.fluid.moving, y, &l.network.flow);
@@ -82,7 +103,7 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
         for (k, lumped) in wet.lumped.iter().enumerate() {
             w.fluid.lumped[k] = match (&lumped.kind, l.network.lumped_pressure[k]) {
                 (LumpedKind::Port(port), _) => T::constant(now.port_pressure[*port]),
-                (_, Some(unknown)) => y[unknown],
+                (_, Some(unknown)) => y[unknown] + T::constant(let_in::pressing(wet, lumped, now)[0]),
                 _ => T::zero(),
             };
         }

@@ -223,6 +223,22 @@ impl Network {
         !self.open.contains(&component)
     }
 
+    /// Whether a port of given pressure is joined to a component: what comes in leaves again.
+    pub fn lets_out(&self, component: usize) -> bool {
+        let inside = |node: Node| self.component_of(node) == Some(component);
+        let port = |node: Node| matches!(node, Node::Port(_));
+        let links = self.links.iter().filter(|link| !link.is_shut()).map(|l| (l.from, l.to));
+        let mut ways = links.chain(self.bridges.iter().map(|b| (b.from, b.to)));
+        ways.any(|(a, b)| inside(a) && port(b) || port(a) && inside(b))
+    }
+
+    /// Whether a component holds what it held at the start, and what ports of prescribed volume have let in.
+    pub fn keeps(&self, component: usize) -> bool {
+        let mut sources = self.sources.iter();
+        let own = |source: &Source| self.component_of(source.into) == Some(component);
+        !self.lets_out(component) && !sources.any(|source| own(source) && matches!(source.feed, Feed::Flow(_)))
+    }
+
     /// Of each bladder, whether nothing can ever flow into it or out of it.
     pub fn sealed(&self) -> impl Iterator<Item = bool> + '_ {
         let joined = |bladder: usize| {

@@ -127,9 +127,13 @@ impl Run<'_> {
                 .and_then(|()| solver.interpolate(t, 1, &mut self.rates))
                 .and_then(|()| solver.integrals(Some(t), &mut self.integrals))
         };
+        if t != solver.time() {
+            solver.dae_mut().keep_volumes(t, &mut self.state);
+        }
         for (total, carried) in self.integrals.iter_mut().zip(&self.carried) {
             *total += carried;
         }
+        solver.dae_mut().settle(t, &mut self.integrals);
         read.map_err(|failure| End::Stopped(format!("the state at t = {t:.6} s could not be read: {failure}")))
     }
 

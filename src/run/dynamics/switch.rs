@@ -46,6 +46,7 @@ impl Run<'_> {
         for (carried, more) in self.carried.iter_mut().zip(&self.integrals) {
             *carried += more;
         }
+        solver.dae_mut().settle(t, &mut self.carried);
         let before = match (&mut self.forward, solver.ida_mut()) {
             (Some(forward), Some(ida)) => match forward.leave(ida, t, [&self.state, &self.rates]) {
                 Ok(before) => Some(before),

@@ -6,7 +6,7 @@ use crate::discrete::layout::Line;
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, Look, Observable, Row, probes, stations};
 use crate::discrete::residual::relaxation;
-use crate::discrete::{System, TimeData, Workspace};
+use crate::discrete::{System, TimeData, Workspace, let_in};
 use crate::run::range::Limits;
 use crate::run::record::Column;
 use crate::spectral;
@@ -141,6 +141,7 @@ pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &Tim
     z[to.layout.turning.angle.clone()].copy_from_slice(&w.shape.sections.angle);
     relaxation::settle(to, now, &w, &mut z);
     fluid(&w, to, &mut z);
+    let_in::count_from(to, now, &mut z);
     for (z, scale) in z.iter_mut().zip(&to.layout.scales) {
         *z /= scale;
     }

@@ -257,32 +257,31 @@ fn guess(system: &System, case: &Case) -> Vec<f64> {
     y
 }
 
-/// The volume of every closed network whose volumes are unknowns, as a weight of every unknown.
+/// The volume of every network whose volumes are unknowns, and change by ports of prescribed volume alone, as a weight of every unknown.
 fn conserved(system: &System) -> Vec<Vec<f64>> {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return vec![];
     };
     let l = &system.layout;
-    let closed = (0..wet.network.components).filter(|&c| wet.network.is_closed(c));
-    closed
-        .filter_map(|component| {
-            let mut w = vec![0.0; l.len];
-            for (slot, &bladder) in fluid.flowing.iter().enumerate() {
-                if wet.network.component_of_bladder[bladder] == component {
-                    let first = l.network.area.start + slot * fluid.cells_per_bladder;
-                    let cells = first..first + fluid.cells_per_bladder;
-                    w[cells.clone()].fill(l.scales[first] * fluid.ds);
-                }
+    let keep = (0..wet.network.components).filter(|&c| wet.network.keeps(c));
+    keep.filter_map(|component| {
+        let mut w = vec![0.0; l.len];
+        for (slot, &bladder) in fluid.flowing.iter().enumerate() {
+            if wet.network.component_of_bladder[bladder] == component {
+                let first = l.network.area.start + slot * fluid.cells_per_bladder;
+                let cells = first..first + fluid.cells_per_bladder;
+                w[cells.clone()].fill(l.scales[first] * fluid.ds);
             }
-            for one in &fluid.accumulators {
-                if one.component == component {
-                    let unknown = l.network.junction.start + one.junction;
-                    w[unknown] = l.scales[unknown];
-                }
+        }
+        for one in &fluid.accumulators {
+            if one.component == component {
+                let unknown = l.network.junction.start + one.junction;
+                w[unknown] = l.scales[unknown];
             }
-            let size = w.iter().map(|w| w * w).sum::<f64>().sqrt();
-            w.iter_mut().for_each(|w| *w /= size);
-            (size > 0.0).then_some(w)
-        })
-        .collect()
+        }
+        let size = w.iter().map(|w| w * w).sum::<f64>().sqrt();
+        w.iter_mut().for_each(|w| *w /= size);
+        (size > 0.0).then_some(w)
+    })
+    .collect()
 }

@@ -1,0 +1,32 @@
+//! States between two steps, where the integrator's polynomial does not keep what is no straight line.
+
+use super::BeamDae;
+use crate::discrete::{ledger, residual};
+use crate::model::Wet;
+
+/// Newton steps that bring a pressure from between two steps to round-off.
+const CORRECTIONS: usize = 3;
+
+impl BeamDae {
+    /// Gives lumped networks in a scaled state at `t` [s] the pressures of the volumes that they hold, [E25]: where fluid is compressed or walls
+    /// meet, a polynomial through pressures does not pass through those volumes.
+    pub fn keep_volumes(&mut self, t: f64, y: &mut [f64]) {
+        let bent = |wet: &Wet| !wet.lumped.is_empty() && (wet.compression.is_some() || wet.closing.is_some());
+        if !self.system().model.wet.as_ref().is_some_and(bent) {
+            return;
+        }
+        let at_rest = vec![0.0; y.len()];
+        let mut lacks = at_rest.clone();
+        for _ in 0..CORRECTIONS {
+            let scales = &self.system().layout.scales;
+            let unscaled: Vec<f64> = y.iter().zip(scales).map(|(y, scale)| y * scale).collect();
+            let scaled = y.to_vec();
+            self.visit(t, &scaled, &at_rest, |system, now, rates, w| {
+                residual::rows::lumped(system, now, &unscaled, rates, w, &mut lacks);
+                for (unknown, slope) in ledger::lumped_slopes(system, w) {
+                    y[unknown] -= lacks[unknown] / (slope * system.layout.scales[unknown]);
+                }
+            });
+        }
+    }
+}

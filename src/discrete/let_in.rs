@@ -1,0 +1,149 @@
+//! What ports of prescribed volume let in, and the places whose contents are counted from it.
+
+use super::fluid_mesh::{FluidMesh, MeshLink, Place};
+use super::{System, TimeData};
+use crate::model::network::{Feed, Network, Source};
+use crate::model::{LumpedKind, LumpedNetwork, Wet};
+
+/// What stores fluid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Store {
+    /// A cell; its unknown is an area.
+    Cell(usize),
+    /// An accumulator, by its number on the mesh; its unknown is a volume.
+    Vessel(usize),
+}
+
+/// A store whose unknown is counted from a share of what a source has let in, [E22].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Share {
+    /// Number among the network's sources.
+    pub source: usize,
+    /// What stores it.
+    pub store: Store,
+    /// Change of the store's unknown with that volume: 1/m of a cell, 1 of an accumulator that takes all.
+    pub share: f64,
+}
+
+/// The shares of all sources that prescribe a volume: it is spread by compliance over what is joined to them by nothing that ever shuts,
+/// and where nothing stores there, over all that is joined to them. So what is unknown of each store is small, and exact where something
+/// shuts. There are none where a port of given pressure lets out what comes in: little of it may be there at any time.
+pub fn shares(fluid: &FluidMesh, wet: &Wet) -> Vec<Share> {
+    let network = &wet.network;
+    let mut all = vec![];
+    if network.still {
+        return all;
+    }
+    let opens = |link: &&MeshLink| link.check_valve.is_none() && network.links[link.number].opening.is_none();
+    for source in &fluid.sources {
+        if !is_kept(network, source.number) {
+            continue;
+        }
+        let open = joined(
+            fluid,
+            source.into,
+            fluid.links.iter().filter(opens).map(|l| (l.from, l.to)),
+        );
+        let links = fluid.links.iter().map(|l| (l.from, l.to));
+        let bridged = fluid.bridges.iter().map(|b| (b.from, b.to));
+        for places in [open, joined(fluid, source.into, links.chain(bridged))] {
+            let stores = stores(fluid, wet, &places);
+            let sum: f64 = stores.iter().map(|(_, compliance)| compliance).sum();
+            if sum > 0.0 {
+                all.extend(stores.into_iter().map(|(store, compliance)| Share {
+                    source: source.number,
+                    store,
+                    share: compliance / sum / if let Store::Cell(_) = store { fluid.ds } else { 1.0 },
+                }));
+                break;
+            }
+        }
+    }
+    all
+}
+
+/// Whether a source prescribes a volume, and no port of given pressure lets it out of its network.
+pub fn is_kept(network: &Network, source: usize) -> bool {
+    let Source { into, feed, .. } = &network.sources[source];
+    matches!(feed, Feed::Volume(_)) && network.component_of(*into).is_some_and(|own| !network.lets_out(own))
+}
+
+/// Of each cell, then of each junction, whether it is joined to a place by links between others; neighbours in a bladder are.
+fn joined(fluid: &FluidMesh, to: Place, links: impl Iterator<Item = (Place, Place)>) -> Vec<bool> {
+    let index = |place: Place| match place {
+        Place::Cell(c) => Some(c),
+        Place::Junction(j) => Some(fluid.cells + j),
+        Place::Port(_) => None,
+    };
+    let within = fluid.flowing.iter().flat_map(|&bladder| {
+        let cells = fluid.cells_of(bladder);
+        (cells.start + 1..cells.end).map(|c| (c - 1, c))
+    });
+    let links = links.filter_map(|(a, b)| index(a).zip(index(b)));
+    let pairs: Vec<(usize, usize)> = within.chain(links).collect();
+    let mut reached = vec![false; fluid.cells + fluid.junctions.len()];
+    if let Some(first) = index(to) {
+        reached[first] = true;
+    }
+    while let Some(&(a, b)) = pairs.iter().find(|(a, b)| reached[*a] != reached[*b]) {
+        (reached[a], reached[b]) = (true, true);
+    }
+    reached
+}
+
+/// What stores in places that are reached, with its compliance [m^3/Pa].
+fn stores(fluid: &FluidMesh, wet: &Wet, reached: &[bool]) -> Vec<(Store, f64)> {
+    let cells = (0..fluid.cells).filter(|&c| reached[c]);
+    let cells = cells.map(|c| (Store::Cell(c), wet.compliance() * fluid.ds));
+    let vessels = fluid.accumulators.iter().enumerate();
+    let vessels = vessels.filter(|(_, one)| reached[fluid.cells + one.junction]);
+    let vessels = vessels.map(|(k, one)| (Store::Vessel(k), wet.vessel_compliance(&one.law, 0.0)));
+    cells.chain(vessels).collect()
+}
+
+/// What ports of prescribed volume have let into a lumped network [m^3], and its rate [m^3/s].
+pub fn into_lumped(wet: &Wet, lumped: &LumpedNetwork, now: &TimeData) -> [f64; 2] {
+    let LumpedKind::Fed(sources) = &lumped.kind else {
+        return [0.0; 2];
+    };
+    let network = &wet.network;
+    let all = sources.iter().filter(|&&s| !network.still && is_kept(network, s));
+    all.fold([0.0; 2], |[volume, rate], &s| {
+        [volume + now.source_volume[s], rate + now.source_flow[s]]
+    })
+}
+
+/// The pressure that this would make by the compliance of its bladders [Pa], and its rate [Pa/s]: the unknown pressure is counted from it, [E22].
+pub fn pressing(wet: &Wet, lumped: &LumpedNetwork, now: &TimeData) -> [f64; 2] {
+    let compliance = wet.compliance() * wet.bladder_length * lumped.bladders.len() as f64;
+    into_lumped(wet, lumped, now).map(|volume| volume / compliance)
+}
+
+/// Makes contents unknowns: takes from them what they are counted from. SI units.
+pub fn count_from(system: &System, now: &TimeData, y: &mut [f64]) {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return;
+    };
+    let l = &system.layout.network;
+    let k = fluid.cells_per_bladder;
+    for &Share { source, store, share } in &fluid.shares {
+        let unknown = match store {
+            Store::Vessel(k) => Some(l.junction.start + fluid.accumulators[k].junction),
+            Store::Cell(c) => {
+                let slot = fluid.flowing.binary_search(&(c / k));
+                slot.ok().map(|slot| l.area.start + slot * k + c % k)
+            }
+        };
+        if let Some(unknown) = unknown {
+            y[unknown] -= share * now.source_volume[source];
+        }
+    }
+    for (k, lumped) in wet.lumped.iter().enumerate() {
+        if let Some(unknown) = l.lumped_volume[k] {
+            y[unknown] -= into_lumped(wet, lumped, now)[0];
+        }
+        if let Some(unknown) = l.lumped_pressure[k] {
+            y[unknown] -= pressing(wet, lumped, now)[0];
+        }
+    }
+}
