@@ -1,4 +1,4 @@
-//! States between two steps, where the integrator's polynomial does not keep what is no straight line.
+//! States as they are read, where Newton's iteration and the polynomial between two steps leave more than round-off of what is no straight line.
 
 use super::BeamDae;
 use crate::discrete::{ledger, residual};
@@ -9,7 +9,7 @@ const CORRECTIONS: usize = 3;
 
 impl BeamDae {
     /// Gives lumped networks in a scaled state at `t` [s] the pressures of the volumes that they hold, [E25]: where fluid is compressed or walls
-    /// meet, a polynomial through pressures does not pass through those volumes.
+    /// meet, a polynomial through pressures does not pass through those volumes, and steps end within the tolerance of Newton's iteration.
     pub fn keep_volumes(&mut self, t: f64, y: &mut [f64]) {
         let bent = |wet: &Wet| !wet.lumped.is_empty() && (wet.compression.is_some() || wet.closing.is_some());
         if !self.system().model.wet.as_ref().is_some_and(bent) {

@@ -253,6 +253,7 @@ impl Model {
             let whole = whole.map(|(bladders, network)| Wet::new(case, bladders, &section, network, &effects));
             effects = EffectSet::choose(case, network.as_ref(), &Scene::new(case, &section, whole.as_ref()));
         }
+        let network = network.map(|network| Network { paced: true, ..network });
         Ok(Self::of(case, section, network, effects))
     }
 
@@ -274,9 +275,11 @@ impl Model {
 
     /// The model of a changed case with the effects and scales of this one.
     pub fn like(&self, case: &Case) -> Result<Self> {
+        let paced = self.wet.as_ref().is_some_and(|wet| wet.network.paced);
+        let network = Network::of(case)?.map(|network| Network { paced, ..network });
         Ok(Self {
             scales: self.scales,
-            ..Self::of(case, Section::new(case), Network::of(case)?, self.effects.clone())
+            ..Self::of(case, Section::new(case), network, self.effects.clone())
         })
     }
 

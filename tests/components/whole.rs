@@ -35,7 +35,7 @@ fn the_jacobian_is_that_of_the_residual() {
     }
 }
 
-/// Goal: an accumulator is one unknown in place of its junction's pressure; pumps, valves and volumes are none.
+/// Goal: an accumulator is one unknown in place of its junction's pressure; pumps and valves are none.
 #[test]
 fn unknowns_are_those_of_the_network_alone() {
     let size = |sets: &[&str]| BeamDae::new(System::new(&read(FINGER, sets)).unwrap()).len();

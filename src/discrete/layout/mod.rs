@@ -57,6 +57,7 @@ enum Name {
     Bridge(usize),
     Flow(&'static str, usize),
     LumpedNetwork(&'static str, usize),
+    LetIn(usize),
 }
 
 impl Layout {
@@ -128,6 +129,7 @@ impl Layout {
             Name::Junction(j) => format!("pressure [Pa] of junction {}", j + 1),
             Name::Accumulator(k) => format!("volume [m^3] in accumulator {}", k + 1),
             Name::Stored(j) => format!("fluid [m^3] that tubes hold at junction {}", j + 1),
+            Name::LetIn(source) => format!("volume [m^3] that source {} has let in", source + 1),
             Name::LumpedNetwork(what, component) => format!("{what} of network {}", component + 1),
             Name::Flow(what, tube) => format!("{what} of tube {}", tube + 1),
             Name::Bridge(k) => format!("pressure drop [Pa] of turbine behind rectifier {}", k + 1),

@@ -4,8 +4,11 @@ use std::ops::Range;
 
 use super::{Builder, Name};
 use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
-use crate::discrete::{FluidMesh, Mesh};
+use crate::discrete::{FluidMesh, Mesh, let_in};
 use crate::model::{LumpedKind, Model, Wet};
+
+/// Share of its size that counts as the size of a volume which sets steps: it is one among many unknowns, and work all follows from it.
+const CLOSELY: f64 = 0.1;
 
 /// Means of segments that bladders feel.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,6 +38,8 @@ pub struct Network {
     pub lumped_pressure: Vec<Option<usize>>,
     /// Volume of each lumped network, where it is unknown.
     pub lumped_volume: Vec<Option<usize>>,
+    /// The integral of what each source of prescribed volume lets in, with its number: nothing follows from it, but its error sets steps.
+    pub let_in: Vec<(usize, usize)>,
 }
 
 impl Coupling {
@@ -117,6 +122,17 @@ impl Network {
             let rate = volume * s.frequency;
             lumped_volume.push(fed.then(|| build.push(name("volume change [m^3]"), volume, rate, true)));
         }
+        let sources = 0..wet.network.sources.len();
+        let paced = sources.filter(|&source| wet.flows && wet.network.paced && let_in::is_kept(&wet.network, source));
+        let let_in = paced.map(|source| {
+            let compliance = wet.network.compliance_at(wet.network.sources[source].into, wet);
+            let volume = CLOSELY * (compliance * s.pressure).max(stored * fluid.ds);
+            (
+                build.push(Name::LetIn(source), volume, volume * s.frequency, true),
+                source,
+            )
+        });
+        let let_in = let_in.collect();
         Self {
             area,
             junction,
@@ -125,6 +141,7 @@ impl Network {
             branch,
             lumped_pressure,
             lumped_volume,
+            let_in,
         }
     }
 }

@@ -247,12 +247,15 @@ pub fn storage<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
 }
 
 /// Volume of each lumped network whose pressure is unknown, `[E25]`; that of a network that is fed is unknown but for what ports of
-/// prescribed volume have let in.
+/// prescribed volume have let in. The integrals of their rates, which nothing follows from, go along.
 pub fn lumped<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &Workspace<T>, r: &mut [T]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
     let l = &system.layout.network;
+    for &(unknown, source) in &l.let_in {
+        r[unknown] = yp[unknown] - T::constant(now.source_flow[source]);
+    }
     for (k, lumped) in wet.lumped.iter().enumerate() {
         let Some(row) = l.lumped_pressure[k] else { continue };
         let mut areas = T::zero();

@@ -191,6 +191,8 @@ pub struct Network {
     pub accumulators: Vec<Accumulator>,
     /// Whether nothing flows in, however volumes that sources give grow: for equilibria.
     pub still: bool,
+    /// Whether steps follow volumes that sources give where nothing else asks for it: for runs, whose work is an integral.
+    pub paced: bool,
     /// Component of each bladder; components are joined by links, not through pressure ports.
     pub component_of_bladder: Vec<usize>,
     /// Component of each junction.
@@ -300,7 +302,7 @@ impl Network {
     }
 
     /// Volume that everything joined to a point takes in per pressure, at ambient pressure [m^3/Pa].
-    pub(super) fn compliance_at(&self, node: Node, wet: &Wet) -> f64 {
+    pub fn compliance_at(&self, node: Node, wet: &Wet) -> f64 {
         let own = self.component_of(node);
         let here = |component: &&usize| Some(**component) == own;
         let bladders = self.component_of_bladder.iter().filter(here).count();

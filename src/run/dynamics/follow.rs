@@ -127,9 +127,7 @@ impl Run<'_> {
                 .and_then(|()| solver.interpolate(t, 1, &mut self.rates))
                 .and_then(|()| solver.integrals(Some(t), &mut self.integrals))
         };
-        if t != solver.time() {
-            solver.dae_mut().keep_volumes(t, &mut self.state);
-        }
+        solver.dae_mut().keep_volumes(t, &mut self.state);
         for (total, carried) in self.integrals.iter_mut().zip(&self.carried) {
             *total += carried;
         }

@@ -105,7 +105,7 @@ pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Re
     let section = &mut model.section;
     (section.drag, section.axial_damping_time, section.bending_damping_time) = (0.0, 0.0, 0.0);
     if let Some(wet) = model.wet.as_mut().filter(|wet| wet.flows) {
-        wet.network.still = true;
+        (wet.network.still, wet.network.paced) = (true, false);
         wet.storage.fill(Storage::Flowing);
         wet.lumped.clear();
     }
