@@ -26,6 +26,42 @@ fn a_wrong_key_names_the_nearest() {
     "#);
 }
 
+/// Goal: a wrong key below the name of a form is told with the nearest as any other is, however few keys the form has. Before, it was
+/// taken for a form that is not known, or for "2 keys where one names the form".
+#[test]
+fn a_wrong_key_in_a_form_names_the_nearest() {
+    let tank = |inner: &str| {
+        format!(r#", "accumulators": [{{"at": {{"junction": "a"}}, "kind": {{"tank": {inner}}}}}], "junctions": ["a"]"#)
+    };
+    let cases = [
+        (tank(r#"{"volume_m": 1e-5}"#), "/network/accumulators/0/kind/tank/volume_m", "volume_m3"),
+        (tank(r#"{"volume_m": 1e-5, "gas": 1}"#), "/network/accumulators/0/kind/tank/volume_m", "volume_m3"),
+        (
+            r#", "ports": [{"at": {"bladder": 1, "end": "inlet"}, "pressure_pa": {"polynomial": {"coeficients": [1]}}}]"#.into(),
+            "/network/ports/0/pressure_pa/polynomial/coeficients",
+            "coefficients",
+        ),
+        (
+            r#", "tubes": [{"from": {"bladder": 1, "end": "inlet"}, "to": {"bladder": 2, "end": "inlet"}, "cross_section": {"circle": {"radius": 1e-3}}}]"#
+                .into(),
+            "/network/tubes/0/cross_section/circle/radius",
+            "radius_m",
+        ),
+    ];
+    for (more, pointer, nearest) in cases {
+        let mut text: serde_json::Value = serde_json::from_str(WIRING).unwrap();
+        let more: serde_json::Value = serde_json::from_str(&format!("{{{}}}", &more[2..])).unwrap();
+        for (key, value) in more.as_object().unwrap() {
+            text["network"][key] = value.clone();
+        }
+        let fault = fault_of(&text.to_string());
+        let found = fault.violations.iter().find(|v| v.pointer == pointer);
+        let found = found.unwrap_or_else(|| panic!("{}", case::render(&fault, false, 100)));
+        assert!(found.what.starts_with("unknown key"), "{}", found.what);
+        assert_eq!(found.nearest.as_deref(), Some(nearest));
+    }
+}
+
 #[test]
 fn numbers_out_of_range() {
     let at = "/fluid/viscosity_pa_s";

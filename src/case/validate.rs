@@ -69,7 +69,8 @@ impl<'a> Walk<'a> {
         let fitting: Vec<&'a Value> = branches.iter().copied().filter(|b| type_fits(value, b)).collect();
         match value {
             Value::String(text) => self.choose_word(text, &fitting, branches, pointer),
-            Value::Object(members) if fitting.iter().any(|b| tag(b).is_some()) => {
+            // what has no alternative has no form to be named by, however few its keys are
+            Value::Object(members) if branches.len() > 1 && fitting.iter().any(|b| tag(b).is_some()) => {
                 self.choose_tag(members, &fitting, branches, pointer)
             }
             _ => match fitting.first() {
@@ -294,7 +295,8 @@ fn type_fits(value: &Value, branch: &Value) -> bool {
 /// What may stand somewhere, in words.
 fn kinds(branches: &[&Value]) -> String {
     let words: Vec<&str> = branches.iter().flat_map(|b| self::words(b)).collect();
-    let tags: Vec<&str> = branches.iter().filter_map(|b| tag(b)).collect();
+    let form = |branch| if branches.len() > 1 { tag(branch) } else { None };
+    let tags: Vec<&str> = branches.iter().filter_map(|b| form(b)).collect();
     let mut kinds = vec![];
     for branch in branches {
         let kind = match branch.get("type").and_then(Value::as_str) {
@@ -303,7 +305,7 @@ fn kinds(branches: &[&Value]) -> String {
             Some("boolean") => "true or false",
             Some("array") => "an array",
             Some("string") if words_free(branch) => "a text",
-            Some("object") if tag(branch).is_none() => "an object",
+            Some("object") if form(branch).is_none() => "an object",
             _ => continue,
         };
         kinds.push(kind.to_owned());
