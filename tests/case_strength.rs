@@ -83,6 +83,14 @@ fn what_no_beam_bears_is_refused_with_range_and_hint() {
         let (_, _, words) = found.unwrap_or_else(|| panic!("{pointer}={value}: {told:?}"));
         assert!(words.starts_with("up to ") && words.len() > 20, "{pointer}: {words}");
     }
+    let body = |inertia: &str| format!(r#"/attachments=[{{"at": 1, "rotary_inertia_kg_m2": {inertia}}}]"#);
+    assert_eq!(faults(&[&body("1e-3")]), []);
+    let told = faults(&[&body("1e3")]);
+    let at = "/attachments/0/rotary_inertia_kg_m2";
+    assert!(
+        matches!(&told[..], [(code, place, _)] if code == "E010" && place == at),
+        "{told:?}"
+    );
 }
 
 /// A flow that goes in for long without a way out presses more in than there is room for; in circles it may go on for ever.

@@ -1,14 +1,20 @@
 //! What is attached to the beam.
 
 use crate::case::faults::Violations;
+use crate::case::numbers::digits;
 use crate::case::schema::Case;
 use crate::error::{Code, Violation};
 
 /// Lengths of the beam beyond which no mass centre lies.
 const FAR: f64 = 10.0;
+/// Masses of the beam, in that distance, of which no body has more rotary inertia.
+const HEAVY: f64 = 100.0;
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
-    let far = FAR * case.beam.length_m;
+    let beam = &case.beam;
+    let far = FAR * beam.length_m;
+    let volume = beam.height_m * beam.width_m * beam.length_m;
+    let hardest = HEAVY * beam.density_kg_m3 * volume * beam.mass_factor.unwrap_or(1.0) * far * far;
     for (i, attachment) in case.attachments.iter().enumerate() {
         let pointer = format!("/attachments/{i}");
         for (key, offset) in attachment.offsets().into_iter().filter(|(_, offset)| *offset != 0.0) {
@@ -21,6 +27,16 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
                 let fault = Violation::new(Code::Implausible, at, what);
                 faults.push(fault.allowed(format!("-{far} to {far} m, ten lengths of the beam")));
             }
+        }
+        let inertia = attachment.rotary_inertia_kg_m2;
+        if inertia > hardest && hardest > 0.0 {
+            let what = format!(
+                "{} kg m^2 is more than a hundred beams have in a distance of ten lengths",
+                digits(inertia)
+            );
+            let fault = Violation::new(Code::Implausible, format!("{pointer}/rotary_inertia_kg_m2"), what);
+            let hint = "rotary inertias are in kg m^2; a g mm^2 is 1e-9";
+            faults.push(fault.allowed(format!("up to {} kg m^2", digits(hardest))).hint(hint));
         }
         if attachment.is_empty() {
             let what = format!("nothing is attached at {}", attachment.at);

@@ -11,11 +11,8 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     let gas = fluid.kind == FluidKind::Gas;
     let some_gas = fluid.gas() > 0.0;
     vessels(case, fluid, faults);
-    let accumulators = case.network.iter().flat_map(|network| &network.accumulators);
-    let cushions: Vec<_> = (0..)
-        .zip(accumulators)
-        .filter(|(_, one)| matches!(one.kind, AccumulatorKind::Gas { .. }))
-        .collect();
+    let mut accumulators = case.network.iter().flat_map(|network| &network.accumulators);
+    let cushioned = accumulators.any(|one| matches!(one.kind, AccumulatorKind::Gas { .. }));
     let of_liquid = [
         ("bulk_modulus_pa", fluid.bulk_modulus_pa),
         ("gas_fraction", fluid.gas_fraction),
@@ -44,21 +41,17 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             "it is that of a liquid: leave it out, or give kind \"liquid\"",
         );
     }
-    let presses = |key: &str| some_gas || (key == "ambient_pressure_pa" && !cushions.is_empty());
+    let presses = |key: &str| some_gas || (key == "ambient_pressure_pa" && cushioned);
     for (key, _) in of_gas.iter().filter(|(key, value)| !presses(key) && value.is_some()) {
         let hint = "it is that of a gas: leave it out, give kind \"gas\", or a gas_fraction";
         refuse(key, &format!("\"{key}\" of a liquid without gas"), hint);
-    }
-    for (i, one) in cushions {
-        let pointer = format!("/network/accumulators/{i}/start_pressure_pa");
-        above_vacuum(fluid, pointer, one.start_pressure_pa, faults);
     }
     if some_gas {
         pressures(case, fluid, faults);
     }
 }
 
-/// A tank is of fluid that is compressed; a vessel of gas holds some at ambient pressure.
+/// A tank is of fluid that is compressed; a vessel of gas holds some at ambient pressure; what gas fills is above absolute vacuum.
 fn vessels(case: &Case, fluid: &Fluid, faults: &mut Violations) {
     let all = case.network.iter().flat_map(|network| &network.accumulators);
     for (i, one) in all.enumerate() {
@@ -96,10 +89,8 @@ fn vessels(case: &Case, fluid: &Fluid, faults: &mut Violations) {
                 );
                 faults.push(Violation::new(Code::Range, start, what).allowed("0 Pa or more"));
             }
-            AccumulatorKind::Tank { .. } | AccumulatorKind::Elastic { .. } if fluid.gas() > 0.0 => {
-                above_vacuum(fluid, start, one.start_pressure_pa, faults);
-            }
-            _ => {}
+            AccumulatorKind::Tank { .. } | AccumulatorKind::Elastic { .. } if fluid.gas() <= 0.0 => {}
+            _ => above_vacuum(fluid, start, one.start_pressure_pa, faults),
         }
     }
 }
