@@ -284,6 +284,17 @@ fn sines_in_the_network_are_heard() {
     }
 }
 
+/// Numbers in a sentence have the digits that say something.
+#[test]
+fn frequencies_are_told_in_three_digits() {
+    let sine = r#"/loads=[{"force_x_n_m":{"signal":{"sine":{"amplitude":1,"frequency_hz":333.33333333333331}}}}]"#;
+    let (_, out, _) = slcbeam(Path::new("."), &["check", "cases/wiring-3.json", "--set", sine]);
+    assert!(
+        out.contains("W015") && out.contains("333 Hz") && !out.contains("333.3333"),
+        "{out}"
+    );
+}
+
 /// With `--json` every failure is an object on standard output, whatever the command.
 #[test]
 fn scripts_are_told_faults_as_json() {

@@ -14,7 +14,7 @@ pub mod inherited;
 mod load;
 pub mod locate;
 mod meanings;
-mod numbers;
+pub(crate) mod numbers;
 mod origins;
 mod own_cell;
 pub mod parameter;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Coupling, Model, Wet};
 use crate::case::inherited;
+use crate::case::numbers::digits;
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
 use crate::error::{Code, Violation};
@@ -280,7 +281,8 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         let outputs = 1.0 / (f * case.time.output_interval());
         if outputs < OUTPUTS_A_PERIOD {
             all.push(Code::FewOutputs.warning(format!(
-                "output: {outputs:.1} output times in a period of the drive at {f} Hz: histories and fields as written miss its peaks"
+                "output: {outputs:.1} output times in a period of the drive at {} Hz: histories and fields as written miss its peaks",
+                digits(f)
             )));
         }
     }

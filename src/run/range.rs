@@ -39,6 +39,8 @@ pub struct Limits {
     reynolds_per_flow: f64,
     /// `√ρ_0`: Mach number of a tube over what is watched of it.
     mach_per_flow: f64,
+    /// What of the model holds flow in tubes back.
+    held_back: &'static str,
     /// Pressure at which gas is as good as gone [Pa].
     vacuum: f64,
     /// Whether the start is an equilibrium.
@@ -122,6 +124,12 @@ impl Limits {
                 _ => 0.0,
             },
             mach_per_flow: case.fluid.as_ref().map_or(0.0, |f| f.density_kg_m3.sqrt()),
+            held_back: match [Effect::TubeInertia, Effect::TubeLosses].map(|effect| system.model.effects.has(effect)) {
+                [false, false] => "friction alone holds",
+                [true, false] => "friction and inertia alone hold",
+                [false, true] => "friction and losses alone hold",
+                [true, true] => "friction, losses and inertia alone hold",
+            },
             at_rest: case.start.equilibrium.is_some(),
             vacuum: wet
                 .and_then(|wet| wet.compression.as_ref())
@@ -268,8 +276,9 @@ impl Range {
         }
         if let Some(told) = self.mach.told(2, in_tube(&self.mach), MACH) {
             all.push(Code::FastGas.warning(format!(
-                "range of the model: the Mach number {told}; flow is meant to creep, and a tube passes no more than at 1, so that real flow \
-                 is slower than this"
+                "range of the model: the Mach number {told}; in the model {} it back, and a tube passes no more than at 1, so that real \
+                 flow is slower than this",
+                limits.held_back
             )));
         }
         if self.begun > 0.0 {

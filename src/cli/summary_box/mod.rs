@@ -210,7 +210,7 @@ fn pressure(summary: &Summary) -> Option<String> {
     let window = pressure
         .window_max_abs
         .map_or(String::new(), |p| format!("{BETWEEN}in the window {}", shown(p, "Pa")));
-    Some(format!("largest: {largest}{window}"))
+    Some(format!("largest in a bladder: {largest}{window}"))
 }
 
 fn energy(summary: &Summary) -> Option<String> {

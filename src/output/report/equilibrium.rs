@@ -27,7 +27,12 @@ const TILES: [(&str, &str, &str, &str); 4] = [
         "rad",
         "slope angle in the last state",
     ),
-    ("Largest pressure", "max_pressure_pa", "Pa", "gauge, in the last state"),
+    (
+        "Largest pressure",
+        "max_pressure_pa",
+        "Pa",
+        "gauge, in any bladder, in the last state",
+    ),
 ];
 
 /// Everything the page shows.

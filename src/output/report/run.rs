@@ -120,8 +120,8 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     tile("Tip, across", length("tip_u1_m"), "largest deflection u₁ at any time");
     tile("Tip, along", length("tip_u3_m"), "largest displacement u₃ at any time");
     let window = summary.quantity("max_pressure_pa").and_then(|q| q.window_max_abs);
-    let window = window.map_or("gauge, anywhere".into(), |p| {
-        format!("anywhere; {} in the last part", quantity(p, "Pa", 3))
+    let window = window.map_or("gauge, in any bladder".into(), |p| {
+        format!("in any bladder; {} in the last part", quantity(p, "Pa", 3))
     });
     tile(
         "Largest pressure",
