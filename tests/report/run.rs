@@ -37,6 +37,8 @@ fn the_page_of_a_shaken_beam_is_alive() {
     ];
     sound(&mut browser, &page, &sections);
     assert_eq!(browser.text("document.querySelector('h1').textContent"), "wiring-3");
+    // What hangs on neighbouring places is drawn beside one another, within the beam.
+    assert_eq!(browser.text("JSON.stringify(apart([1, 1, 0], 0.25, 1))"), "[0.75,1,0]");
     // Warnings stand before every figure.
     assert!(browser.eval("document.getElementById('warnings').getBoundingClientRect().top < document.getElementById('scene').getBoundingClientRect().top") == true);
 

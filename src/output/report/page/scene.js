@@ -128,20 +128,20 @@ function drawWires(add, layout, X, Y, scale) {
 
 /** Ends of chains and ports: a bar where nothing flows, a ring where pressure is given, an arrow where flow is. */
 function drawMarks(add, layout, X, Y, scene, thicker) {
-  const numbers = { pressure: 0, flow: 0 };
+  let drawn = 0;
   for (const mark of layout.marks) {
     const colour = wireColour(mark.colour);
-    const [x, y] = [X(mark.at.a), Y(mark.at.e)];
+    const [from, y] = [X(mark.at.a), Y(mark.at.e)];
+    const x = X(mark.drawn ?? mark.at.a);
     if (mark.kind === "sealed") {
       add(svg("path", { d: `M${x} ${y - 5}V${y + 5}`, style: `stroke:${colour};stroke-width:3;stroke-linecap:round` }));
       continue;
     }
     const away = mark.row > 0 ? -1 : 1;
     const edge = Y((mark.row * scene.height) / 2) + away * 18;
-    add(svg("path", { d: `M${x} ${y}V${edge - away * 6}`, style: `stroke:${colour};stroke-width:2.2;fill:none` }));
-    const letter = String.fromCharCode(65 + numbers.pressure + numbers.flow);
+    add(svg("path", { d: `M${from} ${y}${x === from ? "" : `H${x}`}V${edge - away * 6}`, style: `stroke:${colour};stroke-width:2.2;fill:none` }));
+    const letter = String.fromCharCode(65 + drawn++);
     mark.letter = letter;
-    numbers[mark.kind]++;
     if (mark.kind === "pressure") add(svg("circle", { cx: x, cy: edge, r: 8.5, style: `fill:${css("--card")};stroke:${colour};stroke-width:2` }));
     else add(svg("path", { d: `M${x - 9} ${edge + away * 8}H${x + 9}L${x} ${edge - away * 8}Z`, style: `fill:${css("--card")};stroke:${colour};stroke-width:2;stroke-linejoin:round` }));
     add(svg("text", { class: "strong", x, y: edge + (mark.kind === "pressure" ? 4 : away > 0 ? 7 : 0), "text-anchor": "middle", style: "font-size:10px", text: letter }));

@@ -85,11 +85,26 @@ function layOut(scene) {
     const row = port.at.junction !== undefined ? 1 : out.bladders[port.at.bladder].row;
     out.marks.push({ ...port, at, row, colour: colourAt(port.at), where: called(port.at) });
   }
+  for (const row of [1, -1]) {
+    const drawn = out.marks.filter((mark) => mark.row === row && mark.kind !== "sealed");
+    apart(drawn.map((mark) => mark.at.a), 0.04 * scene.length, scene.length).forEach((a, k) => (drawn[k].drawn = a));
+  }
   out.junctions = [...nodes.entries()].map(([key, at]) => ({ name: key, ...at }));
   return out;
 }
 
-/** Junctions in the middle of the beam, between what they join. */
+/** Places along the beam, moved as little as keeps them a gap apart and within it: the first stays where there is room. */
+function apart(places, gap, length) {
+  const order = places.map((a, k) => [a, k]).sort(([a, i], [b, j]) => a - b || i - j);
+  const moved = [...places];
+  let least = -Infinity;
+  for (const [a, k] of order) least = (moved[k] = Math.max(a, least)) + gap;
+  let most = Math.max(length, ...places);
+  for (const [, k] of order.reverse()) most = (moved[k] = Math.min(moved[k], most)) - gap;
+  return moved;
+}
+
+/** Junctions in the middle of the beam, between what they join, beside one another. */
 function placeJunctions(out, names, tubes, turbines, mouth) {
   const nodes = new Map();
   for (const key of names) {
@@ -100,6 +115,8 @@ function placeJunctions(out, names, tubes, turbines, mouth) {
     const first = bladders[0];
     nodes.set(key, { a, e: 0, colour: first ? out.colourOf(out.bladders[first.bladder].network) : -1 });
   }
+  const placed = [...nodes.values()];
+  apart(placed.map((node) => node.a), 0.06 * out.segment * (out.bladders.length / 2), out.segment * (out.bladders.length / 2)).forEach((a, k) => (placed[k].a = a));
   return nodes;
 }
 
