@@ -110,7 +110,7 @@ fn a_finished_run_in_a_glance() {
     insta::assert_snapshot!(text, @r"
     ╭─ wiring-2 ──────────────────────────────────────────────────── finished ─╮
     │ deflection  tip, largest: u₁ 123 µm · u₃ 1.25 mm                         │
-    │ pressure    largest: 9.01 kPa                                            │
+    │ pressure    largest in a bladder: 9.01 kPa                               │
     │ balances    open by (relative): energy 3.0·10⁻⁸                          │
     │ integrator  12 345 steps, mostly of order 4 · 0 rejected · 371 unknowns  │
     │ time        500 ms simulated in 12.3 s · 24.6 s for a simulated second   │
@@ -143,7 +143,7 @@ fn a_failure_says_why_and_warnings_come_first() {
     │             and 2 more in summary.json; slcbeam explain  │
     │             says more of each number                     │
     │ deflection  tip, largest: u₁ 123 µm · u₃ 1.25 mm         │
-    │ pressure    largest: 9.01 kPa                            │
+    │ pressure    largest in a bladder: 9.01 kPa               │
     │ balances    open by (relative): energy 3.0·10⁻⁸ ·        │
     │             volume –                                     │
     │ integrator  12 345 steps, mostly of order 4 ·            │

@@ -1,6 +1,9 @@
 //! Waves that a mesh carries: how fast, how damped, and which order of BDF they make unstable.
 
-use super::System;
+use nalgebra::Complex;
+
+use super::fluid_mesh::Place;
+use super::{FluidMesh, System};
 use crate::case::schema::{Case, MaxOrder, Method};
 use crate::error::{Code, Violation};
 
@@ -12,7 +15,7 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
     let MaxOrder::Order(order @ (3 | 4)) = case.solver.max_order else {
         return None;
     };
-    if !matches!(case.solver.method, Method::Auto | Method::Ida) || system.layout.waves() == [false; 2] {
+    if !matches!(case.solver.method, Method::Auto | Method::Ida) || !carries(system) {
         return None;
     }
     let ratio = least_damping_ratio(system);
@@ -20,7 +23,7 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
         Violation::new(
             Code::Order, "/solver/max_order",
             format!(
-                "BDF of order {order} is unstable for the waves of this beam, whose least damping ratio is {ratio:.1e}: \
+                "BDF of order {order} is unstable for the waves of this scene, whose least damping ratio is {ratio:.1e}: \
                  steps become tiny or rates become garbage"
             ),
         )
@@ -29,10 +32,40 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
     })
 }
 
-/// Smallest damping ratio among the waves that the mesh carries: `ζ = c/(2 m ω) + ω τ/2`, bending and axial. Masses and
+/// Whether the mesh carries waves of the solid or of the fluid.
+pub fn carries(system: &System) -> bool {
+    system.layout.waves() != [false; 2] || in_fluid(system).next().is_some()
+}
+
+/// Damping ratios and angular frequencies [1/s] of fluid that swings through one link against what its cells take up, all others at rest: the highest that it
+/// has a part in is at most √2 times that, and hardly less damped. `ζ = Re Z/(2 Im Z)` at `Im Z = 1/(ω C)`, Z the link's impedance, found by inertance alone.
+fn in_fluid(system: &System) -> impl Iterator<Item = [f64; 2]> + '_ {
+    let wet = system.model.wet.as_ref().zip(system.fluid.as_ref());
+    wet.into_iter().flat_map(move |(wet, fluid): (_, &FluidMesh)| {
+        fluid.links.iter().filter_map(move |link| {
+            let law = link.flow.map(|flow| flow.law).filter(|law| law.inertance > 0.0)?;
+            let cells = [link.from, link.to]
+                .into_iter()
+                .filter(|end| matches!(end, Place::Cell(_)))
+                .count();
+            let stiffness = cells as f64 / (wet.compliance() * fluid.ds);
+            let omega = (stiffness / law.inertance).sqrt();
+            let s = Complex::new(0.0, omega);
+            let branches = law.branches().map(|(resistance, rate)| s * resistance / (s + rate));
+            let impedance = s * law.inertance + link.in_series() + branches.sum::<Complex<f64>>();
+            (cells > 0).then(|| [0.5 * impedance.re / impedance.im, omega])
+        })
+    })
+}
+
+/// Smallest damping ratio among the waves that the mesh carries: `ζ = c/(2 m ω) + ω τ/2`, bending and axial, and those of the fluid. Masses and
 /// springs that are attached swing with less, by how much is not known: 0. So do sections that shear by themselves: nothing but the damping of
 /// bending damps them.
 pub fn least_damping_ratio(system: &System) -> f64 {
+    in_fluid(system).fold(of_solid(system), |least, [ratio, _]| least.min(ratio))
+}
+
+fn of_solid(system: &System) -> f64 {
     if !system.attached.is_empty() || !system.touching.is_empty() {
         return 0.0;
     }
@@ -84,7 +117,10 @@ pub fn highest_frequency(system: &System) -> f64 {
     };
     let axial = 2.0 / h * (s.stiffening * s.axial_stiffness / s.mass_per_length).sqrt();
     let carried = [bending, axial].into_iter().zip(system.layout.waves());
-    carried.filter(|(_, waves)| *waves).map(|(f, _)| f).fold(0.0, f64::max)
+    let carried = carried.filter(|(_, waves)| *waves).map(|(frequency, _)| frequency);
+    carried
+        .chain(in_fluid(system).map(|[_, frequency]| frequency))
+        .fold(0.0, f64::max)
 }
 
 /// Highest angular frequency of sections that shear [1/s], at most: `ω² ≤ 4 kGA/(h² m) + kGA/(m y11) + 4 EI/(h² m y11)`, from what each of

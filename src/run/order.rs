@@ -6,7 +6,7 @@
 
 use crate::case::schema::{Case, MaxOrder};
 use crate::discrete::System;
-use crate::discrete::waves::{ENOUGH, highest_frequency, least_damping_ratio};
+use crate::discrete::waves::{ENOUGH, carries, highest_frequency, least_damping_ratio};
 
 /// Highest order, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,9 +23,7 @@ pub fn choose(case: &Case, system: &System) -> OrderChoice {
     match case.solver.max_order {
         MaxOrder::Order(order) => chosen(order, "as asked".into()),
         MaxOrder::Forced(order) => chosen(order, "forced".into()),
-        MaxOrder::Auto if system.layout.waves() == [false; 2] => {
-            chosen(5, "no solid inertia: nothing oscillates freely".into())
-        }
+        MaxOrder::Auto if !carries(system) => chosen(5, "no inertia: nothing oscillates freely".into()),
         MaxOrder::Auto => match least_damping_ratio(system) {
             0.0 => chosen(
                 2,
@@ -48,7 +46,7 @@ pub fn choose(case: &Case, system: &System) -> OrderChoice {
 /// A sentence when the steps of a run were held down by stability and not by accuracy: orders beyond 2 were allowed on
 /// hardly damped waves, and the mean step stayed near the period of the fastest wave.
 pub fn held_by_stability(system: &System, order: u8, time: f64, steps: u64, rejected: u64) -> Option<String> {
-    if order <= 2 || system.layout.waves() == [false; 2] || steps < 1000 {
+    if order <= 2 || !carries(system) || steps < 1000 {
         return None;
     }
     let ratio = least_damping_ratio(system);

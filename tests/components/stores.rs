@@ -106,6 +106,7 @@ fn fluid_swings_between_two_vessels() {
 }
 
 /// Goal: what a syringe presses into a vessel is what that holds, and its port tells its power: the rate of the vessel's energy.
+/// Tolerance: volumes are exact; work is an integral over the few steps that a syringe alone asks for, some thousand times rtol.
 #[test]
 fn a_syringe_presses_its_volume_in() {
     let syringe = r#"/network/ports=[{"name": "syringe", "at": {"junction": "a"}, "volume_m3":
@@ -130,9 +131,9 @@ fn a_syringe_presses_its_volume_in() {
     println!("{off:?}");
     let pressure: Vec<f64> = held.iter().map(|v| v / 1e-12).collect();
     assert!(apart(&memory.column("port_syringe_pressure").unwrap(), &pressure) < 1e-9);
-    assert!(off[0] < 1e-7 && off[1] < 1e-6, "{off:?}");
+    assert!(off[0] < 1e-14 && off[1] < 1e-14, "{off:?}");
     assert!(
-        summary.balances.energy_residual_relative.abs() < 1e-6,
+        summary.balances.energy_residual_relative.abs() < 3e-6,
         "{:e}",
         summary.balances.energy_residual_relative
     );

@@ -7,6 +7,9 @@ use crate::discrete::fluid_mesh::{MeshFlow, MeshLink, Place};
 use crate::discrete::{FluidMesh, Mesh, let_in};
 use crate::model::{LumpedKind, Model, Wet};
 
+/// Share of its size that counts as the size of a volume which sets steps: it is one among many unknowns, and work all follows from it.
+const CLOSELY: f64 = 0.1;
+
 /// Means of segments that bladders feel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Coupling {
@@ -127,7 +130,7 @@ impl Network {
         let paced = sources.filter(|&source| wet.flows && wet.network.paced && let_in::is_kept(&wet.network, source));
         let let_in = paced.map(|source| {
             let compliance = wet.network.compliance_at(wet.network.sources[source].into, wet);
-            let volume = (compliance * s.pressure).max(stored * fluid.ds);
+            let volume = CLOSELY * (compliance * s.pressure).max(stored * fluid.ds);
             (
                 build.push(Name::LetIn(source), volume, volume * s.frequency, true),
                 source,
