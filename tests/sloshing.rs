@@ -258,3 +258,32 @@ fn it_is_there_where_it_is_called_for() {
 const SHAKEN: &str = r#"{"name": "shaken", "preset": "matia-gat-beam", "bladders": {"coupling": "reciprocal"},
     "network": {"chains": [{"bladders": [1, 2, 3, 4]}]}, "ends": {"root": {"clamped": {"u1_m": 0}}, "tip": "free"},
     "effects": {"solid_inertia": "off", "tube_inertia": "on"}, "time": {"end_s": 100}}"#;
+
+/// Goal: what momentum along bladders does vanishes in proportion to the density of the fluid.
+#[test]
+fn it_vanishes_with_the_density_of_the_fluid() {
+    let errors = [1000.0, 100.0, 10.0].map(|density| {
+        let pressures = ["on", "off"].map(|inertia| {
+            let network = r#"/network={"chains": [{"bladders": [1, 2, 3], "ends": [{"pressure_pa": {"sine": {"amplitude": 1000, "frequency_hz": 2, "ramp_cycles": 1}}}, "sealed"]}]}"#;
+            let effects = format!(
+                r#"/effects={{"solid_inertia": "off", "tube_inertia": "on", "bladder_inertia": "{inertia}", "unsteady_friction": "off", "tube_losses": "off"}}"#
+            );
+            let density = format!("/fluid/density_kg_m3={density}");
+            let sets = [network, &effects, &density, "/time/end_s=1", "/time/output_interval_s=0.01", "/solver/rtol=1e-9"];
+            let sets = sets.map(str::to_owned);
+            let case = case::parse(SHAKEN, Path::new("mine.json"), Path::new(""), &sets).unwrap();
+            let mut memory = Memory::default();
+            assert_eq!(dynamics::run(&case, &mut memory).unwrap().summary.status, Status::Finished);
+            memory.column("tip_u1").unwrap()
+        });
+        let [on, off] = &pressures;
+        let largest = on.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let off = on.iter().zip(off).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        off / largest
+    });
+    println!("{errors:?}");
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log10();
+        assert!((order - 1.0).abs() < 0.1, "{errors:?}");
+    }
+}

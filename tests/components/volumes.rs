@@ -37,7 +37,7 @@ fn filled(into: Into, fluid: &str, lumped: bool) -> Value {
                     "ports": [{"name": "syringe", "at": {"junction": "line"}, "volume_m3": signal()}]},
         "beam": {"damping": {"bending_time_s": 5e-3, "axial_time_s": 5e-3}},
         "ends": {"root": "clamped", "tip": "free"},
-        "effects": {"network_pressure_differences": if lumped { "off" } else { "on" }},
+        "effects": {"network_pressure_differences": if lumped { "off" } else { "on" }, "bladder_inertia": "off"},
         "time": {"end_s": 0.8, "output_interval_s": 0.004}
     });
     let network = &mut case["network"];
