@@ -243,6 +243,33 @@ fn it_is_there_where_it_is_called_for() {
     let [slow, fast] = [0.02, 0.04].map(|frequency| numbers(100.0, frequency));
     assert!(!slow.0 && (fast.1 / slow.1 - 4.0).abs() < 1e-6, "{slow:?} {fast:?}");
     assert!(numbers(1e-3, 10.0).0);
+    // cells along a bladder are there where fluid swings along it, however little friction holds it back
+    let case = case::parse(
+        SHAKEN,
+        Path::new("mine.json"),
+        Path::new(""),
+        &[
+            "/fluid/viscosity_pa_s=1e-6".to_owned(),
+            r#"/ends/root={"clamped": {"u1_m": {"sine": {"amplitude": 1e-3, "frequency_hz": 10}}}}"#.to_owned(),
+        ],
+    )
+    .unwrap();
+    let set = System::new(&case).unwrap().model.effects;
+    assert!(set.has(Effect::BladderInertia) && set.has(Effect::FlowAlongBladders));
+    // by name it brings inertia in tubes along, in the published form, too
+    for formulation in ["published", "conservative"] {
+        let sets = [
+            format!("/formulation={formulation:?}"),
+            r#"/effects={"bladder_inertia": "on"}"#.to_owned(),
+            "/fluid/viscosity_pa_s=100".to_owned(),
+        ];
+        let case = case::parse(SHAKEN, Path::new("mine.json"), Path::new(""), &sets).unwrap();
+        let set = System::new(&case).unwrap().model.effects;
+        assert!(
+            set.has(Effect::BladderInertia) && set.has(Effect::TubeInertia),
+            "{formulation}"
+        );
+    }
     let published = "/formulation=\"published\"".to_owned();
     let case = case::parse(
         SHAKEN,

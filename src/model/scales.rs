@@ -208,7 +208,11 @@ impl Scales {
                         .largest(case.time.end_s)
                         .value
                         .max(case.held_at_start(volume).abs());
-                    d.pressure = d.pressure.max(volume / wet.network.compliance_at(source.into, wet));
+                    // where nothing stores, what it takes to press it out counts alone
+                    let compliance = wet.network.compliance_at(source.into, wet);
+                    if compliance > 0.0 {
+                        d.pressure = d.pressure.max(volume / compliance);
+                    }
                 }
             }
             let moment = moment_of_loads + ei * started / (l * l);

@@ -12,6 +12,8 @@ use crate::numerics::kernels::weighted_square;
 
 /// Iterations allowed in one stage.
 const ITERATIONS: usize = 7;
+/// Matrices that an iteration makes on its way, at most.
+const RENEWALS: usize = 2;
 /// Contraction beyond which an iteration is given up.
 const DIVERGING: f64 = 0.9;
 /// Nodes of the polynomial that predicts a stage.
@@ -158,8 +160,19 @@ impl<D: Dae> OneStep<D> {
         }
     }
 
-    /// Solves stage `i` at time `t` [s] from its prediction.
+    /// Solves stage `i` at time `t` [s] from its prediction. Where the iteration does not converge with a matrix that is new, as where a valve opens on the way,
+    /// it goes on from where it is with one made there.
     fn newton(&mut self, i: usize, t: f64, cj: f64) -> Result<(), StageError> {
+        for _ in 0..RENEWALS {
+            match self.iterate(i, t, cj) {
+                Err(StageError::Newton) if self.matrix.fresh => self.matrix.stale = true,
+                ended => return ended,
+            }
+        }
+        self.iterate(i, t, cj)
+    }
+
+    fn iterate(&mut self, i: usize, t: f64, cj: f64) -> Result<(), StageError> {
         self.update(i);
         let state = (t, self.now.y[i].as_slice(), self.work.yp.as_slice());
         self.matrix

@@ -148,3 +148,38 @@ fn equilibrium_of_a_syringe_is_at_rest() {
         assert!(!found.moving(), "{into:?}: {:e}", found.rate);
     }
 }
+
+/// Goal: what a syringe holds in the network at the start is no volume that has come in since: balances close from an equilibrium on. (Open by 100 % before.)
+#[test]
+fn a_syringe_may_have_something_in_at_the_start() {
+    for fluid in ["water", "air"] {
+        let mut case = filled(Into::Junction, fluid, false);
+        case["network"]["ports"][0]["volume_m3"] =
+            json!({"ramp": {"from": 1e-8, "to": 2e-8, "start_s": 0.1, "duration_s": 0.2, "shape": "smooth"}});
+        case["start"] = json!({"equilibrium": {}});
+        let (memory, summary) = run(&case.to_string(), &["/solver/rtol=1e-5"]);
+        let volume = summary.balances.volume_residual_relative;
+        assert!(volume < 1e-9, "{fluid}: {volume:e}");
+        let told = memory.column("port_syringe_volume").unwrap();
+        assert!(
+            told[0].abs() < 1e-20 && (told.last().unwrap() / 1e-8 - 1.0).abs() < 1e-9,
+            "{told:?}"
+        );
+    }
+}
+
+/// Goal: a syringe may press into a part of the network that stores nothing and leads out. (NaN in every equation before.)
+#[test]
+fn a_syringe_may_press_through_a_tube_alone() {
+    let mut case = filled(Into::Junction, "water", false);
+    case["network"] = json!({
+        "junctions": ["a", "b"],
+        "tubes": [{"from": {"junction": "a"}, "to": {"junction": "b"}}],
+        "ports": [{"name": "syringe", "at": {"junction": "a"}, "volume_m3": {"ramp": {"from": 0, "to": 1e-8, "start_s": 0.1, "duration_s": 0.3, "shape": "smooth"}}},
+                  {"name": "open", "at": {"junction": "b"}, "pressure_pa": 0}]
+    });
+    let (memory, summary) = run(&case.to_string(), &["/solver/rtol=1e-6"]);
+    assert!(summary.balances.energy_residual_relative < 1e-3);
+    let told = memory.column("port_syringe_volume").unwrap();
+    assert!((told.last().unwrap() / 1e-8 - 1.0).abs() < 1e-12, "{told:?}");
+}

@@ -75,9 +75,11 @@ pub fn settle(system: &System, now: &TimeData, integrals: &mut [f64]) {
     let Some(wet) = &system.model.wet else { return };
     let (network, own) = (&wet.network, first(wet) + wet.network.ports.len());
     for (k, source) in network.sources.iter().enumerate() {
-        let Feed::Volume(_) = source.feed else { continue };
-        let more = now.source_volume[k] - integrals[own + k];
-        integrals[own + k] = now.source_volume[k];
+        let Feed::Volume(volume) = &source.feed else { continue };
+        // since the start, which may have something in it already
+        let let_in = now.source_volume[k] - volume.value(0.0);
+        let more = let_in - integrals[own + k];
+        integrals[own + k] = let_in;
         let component = network.component_of(source.into);
         if let Some(open) = network.open.iter().position(|&one| Some(one) == component) {
             let [left, by_law] = [2 * open, 2 * (network.open.len() + open)];

@@ -129,6 +129,8 @@ pub enum Keeps {
     Sudden,
     /// Ports or turbines take fluid.
     Fed,
+    /// Something that has a meaning only with it is asked for by name.
+    AskedWithInertia,
     /// It is all that the fluid dissipates.
     Dissipation,
     /// The start has differences along a bladder.
@@ -228,6 +230,7 @@ impl Display for Keeps {
             Self::NotHeld => "the ends do not hold the beam without it",
             Self::Sudden => "something acts suddenly and excites waves of every length",
             Self::Fed => "ports or turbines take fluid through the network",
+            Self::AskedWithInertia => "something that needs it is asked for by name",
             Self::Dissipation => "all that the fluid dissipates goes with them",
             Self::UnevenStart => "the start has differences along a bladder",
             Self::FiniteStrain => "the section is not linear at these loads",

@@ -129,6 +129,9 @@ impl<'a> Chooser<'a> {
                     (true, Cause::Refused(obstacle))
                 }
             },
+            Choice::Auto if effect == Effect::TubeInertia && self.asked_with_inertia() => {
+                (true, Cause::Kept(Keeps::AskedWithInertia))
+            }
             Choice::Auto if effect.by_name(self.case.formulation) => (false, Cause::Unasked),
             Choice::Auto if effect.of_inertia() && self.feeds_junction() => (false, Cause::FedJunction),
             Choice::Auto => match self.scene {
@@ -161,6 +164,22 @@ impl<'a> Chooser<'a> {
             Effect::Asymmetry if bladders.is_some_and(|b| b.coupling == Coupling::Reciprocal) => Err(Cause::NoKinks),
             _ => Ok(()),
         }
+    }
+
+    /// Whether something is asked for by name that has a meaning only with inertia in tubes.
+    fn asked_with_inertia(&self) -> bool {
+        let with = [Effect::BladderInertia, Effect::UnsteadyFriction];
+        with.iter().any(|&effect| self.choices.of(effect) == Choice::On)
+    }
+
+    /// Whether fluid may swing along bladders in proportion to its number, which is told then: nothing that is decided already stands against it, nor a choice by name.
+    fn may_swing(&self, scene: &Scene) -> Option<f64> {
+        let bladders = Effect::BladderInertia;
+        let massless = self.fluid().is_some_and(|fluid| fluid.density_kg_m3 == 0.0);
+        let named = self.choices.of(bladders);
+        let off = named == Choice::Off || self.choices.of(Effect::TubeInertia) == Choice::Off;
+        let unasked = bladders.by_name(self.case.formulation) && named != Choice::On;
+        (!massless && !off && !unasked).then(|| scene.sloshing(self.tolerance))
     }
 
     /// Whether a port's flow enters a junction of tubes alone, in which nothing is compressed that would take it up.
@@ -270,7 +289,13 @@ impl<'a> Chooser<'a> {
             Effect::FlowAlongBladders => match self.network.and_then(obstacles::network_pressure_differences) {
                 Some(through) => (true, Cause::Obstacle(through)),
                 None if scene.uneven_start() => kept(Keeps::UnevenStart),
-                None => weigh(Number::LagAlongBladders, scene.lag_along_bladders(self.tolerance)),
+                None => {
+                    let lag = scene.lag_along_bladders(self.tolerance);
+                    match self.may_swing(scene).filter(|swing| *swing > lag) {
+                        Some(swing) => weigh(Number::Sloshing, swing),
+                        None => weigh(Number::LagAlongBladders, lag),
+                    }
+                }
             },
             Effect::Compressibility if self.fluid().is_some_and(|fluid| fluid.kind == FluidKind::Gas) => {
                 kept(Keeps::Gas)

@@ -19,7 +19,7 @@ pub(super) fn fault(failure: &IntegrationError) -> SolverError {
             }
             .into(),
         ),
-        hint: Some("look at the balances and fields up to this time; try another rtol, a wider kink_width, or damping".into()),
+        hint: Some("look at the balances and fields up to this time; try another rtol, a wider kink_width, wider smoothing_pa or more leak of check valves, or damping".into()),
     }
 }
 
