@@ -12,6 +12,8 @@ use crate::numerics::kernels::weighted_square;
 
 /// Iterations allowed in one stage.
 const ITERATIONS: usize = 7;
+/// Part of the last step from which on a step is short.
+const SHORT: f64 = 0.1;
 /// Matrices that an iteration makes on its way, at most.
 const RENEWALS: usize = 2;
 /// Contraction beyond which an iteration is given up.
@@ -160,12 +162,13 @@ impl<D: Dae> OneStep<D> {
         }
     }
 
-    /// Solves stage `i` at time `t` [s] from its prediction. Where the iteration does not converge with a matrix that is new, as where a valve opens on the way,
-    /// it goes on from where it is with one made there.
+    /// Solves stage `i` at time `t` [s] from its prediction. Where the iteration does not converge though the step is short and the matrix new, as where a valve
+    /// opens on the way, it goes on from where it is with one made there.
     fn newton(&mut self, i: usize, t: f64, cj: f64) -> Result<(), StageError> {
+        let short = self.now.h < SHORT * self.last.h;
         for _ in 0..RENEWALS {
             match self.iterate(i, t, cj) {
-                Err(StageError::Newton) if self.matrix.fresh => self.matrix.stale = true,
+                Err(StageError::Newton) if short && self.matrix.fresh => self.matrix.stale = true,
                 ended => return ended,
             }
         }

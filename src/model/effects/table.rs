@@ -128,7 +128,7 @@ pub fn about(effect: Effect) -> About {
         Effect::FlowAlongBladders => About {
             adds: "q = -(q1b/μ) dp/ds inside a bladder",
             brings: "cells_per_bladder areas in each bladder instead of one",
-            number: "ω a_p l_b² μ/(π² q1b)",
+            number: "ω a_p l_b² μ/(π² q1b), or that of bladder_inertia, whichever is more",
             cost: "cells_per_bladder - 1 unknowns a bladder",
             needs: &[Fluid, Flow, NetworkPressureDifferences],
             presence: Presence::Chosen,
