@@ -3,12 +3,15 @@
 #[path = "common/chance.rs"]
 mod chance;
 mod differences;
+#[path = "common/secant.rs"]
+mod secant;
 
 use std::f64::consts::PI;
 use std::path::Path;
 
 use differences::worst_difference;
 use nalgebra::Complex;
+use secant::root;
 use slcbeam::case::schema::{CrossSection, Effect};
 use slcbeam::case::{self, Case};
 use slcbeam::dae::{BeamDae, Dae};
@@ -153,19 +156,6 @@ fn fluid_swings_along_a_bladder() {
             assert!((1.8..2.2).contains(&order), "{errors:?}");
         }
     }
-}
-
-/// A root near a guess, by secants.
-fn root(f: impl Fn(C) -> C, guess: C) -> C {
-    let (mut a, mut b) = (guess * 1.001, guess);
-    for _ in 0..30 {
-        let (at_a, at_b) = (f(a), f(b));
-        if (at_b - at_a).norm() == 0.0 {
-            break;
-        }
-        (a, b) = (b, b - at_b * (b - a) / (at_b - at_a));
-    }
-    b
 }
 
 /// A row of bladders behind each other with a tee, a valve and a turbine, the root shaken.

@@ -3,12 +3,15 @@
 #[path = "common/chance.rs"]
 mod chance;
 mod differences;
+#[path = "common/secant.rs"]
+mod secant;
 
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use differences::worst_difference;
 use nalgebra::Complex;
+use secant::root;
 use slcbeam::case::{self, Case};
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
@@ -99,6 +102,20 @@ fn friction_is_churchills() {
     }
 }
 
+/// A run that ends, with balances of energy and volume closed to the integrator's error.
+fn closes(sets: &[&str]) {
+    let summary = run(sets);
+    assert_eq!(summary.status, Status::Finished, "{sets:?}: {:?}", summary.reason);
+    let (energy, volume) = (
+        summary.balances.energy_residual_relative,
+        summary.balances.volume_residual_relative,
+    );
+    assert!(
+        energy.abs() < 1e-6 && volume.abs() < 1e-12,
+        "{sets:?}: {energy:e} {volume:e}"
+    );
+}
+
 /// Goal: each effect alone and all together close the balances of energy and volume to the integrator's error.
 #[test]
 fn balances_close_with_every_effect() {
@@ -112,16 +129,7 @@ fn balances_close_with_every_effect() {
         for more in [&[][..], &[valve]] {
             let effects = format!("/effects={effects}");
             let sets = [&[effects.as_str(), "/time/end_s=0.2", "/solver/rtol=1e-7"][..], more].concat();
-            let summary = run(&sets);
-            assert_eq!(summary.status, Status::Finished, "{sets:?}: {:?}", summary.reason);
-            let (energy, volume) = (
-                summary.balances.energy_residual_relative,
-                summary.balances.volume_residual_relative,
-            );
-            assert!(
-                energy.abs() < 1e-6 && volume.abs() < 1e-12,
-                "{sets:?}: {energy:e} {volume:e}"
-            );
+            closes(&sets);
         }
     }
 }
@@ -162,16 +170,7 @@ fn a_turbine_may_stand_between_tubes_with_inertia() {
             sets.extend(fluid);
             let mut dae = BeamDae::new(System::new(&read(&sets)).unwrap());
             assert!(worst_difference(&mut dae, 7, 0.1) < 1e-6);
-            let summary = run(&sets);
-            assert_eq!(summary.status, Status::Finished, "{sets:?}: {:?}", summary.reason);
-            let (energy, volume) = (
-                summary.balances.energy_residual_relative,
-                summary.balances.volume_residual_relative,
-            );
-            assert!(
-                energy.abs() < 1e-6 && volume.abs() < 1e-12,
-                "{sets:?}: {energy:e} {volume:e}"
-            );
+            closes(&sets);
         }
     }
 }
@@ -283,19 +282,6 @@ fn fluid_swings_between_bladders_as_in_a_u_tube() {
             println!("{k} {radius} {found} {by_bessel}");
         }
     }
-}
-
-/// A root near a guess, by secants.
-fn root(f: impl Fn(Complex<f64>) -> Complex<f64>, guess: Complex<f64>) -> Complex<f64> {
-    let (mut a, mut b) = (guess * 1.001, guess);
-    for _ in 0..30 {
-        let (at_a, at_b) = (f(a), f(b));
-        if (at_b - at_a).norm() == 0.0 {
-            break;
-        }
-        (a, b) = (b, b - at_b * (b - a) / (at_b - at_a));
-    }
-    b
 }
 
 /// Goal: the numbers that tell at once whether flow creeps are the Womersley number of the widest tube and the Reynolds number of the narrowest, by radii

@@ -334,6 +334,11 @@ impl FluidMesh {
         sum / f64::from(count.max(1))
     }
 
+    /// Faces between cells of bladders, by the cells on either side.
+    pub fn faces(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        faces(&self.flowing, self.cells_per_bladder)
+    }
+
     /// Faces between cells of a bladder through which flow creeps, by the cells on either side.
     #[inline]
     pub fn creeping_faces(&self) -> impl Iterator<Item = [usize; 2]> + '_ {

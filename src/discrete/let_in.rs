@@ -79,12 +79,11 @@ fn joined(fluid: &FluidMesh, to: Place, links: impl Iterator<Item = (Place, Plac
         Place::Junction(j) => Some(fluid.cells + j),
         Place::Port(_) => None,
     };
-    let within = fluid.flowing.iter().flat_map(|&bladder| {
-        let cells = fluid.cells_of(bladder);
-        (cells.start + 1..cells.end).map(|c| (c - 1, c))
-    });
     let mut sets = Sets::new(fluid.cells + fluid.junctions.len());
-    for (a, b) in within.chain(links.filter_map(|(a, b)| index(a).zip(index(b)))) {
+    for [a, b] in fluid.faces() {
+        sets.join(a, b);
+    }
+    for (a, b) in links.filter_map(|(a, b)| index(a).zip(index(b))) {
         sets.join(a, b);
     }
     let own = index(to).map(|place| sets.root(place));

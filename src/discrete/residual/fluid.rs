@@ -54,7 +54,7 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
                     let area = wet.swelling(p, imposed);
                     w.fluid.area[cells.clone()].fill(area);
                     w.fluid.pressure[cells].fill(p);
-                    wet.closing.map_or(p, |closing| p + closing.pressure(area))
+                    straining(wet, p, area)
                 }
             };
         }
@@ -89,7 +89,7 @@ fn compressed<T: Scalar>(
             let p = own.lumped[lumped];
             let area = wet.swelling(p, imposed);
             own.area[cells.clone()].fill(compression.content(p, area));
-            (p, wet.closing.map_or(p, |closing| p + closing.pressure(area)), area)
+            (p, straining(wet, p, area), area)
         }
     };
     own.pressure[cells.clone()].fill(p);
@@ -111,6 +111,15 @@ fn of_content<T: Scalar>(wet: &Wet, compression: &Compression, content: T, impos
             let in_walls = law.pressure(area, imposed);
             (in_walls - closing.pressure(area), in_walls, area)
         }
+    }
+}
+
+/// Pressure that strains the walls of a cell by that of the fluid in it: the inverse of [`pressed`].
+#[inline]
+fn straining<T: Scalar>(wet: &Wet, fluid: T, area: T) -> T {
+    match &wet.closing {
+        None => fluid,
+        Some(closing) => fluid + closing.pressure(area),
     }
 }
 

@@ -131,11 +131,6 @@ impl TubeFlow {
     pub fn steady_inertance(&self) -> f64 {
         PARABOLIC * self.law.inertance
     }
-
-    /// `Δp_loss(q)` [Pa].
-    pub fn loss(&self, flow: f64) -> f64 {
-        self.law.loss(flow)
-    }
 }
 
 impl FlowLaw {

@@ -167,7 +167,7 @@ impl Scene<'_> {
         Tubes {
             inertia: rate * tube.steady_inertance() / resistance,
             memory: womersley_squared * womersley_squared / 1152.0,
-            losses: tube.loss(flow) / (resistance * flow).max(f64::MIN_POSITIVE),
+            losses: tube.law.loss(flow) / (resistance * flow).max(f64::MIN_POSITIVE),
         }
     }
 
