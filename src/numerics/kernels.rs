@@ -2,6 +2,32 @@
 //!
 //! Debian's SUNDIALS is compiled without optimisation; these kernels in place of its own cut a run to about 1/2.7.
 
+/// Entries that sums of vectors are made of at a time: what is written stays in the first cache while vector after vector is added.
+const TILE: usize = 512;
+
+/// `out = Σ factorₖ vₖ`, terms added in their order. Panics when a vector has another length.
+pub fn combine(out: &mut [f64], terms: &[(f64, &[f64])]) {
+    for (_, v) in terms {
+        assert_eq!(v.len(), out.len(), "a vector of another system");
+    }
+    for (k, tile) in out.chunks_mut(TILE).enumerate() {
+        let begin = k * TILE;
+        let place = begin..begin + tile.len();
+        let Some(((factor, v), rest)) = terms.split_first() else {
+            tile.fill(0.0);
+            continue;
+        };
+        for (out, v) in tile.iter_mut().zip(&v[place.clone()]) {
+            *out = factor * v;
+        }
+        for (factor, v) in rest {
+            for (out, v) in tile.iter_mut().zip(&v[place.clone()]) {
+                *out += factor * v;
+            }
+        }
+    }
+}
+
 /// Partial sums kept side by side: two registers of four doubles, or four of two.
 const LANES: usize = 8;
 

@@ -7,8 +7,9 @@
 use super::equations::StageError;
 use super::integrator::OneStep;
 use super::polynomial;
+use super::tableau;
 use crate::dae::Dae;
-use crate::numerics::kernels::weighted_square;
+use crate::numerics::kernels::{self, weighted_square};
 
 /// Iterations allowed in one stage.
 const ITERATIONS: usize = 7;
@@ -20,6 +21,12 @@ const RENEWALS: usize = 2;
 const DIVERGING: f64 = 0.9;
 /// Nodes of the polynomial that predicts a stage.
 const PREDICTOR_NODES: usize = 3;
+
+/// Most vectors that one sum has.
+const TERMS: usize = tableau::STAGES + 1;
+
+/// What a sum is made of.
+type Terms<'a> = [(f64, &'a [f64]); TERMS];
 
 /// Stages of one step.
 #[derive(Clone, Debug)]
@@ -49,12 +56,8 @@ impl Stages {
 /// Vectors to work with.
 #[derive(Clone, Debug)]
 pub(super) struct Work {
-    /// Part of a stage's values that the stages before give.
+    /// Part of a stage's values that the stages before give, of differential unknowns.
     pub base: Vec<f64>,
-    /// `∂Y/∂x`: `h γ` or 1.
-    pub scale: Vec<f64>,
-    /// `∂x/∂Y`: `1/(h γ)` or 1.
-    pub inverse: Vec<f64>,
     /// Rates, 0 for algebraic unknowns.
     pub yp: Vec<f64>,
     /// Residual, then correction; after a step what it is estimated to be off by.
@@ -68,8 +71,6 @@ impl Work {
         let zeros = || vec![0.0; n];
         Self {
             base: zeros(),
-            scale: zeros(),
-            inverse: zeros(),
             yp: zeros(),
             r: zeros(),
             weights: zeros(),
@@ -89,6 +90,30 @@ fn norm(v: &[f64], weights: &[f64]) -> f64 {
     (weighted_square(v, weights) / v.len() as f64).sqrt()
 }
 
+/// `f` of a differential unknown, 1 of an algebraic one; `mask` is 1 or 0.
+#[inline(always)]
+fn or_one(mask: f64, f: f64) -> f64 {
+    mask * f + (1.0 - mask)
+}
+
+/// `r` becomes the correction of the values, and `x` is moved by that of its own: `∂x/∂Y` is `cj` or 1.
+#[inline(never)] // three slices that the compiler knows to be apart
+fn correct(x: &mut [f64], r: &mut [f64], mask: &[f64], [factor, cj]: [f64; 2]) {
+    for ((x, r), mask) in x.iter_mut().zip(r).zip(mask) {
+        *r *= factor;
+        *x += or_one(*mask, cj) * *r;
+    }
+}
+
+/// `Y = base + s x` with `s = h γ`, of algebraic unknowns `x`; rates of differential unknowns, 0 of the others.
+#[inline(never)]
+fn values(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: [&mut [f64]; 2]) {
+    for (((y, yp), (x, base)), mask) in y.iter_mut().zip(yp).zip(x.iter().zip(base)).zip(mask) {
+        *y = mask * base + or_one(*mask, step) * x;
+        *yp = mask * x;
+    }
+}
+
 impl<D: Dae> OneStep<D> {
     /// Tries a step of size `h` that ends at `t1` [s]; returns its error relative to the tolerance.
     pub(super) fn attempt(&mut self, h: f64, t1: f64) -> Result<f64, StageError> {
@@ -96,11 +121,6 @@ impl<D: Dae> OneStep<D> {
         (self.now.t, self.now.h) = (self.time, h);
         let cj = 1.0 / (h * self.tableau.gamma());
         self.equations.dae.approach(cj);
-        for ((scale, inverse), &mask) in (self.work.scale.iter_mut().zip(&mut self.work.inverse)).zip(&self.mask) {
-            let differential = mask > 0.0;
-            *scale = if differential { h * self.tableau.gamma() } else { 1.0 };
-            *inverse = if differential { cj } else { 1.0 };
-        }
         for i in 1..self.tableau.stages {
             let last = self.tableau.c[i] == 1.0;
             let t = if last { t1 } else { self.time + self.tableau.c[i] * h };
@@ -121,14 +141,14 @@ impl<D: Dae> OneStep<D> {
 
     /// `yₙ + h Σ_{j<i} aᵢⱼ Kⱼ`.
     fn lay_base(&mut self, i: usize) {
-        let (now, base) = (&self.now, &mut self.work.base);
-        base.copy_from_slice(&now.y[0]);
+        let now = &self.now;
+        let mut terms: Terms = [(1.0, &now.y[0]); TERMS];
+        let mut count = 1;
         for j in (0..i).filter(|&j| self.tableau.a[i][j] != 0.0) {
-            add(base, now.h * self.tableau.a[i][j], &now.x[j]);
+            terms[count] = (now.h * self.tableau.a[i][j], &now.x[j]);
+            count += 1;
         }
-        for (base, mask) in base.iter_mut().zip(&self.mask) {
-            *base *= mask;
-        }
+        kernels::combine(&mut self.work.base, &terms[..count]);
     }
 
     /// Predicts stage `i` by the polynomial through the stages before, of the last step too.
@@ -155,11 +175,11 @@ impl<D: Dae> OneStep<D> {
         }
         let weights = polynomial::value(&nodes[..count], tableau.c[i]);
         let (before, rest) = self.now.x.split_at_mut(i);
-        let x = &mut rest[0];
-        x.fill(0.0);
-        for (&weight, &(of_last, j)) in weights.iter().zip(&sources).take(count) {
-            add(x, weight, if of_last { &last.x[j] } else { &before[j] });
+        let mut terms: Terms = [(0.0, &[]); TERMS];
+        for ((term, weight), (of_last, j)) in terms.iter_mut().zip(weights).zip(sources) {
+            *term = (weight, if of_last { &last.x[j] } else { &before[j] });
         }
+        kernels::combine(&mut rest[0], &terms[..count]);
     }
 
     /// Solves stage `i` at time `t` [s] from its prediction. Where the iteration does not converge though the step is short and the matrix new, as where a valve
@@ -176,7 +196,7 @@ impl<D: Dae> OneStep<D> {
     }
 
     fn iterate(&mut self, i: usize, t: f64, cj: f64) -> Result<(), StageError> {
-        self.update(i);
+        self.update(i, cj, None);
         let state = (t, self.now.y[i].as_slice(), self.work.yp.as_slice());
         self.matrix
             .prepare(&mut self.equations, state, cj, self.options.matrix_band)?;
@@ -187,12 +207,7 @@ impl<D: Dae> OneStep<D> {
             self.equations
                 .residual(t, &self.now.y[i], &self.work.yp, &mut self.work.r)?;
             let factor = -self.matrix.solve(&mut self.work.r, cj);
-            self.work.r.iter_mut().for_each(|r| *r *= factor);
-            let x = &mut self.now.x[i];
-            for ((x, r), inverse) in x.iter_mut().zip(&self.work.r).zip(&self.work.inverse) {
-                *x += inverse * r;
-            }
-            self.update(i);
+            self.update(i, cj, Some(factor));
             let size = norm(&self.work.r, &self.work.weights);
             if !size.is_finite() {
                 return Err(StageError::Newton);
@@ -222,16 +237,15 @@ impl<D: Dae> OneStep<D> {
         Err(StageError::Newton)
     }
 
-    /// Values and rates of stage `i` from its own unknowns.
-    fn update(&mut self, i: usize) {
-        let Stages { x, y, .. } = &mut self.now;
-        let (x, y, w) = (&x[i], &mut y[i], &mut self.work);
-        for ((y, base), (x, scale)) in y.iter_mut().zip(&w.base).zip(x.iter().zip(&w.scale)) {
-            *y = base + scale * x;
+    /// Values and rates of stage `i` from its own unknowns, which are corrected first where there is a correction: what a solution times a
+    /// factor takes off the values.
+    fn update(&mut self, i: usize, cj: f64, correction: Option<f64>) {
+        let (Stages { x, y, h, .. }, w) = (&mut self.now, &mut self.work);
+        let Work { base, yp, r, .. } = w;
+        if let Some(factor) = correction {
+            correct(&mut x[i], r, &self.mask, [factor, cj]);
         }
-        for ((yp, x), mask) in w.yp.iter_mut().zip(x).zip(&self.mask) {
-            *yp = mask * x;
-        }
+        values(&x[i], base, &self.mask, *h * self.tableau.gamma(), [&mut y[i], yp]);
     }
 
     /// Error of the step, relative to the tolerance.
@@ -244,10 +258,11 @@ impl<D: Dae> OneStep<D> {
         let s = self.tableau.stages;
         let (b, gamma) = (self.tableau.b(), self.tableau.gamma());
         let yp = &mut self.work.yp;
-        yp.copy_from_slice(&self.now.x[s - 1]);
-        for (j, x) in self.now.x.iter().enumerate().take(s) {
-            add(yp, (b[j] - self.tableau.embedded[j]) / gamma, x);
+        let mut terms: Terms = [(1.0, &self.now.x[s - 1]); TERMS];
+        for (j, (term, x)) in terms[1..].iter_mut().zip(&self.now.x[..s]).enumerate() {
+            *term = ((b[j] - self.tableau.embedded[j]) / gamma, x);
         }
+        kernels::combine(yp, &terms[..=s]);
         for (yp, mask) in yp.iter_mut().zip(&self.mask) {
             *yp *= mask;
         }
