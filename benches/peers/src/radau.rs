@@ -5,8 +5,10 @@
 //! iteration three residuals, a real and a complex solution, for each factorisation a real and a complex one.
 
 use slcbeam::dae::{Dae, Seeds};
-use slcbeam::sparse::Pattern;
-use slcbeam::sparse::Klu;
+use slcbeam::sparse::{Klu, Pattern};
+
+use crate::prices::Bench;
+use crate::scene::{Ran, Scene};
 
 /// Iterations allowed in a step.
 const ITERATIONS: u32 = 7;
@@ -81,6 +83,19 @@ impl Work {
     }
 }
 
+/// Readings and work of a run, its seconds as modelled with measured prices.
+pub fn follow(scene: &Scene, rtol: f64) -> Ran {
+    let mass = scene.mass();
+    let [residual, jacobian, factor, solve] = Bench::new(scene).prices();
+    let mut radau = Radau::new(scene.dae(), &mass, rtol);
+    let readings = radau.solve(scene);
+    Ran {
+        seconds: radau.work.time([residual, solve, factor, jacobian]),
+        readings,
+        steps: radau.work.steps,
+    }
+}
+
 impl<'a, D: Dae> Radau<'a, D> {
     pub fn new(dae: D, mass: &'a [f64], tolerance: f64) -> Self {
         let pattern = dae.pattern().clone();
@@ -145,8 +160,9 @@ impl<'a, D: Dae> Radau<'a, D> {
         self.block.factor(&single).expect("factors");
     }
 
-    /// Values of one unknown at the given times.
-    pub fn solve(&mut self, y0: &[f64], times: &[f64], unknown: usize, largest: f64) -> Vec<f64> {
+    /// Readings at the output times.
+    pub fn solve(&mut self, scene: &Scene) -> Vec<[f64; 2]> {
+        let (y0, times, largest) = (&scene.y[..], &scene.times[..], scene.largest_step);
         let n = y0.len();
         let (mut y, mut t, mut h) = (y0.to_vec(), 0.0_f64, 1e-5_f64);
         let end = *times.last().expect("times");
@@ -260,7 +276,9 @@ impl<'a, D: Dae> Radau<'a, D> {
             first = false;
             self.work.steps += 1;
             while let Some(&at) = times.get(out.len()).filter(|at| **at <= t + h * (1.0 + 1e-9)) {
-                out.push(y[unknown] + collocation(&z, unknown, (at - t) / h));
+                let x = (at - t) / h;
+                (0..n).for_each(|i| stage[i] = y[i] + collocation(&z, i, x));
+                out.push(scene.readings.read(&stage));
             }
             for i in 0..n {
                 y[i] += z[2][i];

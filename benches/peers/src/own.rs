@@ -1,0 +1,67 @@
+//! slcbeam's integrators.
+
+use std::time::Instant;
+
+use slcbeam::integrate::Absolute;
+use slcbeam::onestep::{Method, OneStepOptions};
+use slcbeam::run::method::{Integrator, Options};
+use slcbeam::sundials::IdaOptions;
+
+use crate::scene::{Bare, Ran, Scene};
+
+/// Names under which they are asked for.
+pub const NAMES: [&str; 5] = ["ida2", "trbdf2", "esdirk34", "esdirk46", "esdirk57"];
+
+/// Settings of a run as the program makes them.
+pub fn options(scene: &Scene, name: &str, rtol: f64) -> Option<Options> {
+    let one_step = |method| {
+        Options::OneStep(OneStepOptions {
+            method,
+            relative: rtol,
+            absolute: Absolute::Same(rtol),
+            max_step: Some(scene.largest_step),
+            ..OneStepOptions::default()
+        })
+    };
+    Some(match name {
+        "ida2" => Options::Ida(IdaOptions {
+            relative: rtol,
+            absolute: Absolute::Same(rtol),
+            max_order: 2,
+            max_step: Some(scene.largest_step),
+            nonlinear_coefficient: 0.033,
+            ..IdaOptions::default()
+        }),
+        "trbdf2" => one_step(Method::TrBdf2),
+        "esdirk34" => one_step(Method::Esdirk34),
+        "esdirk46" => one_step(Method::Esdirk46),
+        "esdirk57" => one_step(Method::Esdirk57),
+        _ => return None,
+    })
+}
+
+/// An integrator at the start of a scene.
+pub fn integrator(scene: &Scene, options: &Options) -> Result<Integrator<Bare>, String> {
+    Integrator::new(scene.dae(), 0.0, &scene.y, &scene.yp, options).map_err(|e| e.to_string())
+}
+
+/// Readings at the output times.
+pub fn follow(scene: &Scene, options: &Options) -> Result<Ran, String> {
+    let dae = scene.dae();
+    let begin = Instant::now();
+    let mut solver = Integrator::new(dae, 0.0, &scene.y, &scene.yp, options).map_err(|e| e.to_string())?;
+    let mut y = scene.y.clone();
+    let mut readings = vec![];
+    while readings.len() < scene.times.len() {
+        let at = solver.step(scene.end()).map_err(|e| e.to_string())?.time;
+        while let Some(&t) = scene.times.get(readings.len()).filter(|t| **t <= at) {
+            solver.interpolate(t, 0, &mut y).map_err(|e| e.to_string())?;
+            readings.push(scene.readings.read(&y));
+        }
+    }
+    Ok(Ran {
+        seconds: begin.elapsed().as_secs_f64(),
+        readings,
+        steps: solver.steps() as usize,
+    })
+}

@@ -1,0 +1,105 @@
+"""Runs of the Python peers, asked for line by line: SCENE METHOD RTOL. Answers `seconds steps tip.. pressure..`; compiling is done
+before time is taken. `worker.py PEERS --check SCENE..` compares equations instead."""
+
+import json
+import subprocess
+import sys
+import time
+
+import numpy as np
+import scipy.integrate
+import sksundae
+
+from beam import Beam
+
+PEERS = sys.argv[1]
+METHODS = ["sundae-default", "sundae-sparse2", "sundae-sparse5", "sundae-band2", "scipy-radau", "scipy-bdf"]
+
+
+def exported(name):
+    return json.loads(subprocess.run([PEERS, "export", name], check=True, capture_output=True, text=True).stdout)
+
+
+def sundae(beam, method, rtol):
+    def residual(t, y, yp, out):
+        beam.residual(t, y, yp, out)
+
+    careful = {}
+    if method == "sundae-sparse2" or method == "sundae-sparse5":
+        careful = dict(
+            linsolver="sparse", sparsity=beam.pattern, jacfn=beam.jacobian, max_order=int(method[-1]),
+            max_num_steps=10_000_000,
+        )
+    begin = time.perf_counter()
+    solver = sksundae.ida.IDA(
+        residual, rtol=rtol, atol=rtol, algebraic_idx=beam.algebraic or None,
+        **({"max_num_steps": 10_000_000} | careful),
+    )
+    solution = solver.solve(np.concatenate(([0.0], beam.times)), beam.y0, beam.yp0)
+    seconds = time.perf_counter() - begin
+    if not solution.success:
+        raise RuntimeError(solution.message)
+    return seconds, 0, solution.y[1:]
+
+
+def scipys(beam, method, rtol):
+    z0 = beam.y0[beam.differential]
+    beam.mm[:], beam.nn[:] = 0.0, 0.0
+    begin = time.perf_counter()
+    solution = scipy.integrate.solve_ivp(
+        beam.rates, (0.0, beam.times[-1]), z0, method={"scipy-radau": "Radau", "scipy-bdf": "BDF"}[method],
+        t_eval=beam.times, rtol=max(rtol, 1e-12), atol=rtol, jac=beam.rate_jacobian,
+    )
+    seconds = time.perf_counter() - begin
+    if not solution.success:
+        raise RuntimeError(solution.message)
+    return seconds, solution.nfev, [beam.complete(t, z) for t, z in zip(solution.t, solution.y.T)]
+
+
+def check(names):
+    """Equations at random states, relative to the largest residual of the state; exit code 1 where they differ."""
+    worst = 0.0
+    for name in names:
+        scene = exported(name)
+        beam = Beam(scene)
+        n = beam.n
+        for state in scene["states"]:
+            y, yp, wanted = (np.array(state[k]) for k in ("y", "yp", "residual"))
+            out = np.zeros(n)
+            beam.residual(state["t"], y, yp, out)
+            # of each equation, relative to the largest of its block
+            size = np.maximum(np.abs(wanted), 1e-3 * np.abs(wanted).max())
+            worst = max(worst, float(np.max(np.abs(out - wanted) / size)))
+            # z' of the reduced form leaves no residual
+            d = beam.differential
+            z = beam.y0[d] + 1e-2 * y[d]
+            full, rate = beam.complete(state["t"], z), np.zeros(n)
+            rate[d] = beam.rates(state["t"], z)
+            beam.residual(state["t"], full, rate, out)
+            own = np.zeros(n)
+            beam.residual(state["t"], full, 0 * rate, own)
+            worst = max(worst, float(np.abs(out).max() / np.abs(own).max()))
+        print(f"{name}: {n} unknowns, equations in Python and in slcbeam agree to {worst:.1e}")
+    return int(not worst < 1e-10)
+
+
+def main():
+    if "--check" in sys.argv:
+        sys.exit(check(sys.argv[3:]))
+    beams = {}
+    for line in sys.stdin:
+        name, method, rtol = line.split()
+        if name not in beams:
+            beams[name] = Beam(exported(name))
+            beams[name].warm_up()
+        beam = beams[name]
+        try:
+            seconds, steps, states = (sundae if method.startswith("sundae") else scipys)(beam, method, float(rtol))
+            read = [beam.readings(y) for y in states]
+            numbers = [r[0] for r in read] + [r[1] for r in read]
+            print(f"{seconds:e} {steps} " + " ".join(f"{x:.17g}" for x in numbers), flush=True)
+        except Exception as error:  # a peer may fail at a tolerance; that is a result
+            print("failed " + str(error).replace("\n", " "), flush=True)
+
+
+main()
