@@ -170,7 +170,8 @@ pub fn case_of(name: &str) -> Case {
     };
     let mut sets: Vec<String> = sets.into_iter().map(str::to_owned).collect();
     sets.extend(cells.map(|cells| format!("/mesh/cells_per_segment={cells}")));
-    sets.extend(end.map(|end| format!("/time/end_s={end}")));
+    let times = |end| [format!("/time/end_s={end}"), format!("/time/window_s={end}")];
+    sets.extend(end.into_iter().flat_map(times));
     let path = root().join(format!("cases/{file}.json"));
     case::load(&path, &sets).expect("a case")
 }
