@@ -49,11 +49,11 @@ pub fn follow(scene: &Scene, name: &str, rtol: f64) -> Result<Ran, String> {
                 (*at, *of) = (t, y.to_vec());
             }
             out.fill(0.0);
-            for column in 0..v.len() {
-                for k in pattern.starts[column] as usize..pattern.starts[column + 1] as usize {
+            for (column, &v) in v.iter().enumerate() {
+                for k in pattern.column(column) {
                     // what is zero is no entry, NaN or not
-                    if values[k] != 0.0 || v[column].is_nan() {
-                        out[pattern.rows[k] as usize] -= values[k] * v[column];
+                    if values[k] != 0.0 || v.is_nan() {
+                        out[pattern.rows[k] as usize] -= values[k] * v;
                     }
                 }
             }

@@ -146,7 +146,7 @@ impl<'a, D: Dae> Radau<'a, D> {
         for column_block in 0..3 {
             for column in 0..n {
                 for (row_block, a) in a().iter().enumerate() {
-                    for k in self.pattern.starts[column] as usize..self.pattern.starts[column + 1] as usize {
+                    for k in self.pattern.column(column) {
                         let diagonal = self.pattern.rows[k] as usize == column;
                         let mass = if diagonal { self.mass[column] } else { 0.0 };
                         let of_mass = if row_block == column_block { mass } else { 0.0 };

@@ -1,0 +1,275 @@
+"""What is measured: peers in turns, rods of their own, the program, single operations, large systems."""
+
+import json
+import math
+import os
+import re
+import statistics
+import subprocess
+import sys
+import time
+
+from workers import ACCURACIES, BUILT, LONG, PEER_GROUPS, PEERS, ROOT, ROUNDS, SCENES, TOLERANCES, error, peers, run, shown
+
+
+def groups(python):
+    return {name: group for name, group in PEER_GROUPS.items() if python or group[0] != "python"}
+
+
+def explore(all, scene, reference, python):
+    """Points (method, tolerance, error, seconds, steps) of every group."""
+    points = {}
+    for name, (worker, methods) in groups(python).items():
+        points[name] = []
+        for method in methods:
+            run(all[worker], scene, method, 1e-2)  # compiles, opens
+            for rtol in TOLERANCES:
+                ran = run(all[worker], scene, method, rtol)
+                if ran is None:
+                    continue
+                seconds = [ran["seconds"]]
+                if ran["seconds"] < 0.1:
+                    seconds += [run(all[worker], scene, method, rtol)["seconds"] for _ in range(2)]
+                e = error(ran["histories"], reference)
+                points[name].append(
+                    {"method": method, "rtol": rtol, "error": e, "seconds": min(seconds), "steps": ran["steps"]}
+                )
+                if ran["seconds"] > LONG or e < 0.3 * ACCURACIES[-1]:
+                    break
+    return points
+
+
+def cheapest(points, accuracy):
+    reached = [p for p in points if p["error"] <= accuracy]
+    return min(reached, key=lambda p: p["seconds"]) if reached else None
+
+
+def compare(all, scene, points, python):
+    """The cheapest setting of each group at each accuracy, measured again in alternating runs: medians and ratios to slcbeam."""
+    chosen = {name: [cheapest(points[name], a) for a in ACCURACIES] for name in points}
+    settings = {(name, p["method"], p["rtol"]): [] for name in chosen for p in chosen[name] if p}
+    long = {key for key in settings for p in points[key[0]] if (p["method"], p["rtol"]) == key[1:] and p["seconds"] > LONG}
+    for turn in range(ROUNDS):
+        for key in settings:
+            if turn > 0 and key in long:
+                settings[key].append(settings[key][0])
+                continue
+            name, method, rtol = key
+            ran = run(all[PEER_GROUPS[name][0]], scene, method, rtol)
+            settings[key].append(ran["seconds"] if ran else math.nan)
+    table = {}
+    for name, row in chosen.items():
+        table[name] = []
+        for own, p in zip(chosen["slcbeam"], row):
+            if p is None:
+                table[name].append(None)
+                continue
+            times = settings[name, p["method"], p["rtol"]]
+            ratio = None
+            if own is not None:
+                base = settings["slcbeam", own["method"], own["rtol"]]
+                ratio = statistics.median(t / b for t, b in zip(times, base))
+            table[name].append(p | {"median": statistics.median(times), "ratio": ratio})
+    return table
+
+
+def measure_runs(all, python):
+    results = {}
+    for scene in SCENES:
+        begin = time.monotonic()
+        reference = run(all["peers"], scene, "esdirk57", 1e-9, 120.0)["histories"]
+        other = run(all["peers"], scene, "esdirk46", 1e-8, 120.0)["histories"]
+        points = explore(all, scene, reference, python)
+        results[scene] = {
+            "reference_differs": error(other, reference), "points": points, "table": compare(all, scene, points, python)
+        }
+        print(f"{scene}: measured in {time.monotonic() - begin:.0f} s", file=sys.stderr)
+    return results
+
+
+# Beams on which peers have a discretisation of their own: scene, its peer, elements, steps an output interval, times wanted.
+RODS = {
+    "PyElastica": ("dry-cantilever-sheared", "elastica", [10, 20, 40, 80], [4, 8, 16, 32, 64, 128], 100.0),
+    "Exudyn": ("swing", "exudyn", [2, 4, 8, 16], [1, 2, 4, 8, 16], None),
+}
+OWN_CELLS = [1, 2, 4, 8, 16]
+
+
+def measure_rods(all):
+    """Error in space and time against the limit to which slcbeam's finest meshes point."""
+    out = {"points": {}, "ratios": [], "rows": [["beam", "error", "slcbeam", "peer", "peer / slcbeam"]], "limits": []}
+    for name, (scene, peer, elements, steps, wanted) in RODS.items():
+        fine = [run(all["peers"], f"{scene}:{k}", "esdirk57", 1e-7, 120.0)["histories"][0] for k in (16, 32)]
+        limit = [[b + (b - a) / 3.0 for a, b in zip(*fine)], [0.0]]
+        own, theirs = [], []
+        for k in OWN_CELLS:
+            for method in ("esdirk34", "esdirk46", "ida2"):
+                for rtol in (1e-1, 10**-1.5, 1e-2, 10**-2.5, 1e-3, 1e-4, 1e-5):
+                    ran = run(all["peers"], f"{scene}:{k}", method, rtol)
+                    if ran:
+                        e = error(ran["histories"], limit, (0,))
+                        own.append(dict(scene=f"{scene}:{k}", method=method, rtol=rtol, error=e, seconds=ran["seconds"]))
+                        if ran["seconds"] > 0.3:
+                            break
+        for n in elements:
+            more = 0
+            for step in steps:
+                ran = run(all["rods"], scene, f"{peer}-{n}", step, 30.0)
+                if ran:
+                    e = error(ran["histories"], limit, (0,))
+                    theirs.append(dict(scene=scene, method=f"{peer}-{n}", rtol=step, error=e, seconds=ran["seconds"]))
+                    more += 1
+                    # explicit steps are short of what stability asks for, more of them change nothing
+                    if ran["seconds"] > LONG or (peer == "elastica" and more > 1):
+                        break
+        best = min(p["error"] for p in theirs)
+        out["points"][name] = {"slcbeam": own, name: theirs}
+        out["limits"].append(f"{name} comes to {best:.1e} of the limit of slcbeam's meshes")
+        ratios = []
+        for accuracy in ACCURACIES:
+            pair = [cheapest(own, accuracy), cheapest(theirs, accuracy)]
+            cells = ["not reached", "not reached"]
+            times = [[], []]
+            if all_there(pair):
+                for _ in range(ROUNDS):
+                    for k, (p, worker) in enumerate(zip(pair, ("peers", "rods"))):
+                        times[k].append(run(all[worker], p["scene"], p["method"], p["rtol"])["seconds"])
+                ratios.append(statistics.median(b / a for a, b in zip(*times)))
+            for k, p in enumerate(pair):
+                if p:
+                    seconds = statistics.median(times[k]) if times[k] else p["seconds"]
+                    mesh = p["scene"].partition(":")[2]
+                    cells[k] = f"{shown(seconds)} `{p['method']}`, {mesh + ' cells a segment, ' if mesh else ''}{p['rtol']:.0e}"
+            ratio = f"{ratios[-1]:.3g}" if all_there(pair) else "–"
+            out["rows"].append([f"{name}, `{scene}`", f"{accuracy:.0e}", *cells, ratio])
+        if wanted and ratios:
+            texts = ", ".join(f"{r:.3g}" for r in ratios)
+            out["ratios"].append([f"{wanted:.0f} times {name} at equal error", texts, min(ratios) >= wanted])
+    return out
+
+
+def all_there(pair):
+    return all(p is not None for p in pair)
+
+
+def program(cells, fluid, rtol):
+    """Wall time of the whole process, `wall_s`, figures, and rows of the history of one run of the program."""
+    folder = BUILT / "run"
+    binary = os.environ.get("CARGO_TARGET_DIR", str(ROOT / "target")) + "/release/slcbeam"
+    sets = {
+        "/ends/root/clamped/u3_m/sine/ramp_cycles": 1, "/mesh/cells_per_segment": cells, "/mesh/cells_per_bladder": fluid,
+        "/solver/rtol": rtol,
+    }
+    command = [binary, "run", "cases/wiring-2.json", "--quiet", "--out", str(folder)]
+    command += [word for key, value in sets.items() for word in ("--set", f"{key}={value}")]
+    begin = time.perf_counter()
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=ROOT)
+    seconds = time.perf_counter() - begin
+    summary = json.loads((folder / "summary.json").read_text())
+    with open(folder / "history.csv") as lines:
+        rows = sum(1 for _ in lines) - 1
+    quantities = summary["quantities"]
+    figures = [quantities[q][f] for q in ("tip_u1_m", "max_pressure_pa") for f in ("max_abs", "window_max_abs")]
+    return {"seconds": seconds, "wall_s": summary["wall_s"], "figures": figures, "rows": rows, "time_s": summary["time_s"]}
+
+
+def measure_program():
+    """The program on wiring-2, smooth start: time of the whole process against the error of its figures."""
+    coarse, fine = (program(k, k // 2, 1e-6)["figures"] for k in (16, 32))
+    limit = [b + (b - a) / 3.0 for a, b in zip(coarse, fine)]
+    rows = [["cells a segment", "rtol", "error of figures", "process", "`total` of `wall_s`", "output", "output a row"]]
+    points, out = [], {"held": []}
+    for cells in (2, 4, 8, 16):
+        for rtol in (1e-2, 1e-3, 1e-4, 1e-5):
+            runs = [program(cells, max(1, cells // 2), rtol) for _ in range(ROUNDS if cells < 16 else 3)]
+            e = max(abs(a - b) / abs(b) for a, b in zip(runs[0]["figures"], limit))
+            middle = sorted(runs, key=lambda r: r["seconds"])[len(runs) // 2]
+            points.append({"error": e, "seconds": middle["seconds"], "cells": cells, "rtol": rtol})
+            wall = middle["wall_s"]
+            a_row = f"{1e6 * wall['output'] / middle['rows']:.1f} us"
+            rows.append(
+                [cells, f"{rtol:.0e}", f"{e:.1e}", shown(middle["seconds"]), shown(wall["total"]), shown(wall["output"]), a_row]
+            )
+            simulated = middle["time_s"]
+    for accuracy, part in ((1e-2, 30.0), (1e-3, 5.0)):
+        p = cheapest(points, accuracy)
+        text = "not reached" if p is None else f"1/{simulated / p['seconds']:.3g} ({shown(p['seconds'])})"
+        holds = p is not None and p["seconds"] * part <= simulated
+        out["held"].append([f"{100 * accuracy:g} % of `wiring-2` in 1/{part:.0f} of the simulated time", text, holds])
+    return out | {"points": points, "rows": rows}
+
+
+def instructions(scene, what):
+    """Instructions of one operation, from callgrind's counts of two runs; nothing where valgrind is missing."""
+    counts = []
+    for times in (2, 22):
+        command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", PEERS, "work", scene, what, str(times)]
+        try:
+            answer = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
+        except FileNotFoundError:
+            return None
+        found = re.search(r"Collected : (\d+)", answer.stderr)
+        if not found:
+            return None
+        counts.append(int(found.group(1)))
+    return (counts[1] - counts[0]) / 20
+
+
+OPERATIONS = ["residual", "jacobian", "factor", "solve"]
+
+
+def measure_prices(count=True):
+    rows = [["scene", "unknowns"] + [f"{what} [us]" for what in OPERATIONS] + ["residuals a Jacobian"]]
+    counted = [["scene"] + [f"{what} [1000 instructions]" for what in OPERATIONS]]
+    for scene in SCENES:
+        p = peers("prices", scene)
+        us = [1e6 * p[what] for what in OPERATIONS]
+        rows.append([f"`{scene}`", p["unknowns"], *(f"{x:.2f}" for x in us), f"{us[1] / us[0]:.1f}"])
+        if count:
+            numbers = [instructions(scene, what) for what in OPERATIONS]
+            counted.append([f"`{scene}`", *("–" if n is None else f"{n / 1e3:.1f}" for n in numbers)])
+    return {"rows": rows, "counted": counted if count else []}
+
+
+def exponent(pairs):
+    """Slope of a line through logarithms."""
+    logs = [(math.log(n), math.log(t)) for n, t in pairs]
+    x, y = (statistics.mean(v) for v in zip(*logs))
+    return sum((a - x) * (b - y) for a, b in logs) / sum((a - x) ** 2 for a, _ in logs)
+
+
+def large_row(p, name):
+    us = 1e6 / p["unknowns"]
+    memory = "–" if p["memory"] is None else f"{p['memory'] / 2**20:.0f} MiB"
+    return [
+        name, p["unknowns"], shown(p["start"] + p["set_up"]), shown(p["seconds"] / p["steps"]),
+        f"{p['iterations'] / p['steps']:.1f}", f"{p['seconds'] / p['floor']:.2f}", f"{1e3 * us * p['residual']:.1f}",
+        f"{1e3 * us * p['solve']:.1f}", f"{1e3 * us * p['factor']:.0f}", f"{1e3 * us * p['jacobian']:.0f}", memory,
+    ]
+
+
+LARGE = [
+    "wiring", "unknowns", "set-up", "step", "iterations a step", "time over floor", "residual [ns/unknown]", "solution", "factors",
+    "Jacobian", "memory",
+]
+
+
+def measure_large():
+    """Chains, and other wirings at 100 and 1000 bladders a row; a process each, so that memory is its own."""
+    chains = [peers("large", "chain", n) for n in (10, 100, 1000, 10000)]
+    floor = [LARGE] + [large_row(p, f"{p['case']}") for p in chains]
+    # a step's own iterations depend on the motion, so the exponent is that of an iteration
+    an_iteration = [(p["unknowns"], p["seconds"] / p["iterations"]) for p in chains]
+    exponents = {"an iteration": exponent(an_iteration)}
+    exponents["an iteration, to 20 000 unknowns"] = exponent(an_iteration[:3])
+    for what in ("residual", "solve", "factor", "jacobian", "memory"):
+        exponents[what] = exponent([(p["unknowns"], p[what]) for p in chains if p[what]])
+    scale = [LARGE]
+    for wiring in ("ring", "ladder", "tree", "random"):
+        pair = [peers("large", wiring, n) for n in (100, 1000)]
+        scale += [large_row(p, p["case"]) for p in pair]
+        exponents[wiring] = exponent([(p["unknowns"], p["seconds"] / p["iterations"]) for p in pair])
+    value = exponents["an iteration"]
+    held = [["exponent of time an iteration over unknowns at most 1.08, chains", f"{value:.2f}", value <= 1.08]]
+    rows = [["exponent of time over unknowns", ""]] + [[key, f"{value:.2f}"] for key, value in exponents.items()]
+    return {"floor": floor, "scale": scale, "exponents": rows, "held": held}
