@@ -25,6 +25,19 @@ def tables_of_runs(runs):
         rows = [["", "1e-2", "1e-3", "1e-4"]]
         rows += [[name] + [cell(p) for p in row] for name, row in result["table"].items()]
         out[f"runs-{scene}"] = aligned(rows)
+    rows = [["", "error", "steps", "rejected", "iterations a step", "Jacobians", "factors", "residuals", "Jacobians", "factors and solutions", "rest"]]
+    for scene, result in runs.items():
+        for accuracy, point, p in zip(ACCURACIES, result["table"]["slcbeam"], result.get("profile", [])):
+            if p is None:
+                continue
+            shares = [p["residual"], p["jacobian"], p["linear"]]
+            shares.append(1.0 - sum(shares))
+            rows.append([
+                f"`{scene}`, `{point['method']}`", f"{accuracy:.0e}", p["steps"], p["rejected"] + p["not_converged"],
+                f"{p['iterations'] / p['steps']:.1f}", p["jacobians"], p["factorizations"], *(f"{100 * x:.0f} %" for x in shares),
+            ])
+    if len(rows) > 1:
+        out["profile"] = aligned(rows)
     return out
 
 

@@ -19,7 +19,7 @@ PYTHON = str(BUILT / "python/bin/python")
 
 SCENES = ["shaken-sealed", "wiring-2", "dry-cantilever"]
 ACCURACIES = [1e-2, 1e-3, 1e-4]
-TOLERANCES = [10 ** (-k / 2) for k in range(4, 14)]
+TOLERANCES = [10 ** (-k / 2) for k in range(2, 14)]
 # who is compared: worker, methods
 PEER_GROUPS = {
     "slcbeam": ("peers", ["ida2", "trbdf2", "esdirk34", "esdirk46", "esdirk57"]),

@@ -110,7 +110,12 @@ int main(void) {
       scene = scene_open(name);
       strcpy(open, name);
     }
-    run(scene, strcmp(method, "ida5") ? 2 : 5, rtol);
+    if (!strcmp(method, "ida2") || !strcmp(method, "ida5")) {
+      run(scene, method[3] - '0', rtol);
+    } else {
+      printf("failed no method %s\n", method);
+      fflush(stdout);
+    }
   }
   if (scene) scene_close(scene);
   return 0;

@@ -94,6 +94,8 @@ def main():
             beams[name].warm_up()
         beam = beams[name]
         try:
+            if method not in METHODS:
+                raise RuntimeError(f"no method {method}")
             seconds, steps, states = (sundae if method.startswith("sundae") else scipys)(beam, method, float(rtol))
             read = [beam.readings(y) for y in states]
             numbers = [r[0] for r in read] + [r[1] for r in read]

@@ -4,6 +4,7 @@
 //! peers serve                         runs asked for line by line: SCENE METHOD RTOL
 //! peers export SCENE                  its numbers, for benches/python
 //! peers prices SCENE                  seconds of a residual, a Jacobian, factors, a solution
+//! peers profile SCENE METHOD RTOL     where the time of a run goes, its work counted
 //! peers work SCENE OPERATION COUNT    the operation so many times, for who counts instructions
 //! peers large WIRING PER_ROW          a beam of so many segments for 60 steps
 //! ```
@@ -57,6 +58,11 @@ fn main() -> ExitCode {
         ["serve"] => serve(),
         ["export", name] => println!("{}", export::scene(&Scene::named(name))),
         ["prices", name] => println!("{}", prices::table(&Scene::named(name))),
+        ["profile", name, method, rtol] => {
+            let scene = Scene::named(name);
+            let profile = own::profile(&scene, method, rtol.parse().expect("a tolerance"));
+            println!("{}", profile.expect("a run"));
+        }
         ["work", name, what, count] => {
             let scene = Scene::named(name);
             prices::Bench::new(&scene).work(what, count.parse().expect("a number"));
@@ -66,7 +72,9 @@ fn main() -> ExitCode {
             println!("{}", floor::measure(chains::case(wiring, per_row)));
         }
         _ => {
-            eprintln!("peers serve | export SCENE | prices SCENE | work SCENE OPERATION COUNT | large WIRING PER_ROW");
+            eprintln!(
+                "peers serve | export SCENE | prices SCENE | profile SCENE METHOD RTOL | work SCENE OPERATION COUNT | large WIRING PER_ROW"
+            );
             return ExitCode::from(2);
         }
     }

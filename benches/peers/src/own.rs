@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use serde_json::{Value, json};
 use slcbeam::integrate::Absolute;
 use slcbeam::onestep::{Method, OneStepOptions};
 use slcbeam::run::method::{Integrator, Options};
@@ -43,6 +44,33 @@ pub fn options(scene: &Scene, name: &str, rtol: f64) -> Option<Options> {
 /// An integrator at the start of a scene.
 pub fn integrator(scene: &Scene, options: &Options) -> Result<Integrator<Bare>, String> {
     Integrator::new(scene.dae(), 0.0, &scene.y, &scene.yp, options).map_err(|e| e.to_string())
+}
+
+/// Where the time of a run goes, its work counted.
+pub fn profile(scene: &Scene, name: &str, rtol: f64) -> Option<Value> {
+    let options = options(scene, name, rtol)?;
+    let mut solver = integrator(scene, &options).ok()?;
+    let mut y = scene.y.clone();
+    let begin = Instant::now();
+    let mut read = 0;
+    while read < scene.times.len() {
+        let at = solver.step(scene.end()).ok()?.time;
+        while let Some(&t) = scene.times.get(read).filter(|t| **t <= at) {
+            solver.interpolate(t, 0, &mut y).ok()?;
+            read += 1;
+        }
+    }
+    let seconds = begin.elapsed().as_secs_f64();
+    let (counters, wall) = (solver.counters(), solver.wall());
+    let [residual, jacobian, linear] =
+        [wall.residual, wall.jacobian, wall.linear_solver].map(|part| part.as_secs_f64() / seconds);
+    Some(json!({
+        "seconds": seconds, "steps": counters.steps, "rejected": counters.error_test_failures,
+        "not_converged": counters.newton_failures, "iterations": counters.newton_iterations,
+        "residuals": counters.residual_evaluations, "jacobians": counters.jacobian_evaluations,
+        "factorizations": counters.factorizations, "solutions": counters.linear_solves,
+        "residual": residual, "jacobian": jacobian, "linear": linear,
+    }))
 }
 
 /// Readings at the output times.
