@@ -124,7 +124,7 @@ def draw(results):
 
     panels = [(scene, result["points"]) for scene, result in results["runs"].items()]
     panels += [(RODS[name][0] + ", to the limit of meshes", points) for name, points in results.get("rods", {}).get("points", {}).items()]
-    plt.rcParams.update({"font.size": 9, "svg.fonttype": "path", "svg.hashsalt": "slcbeam", "axes.spines.top": False, "axes.spines.right": False})
+    plt.rcParams.update({"font.size": 9, "svg.fonttype": "none", "svg.hashsalt": "slcbeam", "axes.spines.top": False, "axes.spines.right": False})
     columns = 3 if len(panels) > 2 else len(panels)
     rows = math.ceil((len(panels) + 1) / columns)
     figure, axes = plt.subplots(rows, columns, figsize=(4.2 * columns, 3.6 * rows), squeeze=False, layout="constrained")

@@ -19,7 +19,13 @@ fn quick(more: &[&str]) -> String {
 #[test]
 fn integrators_and_large_systems_run() {
     let text = quick(&["--rust"]);
-    for what in ["esdirk46", "diffsol-esdirk34-klu", "SUNDIALS in C, ida2", "peers, radau", "random:"] {
+    for what in [
+        "esdirk46",
+        "diffsol-esdirk34-klu",
+        "SUNDIALS in C, ida2",
+        "peers, radau",
+        "random:",
+    ] {
         assert!(text.contains(what), "no {what} in\n{text}");
     }
 }
@@ -29,7 +35,12 @@ fn integrators_and_large_systems_run() {
 #[ignore = "installs Python packages"]
 fn peers_in_python_run() {
     let text = quick(&[]);
-    for what in ["equations in Python and in slcbeam agree", "scipy-radau", "elastica-10: ", "exudyn-4: "] {
+    for what in [
+        "equations in Python and in slcbeam agree",
+        "scipy-radau",
+        "elastica-10: ",
+        "exudyn-4: ",
+    ] {
         assert!(text.contains(what), "no {what} in\n{text}");
     }
 }
