@@ -44,8 +44,11 @@ class Worker:
     def ask(self, line, timeout=60.0):
         """Words of the answer; nothing when there is none in time."""
         if self.process is None:
+            # more threads than one wait for each other wherever the machine is shared
+            own = os.environ | dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), "1")
             self.process = subprocess.Popen(
-                self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, cwd=ROOT
+                self.command, env=own, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                cwd=ROOT,
             )
             self.rest = b""
         self.process.stdin.write((line + "\n").encode())
