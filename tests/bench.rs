@@ -17,6 +17,7 @@ fn quick(more: &[&str]) -> String {
 
 /// Goal: what is compared in Rust and C still builds and runs, and comes to the same motion: 1e-4 of it at rtol 1e-6.
 #[test]
+#[ignore = "builds the peers, a crate of its own"]
 fn integrators_and_large_systems_run() {
     let text = quick(&["--rust"]);
     for what in [

@@ -176,3 +176,27 @@ mod fits {
         }
     }
 }
+
+/// Sums of vectors, tile after tile, are those of their entries in the order of the terms. Goal: equal bits, with lengths around those of tiles.
+#[test]
+fn sums_of_vectors_are_those_of_their_entries() {
+    use slcbeam::numerics::kernels::combine;
+    for n in [0, 1, 511, 512, 513, 1300] {
+        let vectors: Vec<Vec<f64>> = (1..4)
+            .map(|k| (0..n).map(|i| ((i * 7919 + k) as f64).sin()).collect())
+            .collect();
+        let factors = [0.3, -1.7, 1e-3];
+        for count in 0..=3 {
+            let terms: Vec<(f64, &[f64])> = (0..count).map(|k| (factors[k], &vectors[k][..])).collect();
+            let mut out = vec![7.0; n];
+            combine(&mut out, &terms);
+            for (i, out) in out.iter().enumerate() {
+                let expected = terms
+                    .iter()
+                    .map(|(factor, v)| factor * v[i])
+                    .reduce(|sum, term| sum + term);
+                assert_eq!(*out, expected.unwrap_or(0.0), "{n} {count} {i}");
+            }
+        }
+    }
+}
