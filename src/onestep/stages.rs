@@ -107,7 +107,7 @@ fn correct(x: &mut [f64], r: &mut [f64], mask: &[f64], [factor, cj]: [f64; 2]) {
 
 /// `Y = base + s x` with `s = h γ`, of algebraic unknowns `x`; rates of differential unknowns, 0 of the others.
 #[inline(never)]
-fn values(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: [&mut [f64]; 2]) {
+pub(super) fn values(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: [&mut [f64]; 2]) {
     for (((y, yp), (x, base)), mask) in y.iter_mut().zip(yp).zip(x.iter().zip(base)).zip(mask) {
         *y = mask * base + or_one(*mask, step) * x;
         *yp = mask * x;

@@ -9,7 +9,7 @@ use std::ops::AddAssign;
 use serde::{Deserialize, Serialize};
 
 use super::equations::{Equations, StageError};
-use super::stages::add;
+use super::stages::{add, values};
 use super::tableau::{Method, Tableau};
 use crate::dae::{Dae, Seeds};
 use crate::integrate::{StartOptions, consistent_start};
@@ -182,9 +182,6 @@ impl<D: Dae> StepMap<D> {
                 for (j, x) in x.iter().enumerate().take(i) {
                     add(&mut base, h * self.tableau.a[i][j], x);
                 }
-                for (base, mask) in base.iter_mut().zip(&self.mask) {
-                    *base *= mask;
-                }
                 let slot = 1 + step * (s - 1) + i - 1;
                 let guess = if self.slots[slot].factored {
                     self.slots[slot].x.clone()
@@ -222,7 +219,7 @@ impl<D: Dae> StepMap<D> {
         let mut r = vec![0.0; y.len()];
         let mut before = f64::INFINITY;
         self.equations.dae.approach(1.0 / scale);
-        self.lay(scale, base, x, y, yp);
+        values(x, base, &self.mask, scale, [y, yp]);
         if !self.slots[slot].factored {
             self.factor(slot, t, y, yp, scale)?;
         }
@@ -238,7 +235,7 @@ impl<D: Dae> StepMap<D> {
                 .zip(&*y)
                 .map(|(r, y)| r.abs() / (1.0 + y.abs()))
                 .fold(0.0, f64::max);
-            self.lay(scale, base, x, y, yp);
+            values(x, base, &self.mask, scale, [y, yp]);
             if size <= SOLVED || size <= ROUND_OFF && size > 0.5 * before {
                 break;
             }
@@ -255,16 +252,6 @@ impl<D: Dae> StepMap<D> {
         let of_y = std::mem::take(&mut self.slots[slot].of_y);
         self.slots[slot].of_y = self.of_y(t, y, yp, of_y)?;
         Ok(())
-    }
-
-    /// Values and rates of a stage from its own unknowns.
-    fn lay(&self, scale: f64, base: &[f64], x: &[f64], y: &mut [f64], yp: &mut [f64]) {
-        for ((y, base), (x, mask)) in y.iter_mut().zip(base).zip(x.iter().zip(&self.mask)) {
-            *y = base + if *mask > 0.0 { scale * x } else { *x };
-        }
-        for ((yp, x), mask) in yp.iter_mut().zip(x).zip(&self.mask) {
-            *yp = mask * x;
-        }
     }
 
     /// Factors `∂F/∂y + 1/(h γ) ∂F/∂y'`.
