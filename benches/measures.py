@@ -140,7 +140,7 @@ def measure_rods(all):
             pair = [cheapest(own, accuracy), cheapest(theirs, accuracy)]
             cells = ["not reached", "not reached"]
             times = [[], []]
-            if all_there(pair):
+            if None not in pair:
                 for _ in range(ROUNDS):
                     for k, (p, worker) in enumerate(zip(pair, ("peers", "rods"))):
                         times[k].append(run(all[worker], p["scene"], p["method"], p["rtol"])["seconds"])
@@ -150,16 +150,12 @@ def measure_rods(all):
                     seconds = statistics.median(times[k]) if times[k] else p["seconds"]
                     mesh = p["scene"].partition(":")[2]
                     cells[k] = f"{shown(seconds)} `{p['method']}`, {mesh + ' cells a segment, ' if mesh else ''}{p['rtol']:.0e}"
-            ratio = f"{ratios[-1]:.3g}" if all_there(pair) else "–"
+            ratio = f"{ratios[-1]:.3g}" if None not in pair else "–"
             out["rows"].append([f"{name}, `{scene}`", f"{accuracy:.0e}", *cells, ratio])
         if wanted and ratios:
             texts = ", ".join(f"{r:.3g}" for r in ratios)
             out["ratios"].append([f"{wanted:.0f} times {name} at equal error", texts, min(ratios) >= wanted])
     return out
-
-
-def all_there(pair):
-    return all(p is not None for p in pair)
 
 
 def program(cells, fluid, rtol):
@@ -232,17 +228,16 @@ def instructions(scene, what):
 OPERATIONS = ["residual", "jacobian", "factor", "solve"]
 
 
-def measure_prices(count=True):
+def measure_prices():
     rows = [["scene", "unknowns"] + [f"{what} [us]" for what in OPERATIONS] + ["residuals a Jacobian"]]
     counted = [["scene"] + [f"{what} [1000 instructions]" for what in OPERATIONS]]
     for scene in SCENES:
         p = peers("prices", scene)
         us = [1e6 * p[what] for what in OPERATIONS]
         rows.append([f"`{scene}`", p["unknowns"], *(f"{x:.2f}" for x in us), f"{us[1] / us[0]:.1f}"])
-        if count:
-            numbers = [instructions(scene, what) for what in OPERATIONS]
-            counted.append([f"`{scene}`", *("–" if n is None else f"{n / 1e3:.1f}" for n in numbers)])
-    return {"rows": rows, "counted": counted if count else []}
+        numbers = [instructions(scene, what) for what in OPERATIONS]
+        counted.append([f"`{scene}`", *("–" if n is None else f"{n / 1e3:.1f}" for n in numbers)])
+    return {"rows": rows, "counted": counted}
 
 
 def exponent(pairs):

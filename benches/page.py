@@ -143,6 +143,4 @@ def draw(results):
     for axis in rest:
         axis.axis("off")
     rest[0].legend(seen.values(), seen.keys(), loc="center left", frameon=False, title="fastest settings; dots: all others")
-    metadata = {"Date": None}
-    figure.savefig(PAGE.with_suffix(".svg"), metadata=metadata)
-    figure.savefig(PAGE.with_suffix(".png"), dpi=110)
+    figure.savefig(PAGE.with_suffix(".svg"), metadata={"Date": None})

@@ -1,25 +1,21 @@
 """Programs with a discretisation of their own on dry beams, asked for line by line: SCENE METHOD-ELEMENTS STEPS, steps an output
-interval. Answers `seconds steps tip.. zeros..`; compiling and assembling are done before time is taken."""
+interval; compiling and assembling are done before time is taken."""
 
-import json
-import subprocess
 import sys
 import time
 
 import numpy as np
 
+from asked import exported, serve
+
 PEERS = sys.argv[1]
-
-
-def exported(name):
-    return json.loads(subprocess.run([PEERS, "export", name], check=True, capture_output=True, text=True).stdout)
 
 
 class Start:
     """A beam of the case and its start, from a fine mesh."""
 
     def __init__(self, name):
-        scene = exported(f"{name}:32")
+        scene = exported(PEERS, f"{name}:32")
         case, section, layout = scene["case"], scene["section"], scene["layout"]
         y = np.array(scene["start"]["y"]) * np.array(scene["scales"])
         block = lambda key: y[slice(*layout[key])]
@@ -143,22 +139,21 @@ def exudyn(start, elements, steps):
 
 def main():
     starts, seen = {}, set()
-    for line in sys.stdin:
-        name, method, steps = line.split()
+
+    def solve(name, method, steps):
         if name not in starts:
             starts[name] = Start(name)
         method, elements = method.split("-")
-        try:
-            solve = {"elastica": elastica, "exudyn": exudyn}[method]
-            seconds, count, tips = solve(starts[name], int(elements), round(float(steps)))
-            if method not in seen:  # compiled by now
-                seen.add(method)
-                seconds, count, tips = solve(starts[name], int(elements), round(float(steps)))
-            assert len(tips) == len(starts[name].times), len(tips)
-            numbers = " ".join(f"{x:.17g}" for x in list(tips) + [0.0] * len(tips))
-            print(f"{seconds:e} {count} {numbers}", flush=True)
-        except Exception as error:  # a peer may fail at a setting; that is a result
-            print("failed " + f"{type(error).__name__} {error}".replace("\n", " "), flush=True)
+        setting = starts[name], int(elements), round(steps)
+        peer = {"elastica": elastica, "exudyn": exudyn}[method]
+        if method not in seen:
+            peer(*setting)  # compiles
+            seen.add(method)
+        seconds, count, tips = peer(*setting)
+        assert len(tips) == len(starts[name].times), len(tips)
+        return seconds, count, tips, [0.0] * len(tips)
+
+    serve(solve)
 
 
 main()

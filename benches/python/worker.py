@@ -1,8 +1,5 @@
-"""Runs of the Python peers, asked for line by line: SCENE METHOD RTOL. Answers `seconds steps tip.. pressure..`; compiling is done
-before time is taken. `worker.py PEERS --check SCENE..` compares equations instead."""
+"""Runs of the Python peers, asked for line by line: SCENE METHOD RTOL; compiling is done before time is taken. `worker.py PEERS --check SCENE..` compares equations instead."""
 
-import json
-import subprocess
 import sys
 import time
 
@@ -10,14 +7,11 @@ import numpy as np
 import scipy.integrate
 import sksundae
 
+from asked import exported, serve
 from beam import Beam
 
 PEERS = sys.argv[1]
 METHODS = ["sundae-default", "sundae-sparse2", "sundae-sparse5", "scipy-radau", "scipy-bdf"]
-
-
-def exported(name):
-    return json.loads(subprocess.run([PEERS, "export", name], check=True, capture_output=True, text=True).stdout)
 
 
 def sundae(beam, method, rtol):
@@ -60,7 +54,7 @@ def check(names):
     """Equations at random states, relative to the largest residual of the state; exit code 1 where they differ."""
     worst = 0.0
     for name in names:
-        scene = exported(name)
+        scene = exported(PEERS, name)
         beam = Beam(scene)
         n = beam.n
         for state in scene["states"]:
@@ -87,21 +81,19 @@ def main():
     if "--check" in sys.argv:
         sys.exit(check(sys.argv[3:]))
     beams = {}
-    for line in sys.stdin:
-        name, method, rtol = line.split()
+
+    def solve(name, method, rtol):
         if name not in beams:
-            beams[name] = Beam(exported(name))
+            beams[name] = Beam(exported(PEERS, name))
             beams[name].warm_up()
+        if method not in METHODS:
+            raise RuntimeError(f"no method {method}")
         beam = beams[name]
-        try:
-            if method not in METHODS:
-                raise RuntimeError(f"no method {method}")
-            seconds, steps, states = (sundae if method.startswith("sundae") else scipys)(beam, method, float(rtol))
-            read = [beam.readings(y) for y in states]
-            numbers = [r[0] for r in read] + [r[1] for r in read]
-            print(f"{seconds:e} {steps} " + " ".join(f"{x:.17g}" for x in numbers), flush=True)
-        except Exception as error:  # a peer may fail at a tolerance; that is a result
-            print("failed " + str(error).replace("\n", " "), flush=True)
+        seconds, steps, states = (sundae if method.startswith("sundae") else scipys)(beam, method, rtol)
+        tips, pressures = zip(*map(beam.readings, states))
+        return seconds, steps, tips, pressures
+
+    serve(solve)
 
 
 main()

@@ -2,16 +2,7 @@
 
 use slcbeam::case::{self, Case};
 
-/// How the bladders are joined.
-pub const WIRINGS: [&str; 5] = ["chain", "ring", "ladder", "tree", "random"];
-
-/// A number that follows from the last, for wires that look random and are the same in every run.
-fn next(state: &mut u64) -> u64 {
-    *state = state
-        .wrapping_mul(6_364_136_223_846_793_005)
-        .wrapping_add(1_442_695_040_888_963_407);
-    *state >> 33
-}
+use crate::random::Random;
 
 /// Text of `/network` for so many bladders a row.
 fn network(wiring: &str, per_row: usize) -> String {
@@ -38,8 +29,8 @@ fn network(wiring: &str, per_row: usize) -> String {
         ),
         "tree" => (vec![], (2..=n).map(|k| tube(k / 2, "outlet", k, "inlet")).collect()),
         "random" => {
-            let mut state = 1;
-            let mut any = || 2 + (next(&mut state) % (per_row as u64 - 2)) as i64;
+            let mut random = Random(1);
+            let mut any = || 2 + ((random.bits() >> 33) % (per_row as u64 - 2)) as i64;
             let long = (0..per_row / 5).filter_map(|_| {
                 let (a, b) = (any(), any());
                 (a != b).then(|| tube(a, "outlet", b, "inlet"))

@@ -3,26 +3,11 @@
 use serde_json::{Value, json};
 use slcbeam::dae::Dae;
 
+use crate::random::Random;
 use crate::scene::Scene;
 
 /// States at which equations are compared.
 const STATES: usize = 5;
-
-/// Numbers that look random in (-1, 1), the same in every run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-    fn vector(&mut self, n: usize, size: f64) -> Vec<f64> {
-        (0..n).map(|_| size * self.next()).collect()
-    }
-}
 
 /// Case as resolved, section, sizes and places of unknowns, pattern, start, and residuals at random states.
 pub fn scene(scene: &Scene) -> Value {

@@ -28,7 +28,7 @@ pub fn measure(case: Case) -> Value {
     let start = begin.elapsed().as_secs_f64();
     let options = own::options(&scene, "esdirk46", 1e-4).expect("a method");
     let begin = Instant::now();
-    let mut solver = own::integrator(&scene, &options).expect("an integrator");
+    let mut solver = own::integrator(&scene, scene.dae(), &options).expect("an integrator");
     let set_up = begin.elapsed().as_secs_f64();
     let mut advance = |steps: usize| {
         (0..steps).for_each(|_| {

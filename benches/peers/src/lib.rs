@@ -11,4 +11,5 @@ pub mod other;
 pub mod own;
 pub mod prices;
 pub mod radau;
+pub mod random;
 pub mod scene;

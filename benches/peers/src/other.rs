@@ -9,16 +9,6 @@ use slcbeam::dae::{Dae, Seeds};
 
 use crate::scene::{Ran, Scene};
 
-/// Names under which they are asked for.
-pub const NAMES: [&str; 6] = [
-    "diffsol-bdf-klu",
-    "diffsol-trbdf2-klu",
-    "diffsol-esdirk34-klu",
-    "diffsol-bdf-faer",
-    "diffsol-trbdf2-faer",
-    "diffsol-esdirk34-faer",
-];
-
 /// Readings at the output times.
 pub fn follow(scene: &Scene, name: &str, rtol: f64) -> Result<Ran, String> {
     let n = scene.y.len();

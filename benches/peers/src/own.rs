@@ -10,10 +10,7 @@ use slcbeam::sundials::IdaOptions;
 
 use crate::scene::{Bare, Ran, Scene};
 
-/// Names under which they are asked for.
-pub const NAMES: [&str; 5] = ["ida2", "trbdf2", "esdirk34", "esdirk46", "esdirk57"];
-
-/// Settings of a run as the program makes them.
+/// Settings of a run as the program makes them, by the name under which a method is asked for.
 pub fn options(scene: &Scene, name: &str, rtol: f64) -> Option<Options> {
     let one_step = |method| {
         Options::OneStep(OneStepOptions {
@@ -41,25 +38,31 @@ pub fn options(scene: &Scene, name: &str, rtol: f64) -> Option<Options> {
     })
 }
 
-/// An integrator at the start of a scene.
-pub fn integrator(scene: &Scene, options: &Options) -> Result<Integrator<Bare>, String> {
-    Integrator::new(scene.dae(), 0.0, &scene.y, &scene.yp, options).map_err(|e| e.to_string())
+/// An integrator of a scene's equations at its start.
+pub fn integrator(scene: &Scene, dae: Bare, options: &Options) -> Result<Integrator<Bare>, String> {
+    Integrator::new(dae, 0.0, &scene.y, &scene.yp, options).map_err(|e| e.to_string())
+}
+
+/// Goes to the end of a scene; readings at the output times.
+fn through(scene: &Scene, solver: &mut Integrator<Bare>) -> Result<Vec<[f64; 2]>, String> {
+    let mut y = scene.y.clone();
+    let mut readings = vec![];
+    while readings.len() < scene.times.len() {
+        let at = solver.step(scene.end()).map_err(|e| e.to_string())?.time;
+        while let Some(&t) = scene.times.get(readings.len()).filter(|t| **t <= at) {
+            solver.interpolate(t, 0, &mut y).map_err(|e| e.to_string())?;
+            readings.push(scene.readings.read(&y));
+        }
+    }
+    Ok(readings)
 }
 
 /// Where the time of a run goes, its work counted.
 pub fn profile(scene: &Scene, name: &str, rtol: f64) -> Option<Value> {
     let options = options(scene, name, rtol)?;
-    let mut solver = integrator(scene, &options).ok()?;
-    let mut y = scene.y.clone();
+    let mut solver = integrator(scene, scene.dae(), &options).ok()?;
     let begin = Instant::now();
-    let mut read = 0;
-    while read < scene.times.len() {
-        let at = solver.step(scene.end()).ok()?.time;
-        while let Some(&t) = scene.times.get(read).filter(|t| **t <= at) {
-            solver.interpolate(t, 0, &mut y).ok()?;
-            read += 1;
-        }
-    }
+    through(scene, &mut solver).ok()?;
     let seconds = begin.elapsed().as_secs_f64();
     let (counters, wall) = (solver.counters(), solver.wall());
     let [residual, jacobian, linear] =
@@ -77,16 +80,8 @@ pub fn profile(scene: &Scene, name: &str, rtol: f64) -> Option<Value> {
 pub fn follow(scene: &Scene, options: &Options) -> Result<Ran, String> {
     let dae = scene.dae();
     let begin = Instant::now();
-    let mut solver = Integrator::new(dae, 0.0, &scene.y, &scene.yp, options).map_err(|e| e.to_string())?;
-    let mut y = scene.y.clone();
-    let mut readings = vec![];
-    while readings.len() < scene.times.len() {
-        let at = solver.step(scene.end()).map_err(|e| e.to_string())?.time;
-        while let Some(&t) = scene.times.get(readings.len()).filter(|t| **t <= at) {
-            solver.interpolate(t, 0, &mut y).map_err(|e| e.to_string())?;
-            readings.push(scene.readings.read(&y));
-        }
-    }
+    let mut solver = integrator(scene, dae, options)?;
+    let readings = through(scene, &mut solver)?;
     Ok(Ran {
         seconds: begin.elapsed().as_secs_f64(),
         readings,

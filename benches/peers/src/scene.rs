@@ -8,9 +8,6 @@ use slcbeam::model::AreaLaw;
 use slcbeam::run::strides::Strides;
 use slcbeam::sparse::Pattern;
 
-/// Scenes of which the semi-discrete equations are the same for all.
-pub const SCENES: [&str; 3] = ["shaken-sealed", "wiring-2", "dry-cantilever"];
-
 /// The beam without its ledger.
 pub struct Bare(pub BeamDae);
 
