@@ -634,7 +634,7 @@ fn means_weigh_as_their_transpose() {
             }
         }
         close(
-            residual::solid::pressure_curvature(&system, &w, node),
+            residual::bending::pressure_curvature(&system, &w, node),
             transposed,
             1e-12,
         );

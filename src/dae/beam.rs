@@ -1,13 +1,11 @@
 //! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
 
-use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds, trace};
+use super::chain::{self, Chain, LANES};
+use super::trace::Dependence;
+use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds};
 use crate::discrete::{State, System, TimeData, Workspace, kick, ledger, residual, start};
 use crate::functions::signals::Clock;
 use crate::numerics::Dual;
-use crate::sparse::colour;
-
-/// Directions differentiated in one sweep.
-const LANES: usize = 8;
 
 /// `F(t, y, y') = 0` of a [`System`], each unknown and each equation divided by its characteristic size.
 #[derive(Clone, Debug)]
@@ -16,7 +14,9 @@ pub struct BeamDae {
     within: f64,
     now: TimeData,
     pattern: Pattern,
-    sweeps: Vec<Vec<(usize, usize)>>,
+    chain: Chain,
+    /// One over the size of each equation.
+    per_row: Vec<f64>,
     plain: Buffers<f64>,
     dual: Buffers<Dual<LANES>>,
     perturbed: Vec<PerturbedSystems>,
@@ -25,21 +25,21 @@ pub struct BeamDae {
 }
 
 #[derive(Clone, Debug)]
-struct Buffers<T> {
-    workspace: Workspace<T>,
-    y: Vec<T>,
-    yp: Vec<T>,
-    residual: Vec<T>,
+pub(super) struct Buffers<T> {
+    pub(super) workspace: Workspace<T>,
+    pub(super) y: Vec<T>,
+    pub(super) yp: Vec<T>,
+    pub(super) residual: Vec<T>,
 }
 
 impl<T: crate::numerics::Scalar> Buffers<T> {
-    fn new(system: &System) -> Self {
+    fn new(system: &System, numbers: usize) -> Self {
         let zeros = vec![T::zero(); system.layout.len];
         Self {
             workspace: Workspace::new(system),
             y: zeros.clone(),
-            yp: zeros.clone(),
-            residual: zeros,
+            yp: zeros,
+            residual: vec![T::zero(); numbers],
         }
     }
 }
@@ -75,19 +75,16 @@ impl BeamDae {
     pub fn new(system: System) -> Self {
         let mut now = TimeData::new(&system);
         now.update(&system, Clock { t: 0.0, within: 0.0 });
-        let pattern = trace::pattern(&system, &now);
-        let (colour, count) = colour::colours(&pattern);
-        let mut sweeps = vec![Vec::new(); count.div_ceil(LANES)];
-        for (column, &c) in colour.iter().enumerate() {
-            sweeps[c / LANES].push((column, c % LANES));
-        }
-        let (plain, dual) = (Buffers::new(&system), Buffers::new(&system));
+        let per_row: Vec<f64> = system.layout.row_scales.iter().map(|row| 1.0 / row).collect();
+        let (pattern, chain) = Chain::new(&system, &Dependence::new(&system, &now), &per_row);
+        let (plain, dual) = (Buffers::new(&system, 0), Buffers::new(&system, chain::width(&system)));
         Self {
+            per_row,
             system,
             within: 0.0,
             now,
             pattern,
-            sweeps,
+            chain,
             plain,
             dual,
             perturbed: vec![],
@@ -98,7 +95,7 @@ impl BeamDae {
     /// The same equations of a system with the same unknowns.
     pub(super) fn of(&self, system: System) -> Self {
         Self {
-            plain: Buffers::new(&system),
+            plain: Buffers::new(&system, 0),
             now: TimeData::new(&system),
             perturbed: vec![],
             held: None,
@@ -242,9 +239,10 @@ impl BeamDae {
         self.held = None;
         self.now.update(&self.system, Clock { t, within: self.within });
         let scales = &self.system.layout.scales;
-        for (k, scale) in scales.iter().enumerate() {
-            self.plain.y[k] = y[k] * scale;
-            self.plain.yp[k] = yp[k] * scale;
+        for (own, given) in [(&mut self.plain.y, y), (&mut self.plain.yp, yp)] {
+            for ((own, given), scale) in own.iter_mut().zip(given).zip(scales) {
+                *own = given * scale;
+            }
         }
     }
 }
@@ -265,9 +263,9 @@ impl Dae for BeamDae {
     fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError> {
         self.unscale(t, y, yp);
         let b = &mut self.plain;
-        residual::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
-        for (k, row) in self.system.layout.row_scales.iter().enumerate() {
-            residual[k] = b.residual[k] / row;
+        residual::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, residual);
+        for (r, per) in residual.iter_mut().zip(&self.per_row) {
+            *r *= per;
         }
         Ok(())
     }
@@ -286,32 +284,23 @@ impl Dae for BeamDae {
     ) -> Result<(), EvaluationError> {
         self.unscale(t, y, yp);
         let scales = &self.system.layout.scales;
-        let rows = &self.system.layout.row_scales;
+        self.dual.take(&self.plain);
+        let of = (&self.system, &self.now);
         let b = &mut self.dual;
-        b.take(&self.plain);
-        for sweep in &self.sweeps {
-            for &(column, lane) in sweep {
-                let (of_y, of_yp) = match seeds {
-                    Seeds::Step { cj } => (1.0, cj),
-                    Seeds::Columns { y, yp } => (y[column], yp[column]),
-                };
-                b.y[column].derivative[lane] = of_y * scales[column];
-                b.yp[column].derivative[lane] = of_yp * scales[column];
+        match seeds {
+            Seeds::Step { cj } => {
+                let seeds = |k: usize| [scales[k], cj * scales[k]];
+                self.chain.differentiate(of, b, seeds, &self.per_row, values);
             }
-            residual::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
-            for &(column, lane) in sweep {
-                for entry in self.pattern.column(column) {
-                    let row = self.pattern.rows[entry] as usize;
-                    values[entry] = b.residual[row].derivative[lane] / rows[row];
-                }
-                b.y[column].derivative = [0.0; LANES];
-                b.yp[column].derivative = [0.0; LANES];
+            Seeds::Columns { y, yp } => {
+                let seeds = |k: usize| [y[k] * scales[k], yp[k] * scales[k]];
+                self.chain.differentiate(of, b, seeds, &self.per_row, values);
             }
         }
         Ok(())
     }
 
-    /// Eight directions a sweep; allocates nothing.
+    /// [`LANES`] directions a sweep; allocates nothing.
     fn tangent(
         &mut self,
         t: f64,
@@ -322,7 +311,6 @@ impl Dae for BeamDae {
     ) -> Result<(), EvaluationError> {
         self.unscale(t, y, yp);
         let scales = &self.system.layout.scales;
-        let rows = &self.system.layout.row_scales;
         let b = &mut self.dual;
         for (first, out) in (0..).step_by(LANES).zip(out.chunks_mut(LANES)) {
             b.take(&self.plain);
@@ -332,10 +320,11 @@ impl Dae for BeamDae {
                     b.yp[k].derivative[lane] = dyp[first + lane][k] * scale;
                 }
             }
-            residual::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, &mut b.residual);
+            let r = &mut b.residual[..self.system.layout.len];
+            residual::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, r);
             for (lane, out) in out.iter_mut().enumerate() {
-                for (k, row) in rows.iter().enumerate() {
-                    out[k] = b.residual[k].derivative[lane] / row;
+                for ((out, r), per) in out.iter_mut().zip(&b.residual).zip(&self.per_row) {
+                    *out = r.derivative[lane] * per;
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 pub mod beam;
 mod between;
+mod chain;
 pub mod perturbed;
 pub mod statics;
 pub mod trace;

@@ -5,7 +5,6 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use crate::discrete::{System, TimeData, Workspace, residual};
 use crate::numerics::Scalar;
-use crate::sparse::Pattern;
 
 /// A number known only by the unknowns it depends on: an index into the thread's table of sorted sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,32 +48,56 @@ impl Trace {
     }
 }
 
-/// Stored entries of the Jacobian of a system's residual with respect to unknowns and their rates.
-pub fn pattern(system: &System, now: &TimeData) -> Pattern {
-    let n = system.layout.len;
-    SETS.with_borrow_mut(|sets| {
-        sets.clear();
-        sets.push(Vec::new());
-    });
-    let y: Vec<Trace> = (0..n).map(Trace::unknown).collect();
-    let yp: Vec<Trace> = y
-        .iter()
-        .zip(&system.layout.differential)
-        .map(|(&t, &d)| if d { t } else { NOTHING })
-        .collect();
-    let mut residual = vec![NOTHING; n];
-    let mut workspace = Workspace::new(system);
-    residual::residual(system, now, &y, &yp, &mut workspace, &mut residual);
-    let mut columns = vec![Vec::new(); n];
-    SETS.with_borrow_mut(|sets| {
-        for (row, trace) in residual.iter().enumerate() {
-            for &column in &sets[trace.0 as usize] {
-                columns[column as usize].push(row);
+/// On which unknowns, and on which strains due to pressure, numbered behind them, each of what an evaluation gives depends; ascending.
+#[derive(Clone, Debug)]
+pub struct Dependence {
+    /// Equations.
+    pub equations: Vec<Vec<u32>>,
+    /// Moments of nodes.
+    pub moments: Vec<Vec<u32>>,
+    /// Normal forces of cells.
+    pub forces: Vec<Vec<u32>>,
+    /// The strains themselves, in the order of [`crate::discrete::workspace::Coupling::strains_mut`].
+    pub strains: Vec<Vec<u32>>,
+}
+
+impl Dependence {
+    /// Of a system's residual, on unknowns and their rates.
+    pub fn new(system: &System, now: &TimeData) -> Self {
+        let n = system.layout.len;
+        SETS.with_borrow_mut(|sets| {
+            sets.clear();
+            sets.push(Vec::new());
+        });
+        let y: Vec<Trace> = (0..n).map(Trace::unknown).collect();
+        let yp: Vec<Trace> = y
+            .iter()
+            .zip(&system.layout.differential)
+            .map(|(&t, &d)| if d { t } else { NOTHING })
+            .collect();
+        let mut residual = vec![NOTHING; n];
+        let mut workspace = Workspace::new(system);
+        residual::until_strains(system, now, &y, &yp, &mut workspace);
+        let strains: Vec<Trace> = workspace.coupling.strains_mut().map(|strain| *strain).collect();
+        for (k, strain) in workspace.coupling.strains_mut().enumerate() {
+            if *strain != NOTHING {
+                *strain = Trace::unknown(n + k);
             }
         }
-        *sets = Vec::new();
-    });
-    Pattern::from_columns(&columns)
+        residual::beyond_strains(system, now, &mut workspace);
+        residual::equations(system, now, &y, &yp, &workspace, &mut residual);
+        SETS.with_borrow_mut(|sets| {
+            let known = |all: &[Trace]| all.iter().map(|trace| sets[trace.0 as usize].clone()).collect();
+            let on = Self {
+                equations: known(&residual),
+                moments: known(&workspace.forces.moment),
+                forces: known(&workspace.forces.normal),
+                strains: known(&strains),
+            };
+            *sets = Vec::new();
+            on
+        })
+    }
 }
 
 /// What depends on both, on one, or on what is added to it.

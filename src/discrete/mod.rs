@@ -61,6 +61,8 @@ pub struct System {
     pub probes: Vec<Probe>,
     /// Masses of the nodes [kg].
     pub masses: Vec<f64>,
+    /// Whether nothing but loads, ends and sections acts on nodes: nothing surrounds the beam, is attached to it or touched by it.
+    pub stands_alone: bool,
     /// Whether any load is a distributed moment.
     pub has_moments: bool,
     /// Whether material damping acts.
@@ -74,7 +76,15 @@ impl System {
     /// # Errors
     /// [`Error::Case`](crate::error::Error::Case) with every fault that only the model shows: [`System::accepted`].
     pub fn new(case: &Case) -> Result<Self> {
-        Self::starting(case, Model::new(case)?, |model| Ok(model.clone()))?.accepted(case)
+        Self::chosen(case, Model::new(case)?)
+    }
+
+    /// The same with the model that has been chosen for the case already.
+    ///
+    /// # Errors
+    /// As of [`System::new`].
+    pub fn chosen(case: &Case, model: Model) -> Result<Self> {
+        Self::starting(case, model, |model| Ok(model.clone()))?.accepted(case)
     }
 
     /// Discretises another model of a checked case; bladders keep the volume that they have at the start of the case.
@@ -163,7 +173,9 @@ impl System {
         let bodies = Body::all(&model.attachments, &model.ends, model.kinematics, &mesh);
         let touching = Touching::all(&model.contacts, &mesh);
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
+        let nothing_attached = attached.is_empty() && bodies.is_empty() && touching.is_empty();
         Self {
+            stands_alone: nothing_attached && !model.section.resists_motion() && model.surroundings.is_none(),
             model,
             probes: Probe::all(case, &mesh),
             mesh,

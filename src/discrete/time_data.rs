@@ -107,6 +107,12 @@ impl Frame {
         }
     }
 
+    /// Whether its two ends move apart.
+    #[inline]
+    pub fn leans(&self) -> bool {
+        self.lean != Jet::default()
+    }
+
     /// Displacement, velocity and acceleration at a share of the length, 0 at the root and 1 at the tip.
     #[inline]
     pub fn at(&self, share: f64) -> Jet {

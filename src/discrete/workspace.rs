@@ -40,6 +40,8 @@ pub struct Shape<T> {
     pub d3: Vec<Planar<T>>,
     /// `lambda`.
     pub stretch: Vec<T>,
+    /// `1/lambda`, of finite rotations.
+    pub per_stretch: Vec<T>,
     /// `lambda - 1`, without cancellation.
     pub strain: Vec<T>,
     /// Unit tangent `e_t` of the beam's line.
@@ -238,6 +240,21 @@ impl<T: Scalar> Fluid<T> {
     }
 }
 
+impl<T> Coupling<T> {
+    /// Strains due to pressure: stretches of all segments, then curvatures.
+    pub fn strains_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.pressure_stretch.iter_mut().chain(&mut self.pressure_curvature)
+    }
+
+    /// One of them.
+    pub fn strain_mut(&mut self, k: usize) -> &mut T {
+        match k.checked_sub(self.pressure_stretch.len()) {
+            None => &mut self.pressure_stretch[k],
+            Some(k) => &mut self.pressure_curvature[k],
+        }
+    }
+}
+
 impl Fluid<f64> {
     /// Area changes of cells [m^2].
     pub fn area_changes(&self) -> &[f64] {
@@ -303,6 +320,7 @@ impl<T: Scalar> Workspace<T> {
             shape: Shape {
                 d3: vectors(c),
                 stretch: vec![T::constant(1.0); c],
+                per_stretch: vec![T::constant(1.0); c],
                 strain: zeros(c),
                 tangent: vec![Planar::constant(Planar { x: 0.0, z: 1.0 }); c],
                 stretch_rate: zeros(c),

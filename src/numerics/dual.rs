@@ -2,7 +2,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use crate::numerics::Scalar;
+use crate::numerics::{Scalar, angle};
 
 /// `value + Σ derivative[l] ε_l`, `ε_l ε_m = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,8 +140,9 @@ impl<const L: usize> Scalar for Dual<L> {
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
-        let square = self.value * self.value + x.value * x.value;
-        self.combine(x, self.value.atan2(x.value), x.value / square, -self.value / square)
+        let angle = angle::atan2(self.value, x.value);
+        let per_square = 1.0 / (self.value * self.value + x.value * x.value);
+        self.combine(x, angle, x.value * per_square, -self.value * per_square)
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`scalar`] | the numbers in which equations are written |
 //! | [`dual`] | a number with its derivatives |
+//! | [`angle`] | angles of vectors |
 //! | [`planar`] | vectors in the plane |
 //! | [`kernels`] | loops over vectors |
 //! | `gauss` | Gauss' quadrature |
@@ -11,6 +12,7 @@
 //! | [`regression`], [`student`] | least squares with covariance, and intervals by Student's distribution |
 //! | [`krylov`] | linear systems and eigenvalues of a map known only by what it does |
 
+pub mod angle;
 pub mod dual;
 pub mod gauss;
 pub mod kernels;

@@ -50,7 +50,7 @@ impl Scalar for f64 {
     }
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
-        f64::atan2(self, x)
+        super::angle::atan2(self, x)
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {

@@ -100,6 +100,16 @@ impl Layout {
         nodes.chain(self.turning.unknowns())
     }
 
+    /// Blocks of unknowns that are moved with velocities that are unknowns, and these.
+    pub fn moved_blocks(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
+        let nodes = self
+            .lines
+            .iter()
+            .filter_map(|line| Some((line.u.clone(), line.v.clone()?)));
+        let turning = self.turning.rate.iter();
+        nodes.chain(turning.map(|rate| (self.turning.angle.clone(), rate.clone())))
+    }
+
     /// Velocities among the unknowns.
     pub fn velocities(&self) -> impl Iterator<Item = usize> + '_ {
         self.moved().filter_map(|(_, velocity)| velocity)

@@ -135,6 +135,7 @@ fn turning<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
 }
 
 /// Unit tangent at a node: along the mean of those of its cells.
+#[inline]
 pub fn node_tangent<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> Planar<T> {
     let cells = &w.shape.tangent;
     let mean = cells[node.saturating_sub(1)] + cells[node.min(system.mesh.cells - 1)];

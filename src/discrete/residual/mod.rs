@@ -2,6 +2,7 @@
 
 pub mod around;
 pub mod bar;
+pub mod bending;
 pub mod fluid;
 pub mod nonlinear;
 pub mod relaxation;
@@ -20,9 +21,19 @@ pub use unpack::unpack;
 
 /// Everything up to forces and flows: fills the workspace from the state (SI units, not scaled).
 pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>) {
+    until_strains(system, now, y, yp, w);
+    beyond_strains(system, now, w);
+}
+
+/// Up to the strains due to pressure.
+pub fn until_strains<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>) {
     unpack(system, now, y, yp, w);
     fluid::pressures(system, w);
     fluid::pressure_strains(system, w);
+}
+
+/// What follows from these strains.
+pub fn beyond_strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     nonlinear::forces(system, w);
     let sheared = system.model.effects.has(Effect::Shear);
     match system.model.kinematics {
@@ -41,7 +52,7 @@ pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
             small::rates(system, now, w);
             small::normal_forces(system, now, w);
             relaxation::normal_forces(system, w);
-            solid::moments(system, now, w);
+            bending::moments(system, now, w);
             if sheared {
                 sheared::forces(system, now, w);
             } else {
@@ -57,11 +68,11 @@ pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
             solid::rates(system, now, w);
             solid::normal_forces(system, w);
             relaxation::normal_forces(system, w);
-            solid::moments(system, now, w);
+            bending::moments(system, now, w);
             if sheared {
                 sheared::forces(system, now, w);
             } else {
-                solid::shears(system, w);
+                bending::shears(system, w);
                 solid::section_forces(system, now, w);
             }
         }
@@ -82,6 +93,11 @@ pub fn complete<T: Scalar>(system: &System, now: &TimeData, yp: &[T], w: &mut Wo
 /// The residual `F(t, y, y')`, one equation an unknown, in SI units.
 pub fn residual<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>, r: &mut [T]) {
     evaluate(system, now, y, yp, w);
+    equations(system, now, y, yp, w, r);
+}
+
+/// The residual after everything has been evaluated.
+pub fn equations<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &Workspace<T>, r: &mut [T]) {
     rows::momentum(system, now, w, r);
     rows::motion(system, y, yp, r);
     sheared::rows(system, w, r);

@@ -69,6 +69,9 @@ pub fn outer_forces<T: Scalar>(
     if system.model.published() {
         each(Some(EnergyRate::Formulation), published_force(system, w, node));
     }
+    if system.stands_alone {
+        return;
+    }
     around::forces(system, now, w, node, length, &mut each);
     for (attached, weight) in at_node(&system.attached, node) {
         let given = attached.given(system, now, w);
@@ -168,6 +171,7 @@ fn end_angle<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node:
 /// ```text
 /// c_i = h_i (κ_i - M_i/EI) (V^ e_t(φ^) - N^ e_n(φ^))        ^ mean of the neighbouring cells
 /// ```
+#[inline]
 pub fn published_force<T: Scalar>(system: &System, w: &Workspace<T>, i: usize) -> Planar<T> {
     let last = system.mesh.nodes - 1;
     let (a, b) = (i.saturating_sub(1), i.min(last - 1));
@@ -187,9 +191,9 @@ pub fn published_force<T: Scalar>(system: &System, w: &Workspace<T>, i: usize) -
 
 /// `u' = v`, where velocities are unknowns.
 pub fn motion<T: Scalar>(system: &System, y: &[T], yp: &[T], r: &mut [T]) {
-    for (u, v) in system.layout.moved() {
-        if let Some(v) = v {
-            r[u] = yp[u] - y[v];
+    for (u, v) in system.layout.moved_blocks() {
+        for ((r, rate), velocity) in r[u.clone()].iter_mut().zip(&yp[u]).zip(&y[v]) {
+            *r = *rate - *velocity;
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The beam that shears: its sections turn by angles of their own.
 
+use super::bending::total_moment_drop;
 use super::relaxation;
-use super::solid::{couple, line, normal_force, total_moment_drop};
+use super::solid::{couple, lines, normal_force};
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace, attached, bodies};
 use crate::model::Kinematics;
@@ -26,20 +27,17 @@ use crate::numerics::{Planar, Scalar};
 /// ```
 pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
-    let inverse = 1.0 / system.mesh.h;
     let (u, shape) = (&w.motion.u, &mut w.shape);
     if finite {
-        for c in 0..system.mesh.cells {
-            let e = line(u, c, inverse, shape);
-            let sections = &mut shape.sections;
+        lines(system, u, shape, |c, sections, e, line| {
             let (s, c_half) = (sections.angle[c] * 0.5).sin_cos();
             // cos θ - 1, without cancellation
             let less = s * s * -2.0;
             let normal = Planar::new(s * c_half * 2.0, less + 1.0);
             sections.normal[c] = normal;
-            shape.strain[c] = e.x * normal.x + e.z * normal.z + less;
-            sections.shear[c] = shape.d3[c].dot(normal.normal());
-        }
+            sections.shear[c] = line.d3.dot(normal.normal());
+            e.x * normal.x + e.z * normal.z + less
+        });
     } else {
         let sections = &mut shape.sections;
         for ((shear, angle), d3) in sections.shear.iter_mut().zip(&sections.angle).zip(&shape.d3) {

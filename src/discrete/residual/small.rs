@@ -1,7 +1,8 @@
 //! The beam that turns little: von Karman's, and the linear one.
 
+use super::bending::total_moment_drop;
 use super::sheared;
-use super::solid::{self, couple, curvature_rates, normal_force, total_moment_drop};
+use super::solid::{self, couple, curvature_rates, normal_force};
 use crate::case::Translation;
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace, attached, bodies};

@@ -1,8 +1,8 @@
 //! Kinematics, resultants and section forces of the beam.
 
-use super::{relaxation, sheared};
+use super::sheared;
 use crate::case::schema::Effect;
-use crate::discrete::workspace::Shape;
+use crate::discrete::workspace::{Sections, Shape};
 use crate::discrete::{System, TimeData, Workspace, attached, bodies};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
@@ -18,15 +18,14 @@ use crate::numerics::{Planar, Scalar};
 /// Angles enter as differences only, from cross and dot products, so that any number of turns is fine.
 pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
-    let (u, shape) = (&w.motion.u, &mut w.shape);
-    for c in 0..system.mesh.cells {
-        let e = line(u, c, inverse, shape);
-        shape.strain[c] = (e.x.squared() + e.z * (e.z + 2.0)) / (shape.stretch[c] + 1.0);
-    }
-    let last = system.mesh.nodes - 1;
-    let tangent = &shape.tangent;
-    for i in 1..last {
-        shape.kappa[i] = -tangent[i - 1].angle_to(tangent[i]) * inverse;
+    let last = system.mesh.cells;
+    let shape = &mut w.shape;
+    lines(system, &w.motion.u, shape, |_, _, e, line| {
+        (e.x.squared() + e.z * (e.z + 2.0)) / (line.stretch + 1.0)
+    });
+    let tangent = &shape.tangent[..last];
+    for (kappa, pair) in shape.kappa[1..last].iter_mut().zip(tangent.windows(2)) {
+        *kappa = -pair[0].angle_to(pair[1]) * inverse;
     }
     if let Some(slope) = now.ends[0].slope {
         let given = Planar::constant(Planar::tangent(slope.value));
@@ -38,56 +37,108 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     }
 }
 
-/// Director, length and tangent of a cell's line; `u'`, by which the director differs from that at rest.
+/// Directors, lengths and tangents of the lines of cells; `strain` makes the strain of each from `u'`, by which its director differs from that
+/// at rest, and sets its section.
 #[inline(always)]
-pub fn line<T: Scalar>(u: &[Planar<T>], c: usize, inverse: f64, shape: &mut Shape<T>) -> Planar<T> {
-    let e = (u[c + 1] - u[c]) * inverse;
-    let d3 = Planar::new(e.x, e.z + 1.0);
-    let stretch = d3.squared().sqrt();
-    shape.d3[c] = d3;
-    shape.stretch[c] = stretch;
-    shape.tangent[c] = d3.times(T::constant(1.0) / stretch);
-    e
+pub fn lines<T: Scalar>(
+    system: &System,
+    u: &[Planar<T>],
+    shape: &mut Shape<T>,
+    mut strain: impl FnMut(usize, &mut Sections<T>, Planar<T>, &Line<T>) -> T,
+) {
+    let inverse = 1.0 / system.mesh.h;
+    let cells = system.mesh.cells;
+    let u = &u[..=cells];
+    let (d3, tangent) = (&mut shape.d3[..cells], &mut shape.tangent[..cells]);
+    let (stretch, per_stretch) = (&mut shape.stretch[..cells], &mut shape.per_stretch[..cells]);
+    let strains = &mut shape.strain[..cells];
+    for c in 0..cells {
+        let e = (u[c + 1] - u[c]) * inverse;
+        let line = Line::of(Planar::new(e.x, e.z + 1.0));
+        d3[c] = line.d3;
+        stretch[c] = line.stretch;
+        per_stretch[c] = line.per_stretch;
+        tangent[c] = line.tangent;
+        strains[c] = strain(c, &mut shape.sections, e, &line);
+    }
+}
+
+/// The line of a cell.
+#[derive(Clone, Copy, Debug)]
+pub struct Line<T> {
+    /// `d3`.
+    pub d3: Planar<T>,
+    /// `λ`.
+    pub stretch: T,
+    /// `1/λ`.
+    pub per_stretch: T,
+    /// `e_t`.
+    pub tangent: Planar<T>,
+}
+
+impl<T: Scalar> Line<T> {
+    #[inline(always)]
+    fn of(d3: Planar<T>) -> Self {
+        let stretch = d3.squared().sqrt();
+        let per_stretch = T::constant(1.0) / stretch;
+        Self {
+            d3,
+            stretch,
+            per_stretch,
+            tangent: d3.times(per_stretch),
+        }
+    }
 }
 
 /// Rates of stretch, angle and curvature, where something depends on them: `λ_t = e_t·d3_t`, `φ_t = d1·d3_t/λ²`.
 pub fn rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let turned = system.turns_with_its_line() && system.layout.lines[1].v.is_some();
-    if !(turned || system.damped) {
-        return;
+    if turned || system.damped {
+        line_rates(system, w);
     }
-    strain_rates(system, now, w);
+    if system.damped {
+        curvature_rates(system, now, w);
+    }
 }
 
 /// Rates of stretch, angle and curvature, always.
 pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    if system.model.effects.has(Effect::Shear) {
-        sheared::strain_rates(system, w);
-    } else {
-        for c in 0..system.mesh.cells {
-            w.shape.stretch_rate[c] = w.shape.tangent[c].dot(director_rate(system, w, c));
-            w.shape.angle_rate[c] = angle_rate(system, w, c);
-        }
-    }
+    line_rates(system, w);
     curvature_rates(system, now, w);
 }
 
-/// `d3_t` of a cell [1/s].
-fn director_rate<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> Planar<T> {
-    (w.motion.v[c + 1] - w.motion.v[c]) * (1.0 / system.mesh.h)
+/// Rates of stretch and angle.
+fn line_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+    if system.model.effects.has(Effect::Shear) {
+        sheared::strain_rates(system, w);
+        return;
+    }
+    let inverse = 1.0 / system.mesh.h;
+    let cells = system.mesh.cells;
+    let (v, shape) = (&w.motion.v[..=cells], &mut w.shape);
+    let (tangent, per_stretch) = (&shape.tangent[..cells], &shape.per_stretch[..cells]);
+    let (stretch_rate, angle_rate) = (&mut shape.stretch_rate[..cells], &mut shape.angle_rate[..cells]);
+    for c in 0..cells {
+        let d3_t = (v[c + 1] - v[c]) * inverse;
+        stretch_rate[c] = tangent[c].dot(d3_t);
+        angle_rate[c] = tangent[c].cross(d3_t) * per_stretch[c];
+    }
 }
 
 /// `φ_t` of a cell's line [1/s].
+#[inline]
 pub fn angle_rate<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
-    w.shape.tangent[c].cross(director_rate(system, w, c)) / w.shape.stretch[c]
+    let d3_t = (w.motion.v[c + 1] - w.motion.v[c]) * (1.0 / system.mesh.h);
+    w.shape.tangent[c].cross(d3_t) * w.shape.per_stretch[c]
 }
 
 /// `κ_t` at nodes from the turning of cells and prescribed slopes.
 pub fn curvature_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     let last = system.mesh.nodes - 1;
-    for i in 1..last {
-        w.shape.kappa_rate[i] = (w.shape.angle_rate[i - 1] - w.shape.angle_rate[i]) * inverse;
+    let turning = w.shape.angle_rate[..last].windows(2);
+    for (rate, pair) in w.shape.kappa_rate[1..last].iter_mut().zip(turning) {
+        *rate = (pair[0] - pair[1]) * inverse;
     }
     if let Some(slope) = now.ends[0].slope {
         w.shape.kappa_rate[0] = (-w.shape.angle_rate[0] + slope.rate) * (2.0 * inverse);
@@ -109,107 +160,22 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let section = &system.model.section;
     let ea = section.axial_stiffness;
     let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
-    let k = system.mesh.cells_per_segment;
-    for c in 0..system.mesh.cells {
-        let elastic = if pressed {
-            w.shape.strain[c] - w.coupling.pressure_stretch[c / k]
-        } else {
-            w.shape.strain[c]
-        };
-        w.forces.normal[c] = elastic * ea;
+    let strains = w.shape.strain.iter();
+    for (force, strain) in w.forces.normal.iter_mut().zip(strains) {
+        *force = *strain * ea;
+    }
+    if pressed {
+        let segments = w.forces.normal.chunks_exact_mut(system.mesh.cells_per_segment);
+        for (forces, stretch) in segments.zip(&w.coupling.pressure_stretch) {
+            let free = *stretch * ea;
+            forces.iter_mut().for_each(|force| *force -= free);
+        }
     }
     if section.axial_damping_time > 0.0 {
-        for c in 0..system.mesh.cells {
-            w.forces.viscous_normal[c] = w.shape.stretch_rate[c] * (ea * section.axial_damping_time);
+        let viscous = w.forces.viscous_normal.iter_mut();
+        for (force, rate) in viscous.zip(&w.shape.stretch_rate) {
+            *force = *rate * (ea * section.axial_damping_time);
         }
-    }
-}
-
-/// Moments and the shear that follows from them, `[E12]`.
-///
-/// `[E59]` A beam that is curved at rest, by κ_0 (loads of the kind `rest_curvature_1_m`), with the weights of forces, [E46]:
-///
-/// ```text
-/// M = EI (α - α_p - κ_0)      EI τ_b (κ - κ_0)_t      P_loads gains -Σ h_i M_total κ_0,t
-/// ```
-pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let section = &system.model.section;
-    let ei = section.bending_stiffness;
-    let published = system.model.published();
-    let last = system.mesh.nodes - 1;
-    for i in 0..=last {
-        let mut free_curvature = pressure_curvature(system, w, i);
-        if let Some(rest) = now.rest_curvature[0].get(i) {
-            free_curvature += T::constant(*rest);
-        }
-        let turns = now.end(i).filter(|end| end.slope.is_none());
-        let given = turns.map(|end| end.moment.value);
-        let stretch = if published {
-            node_stretch(w, i, last)
-        } else {
-            T::constant(1.0)
-        };
-        match given {
-            Some(moment) => {
-                let mut elastic = T::constant(moment);
-                if let Some(nonlinear) = w.forces.nonlinear_moment.get(i) {
-                    elastic -= *nonlinear;
-                }
-                w.forces.moment[i] = elastic;
-                let alpha = free_curvature + elastic / T::constant(ei);
-                if w.relaxed.curvature.is_empty() {
-                    w.shape.kappa[i] = if published { alpha / stretch } else { alpha };
-                } else {
-                    w.shape.kappa[i] = relaxation::curvature(system, now, w, i, alpha, stretch);
-                    w.forces.moment[i] = (w.shape.kappa[i] * stretch - free_curvature) * ei;
-                }
-            }
-            None => {
-                let alpha = if published {
-                    w.shape.kappa[i] * stretch
-                } else {
-                    w.shape.kappa[i]
-                };
-                w.forces.moment[i] = (alpha - free_curvature) * ei;
-            }
-        }
-    }
-    relaxation::moments(system, now, w);
-    if section.bending_damping_time > 0.0 {
-        let first = usize::from(now.ends[0].slope.is_none());
-        let end = last + usize::from(now.ends[1].slope.is_some());
-        for i in first..end {
-            let mut rate = w.shape.kappa_rate[i];
-            if let Some(rest) = now.rest_curvature[1].get(i) {
-                rate -= T::constant(*rest);
-            }
-            w.forces.viscous_moment[i] = rate * (ei * section.bending_damping_time);
-        }
-    }
-}
-
-/// Shear, `[E12]`.
-pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
-    for c in 0..system.mesh.cells {
-        w.forces.shear[c] = total_moment_drop(system, w, c) * inverse / w.shape.stretch[c];
-    }
-}
-
-/// By how much the moment, viscous part included, falls over a cell [N m].
-#[inline]
-pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
-    let mut drop = w.forces.moment[c] - w.forces.moment[c + 1];
-    if let [left, right, ..] = w.forces.nonlinear_moment.get(c..).unwrap_or_default() {
-        drop += *left - *right;
-    }
-    if let [left, right, ..] = w.forces.relaxing_moment.get(c..).unwrap_or_default() {
-        drop += *left - *right;
-    }
-    if system.model.section.bending_damping_time > 0.0 {
-        drop + (w.forces.viscous_moment[c] - w.forces.viscous_moment[c + 1])
-    } else {
-        drop
     }
 }
 
@@ -240,20 +206,6 @@ pub fn couple<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, c: u
     }
 }
 
-/// `alpha_p` at a node: the mean of the segments on its two sides (the transpose of the mean moment's weights).
-#[inline]
-pub fn pressure_curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
-    if system.fluid.is_none() || !system.model.effects.has(Effect::PressureToCurvature) {
-        return T::zero();
-    }
-    let (left, right) = system.mesh.segments_of_node(node);
-    if left == right {
-        w.coupling.pressure_curvature[left]
-    } else {
-        (w.coupling.pressure_curvature[left] + w.coupling.pressure_curvature[right]) * 0.5
-    }
-}
-
 /// `λ` at a node: mean of the neighbouring cells.
 #[inline]
 pub fn node_stretch<T: Scalar>(w: &Workspace<T>, node: usize, last: usize) -> T {
@@ -276,13 +228,24 @@ pub fn node_stretch<T: Scalar>(w: &Workspace<T>, node: usize, last: usize) -> T 
 /// ```
 pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let section = &system.model.section;
-    for c in 0..system.mesh.cells {
-        let tangent = w.shape.tangent[c];
-        let normal = normal_force(system, w, c);
-        w.forces.section[c] = tangent.times(normal) + tangent.normal().times(w.forces.shear[c]);
+    let cells = system.mesh.cells;
+    let (forces, shape) = (&mut w.forces, &w.shape);
+    let (tangent, section_force) = (&shape.tangent[..cells], &mut forces.section[..cells]);
+    let (normal, shear) = (&forces.normal[..cells], &forces.shear[..cells]);
+    for c in 0..cells {
+        section_force[c] = tangent[c].times(normal[c]) + tangent[c].normal().times(shear[c]);
+    }
+    let mut parts = [&forces.nonlinear_normal[..], &forces.relaxing_normal, &[]];
+    if section.axial_damping_time > 0.0 {
+        parts[2] = &forces.viscous_normal;
+    }
+    for part in parts {
+        for ((force, tangent), normal) in section_force.iter_mut().zip(tangent).zip(part) {
+            *force += tangent.times(*normal);
+        }
     }
     if system.has_moments {
-        for c in 0..system.mesh.cells {
+        for c in 0..cells {
             let couple = couple(system, now, w, c);
             add_couple(couple, c, w);
         }
@@ -290,33 +253,43 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
     attached::turning(system, w, add_couple);
     bodies::turning(system, now, w, add_couple);
     if system.model.effects.has(Effect::RotaryInertia) {
-        let inertia = section.mass_per_length * section.gyration_radius_squared;
-        let inverse = 1.0 / system.mesh.h;
-        let published = system.model.published();
-        let a = &w.motion.a;
-        if system.layout.lines[1].v.is_none() {
-            for c in 0..system.mesh.cells {
-                w.forces.section[c].x += (a[c + 1].x - a[c].x) * (inverse * inertia);
-            }
-            return;
+        rotary_inertia(system, w);
+    }
+}
+
+/// What resists the turning of sections, in [`section_forces`].
+fn rotary_inertia<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+    let section = &system.model.section;
+    let inertia = section.mass_per_length * section.gyration_radius_squared;
+    let inverse = 1.0 / system.mesh.h;
+    let cells = system.mesh.cells;
+    let (a, shape) = (&w.motion.a[..=cells], &w.shape);
+    let (tangent, section) = (&shape.tangent[..cells], &mut w.forces.section[..cells]);
+    if system.layout.lines[1].v.is_none() {
+        for c in 0..cells {
+            section[c].x += (a[c + 1].x - a[c].x) * (inverse * inertia);
         }
-        for c in 0..system.mesh.cells {
-            let d3_tt = (w.motion.a[c + 1] - w.motion.a[c]) * inverse;
-            let across = w.shape.tangent[c].cross(d3_tt);
-            // λ φ_tt + 2 λ_t φ_t; the published term has it whole and without 1/λ².
-            let couple = if published {
-                across * w.shape.stretch[c]
-            } else {
-                (across - w.shape.stretch_rate[c] * w.shape.angle_rate[c] * 2.0) / w.shape.stretch[c]
-            };
-            add_couple(couple * inertia, c, w);
+        return;
+    }
+    // Of λ φ_tt + 2 λ_t φ_t the published term has λ r d1 whole, and the conservative one φ_tt alone over λ.
+    let across = |c: usize| tangent[c].cross((a[c + 1] - a[c]) * inverse);
+    if system.model.published() {
+        for c in 0..cells {
+            section[c] -= tangent[c].normal().times(across(c) * inertia);
         }
+        return;
+    }
+    let (stretch_rate, angle_rate) = (&shape.stretch_rate[..cells], &shape.angle_rate[..cells]);
+    let per_stretch = &shape.per_stretch[..cells];
+    for c in 0..cells {
+        let turning = (across(c) - stretch_rate[c] * angle_rate[c] * 2.0) * per_stretch[c].squared();
+        section[c] -= tangent[c].normal().times(turning * inertia);
     }
 }
 
 /// Adds `r d1` with `r = couple/λ²` to the section force.
 #[inline]
 fn add_couple<T: Scalar>(couple: T, c: usize, w: &mut Workspace<T>) {
-    let r = couple / w.shape.stretch[c];
+    let r = couple * w.shape.per_stretch[c];
     w.forces.section[c] -= w.shape.tangent[c].normal().times(r);
 }

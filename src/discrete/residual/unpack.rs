@@ -6,8 +6,9 @@ use crate::discrete::let_in::{self, Share, Store};
 use crate::discrete::time_data::Frame;
 use crate::discrete::workspace::Motion;
 use crate::discrete::{System, TimeData, Workspace};
+use crate::functions::signals::Jet;
 use crate::model::LumpedKind;
-use crate::numerics::Scalar;
+use crate::numerics::{Planar, Scalar};
 
 /// Copies the state into the workspace; what an end prescribes comes from its signal, with exact rates.
 ///
@@ -32,13 +33,18 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
     let l = &system.layout;
     for (axis, line) in l.lines.iter().enumerate() {
         let motion = &mut w.motion;
-        for (node, u, v) in line.unknowns() {
-            motion.u[node][axis] = y[u];
-            (motion.v[node][axis], motion.a[node][axis]) = match v {
-                Some(v) => (y[v], yp[v]),
-                None if l.differential[u] || !l.inertia => (yp[u], T::zero()),
-                None => (T::zero(), T::zero()),
-            };
+        take(&mut motion.u[line.free.clone()], axis, &y[line.u.clone()]);
+        let (v, a) = (&mut motion.v[line.free.clone()], &mut motion.a[line.free.clone()]);
+        match &line.v {
+            Some(velocity) => {
+                take(v, axis, &y[velocity.clone()]);
+                take(a, axis, &yp[velocity.clone()]);
+            }
+            None if !l.inertia || line.u.clone().next().is_some_and(|u| l.differential[u]) => {
+                take(v, axis, &yp[line.u.clone()]);
+                a.iter_mut().for_each(|a| a[axis] = T::zero());
+            }
+            None => v.iter_mut().chain(a).for_each(|own| own[axis] = T::zero()),
         }
         if let Some(frame) = now.frame(axis) {
             carry(&frame, system, axis, motion);
@@ -129,20 +135,35 @@ fn copy<T: Scalar>(target: &mut [T], source: &[T], block: &Range<usize>) {
     }
 }
 
+/// Components of vectors.
+fn take<T: Scalar>(target: &mut [Planar<T>], axis: usize, source: &[T]) {
+    for (target, source) in target.iter_mut().zip(source) {
+        target[axis] = *source;
+    }
+}
+
 /// Adds the frame's motion to the free nodes and gives it to the driven ones.
 fn carry<T: Scalar>(frame: &Frame, system: &System, axis: usize, motion: &mut Motion<T>) {
     let last = system.mesh.nodes - 1;
     let free = &system.layout.lines[axis].free;
-    for node in 0..=last {
-        let jet = frame.at(node as f64 / last as f64);
-        let acceleration = if system.layout.inertia { jet.acceleration } else { 0.0 };
-        let own = [&mut motion.u, &mut motion.v, &mut motion.a].map(|of| &mut of[node][axis]);
-        for (own, given) in own.into_iter().zip([jet.value, jet.rate, acceleration]) {
-            if free.contains(&node) {
-                *own += T::constant(given);
-            } else {
-                *own = T::constant(given);
-            }
+    let inertia = system.layout.inertia;
+    let given: [fn(Jet) -> f64; 3] = [|jet| jet.value, |jet| jet.rate, |jet| jet.acceleration];
+    let own = [&mut motion.u, &mut motion.v, &mut motion.a];
+    for (own, given) in own.into_iter().zip(given).take(if inertia { 3 } else { 2 }) {
+        let (before, after) = own.split_at_mut(free.end);
+        for driven in before[..free.start].iter_mut().chain(after) {
+            driven[axis] = T::zero();
         }
+        if frame.leans() {
+            for (node, own) in own.iter_mut().enumerate() {
+                own[axis] = own[axis] + given(frame.at(node as f64 / last as f64));
+            }
+        } else {
+            let given = given(frame.at(0.0));
+            own.iter_mut().for_each(|own| own[axis] = own[axis] + given);
+        }
+    }
+    if !inertia {
+        motion.a.iter_mut().for_each(|a| a[axis] = T::zero());
     }
 }

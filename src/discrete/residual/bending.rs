@@ -1,0 +1,155 @@
+//! Moments, and the shear that keeps sections across the beam.
+
+use super::relaxation;
+use super::solid::node_stretch;
+use crate::case::schema::Effect;
+use crate::discrete::{System, TimeData, Workspace};
+use crate::numerics::Scalar;
+
+/// Moments and the shear that follows from them, `[E12]`.
+///
+/// `[E59]` A beam that is curved at rest, by κ_0 (loads of the kind `rest_curvature_1_m`), with the weights of forces, [E46]:
+///
+/// ```text
+/// M = EI (α - α_p - κ_0)      EI τ_b (κ - κ_0)_t      P_loads gains -Σ h_i M_total κ_0,t
+/// ```
+pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    let section = &system.model.section;
+    let ei = section.bending_stiffness;
+    let last = system.mesh.nodes - 1;
+    let published = system.model.published();
+    let forces = &mut w.forces;
+    let (kappa, moment) = (&w.shape.kappa[..=last], &mut forces.moment[..=last]);
+    if published {
+        let stretch = w.shape.stretch.windows(2);
+        for ((moment, kappa), pair) in moment[1..last].iter_mut().zip(&kappa[1..last]).zip(stretch) {
+            *moment = *kappa * ((pair[0] + pair[1]) * 0.5);
+        }
+        moment[0] = kappa[0] * w.shape.stretch[0];
+        moment[last] = kappa[last] * w.shape.stretch[last - 1];
+    } else {
+        moment.copy_from_slice(kappa);
+    }
+    if presses(system) {
+        let k = system.mesh.cells_per_segment;
+        let curvature = &w.coupling.pressure_curvature;
+        for (moments, free) in moment.chunks_mut(k).zip(curvature) {
+            moments[1..].iter_mut().for_each(|moment| *moment -= *free);
+        }
+        moment[0] -= curvature[0];
+        moment[last] -= curvature[system.mesh.segments - 1];
+        for (j, pair) in curvature.windows(2).enumerate() {
+            moment[(j + 1) * k] -= (pair[0] + pair[1]) * 0.5;
+        }
+    }
+    for (moment, rest) in moment.iter_mut().zip(&now.rest_curvature[0]) {
+        *moment -= T::constant(*rest);
+    }
+    for moment in moment {
+        *moment = *moment * ei;
+    }
+    for node in [0, last] {
+        given_moment(system, now, node, w);
+    }
+    relaxation::moments(system, now, w);
+    if section.bending_damping_time > 0.0 {
+        let first = usize::from(now.ends[0].slope.is_none());
+        let end = last + usize::from(now.ends[1].slope.is_some());
+        for i in first..end {
+            let mut rate = w.shape.kappa_rate[i];
+            if let Some(rest) = now.rest_curvature[1].get(i) {
+                rate -= T::constant(*rest);
+            }
+            w.forces.viscous_moment[i] = rate * (ei * section.bending_damping_time);
+        }
+    }
+}
+
+/// Moment and curvature of an end at which the moment is given.
+fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut Workspace<T>) {
+    let Some(end) = now.end(node).filter(|end| end.slope.is_none()) else {
+        return;
+    };
+    let ei = system.model.section.bending_stiffness;
+    let mut free_curvature = pressure_curvature(system, w, node);
+    if let Some(rest) = now.rest_curvature[0].get(node) {
+        free_curvature += T::constant(*rest);
+    }
+    let published = system.model.published();
+    let stretch = if published {
+        node_stretch(w, node, system.mesh.nodes - 1)
+    } else {
+        T::constant(1.0)
+    };
+    let mut elastic = T::constant(end.moment.value);
+    if let Some(nonlinear) = w.forces.nonlinear_moment.get(node) {
+        elastic -= *nonlinear;
+    }
+    w.forces.moment[node] = elastic;
+    let alpha = free_curvature + elastic / T::constant(ei);
+    if w.relaxed.curvature.is_empty() {
+        w.shape.kappa[node] = if published { alpha / stretch } else { alpha };
+    } else {
+        w.shape.kappa[node] = relaxation::curvature(system, now, w, node, alpha, stretch);
+        w.forces.moment[node] = (w.shape.kappa[node] * stretch - free_curvature) * ei;
+    }
+}
+
+/// Shear, `[E12]`.
+pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+    let inverse = 1.0 / system.mesh.h;
+    let forces = &mut w.forces;
+    let drops = forces.shear.iter_mut();
+    for (drop, pair) in drops.zip(forces.moment.windows(2)) {
+        *drop = pair[0] - pair[1];
+    }
+    let mut parts = [&forces.nonlinear_moment[..], &forces.relaxing_moment, &[]];
+    if system.model.section.bending_damping_time > 0.0 {
+        parts[2] = &forces.viscous_moment;
+    }
+    for part in parts {
+        for (drop, pair) in forces.shear.iter_mut().zip(part.windows(2)) {
+            *drop += pair[0] - pair[1];
+        }
+    }
+    for (shear, per_stretch) in forces.shear.iter_mut().zip(&w.shape.per_stretch) {
+        *shear = *shear * (*per_stretch * inverse);
+    }
+}
+
+/// By how much the moment, viscous part included, falls over a cell [N m].
+#[inline]
+pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
+    let mut drop = w.forces.moment[c] - w.forces.moment[c + 1];
+    if let [left, right, ..] = w.forces.nonlinear_moment.get(c..).unwrap_or_default() {
+        drop += *left - *right;
+    }
+    if let [left, right, ..] = w.forces.relaxing_moment.get(c..).unwrap_or_default() {
+        drop += *left - *right;
+    }
+    if system.model.section.bending_damping_time > 0.0 {
+        drop + (w.forces.viscous_moment[c] - w.forces.viscous_moment[c + 1])
+    } else {
+        drop
+    }
+}
+
+/// `alpha_p` at a node: the mean of the segments on its two sides (the transpose of the mean moment's weights).
+#[inline]
+pub fn pressure_curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
+    if !presses(system) {
+        return T::zero();
+    }
+    let (left, right) = system.mesh.segments_of_node(node);
+    if left == right {
+        w.coupling.pressure_curvature[left]
+    } else {
+        (w.coupling.pressure_curvature[left] + w.coupling.pressure_curvature[right]) * 0.5
+    }
+}
+
+/// Whether pressure bends the beam.
+#[inline]
+fn presses(system: &System) -> bool {
+    system.fluid.is_some() && system.model.effects.has(Effect::PressureToCurvature)
+}
