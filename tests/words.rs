@@ -86,6 +86,7 @@ fn summary(status: Status) -> Summary {
             jacobian: 3.0,
             linear_solver: 4.0,
             output: 0.5,
+            ..WallTimes::default()
         },
         effects: Default::default(),
         characteristic: Default::default(),
@@ -106,7 +107,7 @@ fn is_a_box(text: &str, width: usize) -> bool {
 
 #[test]
 fn a_finished_run_in_a_glance() {
-    let text = render(&summary(Status::Finished), Path::new("out/wiring-2"), false, 76);
+    let text = render(&summary(Status::Finished), Path::new("out/wiring-2"), true, false, 76);
     insta::assert_snapshot!(text, @r"
     ╭─ wiring-2 ──────────────────────────────────────────────────── finished ─╮
     │ deflection  tip, largest: u₁ 123 µm · u₃ 1.25 mm                         │
@@ -129,7 +130,7 @@ fn a_failure_says_why_and_warnings_come_first() {
         .map(|k| format!("warning number {k} that goes on for quite a few words"))
         .collect();
     failed.balances.volume_residual_relative = f64::NAN;
-    let text = render(&failed, Path::new("out/wiring-2"), false, 60);
+    let text = render(&failed, Path::new("out/wiring-2"), true, false, 60);
     insta::assert_snapshot!(text, @r"
     ╭─ wiring-2 ────────────────────────────────────── FAILED ─╮
     │ why         the step became smaller than round-off at t  │
@@ -153,12 +154,12 @@ fn a_failure_says_why_and_warnings_come_first() {
     ╰─ report.html and data in out/wiring-2 ───────────────────╯
     ");
     assert!(is_a_box(&text, 60));
-    let painted = render(&failed, Path::new("out/wiring-2"), true, 60);
+    let painted = render(&failed, Path::new("out/wiring-2"), true, true, 60);
     assert!(painted.contains("\u{1b}[1;31mFAILED"));
 }
 
 #[test]
 fn a_long_path_is_not_cut() {
     let path = "out/".to_string() + &"long/".repeat(20);
-    assert!(render(&summary(Status::Finished), Path::new(&path), false, 60).contains(&path));
+    assert!(render(&summary(Status::Finished), Path::new(&path), false, false, 60).contains(&path));
 }

@@ -31,6 +31,7 @@ mod verify;
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::Parser;
 
@@ -39,6 +40,7 @@ use arguments::{Arguments, Command};
 
 /// Reads the arguments, does what they ask, reports what went wrong, and gives the exit code.
 pub fn main() -> ExitCode {
+    let began = Instant::now();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(answer) => {
@@ -56,7 +58,7 @@ pub fn main() -> ExitCode {
         }
     };
     interrupt::outlive_limits();
-    match act(&arguments.command) {
+    match act(&arguments.command, began) {
         Ok(code) => code,
         Err(error) => {
             terminal::report(&error);
@@ -68,9 +70,9 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn act(command: &Command) -> Result<ExitCode> {
+fn act(command: &Command, began: Instant) -> Result<ExitCode> {
     match command {
-        Command::Run(asked) => run::run(asked),
+        Command::Run(asked) => run::run(asked, began),
         Command::Check(asked) => check::check(asked),
         Command::Coefficients(asked) => coefficients::coefficients(asked),
         Command::Measure(asked) => measure::measure(asked),

@@ -15,9 +15,9 @@ use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Error, Result};
-use crate::model::characteristic;
+use crate::model::{Model, characteristic};
 use crate::output::checkpoint;
-use crate::output::folder::{CASE, HISTORY, ResultFolder, text_of};
+use crate::output::folder::{CASE, FIELDS, HISTORY, ResultFolder, text_of};
 use crate::output::kind::Kind;
 use crate::output::recorder::{Finished, FolderRecorder, Hook, Labels};
 use crate::output::report;
@@ -25,57 +25,93 @@ use crate::output::summary;
 use crate::run::dynamics::{self, Outcome};
 use crate::run::observe::Observer;
 use crate::run::record::{Control, Progress};
-use crate::run::summary::Status;
+use crate::run::summary::{Status, Summary};
+use crate::run::wall::{Laps, WallTimes};
 use crate::study::compare::changes::changes;
 use crate::study::target;
 
 /// Differences between two cases that are told.
 const DIFFERENCES: usize = 4;
 
-/// Runs a case into a result folder.
-pub fn run(asked: &RunArguments) -> Result<ExitCode> {
+/// Runs a case into a result folder; the program began at an instant.
+pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
+    let mut laps = Laps::since(began);
     let case = &size::load_with(&asked.case.case, &asked.case.sets, asked.sensitivities.len())?;
-    let system = System::new(case)?;
+    let model = Model::new(case)?;
+    let start_up = laps.lap();
+    let system = System::chosen(case, model)?;
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let out = asked.place.folder(&case.name, Kind::Run);
     if !asked.resume {
         size::run_fits(case, &system, asked.sensitivities.len(), &out)?;
     }
-    let hook = hook(asked);
+    let parameters = parameters(case, &asked.sensitivities)?;
+    let way = Way {
+        hook: hook(asked),
+        lean: asked.lean,
+        before: WallTimes {
+            start_up,
+            set_up: laps.lap(),
+            ..WallTimes::default()
+        },
+    };
     let Recorded {
-        outcome,
+        outcome: Outcome { mut summary, fault },
         finished,
         aside,
     } = match (accuracy, asked.resume) {
         (Some(accuracy), _) => {
             drop(system);
-            reach(case, accuracy, asked.place.claim(case, Kind::Run)?, &hook)?
+            reach(case, accuracy, asked.place.claim(case, Kind::Run)?, &way)?
         }
-        (None, true) => resume(case, system, &parameters(case, &asked.sensitivities)?, &out, &hook)?,
-        (None, false) => {
-            let parameters = parameters(case, &asked.sensitivities)?;
-            record(case, system, &parameters, asked.place.claim(case, Kind::Run)?, &hook)?
-        }
+        (None, true) => resume(case, system, &parameters, &out, &way)?,
+        (None, false) => record(case, system, &parameters, asked.place.claim(case, Kind::Run)?, &way)?,
     };
-    let page = report::write(&out, None);
+    laps.lap();
+    let page = match asked.lean {
+        true => Ok(()),
+        false => report::write(&out, None).map(|_| ()),
+    };
+    let written = laps.lap();
+    summary.wall_s.report = if asked.lean { 0.0 } else { written };
+    // without a page all of this can be repeated
+    let closed = match finished {
+        Some(finished) if page.is_ok() => close(finished, &mut summary, &mut laps),
+        _ => Ok(()),
+    };
     if asked.json {
-        super::print(&summary::to_json(&outcome.summary))?;
+        super::print(&summary::to_json(&summary))?;
     } else {
-        let box_text = summary_box::render(&outcome.summary, &out, terminal::colour_out(), terminal::width());
+        let box_text = summary_box::render(&summary, &out, !asked.lean, terminal::colour_out(), terminal::width());
         super::print_painted(&box_text)?;
     }
     page?;
+    closed?;
     if let Some(aside) = aside {
         terminal::tell(&format!("slcbeam: the older result is in {}", aside.display()));
     }
-    finished.map_or(Ok(()), Finished::close)?;
-    Ok(match outcome.fault {
+    Ok(match fault {
         None => ExitCode::SUCCESS,
         Some(fault) => {
             terminal::tell(&terminal::diagnosis(&fault));
             ExitCode::from(4)
         }
     })
+}
+
+/// Leaves a folder whose page is written; its summary tells of all wall time until then.
+fn close(finished: Finished, summary: &mut Summary, laps: &mut Laps) -> Result<()> {
+    let folder = finished.close()?;
+    summary.wall_s.files += laps.lap();
+    summary.wall_s.close(laps.total());
+    summary::write(&folder, summary).map(|_| ())
+}
+
+/// What runs are asked, and what came before them.
+struct Way {
+    hook: SharedHook,
+    lean: bool,
+    before: WallTimes,
 }
 
 /// Asked after every step of every run: progress, Ctrl-C, wall time.
@@ -126,20 +162,24 @@ fn parameters(case: &Case, pointers: &[String]) -> Result<Vec<Parameter>> {
 /// A run that has ended.
 struct Recorded {
     outcome: Outcome,
-    /// Its folder, unless it is complete already.
+    /// Its folder, unless nothing was done in it.
     finished: Option<Finished>,
     /// Where an older result went.
     aside: Option<PathBuf>,
 }
 
-fn record(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, hook: &SharedHook) -> Result<Recorded> {
-    let mut recorder = FolderRecorder::new(folder, labels(case), own(hook));
+fn record(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, way: &Way) -> Result<Recorded> {
+    let mut recorder = FolderRecorder::new(folder, labels(case), own(&way.hook)).lean(way.lean);
     let outcome = dynamics::run_with(case, system, by, &mut recorder)?;
-    complete(recorder, outcome)
+    complete(recorder, outcome, way)
 }
 
-fn complete(recorder: FolderRecorder, outcome: Outcome) -> Result<Recorded> {
+fn complete(recorder: FolderRecorder, mut outcome: Outcome, way: &Way) -> Result<Recorded> {
+    let wall = &mut outcome.summary.wall_s;
+    wall.begin_with(&way.before);
     let finished = recorder.finish(&outcome.summary)?;
+    let wall = &mut outcome.summary.wall_s;
+    (wall.pictures, wall.files) = (finished.spent.pictures, finished.spent.files);
     Ok(Recorded {
         outcome,
         aside: finished.aside.clone(),
@@ -149,36 +189,45 @@ fn complete(recorder: FolderRecorder, outcome: Outcome) -> Result<Recorded> {
 
 /// Candidates are recorded inside the folder and take the result's place when they finish, so that one that is stopped leaves the
 /// one before. The first may end early: then it is all there is.
-fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, hook: &SharedHook) -> Result<Recorded> {
-    let ask = |progress: &Progress| hook.borrow_mut()(progress);
+fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, way: &Way) -> Result<Recorded> {
+    let began = Instant::now();
+    let ask = |progress: &Progress| way.hook.borrow_mut()(progress);
     let (mut placed, mut aside) = (false, None);
     let mut candidate = |case: &Case| -> Result<Outcome> {
         let inside = result.candidate()?;
         let folder = ResultFolder::claim(inside.path(), Kind::Run, false)?;
-        let Recorded { outcome, finished, .. } = record(case, System::new(case)?, &[], folder, hook)?;
-        finished.map_or(Ok(()), Finished::close)?;
+        let Recorded { outcome, finished, .. } = record(case, System::new(case)?, &[], folder, way)?;
+        finished.map(Finished::close).transpose()?;
         if outcome.summary.status == Status::Finished || !placed {
-            if !inside.path().join(HISTORY).exists() {
+            let tabled = inside.path().join(HISTORY).exists();
+            if !inside.path().join(FIELDS).exists() {
                 aside = result.set_aside()?;
             }
             result.replace(inside.path())?;
+            if !tabled {
+                result.remove(HISTORY)?;
+            }
             placed = true;
         }
         Ok(outcome)
     };
-    let outcome = target::reach(case, accuracy, &ask, &mut candidate)?;
+    let mut outcome = target::reach(case, accuracy, &ask, &mut candidate)?;
+    let wall = &mut outcome.summary.wall_s;
+    let before = way.before.start_up + way.before.set_up;
+    wall.pilots = before + began.elapsed().as_secs_f64() - wall.known() - wall.pictures - wall.files;
     if placed {
         summary::write(&result, &outcome.summary)?;
     }
+    let finished = placed.then(|| Finished::of(result));
     Ok(Recorded {
         outcome,
-        finished: None,
+        finished,
         aside,
     })
 }
 
 /// Goes on from the newest checkpoint. What does not fit is told before anything is touched; a run that has ended is left as it is.
-fn resume(case: &Case, system: System, asked: &[Parameter], out: &Path, hook: &SharedHook) -> Result<Recorded> {
+fn resume(case: &Case, system: System, asked: &[Parameter], out: &Path, way: &Way) -> Result<Recorded> {
     let folder = ResultFolder::again(out)?;
     let Some((saved, damage)) = checkpoint::read(out)? else {
         return Ok(Recorded {
@@ -199,9 +248,9 @@ fn resume(case: &Case, system: System, asked: &[Parameter], out: &Path, hook: &S
         terminal::tell(&format!("slcbeam: {damage}; going on from the one before"));
     }
     let header = Observer::header(case, &system);
-    let mut recorder = FolderRecorder::resume(folder, labels(case), own(hook), &saved, &header)?;
+    let mut recorder = FolderRecorder::resume(folder, labels(case), own(&way.hook), &saved, &header)?.lean(way.lean);
     let outcome = dynamics::resume(case, system, &saved.run, &mut recorder)?;
-    complete(recorder, outcome)
+    complete(recorder, outcome, way)
 }
 
 /// A run without a checkpoint that has ended: its outcome as it was told; leftovers of its raw arrays go.

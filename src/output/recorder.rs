@@ -1,12 +1,14 @@
 //! The recorder that fills a result folder.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use super::arrays::ArraysWriter;
 use super::checkpoint::{self, Saved};
 use super::envelope::Envelope;
 use super::folder::{
-    CHECKPOINT, CHECKPOINT_BEFORE, ENVELOPE, FIELDS, HISTORY, RAW_FIELDS, ResultFolder, SENSITIVITIES, SUMMARY,
+    CHECKPOINT, CHECKPOINT_BEFORE, ENVELOPE, FIELDS, HISTORY, PICTURES, RAW_FIELDS, REPORT, ResultFolder,
+    SENSITIVITIES, SUMMARY,
 };
 use super::history::HistoryWriter;
 use super::pictures::{self, STRETCHES};
@@ -17,6 +19,7 @@ use crate::error::Result;
 use crate::run::checkpoint::Checkpoint;
 use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::summary::{Status, Summary};
+use crate::run::wall::Laps;
 
 /// Called after every step; decides whether to go on.
 pub type Hook = Box<dyn FnMut(&Progress) -> Control>;
@@ -40,6 +43,7 @@ pub struct FolderRecorder {
     folder: ResultFolder,
     labels: Labels,
     hook: Hook,
+    lean: bool,
     open: Option<(HistoryWriter, ArraysWriter)>,
     envelope: Option<HistoryWriter>,
     sensitivities: Option<HistoryWriter>,
@@ -52,10 +56,18 @@ impl FolderRecorder {
             folder,
             labels,
             hook,
+            lean: false,
             open: None,
             envelope: None,
             sensitivities: None,
         }
+    }
+
+    /// Leaves summary, case and arrays alone in the end. Tables are written all the same while the run is under way: by them its folder is
+    /// known, and it goes on from them.
+    #[must_use]
+    pub fn lean(self, lean: bool) -> Self {
+        Self { lean, ..self }
     }
 
     /// Goes on in the folder of an interrupted run; what was recorded after its checkpoint is dropped. All files are verified
@@ -93,6 +105,7 @@ impl FolderRecorder {
     ///
     /// A run that failed before it began leaves case and summary, and moves an older result aside.
     pub fn finish(mut self, summary: &Summary) -> Result<Finished> {
+        let (mut laps, mut spent) = (Laps::since(Instant::now()), Spent::default());
         let began = self.open.is_some();
         let aside = if began { None } else { self.folder.set_aside()? };
         let mut drawn = vec![];
@@ -102,7 +115,7 @@ impl FolderRecorder {
             besides = besides.and(rows.secure().map(|_| ()));
         }
         let completed = match self.open.take() {
-            Some((history, arrays)) => self.complete(history, arrays, &mut drawn),
+            Some((history, arrays)) => self.complete(history, arrays, &mut drawn, &mut laps, &mut spent),
             None => Ok(()),
         };
         // The summary matters most: it is tried whatever could not be written before.
@@ -110,10 +123,20 @@ impl FolderRecorder {
         let told = summary::write(&self.folder, summary);
         completed.and(besides).and(cased).and(told.map(|_| ()))?;
         self.folder.secure()?;
+        if self.lean {
+            // of a run that is gone on with
+            PICTURES
+                .into_iter()
+                .chain([REPORT])
+                .try_for_each(|name| self.folder.remove(name))?;
+        }
         for (name, text) in drawn {
             self.folder.write(name, text.as_bytes())?;
         }
+        spent.files += laps.lap();
         Ok(Finished {
+            spent,
+            lean: self.lean,
             resumable: summary.status != Status::Finished && self.folder.path(CHECKPOINT).exists(),
             folder: self.folder,
             aside,
@@ -125,14 +148,29 @@ impl FolderRecorder {
         mut history: HistoryWriter,
         mut arrays: ArraysWriter,
         drawn: &mut Vec<pictures::Picture>,
+        laps: &mut Laps,
+        spent: &mut Spent,
     ) -> Result<()> {
         history.secure()?;
         drop(history);
-        let case = &self.labels.case_name;
-        *drawn = pictures::over_time(case, &Envelope::read(self.folder.dir(), STRETCHES)?);
-        drawn.extend(pictures::over_space(case, self.labels.frequency_hz, &mut arrays)?);
+        spent.files += laps.lap();
+        if !self.lean {
+            let case = &self.labels.case_name;
+            *drawn = pictures::over_time(case, &Envelope::read(self.folder.dir(), STRETCHES)?);
+            drawn.extend(pictures::over_space(case, self.labels.frequency_hz, &mut arrays)?);
+        }
+        spent.pictures += laps.lap();
         arrays.finish(&self.folder.path(FIELDS))
     }
+}
+
+/// Wall time that a completed folder took [s].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Spent {
+    /// Pictures.
+    pub pictures: f64,
+    /// Files.
+    pub files: f64,
 }
 
 /// A folder whose result is complete.
@@ -141,21 +179,41 @@ impl FolderRecorder {
 pub struct Finished {
     folder: ResultFolder,
     resumable: bool,
+    lean: bool,
+    /// What completing it took.
+    pub spent: Spent,
     /// Where an older result went.
     pub aside: Option<PathBuf>,
 }
 
 impl Finished {
-    /// Removes what a run could go on from, unless it is yet to go on; what is left of an ended run otherwise.
-    pub fn close(self) -> Result<()> {
+    /// A folder that took over the result of another, with all that belongs to it.
+    pub fn of(folder: ResultFolder) -> Self {
+        Self {
+            resumable: true,
+            lean: false,
+            folder,
+            spent: Spent::default(),
+            aside: None,
+        }
+    }
+
+    /// Removes what a run could go on from, unless it is yet to go on. Returns the folder, still locked.
+    pub fn close(self) -> Result<ResultFolder> {
         if self.resumable {
-            return Ok(());
+            return Ok(self.folder);
         }
         self.folder.secure()?;
         self.folder.remove(CHECKPOINT_BEFORE)?;
         self.folder.remove(CHECKPOINT)?;
         self.folder.secure()?;
-        self.folder.remove_raw()
+        self.folder.remove_raw()?;
+        if self.lean {
+            // last: with a checkpoint still there, it would be damaged without them
+            let tables = [HISTORY, ENVELOPE, SENSITIVITIES];
+            tables.iter().try_for_each(|name| self.folder.remove(name))?;
+        }
+        Ok(self.folder)
     }
 
     /// The folder, still locked.

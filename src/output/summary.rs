@@ -7,6 +7,9 @@ use crate::error::Result;
 use crate::results::run::{Quantity, Summary};
 use crate::results::{self, Found};
 
+/// Format from which on all wall time is told of; before, the total was that of a run without what came before and after it.
+const WHOLE_WALL: u32 = 2;
+
 /// The text of `summary.json`.
 pub fn to_json(summary: &Summary) -> String {
     let mut summary = summary.clone();
@@ -45,7 +48,12 @@ pub fn read(dir: &Path) -> Result<Summary> {
 
 /// The same with what it says of itself.
 pub fn found(dir: &Path) -> Result<Found<Summary>> {
-    super::folder::result(&dir.join(SUMMARY))
+    let mut found: Found<Summary> = super::folder::result(&dir.join(SUMMARY))?;
+    if found.head.format.is_none_or(|format| format < WHOLE_WALL) {
+        let wall = &mut found.result.wall_s;
+        wall.steps = wall.total - wall.known();
+    }
+    Ok(found)
 }
 
 fn finite(x: Option<f64>) -> Option<f64> {

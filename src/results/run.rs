@@ -4,6 +4,9 @@ use super::{Integrator, Kept};
 pub use crate::run::summary::{Accuracy, Balances, Chosen, Quantity, Status, Summary};
 
 impl Kept for Summary {
+    /// 2: `wall_s` accounts for everything from the start of the program, in more parts.
+    const FORMAT: u32 = 2;
+
     fn integrator(&self) -> Option<Integrator> {
         Integrator::of(&self.solver)
     }

@@ -31,3 +31,4 @@ pub mod stretch;
 pub mod strides;
 pub mod summary;
 pub mod track;
+pub mod wall;

@@ -9,6 +9,7 @@ use super::growth::Growing;
 use super::null;
 use super::sensitivity::figures::Sensitivity;
 use super::step_response::StepResponse;
+pub use super::wall::WallTimes;
 pub use crate::integrate::Counters;
 
 /// How a run ended.
@@ -107,21 +108,6 @@ pub struct Balances {
     pub angular_momentum_residual_relative: f64,
     /// Energies and works at the end [J].
     pub energy_j: BTreeMap<String, f64>,
-}
-
-/// Where wall time went [s].
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct WallTimes {
-    /// Everything.
-    pub total: f64,
-    /// Residuals.
-    pub residual: f64,
-    /// Jacobians.
-    pub jacobian: f64,
-    /// Factorisations and solves.
-    pub linear_solver: f64,
-    /// Ledgers, sampling and files.
-    pub output: f64,
 }
 
 /// What was chosen, and why.

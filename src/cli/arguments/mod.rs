@@ -129,6 +129,9 @@ pub struct RunArguments {
     /// Stop after so many seconds of wall time, with everything so far written
     #[arg(long, value_name = "SECONDS", value_parser = super::line::duration)]
     pub max_wall: Option<f64>,
+    /// Leave summary.json, case.json and the arrays of fields.npz alone: no pictures, no page, no tables
+    #[arg(long)]
+    pub lean: bool,
     /// No progress bar
     #[arg(long)]
     pub quiet: bool,

@@ -16,6 +16,8 @@ use crate::run::summary::{Quantity, Status, Summary};
 const WARNINGS: usize = 3;
 /// Lines a single entry may take; the reason of a failure half as many again.
 const LINES: usize = 2;
+/// Shares of the wall time that are told.
+const LEAST_SHARE: f64 = 0.005;
 /// Between parts of an entry; stays on the line of what it follows.
 const BETWEEN: &str = "\u{a0}· ";
 /// Width of the names of entries.
@@ -49,8 +51,8 @@ struct Row {
     tone: Tone,
 }
 
-/// The box, `width` columns wide (at least 40), with a newline at the end; coloured when `colour`.
-pub fn render(summary: &Summary, dir: &Path, colour: bool, width: usize) -> String {
+/// The box, `width` columns wide (at least 40), with a newline at the end; coloured when `colour`. `page`: whether there is one in the folder.
+pub fn render(summary: &Summary, dir: &Path, page: bool, colour: bool, width: usize) -> String {
     let width = width.clamp(40, 100);
     let (status, tone) = match summary.status {
         Status::Finished => ("finished", Tone::Good),
@@ -65,7 +67,8 @@ pub fn render(summary: &Summary, dir: &Path, colour: bool, width: usize) -> Stri
     for row in rows(summary, tone) {
         push_row(&mut out, &row, width, colour);
     }
-    let files = visible(&format!("report.html and data in {}", dir.display())).into_owned();
+    let what = if page { "report.html and data" } else { "data" };
+    let files = visible(&format!("{what} in {}", dir.display())).into_owned();
     let length = display_width(&files);
     if length + 6 <= width {
         out.push_str(&format!("╰─ {files} {}╯\n", "─".repeat(width - length - 5)));
@@ -305,11 +308,16 @@ fn spent(summary: &Summary) -> Option<String> {
         return None;
     }
     let shares = [
+        ("set-up", w.start_up + w.set_up + w.consistent_start),
+        ("runs to choose by", w.pilots),
         ("residual", w.residual),
         ("Jacobian", w.jacobian),
         ("linear solver", w.linear_solver),
-        ("output", w.output),
+        ("rest of steps", w.steps),
+        ("watching", w.watching),
+        ("output", w.output + w.pictures + w.report + w.files),
     ];
     let share = |(name, s): (&str, f64)| hold(format!("{name} {:.0} %", 100.0 * s / w.total));
-    Some(shares.map(share).join(BETWEEN))
+    let told = shares.into_iter().filter(|(_, s)| *s >= LEAST_SHARE * w.total);
+    Some(told.map(share).collect::<Vec<_>>().join(BETWEEN))
 }

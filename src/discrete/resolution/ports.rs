@@ -1,6 +1,8 @@
 //! Pressures and flows of ports that change faster than they get through a cell of the bladder behind them, and pressures that fall along
 //! such a cell.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 use std::f64::consts::TAU;
 
 use crate::case::schema::{BladderEnd, Case};
@@ -140,24 +142,29 @@ fn ways(wet: &Wet, bladder: f64) -> Vec<Vec<f64>> {
         let conductance = network.turbines[bridge.turbine].conductance;
         (place(bridge.from), place(bridge.to), 1.0 / conductance)
     });
-    let edges: Vec<_> = within.chain(links).chain(turbines).collect();
+    let mut beside = vec![vec![]; size];
+    for (a, b, resistance) in within.chain(links).chain(turbines) {
+        beside[a].push((b, resistance));
+        beside[b].push((a, resistance));
+    }
     let ends: Vec<usize> = (0..ports)
         .chain(network.sources.iter().map(|source| place(source.into)))
         .collect();
     let from = |start: usize| {
         let mut far = vec![f64::INFINITY; size];
         far[start] = 0.0;
-        let mut nearer = true;
-        while nearer {
-            nearer = false;
-            for &(a, b, resistance) in &edges {
-                for (a, b) in [(a, b), (b, a)] {
-                    // a way does not lead through another port, whose pressure is given
-                    let through = a >= ports || a == start;
-                    if through && far[a] + resistance < far[b] {
-                        far[b] = far[a] + resistance;
-                        nearer = true;
-                    }
+        // the nearest place first (Dijkstra); what is not negative is in order of its bits
+        let mut next = BinaryHeap::from([Reverse((0, start))]);
+        while let Some(Reverse((bits, a))) = next.pop() {
+            // a way does not lead through another port, whose pressure is given
+            if bits > far[a].to_bits() || (a < ports && a != start) {
+                continue;
+            }
+            for &(b, resistance) in &beside[a] {
+                let way = far[a] + resistance;
+                if way < far[b] {
+                    far[b] = way;
+                    next.push(Reverse((way.to_bits(), b)));
                 }
             }
         }

@@ -255,13 +255,16 @@ impl Network {
     }
 
     /// Of each bladder, whether nothing can ever flow into it or out of it.
-    pub fn sealed(&self) -> impl Iterator<Item = bool> + '_ {
-        let joined = |bladder: usize| {
-            let here = |node: Node| matches!(node, Node::Cell { bladder: b, .. } if b == bladder);
-            let links = self.links.iter().filter(|l| !l.is_shut());
-            links.into_iter().any(|l| here(l.from) || here(l.to)) || self.sources.iter().any(|s| here(s.into))
-        };
-        (0..self.component_of_bladder.len()).map(move |bladder| !joined(bladder))
+    pub fn sealed(&self) -> impl Iterator<Item = bool> + use<> {
+        let mut sealed = vec![true; self.component_of_bladder.len()];
+        let links = self.links.iter().filter(|l| !l.is_shut());
+        let joined = links.flat_map(|l| [l.from, l.to]);
+        for node in joined.chain(self.sources.iter().map(|s| s.into)) {
+            if let Node::Cell { bladder, .. } = node {
+                sealed[bladder] = false;
+            }
+        }
+        sealed.into_iter()
     }
 
     /// A prescribed flow into junctions from which only tubes lead on: their inertia does not let it follow at once.

@@ -99,18 +99,12 @@ pub fn effects(summary: &Summary) -> Vec<Value> {
 pub fn work(summary: &Summary) -> Value {
     let c = &summary.solver;
     let wall = &summary.wall_s;
-    let known = wall.residual + wall.jacobian + wall.linear_solver + wall.output;
-    let shares = [
-        ("equations", wall.residual),
-        ("Jacobians", wall.jacobian),
-        ("linear solver", wall.linear_solver),
-        ("output", wall.output),
-        ("everything else", (wall.total - known).max(0.0)),
-    ];
-    let parts: Vec<Value> = shares
+    let known = wall.known();
+    let parts: Vec<Value> = wall
+        .until_known()
         .iter()
-        .filter(|(_, s)| wall.total > 0.0 && s.is_finite())
-        .map(|(words, s)| json!({"words": words, "seconds": s, "text": duration(*s), "share": s / wall.total}))
+        .filter(|(_, s)| known > 0.0 && *s > 0.0)
+        .map(|(words, s)| json!({"words": words, "seconds": s, "text": duration(*s), "share": s / known}))
         .collect();
     let n = |k: u64, one: &str, many: &str| format!("{} {}", count(k), if k == 1 { one } else { many });
     let rejected = match c.error_test_failures + c.newton_failures {
@@ -146,7 +140,7 @@ pub fn work(summary: &Summary) -> Value {
             n(c.restarts, "time", "times")
         ));
     }
-    json!({"sentences": sentences, "parts": parts, "total": duration(wall.total), "orders": c.steps_by_order})
+    json!({"sentences": sentences, "parts": parts, "total": duration(known), "orders": c.steps_by_order})
 }
 
 #[cfg(test)]

@@ -95,7 +95,7 @@ fn fill(page: &mut Page, summary: &Summary, history: &History) {
 fn facts_line(summary: &Summary) -> Vec<String> {
     let simulated = trimmed(&quantity(summary.time_s, "s", 4));
     vec![
-        format!("{simulated} simulated in {}", duration(summary.wall_s.total)),
+        format!("{simulated} simulated in {}", duration(summary.wall_s.known())),
         format!("{} unknowns", count(summary.unknowns as u64)),
         match summary.solver.steps {
             1 => "1 step".into(),

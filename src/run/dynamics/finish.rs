@@ -4,6 +4,7 @@ use super::{End, Outcome, Run};
 use crate::dae::BeamDae;
 use crate::discrete::quantities::Group;
 use crate::error::Code;
+use crate::integrate::Wall;
 use crate::run::estimate::{Unstable, Work};
 use crate::run::method::{Integrator, Options};
 use crate::run::order;
@@ -25,14 +26,22 @@ impl Run<'_> {
                 s.error_test_failures,
             ),
         };
-        let wall = solver.wall();
-        self.summary.wall_s = WallTimes {
-            total: 0.0,
-            residual: wall.residual.as_secs_f64(),
-            jacobian: wall.jacobian.as_secs_f64(),
-            linear_solver: wall.linear_solver.as_secs_f64(),
-            output: self.output_wall + wall.integrands.as_secs_f64(),
-        };
+    }
+
+    /// Gives the wall time since the last call to a part.
+    pub(super) fn spent(&mut self, on: fn(&mut WallTimes) -> &mut f64) {
+        *on(&mut self.summary.wall_s) += self.laps.lap();
+    }
+
+    /// Divides the wall time of steps by what the solver knows of it.
+    pub(super) fn divide(&mut self, solver: &Wall) {
+        let wall = &mut self.summary.wall_s;
+        wall.residual = solver.residual.as_secs_f64();
+        wall.jacobian = solver.jacobian.as_secs_f64();
+        wall.linear_solver = solver.linear_solver.as_secs_f64();
+        let integrands = solver.integrands.as_secs_f64();
+        wall.watching += integrands;
+        wall.steps -= wall.residual + wall.jacobian + wall.linear_solver + integrands;
     }
 
     pub(super) fn finish(mut self, end: End) -> Outcome {
@@ -92,9 +101,10 @@ impl Run<'_> {
             let buckled = o.growth.straight_beyond_buckling(self.case.beam.length_m, &self.linear);
             s.warnings.extend(buckled.map(|w| Code::Buckling.warning(w)));
         }
-        s.warnings.extend(self.held.map(|w| Code::OrderHeld.warning(w)));
+        s.warnings.extend(self.held.take().map(|w| Code::OrderHeld.warning(w)));
         s.warnings.extend(self.observer.warnings());
-        s.wall_s.total = self.begin.elapsed().as_secs_f64();
+        self.spent(|wall| &mut wall.output);
+        self.summary.wall_s.close(self.laps.total());
         Outcome {
             summary: self.summary,
             fault,

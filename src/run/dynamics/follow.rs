@@ -182,10 +182,27 @@ impl Run<'_> {
         until: f64,
         recorder: &mut dyn Recorder,
     ) -> Result<Option<End>> {
-        let (begin, mut asked) = (Instant::now(), Instant::now());
+        let Some(first) = self.outputs.due(until) else {
+            return Ok(None);
+        };
+        self.spent(|wall| &mut wall.watching);
+        let ended = self.take(solver, from, until, first, recorder);
+        self.spent(|wall| &mut wall.output);
+        ended
+    }
+
+    fn take(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        from: f64,
+        until: f64,
+        first: Due,
+        recorder: &mut dyn Recorder,
+    ) -> Result<Option<End>> {
+        let mut asked = Instant::now();
         let mut within = from;
-        let mut taken = false;
-        while let Some(Due { t, output }) = self.outputs.due(until) {
+        let mut due = Some(first);
+        while let Some(Due { t, output }) = due {
             if asked.elapsed() >= PATIENCE {
                 asked = Instant::now();
                 if let Control::Stop(reason) = recorder.progress(&Progress {
@@ -193,11 +210,9 @@ impl Run<'_> {
                     ..self.latest
                 })? {
                     self.summary.time_s = within;
-                    self.output_wall += begin.elapsed().as_secs_f64();
                     return Ok(Some(End::Stopped(reason)));
                 }
             }
-            taken = true;
             if let Err(end) = self.read(solver, t.max(from)) {
                 return Ok(Some(end));
             }
@@ -213,9 +228,7 @@ impl Run<'_> {
                 return Ok(Some(end));
             }
             within = t;
-        }
-        if taken {
-            self.output_wall += begin.elapsed().as_secs_f64();
+            due = self.outputs.due(until);
         }
         Ok(None)
     }

@@ -22,6 +22,7 @@ use super::schedule::{self, Outputs, Stop};
 use super::sensitivity::forward::Forward;
 use super::strides::Strides;
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
+use super::wall::Laps;
 use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
 use crate::dae::BeamDae;
@@ -88,10 +89,9 @@ struct Run<'a> {
     inertia: bool,
     forward: Option<Forward<'a>>,
     held: Option<String>,
-    begin: Instant,
+    laps: Laps,
     /// Where the last step ended.
     latest: Progress,
-    output_wall: f64,
     state: Vec<f64>,
     rates: Vec<f64>,
     integrals: Vec<f64>,
@@ -112,7 +112,7 @@ enum End {
 
 impl<'a> Run<'a> {
     fn of(case: &'a Case, system: System, parameters: &'a [Parameter]) -> Result<(Self, BeamDae)> {
-        let begin = Instant::now();
+        let laps = Laps::since(Instant::now());
         let interval = case.time.output_interval();
         let characteristic = characteristic::numbers(case, &system.model);
         let mut warnings = known::lasting(case, &system);
@@ -193,7 +193,7 @@ impl<'a> Run<'a> {
             inertia,
             forward: None,
             held: None,
-            begin,
+            laps,
             latest: Progress {
                 t: 0.0,
                 end: case.time.end_s,
@@ -201,7 +201,6 @@ impl<'a> Run<'a> {
                 step: 0.0,
                 order: 0,
             },
-            output_wall: 0.0,
             state: vec![],
             rates: vec![],
             integrals: vec![],
@@ -220,6 +219,7 @@ impl<'a> Run<'a> {
 impl Run<'_> {
     fn go(mut self, mut dae: BeamDae, from: Option<&Checkpoint>, recorder: &mut dyn Recorder) -> Result<Outcome> {
         self.prepare(&dae);
+        self.spent(|wall| &mut wall.set_up);
         let (t, first_stop) = match from {
             None => {
                 dae.enter_smooth_interval(0.5 * self.stops[0].t);
@@ -258,6 +258,7 @@ impl Run<'_> {
             None => self.begin_forward(&mut dae).err(),
             Some(checkpoint) => self.go_on_forward(&mut dae, checkpoint, before).err(),
         });
+        self.spent(|wall| &mut wall.consistent_start);
         let header = from.is_none().then(|| self.header(dae.system()));
         let end = match consistent {
             Some(fault) => End::Failed(fault),
@@ -284,9 +285,12 @@ impl Run<'_> {
                     return Ok(End::Failed(fault(&failure)));
                 }
                 header.map_or(Ok(()), |header| recorder.begin(&header))?;
+                self.spent(|wall| &mut wall.set_up);
                 let end = self.integrate(&mut solver, first_stop, recorder)?;
                 self.observer.close(recorder)?;
+                self.spent(|wall| &mut wall.output);
                 self.count(&solver);
+                self.divide(&solver.wall());
                 Ok(end)
             }
         }
@@ -305,11 +309,13 @@ impl Run<'_> {
         for k in first..self.stops.len() {
             let stop = self.stops[k];
             loop {
+                self.spent(|wall| &mut wall.watching);
                 let from = solver.time();
                 let stride = self.strides.at(from);
                 let stepped = solver
                     .limit(stride.largest)
                     .and_then(|()| solver.step(stop.t.min(stride.to)));
+                self.spent(|wall| &mut wall.steps);
                 let step = match stepped {
                     Ok(step) => step,
                     Err(failure) => return Ok(End::Failed(fault(&failure))),

@@ -38,6 +38,7 @@ impl Run<'_> {
             switches,
             checkpoint,
         } = self.stops[stop];
+        self.spent(|wall| &mut wall.watching);
         self.state.copy_from_slice(solver.y());
         self.rates.copy_from_slice(solver.yp());
         if let Err(failure) = solver.integrals(None, &mut self.integrals) {
@@ -56,6 +57,7 @@ impl Run<'_> {
         };
         if checkpoint {
             self.count(solver);
+            self.spent(|wall| &mut wall.steps);
             recorder.checkpoint(&Checkpoint {
                 version: VERSION.into(),
                 case: self.case.resolved_json(),
@@ -72,6 +74,7 @@ impl Run<'_> {
                 observed: self.observer.seen.clone(),
                 forward: self.forward.as_ref().map(Forward::kept),
             })?;
+            self.spent(|wall| &mut wall.output);
         }
         let dae = solver.dae_mut();
         let ahead = 0.5 * (t + next);
@@ -87,6 +90,7 @@ impl Run<'_> {
                 return Ok(Some(fault));
             }
         }
+        self.spent(|wall| &mut wall.consistent_start);
         let restarted =
             solver
                 .restart(t, &self.state, &self.rates)
@@ -94,6 +98,7 @@ impl Run<'_> {
                     (Some(forward), Some(ida)) => forward.hand_over(ida, true),
                     _ => Ok(()),
                 });
+        self.spent(|wall| &mut wall.steps);
         Ok(restarted.err().map(|failure| fault(&failure)))
     }
 }
