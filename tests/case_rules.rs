@@ -2,6 +2,8 @@
 
 mod faulty;
 
+use std::path::Path;
+
 use faulty::{TOUR, WIRING, assert_fault, fault_of, one, only, replaced};
 use slcbeam::case;
 
@@ -40,6 +42,31 @@ fn a_wrong_unit_is_suspected() {
         "20",
         "a tube of 20 m",
     );
+}
+
+/// Goal: who means such sizes says so, and only sizes are meant by it. An analysis without units: E, density, viscosity and length are 1.
+#[test]
+fn sizes_that_are_meant_are_taken() {
+    let odd = [
+        ("\"young_modulus_pa\": 2e6", "\"young_modulus_pa\": 2"),
+        ("\"radius_m\": 0.001", "\"radius_m\": 1"),
+        ("\"length_m\": 0.02,", "\"length_m\": 20,"),
+        (
+            "\"area_per_pressure_m2_per_pa\": 1.75e-10",
+            "\"area_per_pressure_m2_per_pa\": 1.75e-2",
+        ),
+    ];
+    let meant = [odd.as_slice(), &[("{", "{\"plausibility\": \"off\",")]].concat();
+    let read = |text: &str| case::parse(text, Path::new("odd.json"), Path::new("cases"), &[]);
+    assert_eq!(fault_of(&replaced(WIRING, &odd)).violations.len(), 4);
+    let taken = read(&replaced(WIRING, &meant)).expect("sizes as they are meant");
+    assert_eq!(taken.beam.young_modulus_pa, 2.0);
+    let negative = [
+        meant.as_slice(),
+        &[("\"density_kg_m3\": 950", "\"density_kg_m3\": -950")],
+    ]
+    .concat();
+    assert_eq!(only(&replaced(WIRING, &negative)).0, "/beam/density_kg_m3");
 }
 
 #[test]

@@ -14,7 +14,7 @@ use slcbeam::output::kind::Kind;
 use slcbeam::output::{FolderRecorder, Labels, ResultFolder, checkpoint, summary};
 use slcbeam::run::dynamics;
 use slcbeam::run::observe::Observer;
-use slcbeam::run::record::{Control, Progress};
+use slcbeam::run::record::{Control, Memory, Progress};
 use tempfile::TempDir;
 
 const CASE: &str = "cases/two-bladders.json";
@@ -228,4 +228,34 @@ fn a_lean_run_goes_on() {
         }
         assert_eq!(told(&whole), told(&folder));
     }
+}
+
+/// A beam of many bladders like those of the paper, each upper one with a port of its own, each lower one sealed by itself.
+fn many(per_row: usize, cells_per_segment: usize) -> Case {
+    let chains: Vec<Value> = (1..=per_row)
+        .map(|k| serde_json::json!({"bladders": [k], "ends": ["sealed", {"pressure_pa": 0}]}))
+        .collect();
+    let text = serde_json::json!({
+        "name": "many", "preset": "matia-gat-beam", "plausibility": "off",
+        "beam": {"length_m": 0.008 * per_row as f64}, "bladders": {"per_row": per_row}, "network": {"chains": chains},
+        "mesh": {"cells_per_segment": cells_per_segment}, "time": {"end_s": 2e-5, "output_interval_s": 1e-5},
+        "ends": {"root": {"clamped": {"u3_m": {"sine": {"amplitude": 1e-4, "frequency_hz": 20, "ramp_cycles": 1}}}}, "tip": "free"}
+    });
+    case::parse(&text.to_string(), Path::new("many.json"), Path::new("."), &[]).expect("a case")
+}
+
+/// Goal: what a short run sets up grows with the beam alone, not with its square. Memory asked for counts, as times would not be the same twice.
+#[test]
+fn set_up_grows_with_the_beam_alone() {
+    let asked = |per_row: usize| {
+        let case = many(per_row, 1);
+        let measured = allocation_counter::measure(|| {
+            dynamics::run(&case, &mut Memory::default()).expect("a run");
+        });
+        measured.bytes_total as f64
+    };
+    // tables that are made once
+    asked(10);
+    let ratio = asked(1000) / asked(500);
+    assert!((1.8..2.2).contains(&ratio), "{ratio}");
 }

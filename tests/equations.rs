@@ -11,7 +11,7 @@ use slcbeam::discrete::residual::{self, fluid::bridge_drops};
 use slcbeam::discrete::{System, TimeData, Workspace};
 use slcbeam::functions;
 use slcbeam::model::network::CheckValve;
-use slcbeam::model::{AreaLaw, Coupling, Model, audit, bladder, characteristic, duct};
+use slcbeam::model::{AreaLaw, Coupling, Model, audit, bladder, duct, slowest};
 use slcbeam::run::dynamics;
 use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
@@ -645,7 +645,7 @@ fn means_weigh_as_their_transpose() {
 #[test]
 fn two_bladders_relax_in_half_their_time() {
     let wet = Model::new(&load("two-bladders", &[])).unwrap().wet.unwrap();
-    let times: Vec<f64> = characteristic::slowest_times(&wet).into_iter().flatten().collect();
+    let times: Vec<f64> = slowest::times(&wet).into_iter().flatten().collect();
     let resistance = 8.68e-4 * (0.046 / 1.55e-12 + 0.02 / 6.72e-13);
     assert_eq!(times.len(), 1);
     close(times[0], 0.5 * resistance * 1.75e-10 * 0.046, 1e-10);

@@ -23,6 +23,8 @@ pub struct Violations {
     more: usize,
     unknown_keys: Vec<String>,
     overfull: bool,
+    /// Whether [`Code::Implausible`] is no fault.
+    all_plausible: bool,
 }
 
 impl Violations {
@@ -31,7 +33,15 @@ impl Violations {
         self.keep(violation, Mark::Value);
     }
 
+    /// From now on takes every size as meant.
+    pub fn take_as_meant(&mut self) {
+        self.all_plausible = true;
+    }
+
     fn keep(&mut self, violation: Violation, mark: Mark) {
+        if self.all_plausible && violation.code == Code::Implausible {
+            return;
+        }
         if self.is_full() {
             self.more += 1;
         } else {

@@ -168,7 +168,7 @@ impl FluidMesh {
                 BladderEnd::Inlet => bladder * cells_per_bladder,
                 BladderEnd::Outlet => (bladder + 1) * cells_per_bladder - 1,
             })),
-            Node::Junction(j) => junctions.iter().position(|&k| k == j).map(Place::Junction),
+            Node::Junction(j) => junctions.binary_search(&j).ok().map(Place::Junction),
             Node::Port(p) => wet.flows.then_some(Place::Port(p)),
         };
         let half_of = |p: Place| if let Place::Cell(_) = p { half } else { 0.0 };
@@ -244,7 +244,7 @@ impl FluidMesh {
         let bridges: Vec<MeshBridge> = bridges.collect();
         let accumulators = network.accumulators.iter().enumerate();
         let accumulators = accumulators.filter_map(|(number, one)| {
-            let junction = junctions.iter().position(|&j| j == one.junction)?;
+            let junction = junctions.binary_search(&one.junction).ok()?;
             Some(MeshAccumulator {
                 number: Some(number),
                 junction,

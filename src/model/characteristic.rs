@@ -3,15 +3,15 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use nalgebra::{DMatrix, Matrix2};
+use nalgebra::Matrix2;
 
-use super::network::{LinkKind, Network, Node};
-use super::{Attachment, Load, Model, Surroundings, Wet, each_signal, tongue};
+use super::network::LinkKind;
+use super::{Attachment, Load, Model, Surroundings, each_signal, slowest, tongue};
 use crate::case::relaxation::{self, dynamic_modulus};
 use crate::case::schema::Effect;
 use crate::case::schema::{Case, ChainEnd};
 use crate::case::{ResolvedEnd, Rotation, Translation};
-use crate::functions::{Clock, Signal};
+use crate::functions::Signal;
 
 /// `κ_1` of the clamped-free beam under axial base acceleration.
 pub const MATHIEU_COUPLING: f64 = 1.570_878_189_99;
@@ -164,7 +164,7 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
                 2.0 * fluid.density_kg_m3 * flow / (PI * fluid.viscosity_pa_s * narrow),
             );
         }
-        for (k, time) in slowest_times(wet).into_iter().enumerate() {
+        for (k, time) in slowest::times(wet).into_iter().enumerate() {
             if let Some(time) = time {
                 put(&format!("slowest_time_of_network_{}_s", k + 1), time);
             }
@@ -307,78 +307,4 @@ pub fn mathieu_growth(w2: f64, a: f64, omega: f64) -> f64 {
     } else {
         half_trace.acosh() / period
     }
-}
-
-/// `[E20]` Slowest relaxation time of each component of the network [s], each bladder one volume; `None` for a
-/// single sealed bladder and where the component is too large for a dense eigenvalue problem.
-///
-/// ```text
-/// C dp/dt = -L p    L the graph Laplacian of the conductances, ports grounded, junctions eliminated
-/// ```
-pub fn slowest_times(wet: &Wet) -> Vec<Option<f64>> {
-    (0..wet.network.components).map(|c| slowest_time(wet, c)).collect()
-}
-
-fn slowest_time(wet: &Wet, component: usize) -> Option<f64> {
-    const LARGEST: usize = 400;
-    let network: &Network = &wet.network;
-    let bladders: Vec<usize> = (0..2 * wet.per_row)
-        .filter(|&b| network.component_of_bladder[b] == component)
-        .collect();
-    let junctions: Vec<usize> = (0..network.junctions.len())
-        .filter(|&j| network.component_of_junction[j] == component)
-        .collect();
-    let (nb, nj) = (bladders.len(), junctions.len());
-    if nb == 0 || nb + nj > LARGEST {
-        return None;
-    }
-    let half = 0.5 * wet.bladder_length / network.bladder_mobility;
-    let slot = |node: Node| match node {
-        Node::Cell { bladder, .. } => bladders.iter().position(|&b| b == bladder),
-        Node::Junction(j) => junctions.iter().position(|&k| k == j).map(|k| nb + k),
-        Node::Port(_) => None,
-    };
-    let mut laplacian = DMatrix::<f64>::zeros(nb + nj, nb + nj);
-    let clock = Clock { t: 0.0, within: 0.0 };
-    let mut grounded = false;
-    for link in &network.links {
-        let (a, b) = (slot(link.from), slot(link.to));
-        if a.is_none() && b.is_none() {
-            continue;
-        }
-        let cells = [link.from, link.to]
-            .iter()
-            .filter(|n| matches!(n, Node::Cell { .. }))
-            .count() as f64;
-        let opening = link.opening.as_ref().map_or(1.0, |o| o.jet(clock).value);
-        let g = opening / (opening * half * cells + link.resistance);
-        grounded |= a.is_none() || b.is_none();
-        for (i, j) in [(a, b), (b, a)] {
-            if let Some(i) = i {
-                laplacian[(i, i)] += g;
-                if let Some(j) = j {
-                    laplacian[(i, j)] -= g;
-                }
-            }
-        }
-    }
-    // Eliminate junctions one by one (Schur complement).
-    for k in (nb..nb + nj).rev() {
-        let pivot = laplacian[(k, k)];
-        if pivot <= 0.0 {
-            return None;
-        }
-        for i in 0..k {
-            for j in 0..k {
-                let change = laplacian[(i, k)] * laplacian[(k, j)] / pivot;
-                laplacian[(i, j)] -= change;
-            }
-        }
-    }
-    let reduced = laplacian.view((0, 0), (nb, nb)).into_owned();
-    let mut values: Vec<f64> = reduced.symmetric_eigenvalues().iter().copied().collect();
-    values.sort_by(f64::total_cmp);
-    let slowest = values.get(usize::from(!grounded)).copied()?;
-    let largest = values.last().copied()?;
-    (slowest > 1e-12 * largest).then(|| wet.compliance() * wet.bladder_length / slowest)
 }

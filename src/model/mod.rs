@@ -20,6 +20,7 @@ pub mod network;
 pub mod passivity;
 pub mod scales;
 mod signals;
+pub mod slowest;
 pub mod storage;
 pub mod strain_energy;
 pub mod surroundings;

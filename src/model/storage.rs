@@ -1,6 +1,6 @@
 //! How each bladder stores fluid: what of it is unknown.
 
-use super::network::{LinkKind, Node};
+use super::network::{Component, LinkKind, Node};
 use super::{EffectSet, Network};
 use crate::case::schema::Case;
 use crate::case::schema::Effect;
@@ -55,13 +55,17 @@ pub enum LumpedKind {
 }
 
 impl LumpedNetwork {
+    /// Every component of the network as a lumped network; or why it cannot be one.
+    pub fn all(network: &Network) -> impl Iterator<Item = Result<Self, String>> {
+        let parts = Component::all(network).into_iter().enumerate();
+        parts.map(|(component, part)| Self::new(network, component, part))
+    }
+
     /// A component of the network as a lumped network; or why it cannot be one.
-    pub fn new(network: &Network, component: usize) -> Result<Self, String> {
-        let inside = |node: Node| network.component_of(node) == Some(component);
-        let touches = |(from, to): (Node, Node)| inside(from) || inside(to);
-        let bridged = network.bridges.iter().any(|b| touches((b.from, b.to)));
+    fn new(network: &Network, component: usize, part: Component) -> Result<Self, String> {
         let mut ports = vec![];
-        for link in network.links.iter().filter(|l| touches((l.from, l.to)) && !l.is_shut()) {
+        let links = part.links.iter().map(|&link| &network.links[link]);
+        for link in links.filter(|link| !link.is_shut()) {
             if matches!(link.kind, LinkKind::Turbine(_)) {
                 return Err("a turbine needs them".into());
             }
@@ -79,14 +83,10 @@ impl LumpedNetwork {
                 _ => None,
             }));
         }
-        if network
-            .accumulators
-            .iter()
-            .any(|one| inside(Node::Junction(one.junction)))
-        {
+        if part.accumulates {
             return Err("an accumulator needs them".into());
         }
-        if bridged {
+        if part.bridged {
             return Err("a turbine needs them".into());
         }
         let pressure = |p: usize| &network.ports[p].pressure;
@@ -94,18 +94,13 @@ impl LumpedNetwork {
             let (a, b) = (&network.ports[ports[0]].name, &network.ports[*other].name);
             return Err(format!("the ports \"{a}\" and \"{b}\" prescribe different pressures"));
         }
-        let sources: Vec<usize> = (0..network.sources.len())
-            .filter(|&s| inside(network.sources[s].into))
-            .collect();
-        let bladders =
-            (0..network.component_of_bladder.len()).filter(|&b| network.component_of_bladder[b] == component);
         Ok(Self {
             component,
-            bladders: bladders.collect(),
-            kind: match (ports.first(), sources.is_empty()) {
+            bladders: part.bladders,
+            kind: match (ports.first(), part.sources.is_empty()) {
                 (Some(&port), _) => LumpedKind::Port(port),
                 (None, true) => LumpedKind::Closed,
-                (None, false) => LumpedKind::Fed(sources),
+                (None, false) => LumpedKind::Fed(part.sources),
             },
         })
     }
@@ -133,7 +128,7 @@ pub fn of_bladders(case: &Case, network: &Network, effects: &EffectSet) -> (Vec<
         .collect();
     let mut lumped = vec![];
     if effects.has(Effect::Flow) && !effects.has(Effect::NetworkPressureDifferences) {
-        for one in (0..network.components).filter_map(|c| LumpedNetwork::new(network, c).ok()) {
+        for one in LumpedNetwork::all(network).flatten() {
             if one.bladders.iter().any(|&b| storage[b] == Storage::Flowing) {
                 let shared = Storage::Shared(lumped.len());
                 one.bladders.iter().for_each(|&b| storage[b] = shared);

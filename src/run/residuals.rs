@@ -73,7 +73,7 @@ impl Residuals {
         self.energy_seen = put_in.into_iter().fold(self.energy_seen.max(stored), f64::max);
         for c in 0..invariants.volumes.len() {
             let wet = system.model.wet.as_ref();
-            let open = wet.and_then(|w| w.network.open.iter().position(|&o| o == c));
+            let open = wet.and_then(|w| w.network.open_number(c));
             let (left, through) = open.map_or((0.0, 0.0), |k| ledger::passed(integrals, k));
             self.volume[c] = self.volume[c].max((invariants.volumes[c] - first.volumes[c] + left).abs());
             self.volume_seen[c] = self.volume_seen[c].max(through);
@@ -210,11 +210,12 @@ fn displaced(system: &System, area: &[f64], pressure: &[f64], seen: &mut [f64]) 
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
-    let components = &wet.network.component_of_bladder;
-    for (c, seen) in seen.iter_mut().enumerate() {
-        let bladders = components.iter().enumerate().filter(|(_, of)| **of == c);
-        let cells = bladders.flat_map(|(bladder, _)| fluid.cells_of(bladder));
-        let size = |cell: usize| area[cell].abs().max(wet.compliance() * pressure[cell].abs());
-        *seen = seen.max(cells.map(size).sum::<f64>() * fluid.ds);
+    let size = |cell: usize| area[cell].abs().max(wet.compliance() * pressure[cell].abs());
+    let mut displaced = vec![0.0; seen.len()];
+    for (bladder, &of) in wet.network.component_of_bladder.iter().enumerate() {
+        displaced[of] += fluid.cells_of(bladder).map(size).sum::<f64>() * fluid.ds;
+    }
+    for (seen, displaced) in seen.iter_mut().zip(displaced) {
+        *seen = seen.max(displaced);
     }
 }

@@ -87,7 +87,7 @@ impl FluidKind {
 #[serde(deny_unknown_fields)]
 pub struct Bladders {
     /// Bladders in each row, `n/2`.
-    #[schemars(range(min = 1, max = 10000))]
+    #[schemars(range(min = 1, max = 1000000))]
     pub per_row: usize,
     /// Length `l_b` of a bladder across the width of the beam, inlet to outlet [m].
     #[schemars(extend("exclusiveMinimum" = 0))]

@@ -97,6 +97,9 @@ pub struct Case {
     /// Form of the momentum balance.
     #[serde(default)]
     pub formulation: Formulation,
+    /// Whether sizes, proportions and strengths that hardly any beam has are refused.
+    #[serde(default, skip_serializing_if = "Plausibility::is_on")]
+    pub plausibility: Plausibility,
     /// Which physical effects are simulated.
     #[serde(default)]
     pub effects: Effects,

@@ -14,6 +14,24 @@ pub enum Formulation {
     Published,
 }
 
+/// Whether sizes that hardly any beam has are faults of the case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Plausibility {
+    /// They are: almost always it is a unit.
+    #[default]
+    On,
+    /// They are meant: an analysis without units, a beam of a hundred thousand bladders.
+    Off,
+}
+
+impl Plausibility {
+    /// The default, which a case need not write.
+    pub fn is_on(&self) -> bool {
+        *self == Self::On
+    }
+}
+
 /// Resolution in space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

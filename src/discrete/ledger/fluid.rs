@@ -204,7 +204,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     // `noise` is the flow of which the law misses a share: `g |p|` of a pressure
     // port.
     let leave = |component: usize, [outward, by_law, noise]: [f64; 3], out: &mut [f64]| {
-        if let Some(open) = network.open.iter().position(|&c| c == component) {
+        if let Some(open) = network.open_number(component) {
             out[ENERGY_RATES.len() + 2 * open] += outward;
             out[ENERGY_RATES.len() + 2 * open + 1] += outward.abs();
             out[ENERGY_RATES.len() + 2 * (count + open)] += by_law;
@@ -322,7 +322,7 @@ pub fn lumped_jump(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mu
         }
         let (power, outward) = lumped_ports(wet, fluid, now, w, k, lumped);
         add(out, EnergyRate::Ports, power);
-        if let Some(open) = wet.network.open.iter().position(|&c| c == lumped.component) {
+        if let Some(open) = wet.network.open_number(lumped.component) {
             out[ENERGY_RATES.len() + 2 * open] += outward;
             out[ENERGY_RATES.len() + 2 * open + 1] += outward.abs();
             out[ENERGY_RATES.len() + 2 * (count + open)] += outward;

@@ -81,7 +81,7 @@ pub fn settle(system: &System, now: &TimeData, integrals: &mut [f64]) {
         let more = let_in - integrals[own + k];
         integrals[own + k] = let_in;
         let component = network.component_of(source.into);
-        if let Some(open) = network.open.iter().position(|&one| Some(one) == component) {
+        if let Some(open) = component.and_then(|own| network.open_number(own)) {
             let [left, by_law] = [2 * open, 2 * (network.open.len() + open)];
             for entry in [left, by_law].into_iter().filter(|_| let_in::is_kept(network, k)) {
                 integrals[ENERGY_RATES.len() + entry] -= more;

@@ -202,9 +202,13 @@ impl Axis {
         };
         let map = NetworkCoordinate::of(wet, tube_length);
         let k = fluid.cells_per_bladder;
+        let mut array_of = vec![0; fluid.bladders];
+        for (number, array) in map.arrays.iter().enumerate() {
+            array.iter().for_each(|&bladder| array_of[bladder] = number);
+        }
         let at = |cell: usize| match self {
             Self::Bladder => bladder_label(cell / k, wet.per_row) as f64,
-            Self::Array => map.arrays.iter().position(|a| a.contains(&(cell / k))).unwrap_or(0) as f64,
+            Self::Array => array_of[cell / k] as f64,
             _ => {
                 let (start, end) = map.spans[cell / k];
                 start + (end - start) * ((cell % k) as f64 + 0.5) / k as f64

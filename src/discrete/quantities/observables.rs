@@ -139,13 +139,13 @@ fn port_flow(look: &Look) -> f64 {
     let (Some(wet), Some(fluid)) = (&look.system.model.wet, &look.system.fluid) else {
         return 0.0;
     };
-    let open = |bladder: &usize| wet.network.open.contains(&wet.network.component_of_bladder[*bladder]);
+    let open = |bladder: &usize| !wet.network.is_closed(wet.network.component_of_bladder[*bladder]);
     let cells = (0..fluid.bladders)
         .filter(open)
         .flat_map(|bladder| fluid.cells_of(bladder));
     let stored = cells.map(|cell| look.w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds;
     let vessels = fluid.accumulators.iter().zip(&look.w.fluid.accumulated_rate);
-    let vessels = vessels.filter(|(one, _)| wet.network.open.contains(&one.component));
+    let vessels = vessels.filter(|(one, _)| !wet.network.is_closed(one.component));
     stored + vessels.map(|(_, rate)| rate).sum::<f64>()
 }
 

@@ -2,7 +2,7 @@
 //! such a cell.
 
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BinaryHeap, HashMap};
 use std::f64::consts::TAU;
 
 use crate::case::schema::{BladderEnd, Case};
@@ -93,23 +93,24 @@ fn falls(end: f64, wet: &Wet) -> Vec<f64> {
         Signal::Sum(vec![a.clone(), less]).largest(end).value
     };
     let of_pressure = |(k, port): (usize, &PressurePort)| {
-        let others = network.ports.iter().enumerate().filter(|(j, _)| *j != k);
+        let others = ways[k].iter().filter(|(j, _)| *j != k);
         others
-            .filter(|(j, other)| ways[k][*j].is_finite() && other.pressure != port.pressure)
+            .filter_map(|&(j, way)| Some((network.ports.get(j)?, way)))
+            .filter(|(other, _)| other.pressure != port.pressure)
             // a flow has its largest pressure where it comes from
-            .filter(|(_, other)| size(&other.pressure) <= size(&port.pressure))
-            .map(|(j, other)| difference(&port.pressure, &other.pressure) / largest * bladder / ways[k][j])
+            .filter(|(other, _)| size(&other.pressure) <= size(&port.pressure))
+            .map(|(other, way)| difference(&port.pressure, &other.pressure) / largest * bladder / way)
             .fold(0.0, f64::max)
     };
     let ports = network.ports.len();
     let of_flow = |(k, source): (usize, &Source)| {
         let (ways, flow) = (&ways[ports + k], source.feed.largest_flow(end));
-        let out = network.ports.iter().zip(ways);
-        let out = out.filter(|(_, way)| way.is_finite() && flow > 0.0);
-        let out = out.map(|(port, way)| flow * bladder / (flow * way + size(&port.pressure)));
-        let taken = network.sources.iter().zip(&ways[ports..]);
-        let taken = taken.filter(|(other, way)| way.is_finite() && against(&source.feed, &other.feed, end));
-        out.chain(taken.map(|(_, way)| 2.0 * bladder / way)).fold(0.0, f64::max)
+        let fall = |&(j, way): &(usize, f64)| match network.ports.get(j) {
+            Some(port) if flow > 0.0 => flow * bladder / (flow * way + size(&port.pressure)),
+            None if against(&source.feed, &network.sources[j - ports].feed, end) => 2.0 * bladder / way,
+            _ => 0.0,
+        };
+        ways.iter().map(fall).fold(0.0, f64::max)
     };
     let pressures = network.ports.iter().enumerate().map(of_pressure);
     let flows = network.sources.iter().enumerate().map(of_flow);
@@ -125,8 +126,8 @@ fn against(a: &Feed, b: &Feed, end: f64) -> bool {
     (a.high > 0.0 && b.low < 0.0) || (a.low < 0.0 && b.high > 0.0)
 }
 
-/// Resistance of the easiest way from port to port, those of pressure first; infinite where there is none, or none through a bladder.
-fn ways(wet: &Wet, bladder: f64) -> Vec<Vec<f64>> {
+/// Of every port, those of pressure first, the ports to which a way leads through a bladder, with the resistance of the easiest.
+fn ways(wet: &Wet, bladder: f64) -> Vec<Vec<(usize, f64)>> {
     let network = &wet.network;
     let (ports, bladders) = (network.ports.len(), network.component_of_bladder.len());
     let place = |node: Node| match node {
@@ -150,31 +151,41 @@ fn ways(wet: &Wet, bladder: f64) -> Vec<Vec<f64>> {
     let ends: Vec<usize> = (0..ports)
         .chain(network.sources.iter().map(|source| place(source.into)))
         .collect();
+    let mut ends_at = HashMap::<usize, Vec<usize>>::new();
+    for (number, &place) in ends.iter().enumerate() {
+        ends_at.entry(place).or_default().push(number);
+    }
+    // what it reaches is often little of a large network
     let from = |start: usize| {
-        let mut far = vec![f64::INFINITY; size];
-        far[start] = 0.0;
+        let mut far = HashMap::from([(start, 0.0_f64)]);
         // the nearest place first (Dijkstra); what is not negative is in order of its bits
         let mut next = BinaryHeap::from([Reverse((0, start))]);
         while let Some(Reverse((bits, a))) = next.pop() {
             // a way does not lead through another port, whose pressure is given
-            if bits > far[a].to_bits() || (a < ports && a != start) {
+            let here = f64::from_bits(bits);
+            if here > far[&a] || (a < ports && a != start) {
                 continue;
             }
             for &(b, resistance) in &beside[a] {
-                let way = far[a] + resistance;
-                if way < far[b] {
-                    far[b] = way;
+                let way = here + resistance;
+                let known = far.entry(b).or_insert(f64::INFINITY);
+                if way < *known {
+                    *known = way;
                     next.push(Reverse((way.to_bits(), b)));
                 }
             }
         }
         far
     };
-    let behind = |way: f64| if way >= bladder { way } else { f64::INFINITY };
     ends.iter()
         .map(|&start| {
-            let far = from(start);
-            ends.iter().map(|&end| behind(far[end])).collect()
+            let far = from(start).into_iter().filter(|(_, way)| *way >= bladder);
+            let reached = far.filter_map(|(place, way)| Some((ends_at.get(&place)?, way)));
+            let mut reached: Vec<_> = reached
+                .flat_map(|(ends, way)| ends.iter().map(move |&j| (j, way)))
+                .collect();
+            reached.sort_by_key(|(j, _)| *j);
+            reached
         })
         .collect()
 }

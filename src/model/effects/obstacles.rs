@@ -246,6 +246,6 @@ pub fn compressibility(network: &Network) -> Option<Obstacle> {
 
 /// Every network must be able to have one pressure.
 pub fn network_pressure_differences(network: &Network) -> Option<Obstacle> {
-    let why = (0..network.components).find_map(|component| LumpedNetwork::new(network, component).err())?;
+    let why = LumpedNetwork::all(network).find_map(Result::err)?;
     obstacle(why, "remove it, or leave network_pressure_differences on")
 }

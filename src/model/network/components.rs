@@ -44,6 +44,55 @@ pub(super) fn find(network: &mut Network, bladders: usize) {
     network.component_of_bladder = component;
 }
 
+/// What one component consists of; ascending numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Component {
+    /// Bladders.
+    pub bladders: Vec<usize>,
+    /// Junctions.
+    pub junctions: Vec<usize>,
+    /// Links that touch it, shut ones too.
+    pub links: Vec<usize>,
+    /// Whether a bridge touches it.
+    pub bridged: bool,
+    /// Whether an accumulator is in it.
+    pub accumulates: bool,
+    /// Sources that feed it.
+    pub sources: Vec<usize>,
+}
+
+impl Component {
+    /// All of a network, in order.
+    pub fn all(network: &Network) -> Vec<Self> {
+        let mut all = vec![Self::default(); network.components];
+        for (bladder, &of) in network.component_of_bladder.iter().enumerate() {
+            all[of].bladders.push(bladder);
+        }
+        for (junction, &of) in network.component_of_junction.iter().enumerate() {
+            all[of].junctions.push(junction);
+        }
+        for (number, link) in network.links.iter().enumerate() {
+            let [from, to] = [link.from, link.to].map(|node| network.component_of(node));
+            for of in from.into_iter().chain(to.filter(|_| to != from)) {
+                all[of].links.push(number);
+            }
+        }
+        for node in network.bridges.iter().flat_map(|bridge| [bridge.from, bridge.to]) {
+            network.component_of(node).iter().for_each(|&of| all[of].bridged = true);
+        }
+        for one in &network.accumulators {
+            all[network.component_of_junction[one.junction]].accumulates = true;
+        }
+        for (number, source) in network.sources.iter().enumerate() {
+            network
+                .component_of(source.into)
+                .iter()
+                .for_each(|&of| all[of].sources.push(number));
+        }
+        all
+    }
+}
+
 /// Groups of junctions that are joined by what has no inertia, and from which tubes with inertia alone lead on: no vessel stores there, and no bladder and no
 /// port is reached without a tube. Flows into a group sum to zero, and the level of its pressures follows from accelerations.
 pub fn adrift(network: &Network) -> Vec<Vec<usize>> {

@@ -27,6 +27,7 @@ use crate::functions::signals::Signal;
 pub use accumulator::{Accumulator, AccumulatorLaw};
 pub use along::AlongBladder;
 pub use check_valve::CheckValve;
+pub use components::Component;
 pub use ladder::BRANCHES;
 pub use tube::{FlowLaw, TubeFlow};
 
@@ -235,7 +236,12 @@ impl Network {
 
     /// True when no port or flow source touches the component.
     pub fn is_closed(&self, component: usize) -> bool {
-        !self.open.contains(&component)
+        self.open_number(component).is_none()
+    }
+
+    /// Number of a component among those that are open.
+    pub fn open_number(&self, component: usize) -> Option<usize> {
+        self.open.binary_search(&component).ok()
     }
 
     /// Whether a port of given pressure is joined to a component: what comes in leaves again.
