@@ -91,9 +91,10 @@ impl Network {
                 build.push(Name::Bridge(bridge.number), s.pressure, s.pressure * conductance, false);
             }
         });
+        let tubes = wet.network.tube_numbers();
         let name = |link: &MeshLink, what: &'static str| match (link.number, link.to) {
             (None, Place::Cell(to)) => Name::Face(what, to / fluid.cells_per_bladder, to % fluid.cells_per_bladder),
-            (number, _) => Name::Flow(what, number.map_or(0, |number| wet.network.tube(number))),
+            (number, _) => Name::Flow(what, number.map_or(0, |number| tubes[number])),
         };
         let moved = |link: &MeshLink| (stored * wet.bladder_length * s.frequency).min(s.pressure / link.in_series());
         let flows = || fluid.links.iter().filter_map(|link| Some((link, link.flow?)));

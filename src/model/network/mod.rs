@@ -367,12 +367,6 @@ impl Network {
         within + links.chain(valves).filter(|g| g.is_finite()).sum::<f64>()
     }
 
-    /// Number of a link among the tubes.
-    pub fn tube(&self, link: usize) -> usize {
-        let tubes = self.links[..link].iter().filter(|l| l.kind == LinkKind::Tube);
-        tubes.count()
-    }
-
     /// Component of a point; `None` for a pressure port.
     pub fn component_of(&self, node: Node) -> Option<usize> {
         match node {

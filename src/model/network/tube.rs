@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::ladder::Ladder;
+use super::{Link, LinkKind, Network};
 use crate::case::schema::{Effect, Fluid};
 use crate::case::wiring::Tube;
 use crate::model::{EffectSet, duct};
@@ -209,5 +210,23 @@ mod tests {
                 "Re {reynolds}: {slope:e} {difference:e}"
             );
         }
+    }
+}
+
+impl Network {
+    /// Number of a link among the tubes.
+    pub fn tube(&self, link: usize) -> usize {
+        let tubes = self.links[..link].iter().filter(|l| l.kind == LinkKind::Tube);
+        tubes.count()
+    }
+
+    /// The same of every link; what is no tube has that of the next one.
+    pub fn tube_numbers(&self) -> Vec<usize> {
+        let count = |before: &mut usize, link: &Link| {
+            let number = *before;
+            *before += usize::from(link.kind == LinkKind::Tube);
+            Some(number)
+        };
+        self.links.iter().scan(0, count).collect()
     }
 }

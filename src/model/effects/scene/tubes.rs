@@ -78,16 +78,18 @@ impl Scene<'_> {
     /// Bladders that flow may pass one after the other: all of a component with one that is joined at both ends.
     fn most_in_a_row(&self, wet: &Wet) -> f64 {
         let network = &wet.network;
-        let joined = |bladder: usize, at: BladderEnd| {
-            let here = |node: Node| matches!(node, Node::Cell { bladder: b, end } if b == bladder && end == at);
-            network.links.iter().any(|link| here(link.from) || here(link.to))
-                || network.sources.iter().any(|source| here(source.into))
-        };
+        let mut joined = vec![[false; 2]; network.component_of_bladder.len()];
+        let links = network.links.iter().flat_map(|link| [link.from, link.to]);
+        for node in links.chain(network.sources.iter().map(|source| source.into)) {
+            if let Node::Cell { bladder, end } = node {
+                joined[bladder][usize::from(end == BladderEnd::Outlet)] = true;
+            }
+        }
         let mut count = vec![0.0; network.components];
         let mut passed = vec![false; network.components];
         for (bladder, &component) in network.component_of_bladder.iter().enumerate() {
             count[component] += 1.0;
-            passed[component] |= joined(bladder, BladderEnd::Inlet) && joined(bladder, BladderEnd::Outlet);
+            passed[component] |= joined[bladder] == [true; 2];
         }
         let rows = count.into_iter().zip(passed).filter(|(_, passed)| *passed);
         rows.map(|(count, _)| count).fold(0.0, f64::max)
@@ -141,16 +143,16 @@ impl Scene<'_> {
         *self.tubes.get_or_init(|| {
             let Some(wet) = self.wet else { return Tubes::default() };
             let fastest = self.fastest(wet, tolerance);
-            let all = wet
-                .network
-                .links
-                .iter()
-                .map(|link| self.of(wet, link, fastest, tolerance));
+            let end = self.case.time.end_s;
+            let sources = wet.network.sources.iter();
+            let pumped = sources.map(|source| source.feed.largest_flow(end)).sum();
+            let links = wet.network.links.iter();
+            let all = links.map(|link| self.of(wet, link, [fastest, pumped], tolerance));
             all.fold(Tubes::default(), Tubes::larger)
         })
     }
 
-    fn of(&self, wet: &Wet, link: &Link, fastest: f64, tolerance: f64) -> Tubes {
+    fn of(&self, wet: &Wet, link: &Link, [fastest, pumped]: [f64; 2], tolerance: f64) -> Tubes {
         let Some(tube) = &link.tube else {
             return Tubes::default();
         };
@@ -162,7 +164,7 @@ impl Scene<'_> {
         } else {
             fastest
         };
-        let flow = self.largest_flow(wet, link, rate * compliance);
+        let flow = self.largest_flow(wet, link, rate * compliance) + pumped;
         let womersley_squared = rate / tube.viscous_rate;
         Tubes {
             inertia: rate * tube.steady_inertance() / resistance,
@@ -172,17 +174,10 @@ impl Scene<'_> {
     }
 
     /// In a tube, at most [m^3/s]: what the largest pressure drives through it, or what all bladders give up at the fastest rate (C ω a
-    /// bladder, [m^3/(s Pa)]), if that is less; with it what is pumped.
+    /// bladder, [m^3/(s Pa)]), if that is less; beside what is pumped.
     fn largest_flow(&self, wet: &Wet, link: &Link, given_up: f64) -> f64 {
         let bladders = 2.0 * wet.per_row as f64;
-        let end = self.case.time.end_s;
-        let pumped: f64 = wet
-            .network
-            .sources
-            .iter()
-            .map(|source| source.feed.largest_flow(end))
-            .sum();
-        MARGIN * self.scales.pressure * (1.0 / link.resistance).min(bladders * given_up) + pumped
+        MARGIN * self.scales.pressure * (1.0 / link.resistance).min(bladders * given_up)
     }
 }
 
