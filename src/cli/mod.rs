@@ -14,6 +14,7 @@ mod interrupt;
 mod line;
 mod mapping;
 mod measure;
+mod merge;
 mod modes;
 mod new;
 mod paper;
@@ -26,6 +27,7 @@ mod schema;
 mod size;
 mod study;
 pub mod summary_box;
+mod sweep;
 mod terminal;
 mod verify;
 
@@ -81,6 +83,8 @@ fn act(command: &Command, began: Instant) -> Result<ExitCode> {
         Command::Effects(asked) => effects::effects(asked),
         Command::Floquet(asked) => floquet::floquet(asked),
         Command::Periodic(asked) => periodic::periodic(asked),
+        Command::Sweep(asked) => sweep::sweep(asked),
+        Command::Merge(asked) => merge::merge(asked),
         Command::Compare(asked) => compare::compare(asked),
         Command::Modes(asked) => modes::modes(asked),
         Command::Export(asked) => export::export(asked),

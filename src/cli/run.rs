@@ -4,6 +4,8 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
@@ -146,6 +148,37 @@ fn labels(case: &Case) -> Labels {
 fn own(hook: &SharedHook) -> Hook {
     let hook = Rc::clone(hook);
     Box::new(move |progress| hook.borrow_mut()(progress))
+}
+
+/// Runs a case of many into a folder of its own, which may hold what an interrupted one left.
+pub fn into(case: &Case, accuracy: Option<f64>, dir: &Path, lean: bool, stop: &Arc<AtomicBool>) -> Result<Outcome> {
+    let mut laps = Laps::since(Instant::now());
+    let interrupted = Arc::clone(stop);
+    let way = Way {
+        hook: Rc::new(RefCell::new(Box::new(move |_: &Progress| {
+            match interrupt::raised(&interrupted) {
+                true => Control::Stop("interrupted".into()),
+                false => Control::Continue,
+            }
+        }))),
+        lean,
+        before: WallTimes::default(),
+    };
+    let folder = ResultFolder::claim(dir, Kind::Run, true)?;
+    let Recorded {
+        mut outcome, finished, ..
+    } = match accuracy {
+        Some(accuracy) => reach(case, accuracy, folder, &way)?,
+        None => record(case, System::new(case)?, &[], folder, &way)?,
+    };
+    if !lean {
+        report::write(dir, None)?;
+    }
+    if let Some(finished) = finished {
+        laps.lap();
+        close(finished, &mut outcome.summary, &mut laps)?;
+    }
+    Ok(outcome)
 }
 
 /// The numbers by which derivatives are asked for, each once.

@@ -27,7 +27,17 @@ pub fn load(asked: &CaseArguments) -> Result<Case> {
 /// The same with derivatives by so many numbers.
 pub fn load_with(path: &Path, sets: &[String], parameters: usize) -> Result<Case> {
     let case = case::load(path, sets)?;
-    let needs = Needs::of(&case, parameters);
+    fits(&case, parameters, 1)?;
+    Ok(case)
+}
+
+/// Refuses a case, so many of which at once the memory does not hold.
+///
+/// # Errors
+/// E006 with the numbers.
+pub fn fits(case: &Case, parameters: usize, at_once: usize) -> Result<()> {
+    let mut needs = Needs::of(case, parameters);
+    needs.memory *= at_once as f64;
     if let Some(there) = machine::memory().filter(|there| needs.memory > *there) {
         let what = format!(
             "some {:.3e} unknowns need about {} of memory; {} are there",
@@ -35,11 +45,14 @@ pub fn load_with(path: &Path, sets: &[String], parameters: usize) -> Result<Case
             bytes(needs.memory),
             bytes(there)
         );
-        let hint = "fewer cells per segment, per bladder, or segments";
+        let hint = match at_once {
+            1 => "fewer cells per segment, per bladder, or segments",
+            _ => "fewer designs at once, --jobs, or fewer cells per segment or per bladder",
+        };
         let fault = Violation::new(Code::Range, "/mesh", what).hint(hint);
         return Err(case.source.fault(vec![fault]));
     }
-    Ok(case)
+    Ok(())
 }
 
 /// What a run's files will take.

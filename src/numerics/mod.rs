@@ -10,18 +10,23 @@
 //! | `gauss` | Gauss' quadrature |
 //! | `ramp` | a ramp with a round foot |
 //! | [`regression`], [`student`] | least squares with covariance, and intervals by Student's distribution |
+//! | [`chance`], [`sobol`] | numbers by chance, and points that fill a cube evenly |
+//! | [`normal`] | quantiles of the normal distribution |
 //! | [`krylov`] | linear systems and eigenvalues of a map known only by what it does |
 
 pub mod angle;
+pub mod chance;
 pub mod dual;
 pub mod gauss;
 pub mod kernels;
 pub mod krylov;
+pub mod normal;
 pub mod planar;
 mod ramp;
 pub mod regression;
 pub mod scalar;
 pub mod sets;
+pub mod sobol;
 pub mod student;
 
 pub use dual::Dual;

@@ -27,12 +27,15 @@ pub enum Kind {
     Cycle,
     /// `periodic --sweep`.
     Sweep,
+    /// `sweep`, `merge`: many designs.
+    Designs,
 }
 
 impl Kind {
-    /// All of them; a cycle before the run in its folder.
-    const ALL: [Self; 9] = [
+    /// All of them; a cycle before the run in its folder, many designs before what has a `sweep.json` too.
+    const ALL: [Self; 10] = [
         Self::Cycle,
+        Self::Designs,
         Self::Run,
         Self::Equilibrium,
         Self::Modes,
@@ -55,6 +58,7 @@ impl Kind {
             Self::Map => ["map", "floquet --map", "map.json"],
             Self::Cycle => ["run", "periodic", "cycle.json"],
             Self::Sweep => ["sweep", "periodic --sweep", "sweep.json"],
+            Self::Designs => ["designs", "sweep", "plan.json"],
         }
     }
 
@@ -68,7 +72,7 @@ impl Kind {
         self.told()[1]
     }
 
-    /// The file that tells it; it is written last.
+    /// The file that tells it; it is written last, but where a command goes on in its folder first.
     pub fn sign(self) -> &'static str {
         self.told()[2]
     }
@@ -84,6 +88,15 @@ impl Kind {
             Self::Floquet => &["floquet.csv", "floquet.svg"],
             Self::Map => &["map.csv", "map.svg"],
             Self::Sweep => &["sweep.csv", "sweep.svg"],
+            Self::Designs => &[
+                "designs.jsonl",
+                "sweep.json",
+                "sweep.csv",
+                "sweep.npz",
+                "sweep.svg",
+                "map.svg",
+                "parallel.svg",
+            ],
         };
         [self.sign()].into_iter().chain(own.iter().copied()).collect()
     }

@@ -19,6 +19,7 @@
 //! floquet   floquet.csv, floquet.json, floquet.svg; map.csv, map.json, map.svg, and their words
 //! periodic  cycle.json; sweep.csv, sweep.json, sweep.svg, and their words
 //! study     study.csv, study.json, study.svg, table and sentence
+//! sweep     designs.jsonl, sweep.csv, sweep.npz, sweep.json of many designs, and their words
 //! modes     modes.csv, modes.json, modes.npz, modes.svg, table and sentences
 //! report    report.html: a result folder as one page
 //! pictures  from recorded files to the data of each picture
@@ -57,6 +58,7 @@ pub mod report;
 pub mod stream;
 pub mod study;
 pub mod summary;
+pub mod sweep;
 
 pub use folder::ResultFolder;
 pub use recorder::{FolderRecorder, Hook, Labels};

@@ -7,6 +7,7 @@
 //! | [`modes`] | `modes.json` |
 //! | [`cycles`] | `floquet.json` and `cycle.json`, `map.json`, `sweep.json` |
 //! | [`studies`] | `study.json`, `effects.json`, what `compare --json` prints |
+//! | [`sweep`] | `plan.json` and `sweep.json` of `slcbeam sweep` |
 //! | [`verify`] | a row of what `verify --json` prints |
 //! | [`provenance`] | what made a result |
 //! | [`ordered`] | numbers by name, in an order of their own |
@@ -21,6 +22,7 @@ pub mod ordered;
 pub mod provenance;
 pub mod run;
 pub mod studies;
+pub mod sweep;
 pub mod verify;
 
 use std::io;

@@ -16,6 +16,20 @@ pub struct Column {
     pub about: String,
 }
 
+impl Column {
+    /// Name with its unit, as keys of results have it: `tip_u1_m`.
+    pub fn key(&self) -> String {
+        let unit = match self.unit {
+            "1" => return self.name.clone(),
+            "Pa" => "pa",
+            "J" => "j",
+            "W" => "w",
+            other => other,
+        };
+        format!("{}_{unit}", self.name)
+    }
+}
+
 impl From<Observable> for Column {
     fn from(one: Observable) -> Self {
         Self {

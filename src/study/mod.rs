@@ -7,5 +7,6 @@ pub mod effects;
 pub mod measure;
 pub mod refine;
 pub mod stability;
+pub mod sweep;
 pub mod target;
 pub mod verify;

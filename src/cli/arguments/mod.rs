@@ -2,6 +2,7 @@
 
 mod map;
 mod periodic;
+mod sweep;
 
 use std::path::PathBuf;
 
@@ -18,6 +19,7 @@ use super::report::ReportArguments;
 use super::schema::SchemaArguments;
 pub use map::MapArguments;
 pub use periodic::PeriodicArguments;
+pub use sweep::{MergeArguments, Script, SweepArguments};
 
 /// Elastic beams with fluid-filled bladders joined by slender tubes: dynamics with error control.
 #[derive(Debug, Parser)]
@@ -51,6 +53,10 @@ pub enum Command {
     Floquet(FloquetArguments),
     /// Find the steady cycle of a periodically driven case directly, without its transient; or along a parameter
     Periodic(PeriodicArguments),
+    /// Compute many designs on all cores into one table: grids, ranges, samples, cases beside each other
+    Sweep(SweepArguments),
+    /// Join the shards of a sweep to one table, and name what is lost
+    Merge(MergeArguments),
     /// Compare two result folders: error norms of every field and quantity, cost ratio
     Compare(CompareArguments),
     /// Write a result in other formats: tables of its fields (CSV), surfaces that ParaView opens (VTK)
@@ -85,6 +91,8 @@ impl Command {
             Self::Modes(a) => a.json,
             Self::Floquet(a) => a.json,
             Self::Periodic(a) => a.json,
+            Self::Sweep(a) => a.json,
+            Self::Merge(a) => a.json,
             Self::Compare(a) => a.json,
             Self::Mapping(a) => a.json,
             Self::Verify(a) => a.json,

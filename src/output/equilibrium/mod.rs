@@ -61,7 +61,7 @@ pub fn json(found: &Found) -> String {
     let path = found.path;
     let keyed = |values: &[f64]| -> Numbers {
         let pairs = found.columns.iter().zip(values).skip(1);
-        pairs.map(|(column, value)| (key(column), Some(*value))).collect()
+        pairs.map(|(column, value)| (column.key(), Some(*value))).collect()
     };
     let last = path.states.last();
     let stability = |s: &Stability| kept::Stability {
@@ -103,18 +103,6 @@ pub fn json(found: &Found) -> String {
         accuracy: found.accuracy.cloned(),
         meshes: found.meshes.cloned(),
     })
-}
-
-/// Key of a quantity, unit included as in `summary.json`.
-fn key(column: &Column) -> String {
-    let unit = match column.unit {
-        "1" => return column.name.clone(),
-        "Pa" => "pa",
-        "J" => "j",
-        "W" => "w",
-        other => other,
-    };
-    format!("{}_{unit}", column.name)
 }
 
 /// Writes the files into a folder; others in it stay.

@@ -15,7 +15,7 @@
 //! parameters  the case as a table, described by its schema
 //! sheet       CSV files as tables
 //! warnings    what to know first, in words
-//! equilibrium, modes, studies, cycles   the pages of the other commands
+//! equilibrium, modes, studies, cycles, designs   the pages of the other commands
 //! vendor      uPlot, which draws histories
 //! ```
 //!
@@ -24,6 +24,7 @@
 
 mod cell;
 mod cycles;
+mod designs;
 mod energy_balance;
 mod equilibrium;
 mod facts;
@@ -93,6 +94,7 @@ fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
         Kind::Floquet => cycles::floquet(&place)?,
         Kind::Map => cycles::map(&place)?,
         Kind::Sweep => cycles::sweep(&place)?,
+        Kind::Designs => designs::data(&place)?,
     };
     // Whoever sees the page first needs them in words; their numbers alone say little.
     page.put("warnings", warnings::groups(&page.warnings));

@@ -1,0 +1,124 @@
+//! What `sweep` and `merge` can be asked for.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::PlaceArguments;
+use crate::study::sweep::{Shard, What};
+
+/// Commands that a design can go through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Through {
+    /// A run in time
+    Run,
+    /// The steady cycle
+    Periodic,
+    /// The static equilibrium
+    Equilibrium,
+    /// Small motions
+    Modes,
+}
+
+impl From<Through> for What {
+    fn from(one: Through) -> Self {
+        match one {
+            Through::Run => Self::Run,
+            Through::Periodic => Self::Periodic,
+            Through::Equilibrium => Self::Equilibrium,
+            Through::Modes => Self::Modes,
+        }
+    }
+}
+
+/// Who starts the jobs of a script.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Script {
+    /// A job array of Slurm
+    Slurm,
+    /// GNU parallel
+    Parallel,
+}
+
+/// `sweep`.
+#[derive(Debug, Args)]
+pub struct SweepArguments {
+    /// Case files (JSON): one, or several that are compared in every design; - is standard input
+    #[arg(required = true, value_name = "CASE")]
+    pub cases: Vec<PathBuf>,
+    /// Vary a number of the case, repeatable: a JSON pointer and its values, such as /solver/rtol=1e-4,1e-5, /beam/length_m=lin:0.1:0.2:5,
+    /// /network/permeability_factor=log:0.01:1:25, or drawn: =uniform:LOW:HIGH, =normal:MEAN:SD
+    #[arg(long, value_name = "POINTER=SPEC", allow_hyphen_values = true)]
+    pub vary: Vec<String>,
+    /// Designs from a CSV file: columns are JSON pointers, rows are designs
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["vary", "design"])]
+    pub designs: Option<PathBuf>,
+    /// What every design goes through
+    #[arg(long, value_enum, default_value_t = Through::Run)]
+    pub command: Through,
+    /// How designs are drawn where something is: latin:N or sobol:N; grid: all combinations of values
+    #[arg(long, value_name = "grid|latin:N|sobol:N", default_value = "grid")]
+    pub design: String,
+    /// Draw other designs [default: 1 for latin; sobol as it is]
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Change a value of all cases, repeatable: a JSON pointer and a JSON value, such as /solver/rtol=1e-7
+    #[arg(long = "set", value_name = "POINTER=JSON")]
+    pub sets: Vec<String>,
+    /// Choose mesh and tolerance of every design so that the estimated relative error of every number is below this, such as 0.01
+    #[arg(long, value_name = "REL")]
+    pub accuracy: Option<f64>,
+    /// Leave out the errors that meshes make of cycles, equilibria and modes: a third of the time
+    #[arg(long)]
+    pub no_mesh_errors: bool,
+    /// Designs computed at once [default: one for every core]
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<usize>,
+    /// Compute a part alone, such as 2/8: the second of eight; `slcbeam merge` joins them
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
+    pub shard: Option<Shard>,
+    /// Print a script that computes the sweep in shards, and compute nothing
+    #[arg(long, value_enum, conflicts_with_all = ["shard", "restart"])]
+    pub script: Option<Script>,
+    /// Shards of the script
+    #[arg(long, value_name = "N", default_value_t = 8, requires = "script")]
+    pub shards: usize,
+    /// Tables alone: no pictures and no page, neither of the sweep nor of designs
+    #[arg(long)]
+    pub lean: bool,
+    /// Keep the case of every design, cases/NNNNN.json
+    #[arg(long)]
+    pub keep_cases: bool,
+    /// Keep the result folder of every design, designs/NNNNN, of runs
+    #[arg(long)]
+    pub keep_folders: bool,
+    /// Begin again where the folder holds another sweep, or a part of this one
+    #[arg(long)]
+    pub restart: bool,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print sweep.json instead of the words
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `merge`.
+#[derive(Debug, Args)]
+pub struct MergeArguments {
+    /// Folders of shards
+    #[arg(required = true, value_name = "DIR")]
+    pub parts: Vec<PathBuf>,
+    /// Where the whole sweep goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
+    /// Tables alone: no pictures and no page
+    #[arg(long)]
+    pub lean: bool,
+    /// Print sweep.json instead of the words
+    #[arg(long)]
+    pub json: bool,
+}

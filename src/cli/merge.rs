@@ -1,0 +1,80 @@
+//! `slcbeam merge`: shards of a sweep joined to one table.
+
+use std::process::ExitCode;
+
+use super::arguments::MergeArguments;
+use super::terminal;
+use crate::case::{self, Written};
+use crate::error::{Error, Result};
+use crate::output::folder::{CASE, ResultFolder, text_of};
+use crate::output::kind::Kind;
+use crate::output::report;
+use crate::output::sweep::{self as files, parts, words};
+use crate::results;
+use crate::results::sweep::Plan;
+
+/// Exit code where designs are missing.
+const INCOMPLETE: u8 = 5;
+
+/// Joins shards, writes the table of what is there, names what is not.
+pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
+    let all = parts::read(&asked.parts)?;
+    let Some(first) = all.first() else {
+        return Err(Error::Usage("no folders".into()));
+    };
+    let plan = first.plan.whole();
+    let dir = asked.place.folder(&plan.case, Kind::Designs);
+    let mut folder = ResultFolder::claim(&dir, Kind::Designs, asked.place.force)?;
+    match files::plan(&folder)? {
+        Some(there) if asked.place.force && plan.difference(&there).is_some() => start(&mut folder, asked, &plan)?,
+        Some(there) => {
+            if let Some(why) = plan.difference(&there) {
+                return Err(Error::Usage(format!(
+                    "{} holds another sweep: {why}; name another folder with --out, or take this one with --force",
+                    dir.display()
+                )));
+            }
+        }
+        None => start(&mut folder, asked, &plan)?,
+    }
+    let survey = parts::join(&all, &folder, &plan)?;
+    let told = files::write(&folder, &plan, &survey)?;
+    if !asked.lean {
+        report::write(&dir, None)?;
+    }
+    super::tell(
+        asked.json,
+        &dir,
+        || results::text(&told),
+        || words::words(&told, &survey).unwrap_or_default(),
+    )?;
+    let lost = parts::lost(&all, &plan, &survey, &dir);
+    for one in &lost {
+        let what = match (one.shard, &one.dir) {
+            (None, _) => "the sweep".into(),
+            (Some(shard), None) => format!("shard {}, of which no folder was given,", shard.words()),
+            (Some(shard), Some(dir)) => format!("shard {} in {}", shard.words(), dir.display()),
+        };
+        terminal::tell(&format!(
+            "slcbeam: {what} lacks {} designs, the first of them {}; this computes them:\n  {}",
+            one.designs, one.first, one.command
+        ));
+    }
+    Ok(ExitCode::from(if lost.is_empty() { 0 } else { INCOMPLETE }))
+}
+
+fn start(folder: &mut ResultFolder, asked: &MergeArguments, plan: &Plan) -> Result<()> {
+    let case = asked.parts.iter().map(|dir| dir.join(CASE)).find(|path| path.exists());
+    let written = match case {
+        None => Written::default(),
+        // one of another version of the program may no longer be a case
+        Some(path) => match case::load(&path, &[]) {
+            Ok(case) => case.written(),
+            Err(_) => Written {
+                json: text_of(&path)?,
+                tables: vec![],
+            },
+        },
+    };
+    files::begin(folder, plan, &written)
+}

@@ -1,0 +1,235 @@
+//! `slcbeam sweep`: many designs, one table.
+
+mod progress;
+mod source;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+use super::arguments::{Script, SweepArguments};
+use super::{interrupt, run, terminal};
+use crate::case::Case;
+use crate::error::{Error, Result};
+use crate::output::folder::ResultFolder;
+use crate::output::kind::Kind;
+use crate::output::report;
+use crate::output::sweep::script::{Scheduler, script};
+use crate::output::sweep::{self as files, FOLDERS, JOURNAL, Journal, Survey, words};
+use crate::results;
+use crate::results::sweep::Plan;
+use crate::run::dynamics::Outcome;
+use crate::run::summary::Status;
+use crate::study::sweep::{Ask, Row, What, compute, pool, row::Found};
+use progress::Counter;
+use source::Source;
+
+/// Designs that are looked at before the first is computed.
+const CHECKED: usize = 10_000;
+
+/// Computes what is missing, writes the table, prints how many there are of which kind.
+pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
+    let source = Source::read(asked)?;
+    let plan = &source.plan;
+    if asked.keep_folders && plan.command != What::Run {
+        let what = "--keep-folders keeps those of runs; --keep-cases keeps the case of every design, which the command takes itself";
+        return Err(Error::Usage(what.into()));
+    }
+    let jobs = asked
+        .jobs
+        .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    if jobs == 0 || asked.shards == 0 {
+        return Err(Error::Usage("--jobs and --shards are 1 or more".into()));
+    }
+    if let Some(scheduler) = asked.script {
+        return print_script(asked, plan, scheduler);
+    }
+    let mut folder = claim(asked, &source)?;
+    let before = files::plan(&folder)?.filter(|_| !asked.restart);
+    if let Some(there) = &before
+        && let Some(why) = plan.difference(there)
+    {
+        return Err(Error::Usage(format!(
+            "{} holds another sweep: {why}; name another folder with --out, or begin again with --restart",
+            folder.dir().display()
+        )));
+    }
+    let journal = folder.path(JOURNAL);
+    let done = match &before {
+        Some(_) => Survey::of(&journal, plan)?,
+        None => Survey::of(&PathBuf::new(), plan)?,
+    };
+    let left: Vec<usize> = (0..plan.designs).filter(|n| plan.has(*n) && !done.has(*n)).collect();
+    let flag = interrupt::flag();
+    check(&source, &left, jobs, asked.quiet, &flag)?;
+    if before.is_none() {
+        files::begin(&mut folder, plan, &source.first.written())?;
+    } else if !asked.quiet && done.count() > 0 {
+        terminal::tell(&format!(
+            "slcbeam: {} designs are there already; going on with {}",
+            done.count(),
+            left.len()
+        ));
+    }
+    let stopped = compute_all(asked, &source, &folder, &done, &left, jobs, &flag)?;
+    let survey = Survey::of(&journal, plan)?;
+    let told = files::write(&folder, plan, &survey)?;
+    if !asked.lean {
+        report::write(folder.dir(), None)?;
+    }
+    super::tell(
+        asked.json,
+        folder.dir(),
+        || results::text(&told),
+        || words::words(&told, &survey).unwrap_or_default(),
+    )?;
+    if stopped {
+        let missing = told.missing;
+        terminal::tell(&format!(
+            "slcbeam: interrupted; {missing} designs are missing, and the same command goes on with them"
+        ));
+    }
+    let finished = survey.statuses.get(&Status::Finished).is_some_and(|n| *n > 0);
+    Ok(ExitCode::from(if finished || stopped { 0 } else { 4 }))
+}
+
+fn claim(asked: &SweepArguments, source: &Source) -> Result<ResultFolder> {
+    let mut place = asked.place.clone();
+    let mut dir = place.folder(&source.first.name, Kind::Designs);
+    if let (None, Some(shard)) = (&place.out, asked.shard) {
+        dir = PathBuf::from(format!("{}-{}-of-{}", dir.display(), shard.index, shard.of));
+    }
+    place.out = Some(dir);
+    place.claim(&source.first, Kind::Designs)
+}
+
+/// Looks at designs before the first is computed: at all of them, or at as many as is done soon, evenly spread.
+fn check(source: &Source, left: &[usize], jobs: usize, quiet: bool, flag: &AtomicBool) -> Result<()> {
+    let every = left.len().div_ceil(CHECKED).max(1);
+    let some: Vec<usize> = left.iter().copied().step_by(every).collect();
+    let mut counter = Counter::new(quiet, "checked", some.len());
+    let mut faults = BTreeMap::new();
+    pool::each(
+        &some,
+        jobs,
+        &|number| (!interrupt::raised(flag)).then(|| (number, source.check(number, jobs).err())),
+        &mut |(number, fault)| {
+            counter.one(fault.is_some());
+            fault.map(|fault| faults.insert(number, fault));
+            Ok(())
+        },
+    )?;
+    drop(counter);
+    let more = faults.len().saturating_sub(1);
+    match faults.pop_first() {
+        None => Ok(()),
+        Some((number, fault)) => {
+            source.tell(number, more);
+            Err(fault)
+        }
+    }
+}
+
+/// Computes designs and keeps their rows; whether it was interrupted.
+fn compute_all(
+    asked: &SweepArguments,
+    source: &Source,
+    folder: &ResultFolder,
+    done: &Survey,
+    left: &[usize],
+    jobs: usize,
+    flag: &Arc<AtomicBool>,
+) -> Result<bool> {
+    let plan = &source.plan;
+    let stop = || interrupt::raised(flag);
+    let ask = Ask {
+        what: plan.command,
+        accuracy: plan.accuracy,
+        meshes: plan.mesh_errors,
+    };
+    let mut journal = Journal::go_on(folder, done)?;
+    let mut counter = Counter::new(asked.quiet, "done", left.len());
+    let unkept: Mutex<Option<Error>> = Mutex::new(None);
+    let work = |number: usize| {
+        let begin = Instant::now();
+        if stop() {
+            return None;
+        }
+        let design = source.designs.design(number);
+        let found = match source.case(&design) {
+            Err(error) => Found::failed(&error),
+            Ok(case) => {
+                let keep = Keep {
+                    asked,
+                    plan,
+                    folder,
+                    number,
+                    flag,
+                };
+                if let Err(error) = keep.case(&case) {
+                    unkept
+                        .lock()
+                        .unwrap_or_else(std::sync::PoisonError::into_inner)
+                        .get_or_insert(error);
+                    return None;
+                }
+                compute::found(&case, ask, &stop, &|case| keep.run(case, ask, &stop))?
+            }
+        };
+        Some(Row::of(design, found, begin.elapsed().as_secs_f64()))
+    };
+    pool::each(left, jobs, &work, &mut |row: Row| {
+        if let Some(error) = unkept.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take() {
+            return Err(error);
+        }
+        journal.append(&row)?;
+        counter.one(row.found.status != Status::Finished);
+        Ok(())
+    })?;
+    match unkept.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
+        Some(error) => Err(error),
+        None => Ok(stop()),
+    }
+}
+
+/// What is kept of a design besides its row.
+struct Keep<'a> {
+    asked: &'a SweepArguments,
+    plan: &'a Plan,
+    folder: &'a ResultFolder,
+    number: usize,
+    flag: &'a Arc<AtomicBool>,
+}
+
+impl Keep<'_> {
+    /// The case, on request.
+    fn case(&self, case: &Case) -> Result<()> {
+        if !self.asked.keep_cases {
+            return Ok(());
+        }
+        files::keep_case(self.folder, &files::numbered(self.plan, self.number), &case.written())
+    }
+
+    /// A run, with its folder on request.
+    fn run(&self, case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Outcome> {
+        if !self.asked.keep_folders {
+            return compute::run(case, ask.accuracy, stop);
+        }
+        let dir = self.folder.path(FOLDERS).join(files::numbered(self.plan, self.number));
+        run::into(case, ask.accuracy, &dir, self.asked.lean, self.flag)
+    }
+}
+
+fn print_script(asked: &SweepArguments, plan: &Plan, scheduler: Script) -> Result<ExitCode> {
+    let program = std::env::current_exe().unwrap_or_else(|_| "slcbeam".into());
+    let scheduler = match scheduler {
+        Script::Slurm => Scheduler::Slurm,
+        Script::Parallel => Scheduler::Parallel,
+    };
+    let out = asked.place.folder(&plan.case, Kind::Designs);
+    super::print(&script(plan, scheduler, asked.shards, asked.jobs, &program, &out))?;
+    Ok(ExitCode::SUCCESS)
+}

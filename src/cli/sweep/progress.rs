@@ -1,0 +1,59 @@
+//! How far a sweep is: on a terminal a line that moves, elsewhere a line now and then.
+
+use std::time::{Duration, Instant};
+
+use crate::cli::line::{PLAIN, Shown};
+use crate::cli::terminal;
+use crate::output::numbers::{count, duration};
+
+/// Between two lines where there is no terminal.
+const EVERY: Duration = Duration::from_secs(30);
+
+/// Counts designs.
+pub struct Counter {
+    shown: Shown,
+    what: &'static str,
+    done: usize,
+    of: usize,
+    failed: usize,
+    begun: Instant,
+    told: Instant,
+}
+
+impl Counter {
+    /// Of so many.
+    pub fn new(quiet: bool, what: &'static str, of: usize) -> Self {
+        let now = Instant::now();
+        Self {
+            shown: Shown::new(quiet, PLAIN),
+            what,
+            done: 0,
+            of,
+            failed: 0,
+            begun: now,
+            told: now,
+        }
+    }
+
+    /// One more is done.
+    pub fn one(&mut self, failed: bool) {
+        self.done += 1;
+        self.failed += usize::from(failed);
+        let words = || {
+            let left = self.begun.elapsed().as_secs_f64() / self.done as f64 * (self.of - self.done) as f64;
+            let failed = match self.failed {
+                0 => String::new(),
+                n => format!(", {} not finished", count(n as u64)),
+            };
+            let (done, of) = (count(self.done as u64), count(self.of as u64));
+            format!("{done} of {of} designs {}{failed} · {} left", self.what, duration(left))
+        };
+        if let Some(bar) = &self.shown.bar {
+            bar.set_message(words());
+            bar.tick();
+        } else if self.shown.lines && self.told.elapsed() >= EVERY {
+            terminal::tell(&words());
+            self.told = Instant::now();
+        }
+    }
+}

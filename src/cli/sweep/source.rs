@@ -1,0 +1,169 @@
+//! From what was typed to designs and their cases.
+
+use std::path::{Path, PathBuf};
+
+use crate::case::{self, Case};
+use crate::cli::arguments::SweepArguments;
+use crate::cli::{line, size, terminal};
+use crate::error::{Error, Result};
+use crate::study::sweep::plan::{Listed, Plan};
+use crate::study::sweep::table::Table;
+use crate::study::sweep::{Design, Designs, Draw, Vary, compute};
+
+/// Where the cases of designs come from.
+pub struct Source {
+    /// Files and their texts.
+    texts: Vec<(PathBuf, String)>,
+    sets: Vec<String>,
+    /// The designs.
+    pub designs: Designs,
+    /// What they are.
+    pub plan: Plan,
+    /// The first of them.
+    pub first: Case,
+}
+
+impl Source {
+    /// Reads everything, and looks at the first design of every case.
+    ///
+    /// # Errors
+    /// What does not go together, cases that are none.
+    pub fn read(asked: &SweepArguments) -> Result<Self> {
+        let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+        let draw = Draw::parse(&asked.design)?;
+        let varied = asked
+            .vary
+            .iter()
+            .map(|text| Vary::parse(text))
+            .collect::<Result<Vec<_>>>()?;
+        if varied.is_empty() && asked.designs.is_none() && asked.cases.len() == 1 {
+            let what = "one case and nothing varied: give --vary POINTER=SPEC, --designs FILE.csv, or several cases";
+            return Err(Error::Usage(what.into()));
+        }
+        let texts = asked.cases.iter().map(|path| Ok((path.clone(), case::text(path)?)));
+        let texts = texts.collect::<Result<Vec<_>>>()?;
+        let mut table = None;
+        let (designs, specs) = match &asked.designs {
+            Some(path) => {
+                let read = Table::read(path)?;
+                table = Some((path.display().to_string(), read.crc32));
+                let specs = vec![None; read.pointers.len()];
+                (Designs::listed(texts.len(), read)?, specs)
+            }
+            None => {
+                let specs = varied.iter().map(|vary| Some(vary.spec.clone())).collect();
+                (Designs::crossed(texts.len(), &varied, draw, asked.seed)?, specs)
+            }
+        };
+        let mut plan = Plan {
+            case: String::new(),
+            command: asked.command.into(),
+            cases: vec![],
+            sets: asked.sets.clone(),
+            axes: Plan::axes_of(&designs, &specs),
+            table,
+            design: draw,
+            seed: asked.seed,
+            accuracy,
+            mesh_errors: !asked.no_mesh_errors,
+            designs: designs.count(),
+            shard: asked.shard,
+        };
+        let each = designs.count() / texts.len();
+        let mut first = None;
+        for (k, (path, text)) in texts.iter().enumerate() {
+            let design = designs.design(k * each);
+            let case = told(parse(path, text, &asked.sets, &designs, &design), &designs, &design)?;
+            let written = case.written();
+            let resolved = written
+                .tables
+                .iter()
+                .fold(written.json, |all, (name, text)| all + name + text);
+            plan.cases.push(Listed {
+                name: case.name.clone(),
+                file: path.display().to_string(),
+                crc32: [text.as_bytes(), resolved.as_bytes()].map(crc32fast::hash),
+            });
+            first.get_or_insert(case);
+        }
+        let Some(first) = first else {
+            return Err(Error::Usage("no case".into()));
+        };
+        plan.case.clone_from(&first.name);
+        alike(&plan.cases)?;
+        Ok(Self {
+            texts,
+            sets: asked.sets.clone(),
+            designs,
+            plan,
+            first,
+        })
+    }
+
+    /// The case of a design.
+    ///
+    /// # Errors
+    /// It is none.
+    pub fn case(&self, design: &Design) -> Result<Case> {
+        let (path, text) = &self.texts[design.case];
+        parse(path, text, &self.sets, &self.designs, design)
+    }
+
+    /// What a design's command would say before it begins.
+    ///
+    /// # Errors
+    /// In its words; a case that the memory does not hold, so many at once.
+    pub fn check(&self, number: usize, jobs: usize) -> Result<()> {
+        let case = self.case(&self.designs.design(number))?;
+        size::fits(&case, 0, jobs)?;
+        compute::check(&case, self.plan.command)
+    }
+
+    /// Tells which design it is that an error is about.
+    pub fn tell(&self, number: usize, more: usize) {
+        name(&self.designs, &self.designs.design(number), more);
+    }
+}
+
+fn parse(path: &Path, text: &str, sets: &[String], designs: &Designs, design: &Design) -> Result<Case> {
+    let sets: Vec<String> = sets.iter().cloned().chain(design.sets(designs.pointers())).collect();
+    case::parse(text, path, path.parent().unwrap_or(Path::new("")), &sets)
+}
+
+/// Says which design it was that had an error.
+fn told<T>(found: Result<T>, designs: &Designs, design: &Design) -> Result<T> {
+    if found.is_err() {
+        name(designs, design, 0);
+    }
+    found
+}
+
+fn name(designs: &Designs, design: &Design, more: usize) {
+    let values = design.words(designs.pointers());
+    let place = if values.is_empty() {
+        values
+    } else {
+        format!(" ({values})")
+    };
+    let more = match more {
+        0 => String::new(),
+        n => format!(", and {n} more like it"),
+    };
+    let (number, count) = (design.number, designs.count());
+    terminal::tell(&format!(
+        "slcbeam: design {number} of {count}{place} cannot be computed{more}; nothing was begun"
+    ));
+}
+
+/// Whether cases can be told apart by their names.
+fn alike(cases: &[Listed]) -> Result<()> {
+    for (k, case) in cases.iter().enumerate() {
+        if let Some(other) = cases[..k].iter().find(|other| other.name == case.name) {
+            return Err(Error::Usage(format!(
+                "{} and {} both have the name {}; rows are told apart by it",
+                other.file, case.file, case.name
+            )));
+        }
+    }
+    Ok(())
+}

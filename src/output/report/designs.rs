@@ -1,0 +1,116 @@
+//! The page of many designs.
+
+use serde_json::{Value, json};
+
+use super::{Found, Kind, MOST_ROWS, Page, Place, capital};
+use crate::error::Result;
+use crate::output::numbers::count;
+use crate::output::sweep::{JOURNAL, JSON, Survey, TABLE, table};
+use crate::results::sweep::Sweep;
+
+/// Columns of the page's table at most; the file has the rest.
+const MOST_COLUMNS: usize = 40;
+
+/// `sweep`.
+pub fn data(place: &Place) -> Result<Page> {
+    let Found { result: found, head } = place.result::<Sweep>(JSON)?;
+    let plan = &found.plan;
+    let survey = Survey::of(&place.path(JOURNAL), plan)?;
+    let mut page = place.page(Kind::Designs, &found.case, Some(&head));
+    page.put("label", "Many designs");
+    let kinds: Vec<String> = found
+        .statuses
+        .iter()
+        .map(|(status, n)| format!("{} {}", count(*n as u64), status.replace('_', " ")))
+        .collect();
+    let missing = match found.missing {
+        0 => String::new(),
+        n => format!(
+            " {} designs are missing; the same command goes on with them.",
+            count(n as u64)
+        ),
+    };
+    page.put(
+        "answer",
+        format!(
+            "{} designs went through `{}`: {}.{missing}",
+            count(found.rows as u64),
+            plan.command.word(),
+            if kinds.is_empty() {
+                "none".into()
+            } else {
+                kinds.join(", ")
+            },
+        ),
+    );
+    let varied: Vec<String> = plan
+        .axes
+        .iter()
+        .map(|axis| format!("{} = {}", axis.pointer, axis.spec.as_deref().unwrap_or("as listed")))
+        .collect();
+    let cases = plan.cases.iter().map(|case| format!("case {}", case.name));
+    page.put(
+        "facts",
+        varied
+            .into_iter()
+            .chain(cases)
+            .map(|text| capital(&text))
+            .collect::<Vec<_>>(),
+    );
+    let figure = |title: &str, file: &str, about: &str| {
+        let picture = place.picture(file)?;
+        Some(json!({"title": title, "picture": picture, "about": about}))
+    };
+    let figures = [
+        figure(
+            "Along what is varied",
+            "sweep.svg",
+            "Designs that finished. Every ring is one of them; its number stands beside it where there is room, and in the table.",
+        ),
+        figure(
+            "Over two numbers",
+            "map.svg",
+            "The first figure over both numbers that are varied; each cell is a design.",
+        ),
+        figure(
+            "All numbers at once",
+            "parallel.svg",
+            "A line a design, from what is varied to what came out; the colour is that of the last figure.",
+        ),
+    ];
+    page.put("figures", figures.into_iter().flatten().collect::<Vec<_>>());
+    page.put("table", rows(&found, &survey)?);
+    let command = plan.command_line(&[]);
+    page.put("command", command);
+    Ok(page)
+}
+
+fn rows(found: &Sweep, survey: &Survey) -> Result<Value> {
+    let plan = &found.plan;
+    let columns = found.columns.len().min(MOST_COLUMNS);
+    let mut rows: Vec<Vec<Value>> = vec![];
+    survey.each(|row| {
+        if rows.len() < MOST_ROWS {
+            let cells = table::cells(plan, survey, &row)
+                .into_iter()
+                .zip(&found.columns)
+                .take(columns);
+            let value = |(text, column): (String, &crate::results::sweep::Column)| match column.array {
+                Some(_) => text.parse::<f64>().map_or(Value::from(text), Value::from),
+                None => Value::from(text),
+            };
+            rows.push(cells.map(value).collect());
+        }
+        Ok(())
+    })?;
+    let narrow = match found.columns.len() - columns {
+        0 => String::new(),
+        n => format!(" {n} more columns are in the file."),
+    };
+    Ok(json!({
+        "title": "Every design",
+        "about": format!("Figures as in the result of one case; NAME.error is the estimated error of NAME, relative.{narrow}"),
+        "headings": found.columns.iter().take(columns).map(|column| &column.name).collect::<Vec<_>>(),
+        "left_out": found.rows - rows.len(), "rows": rows, "file": TABLE,
+    }))
+}

@@ -1,0 +1,263 @@
+//! What many designs leave behind.
+//!
+//! ```text
+//! journal   designs.jsonl: a line a design, safe on disk as soon as it is computed
+//! table     sweep.csv: a row a design
+//! arrays    sweep.npz: the same numbers
+//! words     what is said of it
+//! script    jobs for Slurm and GNU parallel
+//! parts     shards joined
+//! ```
+//!
+//! Rows are read from the journal one by one, in the order of their numbers; what is kept in memory of each is where its line begins.
+
+pub mod arrays;
+pub mod journal;
+pub mod parts;
+pub mod script;
+pub mod table;
+pub mod words;
+
+use std::fs;
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use super::folder::{ResultFolder, entries, fault, name_of, replace, result};
+use super::kind::Kind;
+use crate::case::Written;
+use crate::error::Result;
+use crate::results;
+use crate::results::sweep::{Column, Plan, Sweep};
+use crate::study::sweep::row::word;
+
+pub use journal::{Journal, Survey};
+
+/// The sweep as it was asked for; it is there from the beginning.
+pub const PLAN: &str = "plan.json";
+/// A line a design.
+pub const JOURNAL: &str = "designs.jsonl";
+/// What the table is about.
+pub const JSON: &str = "sweep.json";
+/// The table.
+pub const TABLE: &str = "sweep.csv";
+/// The table's numbers.
+pub const ARRAYS: &str = "sweep.npz";
+/// Cases of designs, on request.
+pub const CASES: &str = "cases";
+/// Result folders of designs, on request.
+pub const FOLDERS: &str = "designs";
+
+/// The plan of a folder, if it has one.
+///
+/// # Errors
+/// It cannot be read.
+pub fn plan(folder: &ResultFolder) -> Result<Option<Plan>> {
+    let path = folder.path(PLAN);
+    if path.exists() {
+        result::<Plan>(&path).map(|found| Some(found.result))
+    } else {
+        Ok(None)
+    }
+}
+
+/// Makes a folder ready for a plan: what is left of another sweep or command goes.
+///
+/// # Errors
+/// Something cannot be removed or written.
+pub fn begin(folder: &mut ResultFolder, plan: &Plan, first: &Written) -> Result<()> {
+    folder.clear()?;
+    for name in Kind::Designs.files() {
+        folder.remove(name)?;
+    }
+    for name in [CASES, FOLDERS] {
+        remove_numbered(folder.path(name))?;
+    }
+    folder.write_case(first)?;
+    folder.write(PLAN, results::text(plan).as_bytes())?;
+    folder.secure()
+}
+
+/// Removes what belongs to designs of another sweep; anything else stays.
+fn remove_numbered(dir: PathBuf) -> Result<()> {
+    if !dir.is_dir() {
+        return Ok(());
+    }
+    for path in entries(&dir)? {
+        let name = name_of(&path);
+        let stem = name.strip_suffix(".json").unwrap_or(&name);
+        if stem.is_empty() || !stem.bytes().all(|b| b.is_ascii_digit()) {
+            continue;
+        }
+        let gone = if path.is_dir() {
+            fs::remove_dir_all(&path)
+        } else {
+            fs::remove_file(&path)
+        };
+        gone.map_err(|e| fault("remove", &path, e))?;
+    }
+    // only an empty one can be removed so
+    let _ = fs::remove_dir(&dir);
+    Ok(())
+}
+
+/// The name of a design's case or folder.
+pub fn numbered(plan: &Plan, number: usize) -> String {
+    let width = plan.designs.to_string().len().max(5);
+    format!("{number:0width$}")
+}
+
+/// Keeps the case of a design under a name.
+///
+/// # Errors
+/// It cannot be written.
+pub fn keep_case(folder: &ResultFolder, name: &str, case: &Written) -> Result<()> {
+    let dir = folder.path(CASES);
+    fs::create_dir_all(&dir).map_err(|e| fault("create", &dir, e))?;
+    for (table, text) in &case.tables {
+        let path = dir.join(table);
+        // designs share tables, and a name has the check sum of its own
+        if !path.exists() {
+            replace(&path, text)?;
+        }
+    }
+    replace(&dir.join(format!("{name}.json")), &case.json)
+}
+
+/// Writes table, arrays and what they are about, of all rows that are there.
+///
+/// # Errors
+/// Something cannot be read or written.
+pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey) -> Result<Sweep> {
+    let rows = survey.count();
+    let expected = plan.share();
+    let columns = columns(plan, survey);
+    table::write(folder, plan, survey, &columns)?;
+    arrays::write(folder, plan, survey, &columns)?;
+    let statuses = survey
+        .statuses
+        .iter()
+        .map(|(status, count)| (word(*status).to_owned(), *count));
+    let told = Sweep {
+        case: plan.case.clone(),
+        plan: plan.clone(),
+        complete: rows == expected,
+        rows,
+        missing: expected.saturating_sub(rows),
+        statuses: statuses.collect(),
+        columns,
+    };
+    folder.write(JSON, results::text(&told).as_bytes())?;
+    folder.secure()?;
+    Ok(told)
+}
+
+/// Headings in front of the figures, behind the varied values.
+pub const BEFORE: [&str; 2] = ["design", "case"];
+/// Headings behind the varied values.
+pub const BETWEEN: [&str; 2] = ["status", "reason"];
+/// Headings behind the figures.
+pub const BEHIND: [&str; 3] = ["warnings", "steps", "wall_s"];
+
+/// The table's columns.
+fn columns(plan: &Plan, survey: &Survey) -> Vec<Column> {
+    let mut used = std::collections::BTreeSet::new();
+    let mut column = |name: &str, unit: &str, text: bool| {
+        let plain: String = name
+            .trim_start_matches('/')
+            .chars()
+            .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
+            .collect();
+        let mut array = plain.clone();
+        let mut k = 2;
+        while !text && !used.insert(array.clone()) {
+            array = format!("{plain}_{k}");
+            k += 1;
+        }
+        Column {
+            name: name.into(),
+            array: (!text).then_some(array),
+            unit: unit.into(),
+        }
+    };
+    let mut all = vec![column("design", "1", false), column("case", "", true)];
+    // the case by its place in the list, the status by its code
+    all[1].array = Some("case".into());
+    all.extend(
+        plan.axes
+            .iter()
+            .map(|axis| column(&axis.pointer, "as in the case", false)),
+    );
+    all.push(column("status", "", false));
+    all.push(column("reason", "", true));
+    all.extend(survey.figures.iter().map(|name| column(name, unit(name), false)));
+    all.push(column("warnings", "", true));
+    all.push(column("steps", "1", false));
+    all.push(column("wall_s", "s", false));
+    all
+}
+
+/// The unit that the name of a figure ends with.
+pub fn unit(name: &str) -> &'static str {
+    let (quantity, figure) = name.split_once('.').unwrap_or((name, ""));
+    if figure.ends_with("error") || name.ends_with("_relative") {
+        return "1";
+    }
+    if figure.ends_with("_at_s") {
+        return "s";
+    }
+    let ends = [
+        ("_frequency_hz", "Hz"),
+        ("_bound_hz", "Hz"),
+        ("_per_s", "1/s"),
+        ("_m^3/s", "m^3/s"),
+        ("_m3_s", "m^3/s"),
+        ("_m3_per_s", "m^3/s"),
+        ("_m_per_s", "m/s"),
+        ("_m3", "m^3"),
+        ("_n_m", "N m"),
+        ("_rad", "rad"),
+        ("_pa", "Pa"),
+        ("_hz", "Hz"),
+        ("_kg", "kg"),
+        ("_j", "J"),
+        ("_w", "W"),
+        ("_n", "N"),
+        ("_N", "N"),
+        ("_m", "m"),
+        ("_s", "s"),
+    ];
+    let of = |text: &str| ends.iter().find(|(end, _)| text.ends_with(end)).map(|(_, unit)| *unit);
+    let whole = format!("_{figure}");
+    of(quantity).or_else(|| of(&whole)).unwrap_or("1")
+}
+
+/// A varied value as a number; nothing where it is none.
+pub fn numeric(value: &Value) -> Option<f64> {
+    value
+        .as_f64()
+        .or_else(|| value.as_bool().map(|b| f64::from(u8::from(b))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unit;
+
+    #[test]
+    fn names_end_with_their_units() {
+        for (name, of) in [
+            ("tip_u1_m.final", "m"),
+            ("tip_u1_m.max_abs_at_s", "s"),
+            ("tip_u1_m.error", "1"),
+            ("harvested_power_w.mean", "W"),
+            ("mode_1.frequency_hz", "Hz"),
+            ("mode_1.damping_ratio", "1"),
+            ("mode_1.growth_per_s", "1/s"),
+            ("max_pressure_pa.window_rms", "Pa"),
+            ("energy_residual_relative", "1"),
+            ("stable", "1"),
+        ] {
+            assert_eq!(unit(name), of, "{name}");
+        }
+    }
+}

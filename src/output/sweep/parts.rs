@@ -1,0 +1,138 @@
+//! Shards joined to one table; what is lost of them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::{JOURNAL, Journal, PLAN, Survey};
+use crate::error::{Error, Result};
+use crate::output::folder::{ResultFolder, result};
+use crate::results::sweep::{Plan, Shard};
+
+/// A folder with a part of a sweep.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Where it is.
+    pub dir: PathBuf,
+    /// Its plan.
+    pub plan: Plan,
+}
+
+/// A part that is not there, or not whole.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lost {
+    /// Which; nothing where the sweep has no shards.
+    pub shard: Option<Shard>,
+    /// Its folder, where it was given.
+    pub dir: Option<PathBuf>,
+    /// Designs that are missing.
+    pub designs: usize,
+    /// The first of them.
+    pub first: usize,
+    /// What computes them.
+    pub command: String,
+}
+
+/// Reads the plans of folders.
+///
+/// # Errors
+/// [`Error::Usage`] where they are parts of different sweeps, with what differs.
+pub fn read(dirs: &[PathBuf]) -> Result<Vec<Part>> {
+    let mut all: Vec<Part> = vec![];
+    for dir in dirs {
+        let path = dir.join(PLAN);
+        if dir.is_dir() && !path.exists() {
+            return Err(Error::Usage(format!(
+                "{}: it holds no sweep (no {PLAN})",
+                dir.display()
+            )));
+        }
+        let plan = result::<Plan>(&path)?.result;
+        if let Some(first) = all.first()
+            && let Some(why) = plan.whole().difference(&first.plan.whole())
+        {
+            return Err(Error::Usage(format!(
+                "{} and {} are parts of different sweeps: {} (here the first, there the second)",
+                dir.display(),
+                first.dir.display(),
+                why
+            )));
+        }
+        all.push(Part { dir: dir.clone(), plan });
+    }
+    Ok(all)
+}
+
+/// Puts the rows of all parts into the journal of a folder, each design once; rows that are there already stay.
+///
+/// # Errors
+/// Something cannot be read or written.
+pub fn join(parts: &[Part], folder: &ResultFolder, plan: &Plan) -> Result<Survey> {
+    let path = folder.path(JOURNAL);
+    let mut there = Survey::of(&path, plan)?;
+    for part in parts {
+        if fs::canonicalize(&part.dir).ok() == fs::canonicalize(folder.dir()).ok() {
+            continue;
+        }
+        let own = Survey::of(&part.dir.join(JOURNAL), &part.plan)?;
+        let mut journal = Journal::go_on(folder, &there)?;
+        let mut failed = None;
+        own.each(|row| {
+            if failed.is_none() && !there.has(row.number) {
+                failed = journal.put(&row).err();
+            }
+            Ok(())
+        })?;
+        failed.map_or_else(|| journal.secure(), Err)?;
+        there = Survey::of(&path, plan)?;
+    }
+    Ok(there)
+}
+
+/// What is missing, shard by shard.
+pub fn lost(parts: &[Part], plan: &Plan, there: &Survey, out: &Path) -> Vec<Lost> {
+    let of = parts.first().and_then(|part| part.plan.shard).map(|shard| shard.of);
+    let even = of.filter(|of| {
+        parts
+            .iter()
+            .all(|part| part.plan.shard.is_some_and(|shard| shard.of == *of))
+    });
+    let shards: Vec<Option<Shard>> = match even {
+        Some(of) => (1..=of).map(|index| Some(Shard { index, of })).collect(),
+        None => vec![None],
+    };
+    let mut all = vec![];
+    for shard in shards {
+        let own = Plan { shard, ..plan.clone() };
+        let missing: Vec<usize> = (0..plan.designs).filter(|n| own.has(*n) && !there.has(*n)).collect();
+        let Some(first) = missing.first() else { continue };
+        let given = parts
+            .iter()
+            .find(|part| part.plan.shard == shard)
+            .map(|part| part.dir.clone());
+        let dir = given.clone().unwrap_or_else(|| match shard {
+            Some(shard) => beside(parts, shard).unwrap_or_else(|| out.to_path_buf()),
+            None => out.to_path_buf(),
+        });
+        let dir = dir.display().to_string();
+        let words = shard.map(Shard::words);
+        let mut more = words.as_deref().map_or(vec![], |words| vec!["--shard", words]);
+        more.extend(["--out", &dir]);
+        all.push(Lost {
+            shard,
+            dir: given,
+            designs: missing.len(),
+            first: *first,
+            command: own.command_line(&more),
+        });
+    }
+    all
+}
+
+/// Where a shard probably is, by the names of the others.
+fn beside(parts: &[Part], shard: Shard) -> Option<PathBuf> {
+    let part = parts.first()?;
+    let name = part.dir.file_name()?.to_str()?;
+    let own = part.plan.shard?.index.to_string();
+    let stem = name.strip_suffix(&own)?;
+    Some(part.dir.with_file_name(format!("{stem}{}", shard.index)))
+}

@@ -1,0 +1,61 @@
+//! `sweep.csv`: a row a design.
+
+use std::collections::HashMap;
+use std::io::{BufWriter, Write as _};
+
+use serde_json::Value;
+
+use super::journal::Survey;
+use super::{BEHIND, TABLE};
+use crate::error::Result;
+use crate::output::folder::{ResultFolder, put_whole};
+use crate::output::numbers::shortest;
+use crate::results::sweep::{Column, Plan};
+use crate::study::sweep::Row;
+use crate::study::sweep::row::word;
+
+/// Writes it.
+///
+/// # Errors
+/// It cannot be written, or the journal not be read.
+pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, columns: &[Column]) -> Result<()> {
+    let mut reading = Ok(());
+    put_whole(&folder.path(TABLE), |file| {
+        let mut table = csv::Writer::from_writer(BufWriter::new(file));
+        table.write_record(columns.iter().map(|column| &column.name))?;
+        reading = survey.each(|row| Ok(table.write_record(cells(plan, survey, &row))?));
+        table.into_inner().map_err(|e| e.into_error())?.flush()
+    })?;
+    reading
+}
+
+/// A varied value as a cell.
+pub fn cell(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Number(number) => number.as_f64().map_or_else(|| number.to_string(), shortest),
+        other => other.to_string(),
+    }
+}
+
+/// A row in the order of the columns.
+pub fn cells(plan: &Plan, survey: &Survey, row: &Row) -> Vec<String> {
+    let found = &row.found;
+    let by_name: HashMap<&str, f64> = found.figures.iter().map(|(name, x)| (name.as_str(), *x)).collect();
+    let mut all = Vec::with_capacity(survey.figures.len() + row.values.len() + 4 + BEHIND.len());
+    all.push(row.number.to_string());
+    all.push(plan.cases[row.case].name.clone());
+    all.extend(row.values.iter().map(cell));
+    all.push(word(found.status).into());
+    all.push(found.reason.clone().unwrap_or_default());
+    all.extend(
+        survey
+            .figures
+            .iter()
+            .map(|name| by_name.get(name.as_str()).map_or(String::new(), |x| shortest(*x))),
+    );
+    all.push(found.warnings.join(" "));
+    all.push(found.steps.map_or(String::new(), |steps| steps.to_string()));
+    all.push(shortest(row.wall_s));
+    all
+}

@@ -1,0 +1,82 @@
+//! What is said of many designs.
+
+use std::fmt::Write as _;
+
+use super::Survey;
+use crate::error::Result;
+use crate::output::numbers::count;
+use crate::results::sweep::Sweep;
+use crate::run::summary::Status;
+use crate::study::sweep::row::word;
+
+/// Designs without a full result that are told one by one.
+const TOLD: usize = 5;
+
+/// How many there are of which kind, and the first that did not finish.
+///
+/// # Errors
+/// The journal cannot be read.
+pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
+    let (plan, rows) = (&told.plan, told.rows);
+    let kinds: Vec<String> = survey
+        .statuses
+        .iter()
+        .map(|(status, n)| format!("{} {}", count(*n as u64), spoken(*status)))
+        .collect();
+    let kinds = if kinds.is_empty() {
+        "none".into()
+    } else {
+        kinds.join(", ")
+    };
+    let shard = plan
+        .shard
+        .map_or(String::new(), |shard| format!(", shard {}", shard.words()));
+    let mut text = format!(
+        "{} designs of {}{shard} by {}: {kinds}\n",
+        count(rows as u64),
+        plan.case,
+        plan.command.word()
+    );
+    let pointers = plan.pointers();
+    let mut first = vec![];
+    survey.each(|row| {
+        if row.found.status != Status::Finished && first.len() < TOLD {
+            let pairs = pointers.iter().zip(&row.values);
+            let values: Vec<String> = pairs.map(|(pointer, value)| format!("{pointer} = {value}")).collect();
+            let place = if values.is_empty() {
+                String::new()
+            } else {
+                format!(" ({})", values.join(", "))
+            };
+            let why = row.found.reason.unwrap_or_default();
+            first.push(format!(
+                "  design {}{place}: {}: {why}\n",
+                row.number,
+                word(row.found.status)
+            ));
+        }
+        Ok(())
+    })?;
+    text += &first.concat();
+    let others: usize = survey
+        .statuses
+        .iter()
+        .filter(|(status, _)| **status != Status::Finished)
+        .map(|(_, n)| n)
+        .sum();
+    if others > first.len() {
+        let _ = writeln!(
+            text,
+            "  and {} more; sweep.csv has their reasons",
+            count((others - first.len()) as u64)
+        );
+    }
+    Ok(text)
+}
+
+fn spoken(status: Status) -> &'static str {
+    match status {
+        Status::OutOfRange => "out of range",
+        other => word(other),
+    }
+}

@@ -1,0 +1,294 @@
+//! The row of a case, by each command: what the command itself would tell, without its files.
+
+use std::cell::Cell;
+
+use super::plan::What;
+use super::row::Found;
+use crate::case::Case;
+use crate::discrete::System;
+use crate::discrete::quantities::Interest;
+use crate::error::Result;
+use crate::run::dynamics::{self, Outcome};
+use crate::run::equilibrium::{self, Options};
+use crate::run::floquet::{self, Stability};
+use crate::run::modes;
+use crate::run::periodic::{Scene, Settled, record, settle, shoot};
+use crate::run::record::{Control, Progress, Unrecorded};
+use crate::run::summary::{Accuracy, Quantity, Status, Summary};
+use crate::run::{known, periodic};
+use crate::study::refine::{self, meshes, numbers};
+use crate::study::target;
+
+/// Modes told, those lowest.
+const MODES: usize = 6;
+/// Multipliers looked at.
+const MULTIPLIERS: usize = 2;
+/// Points on a path of equilibria at least, as the command has them.
+const POINTS: usize = 16;
+
+/// What is asked of every case.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ask {
+    /// The command.
+    pub what: What,
+    /// Relative error below which every figure is wanted.
+    pub accuracy: Option<f64>,
+    /// Whether the errors that meshes make are estimated, where a command can: the case is then computed on two or three of them.
+    pub meshes: bool,
+}
+
+/// Looks at what can be told before anything is computed.
+///
+/// # Errors
+/// In the words of the command.
+pub fn check(case: &Case, what: What) -> Result<()> {
+    match what {
+        What::Run | What::Modes => System::new(case).map(|_| ()),
+        What::Equilibrium => equilibrium::system(case, case.time.end_s).map(|_| ()),
+        What::Periodic => Scene::new(case, None)?.held(&case.name),
+    }
+}
+
+/// Computes a case; `run` runs it in time, where that is asked for. `None` where `stop` became true on the way.
+pub fn found(case: &Case, ask: Ask, stop: &dyn Fn() -> bool, run: &dyn Fn(&Case) -> Result<Outcome>) -> Option<Found> {
+    let found = match ask.what {
+        What::Run => run(case).map(|outcome| of_run(&outcome.summary)),
+        What::Periodic => cycle(case, ask),
+        What::Equilibrium => at_rest(case, ask, stop),
+        What::Modes => small(case, ask),
+    };
+    if stop() {
+        return None;
+    }
+    Some(found.unwrap_or_else(|error| Found::failed(&error)))
+}
+
+/// Runs a case and keeps its summary alone.
+///
+/// # Errors
+/// Those of [`dynamics::run`].
+pub fn run(case: &Case, accuracy: Option<f64>, stop: &dyn Fn() -> bool) -> Result<Outcome> {
+    let wait = Cell::new(0_u32);
+    let hook = |_: &Progress| {
+        wait.set(wait.get() + 1);
+        match wait.get().is_multiple_of(16) && stop() {
+            true => Control::Stop("interrupted".into()),
+            false => Control::Continue,
+        }
+    };
+    let one = |case: &Case| dynamics::run(case, &mut Unrecorded(hook));
+    match accuracy {
+        None => one(case),
+        Some(accuracy) => target::reach(case, accuracy, &hook, &mut |case| one(case)),
+    }
+}
+
+/// What a summary tells.
+fn of_run(summary: &Summary) -> Found {
+    let mut found = Found {
+        status: summary.status,
+        reason: summary.reason.clone(),
+        steps: Some(summary.solver.steps),
+        figures: vec![],
+        warnings: vec![],
+    };
+    let accuracy = summary.accuracy.as_ref().map(|accuracy| &accuracy.quantities);
+    let estimates = accuracy.or(summary.estimate.as_ref().map(|estimate| &estimate.quantities));
+    for (name, quantity) in summary.quantities.iter().chain(&summary.probes) {
+        put(&mut found, name, quantity);
+        found.put(format!("{name}.error"), estimates.and_then(|all| all.get(name)?.total));
+    }
+    let balances = &summary.balances;
+    found.put("energy_residual_relative", balances.energy_residual_relative);
+    found.put("volume_residual_relative", balances.volume_residual_relative);
+    found.warn(&summary.warnings);
+    found
+}
+
+/// Every figure of a quantity.
+fn put(found: &mut Found, name: &str, quantity: &Quantity) {
+    for (figure, value) in quantity.figures() {
+        found.put(format!("{name}.{figure}"), value);
+    }
+    found.put(format!("{name}.max_abs_at_s"), quantity.max_abs_at_s);
+    found.put(format!("{name}.final_error"), quantity.final_error);
+    found.put(format!("{name}.window_error"), quantity.window_error);
+}
+
+/// Nothing yet.
+fn empty() -> Found {
+    Found {
+        status: Status::Finished,
+        reason: None,
+        steps: None,
+        figures: vec![],
+        warnings: vec![],
+    }
+}
+
+/// The steady cycle.
+fn cycle(case: &Case, ask: Ask) -> Result<Found> {
+    let mut of = |case: &Case| numbers::of_cycle(case, 1);
+    let refined = ask
+        .accuracy
+        .map(|accuracy| refine::refine(case, accuracy, true, &mut of))
+        .transpose()?;
+    let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
+    let scene = Scene::new(case, None)?;
+    scene.held(&case.name)?;
+    let first = shoot(&scene, None).map_err(periodic::scene::fault)?;
+    let Settled {
+        case, scene, mut cycle, ..
+    } = settle(case, scene, first)?;
+    let stability = floquet::multipliers(&scene, &mut cycle, MULTIPLIERS);
+    let outcome = record::record(&case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?;
+    let summary = &outcome.summary;
+    let mut found = Found {
+        steps: Some(cycle.search.work.steps),
+        status: summary.status,
+        reason: summary.reason.clone(),
+        ..empty()
+    };
+    let period = scene.drive.period;
+    found.put("period_s", period);
+    found.put(
+        "stable",
+        f64::from(u8::from(stability.verdict.stability != Stability::Unstable)),
+    );
+    found.put("growth_per_s", stability.multipliers.first().map(|m| m.growth_per_s));
+    for (name, quantity) in &summary.quantities {
+        for (figure, value) in quantity.figures().filter(|(figure, _)| figure.starts_with("window")) {
+            found.put(format!("{name}.{figure}"), value);
+        }
+        found.put(format!("{name}.window_error"), quantity.window_error);
+    }
+    for (energy, power) in [
+        (Interest::HarvestedEnergy, "harvested_power_w"),
+        (Interest::InputEnergy, "input_power_w"),
+    ] {
+        let quantity = summary.quantities.get(energy.name());
+        found.put(format!("{power}.mean"), quantity.and_then(|q| Some(q.window? / period)));
+        found.put(format!("{power}.mean_error"), quantity.and_then(|q| q.window_error));
+    }
+    if let Some((_, accuracy)) = &refined {
+        reached(&mut found, accuracy, &|name| name.into());
+    } else if ask.meshes && summary.status == Status::Finished {
+        let here = numbers::of_summary(&case, summary)?;
+        let by_mesh = meshes::judge(&case, &here, &mut of)?;
+        off(&mut found, &by_mesh, &|name| name.into());
+    }
+    found.warn(&summary.warnings);
+    Ok(found)
+}
+
+/// Errors of an accuracy that was asked for.
+fn reached(found: &mut Found, accuracy: &Accuracy, name: &dyn Fn(&str) -> String) {
+    for (own, estimate) in &accuracy.quantities {
+        found.put(format!("{}.error", name(own)), estimate.total);
+    }
+    found.warn(refine::warning(accuracy).as_slice());
+}
+
+/// Errors that meshes make.
+fn off(found: &mut Found, by_mesh: &meshes::Meshes, name: &dyn Fn(&str) -> String) {
+    for (own, share) in &by_mesh.quantities {
+        let known = share.beam.is_some() || share.bladders.is_some();
+        found.put(format!("{}.error", name(own)), known.then(|| share.total()));
+    }
+    found.warn(by_mesh.warning().as_slice());
+}
+
+/// The equilibrium under the loads at the end.
+fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
+    let options = Options {
+        points: Some(POINTS),
+        ..Options::at(case.time.end_s)
+    };
+    let mut of = |case: &Case| numbers::of_equilibrium(case, &options);
+    let refined = ask
+        .accuracy
+        .map(|accuracy| refine::refine(case, accuracy, false, &mut of))
+        .transpose()?;
+    let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
+    let path = equilibrium::follow(case, &options, &mut |_| match stop() {
+        true => Control::Stop("interrupted".into()),
+        false => Control::Continue,
+    })?;
+    let system = equilibrium::system(case, options.at_s)?;
+    let columns = equilibrium::columns(&system);
+    let mut found = Found {
+        steps: Some(path.work.iterations),
+        ..empty()
+    };
+    if let Some(fault) = &path.fault {
+        found.status = Status::Failed;
+        found.reason = Some(format!("{} {}", fault.code.id(), fault.what));
+    }
+    if let Some(last) = path.states.last() {
+        for (column, value) in columns.iter().zip(&last.row) {
+            found.put(column.key(), *value);
+        }
+        let stability = last.stability.as_ref();
+        found.put("stable", stability.map(|s| f64::from(u8::from(s.unstable == 0))));
+        found.put("unstable_modes", stability.map(|s| s.unstable as f64));
+    }
+    let key = |name: &str| {
+        let column = columns.iter().find(|column| column.name == name);
+        column.map_or_else(|| name.into(), |column| column.key())
+    };
+    if let Some((_, accuracy)) = &refined {
+        reached(&mut found, accuracy, &key);
+    } else if ask.meshes && path.fault.is_none() {
+        let here = numbers::of_path(case, &columns, &path)?;
+        let by_mesh = meshes::judge(case, &here, &mut of)?;
+        off(&mut found, &by_mesh, &key);
+    }
+    found.warn(&known::at_rest(case, &system));
+    found.warn(&path.warnings());
+    Ok(found)
+}
+
+/// Small motions about the start: the lowest that swing.
+fn small(case: &Case, ask: Ask) -> Result<Found> {
+    let plan = modes::Plan {
+        count: 2 * MODES,
+        near_hz: 0.0,
+        limits: false,
+    };
+    let mut of = |case: &Case| numbers::of_modes(case, None, &plan);
+    let refined = ask
+        .accuracy
+        .map(|accuracy| refine::refine(case, accuracy, false, &mut of))
+        .transpose()?;
+    let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
+    let mut all = modes::of(modes::linearise(case, 0.0, None)?, &plan)?;
+    if ask.meshes && refined.is_none() {
+        modes::compare_meshes(case, None, &plan, &mut all);
+    }
+    let mut found = empty();
+    found.put(
+        "stable",
+        f64::from(u8::from(!all.modes.iter().any(|mode| mode.kind.grows()))),
+    );
+    let mut swinging: Vec<_> = all.modes.iter().filter(|mode| mode.kind.swings()).collect();
+    swinging.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
+    for (k, mode) in swinging.into_iter().take(MODES).enumerate() {
+        let name = format!("mode_{}", k + 1);
+        let size = mode.s.norm();
+        found.put(format!("{name}.frequency_hz"), mode.frequency_hz());
+        found.put(format!("{name}.frequency_bound_hz"), mode.error / std::f64::consts::TAU);
+        found.put(format!("{name}.frequency_hz.error"), mode.mesh_error());
+        found.put(format!("{name}.damping_ratio"), mode.damping_ratio());
+        found.put(format!("{name}.damping_ratio_bound"), mode.error / size);
+        found.put(format!("{name}.damping_ratio.error"), mode.rate_error());
+        found.put(format!("{name}.growth_per_s"), mode.s.re);
+    }
+    if let Some((_, accuracy)) = &refined {
+        found.warn(refine::warning(accuracy).as_slice());
+        let worst = accuracy.quantities.values().filter_map(|estimate| estimate.total);
+        found.put("largest_error", worst.reduce(f64::max));
+    }
+    found.warn(&known::at_rest(case, &System::new(case)?));
+    found.warn(all.missing().as_slice());
+    Ok(found)
+}

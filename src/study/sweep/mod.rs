@@ -1,0 +1,28 @@
+//! Many designs of a case, one row each: grids, lists, ranges, samples.
+//!
+//! ```text
+//! vary     POINTER=SPEC: the values of one number
+//! table    designs from a CSV file
+//! designs  which values design number k has, and its case
+//! plan     everything that decides what the rows are
+//! row      what came out of a design
+//! compute  the row of a case, by each command
+//! pool     designs on all cores
+//! ```
+//!
+//! A design is known by its number alone, and what it computes by its case: rows depend neither on how many are computed at once
+//! nor on which came first.
+
+pub mod compute;
+pub mod designs;
+pub mod plan;
+pub mod pool;
+pub mod row;
+pub mod table;
+pub mod vary;
+
+pub use compute::Ask;
+pub use designs::{Design, Designs};
+pub use plan::{Plan, Shard, What};
+pub use row::Row;
+pub use vary::{Draw, Vary};

@@ -1,0 +1,265 @@
+//! Everything that decides what the rows are: `plan.json`.
+
+use serde::{Deserialize, Serialize};
+
+use super::designs::Designs;
+use super::vary::Draw;
+
+/// Which command each design goes through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum What {
+    /// `run`.
+    Run,
+    /// `periodic`.
+    Periodic,
+    /// `equilibrium`.
+    Equilibrium,
+    /// `modes`.
+    Modes,
+}
+
+impl What {
+    /// As it is typed.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Run => "run",
+            Self::Periodic => "periodic",
+            Self::Equilibrium => "equilibrium",
+            Self::Modes => "modes",
+        }
+    }
+}
+
+/// A part of the designs: those whose number leaves `index - 1` when it is divided by `of`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shard {
+    /// Which, from 1.
+    pub index: usize,
+    /// Of how many.
+    pub of: usize,
+}
+
+impl Shard {
+    /// Of `2/8`.
+    pub fn parse(text: &str) -> std::result::Result<Self, String> {
+        let parts = text
+            .split_once('/')
+            .and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+        match parts {
+            Some((index, of)) if (1..=of).contains(&index) => Ok(Self { index, of }),
+            _ => Err("I/N is wanted, I from 1 to N: 2/8 is the second of eight shards".into()),
+        }
+    }
+
+    /// Whether a design belongs to it.
+    pub fn has(self, number: usize) -> bool {
+        number % self.of == self.index - 1
+    }
+
+    /// As it is typed.
+    pub fn words(self) -> String {
+        format!("{}/{}", self.index, self.of)
+    }
+}
+
+/// A case of a sweep.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Listed {
+    /// Its name.
+    pub name: String,
+    /// Its file, as it was named.
+    pub file: String,
+    /// Check sum of its text, and of its first design as resolved.
+    pub crc32: [u32; 2],
+}
+
+/// What is varied.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Axis {
+    /// JSON pointer.
+    pub pointer: String,
+    /// Its values, as they were asked for; nothing where a table has them.
+    pub spec: Option<String>,
+}
+
+/// A sweep as it was asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// Name of the first case.
+    pub case: String,
+    /// What each design goes through.
+    pub command: What,
+    /// The cases.
+    pub cases: Vec<Listed>,
+    /// Changes to all of them.
+    pub sets: Vec<String>,
+    /// What is varied.
+    pub axes: Vec<Axis>,
+    /// The file that lists designs, and its check sum.
+    pub table: Option<(String, u32)>,
+    /// How designs are drawn.
+    pub design: Draw,
+    /// From which seed, where one was given.
+    pub seed: Option<u64>,
+    /// Relative error asked for.
+    pub accuracy: Option<f64>,
+    /// Whether errors that meshes make are estimated.
+    pub mesh_errors: bool,
+    /// Designs of the whole sweep.
+    pub designs: usize,
+    /// The part of them that is here; nothing: all.
+    pub shard: Option<Shard>,
+}
+
+impl Plan {
+    /// Whether a design is computed here.
+    pub fn has(&self, number: usize) -> bool {
+        self.shard.is_none_or(|shard| shard.has(number))
+    }
+
+    /// Designs that are computed here.
+    pub fn share(&self) -> usize {
+        (0..self.designs).filter(|number| self.has(*number)).count()
+    }
+
+    /// The same without its shard.
+    pub fn whole(&self) -> Self {
+        Self {
+            shard: None,
+            ..self.clone()
+        }
+    }
+
+    /// Where two plans differ, in words; files may have moved.
+    pub fn difference(&self, other: &Self) -> Option<String> {
+        let told = |what: &str, here: String, there: String| {
+            (here != there).then(|| format!("{what} is {there} there and {here} here"))
+        };
+        let cases = |plan: &Self| {
+            plan.cases
+                .iter()
+                .map(|case| case.name.clone())
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        let axes = |plan: &Self| {
+            let spec = |axis: &Axis| format!("{}={}", axis.pointer, axis.spec.as_deref().unwrap_or(".."));
+            plan.axes.iter().map(spec).collect::<Vec<_>>().join(" ")
+        };
+        let optional = |text: Option<String>| text.unwrap_or_else(|| "none".into());
+        let changed = self.cases.iter().zip(&other.cases).find(|(a, b)| a.crc32 != b.crc32);
+        told("--command", self.command.word().into(), other.command.word().into())
+            .or_else(|| told("the list of cases", cases(self), cases(other)))
+            .or_else(|| told("--vary", axes(self), axes(other)))
+            .or_else(|| told("--design", self.design.words(), other.design.words()))
+            .or_else(|| {
+                let seed = |plan: &Self| optional(plan.seed.map(|seed| seed.to_string()));
+                told("--seed", seed(self), seed(other))
+            })
+            .or_else(|| told("--set", optional_list(&self.sets), optional_list(&other.sets)))
+            .or_else(|| {
+                let accuracy = |plan: &Self| optional(plan.accuracy.map(|x| x.to_string()));
+                told("--accuracy", accuracy(self), accuracy(other))
+            })
+            .or_else(|| {
+                (self.mesh_errors != other.mesh_errors)
+                    .then(|| "--no-mesh-errors is given for one of them alone".into())
+            })
+            .or_else(|| {
+                let shard = |plan: &Self| optional(plan.shard.map(Shard::words));
+                told("--shard", shard(self), shard(other))
+            })
+            .or_else(|| {
+                let sum = |plan: &Self| plan.table.as_ref().map(|(_, crc32)| *crc32);
+                (sum(self) != sum(other)).then(|| "the table of designs has changed".into())
+            })
+            .or_else(|| changed.map(|(case, _)| format!("the case {} has changed", case.name)))
+            .or_else(|| {
+                told(
+                    "the number of designs",
+                    self.designs.to_string(),
+                    other.designs.to_string(),
+                )
+            })
+    }
+
+    /// The options that ask for the same, `--shard`, `--out` and `--jobs` left out.
+    pub fn options(&self) -> Vec<String> {
+        let mut all: Vec<String> = self.cases.iter().map(|case| case.file.clone()).collect();
+        let mut put = |option: &str, value: String| all.extend([option.to_owned(), value]);
+        for axis in &self.axes {
+            if let Some(spec) = &axis.spec {
+                put("--vary", format!("{}={spec}", axis.pointer));
+            }
+        }
+        if let Some((file, _)) = &self.table {
+            put("--designs", file.clone());
+        }
+        put("--command", self.command.word().into());
+        if self.design != Draw::Grid {
+            put("--design", self.design.words());
+        }
+        if let Some(seed) = self.seed {
+            put("--seed", seed.to_string());
+        }
+        for set in &self.sets {
+            put("--set", set.clone());
+        }
+        if let Some(accuracy) = self.accuracy {
+            put("--accuracy", accuracy.to_string());
+        }
+        if !self.mesh_errors {
+            all.push("--no-mesh-errors".into());
+        }
+        all
+    }
+
+    /// A command that a shell takes as it is.
+    pub fn command_line(&self, more: &[&str]) -> String {
+        let head = ["slcbeam".to_owned(), "sweep".to_owned()];
+        let options = self.options();
+        let words = head
+            .into_iter()
+            .chain(options)
+            .chain(more.iter().map(|word| (*word).to_owned()));
+        words.map(|word| quoted(&word)).collect::<Vec<_>>().join(" ")
+    }
+
+    /// JSON pointers of what is varied.
+    pub fn pointers(&self) -> Vec<String> {
+        self.axes.iter().map(|axis| axis.pointer.clone()).collect()
+    }
+
+    /// Whether the values of an axis lie evenly by their logarithms.
+    pub fn logarithmic(&self, axis: usize) -> bool {
+        let spec = self.axes.get(axis).and_then(|axis| axis.spec.as_deref());
+        spec.is_some_and(|spec| spec.starts_with("log:"))
+    }
+
+    /// Axes as designs have them.
+    pub fn axes_of(designs: &Designs, specs: &[Option<String>]) -> Vec<Axis> {
+        let pointers = designs.pointers().iter().cloned();
+        pointers
+            .zip(specs)
+            .map(|(pointer, spec)| Axis {
+                pointer,
+                spec: spec.clone(),
+            })
+            .collect()
+    }
+}
+
+fn optional_list(all: &[String]) -> String {
+    if all.is_empty() { "none".into() } else { all.join(" ") }
+}
+
+/// A word as a shell reads it.
+pub fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_-./=:,%+@".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.into()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}

@@ -1,0 +1,108 @@
+//! What came out of a design.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::designs::Design;
+use crate::error::{Error, visible};
+use crate::run::summary::Status;
+
+/// A row of the table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Number of the design, from 0.
+    pub number: usize,
+    /// Place of its case in the list of cases, from 0.
+    pub case: usize,
+    /// Values of what is varied.
+    pub values: Vec<Value>,
+    /// What was found.
+    #[serde(flatten)]
+    pub found: Found,
+    /// Wall time [s].
+    pub wall_s: f64,
+}
+
+/// What was found of a case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Found {
+    /// How it ended.
+    pub status: Status,
+    /// Why, when it did not finish.
+    pub reason: Option<String>,
+    /// Steps of time, of Newton along a path; none where there are none.
+    pub steps: Option<u64>,
+    /// Figures by name, unit included; `NAME.error` is the estimated error of NAME, relative.
+    pub figures: Vec<(String, f64)>,
+    /// Numbers of the warnings.
+    pub warnings: Vec<String>,
+}
+
+impl Found {
+    /// That nothing was found.
+    pub fn failed(error: &Error) -> Self {
+        let told = match error {
+            Error::Solver(fault) => fault.what.clone(),
+            Error::Case(fault) => fault.violations.first().map_or(String::new(), |v| {
+                let place = if v.pointer.is_empty() { "" } else { ": " };
+                format!("{}{place}{}", v.pointer, v.what)
+            }),
+            other => other.to_string(),
+        };
+        Self {
+            status: Status::Failed,
+            reason: Some(format!("{} {}", error.code().id(), visible(&told))),
+            steps: None,
+            figures: vec![],
+            warnings: vec![],
+        }
+    }
+
+    /// Adds a figure, where it is a number.
+    pub fn put(&mut self, name: impl Into<String>, value: impl Into<Option<f64>>) {
+        if let Some(value) = value.into().filter(|x| x.is_finite()) {
+            self.figures.push((name.into(), value));
+        }
+    }
+
+    /// A figure by name.
+    pub fn figure(&self, name: &str) -> Option<f64> {
+        self.figures
+            .iter()
+            .find(|(own, _)| own == name)
+            .map(|(_, value)| *value)
+    }
+
+    /// Keeps the numbers of warnings, each once.
+    pub fn warn(&mut self, warnings: &[String]) {
+        for warning in warnings {
+            let code = warning.split(' ').next().unwrap_or_default();
+            if !self.warnings.iter().any(|own| own == code) {
+                self.warnings.push(code.into());
+            }
+        }
+    }
+}
+
+impl Row {
+    /// Of a design.
+    pub fn of(design: Design, found: Found, wall_s: f64) -> Self {
+        Self {
+            number: design.number,
+            case: design.case,
+            values: design.values,
+            found,
+            wall_s,
+        }
+    }
+}
+
+/// A status in a word, as files have it.
+pub fn word(status: Status) -> &'static str {
+    match status {
+        Status::Finished => "finished",
+        Status::Stopped => "stopped",
+        Status::OutOfRange => "out_of_range",
+        Status::Failed => "failed",
+    }
+}

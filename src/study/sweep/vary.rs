@@ -1,0 +1,212 @@
+//! `POINTER=SPEC`: the values of one number of the case.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::error::{Error, Result};
+
+/// Values of one axis at most.
+pub const MOST_VALUES: usize = 1_000_000;
+
+/// What is varied, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vary {
+    /// JSON pointer into the case.
+    pub pointer: String,
+    /// As it was asked for.
+    pub spec: String,
+    /// Its values.
+    pub values: Values,
+}
+
+/// Values of one number.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// One after the other.
+    Listed(Vec<Value>),
+    /// Anywhere between two numbers, each as likely.
+    Uniform(f64, f64),
+    /// By a normal distribution with mean and standard deviation.
+    Normal(f64, f64),
+}
+
+/// How designs are chosen from distributions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Draw {
+    /// All combinations of listed values; nothing is drawn.
+    #[default]
+    Grid,
+    /// So many by a Latin hypercube: each of as many equally likely strata of every number holds one.
+    Latin(usize),
+    /// The first so many of Sobol's sequence.
+    Sobol(usize),
+}
+
+impl Draw {
+    /// Of `grid`, `latin:N`, `sobol:N`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`].
+    pub fn parse(text: &str) -> Result<Self> {
+        let wrong = || {
+            Error::Usage(format!(
+                "--design {text}: grid, latin:N or sobol:N, such as latin:100; N from 1 to {MOST_VALUES}"
+            ))
+        };
+        let number = |n: &str| {
+            n.parse()
+                .ok()
+                .filter(|n| (1..=MOST_VALUES).contains(n))
+                .ok_or_else(wrong)
+        };
+        match text.split_once(':') {
+            None if text == "grid" => Ok(Self::Grid),
+            Some(("latin", n)) => Ok(Self::Latin(number(n)?)),
+            Some(("sobol", n)) => Ok(Self::Sobol(number(n)?)),
+            _ => Err(wrong()),
+        }
+    }
+
+    /// As it is asked for.
+    pub fn words(self) -> String {
+        match self {
+            Self::Grid => "grid".into(),
+            Self::Latin(n) => format!("latin:{n}"),
+            Self::Sobol(n) => format!("sobol:{n}"),
+        }
+    }
+
+    /// Designs that are drawn; one where nothing is.
+    pub fn count(self) -> usize {
+        match self {
+            Self::Grid => 1,
+            Self::Latin(n) | Self::Sobol(n) => n,
+        }
+    }
+}
+
+impl Vary {
+    /// Of `POINTER=SPEC`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with what is wanted.
+    pub fn parse(text: &str) -> Result<Self> {
+        let wrong = |what: String| Error::Usage(format!("--vary '{text}': {what}"));
+        let (pointer, spec) = text
+            .split_once('=')
+            .ok_or_else(|| wrong("a JSON pointer and its values are wanted, such as /solver/rtol=1e-4,1e-5".into()))?;
+        check_pointer(pointer).map_err(wrong)?;
+        Ok(Self {
+            pointer: pointer.into(),
+            spec: spec.into(),
+            values: Values::parse(spec).map_err(wrong)?,
+        })
+    }
+
+    /// Whether its values are drawn and not listed.
+    pub fn drawn(&self) -> bool {
+        !matches!(self.values, Values::Listed(_))
+    }
+}
+
+/// Whether a text is a pointer that can be varied.
+///
+/// # Errors
+/// In words.
+pub fn check_pointer(pointer: &str) -> std::result::Result<(), String> {
+    if pointer.starts_with('/') && pointer.len() > 1 {
+        Ok(())
+    } else {
+        let guess = pointer.trim_matches('/').replace('.', "/");
+        Err(format!("a JSON pointer starts with `/` and names a key: /{guess}"))
+    }
+}
+
+impl Values {
+    fn parse(spec: &str) -> std::result::Result<Self, String> {
+        let (kind, rest) = spec.split_once(':').unwrap_or((spec, ""));
+        match kind {
+            "lin" | "log" => range(kind, rest).map(Self::Listed),
+            "uniform" => match numbers(rest)?[..] {
+                [low, high] if low < high => Ok(Self::Uniform(low, high)),
+                [low, high] => Err(format!("{low} is not below {high}; uniform:LOW:HIGH")),
+                _ => Err("two numbers are wanted, uniform:LOW:HIGH".into()),
+            },
+            "normal" => match numbers(rest)?[..] {
+                [mean, sd] if sd > 0.0 => Ok(Self::Normal(mean, sd)),
+                [_, sd] => Err(format!(
+                    "a standard deviation is above 0, and {sd} is not; normal:MEAN:SD"
+                )),
+                _ => Err("two numbers are wanted, normal:MEAN:SD".into()),
+            },
+            _ => listed(spec).map(Self::Listed),
+        }
+    }
+}
+
+/// Numbers between colons, all of them finite.
+fn numbers(text: &str) -> std::result::Result<Vec<f64>, String> {
+    let number = |part: &str| {
+        let read = part.trim().parse().ok().filter(|x: &f64| x.is_finite());
+        read.ok_or_else(|| format!("`{part}` is no finite number; values are in the unit that the key names"))
+    };
+    text.split(':').map(number).collect()
+}
+
+/// `lin:LOW:HIGH:COUNT`, `log:LOW:HIGH:COUNT`.
+fn range(kind: &str, text: &str) -> std::result::Result<Vec<Value>, String> {
+    let wanted = format!("{kind}:LOW:HIGH:COUNT, such as {kind}:0.1:1:10");
+    let (ends, count) = text.rsplit_once(':').ok_or_else(|| wanted.clone())?;
+    let [low, high] = numbers(ends)?[..] else {
+        return Err(wanted);
+    };
+    let count = count.trim().parse().ok().filter(|n| (2..=MOST_VALUES).contains(n));
+    let Some(count) = count else {
+        return Err(format!("{wanted}; COUNT from 2 to {MOST_VALUES}"));
+    };
+    if low >= high {
+        return Err(format!("{low} is not below {high}; {wanted}"));
+    }
+    if kind == "log" && low <= 0.0 {
+        return Err(format!("{low} has no logarithm; {wanted}"));
+    }
+    let value = |k: usize| {
+        let share = k as f64 / (count - 1) as f64;
+        match (k, kind) {
+            (0, _) => low,
+            (k, _) if k + 1 == count => high,
+            (_, "log") => low * (high / low).powf(share),
+            _ => low + (high - low) * share,
+        }
+    };
+    Ok((0..count).map(|k| number(value(k))).collect())
+}
+
+/// A number as JSON: a whole one without its point, which some keys want.
+pub fn number(x: f64) -> Value {
+    if x.fract() == 0.0 && x.abs() < 1e15 {
+        Value::from(x as i64)
+    } else {
+        Value::from(x)
+    }
+}
+
+/// JSON values with commas between.
+fn listed(text: &str) -> std::result::Result<Vec<Value>, String> {
+    if text.trim().is_empty() {
+        return Err("no values".into());
+    }
+    let all: Vec<Value> = serde_json::from_str(&format!("[{text}]")).map_err(|_| {
+        let kinds = ["lin", "log", "uniform", "normal"];
+        let kind = text.split(':').next().filter(|_| text.contains(':'));
+        let meant = kind.and_then(|kind| crate::case::nearest(kind, kinds.into_iter()));
+        match meant {
+            Some(meant) => format!("did you mean {meant}:..?"),
+            None => "JSON values with commas between are wanted, numbers without units, a text in double quotes inside single ones; or \
+                     lin:LOW:HIGH:COUNT, log:LOW:HIGH:COUNT, uniform:LOW:HIGH, normal:MEAN:SD"
+                .into(),
+        }
+    })?;
+    Ok(all)
+}
