@@ -23,7 +23,7 @@
 //! | [`onestep`] | A-stable one-step methods of order 2 to 5, with the interface of [`sundials::Ida`] |
 //! | [`spectral`] | eigenvalues of sparse pencils nearest a shift, with bounds of their errors |
 //! | [`run`] | a run in time, equilibria, modes, cycles: samples, balances, range checks. Emits what happens, prints nothing |
-//! | [`study`] | many runs to answer one question: exact results, accuracy against cost, effects, comparison |
+//! | [`study`] | many runs to answer one question: exact results, accuracy against cost, effects, comparison, many designs |
 //! | [`results`] | results as files hold them: one type a kind, for writers and readers alike |
 //! | [`output`] | result folders: history, arrays, summary, pictures, the page |
 //! | [`cli`] | one file a subcommand; the only place that prints |

@@ -38,7 +38,7 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
         None => start(&mut folder, asked, &plan)?,
     }
     let survey = parts::join(&all, &folder, &plan)?;
-    let told = files::write(&folder, &plan, &survey)?;
+    let told = files::write(&folder, &plan, &survey, asked.lean)?;
     if !asked.lean {
         report::write(&dir, None)?;
     }

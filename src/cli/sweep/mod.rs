@@ -76,7 +76,7 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     }
     let stopped = compute_all(asked, &source, &folder, &done, &left, jobs, &flag)?;
     let survey = Survey::of(&journal, plan)?;
-    let told = files::write(&folder, plan, &survey)?;
+    let told = files::write(&folder, plan, &survey, asked.lean)?;
     if !asked.lean {
         report::write(folder.dir(), None)?;
     }
@@ -224,6 +224,11 @@ impl Keep<'_> {
 }
 
 fn print_script(asked: &SweepArguments, plan: &Plan, scheduler: Script) -> Result<ExitCode> {
+    if asked.cases.iter().any(|path| path.as_os_str() == "-") {
+        return Err(Error::Usage(
+            "--script: jobs read the case themselves; name its file in place of -".into(),
+        ));
+    }
     let program = std::env::current_exe().unwrap_or_else(|_| "slcbeam".into());
     let scheduler = match scheduler {
         Script::Slurm => Scheduler::Slurm,

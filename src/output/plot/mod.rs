@@ -14,6 +14,7 @@
 //! multipliers   about the unit circle
 //! tongue      growth over frequency and amplitude
 //! cycles      steady cycles along a parameter
+//! designs     many designs along one number, over two, through all
 //! cell        a cell of the section under one load
 //! measured    measurements with their fit
 //! ```
@@ -27,6 +28,7 @@ pub mod ablation;
 pub mod cell;
 pub mod cycles;
 pub mod deflection;
+pub mod designs;
 pub mod energy;
 pub mod history;
 pub mod loadpath;

@@ -4,6 +4,7 @@
 //! journal   designs.jsonl: a line a design, safe on disk as soon as it is computed
 //! table     sweep.csv: a row a design
 //! arrays    sweep.npz: the same numbers
+//! pictures  sweep.svg, map.svg, parallel.svg
 //! words     what is said of it
 //! script    jobs for Slurm and GNU parallel
 //! parts     shards joined
@@ -14,6 +15,7 @@
 pub mod arrays;
 pub mod journal;
 pub mod parts;
+pub mod pictures;
 pub mod script;
 pub mod table;
 pub mod words;
@@ -23,7 +25,7 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
-use super::folder::{ResultFolder, entries, fault, name_of, replace, result};
+use super::folder::{REPORT, ResultFolder, entries, fault, name_of, replace, result};
 use super::kind::Kind;
 use crate::case::Written;
 use crate::error::Result;
@@ -43,6 +45,8 @@ pub const JSON: &str = "sweep.json";
 pub const TABLE: &str = "sweep.csv";
 /// The table's numbers.
 pub const ARRAYS: &str = "sweep.npz";
+/// Pictures, of which those are there that say something.
+pub const PICTURES: [&str; 3] = ["sweep.svg", "map.svg", "parallel.svg"];
 /// Cases of designs, on request.
 pub const CASES: &str = "cases";
 /// Result folders of designs, on request.
@@ -124,11 +128,11 @@ pub fn keep_case(folder: &ResultFolder, name: &str, case: &Written) -> Result<()
     replace(&dir.join(format!("{name}.json")), &case.json)
 }
 
-/// Writes table, arrays and what they are about, of all rows that are there.
+/// Writes table, arrays and what they are about, of all rows that are there; pictures too, unless it is to be lean.
 ///
 /// # Errors
 /// Something cannot be read or written.
-pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey) -> Result<Sweep> {
+pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, lean: bool) -> Result<Sweep> {
     let rows = survey.count();
     let expected = plan.share();
     let columns = columns(plan, survey);
@@ -148,6 +152,16 @@ pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey) -> Result<Swee
         columns,
     };
     folder.write(JSON, results::text(&told).as_bytes())?;
+    let drawn = if lean { vec![] } else { pictures::draw(plan, survey)? };
+    for name in PICTURES {
+        match drawn.iter().find(|(own, _)| *own == name) {
+            Some((_, picture)) => folder.write(name, picture.as_bytes()).map(|_| ())?,
+            None => folder.remove(name)?,
+        }
+    }
+    if lean {
+        folder.remove(REPORT)?;
+    }
     folder.secure()?;
     Ok(told)
 }

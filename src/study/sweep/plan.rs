@@ -231,6 +231,12 @@ impl Plan {
         self.axes.iter().map(|axis| axis.pointer.clone()).collect()
     }
 
+    /// Whether the values of an axis follow each other, as those of a list or a range do.
+    pub fn listed(&self, axis: usize) -> bool {
+        let spec = self.axes.get(axis).and_then(|axis| axis.spec.as_deref());
+        spec.is_some_and(|spec| !spec.starts_with("uniform:") && !spec.starts_with("normal:"))
+    }
+
     /// Whether the values of an axis lie evenly by their logarithms.
     pub fn logarithmic(&self, axis: usize) -> bool {
         let spec = self.axes.get(axis).and_then(|axis| axis.spec.as_deref());

@@ -1,0 +1,275 @@
+//! Pictures of many designs: curves along one number, a map over two, all numbers beside each other.
+
+use std::collections::BTreeSet;
+
+use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words, picture};
+use super::colour::{Colour, PALETTE, of_time};
+use super::extent;
+use super::panel::{Panel, Place, title};
+use super::ticks::Scale;
+use crate::output::numbers::{quantity, significant};
+
+/// One number of every design.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Numbers {
+    /// What it is.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Whether its axis is logarithmic.
+    pub logarithmic: bool,
+    /// Values, not finite where there is none.
+    pub values: Vec<f64>,
+}
+
+/// All that is shown; every list is as long as there are designs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawn {
+    /// Name of the case.
+    pub case: String,
+    /// Numbers of the designs.
+    pub designs: Vec<usize>,
+    /// What is varied.
+    pub varied: Vec<Numbers>,
+    /// What came out.
+    pub figures: Vec<Numbers>,
+    /// To which curve a design belongs.
+    pub curve: Vec<usize>,
+    /// What the curves are.
+    pub curves: Vec<String>,
+    /// Whether designs of a curve follow each other.
+    pub joined: bool,
+}
+
+const LEFT: f64 = 100.0;
+const TOP: f64 = 64.0;
+const WIDTH: f64 = 560.0;
+const HEIGHT: f64 = 170.0;
+const GAP: f64 = 26.0;
+/// Designs whose numbers stand beside their rings at most.
+const NUMBERED: usize = 40;
+/// Curves told apart by colours.
+const TOLD: usize = 8;
+
+impl Numbers {
+    fn shown(&self, x: f64) -> f64 {
+        if self.logarithmic { x.log10() } else { x }
+    }
+
+    fn on_axis(&self) -> Vec<f64> {
+        self.values.iter().map(|&x| self.shown(x)).collect()
+    }
+
+    /// The axis; none where there is no value.
+    fn scale(&self, count: usize) -> Option<Scale> {
+        let (lo, hi) = extent(self.on_axis().into_iter())?;
+        let unit = if self.unit.is_empty() { "1" } else { &self.unit };
+        if !self.logarithmic {
+            return Some(Scale::around(Some((lo, hi)), 0.0, unit, count));
+        }
+        let margin = 0.04 * (hi - lo).max(0.1);
+        let mut scale = Scale::exact(lo - margin, hi + margin, "1", count);
+        let decades = (hi - lo).ceil();
+        let multiples: &[f64] = if decades > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+        let marks =
+            (lo.floor() as i32..=hi.ceil() as i32).flat_map(|n| multiples.iter().map(move |m| m * 10_f64.powi(n)));
+        let seen = marks.filter(|v| (scale.lo..=scale.hi).contains(&v.log10()));
+        scale.ticks = seen.map(|v| (v.log10(), significant(v, 1))).collect();
+        Some(scale)
+    }
+}
+
+/// A panel a figure along the first varied number; `None` when there is nothing to draw.
+pub fn along(data: &Drawn) -> Option<String> {
+    let x = data.varied.first()?;
+    let scale = x.scale(7)?;
+    let xs = x.on_axis();
+    let count = data.figures.len() as f64;
+    let height = TOP + count * HEIGHT + (count - 1.0) * GAP + 52.0 + 18.0 * legend_rows(data);
+    (count > 0.0).then(|| {
+        picture(LEFT + WIDTH + 30.0, height, |canvas| {
+            title(canvas, 16.0, &data.case, "a ring a design, its number beside it");
+            for (k, figure) in data.figures.iter().enumerate() {
+                let place = Place::new(LEFT, TOP + k as f64 * (HEIGHT + GAP), WIDTH, HEIGHT);
+                let Some(y) = figure.scale(5) else { continue };
+                let panel = Panel::new(place, scale.clone(), y);
+                panel.grid(canvas);
+                let points: Vec<(f64, f64)> = xs.iter().copied().zip(figure.on_axis()).collect();
+                for (curve, _) in data.curves.iter().enumerate() {
+                    let colour = PALETTE[curve % PALETTE.len()];
+                    let mut own: Vec<_> = data
+                        .curve
+                        .iter()
+                        .zip(&points)
+                        .filter(|(c, _)| **c == curve)
+                        .map(|(_, p)| *p)
+                        .collect();
+                    if data.joined {
+                        own.sort_by(|a, b| a.0.total_cmp(&b.0));
+                        panel.curve(canvas, own.into_iter(), Stroke::solid(colour, 1.2));
+                    }
+                }
+                for ((point, curve), number) in points.iter().zip(&data.curve).zip(&data.designs) {
+                    if !(point.0.is_finite() && point.1.is_finite()) {
+                        continue;
+                    }
+                    let at = panel.at(*point);
+                    canvas.ring(at, 3.0, Stroke::solid(PALETTE[curve % PALETTE.len()], 1.3));
+                    if k == 0 && points.len() <= NUMBERED {
+                        let words = Words::new(9.0, Anchor::Centre).coloured(FAINT_INK);
+                        canvas.text((at.0, at.1 - 9.0), &number.to_string(), words);
+                    }
+                }
+                let last = k + 1 == data.figures.len();
+                panel.axes(canvas, last.then_some(x.name.as_str()), &figure.name);
+            }
+            legend(canvas, data, height);
+        })
+    })
+}
+
+fn legend_rows(data: &Drawn) -> f64 {
+    if data.curves.len() > 1 {
+        data.curves.len().min(TOLD + 1) as f64
+    } else {
+        0.0
+    }
+}
+
+fn legend(canvas: &mut Canvas, data: &Drawn, height: f64) {
+    let rows = legend_rows(data);
+    for k in 0..rows as usize {
+        let y = height - 18.0 * (rows - k as f64) + 4.0;
+        let text = match data.curves.get(k) {
+            Some(text) if k < TOLD => text.clone(),
+            _ => format!("and {} more", data.curves.len() - TOLD),
+        };
+        if k < TOLD {
+            let colour = PALETTE[k % PALETTE.len()];
+            canvas.line(&[(LEFT, y), (LEFT + 22.0, y)], Stroke::solid(colour, 1.8));
+        }
+        canvas.text((LEFT + 30.0, y), &text, Words::new(11.0, Anchor::Left));
+    }
+}
+
+/// The first figure over the first two varied numbers, as colours; `None` when there is nothing to draw.
+pub fn over_two(data: &Drawn) -> Option<String> {
+    let [x, y, ..] = &data.varied[..] else { return None };
+    let figure = data.figures.first()?;
+    let (low, high) = extent(figure.values.iter().copied())?;
+    let (mut across, mut up) = (x.scale(7)?, y.scale(7)?);
+    const SIDE: f64 = 360.0;
+    let steps = |all: &Numbers| {
+        all.values
+            .iter()
+            .map(|v| v.to_bits())
+            .collect::<BTreeSet<_>>()
+            .len()
+            .max(1) as f64
+    };
+    // cells touch where the designs are a grid, and are small where they are not
+    let grid = steps(x) * steps(y) <= 1.5 * data.designs.len() as f64;
+    let half = |all: &Numbers| if grid { 0.5 * SIDE / steps(all) } else { 4.0 };
+    for (scale, all) in [(&mut across, x), (&mut up, y)] {
+        let (lo, hi) = extent(all.on_axis().into_iter())?;
+        let spread = if hi > lo { hi - lo } else { 1.0 };
+        let margin = spread * if grid { 0.5 / (steps(all) - 1.0).max(1.0) } else { 0.04 };
+        (scale.lo, scale.hi) = (lo - margin, hi + margin);
+        let range = scale.lo..=scale.hi;
+        scale.ticks.retain(|(at, _)| range.contains(at));
+    }
+    Some(picture(LEFT + SIDE + 150.0, TOP + SIDE + 60.0, |canvas| {
+        title(canvas, 16.0, &data.case, &figure.name);
+        let panel = Panel::new(Place::new(LEFT, TOP, SIDE, SIDE), across, up);
+        let (dx, dy) = (half(x), half(y));
+        for ((a, b), value) in x.on_axis().into_iter().zip(y.on_axis()).zip(&figure.values) {
+            if !(a.is_finite() && b.is_finite() && value.is_finite()) {
+                continue;
+            }
+            let at = panel.at((a, b));
+            let corner = (at.0 + dx + 0.4, at.1 + dy + 0.4);
+            canvas.rectangle((at.0 - dx, at.1 - dy), corner, shade(*value, low, high));
+        }
+        panel.axes(canvas, Some(&x.name), &y.name);
+        bar(canvas, LEFT + SIDE + 24.0, SIDE, figure, low, high);
+    }))
+}
+
+fn shade(value: f64, low: f64, high: f64) -> Colour {
+    of_time(if high > low { (value - low) / (high - low) } else { 0.5 })
+}
+
+fn bar(canvas: &mut Canvas, left: f64, length: f64, figure: &Numbers, low: f64, high: f64) {
+    const PIECES: usize = 64;
+    let height = length / PIECES as f64;
+    for k in 0..PIECES {
+        let bottom = TOP + length - k as f64 * height;
+        let share = (k as f64 + 0.5) / PIECES as f64;
+        canvas.rectangle((left, bottom - height - 0.4), (left + 14.0, bottom), of_time(share));
+    }
+    for share in [0.0, 0.5, 1.0] {
+        let at = (left + 20.0, TOP + length * (1.0 - share));
+        let value = quantity(low + share * (high - low), &figure.unit, 3);
+        canvas.text(at, &value, Words::new(11.0, Anchor::Left));
+    }
+}
+
+/// A line a design through all numbers, coloured by the last of them; `None` when there is nothing to draw.
+pub fn beside(data: &Drawn) -> Option<String> {
+    let all: Vec<&Numbers> = data.varied.iter().chain(&data.figures).collect();
+    let last = data.figures.last()?;
+    let (low, high) = extent(last.values.iter().copied())?;
+    let ranges: Vec<(f64, f64)> = all
+        .iter()
+        .map(|one| extent(one.on_axis().into_iter()).unwrap_or((0.0, 1.0)))
+        .collect();
+    const STEP: f64 = 120.0;
+    const LENGTH: f64 = 300.0;
+    let width = 140.0 + STEP * (all.len() - 1) as f64;
+    Some(picture(width, TOP + LENGTH + 90.0, |canvas| {
+        title(
+            canvas,
+            16.0,
+            &data.case,
+            "a line a design, from what is varied to what came out",
+        );
+        let at = |k: usize, value: f64| {
+            let (lo, hi) = ranges[k];
+            let share = if hi > lo { (value - lo) / (hi - lo) } else { 0.5 };
+            (70.0 + STEP * k as f64, TOP + LENGTH * (1.0 - share) + 14.0)
+        };
+        for (n, value) in last.values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+            let points: Vec<_> = all
+                .iter()
+                .enumerate()
+                .map(|(k, one)| at(k, one.shown(one.values[n])))
+                .collect();
+            canvas.line(&points, Stroke::solid(shade(*value, low, high), 1.0));
+        }
+        for (k, one) in all.iter().enumerate() {
+            let (lo, hi) = ranges[k];
+            let raised = |x: f64| if one.logarithmic { 10_f64.powf(x) } else { x };
+            let ends = [at(k, lo.min(hi)), at(k, hi.max(lo))];
+            let (bottom, top) = if hi > lo {
+                (ends[0].1, ends[1].1)
+            } else {
+                (TOP + LENGTH + 14.0, TOP + 14.0)
+            };
+            canvas.line(&[(ends[0].0, bottom), (ends[0].0, top)], Stroke::solid(FAINT_INK, 1.0));
+            let unit = if one.unit.is_empty() { "1" } else { &one.unit };
+            let small = Words::new(10.0, Anchor::Centre);
+            canvas.text((ends[0].0, top - 9.0), &quantity(raised(hi), unit, 3), small);
+            canvas.text((ends[0].0, bottom + 11.0), &quantity(raised(lo), unit, 3), small);
+            let short: String = one
+                .name
+                .rsplit('/')
+                .next()
+                .unwrap_or(&one.name)
+                .chars()
+                .take(22)
+                .collect();
+            let lower = if k.is_multiple_of(2) { 30.0 } else { 46.0 };
+            canvas.text((ends[0].0, bottom + lower), &short, small.coloured(FAINT_INK));
+        }
+    }))
+}

@@ -1,0 +1,135 @@
+//! From rows to the data of pictures.
+
+use std::collections::BTreeMap;
+
+use super::{Survey, numeric, table, unit};
+use crate::error::Result;
+use crate::output::plot::designs::{self, Drawn, Numbers};
+use crate::results::sweep::Plan;
+use crate::run::summary::Status;
+
+/// Designs drawn at most, the first of them.
+const DRAWN: usize = 2000;
+/// Figures drawn at most.
+const FIGURES: usize = 4;
+/// Figures that are looked at first, where they are there and vary.
+const FIRST: [&str; 13] = [
+    "harvested_power_w.mean",
+    "harvested_energy_j.final",
+    "efficiency.window",
+    "tip_u1_m.window_max_abs",
+    "tip_u3_m.window_max_abs",
+    "max_pressure_pa.window_max_abs",
+    "tip_u1_m",
+    "tip_u3_m",
+    "max_pressure_pa",
+    "mode_1.frequency_hz",
+    "mode_1.damping_ratio",
+    "mode_2.frequency_hz",
+    "mode_2.damping_ratio",
+];
+
+/// The pictures that say something of these designs, by the names of their files.
+///
+/// # Errors
+/// The journal cannot be read.
+pub fn draw(plan: &Plan, survey: &Survey) -> Result<Vec<(&'static str, String)>> {
+    let data = data(plan, survey)?;
+    if data.designs.len() < 2 || data.varied.is_empty() {
+        return Ok(vec![]);
+    }
+    let many = data.varied.len() + usize::from(plan.cases.len() > 1);
+    let all = [
+        (
+            "sweep.svg",
+            (data.varied.len() == 1).then(|| designs::along(&data)).flatten(),
+        ),
+        (
+            "map.svg",
+            (many == 2 && data.varied.len() == 2)
+                .then(|| designs::over_two(&data))
+                .flatten(),
+        ),
+        ("parallel.svg", (many > 2).then(|| designs::beside(&data)).flatten()),
+    ];
+    Ok(all
+        .into_iter()
+        .filter_map(|(name, picture)| Some((name, picture?)))
+        .collect())
+}
+
+/// Designs that finished, as far as they are drawn.
+fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
+    let mut varied: Vec<Vec<Option<f64>>> = vec![vec![]; plan.axes.len()];
+    let (mut named, mut numbers) = (vec![], vec![]);
+    let mut figures: BTreeMap<&str, Vec<f64>> = FIRST.iter().map(|name| (*name, vec![])).collect();
+    survey.each(|row| {
+        if numbers.len() < DRAWN && row.found.status == Status::Finished {
+            numbers.push(row.number);
+            for (axis, value) in varied.iter_mut().zip(&row.values) {
+                axis.push(numeric(value));
+            }
+            for (name, values) in &mut figures {
+                values.push(row.found.figure(name).unwrap_or(f64::NAN));
+            }
+            named.push((row.case, row.values));
+        }
+        Ok(())
+    })?;
+    let differs = |values: &[f64]| values.iter().any(|x| x.is_finite() && *x != values[0]);
+    let numbered: Vec<usize> = (0..varied.len())
+        .filter(|k| {
+            let values: Option<Vec<f64>> = varied[*k].iter().copied().collect();
+            values.is_some_and(|values| differs(&values))
+        })
+        .collect();
+    // what is no number, or does not vary, tells curves apart
+    let mut curves: Vec<String> = vec![];
+    let curve = named.iter().map(|(case, values)| {
+        let own = plan
+            .axes
+            .iter()
+            .zip(values)
+            .enumerate()
+            .filter(|(k, _)| !numbered.contains(k));
+        let mut parts: Vec<String> = own
+            .map(|(_, (axis, value))| format!("{} = {}", axis.pointer, table::cell(value)))
+            .collect();
+        if plan.cases.len() > 1 {
+            parts.insert(0, plan.cases[*case].name.clone());
+        }
+        let name = parts.join(", ");
+        curves.iter().position(|own| *own == name).unwrap_or_else(|| {
+            curves.push(name);
+            curves.len() - 1
+        })
+    });
+    let curve = curve.collect();
+    let chosen = FIRST.iter().filter_map(|name| {
+        let values = figures.remove(name)?;
+        (!values.is_empty() && differs(&values)).then(|| Numbers {
+            name: (*name).into(),
+            unit: unit(name).into(),
+            logarithmic: false,
+            values,
+        })
+    });
+    let figures = chosen.take(FIGURES).collect();
+    Ok(Drawn {
+        case: plan.case.clone(),
+        varied: numbered
+            .iter()
+            .map(|&k| Numbers {
+                name: plan.axes[k].pointer.clone(),
+                unit: String::new(),
+                logarithmic: plan.logarithmic(k),
+                values: varied[k].iter().map(|x| x.unwrap_or(f64::NAN)).collect(),
+            })
+            .collect(),
+        joined: numbered.iter().all(|&k| plan.listed(k)),
+        designs: numbers,
+        figures,
+        curve,
+        curves,
+    })
+}
