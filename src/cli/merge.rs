@@ -56,8 +56,10 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
             (Some(shard), Some(dir)) => format!("shard {} in {}", shard.words(), dir.display()),
         };
         terminal::tell(&format!(
-            "slcbeam: {what} lacks {} designs, the first of them {}; this computes them:\n  {}",
-            one.designs, one.first, one.command
+            "slcbeam: {what} lacks {}, the first of them {}; this computes what is missing:\n  {}",
+            words::several(one.designs),
+            one.first,
+            one.command
         ));
     }
     Ok(ExitCode::from(if lost.is_empty() { 0 } else { INCOMPLETE }))

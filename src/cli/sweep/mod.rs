@@ -30,6 +30,9 @@ use source::Source;
 /// Designs that are looked at before the first is computed.
 const CHECKED: usize = 10_000;
 
+/// Threads at most.
+const MOST_AT_ONCE: usize = 1024;
+
 /// Computes what is missing, writes the table, prints how many there are of which kind.
 pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     let source = Source::read(asked)?;
@@ -41,8 +44,10 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     let jobs = asked
         .jobs
         .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
-    if jobs == 0 || asked.shards == 0 {
-        return Err(Error::Usage("--jobs and --shards are 1 or more".into()));
+    if !(1..=MOST_AT_ONCE).contains(&jobs) || asked.shards == 0 {
+        return Err(Error::Usage(format!(
+            "--jobs is from 1 to {MOST_AT_ONCE}, --shards 1 or more"
+        )));
     }
     if let Some(scheduler) = asked.script {
         return print_script(asked, plan, scheduler);
@@ -69,8 +74,8 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         files::begin(&mut folder, plan, &source.first.written())?;
     } else if !asked.quiet && done.count() > 0 {
         terminal::tell(&format!(
-            "slcbeam: {} designs are there already; going on with {}",
-            done.count(),
+            "slcbeam: there already: {}; going on with {}",
+            words::several(done.count()),
             left.len()
         ));
     }
@@ -89,7 +94,8 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     if stopped {
         let missing = told.missing;
         terminal::tell(&format!(
-            "slcbeam: interrupted; {missing} designs are missing, and the same command goes on with them"
+            "slcbeam: interrupted; {} left to do, with which the same command goes on",
+            words::several(missing)
         ));
     }
     let finished = survey.statuses.get(&Status::Finished).is_some_and(|n| *n > 0);
@@ -115,7 +121,7 @@ fn check(source: &Source, left: &[usize], jobs: usize, quiet: bool, flag: &Atomi
     pool::each(
         &some,
         jobs,
-        &|number| (!interrupt::raised(flag)).then(|| (number, source.check(number, jobs).err())),
+        &|number| (!interrupt::raised(flag)).then(|| (number, source.check(number, jobs.min(left.len())).err())),
         &mut |(number, fault)| {
             counter.one(fault.is_some());
             fault.map(|fault| faults.insert(number, fault));

@@ -42,10 +42,13 @@ pub struct Drawn {
 }
 
 const LEFT: f64 = 100.0;
-const TOP: f64 = 64.0;
+const TOP: f64 = 78.0;
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 170.0;
-const GAP: f64 = 26.0;
+const GAP: f64 = 36.0;
+/// Side of a map, and what lies between two.
+const SIDE: f64 = 320.0;
+const BETWEEN: f64 = 74.0;
 /// Designs whose numbers stand beside their rings at most.
 const NUMBERED: usize = 40;
 /// Curves told apart by colours.
@@ -121,11 +124,18 @@ pub fn along(data: &Drawn) -> Option<String> {
                     }
                 }
                 let last = k + 1 == data.figures.len();
-                panel.axes(canvas, last.then_some(x.name.as_str()), &figure.name);
+                panel.axes(canvas, last.then_some(x.name.as_str()), "");
+                name(canvas, place, &figure.name);
             }
             legend(canvas, data, height);
         })
     })
+}
+
+/// What a panel is of, above it: names of figures are too long to stand beside an axis.
+fn name(canvas: &mut Canvas, place: Place, text: &str) {
+    let words = Words::new(11.5, Anchor::Left);
+    canvas.text((place.left, place.top - 11.0), text, words);
 }
 
 fn legend_rows(data: &Drawn) -> f64 {
@@ -152,13 +162,10 @@ fn legend(canvas: &mut Canvas, data: &Drawn, height: f64) {
     }
 }
 
-/// The first figure over the first two varied numbers, as colours; `None` when there is nothing to draw.
+/// Every figure over the first two varied numbers, as colours; `None` when there is nothing to draw.
 pub fn over_two(data: &Drawn) -> Option<String> {
     let [x, y, ..] = &data.varied[..] else { return None };
-    let figure = data.figures.first()?;
-    let (low, high) = extent(figure.values.iter().copied())?;
     let (mut across, mut up) = (x.scale(7)?, y.scale(7)?);
-    const SIDE: f64 = 360.0;
     let steps = |all: &Numbers| {
         all.values
             .iter()
@@ -178,37 +185,51 @@ pub fn over_two(data: &Drawn) -> Option<String> {
         let range = scale.lo..=scale.hi;
         scale.ticks.retain(|(at, _)| range.contains(at));
     }
-    Some(picture(LEFT + SIDE + 150.0, TOP + SIDE + 60.0, |canvas| {
-        title(canvas, 16.0, &data.case, &figure.name);
-        let panel = Panel::new(Place::new(LEFT, TOP, SIDE, SIDE), across, up);
-        let (dx, dy) = (half(x), half(y));
-        for ((a, b), value) in x.on_axis().into_iter().zip(y.on_axis()).zip(&figure.values) {
-            if !(a.is_finite() && b.is_finite() && value.is_finite()) {
-                continue;
+    let rows = data.figures.len() as f64;
+    (rows > 0.0).then(|| {
+        picture(LEFT + SIDE + 150.0, TOP + rows * (SIDE + BETWEEN), |canvas| {
+            title(canvas, 16.0, &data.case, "a cell a design");
+            for (k, figure) in data.figures.iter().enumerate() {
+                let Some((low, high)) = extent(figure.values.iter().copied()) else {
+                    continue;
+                };
+                let place = Place::new(LEFT, TOP + k as f64 * (SIDE + BETWEEN), SIDE, SIDE);
+                let panel = Panel::new(place, across.clone(), up.clone());
+                let (dx, dy) = (half(x), half(y));
+                for ((a, b), value) in x.on_axis().into_iter().zip(y.on_axis()).zip(&figure.values) {
+                    if !(a.is_finite() && b.is_finite() && value.is_finite()) {
+                        continue;
+                    }
+                    let at = panel.at((a, b));
+                    // a little more, so that no hairline shows between cells
+                    let corner = (
+                        (at.0 + dx + 0.4).min(place.right() + 4.0),
+                        (at.1 + dy + 0.4).min(place.bottom() + 4.0),
+                    );
+                    canvas.rectangle((at.0 - dx, at.1 - dy), corner, shade(*value, low, high));
+                }
+                panel.axes(canvas, Some(&x.name), &y.name);
+                name(canvas, place, &figure.name);
+                bar(canvas, place, figure, low, high);
             }
-            let at = panel.at((a, b));
-            let corner = (at.0 + dx + 0.4, at.1 + dy + 0.4);
-            canvas.rectangle((at.0 - dx, at.1 - dy), corner, shade(*value, low, high));
-        }
-        panel.axes(canvas, Some(&x.name), &y.name);
-        bar(canvas, LEFT + SIDE + 24.0, SIDE, figure, low, high);
-    }))
+        })
+    })
 }
 
 fn shade(value: f64, low: f64, high: f64) -> Colour {
     of_time(if high > low { (value - low) / (high - low) } else { 0.5 })
 }
 
-fn bar(canvas: &mut Canvas, left: f64, length: f64, figure: &Numbers, low: f64, high: f64) {
+fn bar(canvas: &mut Canvas, beside: Place, figure: &Numbers, low: f64, high: f64) {
     const PIECES: usize = 64;
-    let height = length / PIECES as f64;
+    let (left, height) = (beside.right() + 24.0, beside.height / PIECES as f64);
     for k in 0..PIECES {
-        let bottom = TOP + length - k as f64 * height;
+        let bottom = beside.bottom() - k as f64 * height;
         let share = (k as f64 + 0.5) / PIECES as f64;
         canvas.rectangle((left, bottom - height - 0.4), (left + 14.0, bottom), of_time(share));
     }
     for share in [0.0, 0.5, 1.0] {
-        let at = (left + 20.0, TOP + length * (1.0 - share));
+        let at = (left + 20.0, beside.bottom() - beside.height * share);
         let value = quantity(low + share * (high - low), &figure.unit, 3);
         canvas.text(at, &value, Words::new(11.0, Anchor::Left));
     }
@@ -266,7 +287,7 @@ pub fn beside(data: &Drawn) -> Option<String> {
                 .next()
                 .unwrap_or(&one.name)
                 .chars()
-                .take(22)
+                .take(28)
                 .collect();
             let lower = if k.is_multiple_of(2) { 30.0 } else { 46.0 };
             canvas.text((ends[0].0, bottom + lower), &short, small.coloured(FAINT_INK));

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::{Found, Kind, MOST_ROWS, Page, Place, capital};
 use crate::error::Result;
 use crate::output::numbers::count;
+use crate::output::sweep::words::several;
 use crate::output::sweep::{JOURNAL, JSON, Survey, TABLE, table};
 use crate::results::sweep::Sweep;
 
@@ -33,8 +34,8 @@ pub fn data(place: &Place) -> Result<Page> {
     page.put(
         "answer",
         format!(
-            "{} designs went through `{}`: {}.{missing}",
-            count(found.rows as u64),
+            "{} went through {}: {}.{missing}",
+            several(found.rows),
             plan.command.word(),
             if kinds.is_empty() {
                 "none".into()
@@ -67,11 +68,7 @@ pub fn data(place: &Place) -> Result<Page> {
             "sweep.svg",
             "Designs that finished. Every ring is one of them; its number stands beside it where there is room, and in the table.",
         ),
-        figure(
-            "Over two numbers",
-            "map.svg",
-            "The first figure over both numbers that are varied; each cell is a design.",
-        ),
+        figure("Over two numbers", "map.svg", "Each cell is a design that finished."),
         figure(
             "All numbers at once",
             "parallel.svg",

@@ -70,12 +70,14 @@ pub fn plan(folder: &ResultFolder) -> Result<Option<Plan>> {
 /// # Errors
 /// Something cannot be removed or written.
 pub fn begin(folder: &mut ResultFolder, plan: &Plan, first: &Written) -> Result<()> {
+    if Kind::within(folder.dir()) == Some(Kind::Designs) {
+        for name in [CASES, FOLDERS] {
+            remove_numbered(folder.path(name))?;
+        }
+    }
     folder.clear()?;
     for name in Kind::Designs.files() {
         folder.remove(name)?;
-    }
-    for name in [CASES, FOLDERS] {
-        remove_numbered(folder.path(name))?;
     }
     folder.write_case(first)?;
     folder.write(PLAN, results::text(plan).as_bytes())?;

@@ -32,8 +32,8 @@ pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
         .shard
         .map_or(String::new(), |shard| format!(", shard {}", shard.words()));
     let mut text = format!(
-        "{} designs of {}{shard} by {}: {kinds}\n",
-        count(rows as u64),
+        "{} of {}{shard} by {}: {kinds}\n",
+        several(rows),
         plan.case,
         plan.command.word()
     );
@@ -72,6 +72,14 @@ pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
         );
     }
     Ok(text)
+}
+
+/// So many designs.
+pub fn several(count_of: usize) -> String {
+    match count_of {
+        1 => "1 design".into(),
+        n => format!("{} designs", count(n as u64)),
+    }
 }
 
 fn spoken(status: Status) -> &'static str {

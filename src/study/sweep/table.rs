@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::vary::check_pointer;
+use super::vary::{check_pointer, plain};
 use crate::case;
 use crate::error::{Error, Result};
 
@@ -45,7 +45,7 @@ impl Table {
         for (k, record) in reader.records().enumerate() {
             let record = record.map_err(|e| e.to_string())?;
             let cells = pointers.iter().zip(&record);
-            let row = cells.map(|(pointer, cell)| value(cell).ok_or_else(|| (pointer, cell)));
+            let row = cells.map(|(pointer, cell)| value(cell).ok_or((pointer, cell)));
             let row: std::result::Result<Vec<Value>, _> = row.collect();
             rows.push(row.map_err(|(pointer, cell)| match cell {
                 "" => format!("design {k} (row {} of the table) has no {pointer}", k + 2),
@@ -69,7 +69,7 @@ impl Table {
 /// A cell as JSON; a word is a text.
 fn value(cell: &str) -> Option<Value> {
     if let Ok(value) = serde_json::from_str(cell) {
-        return Some(value);
+        return Some(plain(value));
     }
     let word = cell.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c));
     let letter = cell.starts_with(|c: char| c.is_ascii_alphabetic());

@@ -208,5 +208,13 @@ fn listed(text: &str) -> std::result::Result<Vec<Value>, String> {
                 .into(),
         }
     })?;
-    Ok(all)
+    Ok(all.into_iter().map(plain).collect())
+}
+
+/// A value with a whole number as such.
+pub fn plain(value: Value) -> Value {
+    match &value {
+        Value::Number(own) if own.is_f64() => own.as_f64().map_or(value, number),
+        _ => value,
+    }
 }

@@ -1,0 +1,113 @@
+//! What is refused, and what stays as it is.
+
+use std::fs;
+use std::path::Path;
+
+use tempfile::TempDir;
+
+use crate::common::{AREA, CASE, path, say, swept, table, well};
+
+/// Goal: what cannot be a sweep is refused before anything is computed or written, with the code and the place.
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let dir = TempDir::new().expect("a folder");
+    let (out, list) = (path(&dir, "out"), path(&dir, "list.csv"));
+    for (text, word) in [
+        ("", "no columns"),
+        ("beam\n1\n", "starts with `/`"),
+        ("/beam/length_m\n", "no designs"),
+        (
+            "/beam/length_m,/beam/width_m\n0.1,\n",
+            "design 0 (row 2 of the table) has no /beam/width_m",
+        ),
+        ("/beam/length_m\nNaN\n", "no JSON value"),
+        ("/beam/length_m,/beam/width_m\n0.1\n", "fields"),
+    ] {
+        fs::write(&list, text).expect("written");
+        let said = swept(&out, &["--designs", &list]);
+        assert!(
+            said.code == 2 && said.err.contains(word),
+            "{text:?}: {} {}",
+            said.code,
+            said.err
+        );
+    }
+    for (more, code, word) in [
+        (vec![], 2, "nothing varied"),
+        (
+            vec!["--vary", "/beam/length_m=uniform:2:1", "--design", "latin:3"],
+            2,
+            "2 is not below 1",
+        ),
+        (
+            vec!["--vary", "/beam/length_m=uniform:1:2"],
+            2,
+            "--design latin:N or sobol:N",
+        ),
+        (vec!["--vary", "/beam/length_m=0.1 m"], 2, "without units"),
+        (
+            vec!["--vary", "/beam/length_m=0.1", "--design", "latin:0"],
+            2,
+            "latin:100",
+        ),
+        (vec!["--vary", "/beam/lenght_m=0.1"], 3, "E004"),
+        (vec!["--vary", "/beam/length_m=0.1,-0.1"], 3, "/beam/length_m"),
+        (
+            vec!["--vary", "/beam/length_m=0.1,100"],
+            3,
+            "design 1 of 2 (/beam/length_m = 100)",
+        ),
+        (
+            vec!["--vary", "/beam/length_m=0.1", "--shard", "3/2"],
+            2,
+            "I from 1 to N",
+        ),
+        (vec!["--vary", "/beam/length_m=0.1", "--jobs", "0"], 2, "from 1 to 1024"),
+        (
+            vec!["--vary", "/beam/length_m=0.1", "--command", "periodic"],
+            2,
+            "period",
+        ),
+        (
+            vec!["--vary", "/beam/length_m=0.1", "--command", "modes", "--keep-folders"],
+            2,
+            "--keep-cases",
+        ),
+    ] {
+        let said = swept(&out, &more);
+        assert!(
+            said.code == code && said.err.contains(word),
+            "{more:?}: {} {}",
+            said.code,
+            said.err
+        );
+    }
+    assert!(!Path::new(&out).exists());
+}
+
+/// Goal: a folder of another sweep, or with something else, is left as it is until it is said otherwise.
+#[test]
+fn folders_of_others_stay() {
+    let dir = TempDir::new().expect("a folder");
+    let (out, other) = (path(&dir, "out"), path(&dir, "other"));
+    let [first, second] = ["2e-10", "3e-10"].map(|value| format!("{AREA}={value}"));
+    well(&swept(&out, &["--vary", &first, "--keep-cases"]));
+    let before = table(&out);
+    let said = swept(&out, &["--vary", &second]);
+    assert!(
+        said.code == 2 && said.err.contains("holds another sweep: --vary is"),
+        "{}",
+        said.err
+    );
+    assert_eq!(table(&out), before);
+    well(&swept(&out, &["--vary", &second, "--restart"]));
+    assert_ne!(table(&out), before);
+    assert!(!Path::new(&out).join("cases").exists(), "the cases of the sweep before");
+    fs::create_dir(&other).expect("a folder");
+    fs::write(Path::new(&other).join("letter.txt"), "mine").expect("written");
+    let said = swept(&other, &["--vary", &first]);
+    assert!(said.code == 5 && said.err.contains("no slcbeam result"), "{}", said.err);
+    // a sweep is no run, and a run no sweep
+    let said = say(&["run", CASE, "--quiet", "--out", &out]);
+    assert!(said.code == 5 && said.err.contains("slcbeam sweep"), "{}", said.err);
+}
