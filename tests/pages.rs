@@ -200,6 +200,8 @@ fn commands_are_found() {
         "effects",
         "compare",
         "periodic",
+        "sweep",
+        "merge",
         "new",
         "report",
         "export",

@@ -144,6 +144,29 @@ fn cycles_say_whether_they_are_stable() {
     );
 }
 
+/// Goal: designs have a picture of what was varied, and a row each that sorts.
+#[test]
+fn designs_stand_in_a_table() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut browser = Browser::start();
+    let pressed = "/start/pressures/0/pressure_pa=lin:1000:2000:3";
+    let young = "/beam/young_modulus_pa=2e6,3e6";
+    let length = "/beam/length_m=0.1,0.12";
+    for (k, varied) in [&[pressed][..], &[pressed, young], &[pressed, young, length]]
+        .iter()
+        .enumerate()
+    {
+        let mut all = vec!["sweep", "cases/two-bladders.json", "--set", "/time/end_s=0.0005"];
+        all.extend(varied.iter().flat_map(|one| ["--vary", one]));
+        let page = made(&folder.path().join(k.to_string()), &all);
+        sound(&mut browser, &page, &["answer", "table", "scene", "case"]);
+        assert!(browser.number("document.querySelector('.plate img').naturalWidth") > 100.0);
+        let rows = browser.number("document.querySelectorAll('#table tbody tr').length");
+        assert_eq!(rows, [3.0, 6.0, 12.0][k]);
+    }
+    sorted_both_ways(&mut browser);
+}
+
 /// Goal: a case with a section shows its cell under each of the four loads, and bladders by their outlines.
 #[test]
 fn the_cell_of_a_section_is_drawn_under_its_loads() {

@@ -59,6 +59,14 @@ fn shards_and_threads_make_the_same_table() {
     assert_eq!(rows(&shards[1]).len(), 5);
     well(&merge(&[&shards[0], &shards[1], &shards[2]]));
     assert_eq!(table(&whole), table(&one));
+    // more shards than designs
+    let few = ["--vary", "/beam/length_m=0.1,0.11", "--shard", "3/3"];
+    let empty = path(&dir, "empty");
+    well(&swept(&empty, &few));
+    assert_eq!(
+        (rows(&empty).len(), &json(&empty, "sweep.json")["complete"]),
+        (0, &true.into())
+    );
     // parts of different sweeps
     let other = path(&dir, "other");
     well(&swept(&other, &["--vary", &format!("{AREA}=1e-10")]));

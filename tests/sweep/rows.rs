@@ -195,6 +195,13 @@ fn tables_cases_and_folders() {
         (found[1][AREA].as_str(), found[1]["/effects/tube_inertia"].as_str()),
         ("3e-10", "on")
     );
+    // asked for later, they are kept all the same
+    let later = path(&dir, "later");
+    well(&swept(&later, &["--designs", &list]));
+    assert!(!Path::new(&later).join("cases").exists());
+    well(&swept(&later, &["--designs", &list, "--keep-cases"]));
+    let text = |out: &str| fs::read(Path::new(out).join("cases/00000.json")).expect("a case");
+    assert_eq!(text(&later), text(&out));
     // a kept case is the design, in a folder of its own and by itself
     let (kept, alone) = (format!("{out}/cases/00001.json"), path(&dir, "alone"));
     well(&say(&["run", &kept, "--quiet", "--lean", "--out", &alone]));

@@ -80,6 +80,9 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         ));
     }
     let stopped = compute_all(asked, &source, &folder, &done, &left, jobs, &flag)?;
+    if asked.keep_cases && !stopped {
+        keep_others(&source, &folder, &done)?;
+    }
     let survey = Survey::of(&journal, plan)?;
     let told = files::write(&folder, plan, &survey, asked.lean)?;
     if !asked.lean {
@@ -99,7 +102,9 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         ));
     }
     let finished = survey.statuses.get(&Status::Finished).is_some_and(|n| *n > 0);
-    Ok(ExitCode::from(if finished || stopped { 0 } else { 4 }))
+    // a shard may have no designs
+    let none = told.rows == 0 && told.missing == 0;
+    Ok(ExitCode::from(if finished || stopped || none { 0 } else { 4 }))
 }
 
 fn claim(asked: &SweepArguments, source: &Source) -> Result<ResultFolder> {
@@ -199,6 +204,19 @@ fn compute_all(
         Some(error) => Err(error),
         None => Ok(stop()),
     }
+}
+
+/// Keeps the cases of designs that were computed before cases were asked for.
+fn keep_others(source: &Source, folder: &ResultFolder, done: &Survey) -> Result<()> {
+    let plan = &source.plan;
+    for number in (0..plan.designs).filter(|number| done.has(*number)) {
+        let name = files::numbered(plan, number);
+        if !folder.path(files::CASES).join(format!("{name}.json")).exists() {
+            let case = source.case(&source.designs.design(number))?;
+            files::keep_case(folder, &name, &case.written())?;
+        }
+    }
+    Ok(())
 }
 
 /// What is kept of a design besides its row.

@@ -110,7 +110,10 @@ pub fn lost(parts: &[Part], plan: &Plan, there: &Survey, out: &Path) -> Vec<Lost
             .find(|part| part.plan.shard == shard)
             .map(|part| part.dir.clone());
         let dir = given.clone().unwrap_or_else(|| match shard {
-            Some(shard) => beside(parts, shard).unwrap_or_else(|| out.to_path_buf()),
+            Some(shard) => beside(parts, shard).unwrap_or_else(|| {
+                let name = format!("{}-{}-of-{}", out.display(), shard.index, shard.of);
+                PathBuf::from(name)
+            }),
             None => out.to_path_buf(),
         });
         let dir = dir.display().to_string();
@@ -131,8 +134,34 @@ pub fn lost(parts: &[Part], plan: &Plan, there: &Survey, out: &Path) -> Vec<Lost
 /// Where a shard probably is, by the names of the others.
 fn beside(parts: &[Part], shard: Shard) -> Option<PathBuf> {
     let part = parts.first()?;
-    let name = part.dir.file_name()?.to_str()?;
-    let own = part.plan.shard?.index.to_string();
-    let stem = name.strip_suffix(&own)?;
-    Some(part.dir.with_file_name(format!("{stem}{}", shard.index)))
+    let name = sibling(part.dir.file_name()?.to_str()?, part.plan.shard?, shard.index)?;
+    Some(part.dir.with_file_name(name))
+}
+
+/// The name of another shard's folder, where that of this one ends with its number.
+fn sibling(name: &str, own: Shard, other: usize) -> Option<String> {
+    let behind = format!("-of-{}", own.of);
+    let (name, behind) = name.strip_suffix(&behind).map_or((name, ""), |name| (name, &behind));
+    let stem = name.strip_suffix(&own.index.to_string())?;
+    // 2 is not the number of a folder 12
+    let whole = !stem.ends_with(|c: char| c.is_ascii_digit());
+    whole.then(|| format!("{stem}{other}{behind}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Shard, sibling};
+
+    #[test]
+    fn folders_of_shards_are_named_alike() {
+        let two = Shard { index: 2, of: 12 };
+        for (name, other) in [
+            ("part-2", Some("part-7")),
+            ("case-sweep-2-of-12", Some("case-sweep-7-of-12")),
+            ("part-12", None),
+            ("second", None),
+        ] {
+            assert_eq!(sibling(name, two, 7).as_deref(), other);
+        }
+    }
 }

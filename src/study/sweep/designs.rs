@@ -320,7 +320,7 @@ mod tests {
             ("/a=NaN", "JSON values"),
             ("/a=", "no values"),
             ("/a=0.1 m", "without units"),
-            ("/a=lni:1:2:3", "did you mean lin"),
+            ("/a=unifrom:1:2", "did you mean uniform"),
             ("/a=lin:1:2", "lin:LOW:HIGH:COUNT"),
             ("a=1", "starts with `/`"),
             ("/a", "pointer and its values"),
