@@ -116,6 +116,10 @@ fn killed_sweeps_go_on() {
         fs::write(&journal, &text[..cut]).expect("cut");
     }
     assert!(kills > 0);
+    // what is there has a page already
+    well(&say(&["report", &out]));
+    let page = fs::read_to_string(Path::new(&out).join("report.html")).expect("a page");
+    assert!(page.contains("designs are missing") || page.contains("1 design is missing"));
     let before = lines();
     well(&swept(&out, &options));
     assert!(before < 30, "{before}");

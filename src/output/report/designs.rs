@@ -6,17 +6,18 @@ use super::{Found, Kind, MOST_ROWS, Page, Place, capital};
 use crate::error::Result;
 use crate::output::numbers::count;
 use crate::output::sweep::words::several;
-use crate::output::sweep::{JOURNAL, JSON, Survey, TABLE, table};
-use crate::results::sweep::Sweep;
+use crate::output::sweep::{JOURNAL, Survey, TABLE, about, table};
+use crate::results::sweep::{Plan, Sweep};
 
 /// Columns of the page's table at most; the file has the rest.
 const MOST_COLUMNS: usize = 40;
 
 /// `sweep`.
 pub fn data(place: &Place) -> Result<Page> {
-    let Found { result: found, head } = place.result::<Sweep>(JSON)?;
-    let plan = &found.plan;
-    let survey = Survey::of(&place.path(JOURNAL), plan)?;
+    // one that was killed has no table yet
+    let Found { result: plan, head } = place.result::<Plan>(Kind::Designs.sign())?;
+    let survey = Survey::of(&place.path(JOURNAL), &plan)?;
+    let found = about(&plan, &survey);
     let mut page = place.page(Kind::Designs, &found.case, Some(&head));
     page.put("label", "Many designs");
     let kinds: Vec<String> = found
@@ -26,10 +27,8 @@ pub fn data(place: &Place) -> Result<Page> {
         .collect();
     let missing = match found.missing {
         0 => String::new(),
-        n => format!(
-            " {} designs are missing; the same command goes on with them.",
-            count(n as u64)
-        ),
+        1 => " 1 design is missing; the same command goes on with it.".into(),
+        n => format!(" {} are missing; the same command goes on with them.", several(n)),
     };
     page.put(
         "answer",

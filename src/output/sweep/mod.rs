@@ -135,24 +135,9 @@ pub fn keep_case(folder: &ResultFolder, name: &str, case: &Written) -> Result<()
 /// # Errors
 /// Something cannot be read or written.
 pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, lean: bool) -> Result<Sweep> {
-    let rows = survey.count();
-    let expected = plan.share();
-    let columns = columns(plan, survey);
-    table::write(folder, plan, survey, &columns)?;
-    arrays::write(folder, plan, survey, &columns)?;
-    let statuses = survey
-        .statuses
-        .iter()
-        .map(|(status, count)| (word(*status).to_owned(), *count));
-    let told = Sweep {
-        case: plan.case.clone(),
-        plan: plan.clone(),
-        complete: rows == expected,
-        rows,
-        missing: expected.saturating_sub(rows),
-        statuses: statuses.collect(),
-        columns,
-    };
+    let told = about(plan, survey);
+    table::write(folder, plan, survey, &told.columns)?;
+    arrays::write(folder, plan, survey, &told.columns)?;
     folder.write(JSON, results::text(&told).as_bytes())?;
     let drawn = if lean { vec![] } else { pictures::draw(plan, survey)? };
     for name in PICTURES {
@@ -168,12 +153,23 @@ pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, lean: bool) ->
     Ok(told)
 }
 
-/// Headings in front of the figures, behind the varied values.
-pub const BEFORE: [&str; 2] = ["design", "case"];
-/// Headings behind the varied values.
-pub const BETWEEN: [&str; 2] = ["status", "reason"];
-/// Headings behind the figures.
-pub const BEHIND: [&str; 3] = ["warnings", "steps", "wall_s"];
+/// What a table of these rows is about.
+pub fn about(plan: &Plan, survey: &Survey) -> Sweep {
+    let (rows, expected) = (survey.count(), plan.share());
+    let statuses = survey
+        .statuses
+        .iter()
+        .map(|(status, count)| (word(*status).to_owned(), *count));
+    Sweep {
+        case: plan.case.clone(),
+        plan: plan.clone(),
+        complete: rows == expected,
+        rows,
+        missing: expected.saturating_sub(rows),
+        statuses: statuses.collect(),
+        columns: columns(plan, survey),
+    }
+}
 
 /// The table's columns.
 fn columns(plan: &Plan, survey: &Survey) -> Vec<Column> {

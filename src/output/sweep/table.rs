@@ -5,8 +5,8 @@ use std::io::{BufWriter, Write as _};
 
 use serde_json::Value;
 
+use super::TABLE;
 use super::journal::Survey;
-use super::{BEHIND, TABLE};
 use crate::error::Result;
 use crate::output::folder::{ResultFolder, put_whole};
 use crate::output::numbers::shortest;
@@ -42,7 +42,7 @@ pub fn cell(value: &Value) -> String {
 pub fn cells(plan: &Plan, survey: &Survey, row: &Row) -> Vec<String> {
     let found = &row.found;
     let by_name: HashMap<&str, f64> = found.figures.iter().map(|(name, x)| (name.as_str(), *x)).collect();
-    let mut all = Vec::with_capacity(survey.figures.len() + row.values.len() + 4 + BEHIND.len());
+    let mut all = Vec::with_capacity(survey.figures.len() + row.values.len() + 7);
     all.push(row.number.to_string());
     all.push(plan.cases[row.case].name.clone());
     all.extend(row.values.iter().map(cell));
