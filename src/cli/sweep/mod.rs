@@ -17,7 +17,7 @@ use crate::error::{Error, Result};
 use crate::output::folder::ResultFolder;
 use crate::output::kind::Kind;
 use crate::output::report;
-use crate::output::sweep::script::{Scheduler, script};
+use crate::output::sweep::script::{Jobs, Scheduler, script};
 use crate::output::sweep::{self as files, FOLDERS, JOURNAL, Journal, Survey, words};
 use crate::results;
 use crate::results::sweep::Plan;
@@ -259,6 +259,24 @@ fn print_script(asked: &SweepArguments, plan: &Plan, scheduler: Script) -> Resul
         Script::Parallel => Scheduler::Parallel,
     };
     let out = asked.place.folder(&plan.case, Kind::Designs);
-    super::print(&script(plan, scheduler, asked.shards, asked.jobs, &program, &out))?;
+    let more = [
+        (asked.lean, "--lean"),
+        (asked.keep_cases, "--keep-cases"),
+        (asked.keep_folders, "--keep-folders"),
+    ];
+    let more: Vec<&str> = more
+        .into_iter()
+        .filter(|(asked, _)| *asked)
+        .map(|(_, word)| word)
+        .collect();
+    let jobs = Jobs {
+        shards: asked.shards,
+        at_once: asked.jobs,
+        program: &program,
+        out: &out,
+        more: &more,
+        lean: asked.lean,
+    };
+    super::print(&script(plan, scheduler, &jobs))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -14,20 +14,37 @@ pub enum Scheduler {
     Parallel,
 }
 
-/// The script for so many shards; `program` is what computes them, results go into folders named like `out`.
-pub fn script(
-    plan: &Plan,
-    scheduler: Scheduler,
-    shards: usize,
-    jobs: Option<usize>,
-    program: &Path,
-    out: &Path,
-) -> String {
-    let program = quoted(&program.display().to_string());
-    let options: Vec<String> = plan.options().iter().map(|word| quoted(word)).collect();
+/// What jobs are told besides the plan.
+#[derive(Clone, Copy, Debug)]
+pub struct Jobs<'a> {
+    /// Shards.
+    pub shards: usize,
+    /// Designs at once in each of them, or shards at once.
+    pub at_once: Option<usize>,
+    /// What computes them.
+    pub program: &'a Path,
+    /// Results go into folders named like this.
+    pub out: &'a Path,
+    /// Options that change no row.
+    pub more: &'a [&'a str],
+    /// Whether the whole is to be lean.
+    pub lean: bool,
+}
+
+/// The script.
+pub fn script(plan: &Plan, scheduler: Scheduler, told: &Jobs) -> String {
+    let program = quoted(&told.program.display().to_string());
+    let more = told.more.iter().map(|word| (*word).to_owned());
+    let options: Vec<String> = plan
+        .options()
+        .into_iter()
+        .chain(more)
+        .map(|word| quoted(&word))
+        .collect();
     let options = options.join(" ");
-    let out = quoted(&out.display().to_string());
-    let merge = format!("\"$slcbeam\" merge {out}-shard-* --out {out}");
+    let (out, shards, jobs) = (quoted(&told.out.display().to_string()), told.shards, told.at_once);
+    let lean = if told.lean { " --lean" } else { "" };
+    let merge = format!("\"$slcbeam\" merge {out}-shard-*{lean} --out {out}");
     let sweep = |shard: &str, jobs: &str| {
         format!(
             "\"$slcbeam\" sweep {options} --quiet --jobs {jobs} \\\n    --shard \"{shard}/{shards}\" --out {out}-shard-\"{shard}\""
