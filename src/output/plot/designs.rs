@@ -7,7 +7,7 @@ use super::colour::{Colour, PALETTE, of_time};
 use super::extent;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
-use crate::output::numbers::{quantity, significant};
+use crate::output::numbers::{count, quantity, significant};
 
 /// One number of every design.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +39,18 @@ pub struct Drawn {
     pub curves: Vec<String>,
     /// Whether designs of a curve follow each other.
     pub joined: bool,
+    /// Designs that there are; the first of them are drawn.
+    pub of: usize,
+}
+
+impl Drawn {
+    /// What stands below the title.
+    fn about(&self, what: &str) -> String {
+        match self.designs.len() {
+            all if all == self.of => what.into(),
+            some => format!("{what}; the first {} of {}", count(some as u64), count(self.of as u64)),
+        }
+    }
 }
 
 const LEFT: f64 = 100.0;
@@ -87,11 +99,16 @@ pub fn along(data: &Drawn) -> Option<String> {
     let x = data.varied.first()?;
     let scale = x.scale(7)?;
     let xs = x.on_axis();
-    let count = data.figures.len() as f64;
-    let height = TOP + count * HEIGHT + (count - 1.0) * GAP + 52.0 + 18.0 * legend_rows(data);
-    (count > 0.0).then(|| {
+    let panels = data.figures.len() as f64;
+    let height = TOP + panels * HEIGHT + (panels - 1.0) * GAP + 52.0 + 18.0 * legend_rows(data);
+    (panels > 0.0).then(|| {
         picture(LEFT + WIDTH + 30.0, height, |canvas| {
-            title(canvas, 16.0, &data.case, "a ring a design, its number beside it");
+            title(
+                canvas,
+                16.0,
+                &data.case,
+                &data.about("a ring a design, its number beside it"),
+            );
             for (k, figure) in data.figures.iter().enumerate() {
                 let place = Place::new(LEFT, TOP + k as f64 * (HEIGHT + GAP), WIDTH, HEIGHT);
                 let Some(y) = figure.scale(5) else { continue };
@@ -188,7 +205,7 @@ pub fn over_two(data: &Drawn) -> Option<String> {
     let rows = data.figures.len() as f64;
     (rows > 0.0).then(|| {
         picture(LEFT + SIDE + 150.0, TOP + rows * (SIDE + BETWEEN), |canvas| {
-            title(canvas, 16.0, &data.case, "a cell a design");
+            title(canvas, 16.0, &data.case, &data.about("a cell a design"));
             for (k, figure) in data.figures.iter().enumerate() {
                 let Some((low, high)) = extent(figure.values.iter().copied()) else {
                     continue;
@@ -252,7 +269,7 @@ pub fn beside(data: &Drawn) -> Option<String> {
             canvas,
             16.0,
             &data.case,
-            "a line a design, from what is varied to what came out",
+            &data.about("a line a design, from what is varied to what came out"),
         );
         let at = |k: usize, value: f64| {
             let (lo, hi) = ranges[k];
@@ -293,4 +310,41 @@ pub fn beside(data: &Drawn) -> Option<String> {
             canvas.text((ends[0].0, bottom + lower), &short, small.coloured(FAINT_INK));
         }
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: a picture says how many designs it leaves out; without a figure that differs there is none.
+    #[test]
+    fn pictures_say_what_they_leave_out() {
+        let numbers = |name: &str, values: [f64; 2]| Numbers {
+            name: name.into(),
+            unit: "m".into(),
+            logarithmic: name == "/b",
+            values: values.to_vec(),
+        };
+        let mut data = Drawn {
+            case: "case".into(),
+            designs: vec![0, 1],
+            varied: vec![numbers("/a", [1.0, 2.0]), numbers("/b", [1e-3, 1e2])],
+            figures: vec![numbers("tip", [0.5, f64::NAN])],
+            curve: vec![0, 0],
+            curves: vec![String::new()],
+            joined: true,
+            of: 5,
+        };
+        for picture in [along(&data), over_two(&data), beside(&data)] {
+            let picture = picture.expect("a picture");
+            assert!(
+                picture.contains("the first 2 of 5") && !picture.contains("NaN"),
+                "{picture}"
+            );
+        }
+        data.of = 2;
+        assert!(!along(&data).expect("a picture").contains("of 2"));
+        data.figures.clear();
+        assert_eq!((along(&data), over_two(&data), beside(&data)), (None, None, None));
+    }
 }

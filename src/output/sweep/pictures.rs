@@ -63,8 +63,11 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
     let mut varied: Vec<Vec<Option<f64>>> = vec![vec![]; plan.axes.len()];
     let (mut named, mut numbers) = (vec![], vec![]);
     let mut figures: BTreeMap<&str, Vec<f64>> = FIRST.iter().map(|name| (*name, vec![])).collect();
+    let mut of = 0;
     survey.each(|row| {
-        if numbers.len() < DRAWN && row.found.status == Status::Finished {
+        let finished = row.found.status == Status::Finished;
+        of += usize::from(finished);
+        if finished && numbers.len() < DRAWN {
             numbers.push(row.number);
             for (axis, value) in varied.iter_mut().zip(&row.values) {
                 axis.push(numeric(value));
@@ -128,6 +131,7 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
             .collect(),
         joined: numbered.iter().all(|&k| plan.listed(k)),
         designs: numbers,
+        of,
         figures,
         curve,
         curves,
