@@ -1,7 +1,6 @@
 //! Threads, shards, kills, interrupts, jobs.
 
 use std::fs;
-use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -167,23 +166,13 @@ fn an_interrupt_leaves_a_table() {
     assert!(missing > 0);
 }
 
-/// Goal: the script for GNU parallel computes and joins the shards wherever it is there; that of Slurm is one that a shell reads.
+/// Goal: the script for GNU parallel computes and joins the shards; that of Slurm is one that a shell reads, too.
+/// `scripts/install parallel` installs what is needed, `scripts/test` does so by itself.
 #[test]
 fn scripts_are_what_a_shell_reads() {
     let dir = TempDir::new().expect("a folder");
     let vary = format!("{AREA}=log:1e-10:1e-9:5");
     let about = ["--set", "/about=\"it's\"", "--keep-cases"];
-    // what GNU parallel does with these arguments, where it is not there
-    let stand_in = "#!/bin/sh\n[ \"$1 $2 $4\" = '--quote sh :::' ] || exit 1\nscript=$3; shift 4\nfor n; do sh \"$script\" \"$n\" || exit; done\n";
-    let programs = dir.path().join("bin");
-    fs::create_dir(&programs).expect("a folder");
-    let mut paths = std::env::var("PATH").unwrap_or_default();
-    if Command::new("parallel").arg("--version").output().is_err() {
-        let file = programs.join("parallel");
-        fs::write(&file, stand_in).expect("written");
-        fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).expect("a program");
-        paths = format!("{}:{paths}", programs.display());
-    }
     for kind in ["slurm", "parallel"] {
         let out = path(&dir, &format!("out of {kind}"));
         let asked = ["--vary", &vary, "--script", kind, "--shards", "2"];
@@ -193,7 +182,7 @@ fn scripts_are_what_a_shell_reads() {
         fs::write(&script, &said.out).expect("written");
         let run = |task: &str| {
             let mut shell = Command::new("sh");
-            shell.arg(&script).env("PATH", &paths).env("SLURM_ARRAY_TASK_ID", task);
+            shell.arg(&script).env("SLURM_ARRAY_TASK_ID", task);
             let ended = shell.output().expect("a shell");
             assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
         };
