@@ -215,7 +215,7 @@ fn a_fault_of_an_argument_is_shown_in_the_argument() {
     1 | /slover/rtol=1e-3
       | ^^^^^^^^^^^^
       = allowed: $schema, name, about, preset, section, beam, fluid, bladders, tubes, network, loads,
-                 attachments, contacts, surroundings, ends, start, formulation, effects,
+                 attachments, contacts, surroundings, ends, start, formulation, plausibility, effects,
                  effects_tolerance, mesh, time, solver, probes, step_response
       = nearest: did you mean "solver"?
 
