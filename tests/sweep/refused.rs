@@ -50,6 +50,11 @@ fn what_makes_no_sense_is_refused() {
             2,
             "latin:100",
         ),
+        (
+            vec!["--vary", "/time/end_s=0.001,0.002"],
+            2,
+            "without effect, since /time/end_s is varied",
+        ),
         (vec!["--vary", "/beam/lenght_m=0.1"], 3, "E004"),
         (vec!["--vary", "/beam/length_m=0.1,-0.1"], 3, "/beam/length_m"),
         (

@@ -55,6 +55,7 @@ impl Source {
                 (Designs::crossed(texts.len(), &varied, draw, asked.seed)?, specs)
             }
         };
+        overridden(&asked.sets, designs.pointers())?;
         let mut plan = Plan {
             case: String::new(),
             command: asked.command.into(),
@@ -163,6 +164,23 @@ fn alike(cases: &[Listed]) -> Result<()> {
                 "{} and {} both have the name {}; rows are told apart by it",
                 other.file, case.file, case.name
             )));
+        }
+    }
+    Ok(())
+}
+
+/// Whether something that is set is varied as well, so that it would be without effect.
+fn overridden(sets: &[String], varied: &[String]) -> Result<()> {
+    for set in sets {
+        let pointer = set.split_once('=').map_or(set.as_str(), |(pointer, _)| pointer);
+        let of = |varied: &&String| {
+            let rest = pointer.strip_prefix(varied.as_str());
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+        };
+        if let Some(varied) = varied.iter().find(of) {
+            let what =
+                format!("--set {set}: it would be without effect, since {varied} is varied; leave one of them out");
+            return Err(Error::Usage(what));
         }
     }
     Ok(())
