@@ -26,7 +26,8 @@ fn a_job_array_computes_the_table() {
         sbatch --quiet --wait --array=2 job.sh
         \"$SLCBEAM\" merge parts-shard-* --out parts";
     let node = fs::canonicalize("tests/sweep/one-node.sh").expect("a script");
-    let said = Command::new("bash")
+    let said = Command::new("timeout")
+        .args(["120", "bash"])
         .arg(node)
         .args([&path(&dir, "slurm"), "bash", "-c", steps])
         .env("SLCBEAM", env!("CARGO_BIN_EXE_slcbeam"))

@@ -156,19 +156,6 @@ fn name(designs: &Designs, design: &Design, more: usize) {
     ));
 }
 
-/// Whether cases can be told apart by their names.
-fn alike(cases: &[Listed]) -> Result<()> {
-    for (k, case) in cases.iter().enumerate() {
-        if let Some(other) = cases[..k].iter().find(|other| other.name == case.name) {
-            return Err(Error::Usage(format!(
-                "{} and {} both have the name {}; rows are told apart by it",
-                other.file, case.file, case.name
-            )));
-        }
-    }
-    Ok(())
-}
-
 /// Whether something that is set is varied as well, so that it would be without effect.
 fn overridden(sets: &[String], varied: &[String]) -> Result<()> {
     for set in sets {
@@ -181,6 +168,19 @@ fn overridden(sets: &[String], varied: &[String]) -> Result<()> {
             let what =
                 format!("--set {set}: it would be without effect, since {varied} is varied; leave one of them out");
             return Err(Error::Usage(what));
+        }
+    }
+    Ok(())
+}
+
+/// Whether cases can be told apart by their names.
+fn alike(cases: &[Listed]) -> Result<()> {
+    for (k, case) in cases.iter().enumerate() {
+        if let Some(other) = cases[..k].iter().find(|other| other.name == case.name) {
+            return Err(Error::Usage(format!(
+                "{} and {} both have the name {}; rows are told apart by it",
+                other.file, case.file, case.name
+            )));
         }
     }
     Ok(())

@@ -187,6 +187,24 @@ impl Losses {
     }
 }
 
+impl Network {
+    /// Number of a link among the tubes.
+    pub fn tube(&self, link: usize) -> usize {
+        let tubes = self.links[..link].iter().filter(|l| l.kind == LinkKind::Tube);
+        tubes.count()
+    }
+
+    /// The same of every link; what is no tube has that of the next one.
+    pub fn tube_numbers(&self) -> Vec<usize> {
+        let count = |before: &mut usize, link: &Link| {
+            let number = *before;
+            *before += usize::from(link.kind == LinkKind::Tube);
+            Some(number)
+        };
+        self.links.iter().scan(0, count).collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -210,23 +228,5 @@ mod tests {
                 "Re {reynolds}: {slope:e} {difference:e}"
             );
         }
-    }
-}
-
-impl Network {
-    /// Number of a link among the tubes.
-    pub fn tube(&self, link: usize) -> usize {
-        let tubes = self.links[..link].iter().filter(|l| l.kind == LinkKind::Tube);
-        tubes.count()
-    }
-
-    /// The same of every link; what is no tube has that of the next one.
-    pub fn tube_numbers(&self) -> Vec<usize> {
-        let count = |before: &mut usize, link: &Link| {
-            let number = *before;
-            *before += usize::from(link.kind == LinkKind::Tube);
-            Some(number)
-        };
-        self.links.iter().scan(0, count).collect()
     }
 }
