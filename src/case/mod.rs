@@ -35,7 +35,7 @@ mod wording;
 mod written;
 
 pub use ends::{Follower, ResolvedEnd, Rotation, Translation};
-pub use faults::Source;
+pub use faults::{Source, is_below};
 pub use load::{load, parse, text};
 pub use meanings::{Meaning, meanings};
 pub use origins::{Origin, Origins};

@@ -160,11 +160,7 @@ fn name(designs: &Designs, design: &Design, more: usize) {
 fn overridden(sets: &[String], varied: &[String]) -> Result<()> {
     for set in sets {
         let pointer = set.split_once('=').map_or(set.as_str(), |(pointer, _)| pointer);
-        let of = |varied: &&String| {
-            let rest = pointer.strip_prefix(varied.as_str());
-            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
-        };
-        if let Some(varied) = varied.iter().find(of) {
+        if let Some(varied) = varied.iter().find(|varied| case::is_below(pointer, varied)) {
             let what =
                 format!("--set {set}: it would be without effect, since {varied} is varied; leave one of them out");
             return Err(Error::Usage(what));

@@ -202,19 +202,23 @@ impl Axis {
         };
         let map = NetworkCoordinate::of(wet, tube_length);
         let k = fluid.cells_per_bladder;
-        let mut array_of = vec![0; fluid.bladders];
-        for (number, array) in map.arrays.iter().enumerate() {
-            array.iter().for_each(|&bladder| array_of[bladder] = number);
-        }
-        let at = |cell: usize| match self {
+        let at = |array: usize, cell: usize| match self {
             Self::Bladder => bladder_label(cell / k, wet.per_row) as f64,
-            Self::Array => array_of[cell / k] as f64,
+            Self::Array => array as f64,
             _ => {
                 let (start, end) = map.spans[cell / k];
                 start + (end - start) * ((cell % k) as f64 + 0.5) / k as f64
             }
         };
-        cell_order(system, tube_length).into_iter().map(at).collect()
+        let bladders = map
+            .arrays
+            .iter()
+            .enumerate()
+            .flat_map(|(array, all)| all.iter().map(move |&b| (array, b)));
+        bladders
+            .flat_map(|(array, bladder)| fluid.cells_of(bladder).map(move |cell| (array, cell)))
+            .map(|(array, cell)| at(array, cell))
+            .collect()
     }
 }
 

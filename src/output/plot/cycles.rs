@@ -5,7 +5,6 @@ use super::colour::Colour;
 use super::extent;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
-use crate::output::numbers::significant;
 
 /// A quantity along the parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,13 +48,11 @@ pub fn draw(data: &Cycles) -> Option<String> {
     let xs: Vec<f64> = data.parameter.iter().map(|&x| on_axis(x)).collect();
     let (lo, hi) = extent(xs.iter().copied())?;
     let margin = 0.03 * (hi - lo).max(1e-12);
-    let mut x = Scale::exact(lo - margin, hi + margin, "1", 7);
-    if data.logarithmic {
-        let decades = lo.floor() as i32..=hi.ceil() as i32;
-        let marks = decades.flat_map(|n| [1.0, 2.0, 5.0].map(|m| m * 10_f64.powi(n)));
-        let seen = |v: &f64| (x.lo..=x.hi).contains(&v.log10());
-        x.ticks = marks.filter(seen).map(|v| (v.log10(), significant(v, 1))).collect();
-    }
+    let x = if data.logarithmic {
+        Scale::logarithmic((lo, hi), margin, &[1.0, 2.0, 5.0], 7)
+    } else {
+        Scale::exact(lo - margin, hi + margin, "1", 7)
+    };
     let count = data.quantities.len() as f64;
     let height = TOP + count * HEIGHT + (count - 1.0) * GAP + 52.0;
     Some(picture(LEFT + WIDTH + 30.0, height, |canvas| {

@@ -7,7 +7,7 @@ use super::colour::{Colour, PALETTE, of_time};
 use super::extent;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
-use crate::output::numbers::{count, quantity, significant};
+use crate::output::numbers::{count, quantity};
 
 /// One number of every design.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,14 +83,8 @@ impl Numbers {
             return Some(Scale::around(Some((lo, hi)), 0.0, unit, count));
         }
         let margin = 0.04 * (hi - lo).max(0.1);
-        let mut scale = Scale::exact(lo - margin, hi + margin, "1", count);
-        let decades = (hi - lo).ceil();
-        let multiples: &[f64] = if decades > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
-        let marks =
-            (lo.floor() as i32..=hi.ceil() as i32).flat_map(|n| multiples.iter().map(move |m| m * 10_f64.powi(n)));
-        let seen = marks.filter(|v| (scale.lo..=scale.hi).contains(&v.log10()));
-        scale.ticks = seen.map(|v| (v.log10(), significant(v, 1))).collect();
-        Some(scale)
+        let multiples: &[f64] = if hi - lo > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+        Some(Scale::logarithmic((lo, hi), margin, multiples, count))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Round numbers along an axis.
 
-use crate::output::numbers::{pretty_unit, scaled_unit};
+use crate::output::numbers::{pretty_unit, scaled_unit, significant};
 
 /// A linear axis with its ticks.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +34,16 @@ impl Scale {
             ticks: ticks.collect(),
             unit: shown_unit,
         }
+    }
+
+    /// Of logarithms from `lo` to `hi`, with a margin, and ticks at these multiples of powers of ten.
+    pub fn logarithmic((lo, hi): (f64, f64), margin: f64, multiples: &[f64], count: usize) -> Self {
+        let mut scale = Self::exact(lo - margin, hi + margin, "1", count);
+        let decades = lo.floor() as i32..=hi.ceil() as i32;
+        let marks = decades.flat_map(|n| multiples.iter().map(move |m| m * 10_f64.powi(n)));
+        let seen = marks.filter(|v| (scale.lo..=scale.hi).contains(&v.log10()));
+        scale.ticks = seen.map(|v| (v.log10(), significant(v, 1))).collect();
+        scale
     }
 
     /// Around the values, with a margin; at least `floor` wide to either side of their middle, so that round-off of a

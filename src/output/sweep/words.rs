@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::output::numbers::count;
 use crate::results::sweep::Sweep;
 use crate::run::summary::Status;
+use crate::study::sweep::designs::pairs;
 use crate::study::sweep::row::word;
 
 /// Designs without a full result that are told one by one.
@@ -41,12 +42,11 @@ pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
     let mut first = vec![];
     survey.each(|row| {
         if row.found.status != Status::Finished && first.len() < TOLD {
-            let pairs = pointers.iter().zip(&row.values);
-            let values: Vec<String> = pairs.map(|(pointer, value)| format!("{pointer} = {value}")).collect();
+            let values = pairs(&pointers, &row.values);
             let place = if values.is_empty() {
-                String::new()
+                values
             } else {
-                format!(" ({})", values.join(", "))
+                format!(" ({values})")
             };
             let why = row.found.reason.unwrap_or_default();
             first.push(format!(

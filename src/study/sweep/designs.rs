@@ -5,6 +5,7 @@ use serde_json::Value;
 use super::table::Table;
 use super::vary;
 use super::vary::{Draw, Values, Vary};
+use crate::case::is_below;
 use crate::error::{Error, Result};
 use crate::numerics::chance::Chance;
 use crate::numerics::normal::quantile;
@@ -35,10 +36,15 @@ impl Design {
 
     /// In words: `/a = 1, /b = 2`.
     pub fn words(&self, pointers: &[String]) -> String {
-        let pairs = pointers.iter().zip(&self.values);
-        let all: Vec<String> = pairs.map(|(pointer, value)| format!("{pointer} = {value}")).collect();
-        all.join(", ")
+        pairs(pointers, &self.values)
     }
+}
+
+/// Pointers with their values, in words.
+pub fn pairs(pointers: &[String], values: &[Value]) -> String {
+    let pairs = pointers.iter().zip(values);
+    let all: Vec<String> = pairs.map(|(pointer, value)| format!("{pointer} = {value}")).collect();
+    all.join(", ")
 }
 
 /// All designs of a sweep.
@@ -212,8 +218,7 @@ fn apart(option: &str, pointers: &[String]) -> Result<()> {
             if one == other {
                 return Err(Error::Usage(format!("{option}: {one} is varied twice")));
             }
-            let within = |long: &str, short: &str| long.strip_prefix(short).is_some_and(|rest| rest.starts_with('/'));
-            if within(one, other) || within(other, one) {
+            if is_below(one, other) || is_below(other, one) {
                 return Err(Error::Usage(format!(
                     "{option}: {one} and {other} are parts of each other; vary the larger one with whole values"
                 )));
