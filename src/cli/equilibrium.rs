@@ -4,6 +4,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use super::arguments::EquilibriumArguments;
+use super::uncertain::{self, Uncertain};
 use super::{interrupt, line, size, terminal};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
@@ -11,10 +12,12 @@ use crate::error::{Error, Result};
 use crate::output::equilibrium as files;
 use crate::output::kind::Kind;
 use crate::output::report;
+use crate::output::uncertainty as spread;
 use crate::run::equilibrium::{self, Options};
 use crate::run::known;
 use crate::run::record::Control;
 use crate::study::refine::{self, meshes::Meshes};
+use crate::study::sweep::What;
 
 /// Follows the path, writes the folder, prints the table.
 pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
@@ -23,6 +26,18 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let options = options(asked, case, at_s)?;
     let system = equilibrium::system(case, at_s)?;
     let parameters = Parameter::all(case, &asked.sensitivity)?;
+    let usual = at_s == case.time.end_s
+        && options
+            == Options {
+                points: options.points,
+                ..Options::at(at_s)
+            };
+    if !(usual && asked.accuracy.is_none() || asked.uncertain.uncertain.is_empty()) {
+        let what = "--uncertain is about the equilibrium under the loads at the end: it does not go with --at, --via, --load-factor, \
+                    --keep-branch or --accuracy";
+        return Err(Error::Usage(what.into()));
+    }
+    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, What::Equilibrium, asked.quiet)?;
     let mut folder = asked.place.claim(case, Kind::Equilibrium)?;
     let begin = Instant::now();
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
@@ -70,11 +85,18 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         accuracy,
         meshes: meshes.as_ref(),
     };
+    let mut uncertainty = None;
     if !path.states.is_empty() {
         files::write(&mut folder, &found)?;
+        if path.fault.is_none() {
+            uncertainty = uncertain::into(uncertain.as_ref(), &folder)?;
+        }
         report::complete(&folder, case)?;
     }
-    let (text, words) = (|| files::json(&found), || files::words(&found));
+    let (text, words) = (
+        || files::json(&found),
+        || files::words(&found) + &uncertainty.as_ref().map_or(String::new(), spread::words),
+    );
     super::tell(asked.json, folder.dir(), text, words)?;
     match path.fault {
         None => Ok(ExitCode::SUCCESS),

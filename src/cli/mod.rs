@@ -29,6 +29,7 @@ mod study;
 pub mod summary_box;
 mod sweep;
 mod terminal;
+mod uncertain;
 mod verify;
 
 use std::path::Path;

@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::{FloquetArguments, ModesArguments};
+use super::uncertain::{self, Uncertain};
 use super::{line, size, terminal};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
@@ -11,14 +12,21 @@ use crate::error::{Error, Result};
 use crate::output::kind::Kind;
 use crate::output::modes::{self as files, Report};
 use crate::output::report;
+use crate::output::uncertainty as spread;
 use crate::results::modes::About;
 use crate::run::known;
 use crate::run::modes::{self, Plan};
 use crate::study::refine;
+use crate::study::sweep::What;
 
 /// Finds the modes, writes the folder, prints the table and what follows from it.
 pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     if asked.map.map.is_some() {
+        if !asked.uncertain.uncertain.is_empty() {
+            return Err(Error::Usage(
+                "--uncertain is about single modes, not about a --map".into(),
+            ));
+        }
         return super::floquet::floquet(&FloquetArguments {
             case: asked.case.clone(),
             count: asked.count,
@@ -33,6 +41,12 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     let plan = plan(asked)?;
     let case = size::load(&asked.case)?;
     let system = System::new(&case)?;
+    let own = (asked.at, asked.near, asked.accuracy) == (None, None, None);
+    if !(own || asked.uncertain.uncertain.is_empty()) {
+        let what = "--uncertain is about the lowest modes that swing about the start: it does not go with --at, --near or --accuracy";
+        return Err(Error::Usage(what.into()));
+    }
+    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, What::Modes, asked.quiet)?;
     let mut folder = asked.place.claim(&case, Kind::Modes)?;
     if !asked.quiet {
         terminal::tell(&format!("modes of {}", case.name));
@@ -64,8 +78,14 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         known: &known::at_rest(case, &system),
     };
     files::write(&mut folder, &report)?;
+    let uncertainty = uncertain::into(uncertain.as_ref(), &folder)?;
     report::complete(&folder, case)?;
-    let words = || format!("{}\n{}\n", files::table(&report), report.sentences());
+    let words = || {
+        let spread = uncertainty
+            .as_ref()
+            .map_or(String::new(), |found| format!("\n{}", spread::words(found)));
+        format!("{}\n{}\n{spread}", files::table(&report), report.sentences())
+    };
     super::tell(asked.json, folder.dir(), || files::json(&report), words)?;
     Ok(ExitCode::SUCCESS)
 }

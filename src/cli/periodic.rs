@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::PeriodicArguments;
+use super::uncertain::{self, Uncertain};
 use super::{line, size, terminal};
 use crate::case::Case;
 use crate::error::{Error, Result};
@@ -11,6 +12,7 @@ use crate::output::kind::Kind;
 use crate::output::periodic as files;
 use crate::output::recorder::{FolderRecorder, Labels};
 use crate::output::report;
+use crate::output::uncertainty as spread;
 use crate::results;
 use crate::results::cycles::Cycle;
 use crate::run::floquet;
@@ -20,6 +22,7 @@ use crate::run::record::Control;
 use crate::run::summary::Status;
 use crate::study::refine::{self, meshes::Meshes};
 use crate::study::stability::along;
+use crate::study::sweep::What;
 
 /// Multipliers told.
 const COUNT: usize = 6;
@@ -29,6 +32,9 @@ const MOST_VALUES: usize = 10_000;
 /// Finds the cycle or the cycles, writes the folder, prints the words.
 pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
     match &asked.sweep {
+        Some(_) if !asked.uncertain.uncertain.is_empty() => Err(Error::Usage(
+            "--uncertain goes with one cycle, not with --sweep; `slcbeam sweep` draws samples".into(),
+        )),
         Some(_) if asked.periods != 1 => Err(Error::Usage("--periods goes with one cycle, not with --sweep".into())),
         Some(text) => sweep(asked, text),
         None => one(asked),
@@ -44,6 +50,11 @@ fn load(asked: &PeriodicArguments, more: Option<String>) -> Result<Case> {
 
 fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let case = load(asked, None)?;
+    if !(asked.periods == 1 && asked.accuracy.is_none() || asked.uncertain.uncertain.is_empty()) {
+        let what = "--uncertain goes with neither --periods nor --accuracy";
+        return Err(Error::Usage(what.into()));
+    }
+    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, What::Periodic, asked.quiet)?;
     let result = asked.place.claim(&case, Kind::Cycle)?;
     let out = result.dir().to_path_buf();
     let bar = line::line(asked.quiet);
@@ -101,12 +112,19 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     };
     let text = results::text(&told);
     finished.folder().write(files::CYCLE, text.as_bytes())?;
+    let uncertainty = match ended {
+        true => uncertain::into(uncertain.as_ref(), finished.folder())?,
+        false => None,
+    };
     report::write(&out, None)?;
     finished.close()?;
     let words = || {
         let figures = files::figures(&outcome.summary);
         let (search, words) = (files::search(&told.cycle), stability::words(&told));
-        format!("{words}\n{figures}{search}")
+        let spread = uncertainty
+            .as_ref()
+            .map_or(String::new(), |found| format!("\n{}", spread::words(found)));
+        format!("{words}\n{figures}{search}{spread}")
     };
     super::tell(asked.json, &out, || text, words)?;
     Ok(match outcome.fault {

@@ -12,6 +12,7 @@ use serde_json::Value;
 
 use super::arguments::RunArguments;
 use super::progress::Watcher;
+use super::uncertain::{self, Uncertain};
 use super::{interrupt, line, size, summary_box, terminal};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
@@ -24,12 +25,14 @@ use crate::output::kind::Kind;
 use crate::output::recorder::{Finished, FolderRecorder, Hook, Labels};
 use crate::output::report;
 use crate::output::summary;
+use crate::output::uncertainty as files;
 use crate::run::dynamics::{self, Outcome};
 use crate::run::observe::Observer;
 use crate::run::record::{Control, Progress};
 use crate::run::summary::{Status, Summary};
 use crate::run::wall::{Laps, WallTimes};
 use crate::study::compare::changes::changes;
+use crate::study::sweep::What;
 use crate::study::target;
 
 /// Differences between two cases that are told.
@@ -48,6 +51,11 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
         size::run_fits(case, &system, asked.sensitivities.len(), &out)?;
     }
     let parameters = parameters(case, &asked.sensitivities)?;
+    if (asked.accuracy.is_some() || asked.resume) && !asked.uncertain.uncertain.is_empty() {
+        let what = "--uncertain goes with neither --accuracy nor --resume; the mesh and tolerance that an accuracy led to stand in summary.json";
+        return Err(Error::Usage(what.into()));
+    }
+    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, What::Run, asked.quiet)?;
     let way = Way {
         hook: hook(asked),
         lean: asked.lean,
@@ -69,7 +77,11 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
         (None, true) => resume(case, system, &parameters, &out, &way)?,
         (None, false) => record(case, system, &parameters, asked.place.claim(case, Kind::Run)?, &way)?,
     };
-    laps.lap();
+    let mut uncertainty = None;
+    if let (Some(asked), Some(finished), Status::Finished) = (&uncertain, &finished, summary.status) {
+        uncertainty = uncertain::into(Some(asked), finished.folder())?;
+        summary.wall_s.samples = laps.lap();
+    }
     let page = match asked.lean {
         true => Ok(()),
         false => report::write(&out, None).map(|_| ()),
@@ -86,6 +98,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     } else {
         let box_text = summary_box::render(&summary, &out, !asked.lean, terminal::colour_out(), terminal::width());
         super::print_painted(&box_text)?;
+        super::print(&uncertainty.as_ref().map_or(String::new(), files::words))?;
     }
     page?;
     closed?;

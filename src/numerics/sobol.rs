@@ -61,6 +61,11 @@ impl Sobol {
         let set = self.0.iter().enumerate().filter(|(k, _)| (gray >> k) & 1 == 1);
         set.fold(0, |sum, (_, v)| sum ^ v)
     }
+
+    /// A point within 0 and 1, its bits shifted, numbered from 0: the very first of the sequence, a corner of the cube, is left out.
+    pub fn share(&self, number: u32, shift: u32) -> f64 {
+        (f64::from(self.bits(number + 1) ^ shift) + 0.5) / 2_f64.powi(32)
+    }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::folder::{HISTORY, RUN_FILES, SUMMARY, entries, fault, name_of};
+use super::uncertainty::UNCERTAINTY;
 use crate::error::Result;
 
 /// Which command filled a folder.
@@ -81,8 +82,8 @@ impl Kind {
     pub fn files(self) -> Vec<&'static str> {
         let own: &[&str] = match self {
             Self::Run | Self::Cycle => &RUN_FILES,
-            Self::Equilibrium => &["path.csv", "shapes.csv", "path.svg"],
-            Self::Modes => &["modes.csv", "modes.npz", "modes.svg"],
+            Self::Equilibrium => &["path.csv", "shapes.csv", "path.svg", UNCERTAINTY],
+            Self::Modes => &["modes.csv", "modes.npz", "modes.svg", UNCERTAINTY],
             Self::Study => &["study.csv", "study.svg"],
             Self::Effects => &["effects.csv", "effects.svg"],
             Self::Floquet => &["floquet.csv", "floquet.svg"],

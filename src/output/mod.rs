@@ -20,6 +20,7 @@
 //! periodic  cycle.json; sweep.csv, sweep.json, sweep.svg, and their words
 //! study     study.csv, study.json, study.svg, table and sentence
 //! sweep     designs.jsonl, sweep.csv, sweep.npz, sweep.json of many designs, and their words
+//! uncertainty  uncertainty.json, its words and its table
 //! modes     modes.csv, modes.json, modes.npz, modes.svg, table and sentences
 //! report    report.html: a result folder as one page
 //! pictures  from recorded files to the data of each picture
@@ -59,6 +60,7 @@ pub mod stream;
 pub mod study;
 pub mod summary;
 pub mod sweep;
+pub mod uncertainty;
 
 pub use folder::ResultFolder;
 pub use recorder::{FolderRecorder, Hook, Labels};

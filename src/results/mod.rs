@@ -8,6 +8,7 @@
 //! | [`cycles`] | `floquet.json` and `cycle.json`, `map.json`, `sweep.json` |
 //! | [`studies`] | `study.json`, `effects.json`, what `compare --json` prints |
 //! | [`sweep`] | `plan.json` and `sweep.json` of `slcbeam sweep` |
+//! | [`uncertainty`] | `uncertainty.json`, beside the result of any command that has figures |
 //! | [`verify`] | a row of what `verify --json` prints |
 //! | [`provenance`] | what made a result |
 //! | [`ordered`] | numbers by name, in an order of their own |
@@ -23,6 +24,7 @@ pub mod provenance;
 pub mod run;
 pub mod studies;
 pub mod sweep;
+pub mod uncertainty;
 pub mod verify;
 
 use std::io;

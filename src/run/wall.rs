@@ -39,6 +39,9 @@ pub struct WallTimes {
     /// Pictures.
     #[serde(default)]
     pub pictures: f64,
+    /// Samples of uncertain numbers.
+    #[serde(default, skip_serializing_if = "none")]
+    pub samples: f64,
     /// The page.
     #[serde(default)]
     pub report: f64,
@@ -48,6 +51,10 @@ pub struct WallTimes {
     /// None of these.
     #[serde(default)]
     pub other: f64,
+}
+
+fn none(seconds: &f64) -> bool {
+    *seconds == 0.0
 }
 
 impl WallTimes {
@@ -75,7 +82,7 @@ impl WallTimes {
     /// Sets the total [s], and as the rest what no part tells of.
     pub fn close(&mut self, total: f64) {
         self.total = total;
-        self.other = total - self.known() - self.pictures - self.report - self.files;
+        self.other = total - self.known() - self.samples - self.pictures - self.report - self.files;
     }
 
     /// Adds what was done before the run.

@@ -10,4 +10,5 @@ pub mod span;
 pub mod stability;
 pub mod sweep;
 pub mod target;
+pub mod uncertain;
 pub mod verify;

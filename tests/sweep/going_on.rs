@@ -197,3 +197,24 @@ fn scripts_are_what_a_shell_reads() {
         assert!(kept.exists() && !Path::new(&parts[1]).join("report.html").exists());
     }
 }
+
+/// Goal: a design that failed has its row and stays as it is, unless it is to be tried again; then the row that finished counts.
+#[test]
+fn what_failed_is_tried_again_on_request() {
+    let dir = TempDir::new().expect("a folder");
+    let out = path(&dir, "out");
+    let vary = ["--vary", &format!("{AREA}=1e-10,2e-10,3e-10"), "--jobs", "1"];
+    well(&swept(&out, &vary));
+    let whole = table(&out);
+    let journal = dir.path().join("out/designs.jsonl");
+    let text = fs::read_to_string(&journal).expect("rows");
+    let failed = text.replacen("\"finished\",\"reason\":null", "\"failed\",\"reason\":\"E001 once\"", 1);
+    assert_ne!(text, failed);
+    fs::write(&journal, &failed).expect("written");
+    well(&swept(&out, &vary));
+    assert_eq!(rows(&out)[0]["status"], "failed");
+    assert_eq!(fs::read_to_string(&journal).expect("rows"), failed);
+    well(&swept(&out, &[&vary[..], &["--retry"]].concat()));
+    assert_eq!(table(&out), whole);
+    assert_eq!(json(&out, "sweep.json")["statuses"]["finished"], 3);
+}

@@ -1,8 +1,11 @@
 //! What can be asked for.
 
+mod at_rest;
 mod map;
 mod periodic;
+mod run;
 mod sweep;
+mod uncertain;
 
 use std::path::PathBuf;
 
@@ -17,9 +20,12 @@ use super::new::NewArguments;
 use super::place::PlaceArguments;
 use super::report::ReportArguments;
 use super::schema::SchemaArguments;
+pub use at_rest::{EquilibriumArguments, ModesArguments};
 pub use map::MapArguments;
 pub use periodic::PeriodicArguments;
+pub use run::RunArguments;
 pub use sweep::{MergeArguments, Script, SweepArguments};
+pub use uncertain::UncertainArguments;
 
 /// Elastic beams with fluid-filled bladders joined by slender tubes: dynamics with error control.
 #[derive(Debug, Parser)]
@@ -53,7 +59,8 @@ pub enum Command {
     Floquet(FloquetArguments),
     /// Find the steady cycle of a periodically driven case directly, without its transient; or along a parameter
     Periodic(PeriodicArguments),
-    /// Compute many designs on all cores into one table: grids, ranges, samples, cases beside each other
+    /// Compute many designs on all cores into one table: grids, ranges, samples, cases beside each other; the same command goes on
+    /// with what is missing after an interruption
     Sweep(SweepArguments),
     /// Join the shards of a sweep to one table, and name what is lost
     Merge(MergeArguments),
@@ -116,38 +123,6 @@ pub struct CaseArguments {
     pub sets: Vec<String>,
 }
 
-/// `run`.
-#[derive(Debug, Args)]
-pub struct RunArguments {
-    /// The case.
-    #[command(flatten)]
-    pub case: CaseArguments,
-    /// Where its result goes.
-    #[command(flatten)]
-    pub place: PlaceArguments,
-    /// Choose mesh and tolerance so that the estimated relative error of every quantity is below this, such as 0.01
-    #[arg(long, value_name = "REL", conflicts_with = "resume")]
-    pub accuracy: Option<f64>,
-    /// Give derivatives with respect to this number of the case too, repeatable: a JSON pointer, such as /fluid/viscosity_pa_s
-    #[arg(long = "sensitivity", value_name = "POINTER", conflicts_with = "accuracy")]
-    pub sensitivities: Vec<String>,
-    /// Go on from the last checkpoint in the result folder (needs /time/checkpoint_interval_s in the case)
-    #[arg(long, conflicts_with = "force")]
-    pub resume: bool,
-    /// Stop after so many seconds of wall time, with everything so far written
-    #[arg(long, value_name = "SECONDS", value_parser = super::line::duration)]
-    pub max_wall: Option<f64>,
-    /// Leave summary.json, case.json and the arrays of fields.npz alone: no pictures, no page, no tables
-    #[arg(long)]
-    pub lean: bool,
-    /// No progress bar
-    #[arg(long)]
-    pub quiet: bool,
-    /// Print summary.json instead of the summary box
-    #[arg(long)]
-    pub json: bool,
-}
-
 /// `check`.
 #[derive(Debug, Args)]
 pub struct CheckArguments {
@@ -155,45 +130,6 @@ pub struct CheckArguments {
     #[command(flatten)]
     pub case: CaseArguments,
     /// Print as JSON
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// `equilibrium`.
-#[derive(Debug, Args)]
-pub struct EquilibriumArguments {
-    /// The case.
-    #[command(flatten)]
-    pub case: CaseArguments,
-    /// Instant whose loads, end motions, port pressures and valves are the full ones [default: the end of the run]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
-    pub at: Option<f64>,
-    /// Loading in stages: instants whose loads are reached first, one after the other, such as -1 or 0.2,0.5
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
-    pub via: Option<String>,
-    /// Share of these loads at which the path ends, of the last stage where there are several
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
-    pub load_factor: f64,
-    /// Points along the path at least
-    #[arg(long, value_name = "COUNT", default_value_t = 16)]
-    pub points: usize,
-    /// Stay on a path that becomes unstable (a column that stays straight) instead of taking the one that crosses it
-    #[arg(long)]
-    pub keep_branch: bool,
-    /// Differentiate the last state by this number of the case, a JSON pointer such as /bladders/area_per_pressure_m2_per_pa;
-    /// repeatable
-    #[arg(long, value_name = "POINTER")]
-    pub sensitivity: Vec<String>,
-    /// Choose mesh so that the estimated relative error of every number is below this, such as 0.01
-    #[arg(long, value_name = "REL")]
-    pub accuracy: Option<f64>,
-    /// Where its result goes.
-    #[command(flatten)]
-    pub place: PlaceArguments,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
-    /// Print equilibrium.json instead of the table
     #[arg(long)]
     pub json: bool,
 }
@@ -270,42 +206,6 @@ pub struct EffectsArguments {
     #[arg(long)]
     pub quiet: bool,
     /// Print effects.json instead of the table
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// `modes`.
-#[derive(Debug, Args)]
-pub struct ModesArguments {
-    /// The case.
-    #[command(flatten)]
-    pub case: CaseArguments,
-    /// Modes to find; rigid motions and kept volumes come besides
-    #[arg(long, value_name = "COUNT", default_value_t = 12)]
-    pub count: usize,
-    /// Find those nearest this frequency [Hz] [default: the slowest]
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
-    pub near: Option<f64>,
-    /// About the equilibrium under the loads at this instant [s] [default: about the start]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
-    pub at: Option<f64>,
-    /// Differentiate frequencies and growth rates by this number of the case, a JSON pointer such as /beam/young_modulus_pa;
-    /// repeatable
-    #[arg(long, value_name = "POINTER")]
-    pub sensitivity: Vec<String>,
-    /// A map instead: that of `floquet`.
-    #[command(flatten)]
-    pub map: MapArguments,
-    /// Choose mesh so that the estimated relative error of every number is below this, such as 0.01
-    #[arg(long, value_name = "REL", conflicts_with = "map")]
-    pub accuracy: Option<f64>,
-    /// Where its result goes.
-    #[command(flatten)]
-    pub place: PlaceArguments,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
-    /// Print modes.json instead of the table
     #[arg(long)]
     pub json: bool,
 }

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{CaseArguments, PlaceArguments};
+use super::{CaseArguments, PlaceArguments, UncertainArguments};
 
 /// `periodic`.
 #[derive(Debug, Args)]
@@ -20,6 +20,9 @@ pub struct PeriodicArguments {
     /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
     #[arg(long, value_name = "REL", conflicts_with = "sweep")]
     pub accuracy: Option<f64>,
+    /// Uncertain numbers.
+    #[command(flatten)]
+    pub uncertain: UncertainArguments,
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,

@@ -46,8 +46,9 @@ pub struct SweepArguments {
     /// Case files (JSON): one, or several that are compared in every design; - is standard input
     #[arg(required = true, value_name = "CASE")]
     pub cases: Vec<PathBuf>,
-    /// Vary a number of the case, repeatable: a JSON pointer and its values, such as /solver/rtol=1e-4,1e-5, /beam/length_m=lin:0.1:0.2:5,
-    /// /network/permeability_factor=log:0.01:1:25, or drawn: =uniform:LOW:HIGH, =normal:MEAN:SD
+    /// Vary a value of the case, repeatable: a JSON pointer and its values, such as /solver/rtol=1e-4,1e-5, /beam/length_m=lin:0.1:0.2:5,
+    /// /network/permeability_factor=log:0.01:1:25, or drawn: =uniform:LOW:HIGH, =normal:MEAN:SD; texts
+    /// stand in double quotes: '/effects/tube_inertia="on","off"'
     #[arg(long, value_name = "POINTER=SPEC", allow_hyphen_values = true)]
     pub vary: Vec<String>,
     /// Designs from a CSV file: columns are JSON pointers, rows are designs
@@ -68,7 +69,7 @@ pub struct SweepArguments {
     /// Choose mesh and tolerance of every design so that the estimated relative error of every number is below this, such as 0.01
     #[arg(long, value_name = "REL")]
     pub accuracy: Option<f64>,
-    /// Leave out the errors that meshes make of cycles, equilibria and modes: a third of the time
+    /// Leave out the errors that meshes make of cycles, equilibria and modes, which takes a third of the time that it takes with them
     #[arg(long)]
     pub no_mesh_errors: bool,
     /// Designs computed at once [default: one for every core]
@@ -78,7 +79,7 @@ pub struct SweepArguments {
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     pub shard: Option<Shard>,
     /// Print a script that computes the sweep in shards, and compute nothing
-    #[arg(long, value_enum, conflicts_with_all = ["shard", "restart"])]
+    #[arg(long, value_enum, conflicts_with_all = ["shard", "restart", "retry"])]
     pub script: Option<Script>,
     /// Shards of the script
     #[arg(long, value_name = "N", default_value_t = 8, requires = "script")]
@@ -92,6 +93,9 @@ pub struct SweepArguments {
     /// Keep the result folder of every design, designs/NNNNN, of runs
     #[arg(long)]
     pub keep_folders: bool,
+    /// Go on with what is missing, as the same command does in any case, and compute again what did not finish
+    #[arg(long, conflicts_with = "restart")]
+    pub retry: bool,
     /// Begin again where the folder holds another sweep, or a part of this one
     #[arg(long)]
     pub restart: bool,
@@ -112,12 +116,15 @@ pub struct MergeArguments {
     /// Folders of shards
     #[arg(required = true, value_name = "DIR")]
     pub parts: Vec<PathBuf>,
-    /// Where the whole sweep goes.
+    /// Where the whole sweep goes, if not into out/<case name>-sweep.
     #[command(flatten)]
     pub place: PlaceArguments,
     /// Tables alone: no pictures and no page
     #[arg(long)]
     pub lean: bool,
+    /// No progress; merging shows none
+    #[arg(long)]
+    pub quiet: bool,
     /// Print sweep.json instead of the words
     #[arg(long)]
     pub json: bool,

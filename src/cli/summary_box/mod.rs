@@ -315,6 +315,7 @@ fn spent(summary: &Summary) -> Option<String> {
         ("linear solver", w.linear_solver),
         ("rest of steps", w.steps),
         ("watching", w.watching),
+        ("samples", w.samples),
         ("output", w.output + w.pictures + w.report + w.files),
     ];
     let share = |(name, s): (&str, f64)| hold(format!("{name} {:.0} %", 100.0 * s / w.total));

@@ -1,6 +1,6 @@
 //! `slcbeam sweep`: many designs, one table.
 
-mod progress;
+pub mod progress;
 mod source;
 
 use std::collections::BTreeMap;
@@ -41,13 +41,9 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         let what = "--keep-folders keeps those of runs; --keep-cases keeps the case of every design, which the command takes itself";
         return Err(Error::Usage(what.into()));
     }
-    let jobs = asked
-        .jobs
-        .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
-    if !(1..=MOST_AT_ONCE).contains(&jobs) || asked.shards == 0 {
-        return Err(Error::Usage(format!(
-            "--jobs is from 1 to {MOST_AT_ONCE}, --shards 1 or more"
-        )));
+    let jobs = jobs(asked.jobs)?;
+    if asked.shards == 0 {
+        return Err(Error::Usage("--shards: 1 or more".into()));
     }
     if let Some(scheduler) = asked.script {
         return print_script(asked, plan, scheduler);
@@ -67,7 +63,9 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         Some(_) => Survey::of(&journal, plan)?,
         None => Survey::of(&PathBuf::new(), plan)?,
     };
-    let left: Vec<usize> = (0..plan.designs).filter(|n| plan.has(*n) && !done.has(*n)).collect();
+    let left: Vec<usize> = (0..plan.designs)
+        .filter(|n| plan.has(*n) && !(done.has(*n) && (done.finished(*n) || !asked.retry)))
+        .collect();
     let flag = interrupt::flag();
     check(&source, &left, jobs, asked.quiet, &flag)?;
     if before.is_none() {
@@ -105,6 +103,18 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     // a shard may have no designs
     let none = told.rows == 0 && told.missing == 0;
     Ok(ExitCode::from(if finished || stopped || none { 0 } else { 4 }))
+}
+
+/// How many designs are computed at once: as many as asked for, or as there are cores.
+///
+/// # Errors
+/// [`Error::Usage`]: none, or more than is sensible.
+pub fn jobs(asked: Option<usize>) -> Result<usize> {
+    let jobs = asked.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    match (1..=MOST_AT_ONCE).contains(&jobs) {
+        true => Ok(jobs),
+        false => Err(Error::Usage(format!("--jobs {jobs}: from 1 to {MOST_AT_ONCE}"))),
+    }
 }
 
 fn claim(asked: &SweepArguments, source: &Source) -> Result<ResultFolder> {

@@ -9,6 +9,7 @@ use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::kind::Kind;
+use super::uncertainty::UNCERTAINTY;
 use crate::case::Written;
 use crate::error::{Error, Result};
 use crate::results;
@@ -45,7 +46,7 @@ pub const PICTURES: [&str; 4] = ["deflection.svg", "pressure.svg", "history.svg"
 /// How the names of folders begin in which candidates are recorded.
 const CANDIDATE: &str = ".next-";
 /// Files of a run; the summary goes first: without it the rest does not pass for a finished run.
-pub const RUN_FILES: [&str; 11] = [
+pub const RUN_FILES: [&str; 12] = [
     SUMMARY,
     CHECKPOINT,
     CHECKPOINT_BEFORE,
@@ -53,6 +54,7 @@ pub const RUN_FILES: [&str; 11] = [
     HISTORY,
     ENVELOPE,
     SENSITIVITIES,
+    UNCERTAINTY,
     PICTURES[0],
     PICTURES[1],
     PICTURES[2],

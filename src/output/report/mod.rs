@@ -49,8 +49,10 @@ use serde_json::{Map, Value};
 
 use super::folder::{CASE, REPORT, ResultFolder, entries, name_of, open, replace, replace_alike, text_of};
 use super::kind::Kind;
+use super::uncertainty::{self, UNCERTAINTY};
 use crate::case::{self, Case};
 use crate::error::Result;
+use crate::results::uncertainty::Uncertainty;
 use crate::results::{Found, Head, Kept};
 
 /// Bytes beyond which a picture or the text of a case is left to its file.
@@ -96,6 +98,10 @@ fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
         Kind::Sweep => cycles::sweep(&place)?,
         Kind::Designs => designs::data(&place)?,
     };
+    if matches!(kind, Kind::Run | Kind::Cycle | Kind::Equilibrium | Kind::Modes) && place.path(UNCERTAINTY).is_file() {
+        let found = place.result::<Uncertainty>(UNCERTAINTY)?.result;
+        page.put("uncertainty", uncertainty::section(&found));
+    }
     // Whoever sees the page first needs them in words; their numbers alone say little.
     page.put("warnings", warnings::groups(&page.warnings));
     let path = out.map_or_else(|| dir.join(REPORT), Path::to_path_buf);

@@ -75,6 +75,8 @@ pub struct Survey {
     path: PathBuf,
     /// Where the line of each design begins, one more; 0 where there is none.
     begins: Vec<u64>,
+    /// How each ended that has one.
+    ended: Vec<Option<Status>>,
     /// Bytes of whole lines.
     whole: u64,
     /// Names of figures, in the order of the first row that has them.
@@ -85,7 +87,7 @@ pub struct Survey {
 
 impl Survey {
     /// Of a file; of none where there is none. A line that is no row of the plan is passed over; of two rows of a design the first
-    /// counts.
+    /// that finished counts, else the last.
     ///
     /// # Errors
     /// It cannot be read.
@@ -93,6 +95,7 @@ impl Survey {
         let mut found = Self {
             path: path.to_path_buf(),
             begins: vec![0; plan.designs],
+            ended: vec![None; plan.designs],
             ..Self::default()
         };
         if path.exists() {
@@ -121,16 +124,19 @@ impl Survey {
                 continue;
             };
             let fits = row.number < plan.designs && row.case < plan.cases.len() && row.values.len() == plan.axes.len();
-            if !fits || !plan.has(row.number) || self.begins[row.number] > 0 {
+            if !fits || !plan.has(row.number) || self.finished(row.number) {
                 continue;
             }
             self.begins[row.number] = begin + 1;
-            *self.statuses.entry(row.found.status).or_default() += 1;
+            self.ended[row.number] = Some(row.found.status);
             for (place, (name, _)) in row.found.figures.into_iter().enumerate() {
                 let here = (row.number, place);
                 let first = names.entry(name).or_insert(here);
                 *first = here.min(*first);
             }
+        }
+        for status in self.ended.iter().flatten() {
+            *self.statuses.entry(*status).or_default() += 1;
         }
         let mut all: Vec<_> = names.into_iter().collect();
         all.sort_by_key(|(_, place)| *place);
@@ -146,6 +152,11 @@ impl Survey {
     /// Whether a design has a row.
     pub fn has(&self, number: usize) -> bool {
         self.begins.get(number).is_some_and(|begin| *begin > 0)
+    }
+
+    /// Whether a design has a row that tells all.
+    pub fn finished(&self, number: usize) -> bool {
+        self.ended.get(number) == Some(&Some(Status::Finished))
     }
 
     /// Gives every row to `take`, in the order of numbers.

@@ -24,7 +24,7 @@ const MODES: usize = 6;
 /// Multipliers looked at.
 const MULTIPLIERS: usize = 2;
 /// Points on a path of equilibria at least, as the command has them.
-const POINTS: usize = 16;
+pub const POINTS: usize = 16;
 
 /// What is asked of every case.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -248,13 +248,26 @@ fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
     Ok(found)
 }
 
-/// Small motions about the start: the lowest that swing.
-fn small(case: &Case, ask: Ask) -> Result<Found> {
-    let plan = modes::Plan {
+/// Which modes are looked for.
+pub fn modes_plan() -> modes::Plan {
+    modes::Plan {
         count: 2 * MODES,
         near_hz: 0.0,
         limits: false,
-    };
+    }
+}
+
+/// Places of those that swing among modes, the lowest first.
+pub fn lowest(all: &[modes::Mode]) -> Vec<usize> {
+    let mut swinging: Vec<usize> = (0..all.len()).filter(|k| all[*k].kind.swings()).collect();
+    swinging.sort_by(|a, b| all[*a].s.im.total_cmp(&all[*b].s.im));
+    swinging.truncate(MODES);
+    swinging
+}
+
+/// Small motions about the start: the lowest that swing.
+fn small(case: &Case, ask: Ask) -> Result<Found> {
+    let plan = modes_plan();
     let mut of = |case: &Case| numbers::of_modes(case, None, &plan);
     let refined = ask
         .accuracy
@@ -270,9 +283,11 @@ fn small(case: &Case, ask: Ask) -> Result<Found> {
         "stable",
         f64::from(u8::from(!all.modes.iter().any(|mode| mode.kind.grows()))),
     );
-    let mut swinging: Vec<_> = all.modes.iter().filter(|mode| mode.kind.swings()).collect();
-    swinging.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
-    for (k, mode) in swinging.into_iter().take(MODES).enumerate() {
+    for (k, mode) in lowest(&all.modes)
+        .into_iter()
+        .map(|place| &all.modes[place])
+        .enumerate()
+    {
         let name = format!("mode_{}", k + 1);
         let size = mode.s.norm();
         found.put(format!("{name}.frequency_hz"), mode.frequency_hz());

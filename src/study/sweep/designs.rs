@@ -8,7 +8,6 @@ use super::vary::{Draw, Values, Vary};
 use crate::case::is_below;
 use crate::error::{Error, Result};
 use crate::numerics::chance::Chance;
-use crate::numerics::normal::quantile;
 use crate::numerics::sobol::{self, Sobol};
 
 /// Designs at most.
@@ -176,8 +175,7 @@ impl Designs {
                             left /= all.len();
                             value
                         }
-                        Values::Uniform(low, high) => vary::number(low + (high - low) * share(samples, sample)),
-                        Values::Normal(mean, sd) => vary::number(mean + sd * quantile(share(samples, sample))),
+                        drawn => drawn.at(share(samples, sample)).map_or(Value::Null, vary::number),
                     })
                     .collect();
                 values.reverse();
@@ -196,8 +194,7 @@ fn share(samples: &Samples, sample: usize) -> f64 {
             let within = chance.clone().at(sample as u64);
             (f64::from(order[sample]) + within) / order.len() as f64
         }
-        // the first point of the sequence is a corner of the cube
-        Samples::Sobol(sobol, shift) => (f64::from(sobol.bits(sample as u32 + 1) ^ shift) + 0.5) / 2_f64.powi(32),
+        Samples::Sobol(sobol, shift) => sobol.share(sample as u32, *shift),
     }
 }
 
@@ -231,6 +228,7 @@ fn apart(option: &str, pointers: &[String]) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::normal::quantile;
 
     fn varied(all: &[&str]) -> Vec<Vary> {
         all.iter().map(|text| Vary::parse(text).expect("values")).collect()

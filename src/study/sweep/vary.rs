@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::error::{Error, Result};
+use crate::numerics::normal::quantile;
 
 /// Values of one axis at most.
 pub const MOST_VALUES: usize = 1_000_000;
@@ -92,7 +93,15 @@ impl Vary {
     /// # Errors
     /// [`Error::Usage`] with what is wanted.
     pub fn parse(text: &str) -> Result<Self> {
-        let wrong = |what: String| Error::Usage(format!("--vary '{text}': {what}"));
+        Self::parse_as("--vary", text)
+    }
+
+    /// The same for another option than `--vary`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with what is wanted.
+    pub fn parse_as(option: &str, text: &str) -> Result<Self> {
+        let wrong = |what: String| Error::Usage(format!("{option} '{text}': {what}"));
         let (pointer, spec) = text
             .split_once('=')
             .ok_or_else(|| wrong("a JSON pointer and its values are wanted, such as /solver/rtol=1e-4,1e-5".into()))?;
@@ -124,6 +133,24 @@ pub fn check_pointer(pointer: &str) -> std::result::Result<(), String> {
 }
 
 impl Values {
+    /// The value below which a share of a distribution lies; nothing of a list.
+    pub fn at(&self, share: f64) -> Option<f64> {
+        match self {
+            Self::Listed(_) => None,
+            Self::Uniform(low, high) => Some(low + (high - low) * share),
+            Self::Normal(mean, sd) => Some(mean + sd * quantile(share)),
+        }
+    }
+
+    /// Mean and standard deviation of a distribution; nothing of a list.
+    pub fn moments(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Listed(_) => None,
+            Self::Uniform(low, high) => Some([0.5 * (low + high), (high - low) / 12_f64.sqrt()]),
+            Self::Normal(mean, sd) => Some([*mean, *sd]),
+        }
+    }
+
     fn parse(spec: &str) -> std::result::Result<Self, String> {
         let (kind, rest) = spec.split_once(':').unwrap_or((spec, ""));
         match kind {

@@ -7,6 +7,15 @@ function showCell() {
   body.append(el("div", { class: "grid4" }, ...data.cell.map(pictureCard)));
 }
 
+/** What uncertain numbers leave open of the figures. */
+function showUncertainty() {
+  const part = data.uncertainty;
+  if (!part) return;
+  const body = section("uncertainty", "How sure the figures are", part.about);
+  for (const note of part.notes) body.append(el("p", { class: "answer", text: note }));
+  for (const table of part.tables) body.append(tableCard(table));
+}
+
 /** The drawing with its words; `tell` gives the words of a bladder. */
 function showScene(tell) {
   const scene = data.scene;

@@ -10,6 +10,7 @@ showTiles(main);
 showRemarks(main);
 const SHOWN = { run: showRun, equilibrium: showPath, modes: showModes };
 (SHOWN[data.kind] || showMany)();
+showUncertainty();
 showCell();
 showEffects();
 showWork();

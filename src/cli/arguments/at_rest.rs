@@ -1,0 +1,86 @@
+//! What `equilibrium` and `modes` can be asked for.
+
+use clap::Args;
+
+use super::{CaseArguments, MapArguments, PlaceArguments, UncertainArguments};
+
+/// `equilibrium`.
+#[derive(Debug, Args)]
+pub struct EquilibriumArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Instant whose loads, end motions, port pressures and valves are the full ones [default: the end of the run]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub at: Option<f64>,
+    /// Loading in stages: instants whose loads are reached first, one after the other, such as -1 or 0.2,0.5
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub via: Option<String>,
+    /// Share of these loads at which the path ends, of the last stage where there are several
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub load_factor: f64,
+    /// Points along the path at least
+    #[arg(long, value_name = "COUNT", default_value_t = 16)]
+    pub points: usize,
+    /// Stay on a path that becomes unstable (a column that stays straight) instead of taking the one that crosses it
+    #[arg(long)]
+    pub keep_branch: bool,
+    /// Differentiate the last state by this number of the case, a JSON pointer such as /bladders/area_per_pressure_m2_per_pa;
+    /// repeatable
+    #[arg(long, value_name = "POINTER")]
+    pub sensitivity: Vec<String>,
+    /// Choose mesh so that the estimated relative error of every number is below this, such as 0.01
+    #[arg(long, value_name = "REL")]
+    pub accuracy: Option<f64>,
+    /// Uncertain numbers.
+    #[command(flatten)]
+    pub uncertain: UncertainArguments,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print equilibrium.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `modes`.
+#[derive(Debug, Args)]
+pub struct ModesArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Modes to find; rigid motions and kept volumes come besides
+    #[arg(long, value_name = "COUNT", default_value_t = 12)]
+    pub count: usize,
+    /// Find those nearest this frequency [Hz] [default: the slowest]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub near: Option<f64>,
+    /// About the equilibrium under the loads at this instant [s] [default: about the start]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub at: Option<f64>,
+    /// Differentiate frequencies and growth rates by this number of the case, a JSON pointer such as /beam/young_modulus_pa;
+    /// repeatable
+    #[arg(long, value_name = "POINTER")]
+    pub sensitivity: Vec<String>,
+    /// A map instead: that of `floquet`.
+    #[command(flatten)]
+    pub map: MapArguments,
+    /// Choose mesh so that the estimated relative error of every number is below this, such as 0.01
+    #[arg(long, value_name = "REL", conflicts_with = "map")]
+    pub accuracy: Option<f64>,
+    /// Uncertain numbers.
+    #[command(flatten)]
+    pub uncertain: UncertainArguments,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print modes.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}

@@ -1,0 +1,40 @@
+//! What `run` can be asked for.
+
+use clap::Args;
+
+use super::{CaseArguments, PlaceArguments, UncertainArguments};
+
+/// `run`.
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Uncertain numbers.
+    #[command(flatten)]
+    pub uncertain: UncertainArguments,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
+    /// Choose mesh and tolerance so that the estimated relative error of every quantity is below this, such as 0.01
+    #[arg(long, value_name = "REL", conflicts_with = "resume")]
+    pub accuracy: Option<f64>,
+    /// Give derivatives with respect to this number of the case too, repeatable: a JSON pointer, such as /fluid/viscosity_pa_s
+    #[arg(long = "sensitivity", value_name = "POINTER", conflicts_with = "accuracy")]
+    pub sensitivities: Vec<String>,
+    /// Go on from the last checkpoint in the result folder (needs /time/checkpoint_interval_s in the case)
+    #[arg(long, conflicts_with = "force")]
+    pub resume: bool,
+    /// Stop after so many seconds of wall time, with everything so far written
+    #[arg(long, value_name = "SECONDS", value_parser = crate::cli::line::duration)]
+    pub max_wall: Option<f64>,
+    /// Leave summary.json, case.json and the arrays of fields.npz alone: no pictures, no page, no tables
+    #[arg(long)]
+    pub lean: bool,
+    /// No progress bar
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print summary.json instead of the summary box
+    #[arg(long)]
+    pub json: bool,
+}

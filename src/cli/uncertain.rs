@@ -1,0 +1,221 @@
+//! `--uncertain`: what uncertain numbers leave open of the figures of a command.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use super::arguments::{CaseArguments, UncertainArguments};
+use super::sweep::progress::Counter;
+use super::{interrupt, size, sweep, terminal};
+use crate::case::{self, Case};
+use crate::error::{Error, Result};
+use crate::output::ResultFolder;
+use crate::output::uncertainty as files;
+use crate::results::uncertainty::Uncertainty;
+use crate::run::summary::Status;
+use crate::study::sweep::row::Found;
+use crate::study::sweep::{Ask, Vary, What, compute, pool};
+use crate::study::uncertain::{self, Plan, Slopes};
+
+/// Step of a difference over the standard deviation.
+const STEP: f64 = 0.1;
+
+/// What was asked, its samples looked at.
+pub struct Uncertain {
+    plan: Plan,
+    path: PathBuf,
+    text: String,
+    sets: Vec<String>,
+    /// The case itself.
+    own: Case,
+    what: What,
+    jobs: usize,
+    quiet: bool,
+    flag: Arc<AtomicBool>,
+}
+
+impl Uncertain {
+    /// Looks at every sample before anything is computed; nothing where no number is uncertain.
+    ///
+    /// # Errors
+    /// What does not go together; a sample that is no case.
+    pub fn new(asked: &UncertainArguments, case: &CaseArguments, what: What, quiet: bool) -> Result<Option<Self>> {
+        if asked.uncertain.is_empty() {
+            return Ok(None);
+        }
+        if case.case == Path::new("-") {
+            let what = "--uncertain: the case is read again for every sample; name its file in place of -";
+            return Err(Error::Usage(what.into()));
+        }
+        let read = |text: &String| Vary::parse_as("--uncertain", text);
+        let inputs = asked.uncertain.iter().map(read).collect::<Result<Vec<_>>>()?;
+        let pointers: Vec<String> = inputs.iter().map(|one| one.pointer.clone()).collect();
+        let sets = case.sets.clone();
+        let plan = Plan::new(inputs, asked.samples, asked.seed, asked.indices)?;
+        let jobs = sweep::jobs(asked.jobs)?;
+        let text = case::text(&case.case)?;
+        let one = Self {
+            own: parse(&case.case, &text, &sets)?,
+            plan,
+            path: case.case.clone(),
+            text,
+            sets,
+            what,
+            jobs,
+            quiet,
+            flag: interrupt::flag(),
+        };
+        one.check(&pointers)?;
+        Ok(Some(one))
+    }
+
+    fn case(&self, sets: Vec<String>) -> Result<Case> {
+        let sets: Vec<String> = self.sets.iter().cloned().chain(sets).collect();
+        parse(&self.path, &self.text, &sets)
+    }
+
+    fn check(&self, pointers: &[String]) -> Result<()> {
+        let mut fault = None;
+        let all: Vec<usize> = (0..self.plan.count()).collect();
+        let look = |number: usize| {
+            let case = self.case(self.plan.sets(number))?;
+            size::fits(&case, 0, self.jobs)?;
+            compute::check(&case, self.what)
+        };
+        pool::each(
+            &all,
+            self.jobs,
+            &|number| (!interrupt::raised(&self.flag)).then(|| (number, look(number).err())),
+            &mut |(number, found)| {
+                if let Some(found) = found
+                    && fault.as_ref().is_none_or(|(other, _)| number < *other)
+                {
+                    fault = Some((number, found));
+                }
+                Ok(())
+            },
+        )?;
+        match fault {
+            None => Ok(()),
+            Some((number, fault)) => {
+                let values = pointers.iter().zip(self.plan.values(number));
+                let values: Vec<String> = values.map(|(pointer, value)| format!("{pointer} = {value}")).collect();
+                terminal::tell(&format!(
+                    "slcbeam: sample {number} of {} ({}) cannot be computed, so that the distribution reaches where the model does not; \
+                     nothing was begun",
+                    all.len(),
+                    values.join(", ")
+                ));
+                Err(fault)
+            }
+        }
+    }
+
+    /// Computes all samples; nothing where it was interrupted.
+    ///
+    /// # Errors
+    /// The case itself cannot be computed.
+    pub fn compute(&self) -> Result<Option<Uncertainty>> {
+        let stop = || interrupt::raised(&self.flag);
+        let found = |case: &Case, meshes: bool| {
+            let ask = Ask {
+                what: self.what,
+                accuracy: None,
+                meshes,
+            };
+            compute::found(case, ask, &stop, &|case| compute::run(case, None, &stop))
+        };
+        let Some(own) = found(&self.own, true) else {
+            return Ok(None);
+        };
+        let mut counter = Counter::new(self.quiet, "samples done", self.plan.count());
+        let all: Vec<usize> = (0..self.plan.count()).collect();
+        let mut samples: Vec<Option<Found>> = vec![None; all.len()];
+        let work = |number: usize| {
+            if stop() {
+                return None;
+            }
+            let of = match self.case(self.plan.sets(number)) {
+                Ok(case) => found(&case, false)?,
+                Err(error) => Found::failed(&error),
+            };
+            Some((number, of))
+        };
+        pool::each(&all, self.jobs, &work, &mut |(number, found)| {
+            counter.one(found.status != Status::Finished);
+            samples[number] = Some(found);
+            Ok(())
+        })?;
+        let Some(samples) = samples.into_iter().collect::<Option<Vec<_>>>() else {
+            return Ok(None);
+        };
+        let resolved = serde_json::to_value(self.own.resolved()).unwrap_or_default();
+        let own_values: Vec<Option<f64>> = self
+            .plan
+            .inputs()
+            .iter()
+            .map(|one| resolved.pointer(&one.pointer)?.as_f64())
+            .collect();
+        let names = [self.own.name.as_str(), self.what.word()];
+        Ok(Some(uncertain::judge(
+            names,
+            &self.plan,
+            &own,
+            &own_values,
+            &samples,
+            self.slopes(),
+        )))
+    }
+
+    /// Derivatives about the means; of cycles, which have none of their own, by differences over two of them.
+    fn slopes(&self) -> Slopes {
+        let stop = || interrupt::raised(&self.flag);
+        let means = match self.case(self.plan.sets_at(|one| one[0])) {
+            Ok(means) => means,
+            Err(error) => return Err(format!("the case about the means: {error}")),
+        };
+        let pointers: Vec<String> = self.plan.inputs().iter().map(|one| one.pointer.clone()).collect();
+        let difference = |number: usize| {
+            let beside = |sign: f64| {
+                let mut k = 0;
+                let sets = self.plan.sets_at(|[mean, sd]| {
+                    k += 1;
+                    if k - 1 == number { mean + sign * STEP * sd } else { mean }
+                });
+                let ask = Ask {
+                    what: self.what,
+                    accuracy: None,
+                    meshes: false,
+                };
+                let case = self.case(sets).ok()?;
+                let found = compute::found(&case, ask, &stop, &|case| compute::run(case, None, &stop))?;
+                (found.status == Status::Finished).then_some(found)
+            };
+            let (above, below) = (beside(1.0)?, beside(-1.0)?);
+            let step = 2.0 * STEP * self.plan.inputs()[number].values.moments()?[1];
+            let slope = |(name, x): &(String, f64)| Some((name.clone(), (x - below.figure(name)?) / step));
+            Some(above.figures.iter().filter_map(slope).collect())
+        };
+        uncertain::slopes(&means, self.what, &pointers, &stop, &difference)
+    }
+}
+
+fn parse(path: &Path, text: &str, sets: &[String]) -> Result<Case> {
+    case::parse(text, path, path.parent().unwrap_or(Path::new("")), sets)
+}
+
+/// Computes what was asked, where something was, and writes it into a folder.
+///
+/// # Errors
+/// The case itself cannot be computed, the file cannot be written.
+pub fn into(asked: Option<&Uncertain>, folder: &ResultFolder) -> Result<Option<Uncertainty>> {
+    let Some(asked) = asked else {
+        return Ok(None);
+    };
+    let found = asked.compute()?;
+    match &found {
+        Some(found) => files::write(folder, found)?,
+        None => terminal::tell("slcbeam: interrupted; there is no uncertainty"),
+    }
+    Ok(found)
+}

@@ -1,0 +1,204 @@
+//! `uncertainty.json` beside the result of any command that has figures, in words and as a table.
+
+use serde_json::{Value, json};
+
+use super::columns::aligned;
+use super::folder::ResultFolder;
+use super::numbers::{count, percent, significant};
+use crate::error::Result;
+use crate::results;
+use crate::results::uncertainty::{Input, Spread, Uncertainty};
+
+/// The file.
+pub const UNCERTAINTY: &str = "uncertainty.json";
+
+/// Writes it into a folder.
+///
+/// # Errors
+/// It cannot be written.
+pub fn write(folder: &ResultFolder, found: &Uncertainty) -> Result<()> {
+    folder.write(UNCERTAINTY, results::text(found).as_bytes()).map(|_| ())
+}
+
+/// What is told of each figure.
+const HEADINGS: [&str; 7] = [
+    "figure",
+    "value",
+    "numerical error",
+    "sd, first order",
+    "sd, samples",
+    "95 % of samples",
+    "mostly by",
+];
+
+/// Figures of a quantity of which one is told, the first that there is; the file has the others.
+const TOLD: [&str; 5] = ["max_abs", "mean", "frequency_hz", "window", "final"];
+
+/// A table of one figure of each quantity that spreads, and what to know of them.
+pub fn words(found: &Uncertainty) -> String {
+    let mut lines = vec![HEADINGS.map(String::from).to_vec()];
+    let told = found.figures.iter().filter(|(name, one)| {
+        let first = name.rsplit_once('.').is_none_or(|(quantity, own)| {
+            let there = |figure: &&&str| found.figures.contains_key(&format!("{quantity}.{figure}"));
+            TOLD.iter().find(there).is_none_or(|first| *first == own)
+        });
+        first && one.sd > 0.0
+    });
+    lines.extend(told.map(|(name, one)| row(name, one, &found.inputs).to_vec()));
+    let others = 1 + found.figures.len() - lines.len();
+    let mut text = format!("{}\n{}", about(found), aligned(&lines, &[0, 6]));
+    if others > 0 {
+        text += &format!("and {others} more figures in {UNCERTAINTY}\n");
+    }
+    if let Some(why) = &found.no_first_order {
+        text += &format!("no first order: {why}\n");
+    }
+    for warning in &found.warnings {
+        text += &format!("warning: {warning}\n");
+    }
+    text
+}
+
+/// What the table is of.
+fn about(found: &Uncertainty) -> String {
+    let inputs: Vec<String> = found
+        .inputs
+        .iter()
+        .map(|one| format!("{} = {}", one.pointer, one.distribution))
+        .collect();
+    let finished = match found.samples - found.finished {
+        0 => String::new(),
+        lost => format!(", {} of which did not finish", count(lost as u64)),
+    };
+    format!(
+        "What {} leave{} open, by {} samples{finished} (seed {}):",
+        inputs.join(", "),
+        if inputs.len() == 1 { "s" } else { "" },
+        count(found.samples as u64),
+        found.seed
+    )
+}
+
+/// The cells of a figure.
+fn row(name: &str, one: &Spread, inputs: &[Input]) -> [String; 7] {
+    let size = one.value.abs();
+    // beside a value of 0 nothing is relative
+    let relative = |x: f64| match size {
+        0.0 => significant(x, 2),
+        _ => percent(x / size),
+    };
+    let plus = |x: Option<f64>| x.map_or("–".into(), |x| format!("± {}", relative(x)));
+    [
+        name.into(),
+        significant(one.value, 4),
+        plus(one.numerical_error),
+        plus(one.first_order.as_ref().map(|first| first.sd)),
+        plus(Some(one.sd)),
+        format!("{} … {}", significant(one.low, 4), significant(one.high, 4)),
+        mostly(one, inputs).unwrap_or_default(),
+    ]
+}
+
+/// Whose share in the variance is largest: by Sobol's index with all that it does together with others, else by derivatives.
+fn mostly(one: &Spread, inputs: &[Input]) -> Option<String> {
+    if one.sd == 0.0 {
+        return None;
+    }
+    let shares: Vec<f64> = match (&one.indices, &one.first_order) {
+        (Some(indices), _) => indices.iter().map(|index| index.total).collect(),
+        (None, Some(first)) => first.shares.clone(),
+        (None, None) => return None,
+    };
+    let (k, share) = shares.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+    Some(format!("{} {}", inputs.get(k)?.pointer, percent(share.clamp(0.0, 1.0))))
+}
+
+/// The part of a page about it.
+pub fn section(found: &Uncertainty) -> Value {
+    let rows: Vec<_> = found
+        .figures
+        .iter()
+        .map(|(name, one)| row(name, one, &found.inputs))
+        .collect();
+    let mut tables = vec![json!({
+        "title": null,
+        "about": "Standard deviations and the numerical error are relative to the figure of the case itself. To first order: by \
+                  derivatives about the means; by samples: whatever the figure does over what is uncertain.",
+        "headings": HEADINGS, "rows": rows, "file": UNCERTAINTY,
+    })];
+    let indexed = found
+        .figures
+        .iter()
+        .filter_map(|(name, one)| Some((name, one.indices.as_ref()?)));
+    let indices: Vec<[Value; 6]> = indexed
+        .flat_map(|(name, indices)| {
+            found.inputs.iter().zip(indices).map(move |(input, index)| {
+                [
+                    json!(name),
+                    json!(input.pointer),
+                    json!(index.first),
+                    json!(index.first_error),
+                    json!(index.total),
+                    json!(index.total_error),
+                ]
+            })
+        })
+        .collect();
+    if !indices.is_empty() {
+        tables.push(json!({
+            "title": "Whose share",
+            "about": "Sobol's indices: the share of the variance that is of a number alone, and with all that it does together with \
+                      others; each with its standard error.",
+            "headings": ["figure", "number", "alone", "± standard error", "with others", "± standard error"],
+            "rows": indices, "file": null,
+        }));
+    }
+    let no_first_order = found
+        .no_first_order
+        .iter()
+        .map(|why| format!("There is no first order: {why}."));
+    let notes: Vec<String> = no_first_order.chain(found.warnings.iter().cloned()).collect();
+    json!({"about": about(found).trim_end_matches(':'), "tables": tables, "notes": notes})
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::uncertainty::FirstOrder;
+
+    #[test]
+    fn a_figure_is_told_beside_its_errors() {
+        let input = |pointer: &str| Input {
+            pointer: pointer.into(),
+            distribution: "normal:1:0.1".into(),
+            mean: 1.0,
+            sd: 0.1,
+        };
+        let spread = Spread {
+            value: -2.0,
+            numerical_error: Some(0.002),
+            first_order: Some(FirstOrder {
+                sd: 0.1,
+                shares: vec![0.2, 0.8],
+            }),
+            samples: 64,
+            mean: -2.0,
+            sd: 0.11,
+            sd_error: 0.01,
+            low: -2.2,
+            high: -1.8,
+            indices: None,
+        };
+        let told = row("q.final", &spread, &[input("/a"), input("/b")]);
+        let expected = [
+            "q.final",
+            "-2.000",
+            "± 0.100 %",
+            "± 5.00 %",
+            "± 5.50 %",
+            "-2.200 … -1.800",
+            "/b 80.0 %",
+        ];
+        assert_eq!(told.map(|cell| cell.replace('−', "-")), expected);
+    }
+}

@@ -1,0 +1,174 @@
+//! Which values sample number k has.
+//!
+//! ```text
+//! 0 .. N              A: points of Sobol's sequence
+//! N .. 2N             B: points of as many further directions, where indices are asked for
+//! (2+i)N .. (3+i)N    A with the i-th number of B
+//! ```
+
+use crate::error::{Error, Result};
+use crate::numerics::chance::Chance;
+use crate::numerics::sobol::{self, Sobol};
+use crate::study::sweep::designs::Designs;
+use crate::study::sweep::vary::{Draw, Vary};
+
+/// Samples at least: below, a quantile of 2.5 % is none.
+const FEWEST: usize = 16;
+/// Samples at most.
+const MOST: usize = 100_000;
+
+/// What is drawn.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    inputs: Vec<Vary>,
+    samples: usize,
+    seed: u64,
+    indices: bool,
+    /// Directions of the sequence, with the shifts of their bits.
+    directions: Vec<(Sobol, u32)>,
+}
+
+impl Plan {
+    /// So many samples of some numbers.
+    ///
+    /// # Errors
+    /// [`Error::Usage`]: lists of values, numbers within each other, too many of them, too few or too many samples.
+    pub fn new(inputs: Vec<Vary>, samples: usize, seed: u64, indices: bool) -> Result<Self> {
+        let usage = |what: String| Err(Error::Usage(what));
+        if let Some(listed) = inputs.iter().find(|one| !one.drawn()) {
+            return usage(format!(
+                "--uncertain {}={}: a distribution is wanted, uniform:LOW:HIGH or normal:MEAN:SD",
+                listed.pointer, listed.spec
+            ));
+        }
+        if !(FEWEST..=MOST).contains(&samples) {
+            return usage(format!("--samples {samples}: from {FEWEST} to {MOST}"));
+        }
+        let wanted = inputs.len() * if indices { 2 } else { 1 };
+        if wanted > sobol::MOST {
+            let most = sobol::MOST * inputs.len() / wanted;
+            let without = if indices { " with --indices" } else { "" };
+            return usage(format!(
+                "--uncertain: {most} numbers at most{without}, and {} are given",
+                inputs.len()
+            ));
+        }
+        // two of the same number, or one within another
+        Designs::crossed(1, &inputs, Draw::Latin(1), None)?;
+        let direction = |k: usize| (Sobol::along(k), Chance::new(seed, k as u64).bits());
+        Ok(Self {
+            directions: (0..wanted).map(direction).collect(),
+            inputs,
+            samples,
+            seed,
+            indices,
+        })
+    }
+
+    /// What is uncertain.
+    pub fn inputs(&self) -> &[Vary] {
+        &self.inputs
+    }
+
+    /// Samples from which a spread is told.
+    pub fn samples(&self) -> usize {
+        self.samples * if self.indices { 2 } else { 1 }
+    }
+
+    /// Samples of each of the sets that indices compare; nothing where none are asked for.
+    pub fn each(&self) -> Option<usize> {
+        self.indices.then_some(self.samples)
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Cases to compute.
+    pub fn count(&self) -> usize {
+        self.samples * if self.indices { 2 + self.inputs.len() } else { 1 }
+    }
+
+    /// The values of sample number k, below [`Plan::count`], in the order of the inputs.
+    pub fn values(&self, number: usize) -> Vec<f64> {
+        let (set, point) = (number / self.samples, (number % self.samples) as u32);
+        let own = self.inputs.len();
+        let direction = |i: usize| match set {
+            0 => i,
+            1 => own + i,
+            other if other - 2 == i => own + i,
+            _ => i,
+        };
+        let inputs = self.inputs.iter().enumerate();
+        let values = inputs.filter_map(|(i, input)| {
+            let (sobol, shift) = &self.directions[direction(i)];
+            input.values.at(sobol.share(point, *shift))
+        });
+        values.collect()
+    }
+
+    /// Sample number k as arguments of `--set`.
+    pub fn sets(&self, number: usize) -> Vec<String> {
+        self.sets_of(&self.values(number))
+    }
+
+    /// What `value` makes of the mean and the standard deviation of each number in turn, as arguments of `--set`.
+    pub fn sets_at(&self, mut value: impl FnMut([f64; 2]) -> f64) -> Vec<String> {
+        let values = self
+            .inputs
+            .iter()
+            .filter_map(|input| Some(value(input.values.moments()?)));
+        self.sets_of(&values.collect::<Vec<_>>())
+    }
+
+    fn sets_of(&self, values: &[f64]) -> Vec<String> {
+        let pairs = self.inputs.iter().zip(values);
+        pairs
+            .map(|(input, value)| format!("{}={value:?}", input.pointer))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(all: &[&str], samples: usize, indices: bool) -> Result<Plan> {
+        Plan::new(
+            all.iter().map(|text| Vary::parse(text).expect("values")).collect(),
+            samples,
+            1,
+            indices,
+        )
+    }
+
+    #[test]
+    fn sets_differ_in_one_number_alone() {
+        let plan = plan(&["/a=uniform:0:1", "/b=normal:0:1", "/c=uniform:2:3"], 32, true).expect("a plan");
+        assert_eq!((plan.count(), plan.samples(), plan.each()), (5 * 32, 64, Some(32)));
+        for k in 0..32 {
+            let (a, b) = (plan.values(k), plan.values(32 + k));
+            assert!(a.iter().zip(&b).all(|(a, b)| a != b));
+            for i in 0..3 {
+                let mixed = plan.values((2 + i) * 32 + k);
+                assert!((0..3).all(|j| mixed[j] == if i == j { b[j] } else { a[j] }));
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_refused() {
+        let eleven: Vec<String> = (0..11).map(|k| format!("/a{k}=uniform:0:1")).collect();
+        let eleven: Vec<&str> = eleven.iter().map(String::as_str).collect();
+        for (inputs, samples, indices, word) in [
+            (vec!["/a=1,2"], 64, false, "a distribution is wanted"),
+            (vec!["/a=uniform:0:1"], 8, false, "from 16"),
+            (vec!["/a=uniform:0:1", "/a=normal:0:1"], 64, false, "twice"),
+            (eleven, 64, true, "10 numbers at most with --indices"),
+        ] {
+            let why = plan(&inputs, samples, indices).expect_err("refused").to_string();
+            assert!(why.contains(word), "{why}");
+        }
+    }
+}

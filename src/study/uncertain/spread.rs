@@ -1,0 +1,300 @@
+//! What the figures of all samples tell.
+
+use std::collections::BTreeMap;
+
+use super::indices::indices;
+use super::{FirstOrder, Input, Plan, Slopes, Spread, Uncertainty};
+use crate::run::summary::Status;
+use crate::study::sweep::row::{Found, word};
+
+/// Endings of what is told of figures and is none of them.
+const NO_FIGURES: [&str; 6] = ["error", "_at_s", "residual_relative", "_bound", "_bound_hz", "modes"];
+/// The same, whole names.
+const NO_FIGURE: [&str; 3] = ["stable", "period_s", "load_factor"];
+/// Standard errors by which first order and samples may differ.
+const APART: f64 = 3.0;
+/// Part of a spread from which on the numerical error matters.
+const MATTERS: f64 = 1.0 / 3.0;
+/// Distance of a number from its mean, in standard deviations, from which on the case is another than the spread is about.
+const ELSEWHERE: f64 = 0.1;
+/// Spread beside the largest value that is none.
+const ROUND_OFF: f64 = 1e-12;
+/// Figures named in a warning.
+const NAMED: usize = 4;
+
+/// Whether something that was found is a figure, and no error of one.
+pub fn is_figure(name: &str) -> bool {
+    !NO_FIGURES.iter().any(|end| name.ends_with(end)) && !NO_FIGURE.contains(&name)
+}
+
+/// Judges the samples of a case, whose own figures are `own`; of each uncertain number `own_values` has the case's own value, where it
+/// has one. `found` is in the order of the plan.
+pub fn judge(
+    [case, what]: [&str; 2],
+    plan: &Plan,
+    own: &Found,
+    own_values: &[Option<f64>],
+    found: &[Found],
+    slopes: Slopes,
+) -> Uncertainty {
+    let inputs: Vec<Input> = plan
+        .inputs()
+        .iter()
+        .filter_map(|one| {
+            let [mean, sd] = one.values.moments()?;
+            let (pointer, distribution) = (one.pointer.clone(), one.spec.clone());
+            Some(Input {
+                pointer,
+                distribution,
+                mean,
+                sd,
+            })
+        })
+        .collect();
+    let samples = &found[..plan.samples().min(found.len())];
+    let mut unfinished = BTreeMap::new();
+    for one in samples.iter().filter(|one| one.status != Status::Finished) {
+        let why = one.reason.clone().unwrap_or_else(|| word(one.status).into());
+        *unfinished.entry(why).or_default() += 1;
+    }
+    let (slopes, no_first_order) = match slopes {
+        Ok(slopes) => (slopes, None),
+        Err(why) => (BTreeMap::new(), Some(why)),
+    };
+    let figures = own.figures.iter().filter(|(name, _)| is_figure(name));
+    let figures: BTreeMap<String, Spread> = figures
+        .filter_map(|(name, value)| {
+            let values: Vec<f64> = samples.iter().filter_map(|one| of(one, name)).collect();
+            let first_order = slopes.get(name).map(|slopes| first_order(slopes, &inputs));
+            let mut spread = spread(*value, values)?;
+            spread.numerical_error = numerical_error(own, name, *value);
+            spread.first_order = first_order;
+            spread.indices = plan.each().and_then(|n| {
+                let sets = 2 + inputs.len();
+                let row = |k: usize| (0..sets).map(|set| of(found.get(set * n + k)?, name)).collect();
+                let rows: Vec<Vec<f64>> = (0..n).filter_map(row).collect();
+                indices(&rows, inputs.len(), plan.seed())
+            });
+            Some((name.clone(), spread))
+        })
+        .collect();
+    Uncertainty {
+        case: case.into(),
+        command: what.into(),
+        samples: samples.len(),
+        finished: samples.len() - unfinished.values().sum::<usize>(),
+        unfinished,
+        seed: plan.seed(),
+        warnings: warnings(&figures, &inputs, own_values, samples),
+        inputs,
+        figures,
+        no_first_order,
+    }
+}
+
+/// A figure of a sample that finished.
+fn of(found: &Found, name: &str) -> Option<f64> {
+    found.figure(name).filter(|_| found.status == Status::Finished)
+}
+
+/// Estimated error of a figure, absolute: its own, or that of its quantity, which is relative to the largest figure of that.
+fn numerical_error(own: &Found, name: &str, value: f64) -> Option<f64> {
+    if let Some(error) = own.figure(&format!("{name}.error")) {
+        return Some(error * value.abs());
+    }
+    let quantity = name.rsplit_once('.')?.0;
+    let error = own.figure(&format!("{quantity}.error"))?;
+    let of_it = own
+        .figures
+        .iter()
+        .filter(|(other, _)| is_figure(other) && other.rsplit_once('.').is_some_and(|(other, _)| other == quantity));
+    Some(error * of_it.map(|(_, x)| x.abs()).fold(0.0, f64::max))
+}
+
+fn first_order(slopes: &[f64], inputs: &[Input]) -> FirstOrder {
+    let parts: Vec<f64> = slopes
+        .iter()
+        .zip(inputs)
+        .map(|(slope, one)| (slope * one.sd).powi(2))
+        .collect();
+    let variance: f64 = parts.iter().sum();
+    let share = |part: &f64| if variance > 0.0 { part / variance } else { 0.0 };
+    FirstOrder {
+        sd: variance.sqrt(),
+        shares: parts.iter().map(share).collect(),
+    }
+}
+
+/// Moments and quantiles; nothing of fewer than two values.
+fn spread(value: f64, mut all: Vec<f64>) -> Option<Spread> {
+    let n = all.len() as f64;
+    if all.len() < 2 {
+        return None;
+    }
+    all.sort_by(f64::total_cmp);
+    let mean = all.iter().sum::<f64>() / n;
+    let moment = |power: i32| all.iter().map(|x| (x - mean).powi(power)).sum::<f64>();
+    let variance = moment(2) / (n - 1.0);
+    // of the variance: (m4 - (n-3)/(n-1) s^4)/n
+    let of_variance = (moment(4) / n - (n - 3.0) / (n - 1.0) * variance * variance) / n;
+    let largest = all.iter().map(|x| x.abs()).fold(0.0, f64::max);
+    let sd = match variance.sqrt() {
+        sd if sd > ROUND_OFF * largest => sd,
+        _ => 0.0,
+    };
+    let sd_error = if sd > 0.0 {
+        of_variance.max(0.0).sqrt() / (2.0 * sd)
+    } else {
+        0.0
+    };
+    let quantile = |share: f64| {
+        let place = share * (n - 1.0);
+        let k = (place as usize).min(all.len() - 2);
+        all[k] + (place - k as f64) * (all[k + 1] - all[k])
+    };
+    Some(Spread {
+        value,
+        numerical_error: None,
+        first_order: None,
+        samples: all.len(),
+        mean,
+        sd,
+        sd_error,
+        low: quantile(0.025),
+        high: quantile(0.975),
+        indices: None,
+    })
+}
+
+fn warnings(
+    figures: &BTreeMap<String, Spread>,
+    inputs: &[Input],
+    own_values: &[Option<f64>],
+    samples: &[Found],
+) -> Vec<String> {
+    let mut all = vec![];
+    let lost = samples.iter().filter(|one| one.status != Status::Finished).count();
+    if lost > 0 {
+        all.push(format!(
+            "{lost} of {} samples did not finish; spreads are those of the others, and may be too narrow",
+            samples.len()
+        ));
+    }
+    for (input, own) in inputs.iter().zip(own_values) {
+        if let Some(own) = own.filter(|own| (own - input.mean).abs() > ELSEWHERE * input.sd) {
+            all.push(format!(
+                "{} is {own:?} in the case and {:?} in the mean: the case's own figures are not in the middle of the spread",
+                input.pointer, input.mean
+            ));
+        }
+    }
+    let mut named = |which: &dyn Fn(&Spread) -> bool, what: &str| {
+        let names: Vec<&str> = figures
+            .iter()
+            .filter(|(_, one)| which(one))
+            .map(|(name, _)| name.as_str())
+            .collect();
+        let more = match names.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            n => format!(" and {n} more"),
+        };
+        if !names.is_empty() {
+            let told = names[..names.len().min(NAMED)].join(", ");
+            all.push(format!("{told}{more}: {what}"));
+        }
+    };
+    named(
+        &|one| {
+            let first = one.first_order.as_ref();
+            first.is_some_and(|first| (first.sd - one.sd).abs() > APART * one.sd_error.max(1e-3 * one.sd))
+        },
+        "first order and samples differ by more than chance explains; the figure is no straight line over what is uncertain, and the \
+         samples are right",
+    );
+    named(
+        &|one| {
+            one.numerical_error
+                .is_some_and(|error| error > MATTERS * one.sd && one.sd > 0.0)
+        },
+        "the numerical error is not small beside the spread; ask for an accuracy, a finer mesh or a smaller tolerance",
+    );
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::sweep::vary::Vary;
+
+    fn found(q: f64) -> Found {
+        Found {
+            status: Status::Finished,
+            reason: None,
+            steps: None,
+            figures: vec![("q.final".into(), q), ("q.error".into(), 1e-3)],
+            warnings: vec![],
+        }
+    }
+
+    fn plan() -> Plan {
+        let inputs = ["/a=normal:2:0.1", "/b=uniform:0:6"].map(|text| Vary::parse(text).expect("values"));
+        Plan::new(inputs.into(), 256, 1, true).expect("a plan")
+    }
+
+    /// Goal: of a straight line first order and samples agree with the exact spread, 3 sd(a), sd(b) = 6/√12.
+    #[test]
+    fn a_straight_line_spreads_as_its_derivatives_say() {
+        let plan = plan();
+        let q = |x: &[f64]| 3.0 * x[0] + 0.1 * x[1];
+        let all: Vec<Found> = (0..plan.count()).map(|k| found(q(&plan.values(k)))).collect();
+        let slopes = Ok(BTreeMap::from([("q.final".to_owned(), vec![3.0, 0.1])]));
+        let own = found(q(&[2.0, 3.0]));
+        let told = judge(["case", "run"], &plan, &own, &[Some(2.0), None], &all, slopes);
+        assert_eq!(told.warnings, Vec::<String>::new());
+        assert_eq!((told.samples, told.finished), (512, 512));
+        let spread = &told.figures["q.final"];
+        let exact = (0.09 + 0.03_f64).sqrt();
+        let first = spread.first_order.as_ref().expect("first order");
+        assert!((first.sd - exact).abs() < 1e-12 && (first.shares[0] - 0.75).abs() < 1e-12);
+        assert!((spread.sd - exact).abs() < 3.0 * spread.sd_error, "{spread:?}");
+        assert!((spread.numerical_error.expect("an error") - 6.3e-3).abs() < 1e-12);
+        let indices = spread.indices.as_ref().expect("indices");
+        assert!(
+            (indices[0].first - 0.75).abs() < 0.05 && (indices[1].total - 0.25).abs() < 0.05,
+            "{indices:?}"
+        );
+        assert!(told.figures.len() == 1);
+    }
+
+    #[test]
+    fn what_is_no_line_what_is_lost_and_what_is_elsewhere_is_told() {
+        let plan = plan();
+        let mut all: Vec<Found> = (0..plan.count())
+            .map(|k| found((plan.values(k)[1] - 3.0).powi(2)))
+            .collect();
+        all[3] = Found {
+            status: Status::Failed,
+            reason: Some("E041 no".into()),
+            ..found(1e9)
+        };
+        let slopes = Ok(BTreeMap::from([("q.final".to_owned(), vec![0.0, 0.0])]));
+        let told = judge(
+            ["case", "run"],
+            &plan,
+            &found(0.0),
+            &[Some(2.1), Some(3.0)],
+            &all,
+            slopes,
+        );
+        let words = told.warnings.join("\n");
+        for part in [
+            "1 of 512 samples did not finish",
+            "/a is 2.1 in the case and 2.0 in the mean",
+            "no straight line",
+        ] {
+            assert!(words.contains(part), "{words}");
+        }
+        assert_eq!((told.finished, told.unfinished["E041 no"]), (511, 1));
+        assert!(told.figures["q.final"].high < 10.0);
+    }
+}
