@@ -48,7 +48,8 @@ pub fn words(found: &Uncertainty) -> String {
     let others = 1 + found.figures.len() - lines.len();
     let mut text = format!("{}\n{}", about(found), aligned(&lines, &[0, 6]));
     if others > 0 {
-        text += &format!("and {others} more figures in {UNCERTAINTY}\n");
+        let figures = if others == 1 { "figure" } else { "figures" };
+        text += &format!("{others} more {figures} in {UNCERTAINTY}\n");
     }
     if let Some(why) = &found.no_first_order {
         text += &format!("no first order: {why}\n");
