@@ -37,7 +37,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
                     --keep-branch or --accuracy";
         return Err(Error::Usage(what.into()));
     }
-    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, What::Equilibrium, asked.quiet)?;
+    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Equilibrium, asked.quiet)?;
     let mut folder = asked.place.claim(case, Kind::Equilibrium)?;
     let begin = Instant::now();
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;

@@ -12,7 +12,6 @@ use crate::error::{Error, Result};
 use crate::output::kind::Kind;
 use crate::output::modes::{self as files, Report};
 use crate::output::report;
-use crate::output::uncertainty as spread;
 use crate::results::modes::About;
 use crate::run::known;
 use crate::run::modes::{self, Plan};
@@ -46,7 +45,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         let what = "--uncertain is about the lowest modes that swing about the start: it does not go with --at, --near or --accuracy";
         return Err(Error::Usage(what.into()));
     }
-    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, What::Modes, asked.quiet)?;
+    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, &case, What::Modes, asked.quiet)?;
     let mut folder = asked.place.claim(&case, Kind::Modes)?;
     if !asked.quiet {
         terminal::tell(&format!("modes of {}", case.name));
@@ -81,9 +80,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     let uncertainty = uncertain::into(uncertain.as_ref(), &folder)?;
     report::complete(&folder, case)?;
     let words = || {
-        let spread = uncertainty
-            .as_ref()
-            .map_or(String::new(), |found| format!("\n{}", spread::words(found)));
+        let spread = uncertain::below(uncertainty.as_ref());
         format!("{}\n{}\n{spread}", files::table(&report), report.sentences())
     };
     super::tell(asked.json, folder.dir(), || files::json(&report), words)?;

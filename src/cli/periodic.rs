@@ -12,7 +12,6 @@ use crate::output::kind::Kind;
 use crate::output::periodic as files;
 use crate::output::recorder::{FolderRecorder, Labels};
 use crate::output::report;
-use crate::output::uncertainty as spread;
 use crate::results;
 use crate::results::cycles::Cycle;
 use crate::run::floquet;
@@ -54,7 +53,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         let what = "--uncertain goes with neither --periods nor --accuracy";
         return Err(Error::Usage(what.into()));
     }
-    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, What::Periodic, asked.quiet)?;
+    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, &case, What::Periodic, asked.quiet)?;
     let result = asked.place.claim(&case, Kind::Cycle)?;
     let out = result.dir().to_path_buf();
     let bar = line::line(asked.quiet);
@@ -121,9 +120,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let words = || {
         let figures = files::figures(&outcome.summary);
         let (search, words) = (files::search(&told.cycle), stability::words(&told));
-        let spread = uncertainty
-            .as_ref()
-            .map_or(String::new(), |found| format!("\n{}", spread::words(found)));
+        let spread = uncertain::below(uncertainty.as_ref());
         format!("{words}\n{figures}{search}{spread}")
     };
     super::tell(asked.json, &out, || text, words)?;

@@ -55,7 +55,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
         let what = "--uncertain goes with neither --accuracy nor --resume; the mesh and tolerance that an accuracy led to stand in summary.json";
         return Err(Error::Usage(what.into()));
     }
-    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, What::Run, asked.quiet)?;
+    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Run, asked.quiet)?;
     let way = Way {
         hook: hook(asked),
         lean: asked.lean,

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use serde_json::Value;
+
 use super::arguments::{CaseArguments, UncertainArguments};
 use super::sweep::progress::Counter;
 use super::{interrupt, size, sweep, terminal};
@@ -13,6 +15,7 @@ use crate::output::ResultFolder;
 use crate::output::uncertainty as files;
 use crate::results::uncertainty::Uncertainty;
 use crate::run::summary::Status;
+use crate::study::sweep::designs::pairs;
 use crate::study::sweep::row::Found;
 use crate::study::sweep::{Ask, Vary, What, compute, pool};
 use crate::study::uncertain::{self, Plan, Slopes};
@@ -35,80 +38,85 @@ pub struct Uncertain {
 }
 
 impl Uncertain {
-    /// Looks at every sample before anything is computed; nothing where no number is uncertain.
+    /// Looks at every sample of a case before anything is computed; nothing where no number is uncertain.
     ///
     /// # Errors
     /// What does not go together; a sample that is no case.
-    pub fn new(asked: &UncertainArguments, case: &CaseArguments, what: What, quiet: bool) -> Result<Option<Self>> {
+    pub fn new(
+        asked: &UncertainArguments,
+        CaseArguments { case: path, sets }: &CaseArguments,
+        own: &Case,
+        what: What,
+        quiet: bool,
+    ) -> Result<Option<Self>> {
         if asked.uncertain.is_empty() {
             return Ok(None);
         }
-        if case.case == Path::new("-") {
+        if path == Path::new("-") {
             let what = "--uncertain: the case is read again for every sample; name its file in place of -";
             return Err(Error::Usage(what.into()));
         }
         let read = |text: &String| Vary::parse_as("--uncertain", text);
         let inputs = asked.uncertain.iter().map(read).collect::<Result<Vec<_>>>()?;
-        let pointers: Vec<String> = inputs.iter().map(|one| one.pointer.clone()).collect();
-        let sets = case.sets.clone();
-        let plan = Plan::new(inputs, asked.samples, asked.seed, asked.indices)?;
-        let jobs = sweep::jobs(asked.jobs)?;
-        let text = case::text(&case.case)?;
         let one = Self {
-            own: parse(&case.case, &text, &sets)?,
-            plan,
-            path: case.case.clone(),
-            text,
-            sets,
+            plan: Plan::new(inputs, asked.samples, asked.seed, asked.indices)?,
+            jobs: sweep::jobs(asked.jobs)?,
+            text: case::text(path)?,
+            path: path.clone(),
+            sets: sets.clone(),
+            own: own.clone(),
             what,
-            jobs,
             quiet,
             flag: interrupt::flag(),
         };
-        one.check(&pointers)?;
+        one.check()?;
         Ok(Some(one))
     }
 
     fn case(&self, sets: Vec<String>) -> Result<Case> {
         let sets: Vec<String> = self.sets.iter().cloned().chain(sets).collect();
-        parse(&self.path, &self.text, &sets)
+        case::parse(
+            &self.text,
+            &self.path,
+            self.path.parent().unwrap_or(Path::new("")),
+            &sets,
+        )
     }
 
-    fn check(&self, pointers: &[String]) -> Result<()> {
-        let mut fault = None;
+    fn check(&self) -> Result<()> {
         let all: Vec<usize> = (0..self.plan.count()).collect();
         let look = |number: usize| {
             let case = self.case(self.plan.sets(number))?;
             size::fits(&case, 0, self.jobs)?;
             compute::check(&case, self.what)
         };
-        pool::each(
-            &all,
-            self.jobs,
-            &|number| (!interrupt::raised(&self.flag)).then(|| (number, look(number).err())),
-            &mut |(number, found)| {
-                if let Some(found) = found
-                    && fault.as_ref().is_none_or(|(other, _)| number < *other)
-                {
-                    fault = Some((number, found));
-                }
-                Ok(())
-            },
-        )?;
-        match fault {
-            None => Ok(()),
-            Some((number, fault)) => {
-                let values = pointers.iter().zip(self.plan.values(number));
-                let values: Vec<String> = values.map(|(pointer, value)| format!("{pointer} = {value}")).collect();
-                terminal::tell(&format!(
-                    "slcbeam: sample {number} of {} ({}) cannot be computed, so that the distribution reaches where the model does not; \
-                     nothing was begun",
-                    all.len(),
-                    values.join(", ")
-                ));
-                Err(fault)
-            }
-        }
+        let faults = sweep::faults(&all, self.jobs, &self.flag, &look, &mut |_| ())?;
+        let Some((number, fault)) = faults.into_iter().next() else {
+            return Ok(());
+        };
+        let values: Vec<Value> = self.plan.values(number).into_iter().map(Value::from).collect();
+        terminal::tell(&format!(
+            "slcbeam: sample {number} of {} ({}) cannot be computed, so that the distribution reaches where the model does not; \
+             nothing was begun",
+            all.len(),
+            pairs(&self.plan.pointers(), &values)
+        ));
+        Err(fault)
+    }
+
+    fn stopped(&self) -> bool {
+        interrupt::raised(&self.flag)
+    }
+
+    /// The figures of a case, with the errors that meshes make on request; nothing where it was interrupted.
+    fn found(&self, case: &Case, meshes: bool) -> Option<Found> {
+        let ask = Ask {
+            what: self.what,
+            accuracy: None,
+            meshes,
+        };
+        let stop = || self.stopped();
+        compute::found(case, ask, &stop, &|case| compute::run(case, None, &stop))
     }
 
     /// Computes all samples; nothing where it was interrupted.
@@ -116,27 +124,18 @@ impl Uncertain {
     /// # Errors
     /// The case itself cannot be computed.
     pub fn compute(&self) -> Result<Option<Uncertainty>> {
-        let stop = || interrupt::raised(&self.flag);
-        let found = |case: &Case, meshes: bool| {
-            let ask = Ask {
-                what: self.what,
-                accuracy: None,
-                meshes,
-            };
-            compute::found(case, ask, &stop, &|case| compute::run(case, None, &stop))
-        };
-        let Some(own) = found(&self.own, true) else {
+        let Some(own) = self.found(&self.own, true) else {
             return Ok(None);
         };
         let mut counter = Counter::new(self.quiet, "samples done", self.plan.count());
         let all: Vec<usize> = (0..self.plan.count()).collect();
         let mut samples: Vec<Option<Found>> = vec![None; all.len()];
         let work = |number: usize| {
-            if stop() {
+            if self.stopped() {
                 return None;
             }
             let of = match self.case(self.plan.sets(number)) {
-                Ok(case) => found(&case, false)?,
+                Ok(case) => self.found(&case, false)?,
                 Err(error) => Found::failed(&error),
             };
             Some((number, of))
@@ -169,12 +168,10 @@ impl Uncertain {
 
     /// Derivatives about the means; of cycles, which have none of their own, by differences over two of them.
     fn slopes(&self) -> Slopes {
-        let stop = || interrupt::raised(&self.flag);
         let means = match self.case(self.plan.sets_at(|one| one[0])) {
             Ok(means) => means,
             Err(error) => return Err(format!("the case about the means: {error}")),
         };
-        let pointers: Vec<String> = self.plan.inputs().iter().map(|one| one.pointer.clone()).collect();
         let difference = |number: usize| {
             let beside = |sign: f64| {
                 let mut k = 0;
@@ -182,13 +179,7 @@ impl Uncertain {
                     k += 1;
                     if k - 1 == number { mean + sign * STEP * sd } else { mean }
                 });
-                let ask = Ask {
-                    what: self.what,
-                    accuracy: None,
-                    meshes: false,
-                };
-                let case = self.case(sets).ok()?;
-                let found = compute::found(&case, ask, &stop, &|case| compute::run(case, None, &stop))?;
+                let found = self.found(&self.case(sets).ok()?, false)?;
                 (found.status == Status::Finished).then_some(found)
             };
             let (above, below) = (beside(1.0)?, beside(-1.0)?);
@@ -196,12 +187,14 @@ impl Uncertain {
             let slope = |(name, x): &(String, f64)| Some((name.clone(), (x - below.figure(name)?) / step));
             Some(above.figures.iter().filter_map(slope).collect())
         };
-        uncertain::slopes(&means, self.what, &pointers, &stop, &difference)
+        uncertain::slopes(
+            &means,
+            self.what,
+            &self.plan.pointers(),
+            &|| self.stopped(),
+            &difference,
+        )
     }
-}
-
-fn parse(path: &Path, text: &str, sets: &[String]) -> Result<Case> {
-    case::parse(text, path, path.parent().unwrap_or(Path::new("")), sets)
 }
 
 /// Computes what was asked, where something was, and writes it into a folder.
@@ -218,4 +211,9 @@ pub fn into(asked: Option<&Uncertain>, folder: &ResultFolder) -> Result<Option<U
         None => terminal::tell("slcbeam: interrupted; there is no uncertainty"),
     }
     Ok(found)
+}
+
+/// What is told of it below the words of a command.
+pub fn below(found: Option<&Uncertainty>) -> String {
+    found.map_or(String::new(), |found| format!("\n{}", files::words(found)))
 }

@@ -6,7 +6,6 @@ pub mod counted;
 pub mod effects;
 pub mod measure;
 pub mod refine;
-pub mod span;
 pub mod stability;
 pub mod sweep;
 pub mod target;

@@ -132,17 +132,8 @@ fn check(source: &Source, left: &[usize], jobs: usize, quiet: bool, flag: &Atomi
     let every = left.len().div_ceil(CHECKED).max(1);
     let some: Vec<usize> = left.iter().copied().step_by(every).collect();
     let mut counter = Counter::new(quiet, "checked", some.len());
-    let mut faults = BTreeMap::new();
-    pool::each(
-        &some,
-        jobs,
-        &|number| (!interrupt::raised(flag)).then(|| (number, source.check(number, jobs.min(left.len())).err())),
-        &mut |(number, fault)| {
-            counter.one(fault.is_some());
-            fault.map(|fault| faults.insert(number, fault));
-            Ok(())
-        },
-    )?;
+    let look = |number| source.check(number, jobs.min(left.len()));
+    let mut faults = faults(&some, jobs, flag, &look, &mut |faulty| counter.one(faulty))?;
     drop(counter);
     let more = faults.len().saturating_sub(1);
     match faults.pop_first() {
@@ -152,6 +143,31 @@ fn check(source: &Source, left: &[usize], jobs: usize, quiet: bool, flag: &Atomi
             Err(fault)
         }
     }
+}
+
+/// What `look` finds at fault with cases by their numbers, as far as it is not interrupted; `seen` is told of each whether something is.
+///
+/// # Errors
+/// None of its own: those of the pool.
+pub fn faults(
+    numbers: &[usize],
+    jobs: usize,
+    flag: &AtomicBool,
+    look: &(dyn Fn(usize) -> Result<()> + Sync),
+    seen: &mut (dyn FnMut(bool) + Send),
+) -> Result<BTreeMap<usize, Error>> {
+    let mut faults = BTreeMap::new();
+    pool::each(
+        numbers,
+        jobs,
+        &|number| (!interrupt::raised(flag)).then(|| (number, look(number).err())),
+        &mut |(number, fault)| {
+            seen(fault.is_some());
+            fault.map(|fault| faults.insert(number, fault));
+            Ok(())
+        },
+    )?;
+    Ok(faults)
 }
 
 /// Computes designs and keeps their rows; whether it was interrupted.

@@ -98,7 +98,7 @@ fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
         Kind::Sweep => cycles::sweep(&place)?,
         Kind::Designs => designs::data(&place)?,
     };
-    if matches!(kind, Kind::Run | Kind::Cycle | Kind::Equilibrium | Kind::Modes) && place.path(UNCERTAINTY).is_file() {
+    if kind.files().contains(&UNCERTAINTY) && place.path(UNCERTAINTY).is_file() {
         let found = place.result::<Uncertainty>(UNCERTAINTY)?.result;
         page.put("uncertainty", uncertainty::section(&found));
     }

@@ -24,7 +24,7 @@ const MODES: usize = 6;
 /// Multipliers looked at.
 const MULTIPLIERS: usize = 2;
 /// Points on a path of equilibria at least, as the command has them.
-pub const POINTS: usize = 16;
+const POINTS: usize = 16;
 
 /// What is asked of every case.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -198,12 +198,17 @@ fn off(found: &mut Found, by_mesh: &meshes::Meshes, name: &dyn Fn(&str) -> Strin
     found.warn(by_mesh.warning().as_slice());
 }
 
-/// The equilibrium under the loads at the end.
-fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
-    let options = Options {
+/// How the equilibrium under the loads at the end of a case is sought.
+pub fn at_the_end(case: &Case) -> Options {
+    Options {
         points: Some(POINTS),
         ..Options::at(case.time.end_s)
-    };
+    }
+}
+
+/// The equilibrium under the loads at the end.
+fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
+    let options = at_the_end(case);
     let mut of = |case: &Case| numbers::of_equilibrium(case, &options);
     let refined = ask
         .accuracy

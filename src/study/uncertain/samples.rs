@@ -70,6 +70,11 @@ impl Plan {
         &self.inputs
     }
 
+    /// Where these stand in the case.
+    pub fn pointers(&self) -> Vec<String> {
+        self.inputs.iter().map(|input| input.pointer.clone()).collect()
+    }
+
     /// Samples from which a spread is told.
     pub fn samples(&self) -> usize {
         self.samples * if self.indices { 2 } else { 1 }

@@ -15,14 +15,14 @@ use crate::run::equilibrium;
 use crate::run::modes;
 use crate::run::record::{Control, Unrecorded};
 use crate::run::summary::Status;
-use crate::study::sweep::compute::{POINTS, lowest, modes_plan};
+use crate::study::sweep::compute::{at_the_end, lowest, modes_plan};
 use crate::study::sweep::plan::What;
 
 /// Derivatives by figure, each by the numbers in their order; or why there are none.
 pub type Slopes = std::result::Result<BTreeMap<String, Vec<f64>>, String>;
 
-/// Derivatives of the figures of a case by each of its numbers; `none` where it was interrupted. A `difference` is told the number and gives
-/// figures a step of it apart, over the step.
+/// Derivatives of the figures of a case by each of its numbers. `difference` is told which number, and gives differences of figures over a step
+/// of it.
 pub fn slopes(
     case: &Case,
     what: What,
@@ -68,10 +68,7 @@ fn of_run(case: &Case, parameters: &[Parameter], stop: &dyn Fn() -> bool) -> Res
 }
 
 fn at_rest(case: &Case, parameters: &[Parameter], stop: &dyn Fn() -> bool) -> Result<Slopes> {
-    let options = equilibrium::Options {
-        points: Some(POINTS),
-        ..equilibrium::Options::at(case.time.end_s)
-    };
+    let options = at_the_end(case);
     let path = equilibrium::follow(case, &options, &mut |_| match stop() {
         true => Control::Stop("interrupted".into()),
         false => Control::Continue,
