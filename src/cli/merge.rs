@@ -1,5 +1,7 @@
 //! `slcbeam merge`: shards of a sweep joined to one table.
 
+use std::fs;
+use std::path::Path;
 use std::process::ExitCode;
 
 use super::arguments::MergeArguments;
@@ -24,6 +26,13 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
     };
     let plan = first.plan.whole();
     let dir = asked.place.folder(&plan.case, Kind::Designs);
+    if let Some(part) = asked.parts.iter().find(|part| same(part, &dir)) {
+        return Err(Error::Usage(format!(
+            "--out {}: {} is one of the shards, whose rows would be written over; name another folder",
+            dir.display(),
+            part.display()
+        )));
+    }
     let mut folder = ResultFolder::claim(&dir, Kind::Designs, asked.place.force)?;
     match files::plan(&folder)? {
         Some(there) if asked.place.force && plan.difference(&there).is_some() => start(&mut folder, asked, &plan)?,
@@ -63,6 +72,11 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
         ));
     }
     Ok(ExitCode::from(if lost.is_empty() { 0 } else { INCOMPLETE }))
+}
+
+/// Whether two paths lead to one folder.
+fn same(a: &Path, b: &Path) -> bool {
+    matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
 fn start(folder: &mut ResultFolder, asked: &MergeArguments, plan: &Plan) -> Result<()> {

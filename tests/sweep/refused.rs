@@ -55,6 +55,21 @@ fn what_makes_no_sense_is_refused() {
             2,
             "without effect, since /time/end_s is varied",
         ),
+        (
+            vec![
+                "--vary",
+                "/start/pressures/0/pressure_pa=1,2",
+                "--vary",
+                "/start/pressures/00/pressure_pa=5",
+            ],
+            2,
+            "`00` is no place of an array",
+        ),
+        (
+            vec!["--vary", "/solver/rtol=1e-3,1e-5", "--accuracy", "0.05"],
+            2,
+            "so that /solver/rtol would be without effect",
+        ),
         (vec!["--vary", "/beam/lenght_m=0.1"], 3, "E004"),
         (vec!["--vary", "/beam/length_m=0.1,-0.1"], 3, "/beam/length_m"),
         (
@@ -115,4 +130,26 @@ fn folders_of_others_stay() {
     // a sweep is no run, and a run no sweep
     let said = say(&["run", CASE, "--quiet", "--out", &out]);
     assert!(said.code == 5 && said.err.contains("slcbeam sweep"), "{}", said.err);
+}
+
+/// Goal: a part is not written over by the whole that is made of it, not even by force.
+#[test]
+fn a_part_is_no_place_for_the_whole() {
+    let dir = TempDir::new().expect("a folder");
+    let parts = ["1", "2"].map(|k| path(&dir, k));
+    for (part, shard) in parts.iter().zip(["1/2", "2/2"]) {
+        well(&swept(
+            part,
+            &["--vary", &format!("{AREA}=1e-10,2e-10,3e-10"), "--shard", shard],
+        ));
+    }
+    let before = table(&parts[0]);
+    let said = say(&["merge", &parts[0], &parts[1], "--out", &parts[0], "--force"]);
+    assert!(
+        said.code == 2 && said.err.contains("is one of the shards"),
+        "{} {}",
+        said.code,
+        said.err
+    );
+    assert_eq!(table(&parts[0]), before);
 }

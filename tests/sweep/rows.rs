@@ -237,3 +237,55 @@ fn tables_cases_and_folders() {
     assert!(Path::new(&several).join("sweep.svg").exists());
     assert!(page.contains("4 designs went through") && page.contains("/network/permeability_factor"));
 }
+
+/// Goal: six modes that swing, the lowest, where few of the slowest do.
+#[test]
+fn the_lowest_six_that_swing_are_found() {
+    let dir = TempDir::new().expect("a folder");
+    let (out, all) = (path(&dir, "out"), path(&dir, "all"));
+    let case = "cases/bend-sheared.json";
+    let asked = ["--vary", "/solver/rtol=1e-4", "--command", "modes", "--no-mesh-errors"];
+    well(&say(&[
+        &["sweep", case, "--quiet", "--lean", "--out", &out],
+        &asked[..],
+    ]
+    .concat()));
+    well(&say(&["modes", case, "--count", "60", "--quiet", "--out", &all]));
+    let found = json(&all, "modes.json");
+    let modes = found["modes"].as_array().expect("modes");
+    let mut frequencies: Vec<f64> = modes.iter().filter_map(|mode| mode["frequency_hz"].as_f64()).collect();
+    frequencies.sort_by(f64::total_cmp);
+    let row = &rows(&out)[0];
+    for (k, frequency) in frequencies.iter().take(6).enumerate() {
+        let told: f64 = row[&format!("mode_{}.frequency_hz", k + 1)].parse().expect("a number");
+        assert!((told - frequency).abs() < 1e-6 * frequency, "{k}: {told} {frequency}");
+    }
+}
+
+/// Goal: no zeros as figures of a run that failed before its first instant.
+#[test]
+fn what_never_began_has_no_figures() {
+    let dir = TempDir::new().expect("a folder");
+    let out = path(&dir, "never");
+    let vary = ["--vary", "/beam/young_modulus_pa=1e5,8e8"];
+    say(&[
+        &[
+            "sweep",
+            "cases/elastica.json",
+            "--quiet",
+            "--lean",
+            "--set",
+            "/time/end_s=0.004",
+            "--out",
+            &out,
+        ],
+        &vary[..],
+    ]
+    .concat());
+    let row = &rows(&out)[0];
+    assert_eq!(
+        (row["status"].as_str(), row["tip_u1_m.final"].as_str()),
+        ("failed", ""),
+        "{row:?}"
+    );
+}

@@ -10,6 +10,9 @@ use crate::study::sweep::plan::{Listed, Plan};
 use crate::study::sweep::table::Table;
 use crate::study::sweep::{Design, Designs, Draw, Vary, compute};
 
+/// What an accuracy chooses.
+const CHOSEN: [&str; 3] = ["/mesh/cells_per_segment", "/mesh/cells_per_bladder", "/solver/rtol"];
+
 /// Where the cases of designs come from.
 pub struct Source {
     /// Files and their texts.
@@ -56,6 +59,16 @@ impl Source {
             }
         };
         overridden(&asked.sets, designs.pointers())?;
+        let chosen = designs
+            .pointers()
+            .iter()
+            .find(|pointer| CHOSEN.iter().any(|one| case::is_below(one, pointer)));
+        if let (Some(pointer), Some(_)) = (chosen, accuracy) {
+            let what = format!(
+                "--accuracy chooses mesh and tolerance of every design anew, so that {pointer} would be without effect"
+            );
+            return Err(Error::Usage(format!("{what}; leave one of them out")));
+        }
         let mut plan = Plan {
             case: String::new(),
             command: asked.command.into(),

@@ -21,6 +21,8 @@ use crate::study::target;
 
 /// Modes told, those lowest.
 const MODES: usize = 6;
+/// Modes looked for at most, where few of the slowest swing.
+const MOST_MODES: usize = 384;
 /// Multipliers looked at.
 const MULTIPLIERS: usize = 2;
 /// Points on a path of equilibria at least, as the command has them.
@@ -92,6 +94,11 @@ fn of_run(summary: &Summary) -> Found {
         figures: vec![],
         warnings: vec![],
     };
+    found.warn(&summary.warnings);
+    // what never began has no figures, and zeros would pass for some
+    if summary.status == Status::Failed && summary.time_s == 0.0 {
+        return found;
+    }
     let accuracy = summary.accuracy.as_ref().map(|accuracy| &accuracy.quantities);
     let estimates = accuracy.or(summary.estimate.as_ref().map(|estimate| &estimate.quantities));
     for (name, quantity) in summary.quantities.iter().chain(&summary.probes) {
@@ -101,7 +108,6 @@ fn of_run(summary: &Summary) -> Found {
     let balances = &summary.balances;
     found.put("energy_residual_relative", balances.energy_residual_relative);
     found.put("volume_residual_relative", balances.volume_residual_relative);
-    found.warn(&summary.warnings);
     found
 }
 
@@ -253,12 +259,22 @@ fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
     Ok(found)
 }
 
-/// Which modes are looked for.
-pub fn modes_plan() -> modes::Plan {
-    modes::Plan {
+/// Modes about the start of a case, so many that six of them swing, as far as there are so many; and what was looked for.
+///
+/// # Errors
+/// Those of [`modes::of`].
+pub fn swinging(case: &Case) -> Result<(modes::Modes, modes::Plan)> {
+    let mut plan = modes::Plan {
         count: 2 * MODES,
         near_hz: 0.0,
         limits: false,
+    };
+    loop {
+        let found = modes::of(modes::linearise(case, 0.0, None)?, &plan)?;
+        if lowest(&found.modes).len() == MODES || found.modes.len() < plan.count || plan.count >= MOST_MODES {
+            return Ok((found, plan));
+        }
+        plan.count *= 2;
     }
 }
 
@@ -272,14 +288,19 @@ pub fn lowest(all: &[modes::Mode]) -> Vec<usize> {
 
 /// Small motions about the start: the lowest that swing.
 fn small(case: &Case, ask: Ask) -> Result<Found> {
-    let plan = modes_plan();
+    let (mut all, plan) = swinging(case)?;
     let mut of = |case: &Case| numbers::of_modes(case, None, &plan);
     let refined = ask
         .accuracy
         .map(|accuracy| refine::refine(case, accuracy, false, &mut of))
         .transpose()?;
-    let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
-    let mut all = modes::of(modes::linearise(case, 0.0, None)?, &plan)?;
+    let case = match &refined {
+        None => case,
+        Some((chosen, _)) => {
+            all = modes::of(modes::linearise(chosen, 0.0, None)?, &plan)?;
+            chosen
+        }
+    };
     if ask.meshes && refined.is_none() {
         modes::compare_meshes(case, None, &plan, &mut all);
     }

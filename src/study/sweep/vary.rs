@@ -124,7 +124,16 @@ impl Vary {
 /// # Errors
 /// In words.
 pub fn check_pointer(pointer: &str) -> std::result::Result<(), String> {
-    if pointer.starts_with('/') && pointer.len() > 1 {
+    let other_name = |part: &&str| {
+        let digits = part.strip_prefix('+').unwrap_or(part);
+        digits.len() > 1 && digits.starts_with('0') && digits.bytes().all(|b| b.is_ascii_digit())
+            || digits.len() < part.len()
+    };
+    if let Some(part) = pointer.split('/').find(other_name) {
+        Err(format!(
+            "`{part}` is no place of an array: 0, 1, 2 and so on, without sign or zeros in front"
+        ))
+    } else if pointer.starts_with('/') && pointer.len() > 1 {
         Ok(())
     } else {
         let guess = pointer.trim_matches('/').replace('.', "/");

@@ -15,7 +15,7 @@ use crate::run::equilibrium;
 use crate::run::modes;
 use crate::run::record::{Control, Unrecorded};
 use crate::run::summary::Status;
-use crate::study::sweep::compute::{at_the_end, lowest, modes_plan};
+use crate::study::sweep::compute::{at_the_end, lowest, swinging};
 use crate::study::sweep::plan::What;
 
 /// Derivatives by figure, each by the numbers in their order; or why there are none.
@@ -88,7 +88,7 @@ fn at_rest(case: &Case, parameters: &[Parameter], stop: &dyn Fn() -> bool) -> Re
 }
 
 fn of_modes(case: &Case, parameters: &[Parameter]) -> Result<Slopes> {
-    let found = modes::of(modes::linearise(case, 0.0, None)?, &modes_plan())?;
+    let (found, _) = swinging(case)?;
     let slopes = modes::differentiate(case, None, &found.about, &found.modes, parameters)?;
     let mut all = Gathered::new(parameters.len());
     for (rank, place) in lowest(&found.modes).into_iter().enumerate() {
