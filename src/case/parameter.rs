@@ -96,14 +96,26 @@ impl Parameter {
     /// # Errors
     /// The case is not valid with it.
     pub fn changed(&self, case: &Case, value: f64) -> Result<Case> {
-        let mut resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
-        section::remove(&mut resolved);
-        if let Some(number) = resolved.pointer_mut(&self.pointer) {
-            *number = value.into();
-        }
-        let name = format!("{} with {} = {value}", case.name, self.pointer);
-        parse(&resolved.to_string(), Path::new(&name), Path::new(""), &[])
+        with(case, &[(&self.pointer, value)])
     }
+}
+
+/// A case with other values at JSON pointers, each of something that is there.
+///
+/// # Errors
+/// The case is not valid with them.
+pub fn with(case: &Case, values: &[(&str, f64)]) -> Result<Case> {
+    let mut resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
+    section::remove(&mut resolved);
+    let mut changes = vec![];
+    for (pointer, value) in values {
+        if let Some(number) = resolved.pointer_mut(pointer) {
+            *number = (*value).into();
+        }
+        changes.push(format!("{pointer} = {value}"));
+    }
+    let name = format!("{} with {}", case.name, changes.join(", "));
+    parse(&resolved.to_string(), Path::new(&name), Path::new(""), &[])
 }
 
 /// Pointers of all numbers that are not counts.

@@ -1,4 +1,4 @@
-//! `slcbeam compare`: two results side by side.
+//! `slcbeam compare`: two results side by side, or a run over measured data.
 
 use std::fmt::Write as _;
 use std::process::ExitCode;
@@ -6,21 +6,33 @@ use std::process::ExitCode;
 use serde_json::Value;
 
 use super::arguments::CompareArguments;
+use crate::case;
 use crate::error::{Error, Result};
 use crate::output::columns::aligned;
-use crate::output::folder::replace_alike;
+use crate::output::folder::{CASE, replace_alike};
 use crate::output::numbers::{quantity, significant};
-use crate::output::{comparison, reading};
+use crate::output::{comparison, fit, reading};
 use crate::results;
 use crate::study::compare::changes::Change;
 use crate::study::compare::difference::Difference;
 use crate::study::compare::{Comparison, compare as differences};
+use crate::study::data::{Match, Table};
+use crate::study::fit::beside;
 
 /// Changes shown of each kind; the rest is counted.
 const CHANGES: usize = 8;
 
 /// Reads both folders, compares, draws when asked, prints.
 pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
+    if !asked.matches.is_empty() {
+        return with_data(asked);
+    }
+    if asked.b.is_file() {
+        return Err(Error::Usage(format!(
+            "{} is a file; data are compared with --match COLUMN=QUANTITY[@PLACE], such as angle_deg=tip_angle",
+            asked.b.display()
+        )));
+    }
     let a = reading::read(&asked.a)?.without_gaps();
     let b = reading::read(&asked.b)?.without_gaps();
     let found = differences(&a, &b);
@@ -34,6 +46,35 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     } else {
         super::print(&table(&found))?;
     }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A run over measured data.
+fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
+    let matches = asked
+        .matches
+        .iter()
+        .map(|text| Match::parse(text))
+        .collect::<Result<Vec<_>>>()?;
+    let table = Table::read(&asked.b)?;
+    let run = reading::read(&asked.a)?.without_gaps();
+    let case = case::load(&asked.a.join(CASE), &[]).ok();
+    let name = asked.b.display().to_string();
+    let found = beside::compare(&run, case.as_ref(), &table, &name, &matches, asked.time.as_deref())?;
+    if let Some(path) = &asked.out {
+        let curve = |name: &str| {
+            let column = run.column(name).into_iter();
+            column
+                .flat_map(|c| run.times.iter().copied().zip(c.values.iter().copied()))
+                .collect()
+        };
+        let text = fit::picture(&found, curve).ok_or_else(|| Error::Usage("nothing to draw".into()))?;
+        replace_alike(path, &text, &["<svg", "<?xml"])?;
+    }
+    super::print(&match asked.json {
+        true => results::text(&found),
+        false => fit::comparison(&found),
+    })?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -9,6 +9,7 @@ mod effects;
 mod equilibrium;
 mod explain;
 mod export;
+mod fit;
 mod floquet;
 mod interrupt;
 mod line;
@@ -86,6 +87,7 @@ fn act(command: &Command, began: Instant) -> Result<ExitCode> {
         Command::Periodic(asked) => periodic::periodic(asked),
         Command::Sweep(asked) => sweep::sweep(asked),
         Command::Merge(asked) => merge::merge(asked),
+        Command::Fit(asked) => fit::fit(asked),
         Command::Compare(asked) => compare::compare(asked),
         Command::Modes(asked) => modes::modes(asked),
         Command::Export(asked) => export::export(asked),

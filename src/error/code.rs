@@ -89,6 +89,7 @@ codes! {
     LostModes = "W025", "Modes that were not found again.";
     PartOfStream = "W026", "A stream of which the model has a part.";
     DeepContact = "W027", "A wall that the beam is deep in.";
+    Fit = "W029", "A fit that tells less than it seems.";
 }
 
 impl Code {

@@ -10,6 +10,7 @@
 //! | `gauss` | Gauss' quadrature |
 //! | `ramp` | a ramp with a round foot |
 //! | [`regression`], [`student`] | least squares with covariance, and intervals by Student's distribution |
+//! | [`levenberg`] | nonlinear least squares between bounds |
 //! | [`chance`], [`sobol`] | numbers by chance, and points that fill a cube evenly |
 //! | [`normal`] | quantiles of the normal distribution |
 //! | [`krylov`] | linear systems and eigenvalues of a map known only by what it does |
@@ -20,6 +21,7 @@ pub mod dual;
 pub mod gauss;
 pub mod kernels;
 pub mod krylov;
+pub mod levenberg;
 pub mod normal;
 pub mod planar;
 mod ramp;

@@ -30,11 +30,13 @@ pub enum Kind {
     Sweep,
     /// `sweep`, `merge`: many designs.
     Designs,
+    /// `fit`.
+    Fit,
 }
 
 impl Kind {
     /// All of them; a cycle before the run in its folder, many designs before what has a `sweep.json` too.
-    const ALL: [Self; 10] = [
+    const ALL: [Self; 11] = [
         Self::Cycle,
         Self::Designs,
         Self::Run,
@@ -45,6 +47,7 @@ impl Kind {
         Self::Floquet,
         Self::Map,
         Self::Sweep,
+        Self::Fit,
     ];
 
     /// Name in the page, command, and sign.
@@ -60,6 +63,7 @@ impl Kind {
             Self::Cycle => ["run", "periodic", "cycle.json"],
             Self::Sweep => ["sweep", "periodic --sweep", "sweep.json"],
             Self::Designs => ["designs", "sweep", "plan.json"],
+            Self::Fit => ["fit", "fit", "fit.json"],
         }
     }
 
@@ -98,6 +102,7 @@ impl Kind {
                 "map.svg",
                 "parallel.svg",
             ],
+            Self::Fit => &["fit.csv", "fit.svg", "fitted-case.json"],
         };
         [self.sign()].into_iter().chain(own.iter().copied()).collect()
     }

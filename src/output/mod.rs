@@ -16,6 +16,7 @@
 //! comparison  the picture of two runs over each other
 //! effects   effects.csv, effects.json, effects.svg, table and sentence
 //! equilibrium  path.csv, shapes.csv, equilibrium.json, path.svg, table
+//! fit       fit.json, fit.csv, fit.svg, fitted-case.json, and their words
 //! floquet   floquet.csv, floquet.json, floquet.svg; map.csv, map.json, map.svg, and their words
 //! periodic  cycle.json; sweep.csv, sweep.json, sweep.svg, and their words
 //! study     study.csv, study.json, study.svg, table and sentence
@@ -41,6 +42,7 @@ pub mod effects;
 pub mod envelope;
 pub mod equilibrium;
 pub mod export;
+pub mod fit;
 pub mod floquet;
 pub mod folder;
 pub mod history;

@@ -9,6 +9,7 @@
 //! | [`studies`] | `study.json`, `effects.json`, what `compare --json` prints |
 //! | [`sweep`] | `plan.json` and `sweep.json` of `slcbeam sweep` |
 //! | [`uncertainty`] | `uncertainty.json`, beside the result of any command that has figures |
+//! | [`fit`] | `fit.json`, what `compare --json` prints of a run over data |
 //! | [`verify`] | a row of what `verify --json` prints |
 //! | [`provenance`] | what made a result |
 //! | [`ordered`] | numbers by name, in an order of their own |
@@ -18,6 +19,7 @@
 
 pub mod cycles;
 pub mod equilibrium;
+pub mod fit;
 pub mod modes;
 pub mod ordered;
 pub mod provenance;

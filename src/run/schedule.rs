@@ -69,6 +69,8 @@ pub struct Outputs {
     end: f64,
     next: u64,
     last: u64,
+    /// Output times of their own in place of these [s].
+    own: Option<Vec<f64>>,
     /// Ends of the window still to come at which there is no output [s].
     marks: VecDeque<f64>,
 }
@@ -87,11 +89,30 @@ impl Outputs {
             end,
             next: 0,
             last: last as u64,
+            own: None,
             marks: [end - window, end]
                 .into_iter()
                 .filter(|t| *t > 0.0 && apart(*t))
                 .collect(),
         }
+    }
+
+    /// These instants [s] in place of the times of a case, ascending and none after its end; at least one.
+    pub fn at(case: &Case, instants: &[f64]) -> Self {
+        Self {
+            last: instants.len().saturating_sub(1) as u64,
+            own: Some(instants.to_vec()),
+            ..Self::new(case)
+        }
+    }
+
+    /// Time of the output of a number [s].
+    fn time(&self, number: u64) -> f64 {
+        let time = match &self.own {
+            Some(own) => own.get(number as usize).copied().unwrap_or(self.end),
+            None => number as f64 * self.interval,
+        };
+        time.min(self.end)
     }
 
     /// Number of the next output.
@@ -107,7 +128,7 @@ impl Outputs {
 
     /// What is due next, not after `t` [s].
     pub fn due(&mut self, t: f64) -> Option<Due> {
-        let output = (self.next <= self.last).then(|| (self.next as f64 * self.interval).min(self.end));
+        let output = (self.next <= self.last).then(|| self.time(self.next));
         let mark = self.marks.front().copied();
         match (output, mark) {
             (output, Some(mark)) if mark <= t && output.is_none_or(|output| mark < output) => {

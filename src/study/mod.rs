@@ -3,9 +3,12 @@
 pub mod accuracy;
 pub mod compare;
 pub mod counted;
+pub mod data;
 pub mod effects;
+pub mod fit;
 pub mod measure;
 pub mod refine;
+pub mod span;
 pub mod stability;
 pub mod sweep;
 pub mod target;

@@ -1,6 +1,7 @@
 //! What can be asked for.
 
 mod at_rest;
+mod fit;
 mod map;
 mod periodic;
 mod run;
@@ -21,6 +22,7 @@ use super::place::PlaceArguments;
 use super::report::ReportArguments;
 use super::schema::SchemaArguments;
 pub use at_rest::{EquilibriumArguments, ModesArguments};
+pub use fit::{CompareArguments, FitArguments, FittedThrough};
 pub use map::MapArguments;
 pub use periodic::PeriodicArguments;
 pub use run::RunArguments;
@@ -64,7 +66,9 @@ pub enum Command {
     Sweep(SweepArguments),
     /// Join the shards of a sweep to one table, and name what is lost
     Merge(MergeArguments),
-    /// Compare two result folders: error norms of every field and quantity, cost ratio
+    /// Fit numbers of a case to measured data between bounds, with errors, and with what the data do not tell
+    Fit(FitArguments),
+    /// Compare two result folders: error norms of every field and quantity, cost ratio; or a run with measured data
     Compare(CompareArguments),
     /// Write a result in other formats: tables of its fields (CSV), surfaces that ParaView opens (VTK)
     Export(ExportArguments),
@@ -100,6 +104,7 @@ impl Command {
             Self::Periodic(a) => a.json,
             Self::Sweep(a) => a.json,
             Self::Merge(a) => a.json,
+            Self::Fit(a) => a.json,
             Self::Compare(a) => a.json,
             Self::Mapping(a) => a.json,
             Self::Verify(a) => a.json,
@@ -235,21 +240,6 @@ pub struct FloquetArguments {
     #[arg(long)]
     pub quiet: bool,
     /// Print floquet.json or map.json instead of the table
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// `compare`.
-#[derive(Debug, Args)]
-pub struct CompareArguments {
-    /// First result folder
-    pub a: PathBuf,
-    /// Second result folder
-    pub b: PathBuf,
-    /// Draw both over each other into this SVG file
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-    /// Print as JSON
     #[arg(long)]
     pub json: bool,
 }

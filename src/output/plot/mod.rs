@@ -16,6 +16,7 @@
 //! cycles      steady cycles along a parameter
 //! designs     many designs along one number, over two, through all
 //! cell        a cell of the section under one load
+//! fitted      a model over data, and what is between them
 //! measured    measurements with their fit
 //! ```
 
@@ -30,6 +31,7 @@ pub mod cycles;
 pub mod deflection;
 pub mod designs;
 pub mod energy;
+pub mod fitted;
 pub mod history;
 pub mod loadpath;
 pub mod measured;

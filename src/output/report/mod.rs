@@ -15,7 +15,7 @@
 //! parameters  the case as a table, described by its schema
 //! sheet       CSV files as tables
 //! warnings    what to know first, in words
-//! equilibrium, modes, studies, cycles, designs   the pages of the other commands
+//! equilibrium, modes, studies, cycles, designs, fit   the pages of the other commands
 //! vendor      uPlot, which draws histories
 //! ```
 //!
@@ -28,6 +28,7 @@ mod designs;
 mod energy_balance;
 mod equilibrium;
 mod facts;
+mod fit;
 mod frames;
 mod history;
 mod modes;
@@ -97,6 +98,7 @@ fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
         Kind::Map => cycles::map(&place)?,
         Kind::Sweep => cycles::sweep(&place)?,
         Kind::Designs => designs::data(&place)?,
+        Kind::Fit => fit::data(&place)?,
     };
     if kind.files().contains(&UNCERTAINTY) && place.path(UNCERTAINTY).is_file() {
         let found = place.result::<Uncertainty>(UNCERTAINTY)?.result;

@@ -57,6 +57,23 @@ pub fn run_with(case: &Case, system: System, by: &[Parameter], recorder: &mut dy
     run.go(dae, None, recorder)
 }
 
+/// The same, recorded at instants [s] of its own in place of the output times: ascending, none after the end, at least one. States there
+/// are those of the integrator's own polynomials, to its order.
+///
+/// # Errors
+/// As [`run_with`].
+pub fn run_at(
+    case: &Case,
+    system: System,
+    by: &[Parameter],
+    instants: &[f64],
+    recorder: &mut dyn Recorder,
+) -> Result<Outcome> {
+    let (mut run, dae) = Run::of(case, system, by)?;
+    run.outputs = Outputs::at(case, instants);
+    run.go(dae, None, recorder)
+}
+
 /// Runs a system of the case from consistent values and rates of its scaled unknowns at t = 0.
 pub fn go_on(case: &Case, system: System, y: &[f64], yp: &[f64], recorder: &mut dyn Recorder) -> Result<Outcome> {
     let (mut run, mut dae) = Run::of(case, system, &[])?;

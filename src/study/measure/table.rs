@@ -155,13 +155,14 @@ pub fn read(path: &Path, text: &str, x: Quantity, y: Quantity) -> Result<Points>
 }
 
 /// A line with its number, counted from 1, and where it begins.
-struct Line<'t> {
-    text: &'t str,
-    number: usize,
-    start: usize,
+pub(in crate::study) struct Line<'t> {
+    pub text: &'t str,
+    pub number: usize,
+    pub start: usize,
 }
 
-fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
+/// Lines that count.
+pub(in crate::study) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     let mut next = 0;
     let all = text.split_inclusive('\n').enumerate().map(move |(k, whole)| {
         let start = next;
@@ -172,11 +173,14 @@ fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
             start,
         }
     });
-    all.filter(|line| !line.text.trim().is_empty() && !line.text.trim_start().starts_with('#'))
+    all.filter(|line| {
+        let text = line.text.trim_start_matches('\u{feff}').trim();
+        !text.is_empty() && !text.starts_with('#')
+    })
 }
 
 /// Cells without blanks and quotes around them, and their places in the text.
-fn cells<'t>(line: &Line<'t>, separator: char) -> Vec<(&'t str, Range<usize>)> {
+pub(in crate::study) fn cells<'t>(line: &Line<'t>, separator: char) -> Vec<(&'t str, Range<usize>)> {
     let mut at = line.start;
     let cells = line.text.split(separator).map(|whole| {
         let start = at;
@@ -189,7 +193,8 @@ fn cells<'t>(line: &Line<'t>, separator: char) -> Vec<(&'t str, Range<usize>)> {
 
 type Read<T> = std::result::Result<T, Box<Violation>>;
 
-fn fault(span: Range<usize>, what: String) -> Violation {
+/// A fault at its place.
+pub(in crate::study) fn fault(span: Range<usize>, what: String) -> Violation {
     Violation {
         span: Some(span),
         ..Violation::new(Code::Table, "", what)

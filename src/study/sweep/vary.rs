@@ -182,7 +182,7 @@ impl Values {
 }
 
 /// Numbers between colons, all of them finite.
-fn numbers(text: &str) -> std::result::Result<Vec<f64>, String> {
+pub(in crate::study) fn numbers(text: &str) -> std::result::Result<Vec<f64>, String> {
     let number = |part: &str| {
         let read = part.trim().parse().ok().filter(|x: &f64| x.is_finite());
         read.ok_or_else(|| format!("`{part}` is no finite number; values are in the unit that the key names"))

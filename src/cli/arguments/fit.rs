@@ -1,0 +1,102 @@
+//! What `fit` and `compare` can be asked for.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::{CaseArguments, PlaceArguments};
+use crate::study::fit::robust::Loss;
+
+/// What large residuals count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Robust {
+    /// Beyond some standard deviations their size in place of their square
+    Huber,
+    /// Hardly anything
+    Cauchy,
+}
+
+impl From<Robust> for Loss {
+    fn from(one: Robust) -> Self {
+        match one {
+            Robust::Huber => Self::Huber,
+            Robust::Cauchy => Self::Cauchy,
+        }
+    }
+}
+
+/// What a case goes through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FittedThrough {
+    /// A run in time: rows are instants
+    Run,
+    /// Static equilibria: rows are cases, --drive says of what
+    Equilibrium,
+}
+
+/// `fit`.
+#[derive(Debug, Args)]
+pub struct FitArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Measured data (CSV): a line of headings with units, such as t_s,angle_deg; an empty cell was not measured
+    pub data: PathBuf,
+    /// Seek a number of the case between bounds, repeatable, such as /beam/young_modulus_pa=1e5:1e7
+    #[arg(long, value_name = "POINTER=LOW:HIGH", allow_hyphen_values = true)]
+    pub vary: Vec<String>,
+    /// A column beside a quantity of the result, repeatable, such as angle_deg=tip_angle, p_kpa="pressure@bladder 3", u_mm=u1@0.5
+    #[arg(long = "match", value_name = "COLUMN=QUANTITY[@PLACE]")]
+    pub matches: Vec<String>,
+    /// What the case goes through [default: equilibrium with --drive, else run]
+    #[arg(long, value_enum)]
+    pub command: Option<FittedThrough>,
+    /// Column of time [default: t or time]
+    #[arg(long, value_name = "COLUMN", conflicts_with = "drive")]
+    pub time: Option<String>,
+    /// A number of the case that every row sets, repeatable, such as p_kpa=/network/chains/0/ends/0/pressure_pa
+    #[arg(long, value_name = "COLUMN=POINTER")]
+    pub drive: Vec<String>,
+    /// Standard deviation of a column's noise in its own unit, repeatable [default: a column COLUMN_sd, else what the fit leaves]
+    #[arg(long, value_name = "COLUMN=SIGMA")]
+    pub noise: Vec<String>,
+    /// Let large residuals count less
+    #[arg(long, value_enum)]
+    pub robust: Option<Robust>,
+    /// Searches, from the case's own numbers and from places between the bounds
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub starts: u32,
+    /// Simulations at once [default: one for every core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub jobs: Option<u32>,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print fit.json instead of the words
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `compare`.
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// First result folder
+    pub a: PathBuf,
+    /// Second result folder; or measured data (CSV), with --match
+    pub b: PathBuf,
+    /// A column of the data beside a quantity of the run, repeatable, such as angle_deg=tip_angle
+    #[arg(long = "match", value_name = "COLUMN=QUANTITY[@PLACE]")]
+    pub matches: Vec<String>,
+    /// Column of time of the data [default: t or time]
+    #[arg(long, value_name = "COLUMN", requires = "matches")]
+    pub time: Option<String>,
+    /// Draw both over each other into this SVG file
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}

@@ -1,0 +1,102 @@
+//! `slcbeam fit`: numbers of a case from measured data.
+
+use std::process::ExitCode;
+
+use super::arguments::{FitArguments, FittedThrough};
+use super::{line, size};
+use crate::error::{Error, Result};
+use crate::output::fit as files;
+use crate::output::kind::Kind;
+use crate::output::numbers::significant;
+use crate::output::report;
+use crate::results;
+use crate::study::data::{Match, Table};
+use crate::study::fit::problem::{Asked, Drive, Problem};
+use crate::study::fit::{self as study, robust::Loss};
+use crate::study::span::Span;
+
+/// Reads, fits, writes the folder, prints.
+pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
+    let case = size::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
+    let table = Table::read(&asked.data)?;
+    let wanted = wanted(asked)?;
+    overridden(asked)?;
+    let problem = Problem::new(&case, &table, &wanted)?;
+    let mut folder = asked.place.claim(&case, Kind::Fit)?;
+    let bar = line::line(asked.quiet);
+    let tell = |count: usize, squares: f64| {
+        bar.set_message(format!(
+            "{count} simulations, sum of squares {}",
+            significant(squares, 5)
+        ));
+        bar.tick();
+    };
+    let name = asked.data.display().to_string();
+    let found = study::fit(&problem, &wanted, (&name, table.crc32), &tell)?;
+    bar.finish_and_clear();
+    files::write(&mut folder, &problem, &found)?;
+    report::write(folder.dir(), None)?;
+    let (text, words) = (|| results::text(&found.fit), || files::words(&found.fit));
+    super::tell(asked.json, folder.dir(), text, words)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn wanted(asked: &FitArguments) -> Result<Asked> {
+    let drives = asked
+        .drive
+        .iter()
+        .map(|text| Drive::parse(text))
+        .collect::<Result<Vec<_>>>()?;
+    match asked.command {
+        Some(FittedThrough::Equilibrium) if drives.is_empty() => {
+            let what = "--command equilibrium: --drive COLUMN=POINTER says which number of the case every row sets";
+            return Err(Error::Usage(what.into()));
+        }
+        Some(FittedThrough::Run) if !drives.is_empty() => {
+            let what = "--drive: rows of a run are instants of one case; what rows set is for --command equilibrium";
+            return Err(Error::Usage(what.into()));
+        }
+        _ => {}
+    }
+    let jobs = asked.jobs.map(|jobs| jobs as usize);
+    Ok(Asked {
+        spans: asked.vary.iter().map(|text| Span::parse(text)).collect::<Result<_>>()?,
+        matches: asked
+            .matches
+            .iter()
+            .map(|text| Match::parse(text))
+            .collect::<Result<_>>()?,
+        time: asked.time.clone(),
+        drives,
+        noise: asked.noise.iter().map(|text| noise(text)).collect::<Result<_>>()?,
+        loss: asked.robust.map_or(Loss::Squares, Loss::from),
+        starts: asked.starts as usize,
+        jobs: jobs.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)),
+    })
+}
+
+fn noise(text: &str) -> Result<(String, f64)> {
+    let parts = text
+        .rsplit_once('=')
+        .map(|(name, sigma)| (name.trim(), sigma.trim().parse::<f64>()));
+    match parts {
+        Some((name, Ok(sigma))) if !name.is_empty() && sigma.is_finite() && sigma > 0.0 => Ok((name.into(), sigma)),
+        _ => Err(Error::Usage(format!(
+            "--noise '{text}': a column and a standard deviation above 0 are wanted, such as angle_deg=0.2"
+        ))),
+    }
+}
+
+/// Whether something that is set is sought as well.
+fn overridden(asked: &FitArguments) -> Result<()> {
+    for set in &asked.case.sets {
+        let pointer = set.split_once('=').map_or(set.as_str(), |(pointer, _)| pointer);
+        let drives = asked.drive.iter().filter_map(|text| Some(text.rsplit_once('=')?.1));
+        if let Some(drive) = drives.into_iter().find(|drive| crate::case::is_below(pointer, drive)) {
+            let what =
+                format!("--set {set}: it would be without effect, since every row sets {drive}; leave one of them out");
+            return Err(Error::Usage(what));
+        }
+    }
+    Ok(())
+}

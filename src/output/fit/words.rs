@@ -1,0 +1,174 @@
+//! A fit, and a run over data, in words.
+
+use crate::error::visible;
+use crate::output::columns::aligned;
+use crate::output::numbers::{count, duration, percent, quantity, significant};
+use crate::study::fit::beside::Beside;
+use crate::study::fit::found::{Bound, Estimate, Fit};
+use crate::study::fit::robust::Loss;
+
+/// Correlations of at least this are told.
+const TOLD: f64 = 0.9;
+
+/// Estimates with their errors, what the data leave, what to know.
+pub fn words(fit: &Fit) -> String {
+    let spent = duration(fit.wall_s);
+    let mut text = format!(
+        "{} fitted to {} values of {}: {} steps, {} simulations, {spent}\n\n",
+        fit.case,
+        count(fit.observations as u64),
+        visible(&fit.data),
+        fit.steps,
+        fit.simulations
+    );
+    let heading = ["", "estimate", "standard error", "95 %", "bounds"].map(String::from);
+    let lines: Vec<_> = std::iter::once(heading)
+        .chain(fit.parameters.iter().map(line))
+        .collect();
+    text += &aligned(&lines, &[0, 3, 4]);
+    text += &correlations(fit);
+    let heading = ["", "values", "noise", "rms", "largest", "R²"].map(String::from);
+    let columns = fit.columns.iter().map(|column| {
+        let left = &column.left;
+        let noise = match column.noise_given {
+            true => significant(column.noise, 3),
+            false => format!("{} (found)", significant(column.noise, 3)),
+        };
+        [
+            format!("{} over {}", column.quantity, visible(&column.matched.column)),
+            left.count.to_string(),
+            noise,
+            significant(left.rms, 3),
+            significant(left.max, 3),
+            significant(left.r_squared, 6),
+        ]
+    });
+    let lines: Vec<_> = std::iter::once(heading).chain(columns).collect();
+    text += &format!("\n{}", aligned(&lines, &[0]));
+    let loss = match fit.loss {
+        Loss::Squares => "",
+        Loss::Huber => ", Huber's loss",
+        Loss::Cauchy => ", Cauchy's loss",
+    };
+    text += &format!(
+        "\nchi-square over degrees of freedom {} over {}{loss}",
+        significant(fit.chi_square, 4),
+        fit.degrees_of_freedom
+    );
+    if fit.columns.iter().any(|column| !column.noise_given) {
+        text += "; the noise is what the fit leaves";
+    }
+    text.push('\n');
+    if fit.starts.len() > 1 {
+        text += &starts(fit);
+    }
+    if let Some(worst) = worst(fit) {
+        text += &format!("{worst}\n");
+    }
+    for warning in &fit.warnings {
+        text += &format!("warning: {warning}\n");
+    }
+    text
+}
+
+fn line(one: &Estimate) -> [String; 5] {
+    let short = |x: f64| significant(x, 5);
+    let error = one.standard_error.map(|error| significant(error, 3));
+    let interval = one
+        .interval_95
+        .map(|[low, high]| format!("{} to {}", short(low), short(high)));
+    let missing = match one.at_bound {
+        Some(Bound::Low) => "at its lower bound",
+        Some(Bound::High) => "at its upper bound",
+        None => "not determined",
+    };
+    [
+        one.pointer.clone(),
+        significant(one.value, 6),
+        error.unwrap_or_else(|| "-".into()),
+        interval.unwrap_or_else(|| missing.into()),
+        format!("{} to {}", significant(one.low, 3), significant(one.high, 3)),
+    ]
+}
+
+fn correlations(fit: &Fit) -> String {
+    let mut text = String::new();
+    for (i, row) in fit.correlation.iter().enumerate() {
+        for (k, r) in row.iter().enumerate().take(i) {
+            if let Some(r) = r.filter(|r| r.abs() >= TOLD) {
+                let [a, b] = [k, i].map(|k| &fit.parameters[k].pointer);
+                text += &format!("correlation of {a} and {b}: {}\n", significant(r, 4));
+            }
+        }
+    }
+    text
+}
+
+/// How many searches came to the same.
+fn starts(fit: &Fit) -> String {
+    let found: Vec<f64> = fit.starts.iter().filter_map(|start| start.chi_square).collect();
+    let best = found.iter().copied().fold(f64::INFINITY, f64::min);
+    let same = found.iter().filter(|cost| **cost <= best * 1.001 + 1e-9).count();
+    let failed = match fit.starts.len() - found.len() {
+        0 => String::new(),
+        n => format!(", {n} had nothing to begin with"),
+    };
+    format!(
+        "{same} of {} searches came to the least sum of squares{failed}\n",
+        fit.starts.len()
+    )
+}
+
+/// The estimate that the simulator's own error would move most.
+fn worst(fit: &Fit) -> Option<String> {
+    let moved = fit
+        .parameters
+        .iter()
+        .filter_map(|one| Some((one, one.finer_change?, one.standard_error?)));
+    let (one, change, error) = moved.max_by(|a, b| (a.1.abs() / a.2).total_cmp(&(b.1.abs() / b.2)))?;
+    Some(format!(
+        "with {} {} would move most, by {}: {} standard errors",
+        fit.simulator.finer,
+        one.pointer,
+        significant(change, 2),
+        significant(change.abs() / error, 2)
+    ))
+}
+
+/// A run over data.
+pub fn comparison(found: &Beside) -> String {
+    let heading = [
+        "run less data",
+        "values",
+        "rms",
+        "largest",
+        "at",
+        "bias",
+        "rms, relative",
+        "largest, relative",
+        "R²",
+    ];
+    let line = |column: &crate::study::fit::beside::Column| {
+        let (left, unit) = (&column.left, &column.unit);
+        [
+            format!("{} over {}", column.quantity, visible(&column.matched.column)),
+            left.count.to_string(),
+            quantity(left.rms, unit, 3),
+            quantity(left.max, unit, 3),
+            quantity(column.max_at_s, "s", 3),
+            quantity(left.bias, unit, 3),
+            percent(left.rms_relative),
+            percent(left.max_relative),
+            significant(left.r_squared, 4),
+        ]
+    };
+    let lines: Vec<_> = std::iter::once(heading.map(String::from))
+        .chain(found.columns.iter().map(line))
+        .collect();
+    format!(
+        "{} over {}\n\n{}\nrelative to the largest value of the data\n",
+        visible(&found.run),
+        visible(&found.data),
+        aligned(&lines, &[0])
+    )
+}

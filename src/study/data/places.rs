@@ -1,0 +1,108 @@
+//! Where a quantity is: `tip`, `bladder 3`, `port inlet`, the name of a probe, or a share of the beam's length.
+
+use crate::case::schema::{Case, Probe};
+use crate::error::{Error, Result};
+
+/// What the name of a column begins with, and the probe that has to be there for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placed {
+    /// The column's name, with its unit where it was given.
+    pub name: String,
+    /// A probe that the case does not have.
+    pub probe: Option<Probe>,
+}
+
+/// What a place can be, for people.
+const WANTED: &str = "a share of the length from 0 to 1, tip, the name of a probe, `bladder 3`, `port NAME`, `accumulator NAME` or `contact NAME`";
+
+/// The column of a quantity at a place.
+///
+/// # Errors
+/// [`Error::Usage`]: the case has no such place, or the quantity is none of it.
+pub fn of(case: &Case, quantity: &str, place: &str) -> Result<Placed> {
+    let wrong = |what: String| Error::Usage(format!("--match ..={quantity}@{place}: {what}"));
+    let placed = |begin: &str, probe| Placed {
+        name: format!("{begin}_{quantity}"),
+        probe,
+    };
+    let place = place.trim();
+    if place == "tip" || case.probes.iter().any(|probe| probe.name == place) {
+        return Ok(placed(place, None));
+    }
+    if let Ok(at) = place.parse::<f64>() {
+        if !(0.0..=1.0).contains(&at) {
+            return Err(wrong(format!(
+                "{at} is no share of the length, 0 at the root and 1 at the tip"
+            )));
+        }
+        let probe = at_place(case, at);
+        return Ok(placed(&probe.name.clone(), missing(case, probe)));
+    }
+    let (kind, name) = place.split_once(char::is_whitespace).unwrap_or((place, ""));
+    match kind {
+        "bladder" => of_bladder(case, quantity, name.trim()).map_err(wrong),
+        "port" | "accumulator" | "contact" => {
+            let plain = |c: char| {
+                if c.is_alphanumeric() {
+                    c.to_ascii_lowercase()
+                } else {
+                    '_'
+                }
+            };
+            let short: String = name.trim().chars().map(plain).collect();
+            Ok(placed(&format!("{kind}_{short}"), None))
+        }
+        _ => {
+            let names = case.probes.iter().map(|probe| probe.name.as_str()).chain(["tip"]);
+            let meant =
+                crate::case::nearest(place, names).map_or(String::new(), |meant| format!("; nearest is {meant}"));
+            Err(wrong(format!(
+                "the case has no place {place}{meant}; wanted is {WANTED}"
+            )))
+        }
+    }
+}
+
+/// The pressure of a bladder is that at its middle.
+fn of_bladder(case: &Case, quantity: &str, label: &str) -> std::result::Result<Placed, String> {
+    let Some(bladders) = &case.bladders else {
+        return Err("the case has no bladders".into());
+    };
+    let count = bladders.per_row;
+    let number = label.replace('−', "-").parse::<i64>().ok();
+    let number = number.filter(|n| *n != 0 && n.unsigned_abs() as usize <= count);
+    let Some(number) = number else {
+        return Err(format!(
+            "bladders are 1 to {count} of the upper row, -1 to -{count} of the lower"
+        ));
+    };
+    let end = match quantity {
+        "pressure" | "pressure_pa" => ["pressure_lower", "pressure_upper"][usize::from(number > 0)],
+        _ => return Err("of a bladder there is pressure".into()),
+    };
+    let at = (number.unsigned_abs() as f64 - 0.5) / count as f64;
+    let probe = at_place(case, at);
+    Ok(Placed {
+        name: format!("{}_{end}", probe.name),
+        probe: missing(case, probe),
+    })
+}
+
+/// The probe of a case at a place, or one that is named by it.
+fn at_place(case: &Case, at: f64) -> Probe {
+    let there = case.probes.iter().find(|probe| (probe.at - at).abs() < 1e-12);
+    there.cloned().unwrap_or_else(|| Probe {
+        name: format!(
+            "at-{}",
+            format!("{at:.6}")
+                .trim_end_matches('0')
+                .replace('.', "-")
+                .trim_end_matches('-')
+        ),
+        at,
+    })
+}
+
+fn missing(case: &Case, probe: Probe) -> Option<Probe> {
+    (!case.probes.contains(&probe)).then_some(probe)
+}

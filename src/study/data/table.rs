@@ -1,0 +1,394 @@
+//! A table of measurements: one line of headings, then a line a row; commas, semicolons or tabs between cells. Blank lines and those
+//! that begin with # count not; an empty cell was not measured.
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::units::{self, Unit};
+use crate::case::{self, Source, nearest};
+use crate::error::{Code, Error, Result, Violation, visible};
+use crate::study::measure::table::{cells, fault, lines};
+
+/// Rows with faults that are told.
+const MOST: usize = 20;
+
+/// A heading.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// As it stands there.
+    pub heading: String,
+    /// Without its unit.
+    pub name: String,
+    /// The unit that it names, as far as one is known.
+    pub unit: Option<Unit>,
+    /// What stands between brackets and is no known unit.
+    pub unknown: Option<String>,
+}
+
+impl Column {
+    fn of(heading: &str) -> Self {
+        let brackets = [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
+            let (name, unit) = heading.trim_end().strip_suffix(close)?.rsplit_once(open)?;
+            Some((name.trim(), unit.trim()))
+        });
+        let column = |name: &str, unit, unknown: Option<&str>| Self {
+            heading: heading.into(),
+            name: name.into(),
+            unit,
+            unknown: unknown.map(String::from),
+        };
+        match brackets {
+            Some((name, unit)) => match units::bracketed(unit) {
+                Some(known) => column(name, Some(known), None),
+                None => column(name, None, Some(unit)),
+            },
+            None => match units::suffixed(heading) {
+                Some((name, unit)) => column(name, Some(unit), None),
+                None => column(heading, None, None),
+            },
+        }
+    }
+}
+
+/// A cell and where it stands in the text.
+type Cell = (String, Range<usize>);
+
+/// A row of cells with its line, counted from 1.
+#[derive(Clone, Debug)]
+struct Row {
+    line: usize,
+    cells: Vec<Cell>,
+}
+
+/// A table as it was read.
+#[derive(Clone, Debug)]
+pub struct Table {
+    source: Source,
+    /// Check sum of the text.
+    pub crc32: u32,
+    /// Its columns.
+    pub columns: Vec<Column>,
+    rows: Vec<Row>,
+}
+
+impl Table {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// It cannot be read, or as [`Table::parse`].
+    pub fn read(path: &Path) -> Result<Self> {
+        Self::parse(path, &case::text(path)?)
+    }
+
+    /// Reads a text.
+    ///
+    /// # Errors
+    /// [`Error::Case`] with every fault at its place: no headings, two that are alike, no rows, rows of another length.
+    pub fn parse(path: &Path, text: &str) -> Result<Self> {
+        let source = Source::of(path, text);
+        let mut lines = lines(text);
+        let Some(header) = lines.next() else {
+            let what = "no headings; the first line names the columns, such as t_s, angle_deg";
+            return Err(source.error(vec![Violation::new(Code::Table, "", what)]));
+        };
+        let separator = [';', '\t']
+            .into_iter()
+            .find(|s| header.text.contains(*s))
+            .unwrap_or(',');
+        let headings = cells(&header, separator);
+        let mut faults = vec![];
+        for (k, (heading, span)) in headings.iter().enumerate() {
+            if heading.is_empty() {
+                faults.push(fault(span.clone(), format!("column {} has no heading", k + 1)));
+            } else if headings[..k].iter().any(|(other, _)| other == heading) {
+                let what = format!("a second column named {}", visible(heading));
+                faults.push(fault(span.clone(), what));
+            }
+        }
+        if !headings.is_empty() && headings.iter().all(|(heading, _)| heading.parse::<f64>().is_ok()) {
+            let span = header.start..header.start + header.text.len();
+            let what = "numbers where headings are wanted; the first line names the columns, such as t_s, angle_deg";
+            faults.push(fault(span, what.into()));
+        }
+        let columns = headings.iter().map(|(heading, _)| Column::of(heading)).collect();
+        let mut rows = vec![];
+        for line in lines {
+            let all = cells(&line, separator);
+            if all.len() != headings.len() {
+                let span = line.start..line.start + line.text.len();
+                let what = format!(
+                    "line {}: {} cells where there are {} headings",
+                    line.number,
+                    all.len(),
+                    headings.len()
+                );
+                faults.push(fault(span, what));
+            }
+            let cells = all.into_iter().map(|(cell, span)| (cell.to_owned(), span)).collect();
+            let line = line.number;
+            rows.push(Row { line, cells });
+        }
+        if faults.is_empty() && rows.is_empty() {
+            faults.push(Violation::new(
+                Code::Table,
+                "",
+                "no rows below the headings: nothing was measured",
+            ));
+        }
+        if !faults.is_empty() {
+            faults.truncate(MOST);
+            return Err(source.error(faults));
+        }
+        let crc32 = crc32fast::hash(text.as_bytes());
+        Ok(Self {
+            source,
+            crc32,
+            columns,
+            rows,
+        })
+    }
+
+    /// Rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there are none, which a table that was read never is.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Line of a row in the file, from 1.
+    pub fn line(&self, row: usize) -> usize {
+        self.rows[row].line
+    }
+
+    /// The column of a name: a whole heading, or one without its unit.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        let whole = self.columns.iter().position(|column| column.heading == name);
+        whole.or_else(|| {
+            let mut alike = (0..self.columns.len()).filter(|k| self.columns[*k].name == name);
+            alike.next().filter(|_| alike.next().is_none())
+        })
+    }
+
+    /// The column of a name that was asked for by an option.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with the nearest heading.
+    pub fn wanted(&self, name: &str, option: &str) -> Result<usize> {
+        self.find(name).ok_or_else(|| {
+            let headings = || self.columns.iter().map(|column| column.heading.as_str());
+            let meant = match nearest(name, headings()) {
+                Some(meant) => format!("; nearest is {meant}"),
+                None => format!("; there are {}", headings().collect::<Vec<_>>().join(", ")),
+            };
+            let path = self.source.path.display();
+            Error::Usage(format!("{option}: {path} has no column {}{meant}", visible(name)))
+        })
+    }
+
+    /// The column of time: that which is asked for, or the one that is called `t` or `time`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where there is none.
+    pub fn time(&self, asked: Option<&str>) -> Result<usize> {
+        if let Some(name) = asked {
+            return self.wanted(name, "--time");
+        }
+        let called = |column: &Column| ["t", "time"].contains(&column.name.to_lowercase().as_str());
+        self.columns.iter().position(called).ok_or_else(|| {
+            let headings: Vec<&str> = self.columns.iter().map(|column| column.heading.as_str()).collect();
+            Error::Usage(format!(
+                "{} has no column t_s or time_s; name that of time with --time, one of {}",
+                self.source.path.display(),
+                headings.join(", ")
+            ))
+        })
+    }
+
+    /// The numbers of a column, nothing where a cell is empty, times a scale.
+    ///
+    /// # Errors
+    /// [`Error::Case`] with every cell that is no finite number, at its place.
+    pub fn numbers(&self, column: usize, scale: f64) -> Result<Vec<Option<f64>>> {
+        let mut faults = vec![];
+        let numbers = self.rows.iter().map(|row| {
+            let (cell, span) = &row.cells[column];
+            if cell.is_empty() {
+                return None;
+            }
+            let number = cell.parse::<f64>().ok().filter(|x| x.is_finite());
+            if number.is_none() && faults.len() < MOST {
+                let heading = &self.columns[column].heading;
+                let (cell, heading) = (visible(cell), visible(heading));
+                let what = format!("line {}, column {heading}: \"{cell}\" is no finite number", row.line);
+                let hint = match cell.contains(',') {
+                    true => "decimals stand behind a point",
+                    false => "leave a cell empty where nothing was measured",
+                };
+                faults.push(fault(span.clone(), what).hint(hint));
+            }
+            number.map(|x| x * scale)
+        });
+        let numbers = numbers.collect();
+        self.sound(faults).map(|()| numbers)
+    }
+
+    /// The numbers of a column in which every cell has one.
+    ///
+    /// # Errors
+    /// As [`Table::numbers`], and where a cell is empty.
+    pub fn all_numbers(&self, column: usize, scale: f64) -> Result<Vec<f64>> {
+        let numbers = self.numbers(column, scale)?;
+        let empty = (0..self.len()).filter(|row| numbers[*row].is_none()).take(MOST);
+        let faults = empty.map(|row| self.fault(row, column, "an empty cell, and every row needs this one"));
+        let faults = faults.collect();
+        self.sound(faults).map(|()| numbers.into_iter().flatten().collect())
+    }
+
+    /// Instants [s] of a column of time: ascending, none below 0.
+    ///
+    /// # Errors
+    /// As [`Table::all_numbers`], with times out of order at their places; a column in another unit than one of time.
+    pub fn instants(&self, column: usize) -> Result<Vec<f64>> {
+        let scale = self.scale(column, "s", "time")?;
+        let times = self.all_numbers(column, scale)?;
+        let mut faults = vec![];
+        for (row, t) in times.iter().enumerate() {
+            let what = match row.checked_sub(1).map(|before| times[before]) {
+                _ if *t < 0.0 => "a time before the start of the run, which is 0".to_owned(),
+                Some(before) if *t <= before => format!("{} s is not after {} s of the row before", t, before),
+                _ => continue,
+            };
+            if faults.len() < MOST {
+                faults.push(self.fault(row, column, &what));
+            }
+        }
+        self.sound(faults).map(|()| times)
+    }
+
+    /// How many SI units of a dimension the numbers of a column are; those without a unit are taken for SI units.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where the heading names another dimension, or a unit that is not known.
+    pub fn scale(&self, column: usize, si: &str, what: &str) -> Result<f64> {
+        let Column {
+            heading, unit, unknown, ..
+        } = &self.columns[column];
+        let known = || {
+            units::of_dimension(si)
+                .map(|unit| unit.name)
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        if let Some(unknown) = unknown {
+            let what = format!(
+                "the unit [{unknown}] of the column {heading} is not known; for {what} there are {}",
+                known()
+            );
+            return Err(Error::Usage(what));
+        }
+        match unit {
+            None => Ok(1.0),
+            Some(unit) if unit.si == si => Ok(unit.scale),
+            Some(unit) => Err(Error::Usage(format!(
+                "the column {heading} is in {}, but {what} is in {}",
+                unit.name,
+                if si == "1" { "no unit".into() } else { known() }
+            ))),
+        }
+    }
+
+    /// A fault at a cell.
+    pub fn fault(&self, row: usize, column: usize, what: &str) -> Violation {
+        let Row { line, cells } = &self.rows[row];
+        let heading = visible(&self.columns[column].heading);
+        fault(
+            cells[column].1.clone(),
+            format!("line {line}, column {heading}: {what}"),
+        )
+    }
+
+    /// Nothing, or the error of faults at their places.
+    ///
+    /// # Errors
+    /// [`Error::Case`] where there are any.
+    pub fn sound(&self, faults: Vec<Violation>) -> Result<()> {
+        match faults.is_empty() {
+            true => Ok(()),
+            false => Err(self.source.error(faults)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Table;
+
+    fn read(text: &str) -> crate::error::Result<Table> {
+        Table::parse("data.csv".as_ref(), text)
+    }
+
+    fn faults(text: &str, then: impl Fn(&Table) -> crate::error::Result<()>) -> String {
+        match read(text).and_then(|table| then(&table)) {
+            Err(crate::error::Error::Case(fault)) => fault.violations.iter().map(|v| v.what.clone() + ";").collect(),
+            Err(error) => error.to_string(),
+            Ok(()) => "none".into(),
+        }
+    }
+
+    #[test]
+    fn tables_are_read_however_a_laboratory_writes_them() {
+        for text in [
+            "\u{feff}# of a pump\nt_s,angle_deg\n0,1\n0.5,\n",
+            "t_s;angle_deg\r\n0;1\r\n0.5;\r\n",
+            "\"t_s\"\t\"angle_deg\"\n\n0\t1\n# a pause\n0.5\t\n",
+        ] {
+            let table = read(text).expect(text);
+            assert_eq!(
+                table.instants(table.time(None).expect("time")).expect("times"),
+                [0.0, 0.5]
+            );
+            let angle = table.find("angle").expect("without its unit");
+            assert_eq!(table.numbers(angle, 2.0).expect("numbers"), [Some(2.0), None]);
+            let scale = table.scale(angle, "rad", "an angle").expect("a unit");
+            assert!((scale - std::f64::consts::PI / 180.0).abs() < 1e-16);
+        }
+    }
+
+    #[test]
+    fn faults_name_line_and_column() {
+        let none = |_: &Table| Ok(());
+        let times = |table: &Table| table.instants(0).map(|_| ());
+        for (text, what) in [
+            ("", "no headings"),
+            ("t_s,a\n", "no rows"),
+            ("t_s,t_s\n1,2\n", "a second column named t_s"),
+            ("0,1\n1,2\n", "numbers where headings are wanted"),
+            ("t_s,a\n1,2,3\n", "line 2: 3 cells where there are 2 headings"),
+            ("t_s,\n1,2\n", "column 2 has no heading"),
+        ] {
+            let said = faults(text, none);
+            assert!(said.contains(what), "{said}");
+        }
+        for (text, what) in [
+            ("t_s,a\n1,2\n1,3\n", "line 3, column t_s: 1 s is not after 1 s"),
+            ("t_s,a\n-1,2\n", "line 2, column t_s: a time before the start"),
+            ("t_s,a\n1,2\n,3\n", "line 3, column t_s: an empty cell"),
+            ("t_s,a\nsoon,2\n", "line 2, column t_s: \"soon\" is no finite number"),
+            (
+                "t [furlong],a\n1,2\n",
+                "unit [furlong] of the column t [furlong] is not known",
+            ),
+            ("t_mm,a\n1,2\n", "the column t_mm is in mm, but time is in s, ms"),
+        ] {
+            let said = faults(text, times);
+            assert!(said.contains(what), "{said}");
+        }
+        let said = faults("t_s,angle_deg\n1,2\n", |table| {
+            table.wanted("angel", "--match").map(|_| ())
+        });
+        assert!(said.contains("nearest is angle_deg"), "{said}");
+    }
+}

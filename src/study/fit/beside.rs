@@ -1,0 +1,130 @@
+//! A run that is there already, over measured data.
+
+use serde::{Deserialize, Serialize};
+
+use super::found::Left;
+use crate::case::schema::Case;
+use crate::error::{Error, Result};
+use crate::study::compare::Recording;
+use crate::study::compare::interpolate::cubic;
+use crate::study::data::{Match, Matched, Table, matching, places};
+
+/// A run over data.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Beside {
+    /// Name of the case.
+    pub case: String,
+    /// Folder of the run.
+    pub run: String,
+    /// File of the data.
+    pub data: String,
+    /// Check sum of its text.
+    pub data_crc32: u32,
+    /// Columns of the data.
+    pub columns: Vec<Column>,
+}
+
+/// A column of the data over a quantity of the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Column {
+    /// As it was asked for.
+    pub matched: Match,
+    /// Name of the quantity without its unit.
+    pub quantity: String,
+    /// Its unit.
+    pub unit: String,
+    /// Run less data.
+    #[serde(flatten)]
+    pub left: Left,
+    /// When the two differ most [s].
+    pub max_at_s: f64,
+    /// Instants of the data [s].
+    pub times_s: Vec<f64>,
+    /// The data, in the quantity's unit.
+    pub measured: Vec<f64>,
+    /// The run at these instants: cubics through its output times.
+    pub computed: Vec<f64>,
+}
+
+/// Compares; `data` is the file's name.
+///
+/// # Errors
+/// Columns, quantities or places that are not there, units that do not match, data before or after the run.
+pub fn compare(
+    run: &Recording,
+    case: Option<&Case>,
+    table: &Table,
+    data: &str,
+    matches: &[Match],
+    time: Option<&str>,
+) -> Result<Beside> {
+    let names = matches
+        .iter()
+        .map(|one| placed(one, case))
+        .collect::<Result<Vec<_>>>()?;
+    let known: Vec<_> = run
+        .columns
+        .iter()
+        .map(|column| (column.name.clone(), column.unit.clone()))
+        .collect();
+    let matched = matching::resolve(table, matches, &names, &known)?;
+    let column = table.time(time)?;
+    let instants = table.instants(column)?;
+    let (Some(first), Some(last)) = (run.times.first(), run.times.last()) else {
+        return Err(Error::Usage(format!("{} has no output times", run.label)));
+    };
+    let slack = 1e-9 * last.abs();
+    let outside = (0..instants.len()).filter(|row| !(first - slack..=last + slack).contains(&instants[*row]));
+    let faults = outside.take(1).map(|row| {
+        let what = format!("{} s is not within the run, from {first} s to {last} s", instants[row]);
+        table.fault(row, column, &what)
+    });
+    table.sound(faults.collect())?;
+    Ok(Beside {
+        case: run.summary.case.clone(),
+        run: run.label.clone(),
+        data: data.into(),
+        data_crc32: table.crc32,
+        columns: matched.iter().map(|one| beside(run, one, &instants)).collect(),
+    })
+}
+
+fn placed(one: &Match, case: Option<&Case>) -> Result<String> {
+    let (Some(place), Some(case)) = (&one.place, case) else {
+        return Ok(one.quantity.clone());
+    };
+    let placed = places::of(case, &one.quantity, place)?;
+    match placed.probe {
+        None => Ok(placed.name),
+        Some(probe) => Err(Error::Usage(format!(
+            "--match {}: the run recorded nothing at {} of the length; give its case a probe there, {{\"name\": \"{}\", \"at\": {}}} in /probes",
+            one.words(),
+            probe.at,
+            probe.name,
+            probe.at
+        ))),
+    }
+}
+
+fn beside(run: &Recording, one: &Matched, instants: &[f64]) -> Column {
+    let series = &run.columns[one.index];
+    let measured = instants
+        .iter()
+        .zip(&one.values)
+        .filter_map(|(t, value)| Some((*t, (*value)?)));
+    let (times_s, measured): (Vec<f64>, Vec<f64>) = measured.unzip();
+    let computed = times_s.iter().map(|t| cubic(&run.times, *t).mean(|k| series.values[k]));
+    let computed: Vec<f64> = computed.collect();
+    let far = |k: &usize| (computed[*k] - measured[*k]).abs();
+    let most = (0..times_s.len()).max_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0);
+    Column {
+        matched: one.asked.clone(),
+        quantity: one.name.clone(),
+        unit: one.unit.clone(),
+        left: Left::of(&computed, &measured),
+        max_at_s: times_s.get(most).copied().unwrap_or_default(),
+        times_s,
+        measured,
+        computed,
+    }
+}

@@ -1,0 +1,176 @@
+//! What data do not tell: numbers by which nothing measured changes, and combinations of which one part alone is seen.
+//!
+//! ```text
+//! J  derivatives of the values in their standard deviations by the places of the numbers between their bounds, 0 to 1
+//! a column shorter than the noise, or than the derivatives' own error: the number is not seen
+//! J/|columns| = U S V^T       along a column of V the estimate spreads by 1/s: more than half of the bounds' width is no estimate
+//! ```
+//!
+//! Along such a direction the logarithms of the numbers change by `a_k`; what stays is their product `p_1^(b_1) p_2^(b_2)` with `b·a = 0`.
+
+use nalgebra::DMatrix;
+
+use crate::study::span::Span;
+
+/// What is known of the numbers.
+pub struct Seen<'a> {
+    /// Numbers and bounds.
+    pub spans: &'a [Span],
+    /// Their estimates.
+    pub values: &'a [f64],
+    /// Derivatives of the values in their standard deviations, by places.
+    pub jacobian: &'a DMatrix<f64>,
+    /// Standard deviation of a residual in that of its noise.
+    pub spread: f64,
+    /// Relative error of the derivatives.
+    pub exact: f64,
+}
+
+/// A direction that is not seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unseen {
+    /// Numbers that it moves.
+    pub numbers: Vec<usize>,
+    /// In a sentence.
+    pub words: String,
+    /// Whether not even derivatives without noise would tell.
+    pub entirely: bool,
+}
+
+/// Share of the bounds' width that an estimate may spread.
+const WIDE: f64 = 0.5;
+/// Share of the largest part of a direction above which a number belongs to it.
+const PART: f64 = 0.1;
+
+/// All directions that are not seen.
+pub fn unseen(seen: &Seen) -> Vec<Unseen> {
+    let lengths: Vec<f64> = seen.jacobian.column_iter().map(|column| column.norm()).collect();
+    let longest = lengths.iter().copied().fold(0.0, f64::max);
+    let mut all = vec![];
+    let mut left = vec![];
+    for (k, length) in lengths.iter().enumerate() {
+        let entirely = *length <= seen.exact * longest || *length == 0.0;
+        if entirely || *length < seen.spread {
+            all.push(Unseen {
+                numbers: vec![k],
+                words: format!(
+                    "the data do not see {}: {}",
+                    seen.spans[k].pointer,
+                    match entirely {
+                        true => "nothing measured depends on it".to_owned(),
+                        false => "over all of its bounds what is measured changes by less than its noise".to_owned(),
+                    }
+                ),
+                entirely,
+            });
+        } else {
+            left.push(k);
+        }
+    }
+    if left.len() < 2 {
+        return all;
+    }
+    let mut own = seen.jacobian.select_columns(&left);
+    for (mut column, k) in own.column_iter_mut().zip(&left) {
+        column /= lengths[*k];
+    }
+    let svd = own.svd(false, true);
+    let Some(directions) = &svd.v_t else {
+        return all;
+    };
+    for (row, size) in svd.singular_values.iter().enumerate() {
+        let along: Vec<f64> = directions.row(row).iter().copied().collect();
+        let most = along.iter().map(|v| v.abs()).fold(0.0, f64::max);
+        let spread = |(v, k): (&f64, &usize)| v.abs() / lengths[*k] * seen.spread / size;
+        let widest = along.iter().zip(&left).map(spread).fold(0.0, f64::max);
+        let entirely = *size <= seen.exact;
+        if !entirely && widest < WIDE {
+            continue;
+        }
+        let parts = along.iter().zip(&left).filter(|(v, _)| v.abs() > PART * most);
+        // change of the logarithms of the numbers
+        let parts: Vec<(usize, f64)> = parts
+            .map(|(v, k)| {
+                (
+                    *k,
+                    v / lengths[*k] * seen.spans[*k].slope(seen.values[*k]) / seen.values[*k],
+                )
+            })
+            .collect();
+        let names: Vec<&str> = parts.iter().map(|(k, _)| seen.spans[*k].pointer.as_str()).collect();
+        let words = match parts[..] {
+            [_] => format!(
+                "the data tell next to nothing of {}: its estimate spreads over half of its bounds",
+                names[0]
+            ),
+            [(_, a), (_, b)] => {
+                let power = -a / b;
+                match power {
+                    p if (p - 1.0).abs() < 0.1 => {
+                        format!("of {} and {} the data see the product alone", names[0], names[1])
+                    }
+                    p if (p + 1.0).abs() < 0.1 => {
+                        format!("of {} and {} the data see the ratio alone", names[0], names[1])
+                    }
+                    p => format!(
+                        "of {0} and {1} the data see {0} times {1} to the power of {p:.2} alone",
+                        names[0], names[1]
+                    ),
+                }
+            }
+            _ => format!(
+                "the data do not tell {} apart: they may change together with little to be seen",
+                names.join(", ")
+            ),
+        };
+        all.push(Unseen {
+            numbers: parts.iter().map(|(k, _)| *k).collect(),
+            words,
+            entirely,
+        });
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(rows: &[[f64; 2]], spread: f64) -> Vec<String> {
+        let spans = ["/a", "/b"].map(|pointer| Span {
+            pointer: pointer.into(),
+            low: 1.0,
+            high: 3.0,
+        });
+        let jacobian = DMatrix::from_fn(rows.len(), 2, |i, k| rows[i][k]);
+        let seen = Seen {
+            spans: &spans,
+            values: &[2.0, 2.0],
+            jacobian: &jacobian,
+            spread,
+            exact: 1e-8,
+        };
+        unseen(&seen).into_iter().map(|one| one.words).collect()
+    }
+
+    #[test]
+    fn what_is_not_seen_is_named() {
+        let both = [[10.0, 10.0], [20.0, 20.0], [5.0, 5.0]];
+        assert_eq!(words(&both, 1.0), ["of /a and /b the data see the product alone"]);
+        let ratio = both.map(|[a, b]| [a, -b]);
+        assert_eq!(words(&ratio, 1.0), ["of /a and /b the data see the ratio alone"]);
+        let root = both.map(|[a, b]| [2.0 * a, b]);
+        assert_eq!(
+            words(&root, 1.0),
+            ["of /a and /b the data see /a times /b to the power of 0.50 alone"]
+        );
+        let none = [[10.0, 0.0], [20.0, 0.0]];
+        assert_eq!(
+            words(&none, 1.0),
+            ["the data do not see /b: nothing measured depends on it"]
+        );
+        let little = [[10.0, 0.1], [20.0, -0.1]];
+        assert!(words(&little, 1.0)[0].contains("less than its noise"));
+        assert!(words(&[[10.0, 0.0], [0.0, 10.0]], 1.0).is_empty());
+    }
+}

@@ -1,0 +1,299 @@
+//! Numbers of a case from measured data: nonlinear least squares between bounds, by exact derivatives, with errors and with what the data do not tell.
+//!
+//! ```text
+//! problem     case, numbers that are sought, measured values; everything that does not fit is told here
+//! simulate    what a case gives beside each value, with its derivatives
+//! robust      what large residuals count, how large noise is where it is not given
+//! search      from starts to the minimum
+//! identify    what the data do not see
+//! statistics  errors and intervals
+//! found       the result
+//! beside      a run that is there already, over data
+//! ```
+
+pub mod beside;
+pub mod found;
+pub mod identify;
+pub mod problem;
+pub mod robust;
+mod search;
+mod simulate;
+pub mod statistics;
+
+use std::time::Instant;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::error::{Code, Result};
+use crate::numerics::levenberg::{self, Ended, Evaluation};
+use crate::study::span::Span;
+use found::{Bound, Column, Estimate, Fit, Left, Simulator};
+use identify::{Seen, unseen};
+use problem::{Asked, Drive, Problem, Through};
+use search::{Reached, Search};
+use statistics::Basis;
+
+/// Relative error of the derivatives of equilibria.
+const EXACT: f64 = 1e-8;
+/// That of IDA's sensitivities over its tolerance.
+const CARRIED: f64 = 10.0;
+/// Deviations by which chi-square may lie off its mean.
+const UNLIKELY: f64 = 3.0;
+/// The same of the correlation of neighbours.
+const TOGETHER: f64 = 2.5;
+
+/// A fit with what its files tell besides.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// The result.
+    pub fit: Fit,
+    /// The case with the estimates.
+    pub case: crate::case::Case,
+    /// What it gives beside each observation.
+    pub model: Vec<f64>,
+    /// Weight of each observation: the inverse of its variance, times what its loss leaves.
+    pub weights: Vec<f64>,
+}
+
+/// Fits. `tell` hears of every simulation: how many there were, and the sum of squares so far.
+///
+/// # Errors
+/// The case cannot be simulated at any start.
+pub fn fit(problem: &Problem, asked: &Asked, data: (&str, u32), tell: &(dyn Fn(usize, f64) + Sync)) -> Result<Fitted> {
+    let begin = Instant::now();
+    let search = Search::new(problem, asked, tell);
+    let reached = search.go()?;
+    let (values, count) = (&reached.values, problem.observations.len());
+    let case = problem.with(values)?;
+    let free = levenberg::free(&reached.minimum.x, &reached.minimum.at);
+    let (residuals, jacobian) = reached.plain(problem);
+    let freedom = count.saturating_sub(free.len()) as f64;
+    let known = reached.given.iter().all(|given| *given);
+    let plain = asked.loss == robust::Loss::Squares;
+    let variance = match (plain, known) {
+        (true, true) => 1.0,
+        (true, false) => residuals.norm_squared() / freedom.max(1.0),
+        (false, _) => asked.loss.variance(residuals.as_slice(), free.len()),
+    };
+    let exact = match problem.through() {
+        Through::Run => CARRIED * problem.case.solver.rtol,
+        Through::Equilibrium => EXACT,
+    };
+    let blind = unseen(&Seen {
+        spans: &problem.spans,
+        values,
+        jacobian: &jacobian,
+        spread: variance.sqrt(),
+        exact,
+    });
+    let basis = Basis {
+        spans: &problem.spans,
+        values,
+        free: &free,
+        unseen: &blind,
+        jacobian: &jacobian,
+        variance,
+        freedom: (!known || !plain).then_some(freedom),
+    };
+    let errors = basis.errors();
+    let (finer, moved) = finer(problem, &reached, asked.jobs, &free);
+    let estimate = |k: usize| {
+        let span: &Span = &problem.spans[k];
+        Estimate {
+            pointer: span.pointer.clone(),
+            low: span.low,
+            high: span.high,
+            logarithmic: span.logarithmic(),
+            start: problem.start[k],
+            value: values[k],
+            standard_error: errors.standard[k],
+            interval_95: errors.intervals[k],
+            at_bound: bound(reached.minimum.x[k], free.contains(&k)),
+            finer_change: moved.as_ref().map(|moved| moved[k]),
+        }
+    };
+    let parameters: Vec<Estimate> = (0..values.len()).map(estimate).collect();
+    let columns = columns(problem, &reached);
+    let mut fit = Fit {
+        case: problem.case.name.clone(),
+        data: data.0.into(),
+        data_crc32: data.1,
+        command: problem.through(),
+        drives: match &problem.abscissa {
+            problem::Abscissa::Time(_) => vec![],
+            problem::Abscissa::Drives(drives) => drives.iter().map(|(drive, _): &(Drive, _)| drive.clone()).collect(),
+        },
+        found: reached.minimum.ended != Ended::Unfinished,
+        parameters,
+        covariance: errors.covariance,
+        correlation: errors.correlation,
+        columns,
+        observations: count,
+        chi_square: reached.minimum.at.cost(),
+        degrees_of_freedom: freedom,
+        loss: asked.loss,
+        unseen: blind.into_iter().map(|one| one.words).collect(),
+        warnings: vec![],
+        simulator: finer,
+        starts: reached.starts.clone(),
+        steps: reached.steps,
+        simulations: search.simulations(),
+        wall_s: 0.0,
+    };
+    fit.warnings = warnings(&fit, reached.minimum.ended, known && plain);
+    fit.wall_s = begin.elapsed().as_secs_f64();
+    let weights = problem.observations.iter().enumerate();
+    let weights = weights
+        .map(|(i, _)| reached.weights[i] / reached.sigmas[i].powi(2))
+        .collect();
+    Ok(Fitted {
+        fit,
+        case,
+        model: reached.simulated.values,
+        weights,
+    })
+}
+
+fn bound(place: f64, free: bool) -> Option<Bound> {
+    match place {
+        _ if free => None,
+        x if x <= 0.0 => Some(Bound::Low),
+        _ => Some(Bound::High),
+    }
+}
+
+/// What each column leaves.
+fn columns(problem: &Problem, reached: &Reached) -> Vec<Column> {
+    let of = |(k, one): (usize, &crate::study::data::Matched)| {
+        let own = |i: &usize| problem.observations[*i].of == k;
+        let own: Vec<usize> = (0..problem.observations.len()).filter(own).collect();
+        let model: Vec<f64> = own.iter().map(|i| reached.simulated.values[*i]).collect();
+        let data: Vec<f64> = own.iter().map(|i| problem.observations[*i].value).collect();
+        Column {
+            matched: one.asked.clone(),
+            quantity: one.key(),
+            left: Left::of(&model, &data),
+            noise: own.iter().map(|i| reached.sigmas[*i]).sum::<f64>() / own.len().max(1) as f64,
+            noise_given: reached.given[k],
+        }
+    };
+    problem.matched.iter().enumerate().map(of).collect()
+}
+
+/// How far estimates would move on a finer mesh with a tenth of the tolerance: Gauss and Newton's step from what the finer simulation leaves.
+fn finer(problem: &Problem, reached: &Reached, jobs: usize, free: &[usize]) -> (Simulator, Option<Vec<f64>>) {
+    let mut other = problem.clone();
+    other.case.mesh.cells_per_segment *= 2;
+    let mut with = vec![format!("{} cells a segment", other.case.mesh.cells_per_segment)];
+    if other.case.bladders.is_some() {
+        other.case.mesh.cells_per_bladder *= 2;
+        with.push(format!("{} a bladder", other.case.mesh.cells_per_bladder));
+    }
+    if problem.through() == Through::Run {
+        other.case.solver.rtol = (problem.case.solver.rtol / 10.0).max(1e-12);
+        with.push(format!("rtol {:e}", other.case.solver.rtol));
+    }
+    let finer = with.join(", ");
+    match simulate::simulate(&other, &reached.values, jobs) {
+        Err(error) => {
+            let unknown = Some(error.to_string());
+            (Simulator { finer, unknown }, None)
+        }
+        Ok(there) => {
+            let here = &reached.simulated.values;
+            let scale = |i: usize| reached.weights[i].sqrt() / reached.sigmas[i];
+            let change = DVector::from_fn(here.len(), |i, _| scale(i) * (there.values[i] - here[i]));
+            let jacobian = reached.minimum.at.jacobian.select_columns(free);
+            let step = levenberg::newton(&jacobian, &change);
+            let mut moved = vec![0.0; problem.spans.len()];
+            for (k, d) in free.iter().zip(step.iter()) {
+                moved[*k] = d * problem.spans[*k].slope(reached.values[*k]);
+            }
+            (Simulator { finer, unknown: None }, Some(moved))
+        }
+    }
+}
+
+fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
+    let mut all = vec![];
+    let mut say = |what: String| all.push(Code::Fit.warning(what));
+    match ended {
+        Ended::Found => {}
+        Ended::Unfinished => say("the search ran out of steps; estimates are where it stood".into()),
+        Ended::Stuck => say(
+            "the search ended where no step lowers the sum of squares further, though its derivatives say so: the simulator's own error is \
+             larger than what is left; a smaller /solver/rtol may help"
+                .into(),
+        ),
+    }
+    for one in &fit.unseen {
+        say(one.clone());
+    }
+    for one in &fit.parameters {
+        let bound = match one.at_bound {
+            None => continue,
+            Some(Bound::Low) => format!("its lower bound {}", one.low),
+            Some(Bound::High) => format!("its upper bound {}", one.high),
+        };
+        say(format!(
+            "{} lies at {bound}: the data would take it further, and it has no error",
+            one.pointer
+        ));
+    }
+    let (chi, n) = (fit.chi_square, fit.degrees_of_freedom);
+    if known && n > 0.0 && (chi - n).abs() > UNLIKELY * (2.0 * n).sqrt() {
+        let what = match chi > n {
+            true => {
+                "the model does not follow the data within the noise that was given, or that is too small; errors are too small"
+            }
+            false => "the data lie closer to the model than the noise that was given",
+        };
+        say(format!("chi-square over degrees of freedom is {:.3}: {what}", chi / n));
+    }
+    for column in &fit.columns {
+        let Left { count, lag_1, .. } = column.left;
+        if count >= 8 && lag_1 * (count as f64).sqrt() > TOGETHER {
+            let wider = ((1.0 + lag_1) / (1.0 - lag_1)).sqrt();
+            say(format!(
+                "what is left of {} is not independent from row to row (correlation {lag_1:.2}): the model bends another way than the data, or \
+                 noise lasts; errors may be {wider:.1} times as large",
+                column.matched.column
+            ));
+        }
+    }
+    for one in &fit.parameters {
+        if let (Some(change), Some(error)) = (one.finer_change, one.standard_error)
+            && change.abs() > 0.5 * error
+        {
+            say(format!(
+                "{} would move by {change:.2e}, {:.1} of its standard errors, with {}: mesh or tolerance are too coarse for these data",
+                one.pointer,
+                change.abs() / error,
+                fit.simulator.finer
+            ));
+        }
+    }
+    if let Some(why) = &fit.simulator.unknown {
+        say(format!(
+            "what mesh and tolerance do to the estimates is not known: {why}"
+        ));
+    }
+    all
+}
+
+/// Residuals and derivatives in standard deviations, as a search wants them.
+fn evaluation(model: &simulate::Simulated, problem: &Problem, values: &[f64], scale: &[f64]) -> Evaluation {
+    let all = &problem.observations;
+    let slope: Vec<f64> = problem
+        .spans
+        .iter()
+        .zip(values)
+        .map(|(span, value)| span.slope(*value))
+        .collect();
+    Evaluation {
+        residuals: DVector::from_fn(all.len(), |i, _| scale[i] * (model.values[i] - all[i].value)),
+        jacobian: DMatrix::from_fn(all.len(), values.len(), |i, k| {
+            scale[i] * model.slopes[(i, k)] * slope[k]
+        }),
+    }
+}

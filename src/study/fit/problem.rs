@@ -1,0 +1,382 @@
+//! What is fitted to what: a case, the numbers of it that are sought, and measured values.
+
+use serde::{Deserialize, Serialize};
+
+use super::robust::Loss;
+use crate::case::parameter::{Parameter, with};
+use crate::case::schema::{Case, Thinning};
+use crate::case::{is_below, nearest};
+use crate::discrete::System;
+use crate::discrete::quantities::Observable;
+use crate::error::{Error, Result};
+use crate::run::equilibrium;
+use crate::run::observe::Observer;
+use crate::study::data::matching::Named;
+use crate::study::data::{Match, Matched, Table, matching, units};
+use crate::study::span::Span;
+
+/// What the case goes through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Through {
+    /// A run in time: a row is an instant.
+    Run,
+    /// Equilibria: a row is a case.
+    Equilibrium,
+}
+
+/// `COLUMN=POINTER`: a number of the case that every row sets.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Drive {
+    /// Column of the data.
+    pub column: String,
+    /// JSON pointer into the case.
+    pub pointer: String,
+}
+
+impl Drive {
+    /// Of `COLUMN=POINTER`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with what is wanted.
+    pub fn parse(text: &str) -> Result<Self> {
+        let parts = text
+            .rsplit_once('=')
+            .map(|(column, pointer)| (column.trim(), pointer.trim()));
+        match parts {
+            Some((column, pointer)) if !column.is_empty() && pointer.starts_with('/') => Ok(Self {
+                column: column.into(),
+                pointer: pointer.into(),
+            }),
+            _ => Err(Error::Usage(format!(
+                "--drive '{text}': a column and a JSON pointer are wanted, such as pressure_kpa=/network/chains/0/ends/0/pressure_pa"
+            ))),
+        }
+    }
+}
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Asked {
+    /// Numbers that are sought, and where.
+    pub spans: Vec<Span>,
+    /// Which columns are beside which quantities.
+    pub matches: Vec<Match>,
+    /// Column of time of a run.
+    pub time: Option<String>,
+    /// What rows set, of equilibria; a run where there is nothing.
+    pub drives: Vec<Drive>,
+    /// Standard deviations of columns in their own units.
+    pub noise: Vec<(String, f64)>,
+    /// What large residuals count.
+    pub loss: Loss,
+    /// Searches, each from another place.
+    pub starts: usize,
+    /// Simulations at once.
+    pub jobs: usize,
+}
+
+/// What stands at the side of the rows.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Abscissa {
+    /// Instants [s].
+    Time(Vec<f64>),
+    /// Numbers of the case, a list of values each.
+    Drives(Vec<(Drive, Vec<f64>)>),
+}
+
+/// A measured value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observation {
+    /// Number of its [`Matched`].
+    pub of: usize,
+    /// Row of the abscissa.
+    pub row: usize,
+    /// The value, in the unit of the quantity.
+    pub value: f64,
+    /// Its standard deviation, where it was given.
+    pub sigma: Option<f64>,
+}
+
+/// Everything that a fit needs.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// The case, with the probes that are looked at.
+    pub case: Case,
+    /// Numbers that are sought, and where.
+    pub spans: Vec<Span>,
+    /// Their values to begin with.
+    pub start: Vec<f64>,
+    /// Columns.
+    pub matched: Vec<Matched>,
+    /// What stands beside the rows in which something was measured.
+    pub abscissa: Abscissa,
+    /// Measured values, row after row.
+    pub observations: Vec<Observation>,
+}
+
+impl Problem {
+    /// Brings a case and data together.
+    ///
+    /// # Errors
+    /// Everything that does not fit, before anything is computed.
+    pub fn new(case: &Case, table: &Table, asked: &Asked) -> Result<Self> {
+        let start = starts(case, &asked.spans, &asked.drives)?;
+        let mut case = case.clone();
+        case.time.history = Thinning::All;
+        let names = asked.matches.iter().map(|one| one.placed(&mut case));
+        let names = names.collect::<Result<Vec<_>>>()?;
+        let through = if asked.drives.is_empty() {
+            Through::Run
+        } else {
+            Through::Equilibrium
+        };
+        let columns = columns(&case, through)?;
+        let matched = matching::resolve(table, &asked.matches, &names, &columns)?;
+        for one in &matched {
+            let aside = ["t", "load_factor"].contains(&one.name.as_str());
+            if aside || Observable::named(&one.name).is_some_and(|one| !one.has_derivative()) {
+                let what = "it does not depend on numbers of the case, so that nothing is fitted to it";
+                return Err(Error::Usage(format!("--match {}: {what}", one.asked.words())));
+            }
+        }
+        let sigmas = sigmas(table, &matched, asked)?;
+        let measured = |row: &usize| matched.iter().any(|one| one.values[*row].is_some());
+        let rows: Vec<usize> = (0..table.len()).filter(measured).collect();
+        let abscissa = match through {
+            Through::Run => Abscissa::Time(instants(&case, table, asked, &rows)?),
+            Through::Equilibrium => Abscissa::Drives(driven(&case, table, asked, &rows)?),
+        };
+        let mut observations = vec![];
+        for (place, row) in rows.iter().enumerate() {
+            for (of, one) in matched.iter().enumerate() {
+                observations.extend(one.values[*row].map(|value| Observation {
+                    of,
+                    row: place,
+                    value,
+                    sigma: sigmas[of].as_ref().map(|all| all[*row]),
+                }));
+            }
+        }
+        let (values, sought) = (observations.len(), asked.spans.len());
+        if values < sought + usize::from(sigmas.iter().any(Option::is_none)) {
+            return Err(Error::Usage(format!(
+                "{values} measured values cannot tell {sought} numbers of the case{}",
+                if values < sought {
+                    ""
+                } else {
+                    " and their own noise; give it with --noise"
+                }
+            )));
+        }
+        Ok(Self {
+            case,
+            spans: asked.spans.clone(),
+            start,
+            matched,
+            abscissa,
+            observations,
+        })
+    }
+
+    /// What the case goes through.
+    pub fn through(&self) -> Through {
+        match self.abscissa {
+            Abscissa::Time(_) => Through::Run,
+            Abscissa::Drives(_) => Through::Equilibrium,
+        }
+    }
+
+    /// Rows in which something was measured.
+    pub fn rows(&self) -> usize {
+        match &self.abscissa {
+            Abscissa::Time(instants) => instants.len(),
+            Abscissa::Drives(drives) => drives.first().map_or(0, |(_, values)| values.len()),
+        }
+    }
+
+    /// The case with values of the numbers that are sought.
+    ///
+    /// # Errors
+    /// It is not valid with them.
+    pub fn with(&self, values: &[f64]) -> Result<Case> {
+        with(&self.case, &self.changes(values).collect::<Vec<_>>())
+    }
+
+    /// Pointers and values.
+    pub fn changes<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = (&'a str, f64)> {
+        self.spans
+            .iter()
+            .map(|span| span.pointer.as_str())
+            .zip(values.iter().copied())
+    }
+
+    /// The numbers that are sought at values.
+    pub fn parameters(&self, values: &[f64]) -> Vec<Parameter> {
+        let parameter = |(pointer, value): (&str, f64)| Parameter {
+            pointer: pointer.into(),
+            value,
+        };
+        self.changes(values).map(parameter).collect()
+    }
+
+    /// Values at places between the bounds; none is exactly 0, where a number has no size to differ by.
+    pub fn values(&self, places: &[f64]) -> Vec<f64> {
+        let value = |(span, place): (&Span, &f64)| {
+            let (value, least) = (span.value(*place), 1e-6 * (span.high - span.low));
+            match value.abs() < least {
+                true if span.high > least => least,
+                true => -least,
+                false => value,
+            }
+        };
+        self.spans.iter().zip(places).map(value).collect()
+    }
+}
+
+/// Columns that a case's result has.
+fn columns(case: &Case, through: Through) -> Result<Vec<Named>> {
+    let all = match through {
+        Through::Run => Observer::header(case, &System::new(case)?).columns,
+        Through::Equilibrium => equilibrium::columns(&equilibrium::system(case, case.time.end_s)?),
+    };
+    Ok(all
+        .into_iter()
+        .map(|column| (column.name, column.unit.into()))
+        .collect())
+}
+
+/// Values to begin with: those of the case, or the middle of the bounds where these do not hold them.
+fn starts(case: &Case, spans: &[Span], drives: &[Drive]) -> Result<Vec<f64>> {
+    if spans.is_empty() {
+        let what = "nothing to fit: --vary POINTER=LOW:HIGH, such as /beam/young_modulus_pa=1e5:1e7";
+        return Err(Error::Usage(what.into()));
+    }
+    let set = drives.iter().map(|drive| drive.pointer.as_str());
+    let all: Vec<&str> = spans.iter().map(|span| span.pointer.as_str()).chain(set).collect();
+    for (k, pointer) in all.iter().enumerate() {
+        if let Some(other) = all[..k]
+            .iter()
+            .find(|other| is_below(pointer, other) || is_below(other, pointer))
+        {
+            return Err(Error::Usage(format!(
+                "{pointer} and {other} would be set at once; leave one of them out"
+            )));
+        }
+    }
+    let start = |span: &Span| {
+        let found = Parameter::find(case, &span.pointer).or_else(|error| {
+            // one that is 0 has no size to differ by, but another value has
+            let middle = with(case, &[(&span.pointer, span.value(0.5))]);
+            let zero = error.to_string().contains(": it is 0");
+            match middle {
+                Ok(middle) if zero => Parameter::find(&middle, &span.pointer),
+                _ => Err(error),
+            }
+        });
+        match found {
+            Ok(found) if span.holds(found.value) => Ok(found.value),
+            Ok(_) => Ok(span.value(0.5)),
+            Err(error) => Err(Error::Usage(error.to_string().replace("--sensitivity", "--vary"))),
+        }
+    };
+    spans.iter().map(start).collect()
+}
+
+/// Instants of the rows, none after the end of the run.
+fn instants(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result<Vec<f64>> {
+    let column = table.time(asked.time.as_deref())?;
+    let all = table.instants(column)?;
+    let end = case.time.end_s;
+    let late = (0..all.len()).find(|row| all[*row] > end * (1.0 + 1e-12));
+    if let Some(row) = late {
+        let what = format!("{} s is after the end of the run at {end} s", all[row]);
+        let last = all[all.len() - 1];
+        let fault = table
+            .fault(row, column, &what)
+            .hint(format!("--set /time/end_s={last}"));
+        return table.sound(vec![fault]).map(|()| vec![]);
+    }
+    Ok(rows.iter().map(|row| all[*row].min(end)).collect())
+}
+
+/// What each row sets.
+fn driven(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result<Vec<(Drive, Vec<f64>)>> {
+    let resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
+    let mut all = vec![];
+    for drive in &asked.drives {
+        let wrong = |what: String| Error::Usage(format!("--drive {}={}: {what}", drive.column, drive.pointer));
+        let column = table.wanted(&drive.column, "--drive")?;
+        if resolved.pointer(&drive.pointer).is_none() {
+            let (parent, key) = drive.pointer.rsplit_once('/').unwrap_or_default();
+            let keys = resolved.pointer(parent).and_then(|parent| parent.as_object());
+            let meant = keys.and_then(|keys| nearest(key, keys.keys().map(String::as_str)));
+            let meant = meant.map_or(String::new(), |meant| format!("; nearest is {parent}/{meant}"));
+            return Err(wrong(format!("the case has nothing there{meant}")));
+        }
+        let scale = match (units::of_pointer(&drive.pointer), table.columns[column].unit) {
+            (Some(unit), _) => table.scale(column, unit.si, &drive.pointer)?,
+            (None, unit) => unit.map_or(1.0, |unit| unit.scale),
+        };
+        let values = table.all_numbers(column, scale)?;
+        let chosen: Vec<f64> = rows.iter().map(|row| values[*row]).collect();
+        all.push((drive.clone(), chosen));
+    }
+    // a case that a row cannot set is none of a fit
+    for row in 0..rows.len() {
+        let changes: Vec<(&str, f64)> = all
+            .iter()
+            .map(|(drive, values)| (&*drive.pointer, values[row]))
+            .collect();
+        with(case, &changes)?;
+    }
+    Ok(all)
+}
+
+/// Standard deviations of each column in the unit of its quantity, row by row, where they are given.
+fn sigmas(table: &Table, matched: &[Matched], asked: &Asked) -> Result<Vec<Option<Vec<f64>>>> {
+    for (name, _) in &asked.noise {
+        let column = table.wanted(name, "--noise")?;
+        if !matched.iter().any(|one| one.column == column) {
+            return Err(Error::Usage(format!(
+                "--noise {name}: the column is not matched to anything"
+            )));
+        }
+    }
+    let of = |one: &Matched| {
+        let given = asked
+            .noise
+            .iter()
+            .find(|(name, _)| table.find(name) == Some(one.column));
+        if let Some((name, sigma)) = given {
+            if !(sigma.is_finite() && *sigma > 0.0) {
+                return Err(Error::Usage(format!(
+                    "--noise {name}={sigma}: a standard deviation above 0 is wanted"
+                )));
+            }
+            return Ok(Some(vec![sigma * one.scale; table.len()]));
+        }
+        let own = &table.columns[one.column];
+        let beside = table.find(&format!("{}_sd", own.heading));
+        let Some(beside) = beside.or_else(|| table.find(&format!("{}_sd", own.name))) else {
+            return Ok(None);
+        };
+        let scale = match table.columns[beside].unit {
+            Some(_) => table.scale(beside, &one.unit, &one.name)?,
+            None => one.scale,
+        };
+        let all = table.numbers(beside, scale)?;
+        let wrong = |row: &usize| one.values[*row].is_some() && all[*row].is_none_or(|sigma| sigma <= 0.0);
+        let faults = (0..table.len()).filter(wrong);
+        let faults = faults.map(|row| {
+            table.fault(
+                row,
+                beside,
+                "a standard deviation above 0 is wanted where something was measured",
+            )
+        });
+        table.sound(faults.collect())?;
+        Ok(Some(all.into_iter().map(|sigma| sigma.unwrap_or(f64::NAN)).collect()))
+    };
+    matched.iter().map(of).collect()
+}

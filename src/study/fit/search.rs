@@ -1,0 +1,256 @@
+//! From starts to the minimum, with noise and weights found on the way where they are not given.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use nalgebra::{DMatrix, DVector};
+
+use super::evaluation;
+use super::found::Start;
+use super::problem::{Asked, Problem};
+use super::robust::Loss;
+use super::simulate::{Simulated, simulate};
+use crate::error::{Error, Result};
+use crate::numerics::levenberg::{Minimum, minimise};
+use crate::numerics::sobol::{self, Sobol};
+use crate::study::sweep::pool;
+
+/// Steps of a search at most.
+const STEPS: usize = 100;
+/// Fits at most, each with the noise and weights of the one before.
+const ROUNDS: usize = 30;
+/// Change of noise and weights that counts as none.
+const SAME: f64 = 1e-3;
+/// Noise over the size of a column that counts as none.
+const LEAST: f64 = 1e-12;
+
+/// A search.
+pub struct Search<'a> {
+    problem: &'a Problem,
+    asked: &'a Asked,
+    tell: &'a (dyn Fn(usize, f64) + Sync),
+    simulations: AtomicUsize,
+    fault: Mutex<Option<Error>>,
+}
+
+/// Where it ended.
+pub struct Reached {
+    /// The minimum.
+    pub minimum: Minimum,
+    /// Values of the numbers there.
+    pub values: Vec<f64>,
+    /// What the case gives there.
+    pub simulated: Simulated,
+    /// Standard deviation of each observation.
+    pub sigmas: Vec<f64>,
+    /// Of each column, whether it was given.
+    pub given: Vec<bool>,
+    /// What a loss leaves of each observation.
+    pub weights: Vec<f64>,
+    /// Searches.
+    pub starts: Vec<Start>,
+    /// Their steps.
+    pub steps: usize,
+}
+
+impl Reached {
+    /// Residuals and derivatives in standard deviations, whatever the loss.
+    pub fn plain(&self, problem: &Problem) -> (DVector<f64>, DMatrix<f64>) {
+        let scale: Vec<f64> = self.sigmas.iter().map(|sigma| sigma.recip()).collect();
+        let plain = evaluation(&self.simulated, problem, &self.values, &scale);
+        (plain.residuals, plain.jacobian)
+    }
+}
+
+impl<'a> Search<'a> {
+    /// Of a problem.
+    pub fn new(problem: &'a Problem, asked: &'a Asked, tell: &'a (dyn Fn(usize, f64) + Sync)) -> Self {
+        Self {
+            problem,
+            asked,
+            tell,
+            simulations: AtomicUsize::new(0),
+            fault: Mutex::new(None),
+        }
+    }
+
+    /// Simulations so far.
+    pub fn simulations(&self) -> usize {
+        self.simulations.load(Ordering::Relaxed)
+    }
+
+    /// Searches from every start, and on from the best of what they find.
+    ///
+    /// # Errors
+    /// The case cannot be simulated at any of them.
+    pub fn go(&self) -> Result<Reached> {
+        let places = self.starts()?;
+        let (mut sigmas, given) = self.first_noise();
+        let mut weights = vec![1.0; sigmas.len()];
+        let numbers: Vec<usize> = (0..places.len()).collect();
+        let mut found: Vec<Option<Minimum>> = vec![None; places.len()];
+        let (many, within) = match places.len() {
+            1 => (1, self.asked.jobs),
+            _ => (self.asked.jobs, 1),
+        };
+        pool::each(
+            &numbers,
+            many,
+            &|k| Some((k, self.minimise(&places[k], &scale(&sigmas, &weights), within))),
+            &mut |(k, minimum)| {
+                found[k] = minimum;
+                Ok(())
+            },
+        )?;
+        let mut steps = found.iter().flatten().map(|minimum| minimum.steps).sum();
+        let start = |(from, found): (&Vec<f64>, &Option<Minimum>)| Start {
+            from: self.problem.values(from),
+            to: found.as_ref().map(|minimum| self.problem.values(&minimum.x)),
+            chi_square: found.as_ref().map(|minimum| minimum.at.cost()),
+        };
+        let starts = places.iter().zip(&found).map(start).collect();
+        let best = found
+            .into_iter()
+            .flatten()
+            .min_by(|a, b| a.at.cost().total_cmp(&b.at.cost()));
+        let Some(mut minimum) = best else {
+            return Err(self.fault(|| "the case cannot be simulated at any start".into()));
+        };
+        let unknown = given.iter().filter(|given| !**given).count();
+        let again = self.asked.loss != Loss::Squares || unknown > 1;
+        let mut simulated = self.simulate_at(&minimum.x, self.asked.jobs)?;
+        for round in 0..ROUNDS {
+            let change = self.weigh(&simulated, &given, &mut sigmas, &mut weights);
+            let settled = change < SAME || round + 1 == ROUNDS;
+            if !again || settled {
+                break;
+            }
+            let Some(next) = self.minimise(&minimum.x, &scale(&sigmas, &weights), self.asked.jobs) else {
+                return Err(self.fault(|| "the case can no longer be simulated".into()));
+            };
+            minimum = next;
+            steps += minimum.steps;
+            simulated = self.simulate_at(&minimum.x, self.asked.jobs)?;
+        }
+        let values = self.problem.values(&minimum.x);
+        minimum.at = evaluation(&simulated, self.problem, &values, &scale(&sigmas, &weights));
+        Ok(Reached {
+            values,
+            minimum,
+            simulated,
+            sigmas,
+            given,
+            weights,
+            starts,
+            steps,
+        })
+    }
+
+    /// Places between the bounds: that of the case, then those of Sobol's sequence.
+    fn starts(&self) -> Result<Vec<Vec<f64>>> {
+        let (spans, count) = (&self.problem.spans, self.asked.starts.max(1));
+        if count > 1 && spans.len() > sobol::MOST {
+            let what = format!("--starts: several are for {} numbers at most", sobol::MOST);
+            return Err(Error::Usage(what));
+        }
+        let own = spans
+            .iter()
+            .zip(&self.problem.start)
+            .map(|(span, value)| span.place(*value));
+        let mut all = vec![own.collect()];
+        let axes: Vec<Sobol> = (0..spans.len().min(sobol::MOST)).map(Sobol::along).collect();
+        for k in 1..count {
+            let point = axes.iter().map(|axis| f64::from(axis.bits(k as u32)) / 2_f64.powi(32));
+            all.push(point.collect());
+        }
+        Ok(all)
+    }
+
+    fn minimise(&self, start: &[f64], scale: &[f64], jobs: usize) -> Option<Minimum> {
+        let mut evaluate = |places: &[f64]| {
+            let values = self.problem.values(places);
+            let simulated = match self.simulate(&values, jobs) {
+                Ok(simulated) => simulated,
+                Err(error) => {
+                    *self.fault.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(error);
+                    return Ok(None);
+                }
+            };
+            let found = evaluation(&simulated, self.problem, &values, scale);
+            (self.tell)(self.simulations(), found.cost());
+            let finite = found
+                .residuals
+                .iter()
+                .chain(found.jacobian.iter())
+                .all(|x| x.is_finite());
+            Ok::<_, std::convert::Infallible>(finite.then_some(found))
+        };
+        let Ok(found) = minimise(start, STEPS, &mut evaluate);
+        found
+    }
+
+    fn simulate(&self, values: &[f64], jobs: usize) -> Result<Simulated> {
+        self.simulations.fetch_add(1, Ordering::Relaxed);
+        simulate(self.problem, values, jobs)
+    }
+
+    fn simulate_at(&self, places: &[f64], jobs: usize) -> Result<Simulated> {
+        self.simulate(&self.problem.values(places), jobs)
+    }
+
+    fn fault(&self, otherwise: impl FnOnce() -> String) -> Error {
+        let own = self
+            .fault
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+            .take();
+        own.unwrap_or_else(|| Error::Usage(otherwise()))
+    }
+
+    /// The noise that was given, elsewhere the size of the column; and of each column whether it was given.
+    fn first_noise(&self) -> (Vec<f64>, Vec<bool>) {
+        let all = &self.problem.observations;
+        let sizes: Vec<f64> = (0..self.problem.matched.len()).map(|k| self.size(k)).collect();
+        let sigmas = all.iter().map(|one| one.sigma.unwrap_or(sizes[one.of])).collect();
+        let given = |k| all.iter().filter(|one| one.of == k).all(|one| one.sigma.is_some());
+        (sigmas, (0..sizes.len()).map(given).collect())
+    }
+
+    /// The largest value of a column, 1 where all are 0.
+    fn size(&self, column: usize) -> f64 {
+        let own = self.problem.observations.iter().filter(|one| one.of == column);
+        let largest = own.map(|one| one.value.abs()).fold(0.0, f64::max);
+        if largest > 0.0 { largest } else { 1.0 }
+    }
+
+    /// Finds noise and weights from what a fit leaves; how much they change.
+    fn weigh(&self, simulated: &Simulated, given: &[bool], sigmas: &mut [f64], weights: &mut [f64]) -> f64 {
+        let (all, loss) = (&self.problem.observations, self.asked.loss);
+        let mut change = 0.0_f64;
+        for (column, _) in given.iter().enumerate().filter(|(_, given)| !**given) {
+            let own: Vec<usize> = (0..all.len()).filter(|i| all[*i].of == column).collect();
+            let errors: Vec<f64> = own.iter().map(|i| simulated.values[*i] - all[*i].value).collect();
+            let lost = self.problem.spans.len() as f64 * own.len() as f64 / all.len() as f64;
+            let sigma = loss.deviation(&errors, lost).max(LEAST * self.size(column));
+            for i in own {
+                change = change.max((sigma / sigmas[i] - 1.0).abs());
+                sigmas[i] = sigma;
+            }
+        }
+        for (i, weight) in weights.iter_mut().enumerate() {
+            let next = loss.weight((simulated.values[i] - all[i].value) / sigmas[i]);
+            change = change.max((next - *weight).abs());
+            *weight = next;
+        }
+        change
+    }
+}
+
+/// What residuals are multiplied by.
+fn scale(sigmas: &[f64], weights: &[f64]) -> Vec<f64> {
+    sigmas
+        .iter()
+        .zip(weights)
+        .map(|(sigma, weight)| weight.sqrt() / sigma)
+        .collect()
+}

@@ -1,0 +1,104 @@
+//! Errors of estimates from the derivatives at the minimum.
+//!
+//! ```text
+//! cov x = v (J^T J)^-1        x places between the bounds; v = 1 where noise is given, else what the fit leaves
+//!        cov p = (dp/dx) cov x (dp/dx)^T
+//!        p(x ± q √cov x_kk)          q of Student's distribution, of the normal one where noise is given
+//! ```
+//!
+//! Numbers at a bound are taken as known; what is not determined has no error.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::identify::Unseen;
+use crate::numerics::{normal, student};
+use crate::study::span::Span;
+
+/// Errors of estimates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Errors {
+    /// Standard errors, in units of the numbers.
+    pub standard: Vec<Option<f64>>,
+    /// Intervals of 95 %, cut at the bounds.
+    pub intervals: Vec<Option<[f64; 2]>>,
+    /// Covariance.
+    pub covariance: Vec<Vec<Option<f64>>>,
+    /// Correlation.
+    pub correlation: Vec<Vec<Option<f64>>>,
+}
+
+/// What errors come of.
+pub struct Basis<'a> {
+    /// Numbers and bounds.
+    pub spans: &'a [Span],
+    /// Estimates.
+    pub values: &'a [f64],
+    /// Numbers that are not at a bound.
+    pub free: &'a [usize],
+    /// What is not determined.
+    pub unseen: &'a [Unseen],
+    /// Derivatives of the values in their standard deviations, by places.
+    pub jacobian: &'a DMatrix<f64>,
+    /// v above.
+    pub variance: f64,
+    /// Degrees of freedom; nothing where noise is known.
+    pub freedom: Option<f64>,
+}
+
+impl Basis<'_> {
+    /// Their errors.
+    pub fn errors(&self) -> Errors {
+        let m = self.spans.len();
+        let lost = |k: &usize| self.unseen.iter().any(|one| one.entirely && one.numbers.contains(k));
+        let own: Vec<usize> = self.free.iter().copied().filter(|k| !lost(k)).collect();
+        let places = self.covariance_of_places(&own);
+        let of = |i: usize, k: usize| {
+            let at = |wanted: usize| own.iter().position(|k| *k == wanted);
+            Some(places[(at(i)?, at(k)?)])
+        };
+        let slope = |k: usize| self.spans[k].slope(self.values[k]);
+        let q = match self.freedom {
+            Some(freedom) => student::quantile(0.05, freedom.max(1.0)),
+            None => normal::quantile(0.975),
+        };
+        let interval = |k: usize| {
+            let half = q * of(k, k)?.sqrt();
+            let (span, place) = (&self.spans[k], self.spans[k].place(self.values[k]));
+            Some([place - half, place + half].map(|place| span.value(place.clamp(0.0, 1.0))))
+        };
+        let table = |value: &dyn Fn(usize, usize) -> Option<f64>| -> Vec<Vec<Option<f64>>> {
+            (0..m).map(|i| (0..m).map(|k| value(i, k)).collect()).collect()
+        };
+        Errors {
+            standard: (0..m).map(|k| Some(of(k, k)?.sqrt() * slope(k).abs())).collect(),
+            intervals: (0..m).map(interval).collect(),
+            covariance: table(&|i, k| Some(of(i, k)? * slope(i) * slope(k))),
+            correlation: table(&|i, k| Some((of(i, k)? / (of(i, i)? * of(k, k)?).sqrt()).clamp(-1.0, 1.0))),
+        }
+    }
+
+    /// `v (J^T J)^-1` by singular values of columns of length one.
+    fn covariance_of_places(&self, own: &[usize]) -> DMatrix<f64> {
+        // of nothing there are no singular values
+        if own.is_empty() {
+            return DMatrix::zeros(0, 0);
+        }
+        let mut jacobian = self.jacobian.select_columns(own);
+        let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
+        for (mut column, length) in jacobian.column_iter_mut().zip(&lengths) {
+            column /= *length;
+        }
+        let svd = jacobian.svd(false, true);
+        let Some(v_t) = svd.v_t else {
+            return DMatrix::zeros(own.len(), own.len());
+        };
+        let inverse = DVector::from_iterator(
+            svd.singular_values.len(),
+            svd.singular_values.iter().map(|s| s.powi(-2)),
+        );
+        let whole = v_t.transpose() * DMatrix::from_diagonal(&inverse) * v_t;
+        DMatrix::from_fn(own.len(), own.len(), |i, k| {
+            self.variance * whole[(i, k)] / (lengths[i] * lengths[k])
+        })
+    }
+}

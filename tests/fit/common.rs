@@ -1,0 +1,102 @@
+//! The program, cases, and data with noise.
+
+use std::fs;
+use std::process::Command;
+
+use serde_json::Value;
+use slcbeam::case::parameter::with;
+use slcbeam::case::{self, Case};
+use slcbeam::numerics::chance::Chance;
+use slcbeam::numerics::normal;
+use slcbeam::run::equilibrium::{self, Options};
+use slcbeam::run::record::{Control, Memory};
+use tempfile::TempDir;
+
+pub const PUMP: &str = "/network/chains/0/ends/0/pressure_pa";
+pub const YOUNG: &str = "/beam/young_modulus_pa";
+pub const OPENING: &str = "/bladders/area_per_moment_m2_per_n_m/opening";
+pub const FORCE: &str = "/ends/tip/free/force_x_n";
+
+pub struct Said {
+    pub code: i32,
+    pub out: String,
+    pub err: String,
+}
+
+pub fn say(arguments: &[&str]) -> Said {
+    let output = Command::new(env!("CARGO_BIN_EXE_slcbeam"))
+        .args(arguments)
+        .output()
+        .expect("a program");
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    Said {
+        code: output.status.code().unwrap_or(-1),
+        out: text(output.stdout),
+        err: text(output.stderr),
+    }
+}
+
+pub fn well(arguments: &[&str]) -> String {
+    let said = say(arguments);
+    assert_eq!(said.code, 0, "{}\n{}", said.out, said.err);
+    said.out
+}
+
+/// The result that a command prints.
+pub fn json(arguments: &[&str]) -> Value {
+    serde_json::from_str(&well(&[arguments, &["--json", "--quiet"]].concat())).expect("JSON")
+}
+
+pub fn path(dir: &TempDir, name: &str) -> String {
+    dir.path().join(name).display().to_string()
+}
+
+pub fn file(dir: &TempDir, name: &str, text: &str) -> String {
+    let path = path(dir, name);
+    fs::write(&path, text).expect("written");
+    path
+}
+
+pub fn load(name: &str, sets: &[&str]) -> Case {
+    let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+    case::load(name.as_ref(), &sets).expect("a case")
+}
+
+/// A source of normal deviations.
+pub fn noise(seed: u64) -> impl FnMut() -> f64 {
+    let mut chance = Chance::new(seed, 7);
+    move || normal::quantile(chance.share())
+}
+
+/// A quantity of the equilibrium with these numbers.
+pub fn at_rest(case: &Case, changes: &[(&str, f64)], quantity: &str) -> f64 {
+    let case = with(case, changes).expect("a case");
+    let options = Options::at(case.time.end_s);
+    let path = equilibrium::follow(&case, &options, &mut |_| Control::Continue).expect("a path");
+    assert!(path.fault.is_none());
+    let columns = equilibrium::columns(&equilibrium::system(&case, options.at_s).expect("a system"));
+    let place = columns
+        .iter()
+        .position(|column| column.name == quantity)
+        .expect("a quantity");
+    path.last().row[place]
+}
+
+/// Histories of a run.
+pub fn run(case: &Case, changes: &[(&str, f64)]) -> Memory {
+    let case = with(case, changes).expect("a case");
+    let mut memory = Memory::default();
+    slcbeam::run::dynamics::run(&case, &mut memory).expect("a run");
+    memory
+}
+
+/// A number of a result.
+pub fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// Whether the estimate of a number lies within its interval, and how far from the truth in standard errors.
+pub fn off(fit: &Value, number_of: usize, truth: f64) -> f64 {
+    let one = &fit["parameters"][number_of];
+    (number(&one["value"]) - truth).abs() / number(&one["standard_error"])
+}

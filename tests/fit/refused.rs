@@ -1,0 +1,163 @@
+//! What does not fit together is told before anything is computed, and nothing is written.
+
+use crate::common::*;
+
+const CASE: &str = "cases/two-bladders.json";
+const VARY: &str = "/tubes/permeability_m4=1e-13:1e-11";
+
+/// Says what is wrong with a table and options besides; the exit code and the words.
+fn refused(text: &str, more: &[&str]) -> (i32, String) {
+    let dir = tempfile::tempdir().expect("a folder");
+    let data = file(&dir, "data.csv", text);
+    let out = path(&dir, "out");
+    let said = say(&[&["fit", CASE, &data, "--out", &out, "--quiet"], more].concat());
+    assert!(!dir.path().join("out").exists(), "something was written: {}", said.err);
+    // however the terminal breaks lines
+    let plain = said.err.split_whitespace().collect::<Vec<_>>().join(" ");
+    (said.code, plain)
+}
+
+#[test]
+fn data_and_options_that_do_not_go_together() {
+    let good = "t_s,u_mm,p_kpa\n0.0005,1,2\n0.001,1,2\n0.0015,1,2\n";
+    let vary = ["--vary", VARY];
+    let tip = ["--vary", VARY, "--match", "u_mm=tip_u1"];
+    let with = |more: &[&'static str]| [&tip[..], more].concat();
+    for (text, asked, code, words) in [
+        ("", tip.to_vec(), 3, "no headings"),
+        ("t_s,u_mm\n", tip.to_vec(), 3, "no rows below the headings"),
+        ("t_s,u_mm\n0.001,\n", tip.to_vec(), 2, "holds no number"),
+        (
+            "t_s,u_mm\n0.001,much\n",
+            tip.to_vec(),
+            3,
+            "line 2, column u_mm: \"much\" is no finite number",
+        ),
+        (
+            "t_s,u_mm\n0.001,1\n0.0005,2\n",
+            tip.to_vec(),
+            3,
+            "line 3, column t_s: 0.0005 s is not after 0.001 s",
+        ),
+        (
+            "t_s,u_mm\n0.001,1\n0.5,2\n",
+            tip.to_vec(),
+            3,
+            "0.5 s is after the end of the run at 0.002 s",
+        ),
+        (
+            "t_s,u_mm,u_mm\n0.001,1,2\n",
+            tip.to_vec(),
+            3,
+            "a second column named u_mm",
+        ),
+        ("u_mm\n1\n2\n3\n", tip.to_vec(), 2, "has no column t_s or time_s"),
+        (
+            "t_s,u_mm\n0.001,1\n",
+            tip.to_vec(),
+            2,
+            "1 measured values cannot tell 1 numbers",
+        ),
+        (good, vary.to_vec(), 2, "--match COLUMN=QUANTITY"),
+        (good, vec!["--match", "u_mm=tip_u1"], 2, "--vary POINTER=LOW:HIGH"),
+        (
+            good,
+            [&vary[..], &["--match", "u_m=tip_u1"]].concat(),
+            2,
+            "has no column u_m; nearest is u_mm",
+        ),
+        (
+            good,
+            [&vary[..], &["--match", "u_mm=tip_u2"]].concat(),
+            2,
+            "the result has no quantity tip_u2; nearest is tip_u",
+        ),
+        (
+            good,
+            [&vary[..], &["--match", "u_mm=tip_angle"]].concat(),
+            2,
+            "the column u_mm is in mm, but tip_angle is in rad, mrad, deg",
+        ),
+        (
+            good,
+            [&vary[..], &["--match", "p_kpa=pressure@bladder 7"]].concat(),
+            2,
+            "bladders are 1 to 1 of the upper row",
+        ),
+        (
+            good,
+            [&vary[..], &["--match", "u_mm=u1@1.5"]].concat(),
+            2,
+            "1.5 is no share of the length",
+        ),
+        (
+            good,
+            [&vary[..], &["--match", "u_mm=u1@tipp"]].concat(),
+            2,
+            "the case has no place tipp; nearest is tip",
+        ),
+        (
+            good,
+            [&vary[..], &["--match", "u_mm"]].concat(),
+            2,
+            "COLUMN=QUANTITY[@PLACE] is wanted",
+        ),
+        (
+            good,
+            with(&["--match", "u_mm=tip_u3"]),
+            2,
+            "the column u_mm is matched twice",
+        ),
+        (good, with(&["--vary", VARY]), 2, "would be set at once"),
+        (good, with(&["--time", "when"]), 2, "--time: "),
+        (
+            good,
+            with(&["--noise", "p_kpa=1"]),
+            2,
+            "the column is not matched to anything",
+        ),
+        (good, with(&["--noise", "u_mm=0"]), 2, "a standard deviation above 0"),
+        (
+            good,
+            with(&["--command", "equilibrium"]),
+            2,
+            "--drive COLUMN=POINTER says",
+        ),
+        (
+            good,
+            with(&["--command", "run", "--drive", "p_kpa=/start/pressures/0/pressure_pa"]),
+            2,
+            "rows of a run are instants",
+        ),
+        (
+            good,
+            with(&["--drive", "p_kpa=/start/pressures/0/presure_pa"]),
+            2,
+            "nearest is /start/pressures/0/pressure_pa",
+        ),
+        (
+            good,
+            with(&["--drive", "u_mm=/start/pressures/0/pressure_pa"]),
+            2,
+            "the column u_mm is in mm, but",
+        ),
+        (
+            good,
+            vec!["--vary", "/tubes/permeability_m5=1:2", "--match", "u_mm=tip_u1"],
+            2,
+            "nearest is /tubes/permeability_m4",
+        ),
+        (
+            good,
+            vec!["--vary", "/mesh/cells_per_segment=1:2", "--match", "u_mm=tip_u1"],
+            2,
+            "is not a part of the model",
+        ),
+    ] {
+        let (got, said) = refused(text, &asked);
+        assert!(
+            got == code && said.contains(words),
+            "{asked:?}\nwanted {code}: {words}\ngot {got}: {said}"
+        );
+    }
+}
