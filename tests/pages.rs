@@ -202,6 +202,7 @@ fn commands_are_found() {
         "periodic",
         "sweep",
         "merge",
+        "fit",
         "new",
         "report",
         "export",

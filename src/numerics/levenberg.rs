@@ -56,6 +56,8 @@ pub struct Minimum {
 
 /// Relative offset at which a search ends.
 const OFFSET: f64 = 1e-4;
+/// One that is close enough where the simulator's own error lets no step go further.
+const CLOSE: f64 = 0.05;
 /// A step below this ends it as well.
 const STEP: f64 = 1e-11;
 /// Share of the foretold fall that a step must bring.
@@ -67,16 +69,15 @@ const MOST_DAMPING: f64 = 1e12;
 /// Singular values below this share of the largest count as none.
 pub const NOTHING: f64 = 1e-10;
 
+/// What is asked for residuals at a place.
+pub type Evaluate<'a, E> = dyn FnMut(&[f64]) -> Result<Option<Evaluation>, E> + 'a;
+
 /// Searches from a start. `evaluate` gives nothing where there are no residuals: a step there is shortened. Nothing where there are none at
 /// the start.
 ///
 /// # Errors
 /// The first of `evaluate`.
-pub fn minimise<E>(
-    start: &[f64],
-    most_steps: usize,
-    evaluate: &mut dyn FnMut(&[f64]) -> Result<Option<Evaluation>, E>,
-) -> Result<Option<Minimum>, E> {
+pub fn minimise<E>(start: &[f64], most_steps: usize, evaluate: &mut Evaluate<E>) -> Result<Option<Minimum>, E> {
     let mut x: Vec<f64> = start.iter().map(|x| x.clamp(0.0, 1.0)).collect();
     let Some(mut at) = evaluate(&x)? else {
         return Ok(None);
@@ -85,14 +86,14 @@ pub fn minimise<E>(
     let (mut damping, mut growth) = (DAMPING, 2.0);
     let mut lengths = vec![0.0_f64; x.len()];
     let ended = loop {
-        if settled(&x, &at) {
+        if settled(&x, &at, OFFSET) {
             break Ended::Found;
         }
         if steps >= most_steps {
             break Ended::Unfinished;
         }
         if damping > MOST_DAMPING {
-            break Ended::Stuck;
+            break stopped(&x, &at);
         }
         for (length, column) in lengths.iter_mut().zip(at.jacobian.column_iter()) {
             *length = length.max(column.norm());
@@ -102,7 +103,11 @@ pub fn minimise<E>(
         let moved = DVector::from_iterator(x.len(), to.iter().zip(&x).map(|(to, x)| to - x));
         let foretold = at.cost() - (&at.residuals + &at.jacobian * &moved).norm_squared();
         if moved.amax() < STEP {
-            break if damping <= DAMPING { Ended::Found } else { Ended::Stuck };
+            break if damping <= DAMPING {
+                Ended::Found
+            } else {
+                stopped(&x, &at)
+            };
         }
         let there = evaluate(&to)?;
         evaluations += 1;
@@ -149,7 +154,15 @@ pub fn newton(jacobian: &DMatrix<f64>, residuals: &DVector<f64>) -> DVector<f64>
     step.map_or_else(|_| DVector::zeros(jacobian.ncols()), |step| -step)
 }
 
-fn settled(x: &[f64], at: &Evaluation) -> bool {
+/// What a search has come to that no step takes further.
+fn stopped(x: &[f64], at: &Evaluation) -> Ended {
+    match settled(x, at, CLOSE) {
+        true => Ended::Found,
+        false => Ended::Stuck,
+    }
+}
+
+fn settled(x: &[f64], at: &Evaluation, least: f64) -> bool {
     let free = free(x, at);
     if free.is_empty() || at.cost() == 0.0 {
         return true;
@@ -167,7 +180,7 @@ fn settled(x: &[f64], at: &Evaluation) -> bool {
     let freedom = at.residuals.len().saturating_sub(free.len());
     let spread = at.cost() / freedom.max(1) as f64;
     let offset = (foretold / free.len() as f64 / spread).sqrt();
-    step.amax() < STEP || (freedom > 0 && offset < OFFSET)
+    step.amax() < STEP || (freedom > 0 && offset < least)
 }
 
 /// The damped step, by orthogonal triangles: `J` and `√λ D` under each other.

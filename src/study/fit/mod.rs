@@ -191,7 +191,7 @@ fn finer(problem: &Problem, reached: &Reached, jobs: usize, free: &[usize]) -> (
     }
     if problem.through() == Through::Run {
         other.case.solver.rtol = (problem.case.solver.rtol / 10.0).max(1e-12);
-        with.push(format!("rtol {:e}", other.case.solver.rtol));
+        with.push(format!("rtol {:.1e}", other.case.solver.rtol));
     }
     let finer = with.join(", ");
     match simulate::simulate(&other, &reached.values, jobs) {
