@@ -144,6 +144,32 @@ fn cycles_say_whether_they_are_stable() {
     );
 }
 
+/// Goal: a fit has its picture, and a row for each number with its error, whose headings sort.
+#[test]
+fn a_fit_stands_over_its_data() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut browser = Browser::start();
+    let asked = [
+        "fit",
+        "cases/tour-actuator.json",
+        "cases/actuator-step.csv",
+        "--vary",
+        "/fluid/viscosity_pa_s=0.05:2",
+        "--vary",
+        "/beam/young_modulus_pa=5e5:1e7",
+        "--match",
+        "tip_mm=tip_u1",
+    ];
+    let page = made(folder.path(), &asked);
+    sound(&mut browser, &page, &["answer", "table", "scene", "case"]);
+    assert_eq!(
+        browser.number("document.querySelectorAll('#table tbody tr').length"),
+        2.0
+    );
+    sorted_both_ways(&mut browser);
+    assert_eq!(browser.problems(), Vec::<String>::new());
+}
+
 /// Goal: designs have a picture of what was varied, and a row each that sorts.
 #[test]
 fn designs_stand_in_a_table() {
