@@ -62,6 +62,93 @@ fn a_wrong_key_in_a_form_names_the_nearest() {
     }
 }
 
+/// Goal: a key that a preset brings too is offered for a misspelt one; a key with another unit is told with its number in that of the case.
+#[test]
+fn a_wrong_key_beside_a_preset_and_with_another_unit_is_offered() {
+    let case = |inner: &str| {
+        format!(
+            r#"{{"name": "a", "preset": "matia-gat-beam", "ends": {{"root": "clamped", "tip": "free"}}, "time": {{"end_s": 1}}, {inner}}}"#
+        )
+    };
+    for (inner, nearest, hint) in [
+        (r#""beam": {"lenght_m": 0.2}"#, "length_m", None),
+        (
+            r#""beam": {"width_mm": 30}"#,
+            "width_m",
+            Some(r#"write "width_m": 0.03, which is 30 mm"#),
+        ),
+        (
+            r#""beam": {"lenght_cm": 7}"#,
+            "length_m",
+            Some(r#"write "length_m": 0.07, which is 7 cm"#),
+        ),
+        (
+            r#""beam": {"young_modulus_MPa": 2}"#,
+            "young_modulus_pa",
+            Some(r#"write "young_modulus_pa": 2e6, which is 2 MPa"#),
+        ),
+        (
+            r#""fluid": {"viscosity_mpa_s": 5}"#,
+            "viscosity_pa_s",
+            Some(r#"write "viscosity_pa_s": 0.005, which is 5 mPa s"#),
+        ),
+        (
+            r#""beam": {"width_mm": [1]}"#,
+            "width_m",
+            Some("numbers there are 0.001 times those in mm"),
+        ),
+        (r#""loads": [{"gravity": {"z_mm_s2": 9810}}]"#, "z_m_s2", None),
+    ] {
+        let fault = fault_of(&case(inner));
+        let [found] = fault.violations.as_slice() else {
+            panic!("{}", case::render(&fault, false, 100))
+        };
+        assert_eq!(
+            (found.nearest.as_deref(), found.hint.as_deref()),
+            (Some(nearest), hint),
+            "{inner}"
+        );
+    }
+}
+
+/// Goal: a comma that is missing is told behind the value after which it belongs, not in the line below.
+#[test]
+fn a_missing_comma_is_told_where_it_belongs() {
+    let text = "{\"name\": \"a\",\n \"time\": {\"end_s\": 1 \n\n  \"window_s\": [1 2]}}";
+    let place = |text: &str, after: &str| {
+        let fault = fault_of(text);
+        let [found] = fault.violations.as_slice() else {
+            panic!("{}", case::render(&fault, false, 100))
+        };
+        assert!(found.what.starts_with("a comma is missing before"), "{}", found.what);
+        let at = text.find(after).unwrap() + after.len();
+        assert_eq!(found.span, Some(at..at));
+    };
+    place(text, "\"end_s\": 1");
+    place(&text.replace("1 \n", "1,\n"), "[1");
+}
+
+/// Goal: a time that is none is one fault, not also that whatever lies within the run is longer than it.
+#[test]
+fn a_time_that_is_none_is_told_once() {
+    for (from, to, at) in [
+        ("\"end_s\": 0.5", "\"end_s\": -1", "/time/end_s"),
+        ("\"end_s\": 0.5", "\"end_s\": 0", "/time/end_s"),
+        (
+            "\"output_interval_s\": 5e-4",
+            "\"output_interval_s\": 0",
+            "/time/output_interval_s",
+        ),
+        (
+            "\"fields_interval_s\": 0.001",
+            "\"fields_interval_s\": -0.001",
+            "/time/fields_interval_s",
+        ),
+    ] {
+        assert_eq!(one(&[(from, to)]).0, at);
+    }
+}
+
 #[test]
 fn numbers_out_of_range() {
     let at = "/fluid/viscosity_pa_s";

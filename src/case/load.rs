@@ -106,7 +106,7 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
     let told: Vec<String> = told.filter(|p| value.pointer(p).is_some_and(Value::is_null)).collect();
 
     let mut faults = Violations::default();
-    validate::validate(&value, &schema_json::CASE, &mut faults);
+    validate::validate(&value, &own, &schema_json::CASE, &mut faults);
     faults.drop_below(&told);
     // `null` from the command line leaves out what could stand there.
     let cleared = source.sets.iter().map(|set| set.pointer.clone());

@@ -28,6 +28,7 @@ pub mod schema;
 mod schema_json;
 pub mod section;
 mod sets;
+mod slips;
 mod tables;
 mod validate;
 pub mod wiring;

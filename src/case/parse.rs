@@ -173,6 +173,8 @@ impl Parser<'_> {
         let closes = match self.peek() {
             Some(b) if b == bracket => true,
             Some(b',') => false,
+            Some(b'"') => return self.missing_comma(),
+            Some(b) if bracket == b']' && (b.is_ascii_digit() || b"-{[".contains(&b)) => return self.missing_comma(),
             Some(_) => return self.unexpected(wanted),
             None => return self.ends_early(start, wanted),
         };
@@ -260,6 +262,13 @@ impl Parser<'_> {
             _ => fault,
         };
         self.fail(fault)
+    }
+
+    /// The next member follows without one: told behind the last, where it belongs, not in the line below.
+    fn missing_comma<T>(&mut self) -> Option<T> {
+        let end = self.text[..self.at].trim_end().len();
+        let fault = self.fault(end..end, format!("a comma is missing before {}", self.found()));
+        self.fail(fault.hint("write `,` here"))
     }
 
     fn trailing_comma<T>(&mut self) -> Option<T> {

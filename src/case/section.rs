@@ -377,7 +377,7 @@ pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Written> {
     }
     let (schema, at) = schema_json::section(of_case);
     let mut faults = Violations::default();
-    super::validate::validate(&value, &schema, &mut faults);
+    super::validate::validate(&value, &value, &schema, &mut faults);
     match value.pointer(at).map(|section| read(section, at)) {
         Some(Ok(section)) if faults.is_empty() => return Ok(Written { section, source, at }),
         Some(Err(violation)) if !faults.any_below(at) => faults.push(*violation),

@@ -10,16 +10,19 @@ use super::counts;
 use super::faults::Violations;
 use super::locate::child;
 use super::numbers;
+use super::slips;
 use super::wording::{found, found_text, nearest, quoted, short};
 use crate::error::{Code, Violation};
 
-/// Compares a value with a schema.
-pub fn validate(value: &Value, schema: &Value, faults: &mut Violations) {
-    Walk { root: schema, faults }.check(value, schema, "");
+/// Compares a value with a schema. `own` is what the user wrote of it: a key that only a preset brings may be what a wrong one meant.
+pub fn validate(value: &Value, own: &Value, schema: &Value, faults: &mut Violations) {
+    let root = schema;
+    Walk { root, own, faults }.check(value, schema, "");
 }
 
 struct Walk<'a> {
     root: &'a Value,
+    own: &'a Value,
     faults: &'a mut Violations,
 }
 
@@ -168,7 +171,7 @@ impl<'a> Walk<'a> {
         for (key, value) in members {
             match properties.get(key) {
                 Some(inner) => self.check(value, inner, &child(pointer, key)),
-                None if closed => misspelt.extend(self.unknown_key(key, members, properties, pointer)),
+                None if closed => misspelt.extend(self.unknown_key(key, value, properties, pointer)),
                 None => {}
             }
         }
@@ -194,15 +197,20 @@ impl<'a> Walk<'a> {
     fn unknown_key(
         &mut self,
         key: &str,
-        members: &Map<String, Value>,
+        value: &Value,
         properties: &Map<String, Value>,
         pointer: &str,
     ) -> Option<String> {
+        let written = self.own.pointer(pointer);
         let absent = properties
             .keys()
             .map(String::as_str)
-            .filter(|name| !members.contains_key(*name));
-        let nearest = nearest(key, absent);
+            .filter(|name| written.is_none_or(|members| members.get(*name).is_none()));
+        let slip = slips::unit(key, value, absent.clone());
+        let (nearest, hint) = match slip {
+            Some((meant, hint)) => (Some(meant), Some(hint)),
+            None => (nearest(key, absent), None),
+        };
         let fault = Violation::new(
             Code::Key,
             child(pointer, key),
@@ -220,6 +228,7 @@ impl<'a> Walk<'a> {
         };
         self.faults.push_unknown_key(Violation {
             nearest: nearest.clone(),
+            hint,
             ..fault.allowed(allowed)
         });
         nearest

@@ -12,6 +12,11 @@ const MOST_CHECKPOINTS: f64 = 1e5;
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     let time = &case.time;
+    // what is no length of time has its fault already
+    let sound = |time: &f64| *time > 0.0;
+    if !sound(&time.end_s) {
+        return;
+    }
     let mut refuse = |key: &str, what: String, allowed: String| {
         faults.push(Violation::new(Code::Times, format!("/time/{key}"), what).allowed(allowed));
     };
@@ -41,7 +46,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         ),
     ];
     for (key, counted, most, what) in counted {
-        if let Some((interval, count)) = counted.filter(|(_, count)| *count > most * (1.0 + 1e-9)) {
+        if let Some((interval, count)) = counted.filter(|(each, count)| sound(each) && *count > most * (1.0 + 1e-9)) {
             let least = interval * count / most;
             refuse(
                 key,
@@ -50,7 +55,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             );
         }
     }
-    if let Some(fields) = time.fields_interval_s {
+    if let Some(fields) = time.fields_interval_s.filter(|fields| sound(fields) && sound(&output)) {
         let ratio = fields / output;
         if ratio < 1.0 - 1e-6 || (ratio - ratio.round()).abs() > 1e-6 * ratio {
             let what = format!("{fields} s is not a multiple of the output interval of {output} s");
