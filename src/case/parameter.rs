@@ -35,13 +35,37 @@ pub struct Parameter {
     pub value: f64,
 }
 
+/// What asks for derivatives.
+const OPTION: &str = "--sensitivity";
+
 impl Parameter {
     /// Finds the number at a pointer.
     ///
     /// # Errors
     /// [`Error::Usage`] when there is no number, or one that nothing can be differentiated by.
     pub fn find(case: &Case, pointer: &str) -> Result<Self> {
-        let usage = |what: String| Err(Error::Usage(format!("--sensitivity {pointer}: {what}")));
+        Self::find_as(OPTION, case, pointer)
+    }
+
+    /// The same, asked for by another option.
+    ///
+    /// # Errors
+    /// As [`Parameter::find`].
+    pub fn find_as(option: &str, case: &Case, pointer: &str) -> Result<Self> {
+        let found = Self::number(option, case, pointer)?;
+        if found.value == 0.0 {
+            let what = "it is 0, which gives no size to differ by; set it to a small value";
+            return Err(Error::Usage(format!("{option} {pointer}: {what}")));
+        }
+        Ok(found)
+    }
+
+    /// The number at a pointer, which may be 0.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] when there is none that is a parameter of the model.
+    pub fn number(option: &str, case: &Case, pointer: &str) -> Result<Self> {
+        let usage = |what: String| Err(Error::Usage(format!("{option} {pointer}: {what}")));
         let resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
         let part = pointer.split('/').nth(1).unwrap_or_default();
         if pointer.starts_with("/section/") {
@@ -67,9 +91,6 @@ impl Parameter {
         match resolved.pointer(pointer) {
             Some(Value::Number(number)) if number.is_f64() => {
                 let value = number.as_f64().unwrap_or_default();
-                if value == 0.0 {
-                    return usage("it is 0, which gives no size to differ by; set it to a small value".into());
-                }
                 let pointer = pointer.to_owned();
                 Ok(Self { pointer, value })
             }

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::{FitArguments, FittedThrough};
-use super::{line, size};
+use super::{line, size, sweep};
 use crate::error::{Error, Result};
 use crate::output::fit as files;
 use crate::output::kind::Kind;
@@ -20,7 +20,8 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     let case = size::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
     let table = Table::read(&asked.data)?;
     let wanted = wanted(asked)?;
-    overridden(asked)?;
+    let driven: Vec<String> = wanted.drives.iter().map(|drive| drive.pointer.clone()).collect();
+    sweep::overridden(&asked.case.sets, &driven, |drive| format!("every row sets {drive}"))?;
     let problem = Problem::new(&case, &table, &wanted)?;
     let mut folder = asked.place.claim(&case, Kind::Fit)?;
     let bar = line::line(asked.quiet);
@@ -58,7 +59,6 @@ fn wanted(asked: &FitArguments) -> Result<Asked> {
         }
         _ => {}
     }
-    let jobs = asked.jobs.map(|jobs| jobs as usize);
     Ok(Asked {
         spans: asked.vary.iter().map(|text| Span::parse(text)).collect::<Result<_>>()?,
         matches: asked
@@ -71,7 +71,7 @@ fn wanted(asked: &FitArguments) -> Result<Asked> {
         noise: asked.noise.iter().map(|text| noise(text)).collect::<Result<_>>()?,
         loss: asked.robust.map_or(Loss::Squares, Loss::from),
         starts: asked.starts as usize,
-        jobs: jobs.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)),
+        jobs: sweep::jobs(asked.jobs)?,
     })
 }
 
@@ -80,23 +80,9 @@ fn noise(text: &str) -> Result<(String, f64)> {
         .rsplit_once('=')
         .map(|(name, sigma)| (name.trim(), sigma.trim().parse::<f64>()));
     match parts {
-        Some((name, Ok(sigma))) if !name.is_empty() && sigma.is_finite() && sigma > 0.0 => Ok((name.into(), sigma)),
+        Some((name, Ok(sigma))) if !name.is_empty() => Ok((name.into(), sigma)),
         _ => Err(Error::Usage(format!(
             "--noise '{text}': a column and a standard deviation above 0 are wanted, such as angle_deg=0.2"
         ))),
     }
-}
-
-/// Whether something that is set is sought as well.
-fn overridden(asked: &FitArguments) -> Result<()> {
-    for set in &asked.case.sets {
-        let pointer = set.split_once('=').map_or(set.as_str(), |(pointer, _)| pointer);
-        let drives = asked.drive.iter().filter_map(|text| Some(text.rsplit_once('=')?.1));
-        if let Some(drive) = drives.into_iter().find(|drive| crate::case::is_below(pointer, drive)) {
-            let what =
-                format!("--set {set}: it would be without effect, since every row sets {drive}; leave one of them out");
-            return Err(Error::Usage(what));
-        }
-    }
-    Ok(())
 }

@@ -67,7 +67,7 @@ const DAMPING: f64 = 1e-3;
 /// Damping at which no step is left.
 const MOST_DAMPING: f64 = 1e12;
 /// Singular values below this share of the largest count as none.
-pub const NOTHING: f64 = 1e-10;
+const NOTHING: f64 = 1e-10;
 
 /// What is asked for residuals at a place.
 pub type Evaluate<'a, E> = dyn FnMut(&[f64]) -> Result<Option<Evaluation>, E> + 'a;

@@ -67,8 +67,8 @@ pub struct FitArguments {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub starts: u32,
     /// Simulations at once [default: one for every core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
-    pub jobs: Option<u32>,
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<usize>,
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,

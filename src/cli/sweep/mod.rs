@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use super::arguments::{Script, SweepArguments};
 use super::{interrupt, run, terminal};
-use crate::case::Case;
+use crate::case::{Case, is_below};
 use crate::error::{Error, Result};
 use crate::output::folder::ResultFolder;
 use crate::output::kind::Kind;
@@ -115,6 +115,24 @@ pub fn jobs(asked: Option<usize>) -> Result<usize> {
         true => Ok(jobs),
         false => Err(Error::Usage(format!("--jobs {jobs}: from 1 to {MOST_AT_ONCE}"))),
     }
+}
+
+/// Whether something that is set is set again for every case: `why` says by what, of its pointer.
+///
+/// # Errors
+/// [`Error::Usage`] with the first.
+pub fn overridden(sets: &[String], again: &[String], why: impl Fn(&str) -> String) -> Result<()> {
+    for set in sets {
+        let pointer = set.split_once('=').map_or(set.as_str(), |(pointer, _)| pointer);
+        if let Some(other) = again.iter().find(|other| is_below(pointer, other)) {
+            let what = format!(
+                "--set {set}: it would be without effect, since {}; leave one of them out",
+                why(other)
+            );
+            return Err(Error::Usage(what));
+        }
+    }
+    Ok(())
 }
 
 fn claim(asked: &SweepArguments, source: &Source) -> Result<ResultFolder> {

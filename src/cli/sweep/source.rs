@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::overridden;
 use crate::case::{self, Case};
 use crate::cli::arguments::SweepArguments;
 use crate::cli::{line, size, terminal};
@@ -58,7 +59,7 @@ impl Source {
                 (Designs::crossed(texts.len(), &varied, draw, asked.seed)?, specs)
             }
         };
-        overridden(&asked.sets, designs.pointers())?;
+        overridden(&asked.sets, designs.pointers(), |varied| format!("{varied} is varied"))?;
         let chosen = designs
             .pointers()
             .iter()
@@ -167,19 +168,6 @@ fn name(designs: &Designs, design: &Design, more: usize) {
     terminal::tell(&format!(
         "slcbeam: design {number} of {count}{place} cannot be computed{more}; nothing was begun"
     ));
-}
-
-/// Whether something that is set is varied as well, so that it would be without effect.
-fn overridden(sets: &[String], varied: &[String]) -> Result<()> {
-    for set in sets {
-        let pointer = set.split_once('=').map_or(set.as_str(), |(pointer, _)| pointer);
-        if let Some(varied) = varied.iter().find(|varied| case::is_below(pointer, varied)) {
-            let what =
-                format!("--set {set}: it would be without effect, since {varied} is varied; leave one of them out");
-            return Err(Error::Usage(what));
-        }
-    }
-    Ok(())
 }
 
 /// Whether cases can be told apart by their names.

@@ -124,23 +124,23 @@ fn network_values(look: &Look, integrals: Option<&[f64]>, put: &mut impl FnMut(f
     }
 }
 
+/// What the columns of a name begin with where no other has taken that: letters and digits of it, in lower case.
+pub fn begin(kind: &str, name: &str) -> String {
+    let plain = |c: char| match c.is_alphanumeric() {
+        true => c.to_ascii_lowercase(),
+        false => '_',
+    };
+    format!("{kind}_{}", name.chars().map(plain).collect::<String>())
+}
+
 /// Each name with what its columns begin with: letters and digits of it, and a number where that is taken.
 fn short<'a>(kind: &str, names: impl Iterator<Item = &'a String>) -> Vec<(&'a String, String)> {
     let mut all: Vec<(&String, String)> = vec![];
     for name in names {
-        let plain: String = name
-            .chars()
-            .map(|c| {
-                if c.is_alphanumeric() {
-                    c.to_ascii_lowercase()
-                } else {
-                    '_'
-                }
-            })
-            .collect();
+        let begin = begin(kind, name);
         let taken = |one: &String| all.iter().any(|(_, other)| other == one);
-        let numbered = (2..).map(|k| format!("{kind}_{plain}_{k}"));
-        let mut candidates = std::iter::once(format!("{kind}_{plain}")).chain(numbered);
+        let numbered = (2..).map(|k| format!("{begin}_{k}"));
+        let mut candidates = std::iter::once(begin.clone()).chain(numbered);
         let own = candidates.find(|one| !taken(one)).unwrap_or_default();
         all.push((name, own));
     }

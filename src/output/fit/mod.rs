@@ -62,12 +62,7 @@ fn beside(problem: &Problem) -> Vec<(String, Vec<f64>)> {
 /// Places of the observations of a column, by row.
 fn places(problem: &Problem, column: usize) -> Vec<Option<usize>> {
     let mut all = vec![None; problem.rows()];
-    for (place, one) in problem
-        .observations
-        .iter()
-        .enumerate()
-        .filter(|(_, one)| one.of == column)
-    {
+    for (place, one) in problem.of(column) {
         all[one.row] = Some(place);
     }
     all

@@ -1,6 +1,5 @@
 //! Shards joined to one table; what is lost of them.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::{JOURNAL, Journal, PLAN, Survey};
@@ -62,7 +61,7 @@ pub fn read(dirs: &[PathBuf]) -> Result<Vec<Part>> {
     Ok(all)
 }
 
-/// Puts the rows of all parts into the journal of a folder, each design once; rows that are there already stay.
+/// Puts the rows of all parts into the journal of a folder, which is none of theirs, each design once; rows that are there already stay.
 ///
 /// # Errors
 /// Something cannot be read or written.
@@ -70,9 +69,6 @@ pub fn join(parts: &[Part], folder: &ResultFolder, plan: &Plan) -> Result<Survey
     let path = folder.path(JOURNAL);
     let mut there = Survey::of(&path, plan)?;
     for part in parts {
-        if fs::canonicalize(&part.dir).ok() == fs::canonicalize(folder.dir()).ok() {
-            continue;
-        }
         let own = Survey::of(&part.dir.join(JOURNAL), &part.plan)?;
         let mut journal = Journal::go_on(folder, &there)?;
         let mut failed = None;

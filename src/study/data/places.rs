@@ -1,6 +1,7 @@
 //! Where a quantity is: `tip`, `bladder 3`, `port inlet`, the name of a probe, or a share of the beam's length.
 
 use crate::case::schema::{Case, Probe};
+use crate::discrete::quantities::stations;
 use crate::error::{Error, Result};
 
 /// What the name of a column begins with, and the probe that has to be there for it.
@@ -41,17 +42,7 @@ pub fn of(case: &Case, quantity: &str, place: &str) -> Result<Placed> {
     let (kind, name) = place.split_once(char::is_whitespace).unwrap_or((place, ""));
     match kind {
         "bladder" => of_bladder(case, quantity, name.trim()).map_err(wrong),
-        "port" | "accumulator" | "contact" => {
-            let plain = |c: char| {
-                if c.is_alphanumeric() {
-                    c.to_ascii_lowercase()
-                } else {
-                    '_'
-                }
-            };
-            let short: String = name.trim().chars().map(plain).collect();
-            Ok(placed(&format!("{kind}_{short}"), None))
-        }
+        "port" | "accumulator" | "contact" => Ok(placed(&stations::begin(kind, name.trim()), None)),
         _ => {
             let names = case.probes.iter().map(|probe| probe.name.as_str()).chain(["tip"]);
             let meant =

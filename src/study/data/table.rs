@@ -7,10 +7,7 @@ use std::path::Path;
 use super::units::{self, Unit};
 use crate::case::{self, Source, nearest};
 use crate::error::{Code, Error, Result, Violation, visible};
-use crate::study::measure::table::{cells, fault, lines};
-
-/// Rows with faults that are told.
-const MOST: usize = 20;
+use crate::study::measure::table::{MOST, cells, fault, lines};
 
 /// A heading.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,10 +88,7 @@ impl Table {
             let what = "no headings; the first line names the columns, such as t_s, angle_deg";
             return Err(source.error(vec![Violation::new(Code::Table, "", what)]));
         };
-        let separator = [';', '\t']
-            .into_iter()
-            .find(|s| header.text.contains(*s))
-            .unwrap_or(',');
+        let separator = header.separator();
         let headings = cells(&header, separator);
         let mut faults = vec![];
         for (k, (heading, span)) in headings.iter().enumerate() {

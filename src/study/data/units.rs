@@ -13,6 +13,13 @@ pub struct Unit {
     pub scale: f64,
 }
 
+impl Unit {
+    /// Whether a text names it, with or without the signs of powers.
+    pub fn is_written(&self, text: &str) -> bool {
+        self.name == text || self.name.replace('^', "") == text
+    }
+}
+
 /// SI unit, unit, how many of the one the other is.
 const TABLE: [(&str, &str, f64); 59] = [
     ("m", "m", 1.0),
@@ -98,7 +105,7 @@ pub fn bracketed(text: &str) -> Option<Unit> {
         "" | "-" | "–" => "1",
         other => other,
     };
-    all().find(|unit| unit.name == plain || unit.name.replace('^', "") == plain)
+    all().find(|unit| unit.is_written(plain))
 }
 
 /// A name as keys have it without the unit that it ends with, and that unit: `angle`, degrees of `angle_deg`.

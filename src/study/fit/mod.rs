@@ -142,10 +142,8 @@ pub fn fit(problem: &Problem, asked: &Asked, data: (&str, u32), tell: &(dyn Fn(u
     };
     fit.warnings = warnings(&fit, reached.minimum.ended, known && plain);
     fit.wall_s = begin.elapsed().as_secs_f64();
-    let weights = problem.observations.iter().enumerate();
-    let weights = weights
-        .map(|(i, _)| reached.weights[i] / reached.sigmas[i].powi(2))
-        .collect();
+    let weights = reached.weights.iter().zip(&reached.sigmas);
+    let weights = weights.map(|(weight, sigma)| weight / sigma.powi(2)).collect();
     Ok(Fitted {
         fit,
         case,
@@ -165,15 +163,13 @@ fn bound(place: f64, free: bool) -> Option<Bound> {
 /// What each column leaves.
 fn columns(problem: &Problem, reached: &Reached) -> Vec<Column> {
     let of = |(k, one): (usize, &crate::study::data::Matched)| {
-        let own = |i: &usize| problem.observations[*i].of == k;
-        let own: Vec<usize> = (0..problem.observations.len()).filter(own).collect();
-        let model: Vec<f64> = own.iter().map(|i| reached.simulated.values[*i]).collect();
-        let data: Vec<f64> = own.iter().map(|i| problem.observations[*i].value).collect();
+        let model: Vec<f64> = problem.of(k).map(|(i, _)| reached.simulated.values[i]).collect();
+        let data: Vec<f64> = problem.of(k).map(|(_, one)| one.value).collect();
         Column {
             matched: one.asked.clone(),
             quantity: one.key(),
             left: Left::of(&model, &data),
-            noise: own.iter().map(|i| reached.sigmas[*i]).sum::<f64>() / own.len().max(1) as f64,
+            noise: problem.of(k).map(|(i, _)| reached.sigmas[i]).sum::<f64>() / data.len().max(1) as f64,
             noise_given: reached.given[k],
         }
     };

@@ -15,6 +15,9 @@ use crate::study::data::matching::Named;
 use crate::study::data::{Match, Matched, Table, matching, units};
 use crate::study::span::Span;
 
+/// What names a number that is sought.
+const OPTION: &str = "--vary";
+
 /// What the case goes through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -179,6 +182,14 @@ impl Problem {
         })
     }
 
+    /// Measured values of a column, with their numbers.
+    pub fn of(&self, column: usize) -> impl Iterator<Item = (usize, &Observation)> {
+        self.observations
+            .iter()
+            .enumerate()
+            .filter(move |(_, one)| one.of == column)
+    }
+
     /// What the case goes through.
     pub fn through(&self) -> Through {
         match self.abscissa {
@@ -265,20 +276,16 @@ fn starts(case: &Case, spans: &[Span], drives: &[Drive]) -> Result<Vec<f64>> {
         }
     }
     let start = |span: &Span| {
-        let found = Parameter::find(case, &span.pointer).or_else(|error| {
+        let find = |case: &Case| Ok(Parameter::find_as(OPTION, case, &span.pointer)?.value);
+        let own = Parameter::number(OPTION, case, &span.pointer)?.value;
+        let value = match own == 0.0 {
             // one that is 0 has no size to differ by, but another value has
-            let middle = with(case, &[(&span.pointer, span.value(0.5))]);
-            let zero = error.to_string().contains(": it is 0");
-            match middle {
-                Ok(middle) if zero => Parameter::find(&middle, &span.pointer),
-                _ => Err(error),
+            true => {
+                with(case, &[(&span.pointer, span.value(0.5))]).map_or_else(|_| find(case), |middle| find(&middle))?
             }
-        });
-        match found {
-            Ok(found) if span.holds(found.value) => Ok(found.value),
-            Ok(_) => Ok(span.value(0.5)),
-            Err(error) => Err(Error::Usage(error.to_string().replace("--sensitivity", "--vary"))),
-        }
+            false => own,
+        };
+        Ok(if span.holds(value) { value } else { span.value(0.5) })
     };
     spans.iter().map(start).collect()
 }

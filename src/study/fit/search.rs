@@ -160,8 +160,7 @@ impl<'a> Search<'a> {
         let mut all = vec![own.collect()];
         let axes: Vec<Sobol> = (0..spans.len().min(sobol::MOST)).map(Sobol::along).collect();
         for k in 1..count {
-            let point = axes.iter().map(|axis| f64::from(axis.bits(k as u32)) / 2_f64.powi(32));
-            all.push(point.collect());
+            all.push(axes.iter().map(|axis| axis.share(k as u32 - 1, 0)).collect());
         }
         Ok(all)
     }
@@ -212,14 +211,14 @@ impl<'a> Search<'a> {
         let all = &self.problem.observations;
         let sizes: Vec<f64> = (0..self.problem.matched.len()).map(|k| self.size(k)).collect();
         let sigmas = all.iter().map(|one| one.sigma.unwrap_or(sizes[one.of])).collect();
-        let given = |k| all.iter().filter(|one| one.of == k).all(|one| one.sigma.is_some());
+        let given = |k| self.problem.of(k).all(|(_, one)| one.sigma.is_some());
         (sigmas, (0..sizes.len()).map(given).collect())
     }
 
     /// The largest value of a column, 1 where all are 0.
     fn size(&self, column: usize) -> f64 {
-        let own = self.problem.observations.iter().filter(|one| one.of == column);
-        let largest = own.map(|one| one.value.abs()).fold(0.0, f64::max);
+        let own = self.problem.of(column);
+        let largest = own.map(|(_, one)| one.value.abs()).fold(0.0, f64::max);
         if largest > 0.0 { largest } else { 1.0 }
     }
 
@@ -228,11 +227,11 @@ impl<'a> Search<'a> {
         let (all, loss) = (&self.problem.observations, self.asked.loss);
         let mut change = 0.0_f64;
         for (column, _) in given.iter().enumerate().filter(|(_, given)| !**given) {
-            let own: Vec<usize> = (0..all.len()).filter(|i| all[*i].of == column).collect();
-            let errors: Vec<f64> = own.iter().map(|i| simulated.values[*i] - all[*i].value).collect();
-            let lost = self.problem.spans.len() as f64 * own.len() as f64 / all.len() as f64;
+            let own = || self.problem.of(column);
+            let errors: Vec<f64> = own().map(|(i, one)| simulated.values[i] - one.value).collect();
+            let lost = self.problem.spans.len() as f64 * errors.len() as f64 / all.len() as f64;
             let sigma = loss.deviation(&errors, lost).max(LEAST * self.size(column));
-            for i in own {
+            for (i, _) in own() {
                 change = change.max((sigma / sigmas[i] - 1.0).abs());
                 sigmas[i] = sigma;
             }

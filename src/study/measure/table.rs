@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::case::{Source, nearest};
 use crate::error::{Code, Result, Violation};
+use crate::study::data::units;
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,72 +26,31 @@ pub enum Quantity {
     Flow,
 }
 
-/// Units and how many SI units each is.
-type Units = &'static [(&'static str, f64)];
-
 impl Quantity {
-    /// Name of its column, SI unit, units.
-    fn known(self) -> (&'static str, &'static str, Units) {
-        match self {
-            Self::Pressure => (
-                "pressure",
-                "Pa",
-                &[
-                    ("Pa", 1.0),
-                    ("kPa", 1e3),
-                    ("MPa", 1e6),
-                    ("mbar", 1e2),
-                    ("bar", 1e5),
-                    ("psi", 6_894.757_293),
-                ],
-            ),
-            Self::Volume => (
-                "volume",
-                "m^3",
-                &[
-                    ("m^3", 1.0),
-                    ("l", 1e-3),
-                    ("ml", 1e-6),
-                    ("ul", 1e-9),
-                    ("cm^3", 1e-6),
-                    ("mm^3", 1e-9),
-                ],
-            ),
-            Self::Force => ("force", "N", &[("N", 1.0), ("mN", 1e-3), ("kN", 1e3)]),
-            Self::Extension => (
-                "extension",
-                "m",
-                &[("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("um", 1e-6)],
-            ),
-            Self::Moment => (
-                "moment",
-                "N m",
-                &[("N m", 1.0), ("mN m", 1e-3), ("N cm", 1e-2), ("N mm", 1e-3)],
-            ),
-            Self::Curvature => ("curvature", "1/m", &[("1/m", 1.0), ("1/cm", 1e2), ("1/mm", 1e3)]),
-            Self::Flow => (
-                "flow",
-                "m^3/s",
-                &[
-                    ("m^3/s", 1.0),
-                    ("l/min", 1e-3 / 60.0),
-                    ("ml/s", 1e-6),
-                    ("ml/min", 1e-6 / 60.0),
-                    ("ul/s", 1e-9),
-                    ("ul/min", 1e-9 / 60.0),
-                ],
-            ),
-        }
-    }
-
     /// Name of its column.
     pub fn name(self) -> &'static str {
-        self.known().0
+        match self {
+            Self::Pressure => "pressure",
+            Self::Volume => "volume",
+            Self::Force => "force",
+            Self::Extension => "extension",
+            Self::Moment => "moment",
+            Self::Curvature => "curvature",
+            Self::Flow => "flow",
+        }
     }
 
     /// Its SI unit.
     pub fn unit(self) -> &'static str {
-        self.known().1
+        match self {
+            Self::Pressure => "Pa",
+            Self::Volume => "m^3",
+            Self::Force => "N",
+            Self::Extension => "m",
+            Self::Moment => "N m",
+            Self::Curvature => "1/m",
+            Self::Flow => "m^3/s",
+        }
     }
 }
 
@@ -104,7 +64,7 @@ pub struct Points {
 }
 
 /// Rows with faults that are told.
-const MOST: usize = 20;
+pub(in crate::study) const MOST: usize = 20;
 
 /// Reads the columns of two quantities.
 ///
@@ -123,10 +83,7 @@ pub fn read(path: &Path, text: &str, x: Quantity, y: Quantity) -> Result<Points>
         );
         return Err(source.error(vec![Violation::new(Code::Table, "", what)]));
     };
-    let separator = [';', '\t']
-        .into_iter()
-        .find(|s| header.text.contains(*s))
-        .unwrap_or(',');
+    let separator = header.separator();
     let names = cells(&header, separator);
     let columns = [x, y].map(|quantity| column(&names, &header, quantity));
     let [(x_at, x_scale), (y_at, y_scale)] = match columns {
@@ -159,6 +116,13 @@ pub(in crate::study) struct Line<'t> {
     pub text: &'t str,
     pub number: usize,
     pub start: usize,
+}
+
+impl Line<'_> {
+    /// What stands between cells where this is the first line: semicolons or tabs where there are any, else commas.
+    pub fn separator(&self) -> char {
+        [';', '\t'].into_iter().find(|s| self.text.contains(*s)).unwrap_or(',')
+    }
 }
 
 /// Lines that count.
@@ -203,7 +167,7 @@ pub(in crate::study) fn fault(span: Range<usize>, what: String) -> Violation {
 
 /// Place and scale of the column of a quantity.
 fn column(names: &[(&str, Range<usize>)], header: &Line, quantity: Quantity) -> Read<(usize, f64)> {
-    let (name, unit, units) = quantity.known();
+    let (name, unit) = (quantity.name(), quantity.unit());
     let split = |cell: &str| {
         let (name, unit) = cell.split_once('[').unwrap_or((cell, ""));
         (
@@ -230,15 +194,13 @@ fn column(names: &[(&str, Range<usize>)], header: &Line, quantity: Quantity) -> 
         return Err(Box::new(fault(again.clone(), what).allowed("one, that which is meant")));
     }
     let given = split(names[at].0).1;
-    let known = units
-        .iter()
-        .find(|(unit, _)| *unit == given || unit.replace('^', "") == given);
-    known.map(|(_, scale)| (at, *scale)).ok_or_else(|| {
+    let known = units::of_dimension(unit).find(|unit| unit.is_written(&given));
+    known.map(|unit| (at, unit.scale)).ok_or_else(|| {
         let what = match given.as_str() {
             "" => format!("the column {name} has no unit"),
             _ => format!("the unit {given} of {name} is not known"),
         };
-        let all: Vec<&str> = units.iter().map(|(unit, _)| *unit).collect();
+        let all: Vec<&str> = units::of_dimension(unit).map(|unit| unit.name).collect();
         Box::new(fault(names[at].1.clone(), what).allowed(format!("{name} [{}]", all.join(" | "))))
     })
 }

@@ -262,7 +262,7 @@ fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
 /// Modes about the start of a case, so many that six of them swing, as far as there are so many; and what was looked for.
 ///
 /// # Errors
-/// Those of [`modes::of`].
+/// Those of [`modes::modes`].
 pub fn swinging(case: &Case) -> Result<(modes::Modes, modes::Plan)> {
     let mut plan = modes::Plan {
         count: 2 * MODES,
@@ -270,7 +270,7 @@ pub fn swinging(case: &Case) -> Result<(modes::Modes, modes::Plan)> {
         limits: false,
     };
     loop {
-        let found = modes::of(modes::linearise(case, 0.0, None)?, &plan)?;
+        let found = modes::modes(case, &plan)?;
         if lowest(&found.modes).len() == MODES || found.modes.len() < plan.count || plan.count >= MOST_MODES {
             return Ok((found, plan));
         }
@@ -297,7 +297,7 @@ fn small(case: &Case, ask: Ask) -> Result<Found> {
     let case = match &refined {
         None => case,
         Some((chosen, _)) => {
-            all = modes::of(modes::linearise(chosen, 0.0, None)?, &plan)?;
+            all = modes::modes(chosen, &plan)?;
             chosen
         }
     };

@@ -124,11 +124,8 @@ impl Vary {
 /// # Errors
 /// In words.
 pub fn check_pointer(pointer: &str) -> std::result::Result<(), String> {
-    let other_name = |part: &&str| {
-        let digits = part.strip_prefix('+').unwrap_or(part);
-        digits.len() > 1 && digits.starts_with('0') && digits.bytes().all(|b| b.is_ascii_digit())
-            || digits.len() < part.len()
-    };
+    let zeros = |part: &str| part.len() > 1 && part.starts_with('0') && part.bytes().all(|b| b.is_ascii_digit());
+    let other_name = |part: &&str| part.starts_with('+') || zeros(part);
     if let Some(part) = pointer.split('/').find(other_name) {
         Err(format!(
             "`{part}` is no place of an array: 0, 1, 2 and so on, without sign or zeros in front"
