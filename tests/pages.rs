@@ -203,6 +203,7 @@ fn commands_are_found() {
         "sweep",
         "merge",
         "fit",
+        "sense",
         "new",
         "report",
         "export",

@@ -108,6 +108,17 @@ impl End {
         }
     }
 
+    /// What is given with the form.
+    pub fn given_mut(&mut self) -> &mut EndConditions {
+        match self {
+            Self::Free(given)
+            | Self::Clamped(given)
+            | Self::Pinned(given)
+            | Self::Guided(given)
+            | Self::Conditions(given) => given,
+        }
+    }
+
     fn from_form(name: &str, given: EndConditions) -> Option<Self> {
         Some(match name {
             "free" => Self::Free(given),

@@ -25,6 +25,7 @@ pub mod progress;
 mod report;
 mod run;
 mod schema;
+mod sense;
 mod size;
 mod study;
 pub mod summary_box;
@@ -88,6 +89,7 @@ fn act(command: &Command, began: Instant) -> Result<ExitCode> {
         Command::Sweep(asked) => sweep::sweep(asked),
         Command::Merge(asked) => merge::merge(asked),
         Command::Fit(asked) => fit::fit(asked),
+        Command::Sense(asked) => sense::sense(asked),
         Command::Compare(asked) => compare::compare(asked),
         Command::Modes(asked) => modes::modes(asked),
         Command::Export(asked) => export::export(asked),

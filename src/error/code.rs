@@ -90,6 +90,8 @@ codes! {
     PartOfStream = "W026", "A stream of which the model has a part.";
     DeepContact = "W027", "A wall that the beam is deep in.";
     Fit = "W029", "A fit that tells less than it seems.";
+    UnexplainedPressures = "W032", "Pressures that the loads do not explain.";
+    StateAside = "W033", "Loads whose path leads to another state.";
 }
 
 impl Code {

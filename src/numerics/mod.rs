@@ -11,6 +11,7 @@
 //! | `ramp` | a ramp with a round foot |
 //! | [`regression`], [`student`] | least squares with covariance, and intervals by Student's distribution |
 //! | [`levenberg`] | nonlinear least squares between bounds |
+//! | [`inverse`] | linear problems whose answer may not be told by their data: what is, and how surely |
 //! | [`chance`], [`sobol`] | numbers by chance, and points that fill a cube evenly |
 //! | [`normal`] | quantiles of the normal distribution |
 //! | [`krylov`] | linear systems and eigenvalues of a map known only by what it does |
@@ -19,6 +20,7 @@ pub mod angle;
 pub mod chance;
 pub mod dual;
 pub mod gauss;
+pub mod inverse;
 pub mod kernels;
 pub mod krylov;
 pub mod levenberg;

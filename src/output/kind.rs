@@ -32,11 +32,13 @@ pub enum Kind {
     Designs,
     /// `fit`.
     Fit,
+    /// `sense`.
+    Sense,
 }
 
 impl Kind {
     /// All of them; a cycle before the run in its folder, many designs before what has a `sweep.json` too.
-    const ALL: [Self; 11] = [
+    const ALL: [Self; 12] = [
         Self::Cycle,
         Self::Designs,
         Self::Run,
@@ -48,6 +50,7 @@ impl Kind {
         Self::Map,
         Self::Sweep,
         Self::Fit,
+        Self::Sense,
     ];
 
     /// Name in the page, command, and sign.
@@ -64,6 +67,7 @@ impl Kind {
             Self::Sweep => ["sweep", "periodic --sweep", "sweep.json"],
             Self::Designs => ["designs", "sweep", "plan.json"],
             Self::Fit => ["fit", "fit", "fit.json"],
+            Self::Sense => ["sense", "sense", "sense.json"],
         }
     }
 
@@ -93,6 +97,7 @@ impl Kind {
             Self::Floquet => &["floquet.csv", "floquet.svg"],
             Self::Map => &["map.csv", "map.svg"],
             Self::Sweep => &["sweep.csv", "sweep.svg"],
+            Self::Sense => &["sense.csv", "sensors.csv", "sense.svg"],
             Self::Designs => &[
                 "designs.jsonl",
                 "sweep.json",

@@ -19,6 +19,7 @@
 //! fit       fit.json, fit.csv, fit.svg, fitted-case.json, and their words
 //! floquet   floquet.csv, floquet.json, floquet.svg; map.csv, map.json, map.svg, and their words
 //! periodic  cycle.json; sweep.csv, sweep.json, sweep.svg, and their words
+//! sense     sense.csv, sensors.csv, sense.json, sense.svg, table and sentences
 //! study     study.csv, study.json, study.svg, table and sentence
 //! sweep     designs.jsonl, sweep.csv, sweep.npz, sweep.json of many designs, and their words
 //! uncertainty  uncertainty.json, its words and its table
@@ -58,6 +59,7 @@ pub mod reading;
 pub mod recorder;
 pub mod records;
 pub mod report;
+pub mod sense;
 pub mod stream;
 pub mod study;
 pub mod summary;

@@ -7,6 +7,7 @@
 //! | [`modes`] | `modes.json` |
 //! | [`cycles`] | `floquet.json` and `cycle.json`, `map.json`, `sweep.json` |
 //! | [`studies`] | `study.json`, `effects.json`, what `compare --json` prints |
+//! | [`sense`] | `sense.json` |
 //! | [`sweep`] | `plan.json` and `sweep.json` of `slcbeam sweep` |
 //! | [`uncertainty`] | `uncertainty.json`, beside the result of any command that has figures |
 //! | [`fit`] | `fit.json`, what `compare --json` prints of a run over data |
@@ -24,6 +25,7 @@ pub mod modes;
 pub mod ordered;
 pub mod provenance;
 pub mod run;
+pub mod sense;
 pub mod studies;
 pub mod sweep;
 pub mod uncertainty;

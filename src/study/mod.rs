@@ -8,6 +8,7 @@ pub mod effects;
 pub mod fit;
 pub mod measure;
 pub mod refine;
+pub mod sense;
 pub mod span;
 pub mod stability;
 pub mod sweep;

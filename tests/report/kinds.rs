@@ -193,6 +193,32 @@ fn designs_stand_in_a_table() {
     sorted_both_ways(&mut browser);
 }
 
+/// Goal: loads from pressures have their bands in a picture and a table; without measurements these are of the best bladders.
+#[test]
+fn loads_from_pressures_stand_with_their_bands() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut browser = Browser::start();
+    let data = folder.path().join("pressures.csv");
+    std::fs::write(&data, "t_s,pressure_1_kpa,pressure_4_kpa\n0,-2.9,-1.6\n1,-1.4,-0.8\n").expect("written");
+    let beam = [
+        "sense",
+        "cases/tour-sensor.json",
+        "--set",
+        "/loads=[]",
+        "--load",
+        "tip-force",
+    ];
+    let measured = [&beam[..], &[data.to_str().expect("a path"), "--noise", "200"]].concat();
+    for (k, (asked, rows)) in [(measured, 2.0), (beam.to_vec(), 20.0)].into_iter().enumerate() {
+        let page = made(&folder.path().join(k.to_string()), &asked);
+        sound(&mut browser, &page, &["answer", "table", "scene", "case"]);
+        assert!(browser.number("document.querySelector('.plate img').naturalWidth") > 100.0);
+        let found = browser.number("document.querySelectorAll('#table tbody tr').length");
+        assert_eq!(found, rows);
+    }
+    sorted_both_ways(&mut browser);
+}
+
 /// Goal: a case with a section shows its cell under each of the four loads, and bladders by their outlines.
 #[test]
 fn the_cell_of_a_section_is_drawn_under_its_loads() {

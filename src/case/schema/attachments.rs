@@ -63,6 +63,26 @@ pub struct Attachment {
 }
 
 impl Attachment {
+    /// Nothing, at a share of the length.
+    pub fn at(at: f64) -> Self {
+        Self {
+            at,
+            mass_kg: 0.0,
+            rotary_inertia_kg_m2: 0.0,
+            offset_across_m: 0.0,
+            offset_along_m: 0.0,
+            stiffness_x_n_m: 0.0,
+            stiffness_z_n_m: 0.0,
+            stiffness_rotation_n_m_rad: 0.0,
+            damping_x_n_s_m: 0.0,
+            damping_z_n_s_m: 0.0,
+            force_x_n: None,
+            force_z_n: None,
+            force_tangential_n: None,
+            force_normal_n: None,
+        }
+    }
+
     /// The forces that are given, with their keys.
     pub fn forces(&self) -> impl Iterator<Item = (&'static str, &Signal)> {
         given([

@@ -5,6 +5,7 @@ mod fit;
 mod map;
 mod periodic;
 mod run;
+mod sense;
 mod sweep;
 mod uncertain;
 
@@ -26,6 +27,7 @@ pub use fit::{CompareArguments, FitArguments, FittedThrough};
 pub use map::MapArguments;
 pub use periodic::PeriodicArguments;
 pub use run::RunArguments;
+pub use sense::SenseArguments;
 pub use sweep::{MergeArguments, Script, SweepArguments};
 pub use uncertain::UncertainArguments;
 
@@ -68,6 +70,8 @@ pub enum Command {
     Merge(MergeArguments),
     /// Fit numbers of a case to measured data between bounds, with errors, and with what the data do not tell
     Fit(FitArguments),
+    /// Find loads from measured pressures of bladders at rest, with bands; what pressures tell, which to measure
+    Sense(SenseArguments),
     /// Compare two result folders: error norms of every field and quantity, cost ratio; or a run with measured data
     Compare(CompareArguments),
     /// Write a result in other formats: tables of its fields (CSV), surfaces that ParaView opens (VTK)
@@ -105,6 +109,7 @@ impl Command {
             Self::Sweep(a) => a.json,
             Self::Merge(a) => a.json,
             Self::Fit(a) => a.json,
+            Self::Sense(a) => a.json,
             Self::Compare(a) => a.json,
             Self::Mapping(a) => a.json,
             Self::Verify(a) => a.json,

@@ -107,13 +107,7 @@ impl From<PlaceTableText> for PlaceTable {
             values,
             interpolation,
         } = text;
-        let curve = Curve::through(&positions, &values, interpolation).unwrap_or_default();
-        Self {
-            positions,
-            values,
-            interpolation,
-            curve,
-        }
+        Self::new(positions, values, interpolation)
     }
 }
 
@@ -128,6 +122,17 @@ impl From<PlaceTable> for PlaceTableText {
 }
 
 impl PlaceTable {
+    /// Through points; those that do not make a curve make a profile that is zero.
+    pub fn new(positions: Vec<f64>, values: Vec<f64>, interpolation: Interpolation) -> Self {
+        let curve = Curve::through(&positions, &values, interpolation).unwrap_or_default();
+        Self {
+            positions,
+            values,
+            interpolation,
+            curve,
+        }
+    }
+
     /// Whether the points make a curve.
     pub fn is_sound(&self) -> bool {
         self.curve != Curve::default()

@@ -18,6 +18,7 @@
 //! cell        a cell of the section under one load
 //! fitted      a model over data, and what is between them
 //! measured    measurements with their fit
+//! sensed      loads behind pressures, with bands
 //! ```
 
 mod canvas;
@@ -39,6 +40,7 @@ pub mod modes;
 pub mod multipliers;
 pub mod overlay;
 pub mod pressure;
+pub mod sensed;
 pub mod tongue;
 pub mod workprecision;
 

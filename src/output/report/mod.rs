@@ -15,7 +15,7 @@
 //! parameters  the case as a table, described by its schema
 //! sheet       CSV files as tables
 //! warnings    what to know first, in words
-//! equilibrium, modes, studies, cycles, designs, fit   the pages of the other commands
+//! equilibrium, modes, studies, cycles, designs, fit, sense   the pages of the other commands
 //! vendor      uPlot, which draws histories
 //! ```
 //!
@@ -37,6 +37,7 @@ mod page;
 mod parameters;
 mod run;
 mod scene;
+mod sense;
 mod sheet;
 mod signals;
 mod studies;
@@ -99,6 +100,7 @@ fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
         Kind::Sweep => cycles::sweep(&place)?,
         Kind::Designs => designs::data(&place)?,
         Kind::Fit => fit::data(&place)?,
+        Kind::Sense => sense::data(&place)?,
     };
     if kind.files().contains(&UNCERTAINTY) && place.path(UNCERTAINTY).is_file() {
         let found = place.result::<Uncertainty>(UNCERTAINTY)?.result;

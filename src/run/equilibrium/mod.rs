@@ -6,7 +6,8 @@
 //! natural  coordinates in which paths are nearly straight
 //! predict  where the next point probably is
 //! path     step by step along the path, as far as predictions hold; limit points, bifurcations
-//! sensitivity  derivatives by numbers of the case
+//! sensitivity  derivatives by numbers of the case, or along any change of it
+//! resting  states under loads that differ a little from those of a known one
 //! branch   from one path onto another that crosses it
 //! state    what is read off a state; one state as the unknowns of another system
 //! ```
@@ -21,6 +22,7 @@ mod judge;
 mod natural;
 mod path;
 mod predict;
+mod resting;
 mod sensitivity;
 mod stages;
 mod state;
@@ -33,7 +35,8 @@ use crate::run::range::{MACH, REYNOLDS};
 use crate::run::record::Control;
 use crate::sundials::Solution;
 
-pub use sensitivity::{Sensitivity, differentiate};
+pub use resting::Resting;
+pub use sensitivity::{Derivative, Direction, Sensitivity, along, differentiate};
 pub use stages::follow;
 pub use state::{Stability, State, columns, restate};
 

@@ -20,7 +20,54 @@ pub struct Sensitivity {
     pub row: Vec<f64>,
 }
 
-/// `[E43]` Derivatives of the last state of a path by parameters p, exact but for round-off: the tangent is that of the equations,
+/// A way in which a case changes with one number p.
+pub struct Direction<'a> {
+    /// What p is, for people.
+    pub name: String,
+    /// A change of p that is small.
+    pub step: f64,
+    /// The case with p changed by so many of these steps.
+    pub moved: Box<dyn Fn(f64) -> Result<Case> + 'a>,
+}
+
+/// What a state does along a direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Derivative {
+    /// Derivative of the scaled unknowns.
+    pub y: Vec<f64>,
+    /// Derivative of each column of a state.
+    pub row: Vec<f64>,
+}
+
+/// Derivatives of the last state of a path by parameters.
+///
+/// # Errors
+/// As [`along`].
+pub fn differentiate(
+    case: &Case,
+    options: &Options,
+    path: &Path,
+    parameters: &[Parameter],
+) -> Result<Vec<Sensitivity>> {
+    let direction = |parameter: &Parameter| {
+        let own = parameter.clone();
+        Direction {
+            name: format!("--sensitivity {}", parameter.pointer),
+            step: CHANGE * parameter.value,
+            moved: Box::new(move |steps| own.changed(case, own.value * (1.0 + steps * CHANGE))),
+        }
+    };
+    let directions: Vec<Direction> = parameters.iter().map(direction).collect();
+    let found = along(case, options, path, &directions)?;
+    let named = parameters.iter().zip(found).map(|(parameter, found)| Sensitivity {
+        parameter: parameter.clone(),
+        y: found.y,
+        row: found.row,
+    });
+    Ok(named.collect())
+}
+
+/// `[E43]` Derivatives of the last state of a path by numbers p, exact but for round-off: the tangent is that of the equations,
 /// its factors are made once a stage,
 ///
 /// ```text
@@ -32,13 +79,8 @@ pub struct Sensitivity {
 ///
 /// # Errors
 /// A changed case that is not valid or has other unknowns, a tangent that is singular.
-pub fn differentiate(
-    case: &Case,
-    options: &Options,
-    path: &Path,
-    parameters: &[Parameter],
-) -> Result<Vec<Sensitivity>> {
-    let mut found: Vec<Sensitivity> = vec![];
+pub fn along(case: &Case, options: &Options, path: &Path, directions: &[Direction]) -> Result<Vec<Derivative>> {
+    let mut found: Vec<Derivative> = vec![];
     let mut before: Option<Held> = None;
     for (number, stage) in options.stages().iter().enumerate() {
         let Some(state) = path.states.iter().rfind(|state| state.stage == number) else {
@@ -52,9 +94,9 @@ pub fn differentiate(
         let mut factors = Klu::new(statics.pattern()).map_err(|_| singular())?;
         factors.factor(&values).map_err(|_| singular())?;
         let mut now = vec![];
-        for (k, parameter) in parameters.iter().enumerate() {
+        for (k, direction) in directions.iter().enumerate() {
             let earlier = before.as_ref().zip(found.get(k)).map(|(held, one)| (held, &*one.y));
-            let mut changed = changed(case, stage, parameter, &statics, earlier)?;
+            let mut changed = changed(stage, direction, &statics, earlier)?;
             let mut y = by_parameter(&statics, &mut changed, state)?;
             y.iter_mut().for_each(|y| *y = -*y);
             factors.solve(&mut y);
@@ -64,8 +106,7 @@ pub fn differentiate(
                 let there = State::read(other, &moved, number);
                 row.iter_mut().zip(&there.row).for_each(|(d, q)| *d += *weight * q);
             }
-            let parameter = parameter.clone();
-            now.push(Sensitivity { parameter, y, row });
+            now.push(Derivative { y, row });
         }
         found = now;
         before = Some(Held {
@@ -80,18 +121,17 @@ fn singular() -> Error {
     Error::Usage("the equilibrium has no derivatives: its tangent is singular".into())
 }
 
-/// Steps of a parameter, their weights, and the equations of the stage with them, which begin in the state that the stage before
+/// Steps of a number, their weights, and the equations of the stage with them, which begin in the state that the stage before
 /// then ends in: a state and its derivative.
 fn changed(
-    case: &Case,
     stage: &Stage,
-    parameter: &Parameter,
+    direction: &Direction,
     statics: &StaticBeam,
     before: Option<(&Held, &[f64])>,
 ) -> Result<Vec<(f64, f64, StaticBeam)>> {
     let one = |(steps, weight): (f64, f64)| {
-        let step = steps * CHANGE * parameter.value;
-        let case = parameter.changed(case, parameter.value * (1.0 + steps * CHANGE))?;
+        let step = steps * direction.step;
+        let case = (direction.moved)(steps)?;
         let held = before.map(|(held, derivative)| Held {
             y: held.y.iter().zip(derivative).map(|(y, d)| y + step * d).collect(),
             layout: held.layout.clone(),
@@ -99,10 +139,10 @@ fn changed(
         let grown = grow(&case, stage)?;
         if grown.system.layout.len != statics.len() {
             let what = "the number of unknowns depends on it";
-            return Err(Error::Usage(format!("--sensitivity {}: {what}", parameter.pointer)));
+            return Err(Error::Usage(format!("{}: {what}", direction.name)));
         }
         let (other, _) = begin(&case, grown, held.as_ref());
-        Ok((step, weight / (CHANGE * parameter.value), other))
+        Ok((step, weight / direction.step, other))
     };
     STEPS.into_iter().map(one).collect()
 }

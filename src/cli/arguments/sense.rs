@@ -1,0 +1,46 @@
+//! What `sense` can be asked for.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{CaseArguments, PlaceArguments};
+
+/// `sense`.
+#[derive(Debug, Args)]
+pub struct SenseArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Measured pressures (CSV), a column a bladder such as `pressure_3_pa` or `pressure_-3_kpa`, a row a measurement at rest;
+    /// without it: what pressures would tell, and which to measure
+    pub pressures: Option<PathBuf>,
+    /// A load that is looked for, repeatable: tip-force, tip-moment, tip-axial, uniform, uniform-axial, profile:N with N places,
+    /// point:S at a share S of the length [default: tip-force where the tip is free, uniform]
+    #[arg(long = "load", value_name = "LOAD")]
+    pub loads: Vec<String>,
+    /// Standard deviation of the noise of a pressure [Pa] [default: columns such as pressure_3_sd_pa, else estimated from what the
+    /// loads leave]
+    #[arg(long, value_name = "PA")]
+    pub noise: Option<f64>,
+    /// How smooth a profile is taken to be: as the data speak for (likelihood), so that they are left their noise (discrepancy), off,
+    /// or the standard deviation of its second differences [N/m]
+    #[arg(long, value_name = "HOW", default_value = "likelihood")]
+    pub smoothing: String,
+    /// Instant whose own loads of the case act besides [default: the end of the run]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub at: Option<f64>,
+    /// Which bladders to measure: the best sets of every size, by the sum of the variances of the loads, or by the volume in which they lie
+    #[arg(long, value_name = "BY", num_args = 0..=1, require_equals = true, default_missing_value = "variances",
+          value_parser = ["variances", "volume"])]
+    pub choose: Option<String>,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print sense.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}

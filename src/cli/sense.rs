@@ -1,0 +1,94 @@
+//! `slcbeam sense`: loads from measured pressures, with bands; what pressures tell; which to measure.
+
+use std::process::ExitCode;
+
+use super::arguments::SenseArguments;
+use super::{line, size};
+use crate::error::{Error, Result};
+use crate::output::kind::Kind;
+use crate::output::{report, sense as files};
+use crate::results;
+use crate::study::sense::basis::{Basis, amplitudes};
+use crate::study::sense::choose::Criterion;
+use crate::study::sense::estimate::Smoothing;
+use crate::study::sense::find::{Asked, find};
+use crate::study::sense::pressures::Measured;
+use crate::study::sense::rest::probed;
+
+/// Reads the measurements, looks for the loads, writes the folder, prints the table.
+pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
+    let case = &size::load(&asked.case)?;
+    let question = question(asked, case.time.end_s)?;
+    probed(case)?;
+    amplitudes(case, &question.loads)?;
+    let measured = asked.pressures.as_ref().map(|path| Measured::read(path, case));
+    let measured = measured.transpose()?;
+    if question.noise_pa.is_some() && measured.as_ref().is_some_and(|one| one.deviations.is_some()) {
+        let what =
+            "--noise: the measurements have columns with the deviation of each pressure; leave out one of the two";
+        return Err(Error::Usage(what.into()));
+    }
+    let mut folder = asked.place.claim(case, Kind::Sense)?;
+    let bar = line::line(asked.quiet);
+    bar.set_message("looking for the loads");
+    bar.tick();
+    let found = find(case, measured.as_ref(), &question);
+    bar.finish_and_clear();
+    let mut found = found?;
+    found.data = asked.pressures.as_ref().map(|path| path.display().to_string());
+    if let Some(measured) = &measured {
+        found.left_alone.clone_from(&measured.left_alone);
+    }
+    files::write(&mut folder, &found)?;
+    report::complete(&folder, case)?;
+    super::tell(
+        asked.json,
+        folder.dir(),
+        || results::text(&found),
+        || files::words(&found),
+    )?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
+    if let Some(noise) = asked.noise.filter(|noise| !(noise.is_finite() && *noise > 0.0)) {
+        return Err(Error::Usage(format!(
+            "--noise {noise}: a standard deviation in Pa, above 0"
+        )));
+    }
+    let at_s = asked.at.unwrap_or(end_s);
+    if !at_s.is_finite() {
+        return Err(Error::Usage(format!("--at {at_s}: an instant in seconds")));
+    }
+    let smoothing = match asked.smoothing.as_str() {
+        "likelihood" => Smoothing::Likelihood,
+        "discrepancy" => Smoothing::Discrepancy,
+        "off" => Smoothing::Off,
+        other => match other.parse::<f64>() {
+            Ok(deviation) if deviation.is_finite() && deviation > 0.0 => Smoothing::Fixed(deviation),
+            _ => {
+                let wanted = "likelihood, discrepancy, off, or a standard deviation in N/m above 0";
+                return Err(Error::Usage(format!("--smoothing {other}: {wanted}")));
+            }
+        },
+    };
+    // without measurements there is nothing else to tell
+    let by = asked
+        .choose
+        .as_deref()
+        .or(asked.pressures.is_none().then_some("variances"));
+    Ok(Asked {
+        loads: asked
+            .loads
+            .iter()
+            .map(|text| Basis::parse(text))
+            .collect::<Result<_>>()?,
+        noise_pa: asked.noise,
+        smoothing,
+        at_s,
+        choose: by.map(|by| match by {
+            "volume" => Criterion::Volume,
+            _ => Criterion::Variances,
+        }),
+    })
+}

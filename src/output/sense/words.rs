@@ -1,0 +1,214 @@
+//! Loads from pressures in words.
+
+use crate::output::columns::aligned;
+use crate::output::numbers::{count, significant};
+use crate::results::sense::{Banded, NoiseFrom, Sensed};
+
+/// Rows of a table at most.
+const ROWS: usize = 12;
+
+/// What pressures tell, the loads, how they fit, which bladders to measure, what to know.
+pub fn words(found: &Sensed) -> String {
+    let mut text = about_sight(found);
+    if !found.rows.is_empty() {
+        let (headings, rows) = table(found);
+        let mut lines = vec![headings];
+        let more = rows.len().saturating_sub(ROWS);
+        lines.extend(rows.into_iter().take(ROWS));
+        text += &format!("\n{}", aligned(&lines, &[0]));
+        if more > 0 {
+            text += &format!("{} more rows in sense.csv\n", count(more as u64));
+        }
+        text += &format!("\n{}\n", about_noise(found));
+    }
+    if !found.choice.is_empty() {
+        text += &format!("\n{}", sensors(found));
+    }
+    if !found.left_alone.is_empty() {
+        text += &format!("columns left alone: {}\n", found.left_alone.join(", "));
+    }
+    for warning in &found.warnings {
+        text += &format!("warning: {warning}\n");
+    }
+    text
+}
+
+/// What pressures of the bladders tell of the loads at all.
+pub fn about_sight(found: &Sensed) -> String {
+    let loads: Vec<String> = found.loads.iter().map(ToString::to_string).collect();
+    let bladders = match found.bladders.len() {
+        1 => "1 bladder".to_owned(),
+        many => format!("{many} bladders"),
+    };
+    let mut text = format!(
+        "{}: {} from the pressures of {bladders} at rest\n",
+        found.case,
+        loads.join(" + ")
+    );
+    let alone = found.amplitudes.iter().filter_map(|a| {
+        let error = significant(a.error_per_pa?, 3);
+        Some(format!(
+            "  {} is told: its standard error is {error} {} for each Pa of noise\n",
+            a.name, a.unit
+        ))
+    });
+    text.extend(alone);
+    let lost = found.amplitudes.iter().filter(|a| a.error_per_pa.is_none());
+    let lost: Vec<&str> = lost.map(|a| a.name.as_str()).collect();
+    if !lost.is_empty() {
+        text += &format!("  not told by these pressures alone: {}\n", lost.join(", "));
+    }
+    for one in &found.seen.together {
+        text += &format!("  told together: {} [{}], numbers in SI units\n", one.name, one.unit);
+    }
+    for change in &found.seen.blind {
+        let parts = change.iter().zip(&found.amplitudes).filter(|(c, _)| **c != 0.0);
+        let parts: Vec<String> = parts
+            .map(|(c, a)| format!("{} {} of {}", significant(*c, 4), a.unit, a.name))
+            .collect();
+        text += &format!("  leaves no trace: {}\n", parts.join(" with "));
+    }
+    text
+}
+
+/// A load with half of its band.
+fn banded(one: Option<&Banded>) -> String {
+    match one {
+        Some(one) => format!(
+            "{} ± {}",
+            significant(one.value, 4),
+            significant(one.high - one.value, 2)
+        ),
+        None => "not told".into(),
+    }
+}
+
+/// Headings and rows: a line a load where there is one row of measurements, else a line a row.
+pub fn table(found: &Sensed) -> (Vec<String>, Vec<Vec<String>>) {
+    // sums are of use where what they are of is not told
+    let lost = found.rows.iter().any(|row| row.amplitudes.contains(&None));
+    let sums = || found.seen.together.iter().filter(|_| lost);
+    let names = || {
+        let amplitudes = found.amplitudes.iter().map(|a| (&a.name, &a.unit));
+        amplitudes.chain(sums().map(|one| (&one.name, &one.unit)))
+    };
+    if let [row] = found.rows.as_slice() {
+        let headings = ["load", "value ± half of the band of 95 %", "from", "to", "unit"].map(String::from);
+        let all = row.amplitudes.iter().chain(&row.together);
+        let lines = names().zip(all).map(|((name, unit), one)| {
+            let end = |x: Option<f64>| x.map_or("–".into(), |x| significant(x, 4));
+            let (low, high) = one.as_ref().map(|one| (one.low, one.high)).unzip();
+            vec![name.clone(), banded(one.as_ref()), end(low), end(high), unit.clone()]
+        });
+        return (headings.into(), lines.collect());
+    }
+    let timed = found.rows.iter().all(|row| row.t_s.is_some());
+    let mut headings = vec![if timed { "t [s]" } else { "line" }.to_owned()];
+    headings.extend(names().map(|(name, unit)| format!("{name} [{unit}]")));
+    let lines = found.rows.iter().map(|row| {
+        let first = match row.t_s.filter(|_| timed) {
+            Some(t) => significant(t, 6),
+            None => row.line.to_string(),
+        };
+        let all = row
+            .amplitudes
+            .iter()
+            .chain(&row.together)
+            .map(|one| banded(one.as_ref()));
+        [first].into_iter().chain(all).collect()
+    });
+    (headings, lines.collect())
+}
+
+/// Noise, fit, and what was known before.
+pub fn about_noise(found: &Sensed) -> String {
+    let Some(noise) = &found.noise else {
+        return String::new();
+    };
+    let sd = noise
+        .sd_pa
+        .map_or(String::new(), |sd| format!("{} Pa", significant(sd, 3)));
+    let freedom = match noise.freedom.round() {
+        1.0 => "1 degree".to_owned(),
+        many => format!("{many} degrees"),
+    };
+    let mut text = match noise.from {
+        NoiseFrom::Estimated => format!(
+            "noise: {sd}, estimated from what the loads leave of the pressures ({freedom} of freedom); bands are Student's"
+        ),
+        NoiseFrom::Given => format!("noise: {sd}, as given"),
+        NoiseFrom::Table => "noise: as the measurements give it".to_owned(),
+    };
+    if noise.from != NoiseFrom::Estimated {
+        text += &format!(
+            "; what is left has χ² = {} on {freedom} of freedom",
+            significant(noise.chi_square, 3)
+        );
+    }
+    if let Some(smoothed) = &found.smoothing {
+        text += &format!(
+            "\nknown before: second differences of the profile have a standard deviation of {} N/m; bands include that",
+            significant(smoothed.deviation_n_m, 3)
+        );
+    }
+    if found.rows.iter().any(|row| row.t_s.is_some()) {
+        text += "\neach row is taken as at rest: inertia and flow are not in it";
+    }
+    text
+}
+
+/// Bladders, blanks between.
+pub fn list(bladders: &[i64]) -> String {
+    bladders.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
+}
+
+/// The best bladders to measure.
+fn sensors(found: &Sensed) -> String {
+    let mut lines = vec![vec!["sensors".to_owned()]];
+    lines[0].extend(found.amplitudes.iter().map(|a| format!("{} [{}]", a.name, a.unit)));
+    lines[0].push("bladders".into());
+    let last = lines[0].len() - 1;
+    for one in found.choice.iter().take(ROWS) {
+        let mut line = vec![one.bladders.len().to_string()];
+        line.extend(
+            one.errors
+                .iter()
+                .map(|e| e.map_or("not told".into(), |e| significant(e, 3))),
+        );
+        line.push(list(&one.bladders));
+        lines.push(line);
+    }
+    let more = match found.choice.len().saturating_sub(ROWS) {
+        0 => String::new(),
+        more => format!("{more} more in sensors.csv\n"),
+    };
+    format!(
+        "the best bladders to measure, and the standard errors of the loads for a noise of {} Pa\n{}{more}",
+        significant(found.choice_noise_pa, 3),
+        aligned(&lines, &[last])
+    )
+}
+
+/// One sentence.
+pub fn answer(found: &Sensed) -> String {
+    match (found.rows.as_slice(), found.choice.first(), found.choice.last()) {
+        ([row], ..) => {
+            let told = found.amplitudes.iter().zip(&row.amplitudes);
+            let told: Vec<String> = told
+                .filter_map(|(a, one)| Some(format!("{} {} {}", a.name, banded(Some(one.as_ref()?)), a.unit)))
+                .take(4)
+                .collect();
+            match told.is_empty() {
+                true => "These pressures tell no load by itself, only loads together.".into(),
+                false => format!("The pressures are those of {}.", told.join(", ")),
+            }
+        }
+        ([], Some(least), Some(most)) => format!(
+            "{} are the {} bladders that tell most; with all {} the errors are as small as they get.",
+            list(&least.bladders).replace(' ', ", "),
+            least.bladders.len(),
+            most.bladders.len()
+        ),
+        (rows, ..) => format!("Loads behind {} rows of pressures.", count(rows.len() as u64)),
+    }
+}

@@ -1,0 +1,6 @@
+//! `sense.json`: loads behind measured pressures.
+
+use super::Kept;
+pub use crate::study::sense::sensed::{Banded, Chosen, Combination, Noise, NoiseFrom, Row, Sensed};
+
+impl Kept for Sensed {}

@@ -1,0 +1,151 @@
+//! Pressures at rest under loads.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::basis::{Amplitude, loaded};
+use super::estimate::Forward;
+use crate::case::parameter::CHANGE;
+use crate::case::schema::{Case, Probe};
+use crate::case::wiring::bladder_label;
+use crate::error::{Error, Result};
+use crate::functions::Signal;
+use crate::run::equilibrium::{self, Direction, Options, Resting};
+
+/// The case with a probe in the middle of each pair of bladders, and the names of the columns with the pressures of all bladders, upper row first.
+///
+/// # Errors
+/// [`Error::Usage`]: the case has no bladders.
+pub fn probed(case: &Case) -> Result<(Case, Vec<String>)> {
+    let per_row = match &case.bladders {
+        Some(bladders) if case.fluid.is_some() => bladders.per_row,
+        _ => {
+            return Err(Error::Usage(
+                "the case has no bladders with fluid in them: there are no pressures to measure".into(),
+            ));
+        }
+    };
+    let mut case = case.clone();
+    let taken = |name: &str| case.probes.iter().any(|probe| probe.name.starts_with(name));
+    let mut begin = "sense".to_owned();
+    while taken(&begin) {
+        begin.push('-');
+    }
+    let names = [1, -1].map(|row| {
+        let end = if row > 0 { "pressure_upper" } else { "pressure_lower" };
+        let begin = &begin;
+        (1..=per_row).map(move |j| format!("{begin}-{j}_{end}"))
+    });
+    let names = names.into_iter().flatten().collect();
+    case.probes.extend((1..=per_row).map(|j| Probe {
+        name: format!("{begin}-{j}"),
+        at: (j as f64 - 0.5) / per_row as f64,
+    }));
+    Ok((case, names))
+}
+
+/// Labels of the bladders, in the order of their pressures.
+pub fn labels(case: &Case) -> Vec<i64> {
+    let per_row = case.bladders.as_ref().map_or(0, |bladders| bladders.per_row);
+    (0..2 * per_row).map(|b| bladder_label(b, per_row)).collect()
+}
+
+/// The pressures of all bladders at rest, over loads in their sizes.
+#[derive(Clone)]
+pub struct AtRest<'a> {
+    case: &'a Case,
+    amplitudes: &'a [Amplitude],
+    options: &'a Options,
+    /// Columns of a state with the pressures.
+    columns: Vec<usize>,
+    /// The last state.
+    last: Resting,
+}
+
+impl<'a> AtRest<'a> {
+    /// Under the loads of the case alone; `case` and `names` are those of [`probed`].
+    ///
+    /// # Errors
+    /// There is no such state.
+    pub fn new(case: &'a Case, names: &[String], amplitudes: &'a [Amplitude], options: &'a Options) -> Result<Self> {
+        let own = with(case, amplitudes, &vec![0.0; amplitudes.len()]);
+        // what is read off a state depends on which loads there are
+        let columns = equilibrium::columns(&equilibrium::system(&own, options.at_s)?);
+        let place = |name: &String| columns.iter().position(|column| column.name == *name);
+        let columns: Vec<usize> = names.iter().filter_map(place).collect();
+        if columns.len() != names.len() {
+            return Err(Error::Usage(
+                "the effects of the case leave out its fluid: there are no pressures to measure".into(),
+            ));
+        }
+        Ok(Self {
+            last: Resting::follow(&own, options)?,
+            case,
+            amplitudes,
+            options,
+            columns,
+        })
+    }
+
+    /// Pressures along the path from rest to these loads, and what there is to warn of.
+    ///
+    /// # Errors
+    /// There is no such path.
+    pub fn followed(&self, amplitudes: &[f64]) -> Result<(DVector<f64>, Vec<String>)> {
+        let case = with(self.case, self.amplitudes, amplitudes);
+        let there = Resting::follow(&case, self.options)?;
+        Ok((self.pressures(&there), there.path.warnings()))
+    }
+
+    fn pressures(&self, state: &Resting) -> DVector<f64> {
+        let row = state.row();
+        DVector::from_iterator(self.columns.len(), self.columns.iter().map(|k| row[*k]))
+    }
+
+    /// Pressures under loads, without derivatives.
+    ///
+    /// # Errors
+    /// There is no such state.
+    pub fn go(&mut self, amplitudes: &[f64]) -> Result<DVector<f64>> {
+        let case = with(self.case, self.amplitudes, amplitudes);
+        self.last = match self.last.beside(&case, self.options)? {
+            Some(there) => there,
+            None => Resting::follow(&case, self.options)?,
+        };
+        Ok(self.pressures(&self.last))
+    }
+}
+
+/// The case with loads of so many of their sizes.
+fn with(case: &Case, amplitudes: &[Amplitude], sizes: &[f64]) -> Case {
+    let signals = amplitudes
+        .iter()
+        .zip(sizes)
+        .map(|(a, size)| Signal::Constant(a.size * size));
+    loaded(case, amplitudes, signals)
+}
+
+impl Forward for AtRest<'_> {
+    fn at(&mut self, amplitudes: &[f64]) -> Result<(DVector<f64>, DMatrix<f64>)> {
+        let values = self.go(amplitudes)?;
+        let direction = |(k, amplitude): (usize, &Amplitude)| {
+            let (own, all) = (self.case, self.amplitudes);
+            let from = amplitudes.to_vec();
+            Direction {
+                name: format!("--load {}", amplitude.name),
+                step: CHANGE,
+                moved: Box::new(move |steps| {
+                    let mut there = from.clone();
+                    there[k] += steps * CHANGE;
+                    Ok(with(own, all, &there))
+                }),
+            }
+        };
+        let directions: Vec<Direction> = self.amplitudes.iter().enumerate().map(direction).collect();
+        let case = with(self.case, self.amplitudes, amplitudes);
+        let derivatives = self.last.along(&case, self.options, &directions)?;
+        let jacobian = DMatrix::from_fn(self.columns.len(), derivatives.len(), |i, j| {
+            derivatives[j].row[self.columns[i]]
+        });
+        Ok((values, jacobian))
+    }
+}

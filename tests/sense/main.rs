@@ -1,0 +1,6 @@
+//! The beam as a sensor: loads from pressures.
+
+mod command;
+mod common;
+mod coverage;
+mod rest;
