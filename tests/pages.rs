@@ -91,6 +91,7 @@ fn shortened(line: &str) -> Option<String> {
         "cargo",
         "export",
         "git",
+        "pip",
         "cd ",
         "#",
     ]

@@ -39,6 +39,20 @@ pub struct Parameter {
 const OPTION: &str = "--sensitivity";
 
 impl Parameter {
+    /// Finds the numbers at some pointers, each once.
+    ///
+    /// # Errors
+    /// As [`Parameter::find`].
+    pub fn find_all(case: &Case, pointers: &[String]) -> Result<Vec<Self>> {
+        let mut all: Vec<Self> = vec![];
+        for pointer in pointers {
+            if all.iter().all(|other| other.pointer != *pointer) {
+                all.push(Self::find(case, pointer)?);
+            }
+        }
+        Ok(all)
+    }
+
     /// Finds the number at a pointer.
     ///
     /// # Errors

@@ -18,7 +18,7 @@ use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Error, Result};
-use crate::model::{Model, characteristic};
+use crate::model::Model;
 use crate::output::checkpoint;
 use crate::output::folder::{CASE, FIELDS, HISTORY, ResultFolder, text_of};
 use crate::output::kind::Kind;
@@ -50,7 +50,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     if !asked.resume {
         size::run_fits(case, &system, asked.sensitivities.len(), &out)?;
     }
-    let parameters = parameters(case, &asked.sensitivities)?;
+    let parameters = Parameter::find_all(case, &asked.sensitivities)?;
     if (asked.accuracy.is_some() || asked.resume) && !asked.uncertain.uncertain.is_empty() {
         let what = "--uncertain goes with neither --accuracy nor --resume; the mesh and tolerance that an accuracy led to stand in summary.json";
         return Err(Error::Usage(what.into()));
@@ -151,14 +151,6 @@ fn hook(asked: &RunArguments) -> SharedHook {
     })))
 }
 
-fn labels(case: &Case) -> Labels {
-    Labels {
-        case_name: case.name.clone(),
-        case: case.written(),
-        frequency_hz: characteristic::forcing_period(case).map(|p| 1.0 / p),
-    }
-}
-
 fn own(hook: &SharedHook) -> Hook {
     let hook = Rc::clone(hook);
     Box::new(move |progress| hook.borrow_mut()(progress))
@@ -195,17 +187,6 @@ pub fn into(case: &Case, accuracy: Option<f64>, dir: &Path, lean: bool, stop: &A
     Ok(outcome)
 }
 
-/// The numbers by which derivatives are asked for, each once.
-fn parameters(case: &Case, pointers: &[String]) -> Result<Vec<Parameter>> {
-    let mut all: Vec<Parameter> = Vec::new();
-    for pointer in pointers {
-        if all.iter().all(|other| other.pointer != *pointer) {
-            all.push(Parameter::find(case, pointer)?);
-        }
-    }
-    Ok(all)
-}
-
 /// A run that has ended.
 struct Recorded {
     outcome: Outcome,
@@ -216,7 +197,7 @@ struct Recorded {
 }
 
 fn record(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, way: &Way) -> Result<Recorded> {
-    let mut recorder = FolderRecorder::new(folder, labels(case), own(&way.hook)).lean(way.lean);
+    let mut recorder = FolderRecorder::new(folder, Labels::of(case), own(&way.hook)).lean(way.lean);
     let outcome = dynamics::run_with(case, system, by, &mut recorder)?;
     complete(recorder, outcome, way)
 }
@@ -295,7 +276,8 @@ fn resume(case: &Case, system: System, asked: &[Parameter], out: &Path, way: &Wa
         terminal::tell(&format!("slcbeam: {damage}; going on from the one before"));
     }
     let header = Observer::header(case, &system);
-    let mut recorder = FolderRecorder::resume(folder, labels(case), own(&way.hook), &saved, &header)?.lean(way.lean);
+    let mut recorder =
+        FolderRecorder::resume(folder, Labels::of(case), own(&way.hook), &saved, &header)?.lean(way.lean);
     let outcome = dynamics::resume(case, system, &saved.run, &mut recorder)?;
     complete(recorder, outcome, way)
 }

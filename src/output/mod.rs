@@ -12,6 +12,7 @@
 //! recorder  the Recorder that ties them together
 //! summary   summary.json, there and back
 //! reading   a result folder back into memory
+//! errors    what went wrong, for scripts and for people
 //! export    a result in other formats: tables of the fields, surfaces for ParaView
 //! comparison  the picture of two runs over each other
 //! effects   effects.csv, effects.json, effects.svg, table and sentence
@@ -42,6 +43,7 @@ pub mod disk;
 pub mod effects;
 pub mod envelope;
 pub mod equilibrium;
+pub mod errors;
 pub mod export;
 pub mod fit;
 pub mod floquet;

@@ -14,8 +14,9 @@ use super::history::HistoryWriter;
 use super::pictures::{self, STRETCHES};
 use super::stream::Stream;
 use super::summary;
-use crate::case::Written;
+use crate::case::{Case, Written};
 use crate::error::Result;
+use crate::model::characteristic;
 use crate::run::checkpoint::Checkpoint;
 use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::summary::{Status, Summary};
@@ -33,6 +34,17 @@ pub struct Labels {
     pub case: Written,
     /// Frequency of the drive [Hz]: pictures over space then show its last cycle.
     pub frequency_hz: Option<f64>,
+}
+
+impl Labels {
+    /// Those of a case.
+    pub fn of(case: &Case) -> Self {
+        Self {
+            case_name: case.name.clone(),
+            case: case.written(),
+            frequency_hz: characteristic::forcing_period(case).map(|period| 1.0 / period),
+        }
+    }
 }
 
 /// Streams a run into a folder.

@@ -1,0 +1,143 @@
+"""Cases: what is simulated."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Union
+
+from . import _slcbeam
+from ._errors import UsageError
+
+#: Cases that come with the package.
+CASES = Path(__file__).parent / "cases"
+
+#: What is taken for a case.
+CaseLike = Union["Case", str, "os.PathLike[str]", Mapping[str, Any]]
+
+
+def _plain(value: Any) -> Any:
+    """Numbers and arrays of numpy as JSON has them."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} has no form in JSON")
+
+
+def _json(value: Any) -> str:
+    try:
+        return json.dumps(value, default=_plain, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"no value of a case: {error}") from None
+
+
+class Case:
+    """A case that was checked. It stays as it is; :meth:`set` makes another one.
+
+    >>> import slcbeam
+    >>> case = slcbeam.load("bend-wet")
+    >>> case.name
+    'bend-wet'
+    >>> case["/beam/length_m"]
+    0.1
+    >>> shorter = case.set("/beam/length_m", 0.08)
+    >>> shorter["/beam/length_m"], case["/beam/length_m"]
+    (0.08, 0.1)
+    """
+
+    __slots__ = ("_text", "_path", "_base", "_sets", "_own", "_dict")
+
+    def __init__(self, text: str, path: str, base: str, sets: tuple[str, ...] = ()) -> None:
+        self._text, self._path, self._base, self._sets = text, path, base, tuple(sets)
+        self._own = _slcbeam.Case.parse(text, path, base, list(self._sets))
+        self._dict: dict[str, Any] | None = None
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self._own.name
+
+    def set(self, pointer: str | Mapping[str, Any], value: Any = None) -> Case:
+        """Another case with a value at a JSON pointer, or with several: ``case.set({"/a": 1, "/b": 2})``.
+
+        ``None`` leaves out what could stand there. Everything is checked again.
+        """
+        changes = dict(pointer) if isinstance(pointer, Mapping) else {pointer: value}
+        return Case(self._text, self._path, self._base, self._sets + _sets(changes))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The whole case with every default filled in; a copy."""
+        return json.loads(self._own.json())
+
+    def __getitem__(self, pointer: str) -> Any:
+        """The value at a JSON pointer, defaults included."""
+        if self._dict is None:
+            self._dict = self.to_dict()
+        value: Any = self._dict
+        for key in pointer.split("/")[1:] if pointer else []:
+            key = key.replace("~1", "/").replace("~0", "~")
+            try:
+                value = value[int(key)] if isinstance(value, list) else value[key]
+            except (KeyError, IndexError, ValueError, TypeError):
+                raise KeyError(pointer) from None
+        return value
+
+    def __repr__(self) -> str:
+        changed = f", {len(self._sets)} changed" if self._sets else ""
+        return f"<slcbeam.Case {self.name!r}{changed}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Case, (self._text, self._path, self._base, self._sets))
+
+
+def _sets(changes: Mapping[str, Any]) -> tuple[str, ...]:
+    return tuple(f"{pointer}={_json(value)}" for pointer, value in changes.items())
+
+
+def shipped() -> list[str]:
+    """Names of the cases that come with the package.
+
+    >>> "wiring-2" in shipped()
+    True
+    """
+    return sorted(str(path.relative_to(CASES).with_suffix("")) for path in _shipped())
+
+
+def _shipped() -> Iterator[Path]:
+    return (path for path in CASES.rglob("*.json") if path.name != "schema.json" and path.parent.name != "sections")
+
+
+def load(case: CaseLike, set: Mapping[str, Any] | None = None) -> Case:
+    """Reads and checks a case.
+
+    :param case: a file; the name of a case that comes with the package, see :func:`shipped`; a dict; JSON text.
+        A file is taken before a name. Tables that a file names are looked for beside it.
+    :param set: values by JSON pointer that take the place of those in the case.
+    :raises CaseError: with every fault of the case.
+    :raises UsageError: there is no such case.
+
+    >>> load("wiring-2", set={"/time/end_s": 0.1})
+    <slcbeam.Case 'wiring-2', 1 changed>
+    """
+    sets = _sets(set or {})
+    if isinstance(case, Case):
+        return Case(case._text, case._path, case._base, case._sets + sets) if sets else case
+    if isinstance(case, Mapping):
+        return Case(json.dumps(dict(case), default=_plain, indent=2), "<dict>", "", sets)
+    if isinstance(case, str) and case.lstrip().startswith("{"):
+        return Case(case, "<text>", "", sets)
+    path = Path(case)
+    if not path.exists():
+        found = CASES / f"{str(case).removesuffix('.json')}.json"
+        if found.is_file() and CASES.resolve() in found.resolve().parents:
+            path = found
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeError) as error:
+        why = error.strerror if isinstance(error, OSError) else str(error)
+        near = difflib.get_close_matches(path.stem, shipped(), 1)
+        meant = f"; did you mean {near[0]!r}?" if near else ""
+        raise UsageError(f"cannot read {path}: {why}; nor is there such a case in the package{meant}") from None
+    return Case(text, str(path), str(path.parent), sets)

@@ -1,0 +1,210 @@
+"""What a run tells."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _slcbeam
+from ._case import Case
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+
+def _frozen(array: np.ndarray) -> np.ndarray:
+    array.flags.writeable = False
+    return array
+
+
+class Table(Mapping[str, np.ndarray]):
+    """Columns of equal length by name; each is read-only, of shape (rows,). No column is copied."""
+
+    def __init__(self, names: list[str], units: list[str], rows: np.ndarray, about: list[str] | None = None) -> None:
+        #: Names of the columns, without units.
+        self.names = list(names)
+        #: Unit of each column by its name; ``"1"`` where it has none.
+        self.units = dict(zip(names, units))
+        #: What each column is, by its name.
+        self.about = dict(zip(names, about or [""] * len(names)))
+        #: All values, of shape (rows, columns), read-only.
+        self.values_2d = _frozen(rows)
+        self._place = {name: k for k, name in enumerate(self.names)}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        try:
+            return self.values_2d[:, self._place[name]]
+        except KeyError:
+            import difflib
+
+            near = difflib.get_close_matches(name, self.names, 1)
+            raise KeyError(name + (f"; did you mean {near[0]!r}?" if near else "")) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A frame with a column a name; what has a time is indexed by it. Needs pandas."""
+        import pandas
+
+        frame = pandas.DataFrame(self.values_2d, columns=self.names)
+        return frame.set_index("t") if "t" in self._place else frame
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} columns of {len(self.values_2d)} rows: {', '.join(self.names[:6])}{', ..' if len(self) > 6 else ''}>"
+
+
+class Fields(Mapping[str, np.ndarray]):
+    """Arrays over time and places by name, each of shape (times, places); coordinates by their names, too."""
+
+    def __init__(
+        self,
+        times: np.ndarray,
+        axes: list[tuple[str, str, str, np.ndarray]],
+        fields: list[tuple[str, str, str, str]],
+        arrays: list[np.ndarray],
+    ) -> None:
+        #: Times of the arrays [s], of shape (times,).
+        self.t = _frozen(times)
+        #: Coordinates by name, unit included: ``theta_node_m``.
+        self.coordinates: dict[str, np.ndarray] = {name: _frozen(values) for name, _, _, values in axes}
+        #: Name of the coordinate along which a field lies, by the field's name.
+        self.axis = {name: axis for name, _, axis, _ in fields}
+        #: Units by name, of fields and coordinates.
+        self.units = {name: unit for name, unit, *_ in [*axes, *fields]} | {"t": "s"}
+        #: What each is.
+        self.about = {name: about for name, _, about, _ in axes} | {name: about for name, *_, about in fields}
+        self._arrays = {field[0]: _frozen(array) for field, array in zip(fields, arrays)}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.coordinates[name] if name in self.coordinates else self._arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        return len(self._arrays)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """A dataset with all coordinates, units and names. Needs xarray."""
+        import xarray
+
+        def attributes(name: str) -> dict[str, str]:
+            return {"units": self.units[name], "long_name": self.about.get(name, "")}
+
+        arrays = {name: (("t", self.axis[name]), array, attributes(name)) for name, array in self._arrays.items()}
+        axes = {name: (name, values, attributes(name)) for name, values in self.coordinates.items()}
+        return xarray.Dataset(arrays, coords={"t": ("t", self.t, {"units": "s"}), **axes})
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} fields at {len(self.t)} times: {', '.join(self)}>"
+
+
+class Report:
+    """A page. A notebook shows it; :meth:`save` writes it."""
+
+    def __init__(self, text: str) -> None:
+        #: The whole page as HTML; it needs nothing else.
+        self.html = text
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the page."""
+        Path(path).write_text(self.html, encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        return f'<iframe srcdoc="{html.escape(self.html)}" style="width:100%;height:80vh;border:0"></iframe>'
+
+    def __repr__(self) -> str:
+        return f"<slcbeam.Report of {len(self.html) // 1000} kB>"
+
+
+def _split(names: list[str]) -> tuple[list[str], list[str]]:
+    """Names and units of headings such as ``tip_u1 [m]``."""
+    parts = [name.rpartition(" [") for name in names]
+    return [head for head, _, _ in parts], [unit.rstrip("]") for *_, unit in parts]
+
+
+class Result:
+    """A run that has ended. Its arrays are those that the run filled, and read-only."""
+
+    def __init__(self, case: Case, recorded: Any, arrays: dict[str, Any]) -> None:
+        self._asked, self._recorded, self._arrays = case, recorded, arrays
+        #: ``summary.json`` as a dict.
+        self.summary: dict[str, Any] = json.loads(recorded.summary())
+        names, units, about = ([*column] for column in zip(*recorded.columns())) if recorded.columns() else ([], [], [])
+        #: One row an output time: ``result.history["tip_u1"]``.
+        self.history = Table(names, units, arrays["history"], about)
+        #: What is left of output times that the history leaves out (``/time/history``); no columns otherwise.
+        self.envelope = Table(*_split(recorded.envelope()), arrays["envelope"])
+        #: Derivatives of the history's columns: ``result.derivatives["d tip_u1/d /beam/length_m"]``; no columns where none were asked for.
+        self.derivatives = Table(*_split(recorded.sensitivities()), arrays["sensitivities"])
+        #: Arrays over time and places: ``result.fields["u1_m"]``.
+        self.fields = Fields(arrays["times"], recorded.axes(), recorded.fields(), arrays["fields"])
+
+    @property
+    def case(self) -> Case:
+        """The case that was asked for."""
+        return self._asked
+
+    @property
+    def status(self) -> str:
+        """``finished``, ``stopped``, ``out_of_range`` or ``failed``."""
+        return self.summary["status"]
+
+    @property
+    def quantities(self) -> dict[str, dict[str, float]]:
+        """Figures of every quantity by name and unit: ``final``, ``max_abs``, ``window_rms`` .. in the unit of its name, and ``error``, its
+        estimated relative error, where one is known."""
+        judged = (self.summary.get("accuracy") or self.summary.get("estimate") or {}).get("quantities", {})
+        all = self.summary["quantities"] | self.summary.get("probes", {})
+        return {name: figures | {"error": judged.get(name, {}).get("total")} for name, figures in all.items()}
+
+    @property
+    def sensitivities(self) -> dict[str, dict[str, Any]]:
+        """Derivatives of the quantities by the JSON pointers of the numbers that were asked for, as in ``summary.json``."""
+        return self.summary.get("sensitivities", {})
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to know before trusting the result."""
+        return self.summary["warnings"]
+
+    def save(self, dir: str | os.PathLike[str], force: bool = False) -> Path:
+        """Writes the folder that ``slcbeam run --out`` writes, the page with it; returns its path.
+
+        :param force: take a folder that holds something else.
+        """
+        self._recorded.save(Path(dir), force, self._arrays)
+        return Path(dir)
+
+    def report(self) -> Report:
+        """The page of the result: pictures, figures, motion."""
+        with tempfile.TemporaryDirectory() as folder:
+            page = self.save(Path(folder) / "result") / "report.html"
+            return Report(page.read_text(encoding="utf-8"))
+
+    def __repr__(self) -> str:
+        warned = f", {len(self.warnings)} warnings" if self.warnings else ""
+        return f"<slcbeam.Result of {self.case.name!r}: {self.status} at t = {self.summary['time_s']:g} s{warned}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        recorded = self._recorded
+        told = (recorded.case().json(), recorded.summary(), recorded.envelope(), recorded.sensitivities(), recorded.began)
+        return (_again, (self._asked, told, self._arrays))
+
+
+def _again(case: Case, told: tuple[Any, ...], arrays: dict[str, Any]) -> Result:
+    resolved, *rest = told
+    own = _slcbeam.Case.parse(resolved, "<result>", "", [])
+    return Result(case, _slcbeam.again(own, *rest), arrays)

@@ -1,0 +1,64 @@
+"""Runs in time."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Sequence
+
+from . import _slcbeam
+from ._case import CaseLike, load
+from ._errors import SolverError
+from ._result import Result
+
+#: Called some 20 times a second with the simulated time [s], its end [s] and the steps so far.
+Progress = Callable[[float, float, int], None]
+
+
+def _bar(t: float, end: float, steps: int) -> None:
+    share = t / end if end > 0 else 1.0
+    full = int(30 * share)
+    sys.stderr.write(f"\r[{'#' * full}{'.' * (30 - full)}] {100 * share:3.0f} %  t = {t:.6g} of {end:.6g} s, {steps} steps ")
+    sys.stderr.flush()
+
+
+def run(
+    case: CaseLike,
+    accuracy: float | None = None,
+    sensitivity: Sequence[str] = (),
+    progress: bool | Progress = False,
+    out: str | os.PathLike[str] | None = None,
+) -> Result:
+    """Runs a case in time.
+
+    :param case: a :class:`Case`, or what :func:`load` takes.
+    :param accuracy: relative error below which every figure is wanted; mesh and tolerance are then chosen.
+    :param sensitivity: JSON pointers of numbers by which figures and history are differentiated.
+    :param progress: ``True`` for a bar on standard error, or a function ``f(t, end, steps)``; what it raises ends the run.
+    :param out: a folder for the result, written when the run has ended.
+    :returns: the result; its ``status`` is ``stopped`` after a KeyboardInterrupt.
+    :raises SolverError: the run could not go on; its ``result`` holds what there is.
+
+    The lock of Python is free during a run, so that others go on in other threads.
+
+    >>> import slcbeam
+    >>> result = slcbeam.run(slcbeam.load("bend-wet", set={"/time/end_s": 0.01}))
+    >>> result.status, result.history["t"][-1]
+    ('finished', np.float64(0.01))
+    """
+    if accuracy is not None and sensitivity:
+        from ._errors import UsageError
+
+        raise UsageError("accuracy and sensitivity do not go together; take the mesh and tolerance that an accuracy led to from the summary")
+    asked = load(case)
+    told = _bar if progress is True else (progress or None)
+    recorded, arrays = _slcbeam.run(asked._own, accuracy, list(sensitivity), told)
+    if progress is True:
+        sys.stderr.write("\n")
+    result = Result(asked, recorded, arrays)
+    if out is not None:
+        result.save(out)
+    fault = recorded.fault()
+    if fault is not None:
+        raise SolverError(*fault, result=result)
+    return result

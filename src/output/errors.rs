@@ -1,0 +1,91 @@
+//! Errors as scripts and people read them.
+
+use serde_json::{Value, json};
+
+use crate::case::Places;
+use crate::error::{At, Code, Error, SolverError, Violation};
+
+/// An error for scripts, the answer of a command with `--json`.
+pub fn json(error: &Error) -> Value {
+    let mut told = json!({"status": "failed", "exit_code": error.exit_code(), "code": error.code().id(), "what": error.to_string()});
+    match error {
+        Error::Case(fault) => {
+            told["status"] = "invalid".into();
+            told["file"] = fault.path.display().to_string().into();
+            let mut places = Places::new(&fault.text);
+            told["faults"] = fault.violations.iter().map(|v| violation(&mut places, v)).collect();
+        }
+        Error::Solver(fault) => {
+            match fault.at {
+                At::Time(time) => told["time_s"] = time.into(),
+                At::LoadFactor(factor) => told["load_factor"] = factor.into(),
+            }
+            told["unknown"] = fault.unknown.clone().into();
+            told["cause"] = fault.cause.clone().into();
+            told["hint"] = fault.hint.clone().into();
+        }
+        Error::Usage(_) | Error::Output { .. } => {}
+    }
+    told
+}
+
+fn violation(places: &mut Places, violation: &Violation) -> Value {
+    let place = violation.span.as_ref().map(|span| match &violation.set {
+        Some(set) => Places::new(set).of(span.start),
+        None => places.of(span.start),
+    });
+    json!({
+        "code": violation.code.id(), "what": violation.what, "pointer": violation.pointer, "set": violation.set,
+        "line": place.map(|p| p.0), "column": place.map(|p| p.1),
+        "allowed": violation.allowed, "nearest": violation.nearest, "hint": violation.hint
+    })
+}
+
+/// A failed run in words.
+pub fn diagnosis(fault: &SolverError) -> String {
+    // modes and equilibria belong to an instant and do not run
+    let failed = match (fault.code, fault.at) {
+        (Code::NoModes | Code::NoEquilibrium, _) => String::new(),
+        (Code::NoCycle, At::Time(t)) => format!("no cycle, t = {t:.6e} s of its period: "),
+        (_, At::Time(t)) => format!("the run failed at t = {t:.6e} s: "),
+        (_, At::LoadFactor(factor)) => format!("failed at {factor:.6} of the loads: "),
+    };
+    let mut lines = vec![format!(
+        "slcbeam: {failed}{} (slcbeam explain {})",
+        fault.what,
+        fault.code.id()
+    )];
+    for (what, text) in [
+        ("worst unknown", &fault.unknown),
+        ("likely cause", &fault.cause),
+        ("try", &fault.hint),
+    ] {
+        if let Some(text) = text {
+            lines.push(format!("  {what}: {text}"));
+        }
+    }
+    lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: what does not run does not fail at a time of a run.
+    #[test]
+    fn only_runs_fail_at_a_time() {
+        let words = |code| {
+            diagnosis(&SolverError {
+                code,
+                at: At::Time(0.25),
+                what: "no such thing".into(),
+                unknown: None,
+                cause: None,
+                hint: None,
+            })
+        };
+        assert_eq!(words(Code::NoModes), "slcbeam: no such thing (slcbeam explain E047)");
+        assert!(words(Code::Integrator).contains("the run failed at t = 2.500000e-1 s"));
+        assert!(words(Code::NoCycle).contains("no cycle") && !words(Code::NoCycle).contains("run failed"));
+    }
+}
