@@ -37,20 +37,18 @@ fn simple() -> BoxedStrategy<Signal> {
                 if smooth { "smooth" } else { "linear" }
             )),
         prop::collection::vec(-2.0..2.0, 1..7).prop_map(|c| format!(r#"{{"polynomial":{{"coefficients":{c:?}}}}}"#)),
-        (0.0..END, prop::collection::vec((short, -1.0..1.0), 1..9), any::<bool>()).prop_map(
-            |(start, points, cubic)| {
-                let times: Vec<f64> = points
-                    .iter()
-                    .scan(start, |t, p: &(f64, f64)| {
-                        *t += p.0;
-                        Some(*t)
-                    })
-                    .collect();
-                let values: Vec<f64> = points.iter().map(|p| p.1).collect();
-                let kind = if cubic { "cubic" } else { "linear" };
-                format!(r#"{{"table":{{"times_s":{times:?},"values":{values:?},"interpolation":"{kind}"}}}}"#)
-            }
-        ),
+        (0.0..END, prop::collection::vec((short, -1.0..1.0), 1..9), 0..3_usize).prop_map(|(start, points, kind)| {
+            let times: Vec<f64> = points
+                .iter()
+                .scan(start, |t, p: &(f64, f64)| {
+                    *t += p.0;
+                    Some(*t)
+                })
+                .collect();
+            let values: Vec<f64> = points.iter().map(|p| p.1).collect();
+            let kind = ["linear", "monotone", "cubic"][kind];
+            format!(r#"{{"table":{{"times_s":{times:?},"values":{values:?},"interpolation":"{kind}"}}}}"#)
+        }),
     ];
     json.prop_map(|json| signal(&json)).boxed()
 }
@@ -293,7 +291,7 @@ fn bounds_cost_little() {
         1.0,
         2e-2,
     );
-    for kind in ["linear", "cubic"] {
+    for kind in ["linear", "monotone", "cubic"] {
         let times: Vec<f64> = (0..100_000).map(|k| f64::from(k) * 1e-5).collect();
         let values: Vec<f64> = times.iter().map(|t| (40.0 * t).sin()).collect();
         let text = format!(r#"{{"table":{{"times_s":{times:?},"values":{values:?},"interpolation":"{kind}"}}}}"#);
@@ -308,7 +306,8 @@ fn nothing_happens_between_stretches() {
     let pulse = r#"{"product": [{"sigmoid": {"amplitude": 2, "steepness_per_s": 1e5, "midpoint_s": 3}},
         {"sum": [1, {"sigmoid": {"amplitude": -1, "steepness_per_s": 2e4, "midpoint_s": 3.5}}]}]}"#;
     let power = format!(r#"{{"polynomial": {{"coefficients": [{}1]}}}}"#, "0,".repeat(60));
-    let table = r#"{"table": {"times_s": [2, 3, 3.001, 3.002, 4], "values": [1, 0, 5, 0, 1]}}"#;
+    let table =
+        r#"{"table": {"times_s": [2, 3, 3.001, 3.002, 4], "values": [1, 0, 5, 0, 1], "interpolation": "cubic"}}"#;
     let burst = r#"{"product": [{"sine": {"amplitude": 1, "frequency_hz": 1e4}},
         {"ramp": {"to": 1, "start_s": 3, "duration_s": 0.01}},
         {"sum": [1, {"ramp": {"to": -1, "start_s": 3.1, "duration_s": 0.01}}]}]}"#;

@@ -298,7 +298,7 @@ fn a_wave_that_has_only_begun_to_run_is_told() {
 fn waves_that_grow_under_a_push_are_told() {
     let scene = r#"{"name": "pushed", "beam": {"length_m": 1, "height_m": 0.01, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 1200},
         "ends": {"root": "clamped", "tip": {"free": {"force_x_n": 1e-5, "force_z_n":
-            {"table": {"times_s": [1, 1.01, 1.03, 1.04], "values": [0, -5, -5, 0]}}}}},
+            {"table": {"times_s": [1, 1.01, 1.03, 1.04], "values": [0, -5, -5, 0], "interpolation": "cubic"}}}}},
         "mesh": {"segments": 10}, "time": {"end_s": 3}}"#;
     let (coarse, fine) = (on(scene, 4), on(scene, 32));
     let truth = largest_apart("largest_u3_m", &coarse, &fine);
@@ -341,7 +341,7 @@ fn work_that_came_back_is_told() {
 fn short_waves_of_a_pulse_are_told() {
     let scene = r#"{"name": "pulse", "beam": {"length_m": 1, "height_m": 0.01, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 1200,
         "damping": {"bending_time_s": 2}}, "ends": {"root": "clamped", "tip": {"free": {"moment_n_m":
-            {"table": {"times_s": [10, 10.1, 10.2, 10.3], "values": [0, 0.01, 0.01, 0]}}}}},
+            {"table": {"times_s": [10, 10.1, 10.2, 10.3], "values": [0, 0.01, 0.01, 0], "interpolation": "cubic"}}}}},
         "mesh": {"segments": 2}, "time": {"end_s": 40}}"#;
     let (coarse, fine) = (on(scene, 4), on(scene, 32));
     let truth = largest_apart("tip_angle_rad", &coarse, &fine);

@@ -308,3 +308,23 @@ fn effects_that_contradict_are_refused() {
         assert!(of(effects.clone()).is_ok(), "{effects}");
     }
 }
+
+/// Goal: a pump that starts within a millisecond, as a spline, says that it swings beyond its points; a table alone stays within them.
+#[test]
+fn a_spline_beyond_its_points_is_told() {
+    let told = |interpolation: &[(&str, &str)]| {
+        let mut table = json!({"times_s": [0, 0.01, 0.011, 0.02], "values": [0, 0, 1e-9, 1e-9]});
+        for (key, kind) in interpolation {
+            table[key] = json!(kind);
+        }
+        let mut case = thick([json!({"flow_m3_s": {"table": table}}), json!({"pressure_pa": 0})]);
+        case["time"]["end_s"] = json!(0.03);
+        let warnings = say("run", &case, &[]).json["warnings"].clone();
+        let all = warnings.as_array().expect("warnings").iter().filter_map(Value::as_str);
+        all.filter(|w| w.starts_with("W028"))
+            .map(String::from)
+            .collect::<Vec<_>>()
+    };
+    assert!(told(&[("interpolation", "cubic")])[0].starts_with("W028 /network/chains/0/ends/0/flow_m3_s: "));
+    assert!(told(&[]).is_empty());
+}

@@ -35,6 +35,7 @@ pub mod wiring;
 mod wording;
 mod written;
 
+pub use check::functions::overshoots;
 pub use ends::{Follower, ResolvedEnd, Rotation, Translation};
 pub use faults::{Source, is_below};
 pub use load::{load, parse, text};

@@ -89,6 +89,7 @@ codes! {
     LostModes = "W025", "Modes that were not found again.";
     PartOfStream = "W026", "A stream of which the model has a part.";
     DeepContact = "W027", "A wall that the beam is deep in.";
+    Overshoot = "W028", "A curve that swings beyond its points.";
     Fit = "W029", "A fit that tells less than it seems.";
     UnexplainedPressures = "W032", "Pressures that the loads do not explain.";
     StateAside = "W033", "Loads whose path leads to another state.";

@@ -1,4 +1,4 @@
-//! A curve through given points: straight lines or a natural cubic spline, constant beyond its ends.
+//! A curve through given points: straight lines, monotone cubics or a natural cubic spline; constant beyond its ends.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,17 +11,19 @@ use super::jet::Jet;
 pub enum Interpolation {
     /// Straight lines.
     Linear,
-    /// Natural cubic spline: twice continuously differentiable; it swings beyond the values of points that jump.
+    /// Cubics with continuous slopes that rise where the points rise and fall where they fall: never beyond the points' values.
     #[default]
+    Monotone,
+    /// Natural cubic spline: twice continuously differentiable; it swings beyond the values of points that jump.
     Cubic,
 }
 
-/// Points with the second derivatives of the curve through them.
+/// Points with the second derivatives of the curve through them, at both ends of each piece.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curve {
     at: Vec<f64>,
     values: Vec<f64>,
-    second: Vec<f64>,
+    second: Vec<[f64; 2]>,
 }
 
 impl Curve {
@@ -33,8 +35,12 @@ impl Curve {
             return None;
         }
         let second = match interpolation {
-            Interpolation::Linear => vec![0.0; at.len()],
-            Interpolation::Cubic => natural_second_derivatives(at, values),
+            Interpolation::Linear => vec![[0.0; 2]; at.len() - 1],
+            Interpolation::Monotone => monotone_second_derivatives(at, values),
+            Interpolation::Cubic => {
+                let second = natural_second_derivatives(at, values);
+                second.windows(2).map(|m| [m[0], m[1]]).collect()
+            }
         };
         Some(Self {
             at: at.to_vec(),
@@ -54,11 +60,11 @@ impl Curve {
         if within >= last {
             return Jet::constant(self.values[self.at.len() - 1]);
         }
-        // Every knot of a linear table ends a smooth interval; a spline is C2 across its inner knots.
-        let place = if interpolation == Interpolation::Linear {
-            within
-        } else {
+        // Every knot of another table ends a smooth interval; a spline is C2 across its inner knots.
+        let place = if interpolation == Interpolation::Cubic {
             x
+        } else {
+            within
         };
         self.piece(self.piece_of(place), x)
     }
@@ -82,7 +88,7 @@ impl Curve {
     pub(super) fn piece(&self, i: usize, x: f64) -> Jet {
         let (x0, x1) = (self.at[i], self.at[i + 1]);
         let (y0, y1) = (self.values[i], self.values[i + 1]);
-        let (m0, m1) = (self.second[i], self.second[i + 1]);
+        let [m0, m1] = self.second[i];
         let h = x1 - x0;
         let (a, b) = ((x1 - x) / h, (x - x0) / h);
         Jet {
@@ -109,12 +115,29 @@ impl Curve {
     /// Where value or rate of the cubic of piece `i` may be extreme; some places lie outside, some are no numbers.
     pub(super) fn extremes(&self, i: usize) -> [f64; 3] {
         let (start, h) = (self.at[i], self.at[i + 1] - self.at[i]);
-        let (m0, m1) = (self.second[i], self.second[i + 1]);
+        let [m0, m1] = self.second[i];
         let rate = self.piece(i, start).rate;
         // rate + m0 x + (m1 - m0) x^2/(2 h) = 0, without cancellation
         let (a, b) = ((m1 - m0) / (2.0 * h), m0);
         let q = -0.5 * (b + (b * b - 4.0 * a * rate).sqrt().copysign(b));
         [start + q / a, start + rate / q, start - m0 * h / (m1 - m0)]
+    }
+
+    /// How far the curve swings beyond all of its points, over the range of their values; 0 where these are all alike.
+    pub fn overshoot(&self) -> f64 {
+        let bounds = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| {
+                [low.min(y), high.max(y)]
+            })
+        };
+        let [low, high] = bounds(&mut self.values.iter().copied());
+        let [least, most] = bounds(&mut (0..self.second.len()).flat_map(|i| {
+            let within = move |x: &f64| (self.at[i]..=self.at[i + 1]).contains(x);
+            let turns = self.extremes(i).into_iter().filter(within);
+            turns.map(move |x| self.piece(i, x).value)
+        }));
+        let beyond = (low - least).max(most - high).max(0.0);
+        if high > low { beyond / (high - low) } else { 0.0 }
     }
 
     /// Smallest distance between two points.
@@ -147,4 +170,87 @@ fn natural_second_derivatives(x: &[f64], y: &[f64]) -> Vec<f64> {
         second[i] -= upper[i] * second[i + 1];
     }
     second
+}
+
+/// Second derivatives at both ends of each piece of the monotone cubics of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 300, 1984): the
+/// slope at a point is a weighted harmonic mean of those beside it, 0 where they differ in sign.
+fn monotone_second_derivatives(x: &[f64], y: &[f64]) -> Vec<[f64; 2]> {
+    let pieces = x.windows(2).zip(y.windows(2));
+    let pieces: Vec<[f64; 2]> = pieces
+        .map(|(x, y)| [x[1] - x[0], (y[1] - y[0]) / (x[1] - x[0])])
+        .collect();
+    let mut slopes = vec![];
+    for k in 0..x.len() {
+        let before = k.checked_sub(1).and_then(|k| pieces.get(k));
+        slopes.push(match (before, pieces.get(k)) {
+            (Some([h0, s0]), Some([h1, s1])) if s0 * s1 > 0.0 => {
+                let (w0, w1) = (2.0 * h1 + h0, h1 + 2.0 * h0);
+                (w0 + w1) / (w0 / s0 + w1 / s1)
+            }
+            (Some(_), Some(_)) => 0.0,
+            (None, Some(first)) => end_slope(first, pieces.get(1)),
+            (Some(last), None) => end_slope(last, k.checked_sub(2).and_then(|k| pieces.get(k))),
+            (None, None) => 0.0,
+        });
+    }
+    let second = |([h, s], d): (&[f64; 2], &[f64])| {
+        [
+            (6.0 * s - 4.0 * d[0] - 2.0 * d[1]) / h,
+            (2.0 * d[0] + 4.0 * d[1] - 6.0 * s) / h,
+        ]
+    };
+    pieces.iter().zip(slopes.windows(2)).map(second).collect()
+}
+
+/// Slope at an end from the piece there and the next, by the parabola through their points as far as that keeps the curve monotone.
+fn end_slope(own: &[f64; 2], next: Option<&[f64; 2]>) -> f64 {
+    let ([h0, s0], Some([h1, s1])) = (*own, next) else {
+        return own[1];
+    };
+    let slope = ((2.0 * h0 + h1) * s0 - h0 * s1) / (h0 + h1);
+    if slope * s0 <= 0.0 {
+        0.0
+    } else if s0 * s1 < 0.0 && slope.abs() > 3.0 * s0.abs() {
+        3.0 * s0
+    } else {
+        slope
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Source: scipy.interpolate.PchipInterpolator([0, 1, 3, 4, 6], [0, 1, 1.5, 4, 3]) and its derivative at 0.5, 2, 3.5, 5.
+    #[test]
+    fn monotone_cubics_are_those_of_pchip() {
+        let (x, y) = ([0.0, 1.0, 3.0, 4.0, 6.0], [0.0, 1.0, 1.5, 4.0, 3.0]);
+        let curve = Curve::through(&x, &y, Interpolation::Monotone).expect("a curve");
+        for [x, value, rate] in [
+            [0.5, 135.0 / 224.0, 121.0 / 112.0],
+            [2.0, 69.0 / 56.0, 1.0 / 7.0],
+            [3.5, 2.8125, 3.625],
+            [5.0, 3.875, -0.375],
+        ] {
+            let jet = curve.at(x);
+            assert!(
+                (jet.value - value).abs() < 1e-14 && (jet.rate - rate).abs() < 1e-14,
+                "{x}: {jet:?}"
+            );
+        }
+        for k in 1..4 {
+            let (left, right) = (curve.piece(k - 1, x[k]), curve.piece(k, x[k]));
+            assert!((left.rate - right.rate).abs() < 1e-13 && left.value == right.value);
+        }
+    }
+
+    /// Goal: monotone cubics stay within their points, a natural spline through points that jump does not.
+    #[test]
+    fn only_a_spline_swings_beyond_its_points() {
+        let (x, y) = ([0.0, 1.0, 1.1, 2.0, 5.0], [0.0, 0.0, 1.0, 1.0, 0.9]);
+        let overshoot = |interpolation| Curve::through(&x, &y, interpolation).expect("a curve").overshoot();
+        assert_eq!(overshoot(Interpolation::Linear), 0.0);
+        assert!(overshoot(Interpolation::Monotone) < 1e-15);
+        assert!(overshoot(Interpolation::Cubic) > 0.1);
+    }
 }

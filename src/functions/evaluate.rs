@@ -28,7 +28,7 @@ impl Signal {
     }
 
     /// Appends the times [s] at which the signal or one of its first three derivatives jumps. Left out are joins
-    /// that are twice continuously differentiable and of no harm to an integrator: inner knots of cubic tables,
+    /// that are twice continuously differentiable and of no harm to an integrator: inner knots of splines,
     /// the end of a sine's smooth start.
     pub fn breaks(&self, out: &mut Vec<f64>) {
         match self {
@@ -36,9 +36,18 @@ impl Signal {
             Self::Ramp(ramp) if ramp.duration_s > 0.0 => out.extend([ramp.start_s, ramp.start_s + ramp.duration_s]),
             Self::Ramp(ramp) => out.push(ramp.start_s),
             Self::Table(table) if table.times_s.len() < 2 => {}
-            Self::Table(table) if table.interpolation == Interpolation::Linear => out.extend(&table.times_s),
+            Self::Table(table) if table.interpolation != Interpolation::Cubic => out.extend(&table.times_s),
             Self::Table(table) => out.extend(table.times_s.first().into_iter().chain(table.times_s.last())),
             Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.breaks(out)),
+        }
+    }
+
+    /// How far a spline in it swings beyond its points, over the range of their values; 0 without one.
+    pub fn overshoot(&self) -> f64 {
+        match self {
+            Self::Table(table) => table.curve.overshoot(),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().map(Self::overshoot).fold(0.0, f64::max),
+            _ => 0.0,
         }
     }
 
@@ -76,11 +85,11 @@ impl Signal {
     }
 
     /// As [`Self::fastest_period_s`], but only of what no switching time marks: between the stops at both its ends a ramp
-    /// or a piece of a linear table is as smooth as anything, however short it is.
+    /// or a piece of a table is as smooth as anything, however short it is.
     pub fn fastest_unmarked_period_s(&self) -> Option<f64> {
         match self {
             Self::Ramp(_) => None,
-            Self::Table(table) if table.interpolation == Interpolation::Linear => None,
+            Self::Table(table) if table.interpolation != Interpolation::Cubic => None,
             Self::Sum(terms) => terms
                 .iter()
                 .filter_map(Self::fastest_unmarked_period_s)

@@ -127,7 +127,8 @@ pub struct Table {
     pub times_s: Vec<f64>,
     /// Values at these times.
     pub values: Vec<f64>,
-    /// What happens in between; a cubic curve is smooth and swings beyond the values of points that jump.
+    /// What happens in between, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
+    /// smoother and swings beyond the values of points that jump.
     pub interpolation: Interpolation,
     pub(super) curve: Curve,
 }
@@ -155,7 +156,8 @@ pub(super) struct TableText {
     /// Checksum of the points that the file holds, as the program writes it; a file with other points is refused.
     #[serde(default, skip_serializing)]
     checksum: Option<String>,
-    /// What happens in between; a cubic curve is smooth and swings beyond the values of points that jump.
+    /// What happens in between, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
+    /// smoother and swings beyond the values of points that jump.
     #[serde(default)]
     interpolation: Interpolation,
 }

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::{Coupling, Model, Wet};
-use crate::case::inherited;
 use crate::case::numbers::digits;
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
+use crate::case::{inherited, overshoots};
 use crate::error::{Code, Violation};
 
 /// One audited number.
@@ -272,6 +272,13 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         })
         .collect();
     all.extend(inherited::warnings(case));
+    for (at, by) in overshoots(case) {
+        all.push(Code::Overshoot.warning(format!(
+            "{at}: the spline swings beyond the points of its table by {:.0} % of the range of their values; \"interpolation\": \"monotone\" or \
+             \"linear\" stays within them",
+            (100.0 * by).max(1.0)
+        )));
+    }
     if !model.effects.has(Effect::TubeInertia) {
         let what = "oscillating flow in the tubes is not creeping; their inertia is left out";
         all.extend(over(numbers, Code::FastFlow, "womersley", 1.0, what));

@@ -61,7 +61,7 @@ fn table(r: &mut Random) -> Value {
     at.sort_by(f64::total_cmp);
     at.dedup_by(|b, a| *b - *a < 3e-3);
     let values: Vec<Value> = at.iter().map(|_| short(r.between(-1.0, 1.0))).collect();
-    let interpolation = *r.of(&["linear", "cubic"]);
+    let interpolation = *r.of(&["linear", "monotone", "cubic"]);
     json!({"table": {"positions": at, "values": values, "interpolation": interpolation}})
 }
 

@@ -134,9 +134,9 @@ fn ramp(r: &mut Random, a: f64, start: f64, duration: f64, shape: &str) -> Value
 /// Points anywhere in the run, now and then close to each other.
 fn table(r: &mut Random, t: Times, a: f64, count: usize) -> Value {
     let (mut at, mut times, mut values) = (0.0, vec![], vec![]);
-    let interpolation = *r.of(&["linear", "cubic"]);
+    let interpolation = *r.of(&["linear", "monotone", "cubic"]);
     for k in 0..count {
-        let least = if t.sane || interpolation == "cubic" { 0.2 } else { 1e-3 };
+        let least = if t.sane || interpolation != "linear" { 0.2 } else { 1e-3 };
         at += t.end * r.log(least, 1.0) / count as f64 * if k == 0 { 0.0 } else { 1.0 };
         times.push(short(at));
         values.push(short(a * r.between(-1.0, 1.0)));

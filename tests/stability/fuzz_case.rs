@@ -237,7 +237,7 @@ fn signal(r: &mut Random, b: &Beam, size: f64) -> Value {
         4 => {
             let values: Vec<f64> = (0..4).map(|_| amplitude * r.between(-1.0, 1.0)).collect();
             json!({"table": {"times_s": [0.0, 0.1 * t, 0.2 * t, 0.5 * t], "values": values,
-                "interpolation": if r.one_in(2) { "linear" } else { "cubic" }}})
+                "interpolation": ["linear", "monotone", "cubic"][r.below(3)]}})
         }
         _ => json!({"sine": {"amplitude": amplitude, "frequency_hz": r.log(0.2, 10.0) / t, "ramp_cycles": r.below(2)}}),
     }

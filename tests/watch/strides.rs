@@ -53,7 +53,7 @@ fn a_pulse_late_in_a_run_is_felt() {
             })
             .collect();
         format!(
-            r#"{{"table": {{"times_s": [{}], "values": [{}]}}}}"#,
+            r#"{{"table": {{"times_s": [{}], "values": [{}], "interpolation": "cubic"}}}}"#,
             times.join(", "),
             values.join(", ")
         )

@@ -36,6 +36,20 @@ impl Role {
     }
 }
 
+/// Part of the range of a table's values by which a spline may swing beyond them without a word.
+const SWINGS: f64 = 0.01;
+
+/// Splines that swing beyond their points, each with its pointer and by which part of the range of their values.
+pub fn overshoots(case: &Case) -> Vec<(String, f64)> {
+    let signals = signals(case)
+        .into_iter()
+        .map(|(at, _, signal)| (at, signal.overshoot()));
+    let profiles = profiles(case)
+        .into_iter()
+        .map(|(at, profile)| (at, profile.overshoot()));
+    signals.chain(profiles).filter(|(_, by)| *by > SWINGS).collect()
+}
+
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     for (pointer, role, signal) in signals(case) {
         let known = faults.count();

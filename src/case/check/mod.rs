@@ -6,7 +6,7 @@ mod coefficients;
 mod contacts;
 mod ends;
 mod fluid;
-mod functions;
+pub mod functions;
 mod junctions;
 pub mod network;
 mod plausible;

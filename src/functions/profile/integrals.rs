@@ -158,7 +158,7 @@ impl Profile {
             Self::Polynomial(Polynomial { coefficients }) => (coefficients.len().saturating_sub(1), 0.0),
             Self::Table(table) => match table.interpolation {
                 Interpolation::Linear => (1, 0.0),
-                Interpolation::Cubic => (3, 0.0),
+                Interpolation::Monotone | Interpolation::Cubic => (3, 0.0),
             },
             Self::Sum(terms) => terms.iter().map(Self::character).fold((0, 0.0), larger),
             Self::Product(factors) => factors

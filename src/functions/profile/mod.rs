@@ -79,7 +79,8 @@ pub struct PlaceTable {
     pub positions: Vec<f64>,
     /// Values there.
     pub values: Vec<f64>,
-    /// What happens in between; a cubic curve is smooth and swings beyond the values of points that jump.
+    /// What happens in between, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
+    /// smoother and swings beyond the values of points that jump.
     pub interpolation: Interpolation,
     pub(super) curve: Curve,
 }
@@ -95,7 +96,8 @@ struct PlaceTableText {
     /// Values there.
     #[schemars(length(min = 1))]
     values: Vec<f64>,
-    /// What happens in between; a cubic curve is smooth and swings beyond the values of points that jump.
+    /// What happens in between, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
+    /// smoother and swings beyond the values of points that jump.
     #[serde(default)]
     interpolation: Interpolation,
 }
@@ -157,6 +159,15 @@ impl Profile {
     /// Derivative by `x` at `x`.
     pub fn slope(&self, x: f64) -> f64 {
         self.jet(x).rate
+    }
+
+    /// How far a spline in it swings beyond its points, over the range of their values; 0 without one.
+    pub fn overshoot(&self) -> f64 {
+        match self {
+            Self::Table(table) => table.curve.overshoot(),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().map(Self::overshoot).fold(0.0, f64::max),
+            _ => 0.0,
+        }
     }
 
     /// Value, first and second derivative by `x`.
