@@ -35,7 +35,7 @@ pub mod wiring;
 mod wording;
 mod written;
 
-pub use check::functions::overshoots;
+pub use check::functions::{controls, overshoots};
 pub use ends::{Follower, ResolvedEnd, Rotation, Translation};
 pub use faults::{Source, is_below};
 pub use load::{load, parse, text};

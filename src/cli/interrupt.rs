@@ -3,8 +3,13 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::embedded;
+
 /// A flag that the first interrupt (or a request to terminate) raises; a second one ends the program at once.
 pub fn flag() -> Arc<AtomicBool> {
+    if let Some(theirs) = embedded::stop() {
+        return theirs;
+    }
     let raised = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
         // When a handler cannot be installed, the signal ends the program as it would without one.

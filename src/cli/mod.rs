@@ -6,6 +6,7 @@ mod coefficients;
 mod compare;
 mod completions;
 mod effects;
+pub mod embedded;
 mod equilibrium;
 mod explain;
 mod export;
@@ -120,6 +121,9 @@ fn tell(json: bool, dir: &Path, text: impl FnOnce() -> String, words: impl FnOnc
 /// [`print`] for text with the program's own colours, in which all that is not the program's is visible already.
 fn print_painted(text: &str) -> Result<()> {
     use std::io::Write as _;
+    if embedded::kept(text) {
+        return Ok(());
+    }
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Error::Output {

@@ -2,6 +2,7 @@
 
 use std::io::{IsTerminal as _, Write as _};
 
+use super::embedded;
 use crate::case;
 use crate::error::{Error, visible};
 pub use crate::output::errors::{diagnosis, json};
@@ -34,6 +35,9 @@ fn tell_painted(line: &str) {
 
 /// Prints an error to standard error.
 pub fn report(error: &Error) {
+    if embedded::kept_fault(error) {
+        return;
+    }
     let colour = std::io::stderr().is_terminal() && wants_colour();
     match error {
         Error::Case(fault) => tell_painted(case::render(fault, colour, width()).trim_end_matches('\n')),

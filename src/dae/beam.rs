@@ -4,7 +4,7 @@ use super::chain::{self, Chain, LANES};
 use super::trace::Dependence;
 use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds};
 use crate::discrete::{State, System, TimeData, Workspace, kick, ledger, residual, start};
-use crate::functions::signals::Clock;
+use crate::functions::signals::{Clock, Signal};
 use crate::numerics::Dual;
 
 /// `F(t, y, y') = 0` of a [`System`], each unknown and each equation divided by its characteristic size.
@@ -117,6 +117,13 @@ impl BeamDae {
     /// The system that is solved.
     pub fn system(&self) -> &System {
         &self.system
+    }
+
+    /// Puts a signal at places of [`System::places_of`].
+    pub fn put_signal(&mut self, places: &[usize], given: &Signal) {
+        self.system.put_signal(places, given);
+        self.now.forget();
+        self.held = None;
     }
 
     /// Chooses the smooth interval in which signals are looked at, by an instant inside it [s].

@@ -24,6 +24,7 @@ pub mod workspace;
 
 use crate::case::schema::{Case, Effect};
 use crate::error::{Code, Result, Violation};
+use crate::functions::Signal;
 use crate::model::loads::LoadKind;
 use crate::model::{Model, Storage, audit};
 
@@ -100,6 +101,35 @@ impl System {
             system.layout.differential == self.layout.differential && system.layout.waves() == self.layout.waves();
         system.layout = self.layout.clone();
         Ok(same.then_some(system))
+    }
+
+    /// Visits every signal that acts, always in the same order.
+    fn each_signal_mut(&mut self, mut visit: impl FnMut(&mut Signal)) {
+        self.model.each_signal_mut(|signal, _| visit(signal));
+        self.loads.iter_mut().for_each(|load| visit(&mut load.signal));
+    }
+
+    /// Where in the order of its signals this system has one like another.
+    pub fn places_of(&mut self, like: &Signal) -> Vec<usize> {
+        let (mut all, mut place) = (vec![], 0);
+        self.each_signal_mut(|signal| {
+            if *signal == *like {
+                all.push(place);
+            }
+            place += 1;
+        });
+        all
+    }
+
+    /// Puts a signal at places of [`System::places_of`].
+    pub fn put_signal(&mut self, places: &[usize], given: &Signal) {
+        let mut place = 0;
+        self.each_signal_mut(|signal| {
+            if places.contains(&place) {
+                signal.clone_from(given);
+            }
+            place += 1;
+        });
     }
 
     /// The system of a case that can be simulated.

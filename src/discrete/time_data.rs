@@ -231,6 +231,11 @@ impl TimeData {
         self.frame(axis).map_or_else(Jet::default, |frame| frame.at(share))
     }
 
+    /// Has every signal evaluated anew next time.
+    pub fn forget(&mut self) {
+        self.clock = None;
+    }
+
     /// Evaluates every signal at `clock`, unless that is where it stands already.
     pub fn update(&mut self, system: &System, clock: Clock) {
         if self.clock == Some(clock) {

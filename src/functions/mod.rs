@@ -21,4 +21,4 @@ pub mod signals;
 
 pub use curve::{Curve, Interpolation};
 pub use profile::Profile;
-pub use signals::{Clock, Jet, Signal};
+pub use signals::{Clock, Jet, Ramp, RampShape, Signal};

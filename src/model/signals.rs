@@ -7,7 +7,12 @@ use crate::functions::{Clock, Signal};
 impl Model {
     /// Puts another signal in place of every one: of ends, loads, ports, sources and pumps by `load`, of valves by `opening`.
     pub fn replace_signals(&mut self, load: impl Fn(&Signal) -> Signal, opening: impl Fn(&Signal) -> Signal) {
-        let replace = |signal: &mut Signal| *signal = load(signal);
+        self.each_signal_mut(|signal, valve| *signal = if valve { opening(signal) } else { load(signal) });
+    }
+
+    /// Visits every signal, always in the same order, and tells whether it is that of a valve.
+    pub fn each_signal_mut(&mut self, mut visit: impl FnMut(&mut Signal, bool)) {
+        let mut replace = |signal: &mut Signal| visit(signal, false);
         for end in &mut self.ends {
             for motion in [&mut end.transverse, &mut end.axial] {
                 match motion {
@@ -29,7 +34,7 @@ impl Model {
             .flat_map(|attachment| &mut attachment.forces);
         forces.for_each(|force| replace(&mut force.signal));
         let stream = self.surroundings.as_mut().and_then(|around| around.stream.as_mut());
-        stream.into_iter().flatten().for_each(replace);
+        stream.into_iter().flatten().for_each(&mut replace);
         if let Some(wet) = &mut self.wet {
             let network = &mut wet.network;
             network.ports.iter_mut().for_each(|port| replace(&mut port.pressure));
@@ -38,7 +43,7 @@ impl Model {
             let pumps = network.links.iter_mut().filter_map(|link| link.pump.as_mut());
             pumps.for_each(|pump| replace(&mut pump.pressure));
             let valves = network.links.iter_mut().filter_map(|link| link.opening.as_mut());
-            valves.for_each(|signal| *signal = opening(signal));
+            valves.for_each(|signal| visit(signal, true));
         }
     }
 

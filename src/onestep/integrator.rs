@@ -110,6 +110,11 @@ impl<D: Dae> OneStep<D> {
         self.control.limit(largest);
     }
 
+    /// Tries this as the next step [s]; 0 leaves it to the state.
+    pub fn expect(&mut self, size: f64) {
+        self.control.begin(size);
+    }
+
     /// One accepted step, which does not pass `stop` [s]. A stop closer than round-off counts as reached.
     pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationError>> {
         let order = self.options.method.order();

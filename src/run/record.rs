@@ -90,7 +90,7 @@ pub struct Header {
 }
 
 /// Where the run stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
     /// Simulated time [s].
     pub t: f64,

@@ -236,8 +236,8 @@ fn signal(r: &mut Random, b: &Beam, size: f64) -> Value {
         }
         4 => {
             let values: Vec<f64> = (0..4).map(|_| amplitude * r.between(-1.0, 1.0)).collect();
-            json!({"table": {"times_s": [0.0, 0.1 * t, 0.2 * t, 0.5 * t], "values": values,
-                "interpolation": ["linear", "monotone", "cubic"][r.below(3)]}})
+            let kind = ["linear", "monotone", "cubic"][r.below(3)];
+            json!({"table": {"times_s": [0.0, 0.1 * t, 0.2 * t, 0.5 * t], "values": values, "interpolation": kind}})
         }
         _ => json!({"sine": {"amplitude": amplitude, "frequency_hz": r.log(0.2, 10.0) / t, "ramp_cycles": r.below(2)}}),
     }

@@ -17,24 +17,41 @@ except ImportError as error:
         ) from error
     raise
 
+from ._answer import Answer, Columns
 from ._case import Case, load, shipped
+from ._commands import check, effects, equilibrium, fit, floquet, modes, periodic, sense, study, sweep
 from ._errors import CaseError, Error, Fault, FileError, SolverError, UsageError
 from ._result import Fields, Report, Result, Table
 from ._run import run
+from ._simulator import Simulator, State
 
 __all__ = [
+    "Answer",
     "Case",
     "CaseError",
+    "Columns",
     "Error",
     "Fault",
     "Fields",
     "FileError",
     "Report",
     "Result",
+    "Simulator",
     "SolverError",
+    "State",
     "Table",
     "UsageError",
+    "check",
+    "effects",
+    "equilibrium",
+    "fit",
+    "floquet",
     "load",
+    "modes",
+    "periodic",
     "run",
+    "sense",
     "shipped",
+    "study",
+    "sweep",
 ]

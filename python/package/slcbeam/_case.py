@@ -19,7 +19,7 @@ CASES = Path(__file__).parent / "cases"
 CaseLike = Union["Case", str, "os.PathLike[str]", Mapping[str, Any]]
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Numbers and arrays of numpy as JSON has them."""
     if hasattr(value, "tolist"):
         return value.tolist()
@@ -28,7 +28,7 @@ def _plain(value: Any) -> Any:
 
 def _json(value: Any) -> str:
     try:
-        return json.dumps(value, default=_plain, allow_nan=False)
+        return json.dumps(value, default=plain, allow_nan=False)
     except (TypeError, ValueError) as error:
         raise UsageError(f"no value of a case: {error}") from None
 
@@ -113,7 +113,7 @@ def load(case: CaseLike, set: Mapping[str, Any] | None = None) -> Case:
     """Reads and checks a case.
 
     :param case: a file; the name of a case that comes with the package, see :func:`shipped`; a dict; JSON text.
-        A file is taken before a name. Tables that a file names are looked for beside it.
+        A file is taken before a name. Tables that a file names are looked for beside it, those of a dict or text in the working directory.
     :param set: values by JSON pointer that take the place of those in the case.
     :raises CaseError: with every fault of the case.
     :raises UsageError: there is no such case.
@@ -125,9 +125,9 @@ def load(case: CaseLike, set: Mapping[str, Any] | None = None) -> Case:
     if isinstance(case, Case):
         return Case(case._text, case._path, case._base, case._sets + sets) if sets else case
     if isinstance(case, Mapping):
-        return Case(json.dumps(dict(case), default=_plain, indent=2), "<dict>", "", sets)
+        return Case(json.dumps(dict(case), default=plain, indent=2), "<dict>", os.getcwd(), sets)
     if isinstance(case, str) and case.lstrip().startswith("{"):
-        return Case(case, "<text>", "", sets)
+        return Case(case, "<text>", os.getcwd(), sets)
     path = Path(case)
     if not path.exists():
         found = CASES / f"{str(case).removesuffix('.json')}.json"

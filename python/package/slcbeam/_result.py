@@ -129,7 +129,7 @@ class Report:
         return f"<slcbeam.Report of {len(self.html) // 1000} kB>"
 
 
-def _split(names: list[str]) -> tuple[list[str], list[str]]:
+def split(names: list[str]) -> tuple[list[str], list[str]]:
     """Names and units of headings such as ``tip_u1 [m]``."""
     parts = [name.rpartition(" [") for name in names]
     return [head for head, _, _ in parts], [unit.rstrip("]") for *_, unit in parts]
@@ -146,9 +146,9 @@ class Result:
         #: One row an output time: ``result.history["tip_u1"]``.
         self.history = Table(names, units, arrays["history"], about)
         #: What is left of output times that the history leaves out (``/time/history``); no columns otherwise.
-        self.envelope = Table(*_split(recorded.envelope()), arrays["envelope"])
+        self.envelope = Table(*split(recorded.envelope()), arrays["envelope"])
         #: Derivatives of the history's columns: ``result.derivatives["d tip_u1/d /beam/length_m"]``; no columns where none were asked for.
-        self.derivatives = Table(*_split(recorded.sensitivities()), arrays["sensitivities"])
+        self.derivatives = Table(*split(recorded.sensitivities()), arrays["sensitivities"])
         #: Arrays over time and places: ``result.fields["u1_m"]``.
         self.fields = Fields(arrays["times"], recorded.axes(), recorded.fields(), arrays["fields"])
 

@@ -50,6 +50,13 @@ pub fn overshoots(case: &Case) -> Vec<(String, f64)> {
     signals.chain(profiles).filter(|(_, by)| *by > SWINGS).collect()
 }
 
+/// Every signal with its pointer, and whether it may jump: what moves a beam, a stream or a volume may not.
+pub fn controls(case: &Case) -> Vec<(String, bool, &Signal)> {
+    let all = signals(case).into_iter();
+    all.map(|(at, role, signal)| (at, role.of_jumps().is_none(), signal))
+        .collect()
+}
+
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     for (pointer, role, signal) in signals(case) {
         let known = faults.count();

@@ -5,6 +5,7 @@ mod faults;
 mod finish;
 mod follow;
 mod pace;
+pub mod simulator;
 mod switch;
 
 use std::time::Instant;

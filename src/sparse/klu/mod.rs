@@ -39,6 +39,11 @@ pub enum KluError {
     },
 }
 
+// SAFETY: what KLU has made lies in memory that no thread owns, and is reached through this value alone.
+unsafe impl Send for Analysis {}
+// SAFETY: likewise.
+unsafe impl Send for Klu {}
+
 /// A pattern as KLU sees it: checked, in blocks, ordered.
 struct Analysis {
     starts: Vec<i64>,

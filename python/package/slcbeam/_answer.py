@@ -1,0 +1,141 @@
+"""What a command other than a run tells."""
+
+from __future__ import annotations
+
+import csv
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._result import Report, split
+
+if TYPE_CHECKING:
+    import os
+
+    import pandas
+
+
+class Columns(Mapping[str, np.ndarray]):
+    """Columns of a table by name: arrays of shape (rows,), of floats where every cell is a number or empty (nan), else of texts."""
+
+    def __init__(self, headings: list[str], rows: list[list[str]]) -> None:
+        #: Names of the columns, without units.
+        self.names, units = split(headings)
+        #: Unit of each column by its name; ``""`` where its heading has none.
+        self.units = dict(zip(self.names, units))
+        self._columns = {name: _column([row[k] for row in rows]) for k, name in enumerate(self.names)}
+        self._rows = len(rows)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A frame with a column a name. Needs pandas."""
+        import pandas
+
+        return pandas.DataFrame(self._columns)
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} columns of {self._rows} rows: {', '.join(self.names[:6])}{', ..' if len(self) > 6 else ''}>"
+
+
+def _column(cells: list[str]) -> np.ndarray:
+    try:
+        column = np.array([float(cell) if cell else np.nan for cell in cells])
+    except ValueError:
+        column = np.array(cells)
+    column.flags.writeable = False
+    return column
+
+
+class Answer(Mapping[str, Any]):
+    """What a command found: the values of its JSON file by key, ``answer["quantities"]``, and the tables and arrays of its folder.
+
+    Without ``out`` the folder is a temporary one, which goes when the answer goes.
+    """
+
+    def __init__(self, told: dict[str, Any], folder: Path | None, *, interrupted: bool = False, kept: Any = None) -> None:
+        self._told, self._kept = told, kept
+        #: Its folder; ``None`` for a command that writes none.
+        self.folder = folder
+        #: Whether a KeyboardInterrupt ended it with what there is.
+        self.interrupted = interrupted
+
+    def __getitem__(self, key: str) -> Any:
+        return self._told[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._told)
+
+    def __len__(self) -> int:
+        return len(self._told)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to know before trusting it."""
+        return self._told.get("warnings", [])
+
+    @property
+    def tables(self) -> dict[str, Columns]:
+        """Tables of the folder by the names of their files: ``answer.tables["path"]`` of ``path.csv``; read anew at every call."""
+        found = {}
+        for path in sorted(self._folder().glob("*.csv")):
+            with path.open(newline="", encoding="utf-8") as file:
+                headings, *rows = csv.reader(file)
+            found[path.stem] = Columns(headings, rows)
+        return found
+
+    @property
+    def arrays(self) -> dict[str, np.ndarray]:
+        """Arrays of the folder's NPZ files by name, units in the names; read anew at every call."""
+        found: dict[str, np.ndarray] = {}
+        for path in sorted(self._folder().glob("*.npz")):
+            with np.load(path) as arrays:
+                found |= {name: arrays[name] for name in arrays.files}
+        return found
+
+    def save(self, dir: str | os.PathLike[str]) -> Path:
+        """Copies the folder to another place that is not there yet; returns its path."""
+        shutil.copytree(self._folder(), dir)
+        return Path(dir)
+
+    def report(self) -> Report:
+        """The page of the answer."""
+        return Report((self._folder() / "report.html").read_text(encoding="utf-8"))
+
+    def _folder(self) -> Path:
+        if self.folder is None:
+            raise FileNotFoundError("this command writes no folder")
+        return self.folder
+
+    def __repr__(self) -> str:
+        case = self._told.get("case") or self._told.get("name")
+        of = f" of {case!r}" if isinstance(case, str) else ""
+        return f"<slcbeam.Answer{of}: {', '.join(list(self)[:8])}{', ..' if len(self) > 8 else ''}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        files = None
+        if self.folder is not None and self._kept is not None:
+            files = {str(p.relative_to(self.folder)): p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
+        return (_again, (self._told, None if files is not None else self.folder, self.interrupted, files))
+
+
+def _again(told: dict[str, Any], folder: Path | None, interrupted: bool, files: dict[str, bytes] | None) -> Answer:
+    kept = None
+    if files is not None:
+        kept = tempfile.TemporaryDirectory(prefix="slcbeam-")
+        folder = Path(kept.name)
+        for name, content in files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_bytes(content)
+    return Answer(told, folder, interrupted=interrupted, kept=kept)

@@ -1,0 +1,257 @@
+"""The commands beside runs. Each takes what the command line takes: options by name with underscores, ``load_factor=0.5`` for
+``--load-factor 0.5``; ``True`` for one without a value, lists and dicts for what can be repeated."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Union
+
+from . import _slcbeam
+from ._answer import Answer
+from ._case import Case, CaseLike, load, plain
+from ._errors import SolverError
+
+#: A place for a result.
+Place = Union[str, "os.PathLike[str]", None]
+#: Measured data: a CSV file, a dict of columns, or a frame of pandas.
+Data = Union[str, "os.PathLike[str]", Mapping[str, Any], Any]
+
+
+def _text(value: Any) -> str:
+    return value if isinstance(value, str) else json.dumps(value, default=plain)
+
+
+def _words(options: Mapping[str, Any]) -> list[str]:
+    """Options as words of the command line."""
+    words = []
+    for name, value in options.items():
+        option = "--" + name.rstrip("_").replace("_", "-")
+        if value is None or value is False:
+            continue
+        if value is True:
+            words.append(option)
+        elif isinstance(value, Mapping):
+            words += [f"{option}={key}={_text(of)}" for key, of in value.items()]
+        elif isinstance(value, str) or not isinstance(value, Iterable):
+            words.append(f"{option}={_text(value)}")
+        else:
+            words += [f"{option}={_text(one)}" for one in value]
+    return words
+
+
+def _absolute(value: Any, base: Path) -> Any:
+    """Tables that a case names, as seen from anywhere."""
+    if isinstance(value, dict):
+        return {key: str(base / of) if key == "csv" and isinstance(of, str) else _absolute(of, base) for key, of in value.items()}
+    if isinstance(value, list):
+        return [_absolute(one, base) for one in value]
+    return value
+
+
+def _file(case: Case, folder: Path) -> str:
+    """A file that holds the case, without what was set."""
+    path = Path(case._path)
+    if path.is_file() and path.read_text(encoding="utf-8") == case._text:
+        return str(path)
+    text = case._text
+    if '"csv"' in text:
+        text = json.dumps(_absolute(json.loads(text), Path(case._base).resolve()))
+    folder.mkdir(exist_ok=True)
+    path = folder / f"case-{len(list(folder.iterdir()))}.json"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def _table(data: Data, folder: Path) -> str:
+    """A file that holds measured data."""
+    if isinstance(data, (str, os.PathLike)):
+        return os.fspath(data)
+    columns = {str(name): list(data[name]) for name in data}
+    folder.mkdir(exist_ok=True)
+    path = folder / "data.csv"
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        for row in zip(*columns.values(), strict=True):
+            writer.writerow("" if one is None or one != one else repr(float(one)) for one in row)
+    return str(path)
+
+
+def _do(
+    command: str,
+    cases: Sequence[CaseLike],
+    data: Data | None = None,
+    *,
+    out: Place = None,
+    writes: bool = True,
+    progress: bool = False,
+    options: Mapping[str, Any],
+) -> Answer:
+    kept = tempfile.TemporaryDirectory(prefix="slcbeam-")
+    given = Path(kept.name) / "given"
+    loaded = [load(case) for case in cases]
+    words = [command, *(_file(case, given) for case in loaded)]
+    if data is not None:
+        words.append(_table(data, given))
+    sets = loaded[0]._sets
+    if any(case._sets != sets for case in loaded):
+        from ._errors import UsageError
+
+        raise UsageError("what is set must be the same in all cases of a sweep; give these as dicts or files")
+    words += [f"--set={change}" for change in sets]
+    words += _words(options)
+    folder = None
+    if writes:
+        folder = Path(out) if out is not None else Path(kept.name) / "result"
+        words.append(f"--out={folder}")
+        if not progress:
+            words.append("--quiet")
+    printed, fault, interrupted = _slcbeam.command([*words, "--json"])
+    if out is not None or not writes:
+        kept = None
+    answer = Answer(json.loads(printed) if printed.strip() else {}, folder, interrupted=interrupted, kept=kept)
+    if fault is not None:
+        raise SolverError(*fault, result=answer)
+    return answer
+
+
+def check(case: CaseLike, **options: Any) -> Answer:
+    """Characteristic numbers, audit of the coupling, effects chosen and why (``slcbeam check``).
+
+    >>> import slcbeam
+    >>> slcbeam.check("bend-wet")["name"]
+    'bend-wet'
+    """
+    return _do("check", [case], writes=False, options=options)
+
+
+def equilibrium(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
+    """The path of static equilibria from rest to the full load (``slcbeam equilibrium``).
+
+    :param case: a :class:`Case`, or what :func:`load` takes.
+    :param out: a folder for the result.
+    :param options: ``at=SECONDS``, ``via``, ``load_factor``, ``points``, ``keep_branch=True``, ``sensitivity=[POINTER, ...]``,
+        ``accuracy``, ``uncertain={POINTER: "normal:MEAN:SD"}``, ..
+    :returns: ``equilibrium.json``; ``tables["path"]``, ``tables["shapes"]``.
+
+    >>> import slcbeam
+    >>> found = slcbeam.equilibrium("bend-wet", load_factor=0.5)
+    >>> found["status"], found.tables["path"].units["tip_u1"]
+    ('finished', 'm')
+    """
+    return _do("equilibrium", [case], out=out, progress=progress, options=options)
+
+
+def modes(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
+    """Frequencies, damping, shapes and stability of small motions (``slcbeam modes``).
+
+    :param options: ``count``, ``near=HZ``, ``at=SECONDS``, ``sensitivity=[POINTER, ...]``, ``accuracy``, ``uncertain={..}``, ..
+    :returns: ``modes.json``; ``tables["modes"]``; shapes in ``arrays``.
+    """
+    return _do("modes", [case], out=out, progress=progress, options=options)
+
+
+def periodic(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
+    """The steady cycle of a periodically driven case, directly (``slcbeam periodic``).
+
+    :param options: ``periods``, ``sweep="POINTER=FROM:TO:COUNT[:log]"``, ``accuracy``, ``uncertain={..}``, ..
+    :returns: ``cycle.json``, or ``sweep.json``; ``tables["history"]`` over a cycle, fields in ``arrays``.
+    """
+    return _do("periodic", [case], out=out, progress=progress, options=options)
+
+
+def floquet(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
+    """The steady cycle and whether it is stable, or a map of where shaking is stable (``slcbeam floquet``).
+
+    :param options: ``count``, ``period``, ``map="frequency,amplitude"``, ``range``, ``points``, ``permeability``, ``accuracy``.
+    :returns: ``floquet.json`` or ``map.json``; ``tables``.
+    """
+    return _do("floquet", [case], out=out, progress=progress, options=options)
+
+
+def study(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
+    """What accuracy costs: time against error over tolerances, meshes and orders (``slcbeam study``).
+
+    :param options: ``budget="60s"``, ``rtol=[1e-3, 1e-5]``, ``cells=[1, 2, 4]``, ``methods=[..]``, ``measure``, ..
+    """
+    return _do("study", [case], out=out, progress=progress, options=options)
+
+
+def effects(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
+    """What each effect of the model does, and what leaving it out saves (``slcbeam effects``).
+
+    :param options: ``budget="60s"``, ``repeats``, ``measure``.
+    """
+    return _do("effects", [case], out=out, progress=progress, options=options)
+
+
+def sweep(
+    case: CaseLike | Sequence[CaseLike],
+    vary: Mapping[str, Any] | None = None,
+    *,
+    out: Place = None,
+    progress: bool = False,
+    **options: Any,
+) -> Answer:
+    """Many designs on all cores into one table (``slcbeam sweep``). The same call with the same ``out`` goes on where one was ended.
+
+    :param case: one case, or several that are compared in every design.
+    :param vary: by JSON pointer a list of values, or a text such as ``"log:0.01:1:25"``, ``"uniform:LOW:HIGH"``.
+    :param options: ``command="run"|"periodic"|"equilibrium"|"modes"``, ``design="sobol:64"``, ``jobs``, ``lean=True``, ``accuracy``, ..
+    :returns: ``sweep.json``; ``tables["sweep"]``, a row a design.
+    """
+    cases = [case] if isinstance(case, (str, os.PathLike, Mapping, Case)) else list(case)
+    specs = {pointer: values if isinstance(values, str) else ",".join(_listed(values)) for pointer, values in (vary or {}).items()}
+    return _do("sweep", cases, out=out, progress=progress, options={"vary": specs, **options})
+
+
+def _listed(values: Any) -> list[str]:
+    each = values if isinstance(values, Iterable) else [values]
+    return [json.dumps(one, default=plain) for one in each]
+
+
+def fit(
+    case: CaseLike,
+    data: Data,
+    vary: Mapping[str, tuple[float, float]],
+    match: Mapping[str, str],
+    *,
+    out: Place = None,
+    progress: bool = False,
+    **options: Any,
+) -> Answer:
+    """Numbers of a case from measured data (``slcbeam fit``).
+
+    :param data: a CSV file, a dict of columns, or a frame of pandas; headings with units: ``angle_deg``.
+    :param vary: bounds by JSON pointer.
+    :param match: by column the quantity that it measures: ``{"angle_deg": "tip_angle"}``.
+    :param options: ``drive={"p_kpa": POINTER}``, ``noise={COLUMN: SIGMA}``, ``robust="huber"``, ``starts``, ``time``, ``jobs``.
+    :returns: ``fit.json``.
+    """
+    spans = {pointer: f"{_text(low)}:{_text(high)}" for pointer, (low, high) in vary.items()}
+    return _do("fit", [case], data, out=out, progress=progress, options={"vary": spans, "match": match, **options})
+
+
+def sense(
+    case: CaseLike,
+    pressures: Data | None = None,
+    load: Sequence[str] = (),
+    *,
+    out: Place = None,
+    progress: bool = False,
+    **options: Any,
+) -> Answer:
+    """Loads from measured pressures of bladders at rest, with bands of 95 % (``slcbeam sense``).
+
+    :param pressures: a CSV file, a dict of columns, or a frame of pandas: ``pressure_3_pa``, a row a measurement; without it, what pressures
+        would tell.
+    :param load: what is looked for: ``tip-force``, ``tip-moment``, ``uniform``, ``point:0.5``, ``profile:8``, ..
+    :param options: ``noise=PA``, ``smoothing``, ``at=SECONDS``, ``choose="variances"``.
+    :returns: ``sense.json``; ``tables``.
+    """
+    return _do("sense", [case], pressures, out=out, progress=progress, options={"load": list(load), **options})

@@ -1,0 +1,103 @@
+"""Commands beside runs: the same as on the command line."""
+
+import json
+import os
+import pickle
+import signal
+import threading
+
+import numpy as np
+import pytest
+
+import slcbeam
+
+COARSE = {"/mesh/cells_per_segment": 1, "/mesh/cells_per_bladder": 1}
+
+
+def without(told):
+    """Without wall times and what tells of the program."""
+    return {key: value for key, value in told.items() if key not in ("wall_s", "provenance", "solver")}
+
+
+def test_equilibria_are_those_of_the_command_line(program, tmp_path):
+    theirs = tmp_path / "theirs"
+    told = json.loads(
+        program("equilibrium", slcbeam._case.CASES / "bend-wet.json", "--load-factor", 0.5, "--out", theirs, "--json", "--quiet")
+    )
+    found = slcbeam.equilibrium("bend-wet", load_factor=0.5)
+    assert without(dict(found)) == without(told)
+    rows = np.genfromtxt(theirs / "path.csv", delimiter=",", names=True, deletechars="")
+    path = found.tables["path"]
+    assert len(path) == len(rows.dtype.names)
+    np.testing.assert_array_equal(path["tip_u1"], rows[next(n for n in rows.dtype.names if n.startswith("tip_u1"))])
+    assert path.units["tip_u1"] == "m" and not path["tip_u1"].flags.writeable
+    assert found.report().html.startswith("<!")
+
+
+def test_cases_in_memory_reach_commands(tmp_path):
+    case = slcbeam.load("wiring-2").to_dict()
+    found = slcbeam.modes(slcbeam.load(case, set=COARSE), count=3)
+    assert found["case"] == "wiring-2" and len(found["modes"]) >= 3
+    assert len(found.tables["modes"]) > 3 and len(found.arrays) > 3
+    again = pickle.loads(pickle.dumps(found))
+    assert dict(again) == dict(found) and again.tables["modes"].names == found.tables["modes"].names
+    kept = found.save(tmp_path / "kept")
+    assert (kept / "modes.json").is_file()
+    folder = found.folder
+    del found
+    assert not folder.exists()
+
+
+def test_tables_are_found_from_anywhere(tmp_path, monkeypatch):
+    where = tmp_path / "there"
+    where.mkdir()
+    (where / "force.csv").write_text("t,force\n0,0\n0.1,1e-3\n")
+    monkeypatch.chdir(where)
+    case = json.loads((slcbeam._case.CASES / "bend-dry.json").read_text())
+    case["loads"] = [{"force_x_n_m": {"signal": {"table": {"csv": "force.csv", "time_column": "t", "value_column": "force"}}}}]
+    loaded = slcbeam.load(case)
+    monkeypatch.chdir(tmp_path)
+    # a dict's tables are looked for where Python stood when it was loaded
+    with pytest.raises(slcbeam.CaseError):
+        slcbeam.load(case)
+    assert slcbeam.equilibrium(loaded)["status"] == "finished"
+
+
+def test_a_sweep_is_a_table(tmp_path):
+    case = slcbeam.load("bend-wet", set=COARSE)
+    found = slcbeam.sweep(case, {"/loads/0/force_x_n_m/signal/sigmoid/amplitude": [20, 40, 60]}, command="equilibrium", lean=True)
+    table = found.tables["sweep"]
+    assert len(next(iter(table.values()))) == 3
+    frame = table.to_pandas()
+    assert len(frame) == 3
+
+
+def test_measured_data_are_columns(tmp_path):
+    case = slcbeam.load("bend-wet", set=COARSE | {"/time/end_s": 0.05, "/time/output_interval_s": 0.001})
+    run = slcbeam.run(case)
+    data = {"t_s": run.history["t"][::5], "tip_m": run.history["tip_u1"][::5]}
+    modulus = case["/beam/young_modulus_pa"]
+    guess = case.set("/beam/young_modulus_pa", 1.05 * modulus)
+    found = slcbeam.fit(guess, data, {"/beam/young_modulus_pa": (0.8 * modulus, 1.2 * modulus)}, {"tip_m": "tip_u1"})
+    values = json.dumps(dict(found))
+    assert "/beam/young_modulus_pa" in values
+
+
+def test_faults_are_exceptions():
+    with pytest.raises(slcbeam.UsageError, match="--count"):
+        slcbeam.modes("wiring-2", count=0)
+    with pytest.raises(slcbeam.UsageError, match="--cuont"):
+        slcbeam.modes("wiring-2", cuont=3)
+    with pytest.raises(slcbeam.CaseError) as told:
+        slcbeam.sweep("wiring-2", {"/beam/colour": [1, 2]})
+    assert told.value.faults[0].pointer == "/beam/colour"
+
+
+def test_ctrl_c_ends_a_sweep_with_what_there_is(tmp_path):
+    case = slcbeam.load("bend-wet", set=COARSE | {"/time/end_s": 0.2})
+    values = np.linspace(10, 60, 200)
+    timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    found = slcbeam.sweep(case, {"/loads/0/force_x_n_m/signal/sigmoid/amplitude": values}, lean=True, out=tmp_path / "sweep")
+    assert found.interrupted
+    assert 0 < len(next(iter(found.tables["sweep"].values()))) < 200

@@ -1,0 +1,116 @@
+"""Simulation from one control instant to the next."""
+
+import importlib.util
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import slcbeam
+
+INLET = "/network/chains/0/ends/0/pressure_pa"
+RANGE = {INLET: (0.0, 60e3)}
+EXAMPLE = Path(__file__).resolve().parents[1] / "examples/gym_reach.py"
+
+
+@pytest.fixture
+def case():
+    return slcbeam.load("tour-actuator", set={"/mesh/cells_per_segment": 2, "/solver/rtol": 1e-6, "/time/end_s": 0.5, "/solver/method": "esdirk46"})
+
+
+def held(t, values):
+    """The signal that jumps at these instants [s]."""
+    steps = zip(t, [0.0, *values[:-1]], values)
+    return {"sum": [{"ramp": {"from": 0, "to": new - old, "start_s": at, "duration_s": 0}} for at, old, new in steps]}
+
+
+def test_pieces_are_what_a_run_with_jumps_is(case):
+    """A run whose inlet jumps at the same instants gives the same, energies included; what is left falls with the tolerance."""
+    case = case.set("/solver/rtol", 1e-8)
+    instants, values = [0.1, 0.2, 0.3], [20e3, 50e3, 5e3]
+    sim = slcbeam.Simulator(case, RANGE)
+    sim.step_to(0.1)
+    rows = [sim.step_to(t + 0.1, value) for t, value in zip(instants, values)]
+    run = slcbeam.run(case.set({INLET: held(instants, values), "/time/end_s": 0.4, "/time/output_interval_s": 0.1}))
+    for name in ("tip_u1", "tip_angle", "bending_energy", "work_ports", "dissipated_bladders", "injected_volume"):
+        theirs, ours = run.history[name][2:], [row[sim.columns.index(name)] for row in rows]
+        size = np.abs(run.history[name]).max()
+        np.testing.assert_allclose(ours, theirs, rtol=0, atol=2e-6 * size, err_msg=name)
+    assert sim.warnings == []
+
+
+def test_balances_close_over_jumps(case):
+    sim = slcbeam.Simulator(case, RANGE)
+    for k in range(10):
+        sim.step(0.02, [60e3, 0.0][k % 2])
+    assert abs(sim["energy_residual"]) < 1e-3 * sim["work_ports"]
+
+
+def test_a_state_goes_on_bit_for_bit(case):
+    sim = slcbeam.Simulator(case, RANGE)
+    sim.step(0.05, 30e3)
+    state = sim.save()
+    rows = [sim.step(0.01, value) for value in (40e3, 40e3, 10e3)]
+    for restored in (state, pickle.loads(pickle.dumps(state))):
+        other = slcbeam.Simulator(case, RANGE)
+        other.restore(restored)
+        assert other.t == 0.05 and other.values[0] == 30e3
+        for row, value in zip(rows, (40e3, 40e3, 10e3)):
+            np.testing.assert_array_equal(other.step(0.01, value), row)
+    sim.restore(state)
+    np.testing.assert_array_equal(sim.step(0.01, 40e3), rows[0])
+
+
+def test_several_inputs_and_what_is_refused(case):
+    load = "/loads/0/force_x_n_m"
+    loaded = slcbeam.load("bend-wet", set={"/mesh/cells_per_segment": 1})
+    vented = "/network/chains/1/ends/1/pressure_pa"
+    two = slcbeam.Simulator(case, {vented: (-1e3, 1e3), INLET: (0, 60e3)})
+    two.step(1e-3, {INLET: 1e3})
+    assert list(two.values) == [0.0, 1e3]
+    with pytest.raises(slcbeam.UsageError, match="is no input"):
+        two.step(1e-3, {load: 1.0})
+    sim = slcbeam.Simulator(loaded, {load: (-200.0, 200.0)})
+    assert sim.values[0] == pytest.approx(100 / (1 + np.exp(68 * 0.0625)))
+    sim.step(1e-3, {load: 50.0})
+    assert sim.values[0] == 50.0
+    with pytest.raises(slcbeam.UsageError, match="range"):
+        sim.step(1e-3, 1e6)
+    with pytest.raises(slcbeam.UsageError, match="2 values for 1"):
+        sim.step(1e-3, [1.0, 2.0])
+    with pytest.raises(slcbeam.UsageError, match="end_s"):
+        sim.step(1e3)
+    with pytest.raises(slcbeam.UsageError, match="must lead on"):
+        sim.step(-1.0)
+    with pytest.raises(slcbeam.UsageError, match="nearest is"):
+        slcbeam.Simulator(case, {INLET.replace("pressure", "presure"): (0, 1)})
+    with pytest.raises(slcbeam.UsageError, match="must hold the value"):
+        slcbeam.Simulator(case, {INLET: (1.0, 2.0)})
+    with pytest.raises(slcbeam.UsageError, match="another case"):
+        sim.restore(slcbeam.Simulator(case, RANGE).save())
+
+
+def test_the_environment_learns_nothing_new_from_reset():
+    gymnasium = pytest.importorskip("gymnasium")
+    from gymnasium.utils.env_checker import check_env
+
+    spec = importlib.util.spec_from_file_location("gym_reach", EXAMPLE)
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    check_env(example.Reach(steps=5), skip_render_check=True)
+    env = example.Reach(steps=25)
+    assert isinstance(env, gymnasium.Env)
+
+    def episode(gain):
+        seen, _ = env.reset(seed=1)
+        action, total, over = np.array([-1.0]), 0.0, False
+        while not over:
+            action = np.clip(action + gain * (seen[0] - seen[1]), -1.0, 1.0)
+            seen, reward, _, over, _ = env.step(action)
+            total += reward
+        return total
+
+    controlled = episode(1.5)
+    assert controlled == episode(1.5)
+    assert controlled > episode(0.0)

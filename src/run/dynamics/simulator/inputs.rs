@@ -1,0 +1,142 @@
+//! Signals of a case that are set from outside.
+
+use crate::case::{self, Case};
+use crate::discrete::System;
+use crate::error::{Error, Result};
+use crate::onestep::{Method, OneStepOptions};
+use crate::run::method::{self, MethodChoice, Options};
+use crate::run::order::OrderChoice;
+
+/// A signal of the case that is set from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Input {
+    /// Its JSON pointer.
+    pub pointer: String,
+    /// Smallest and largest value that it may be given, in the unit of its key. What the scene calls for, and the sizes of unknowns,
+    /// follow from them.
+    pub range: [f64; 2],
+}
+
+/// An input as it stands.
+#[derive(Clone, Debug)]
+pub(super) struct Held {
+    /// Which.
+    pub input: Input,
+    /// Its value.
+    pub value: f64,
+    /// Signals of the system that it is, in the order in which they are visited.
+    pub places: Vec<usize>,
+}
+
+/// The case with signals that go through the whole of their ranges in place of its inputs, by which the model is chosen; its system, and where in
+/// it each of them acts.
+pub(super) fn taken(case: &Case, inputs: &[Input]) -> Result<(Case, System, Vec<Held>)> {
+    let all = case::controls(case);
+    let mut held: Vec<Held> = vec![];
+    let mut sets = vec![];
+    for (k, input) in inputs.iter().enumerate() {
+        let usage = |what: String| Error::Usage(format!("input {}: {what}", input.pointer));
+        let below = format!("{}/signal", input.pointer);
+        let found = all.iter().find(|(at, ..)| *at == input.pointer || *at == below);
+        let Some((pointer, jumps, signal)) = found else {
+            let known = all.iter().filter(|(_, jumps, _)| *jumps).map(|(at, ..)| at.as_str());
+            let meant = case::nearest(&input.pointer, known.clone());
+            let meant = meant.map_or_else(String::new, |near| format!("; nearest is {near}"));
+            let known: Vec<&str> = known.collect();
+            return Err(usage(format!(
+                "no signal stands there{meant}; signals are {}",
+                known.join(", ")
+            )));
+        };
+        if !jumps {
+            return Err(usage(
+                "it moves something, which must not jump; give a force, pressure, flow or opening".into(),
+            ));
+        }
+        if held.iter().any(|one| one.input.pointer == *pointer) {
+            return Err(usage("it is there twice".into()));
+        }
+        let ([low, high], value) = (input.range, signal.value(0.0));
+        if !(low.is_finite() && high.is_finite() && low <= value && value <= high && low < high) {
+            return Err(usage(format!(
+                "its range, {low} to {high}, must hold the value with which the case begins, {value}"
+            )));
+        }
+        // goes through all of its range within the run, and is like no other signal
+        let end = case.time.end_s;
+        let times = [0.0, 0.3 * end, 0.6 * end, end * (1.0 + 1e-3 * (k + 1) as f64)];
+        sets.push(format!(
+            r#"{pointer}={{"table": {{"times_s": {times:?}, "values": {:?}, "interpolation": "linear"}}}}"#,
+            [value, low, high, value]
+        ));
+        held.push(Held {
+            input: Input {
+                pointer: pointer.clone(),
+                range: input.range,
+            },
+            value,
+            places: vec![],
+        });
+    }
+    let resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
+    let path = &case.source.path;
+    let base = path.parent().unwrap_or(path);
+    let marked = case::parse(&resolved.to_string(), path, base, &sets)?;
+    let mut system = System::new(&marked)?;
+    let marks = case::controls(&marked);
+    for one in &mut held {
+        let mark = marks
+            .iter()
+            .find(|(at, ..)| *at == one.input.pointer)
+            .map(|(.., signal)| *signal);
+        one.places = mark.map_or_else(Vec::new, |mark| system.places_of(mark));
+        if one.places.is_empty() {
+            let what = format!("input {}: nothing in the scene depends on it", one.input.pointer);
+            return Err(Error::Usage(what));
+        }
+    }
+    Ok((marked, system, held))
+}
+
+/// Those of the method that the case asks for, or of ESDIRK46, which needs no past.
+pub(super) fn options(case: &Case, system: &System, max_step: f64) -> Result<OneStepOptions> {
+    let chosen = method::choose(case, system);
+    let method = chosen.one_step.unwrap_or(Method::Esdirk46);
+    if chosen.one_step.is_none() && chosen.reason == "as asked" {
+        let what = "a simulator starts afresh at every change of its inputs, for which IDA is slow: give /solver/method esdirk46, or auto";
+        return Err(Error::Usage(what.into()));
+    }
+    let choice = MethodChoice {
+        one_step: Some(method),
+        reason: String::new(),
+        order: OrderChoice {
+            order: method.order(),
+            reason: String::new(),
+        },
+    };
+    match Options::new(case, system, &choice, max_step) {
+        Options::OneStep(options) => Ok(options),
+        Options::Ida(_) => Err(Error::Usage("a simulator needs a one-step method".into())),
+    }
+}
+
+/// Values within their ranges, as many as there are inputs.
+pub(super) fn admit(held: &[Held], values: &[f64]) -> Result<()> {
+    if values.len() != held.len() {
+        return Err(Error::Usage(format!(
+            "{} values for {} inputs: one each is wanted, in their order",
+            values.len(),
+            held.len()
+        )));
+    }
+    for (Held { input, .. }, value) in held.iter().zip(values) {
+        let [low, high] = input.range;
+        if !(low..=high).contains(value) {
+            return Err(Error::Usage(format!(
+                "{}: {value} lies outside of its range, {low} to {high}",
+                input.pointer
+            )));
+        }
+    }
+    Ok(())
+}
