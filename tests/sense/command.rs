@@ -202,6 +202,41 @@ fn pressures_that_no_load_explains_are_told() {
     assert_eq!(right["warnings"], serde_json::json!([]));
 }
 
+/// A buckled beam that a load pushes to the other side, and that stays where it is: the loads are found, but their path from rest leads to the
+/// other side, W033.
+#[test]
+fn a_state_that_loads_do_not_lead_to_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let sets = [
+        r#"/ends={"root": "pinned", "tip": {"pinned": {"u3_m": {"ramp": {"to": -0.01, "duration_s": 0.5}}}}}"#,
+        r#"/loads=[{"force_x_n_m": {"signal": 2}}]"#,
+    ];
+    let size = pressures(&sets, &[Basis::Uniform], &[], &[1]).1[0];
+    let rows = [-1.5, -3.0].map(|load| [load / size]);
+    let rows: Vec<&[f64]> = rows.iter().map(|row| &row[..]).collect();
+    let (text, _) = pressures(&sets, &[Basis::Uniform], &rows, &[1, 3, 5, 7, 9, -3, -8]);
+    let lines: Vec<&str> = text.lines().collect();
+    let ask = |line: &str| {
+        let path = file(&dir, &format!("{}\n{line}\n", lines[0]));
+        let told = found(
+            &dir,
+            &[
+                &path, "--load", "uniform", "--noise", "10", "--set", sets[0], "--set", sets[1],
+            ],
+        );
+        let aside = told["warnings"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|w| w.as_str().unwrap().starts_with("W033"));
+        (number(&told["rows"][0]["amplitudes"][0]["value"]), aside)
+    };
+    let (value, aside) = ask(lines[1]);
+    assert!((value + 1.5).abs() < 0.05 && !aside, "{value} {aside}");
+    let (value, aside) = ask(lines[2]);
+    assert!((value + 3.0).abs() < 0.05 && aside, "{value} {aside}");
+}
+
 /// The best bladders tell more than as many others, errors fall with their number, and without measurements that is all.
 #[test]
 fn the_best_bladders_tell_most() {
