@@ -97,7 +97,9 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         || files::json(&found),
         || files::words(&found) + &uncertainty.as_ref().map_or(String::new(), spread::words),
     );
-    super::tell(asked.json, folder.dir(), text, words)?;
+    if asked.json || !path.states.is_empty() {
+        super::tell(asked.json, folder.dir(), text, words)?;
+    }
     match path.fault {
         None => Ok(ExitCode::SUCCESS),
         Some(fault) => {

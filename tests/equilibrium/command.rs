@@ -170,3 +170,37 @@ fn command_says_what_cannot_be() {
         assert!(text.contains(words), "{arguments:?}: {text}");
     }
 }
+
+/// Goal: round-off is told as zero, a state in which nothing acts is told as such, and while a pump fills what nothing empties the command says
+/// when to ask; then there is no table without states, and no place of files that are none.
+#[test]
+fn command_tells_what_is_nothing() {
+    let out = tempfile::tempdir().expect("a folder");
+    let port = "/network/chains/0/ends/0={\"flow_m3_s\":{\"table\":{\"times_s\":[0,0.5,1],\"values\":[0,4e-7,0],\"interpolation\":\"linear\"}}}";
+    let asked = |more: &[&str]| {
+        let run = slcbeam(
+            &[&["equilibrium", "cases/pluck.json", "--set", "/start={}"], more].concat(),
+            out.path(),
+        );
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        (run.status.code(), text(&run.stdout), text(&run.stderr))
+    };
+    let (code, table, _) = asked(&["--set", port, "--set", "/time/end_s=2"]);
+    assert_eq!(code, Some(0));
+    let last = table.lines().find(|line| line.trim_start().starts_with("1.00000 "));
+    let cells: Vec<&str> = last.expect("a row").split_whitespace().collect();
+    assert_eq!(cells[5], "0", "the least pressure: {table}");
+    assert!(!table.contains("nothing acts"), "{table}");
+    let (code, words, fault) = asked(&["--set", port, "--at", "0.75"]);
+    assert_eq!(code, Some(4));
+    assert_eq!(words, "");
+    assert!(fault.contains("takes in 2.000e-7 m^3/s at that instant"), "{fault}");
+    assert!(fault.contains("at which the flow has stopped (--at)"), "{fault}");
+    let (_, words, _) = asked(&[
+        "--set",
+        "/loads=[]",
+        "--set",
+        "/ends={\"root\":\"clamped\",\"tip\":\"free\"}",
+    ]);
+    assert!(words.contains("nothing acts at t = 1.00000 s"), "{words}");
+}

@@ -315,6 +315,41 @@ fn what_was_pumped_counts() {
     }
 }
 
+/// Goal: pressures of all bladders are among the figures and have derivatives: all ten of the row that is pumped full rest at one pressure, which goes
+/// in proportion to what is pumped where the couplings are linear, to 1e-6 for the fourth-order effect of strains on areas; the others keep none.
+#[test]
+fn bladders_have_pressures_and_derivatives() {
+    let port =
+        json!({"flow_m3_s": {"table": {"times_s": [0, 0.5, 1], "values": [0, 4e-7, 0], "interpolation": "linear"}}});
+    let case = shipped(
+        "pluck",
+        &[
+            &format!("/network/chains/0/ends/0={port}"),
+            "/start={}",
+            "/time/end_s=2",
+        ],
+    );
+    let options = Options::at(2.0);
+    let path = path_of(&case, &options);
+    let names = columns(&system(&case, 2.0).unwrap());
+    let place = |name: &str| names.iter().position(|c| c.name == name).expect("a column");
+    let row = &path.last().row;
+    let pointer = "/network/chains/0/ends/0/flow_m3_s/table/values/1";
+    let parameters = [Parameter::find(&case, pointer).expect("a number")];
+    let found = differentiate(&case, &options, &path, &parameters).expect("derivatives");
+    let full = row[place("max_pressure")];
+    for number in 1..=10 {
+        let upper = place(&format!("bladder_{number}_pressure"));
+        assert!((row[upper] / full - 1.0).abs() < 1e-9, "{number}: {}", row[upper]);
+        assert!(
+            (found[0].row[upper] * 4e-7 / full - 1.0).abs() < 1e-6,
+            "{number}: {} {full}",
+            found[0].row[upper] * 4e-7
+        );
+        assert!(row[place(&format!("bladder__{number}_pressure"))].abs() < 1e-12 * full);
+    }
+}
+
 /// Goal: derivatives of a state that was reached in stages, what is trapped among it, are those of complete solutions: differences of fourth order over 1e-3
 /// of the parameter, of states to 1e-10.
 #[test]

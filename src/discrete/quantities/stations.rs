@@ -1,8 +1,9 @@
-//! Quantities at each port, in each accumulator, at each wall, and of what holds the beam.
+//! Quantities at each port, in each accumulator, at each wall, of what holds the beam, and at rest in each bladder.
 
 use super::look::Look;
 use super::probes::ProbeColumn;
 use super::reactions;
+use crate::case::wiring::bladder_label;
 use crate::discrete::ledger::ports;
 use crate::discrete::{System, touching};
 
@@ -72,7 +73,22 @@ fn of_network(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
             "volume held beyond that at ambient pressure by",
         ));
     }
+    if at_rest {
+        all.extend(bladders(wet.per_row));
+    }
     all
+}
+
+/// The mean pressure of every bladder: fields say it of what moves.
+fn bladders(per_row: usize) -> impl Iterator<Item = ProbeColumn> {
+    (0..2 * per_row).map(move |bladder| {
+        let label = bladder_label(bladder, per_row);
+        ProbeColumn {
+            name: format!("{}_pressure", begin("bladder", &label.to_string())),
+            unit: "Pa",
+            about: format!("mean pressure of bladder {label}"),
+        }
+    })
 }
 
 /// Of each column while something moves, the port of which it is the volume, where it is one: that is an integral and no part of a state.
@@ -121,6 +137,9 @@ fn network_values(look: &Look, integrals: Option<&[f64]>, put: &mut impl FnMut(f
     for (one, &volume) in vessels.filter(|(one, _)| one.number.is_some()) {
         put(look.w.fluid.junction[one.junction]);
         put(volume);
+    }
+    if integrals.is_none() {
+        look.w.fluid.mean_pressure.iter().for_each(|&pressure| put(pressure));
     }
 }
 

@@ -5,14 +5,25 @@ use crate::discrete::quantities::{Group, Observable};
 use crate::output::columns::aligned;
 use crate::output::numbers::{count, quantity, significant};
 use crate::run::equilibrium::State;
+use crate::run::record::Column;
 use crate::study::refine::meshes::Meshes;
 
 /// Rows of the table at most.
 const ROWS: usize = 12;
+/// Derivatives that are told at most.
+const DERIVATIVES: usize = 60;
+/// What of the largest number of a unit is round-off.
+const ROUND_OFF: f64 = 1e-12;
+/// A pressure that is none [Pa], and a force [N].
+const NO_PRESSURE: f64 = 1e-9;
+const NO_FORCE: f64 = 1e-15;
 
 /// A table of the path, what happened on it, the last state, derivatives.
 pub fn words(found: &Found) -> String {
     let path = found.path;
+    if path.states.is_empty() {
+        return String::new();
+    }
     let mut text = table(found);
     for event in &path.events {
         text.push_str(&format!(
@@ -45,6 +56,12 @@ pub fn words(found: &Found) -> String {
             quantity(found.wall_s, "s", 3),
         ));
     }
+    if loads_nothing(found) {
+        let at = significant(found.options.at_s, 6);
+        text.push_str(&format!(
+            "nothing acts at t = {at} s: beam and bladders are as they are made\n"
+        ));
+    }
     for s in found.sensitivities {
         text.push_str(&format!(
             "\nderivatives by {} = {}\n",
@@ -52,14 +69,27 @@ pub fn words(found: &Found) -> String {
             significant(s.parameter.value, 6)
         ));
         let derivatives = found.columns.iter().zip(&s.row).skip(1);
-        let lines: Vec<_> = derivatives
+        // of many bladders most may stay as they are
+        let told = |column: &Column, lines: &[String; 4]| !is_bladder(column) || lines[2] != "0";
+        let mut lines: Vec<_> = derivatives
             .map(|(column, derivative)| {
-                let by_share = significant(0.01 * s.parameter.value * derivative, 4);
+                let by_share = 0.01 * s.parameter.value * derivative;
+                let counts = by_share.abs() > floor(found, column.unit);
+                let (derivative, by_share) = if counts { (derivative, by_share) } else { (&0.0, 0.0) };
+                let by_share = significant(by_share, 4);
                 let words = format!("{0} per unit, {by_share} {0} per 1 %", column.unit);
-                [String::new(), column.name.clone(), significant(*derivative, 6), words]
+                let line = [String::new(), column.name.clone(), significant(*derivative, 6), words];
+                (column, line)
             })
+            .filter(|(column, line)| told(column, line))
+            .map(|(_, line)| line)
             .collect();
+        let more = lines.len().saturating_sub(DERIVATIVES);
+        lines.truncate(DERIVATIVES);
         text.push_str(&aligned(&lines, &[1, 3]));
+        if more > 0 {
+            text.push_str(&format!("  and {more} more in equilibrium.json\n"));
+        }
     }
     if let Some(accuracy) = found.accuracy {
         text.push('\n');
@@ -103,8 +133,42 @@ fn table(found: &Found) -> String {
     let mut lines = vec![headings.chain(["unstable".into()]).collect::<Vec<_>>()];
     lines.extend(shown.iter().map(|state| {
         let unstable = state.stability.as_ref().map_or("–".into(), |s| s.unstable.to_string());
-        let numbers = columns.iter().map(|(k, _)| significant(state.row[*k], 6));
+        let numbers = columns.iter().map(|(k, _)| {
+            let value = state.row[*k];
+            let counts = *k == 0 || value.abs() > floor(found, found.columns[*k].unit);
+            significant(if counts { value } else { 0.0 }, 6)
+        });
         numbers.chain([unstable]).collect()
     }));
     aligned(&lines, &[])
+}
+
+/// Whether it is the pressure of one bladder.
+fn is_bladder(column: &Column) -> bool {
+    column.name.starts_with("bladder_") && column.unit == "Pa"
+}
+
+/// What is round-off in a unit: a part of the largest number of all states, and what no beam shows.
+fn floor(found: &Found, unit: &str) -> f64 {
+    let least = match unit {
+        "m" => 0.01 * ROUND_OFF * found.case.beam.length_m,
+        "rad" => 0.01 * ROUND_OFF,
+        "Pa" => NO_PRESSURE,
+        "N" => NO_FORCE,
+        _ => 0.0,
+    };
+    let alike = |k: &usize| found.columns[*k].unit == unit;
+    let rows = found.path.states.iter().map(|state| &state.row);
+    let all = rows.flat_map(|row| (1..row.len()).filter(alike).map(|k| ROUND_OFF * row[k].abs()));
+    all.fold(least, f64::max)
+}
+
+/// Whether nothing moves or presses in any state.
+fn loads_nothing(found: &Found) -> bool {
+    ["m", "rad", "Pa", "N"].iter().all(|unit| {
+        let least = floor(found, unit);
+        let columns = found.columns.iter().enumerate().skip(1);
+        let mut alike = columns.filter(|(_, column)| column.unit == *unit);
+        alike.all(|(k, _)| found.path.states.iter().all(|state| state.row[k].abs() <= least))
+    })
 }

@@ -60,7 +60,10 @@ pub fn data(place: &Place) -> Result<Page> {
         ],
     );
     let tile = |label: &str, value: Option<f64>, unit: &str, note: &str| {
-        Some(json!({"label": label, "value": quantity(value?, unit, 3), "note": note}))
+        let value = value?;
+        let least = if unit == "Pa" { 1e-9 } else { 1e-15 };
+        let value = if value.abs() < least { 0.0 } else { value };
+        Some(json!({"label": label, "value": quantity(value, unit, 3), "note": note}))
     };
     let last = |name: &str| {
         found

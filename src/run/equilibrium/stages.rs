@@ -281,10 +281,16 @@ fn openings(system: &System) -> Vec<f64> {
 
 /// That a closed network takes in what nothing lets out.
 fn fed(stage: usize, inflow: f64) -> SolverError {
-    let what = format!("there is no equilibrium: a closed network takes in {inflow:.3e} m^3/s which nothing lets out");
+    let what = format!(
+        "there is no equilibrium while it pumps: a closed network takes in {inflow:.3e} m^3/s at that instant, and nothing lets it out"
+    );
     SolverError {
         cause: Some("a port of prescribed flow without one of prescribed pressure in the same network".into()),
-        hint: Some("open the network by a port with pressure_pa, or let the flows sum to zero".into()),
+        hint: Some(
+            "ask for an instant at which the flow has stopped (--at): what went in before counts; or prescribe what went in by volume_m3, open \
+             the network by a port with pressure_pa, or let the flows sum to zero"
+                .into(),
+        ),
         ..fault(stage as f64, &what)
     }
 }
