@@ -213,11 +213,80 @@ fn interrupt_stops_with_everything_written() {
             .unwrap()
             .success()
     );
-    assert_eq!(child.wait().unwrap().code(), Some(0));
+    assert_eq!(child.wait().unwrap().code(), Some(130), "as shells say it");
     let summary = summary(&out);
     assert_eq!(summary["status"], "stopped");
     assert!(summary["reason"].as_str().unwrap().contains("interrupted"));
     assert!(out.join("fields.npz").exists());
+}
+
+/// Goal: a request to terminate has the exit code that shells give it, in every command that ends in order; here a path of equilibria, of which
+/// nothing is left to look at.
+#[cfg(unix)]
+#[test]
+fn a_request_to_terminate_has_its_own_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_slcbeam"))
+        .args([
+            "equilibrium",
+            "cases/curl.json",
+            "--points",
+            "1000000",
+            "--quiet",
+            "--out",
+        ])
+        .arg(folder.path().join("path"))
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // long before a million points are found, and after the signal is listened to
+    let handled = |id: u32| {
+        let status = fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        caught.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap_or(0) & (1 << 14) != 0)
+    };
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !handled(child.id()) {
+        assert!(Instant::now() < deadline && child.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let killed = Command::new("kill").args(["-TERM", &child.id().to_string()]).status();
+    assert!(killed.unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+}
+
+/// Goal: on a terminal the bar is gone when the box is drawn: nothing but what clears a line stands between the last bar and the box, and none
+/// comes after. `script` (util-linux, part of every Debian) plays the terminal.
+#[cfg(unix)]
+#[test]
+fn the_bar_is_gone_before_the_box() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("screen");
+    let command = format!(
+        "{} run cases/two-bladders.json --set /time/end_s=0.2 --set /solver/rtol=1e-7 --out {}",
+        env!("CARGO_BIN_EXE_slcbeam"),
+        folder.path().join("run").display()
+    );
+    let Ok(played) = Command::new("script")
+        .arg("-qec")
+        .arg(&command)
+        .arg(&log)
+        .stdout(Stdio::null())
+        .status()
+    else {
+        println!("no program script: nothing is seen");
+        return;
+    };
+    assert!(played.success());
+    let screen = fs::read_to_string(&log).unwrap();
+    let (bars, told) = screen.split_once('╭').expect("a box");
+    assert!(!told.contains("steps, now"), "a bar below the box: {told:?}");
+    let last = bars.rsplit(['\r', '\n']).find(|part| !part.is_empty());
+    assert!(
+        last.is_none_or(|last| !last.contains('%') || last.ends_with("\u{1b}[2K")),
+        "the bar stands above the box: {last:?}"
+    );
 }
 
 /// A full disk: `/dev/full` cannot be a folder, so a file-size limit plays its part.

@@ -1,22 +1,46 @@
-//! Ctrl-C asks the run to stop after its current step; everything so far is written.
+//! Ctrl-C asks a command to stop soon; everything so far is written.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use super::embedded;
+
+/// Exit codes of shells for a program that a signal ended begin here.
+const SIGNAL: i32 = 128;
+
+/// What the first signal leaves.
+#[derive(Default)]
+struct Asked {
+    raised: Arc<AtomicBool>,
+    signal: Arc<AtomicUsize>,
+}
+
+static ASKED: OnceLock<Asked> = OnceLock::new();
 
 /// A flag that the first interrupt (or a request to terminate) raises; a second one ends the program at once.
 pub fn flag() -> Arc<AtomicBool> {
     if let Some(theirs) = embedded::stop() {
         return theirs;
     }
-    let raised = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        // When a handler cannot be installed, the signal ends the program as it would without one.
-        let _ = signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&raised));
-        let _ = signal_hook::flag::register(signal, Arc::clone(&raised));
-    }
-    raised
+    let asked = ASKED.get_or_init(|| {
+        let asked = Asked::default();
+        for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+            // When a handler cannot be installed, the signal ends the program as it would without one.
+            let _ =
+                signal_hook::flag::register_conditional_shutdown(signal, SIGNAL + signal, Arc::clone(&asked.raised));
+            let _ = signal_hook::flag::register_usize(signal, Arc::clone(&asked.signal), signal as usize);
+            let _ = signal_hook::flag::register(signal, Arc::clone(&asked.raised));
+        }
+        asked
+    });
+    Arc::clone(&asked.raised)
+}
+
+/// The exit code of a command that was asked to stop, as shells have it: 130 after Ctrl-C, 143 after a request to terminate.
+pub fn code() -> Option<ExitCode> {
+    let signal = ASKED.get()?.signal.load(Ordering::Relaxed);
+    (signal > 0).then(|| ExitCode::from((SIGNAL as usize + signal) as u8))
 }
 
 /// A limit on the size of files is told as a fault of writing, by the name of the file, and does not end the program.

@@ -2,7 +2,7 @@
 
 use std::io::IsTerminal as _;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
 use crate::error::{Error, Result};
 use crate::study::refine;
@@ -15,9 +15,9 @@ pub fn line(quiet: bool) -> ProgressBar {
     if quiet { ProgressBar::hidden() } else { styled(PLAIN) }
 }
 
-/// A bar that looks like a template, on a terminal.
+/// A bar that looks like a template, on a terminal; it is gone when nobody holds it any more.
 pub fn styled(template: &str) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()).with_finish(ProgressFinish::AndClear);
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }

@@ -65,13 +65,13 @@ pub fn main() -> ExitCode {
     };
     interrupt::outlive_limits();
     match act(&arguments.command, began) {
-        Ok(code) => code,
+        Ok(code) => interrupt::code().unwrap_or(code),
         Err(error) => {
             terminal::report(&error);
             if arguments.command.json() {
                 let _ = print(&format!("{:#}\n", terminal::json(&error)));
             }
-            ExitCode::from(error.exit_code())
+            interrupt::code().unwrap_or(ExitCode::from(error.exit_code()))
         }
     }
 }

@@ -77,6 +77,8 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
         (None, true) => resume(case, system, &parameters, &out, &way)?,
         (None, false) => record(case, system, &parameters, asked.place.claim(case, Kind::Run)?, &way)?,
     };
+    // what is told stands below no bar
+    drop(way);
     laps.lap();
     let mut uncertainty = None;
     if let (Some(asked), Some(finished), Status::Finished) = (&uncertain, &finished, summary.status) {

@@ -155,7 +155,7 @@ fn an_interrupt_leaves_a_table() {
     assert!(killed.expect("a command").success());
     let ended = child.wait_with_output().expect("ended");
     let said = String::from_utf8_lossy(&ended.stderr).into_owned();
-    assert_eq!(ended.status.code(), Some(0), "{said}");
+    assert_eq!(ended.status.code(), Some(130), "{said}");
     assert!(said.contains("with which the same command goes on"), "{said}");
     let told = json(&out, "sweep.json");
     let (there, missing) = (
