@@ -14,7 +14,7 @@ use crate::output::modes::{self as files, Report};
 use crate::output::report;
 use crate::results::modes::About;
 use crate::run::known;
-use crate::run::modes::{self, Plan};
+use crate::run::modes::{self, Plan, Sort, sort};
 use crate::study::refine;
 use crate::study::sweep::What;
 
@@ -38,6 +38,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         });
     }
     let plan = plan(asked)?;
+    let kind = asked.kind.map(Sort::from);
     let case = size::load(&asked.case)?;
     let system = System::new(&case)?;
     let own = (asked.at, asked.near, asked.accuracy) == (None, None, None);
@@ -64,12 +65,14 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         None => (modes::linearise(case, 0.0, None)?, About::Start),
     };
     let parameters = Parameter::all(case, &asked.sensitivity)?;
-    let mut found = modes::of(about, &plan)?;
-    modes::compare_meshes(case, asked.at, &plan, &mut found);
+    let (mut found, wider) = sort::of_sort(about, &plan, kind)?;
+    modes::compare_meshes(case, asked.at, &wider, &mut found);
+    sort::arrange(&mut found.modes, kind, plan.count);
     let sensitivities = modes::differentiate(case, asked.at, &found.about, &found.modes, &parameters)?;
     let report = Report {
         case: &case.name,
         plan: &plan,
+        sort: kind,
         found: &found,
         state,
         sensitivities: &sensitivities,

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::Kept;
 use super::ordered::Ordered;
 use super::run::Accuracy;
-pub use crate::run::modes::{Kind, Limit};
+pub use crate::run::modes::{Kind, Limit, Sort};
 
 /// State about which a case moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,6 +31,9 @@ pub struct Modes {
     pub at_s: f64,
     /// Frequency near which modes were looked for [Hz].
     pub near_hz: f64,
+    /// The one kind that was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of_kind: Option<Sort>,
     /// Unknowns.
     pub unknowns: usize,
     /// Finite eigenvalues that there are.

@@ -59,6 +59,68 @@ fn a_folder_is_filled_and_a_table_printed() {
     }
 }
 
+/// Goal: what swings stands first, then what decays, and what closed networks keep is one line; of one kind there are as many as asked for, the
+/// same as among all.
+#[test]
+fn modes_stand_by_kind() {
+    let dir = TempDir::new().unwrap();
+    let out = dir.path().to_str().unwrap();
+    let wet = "cases/wiring-2.json";
+    let small = [
+        "--set",
+        "/mesh/cells_per_segment=2",
+        "--set",
+        "/mesh/cells_per_bladder=1",
+        "--quiet",
+        "--out",
+        out,
+    ];
+    let with = |more: &[&str]| modes(&[&[wet], more, &small].concat());
+    let (code, said, error) = with(&["--count", "6"]);
+    assert_eq!((code, error.as_str()), (0, ""));
+    assert!(
+        said.contains("and with s = 0: 1 kept volume (fluid of closed networks)\n"),
+        "{said}"
+    );
+    let rows = |said: &str| -> Vec<Vec<String>> {
+        let lines = said.lines().skip_while(|line| !line.contains("moves")).skip(1);
+        let lines = lines.take_while(|line| line.starts_with(|c: char| c.is_ascii_digit() || c == ' '));
+        lines
+            .map(|line| line.split_whitespace().map(str::to_owned).collect())
+            .collect()
+    };
+    let all = rows(&said);
+    assert_eq!(all.len(), 6, "{said}");
+    let kinds: Vec<&str> = all.iter().map(|row| row[1].as_str()).collect();
+    assert_eq!(
+        kinds,
+        ["oscillation", "oscillation", "oscillation", "decay", "decay", "decay"],
+        "{said}"
+    );
+    let csv = fs::read_to_string(dir.path().join("modes.csv")).unwrap();
+    assert!(
+        csv.lines().nth(1).unwrap().starts_with("1,oscillation,") && csv.contains("\n7,kept volume,"),
+        "{csv}"
+    );
+    let (code, said, _) = with(&["--count", "4", "--kind", "oscillation"]);
+    let swinging = rows(&said);
+    assert!(
+        code == 0 && swinging.len() == 4 && swinging.iter().all(|row| row[1] == "oscillation"),
+        "{said}"
+    );
+    assert_eq!(
+        swinging[..3].iter().map(|row| &row[3]).collect::<Vec<_>>(),
+        all[..3].iter().map(|row| &row[3]).collect::<Vec<_>>()
+    );
+    let (code, said, _) = with(&["--count", "2", "--kind", "growth"]);
+    assert!(
+        code == 0 && said.contains("there are no modes of the kind growth"),
+        "{said}"
+    );
+    let json: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("modes.json")).unwrap()).unwrap();
+    assert_eq!((&json["of_kind"], &json["stable"]), (&"growth".into(), &true.into()));
+}
+
 #[test]
 fn modes_near_a_frequency_as_json() {
     let dir = TempDir::new().unwrap();

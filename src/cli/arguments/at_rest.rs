@@ -1,8 +1,30 @@
 //! What `equilibrium` and `modes` can be asked for.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::{CaseArguments, MapArguments, PlaceArguments, UncertainArguments};
+use crate::run::modes::Sort;
+
+/// Of which kind modes are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ModeKind {
+    /// What swings, growing or not
+    Oscillation,
+    /// What dies away without swinging
+    Decay,
+    /// What grows, swinging or not
+    Growth,
+}
+
+impl From<ModeKind> for Sort {
+    fn from(kind: ModeKind) -> Self {
+        match kind {
+            ModeKind::Oscillation => Self::Oscillation,
+            ModeKind::Decay => Self::Decay,
+            ModeKind::Growth => Self::Growth,
+        }
+    }
+}
 
 /// `equilibrium`.
 #[derive(Debug, Args)]
@@ -55,6 +77,9 @@ pub struct ModesArguments {
     /// Modes to find; rigid motions and kept volumes come besides
     #[arg(long, value_name = "COUNT", default_value_t = 12)]
     pub count: usize,
+    /// Those of one kind alone
+    #[arg(long, value_enum, value_name = "KIND", conflicts_with_all = ["map", "accuracy", "uncertain"])]
+    pub kind: Option<ModeKind>,
     /// Find those nearest this frequency [Hz] [default: the slowest]
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub near: Option<f64>,

@@ -17,7 +17,7 @@ use crate::error::{Code, Result};
 use crate::model::passivity::{self, Passivity};
 use crate::results;
 use crate::results::modes::{self as kept, About};
-use crate::run::modes::{Kind, Mode, Modes, Plan, Sensitivity, meshes};
+use crate::run::modes::{Kind, Mode, Modes, Plan, Sensitivity, Sort, meshes};
 use crate::run::summary::Accuracy;
 use crate::study::refine;
 
@@ -38,6 +38,8 @@ pub struct Report<'a> {
     pub case: &'a str,
     /// What was asked.
     pub plan: &'a Plan,
+    /// Those of this sort alone.
+    pub sort: Option<Sort>,
     /// What was found.
     pub found: &'a Modes,
     /// State about which.
@@ -77,7 +79,10 @@ impl Report<'_> {
             })
             .collect();
         match growing.as_slice() {
-            [] if self.found.modes.is_empty() => "there are no modes".into(),
+            [] if self.found.modes.is_empty() => match self.sort {
+                Some(sort) => format!("there are no modes of the kind {}", sort.word()),
+                None => "there are no modes".into(),
+            },
             [] => format!("none of the {} modes shown grows", self.found.modes.len()),
             all => format!("unstable: {}", all.join("; ")),
         }
@@ -93,7 +98,7 @@ impl Report<'_> {
                 self.about(), about.at, about.rate
             ))
         });
-        let still = self.found.modes.is_empty().then(|| {
+        let still = (self.found.modes.is_empty() && self.sort.is_none()).then(|| {
             Code::NothingMoves.warning(
                 "nothing can move: the case leaves out inertia of the solid (/effects/solid_inertia) and no bladder exchanges fluid",
             )
@@ -113,7 +118,8 @@ impl Report<'_> {
             s.parameter.pointer,
             significant(s.parameter.value, 6)
         );
-        for (k, (mode, ds)) in self.found.modes.iter().zip(&s.s).enumerate() {
+        let moving = |(_, (mode, _)): &(usize, (&Mode, _))| !mode.kind.stays();
+        for (k, (mode, ds)) in self.found.modes.iter().zip(&s.s).enumerate().filter(moving) {
             let growth = significant(percent * ds.re, 4);
             let swings = mode.frequency_hz().map_or(String::new(), |_| {
                 format!("{} Hz, ", significant(percent * ds.im / std::f64::consts::TAU, 4))
@@ -175,6 +181,7 @@ pub fn json(report: &Report) -> String {
         state: Some(report.state),
         at_s: found.about.at,
         near_hz: report.plan.near_hz,
+        of_kind: report.sort,
         unknowns: found.about.y.len(),
         finite_eigenvalues: found.finite,
         stable: !found.modes.iter().any(|m| m.kind.grows()),

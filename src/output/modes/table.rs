@@ -6,7 +6,7 @@ use super::{Report, moves};
 use crate::output::columns::{aligned, cells};
 use crate::output::numbers::{percent, quantity, significant};
 use crate::output::records::{self, number};
-use crate::run::modes::{Limit, Mode};
+use crate::run::modes::{Kind, Limit, Mode};
 
 /// Digits shown at most.
 const DIGITS: f64 = 6.0;
@@ -27,12 +27,15 @@ pub fn table(report: &Report) -> String {
             format!("those nearest {} Hz", report.plan.near_hz)
         } else {
             "the slowest".into()
-        },
+        } + &report
+            .sort
+            .map_or(String::new(), |sort| format!(" of the kind {}", sort.word())),
         found.factorizations,
         found.solves
     );
     let mut lines = vec![cells::<11>(HEADINGS).map(String::from)];
-    lines.extend(found.modes.iter().enumerate().map(|(k, mode)| line(k + 1, mode)));
+    let moving = found.modes.iter().enumerate().filter(|(_, mode)| !mode.kind.stays());
+    lines.extend(moving.map(|(k, mode)| line(k + 1, mode)));
     // a column of which no mode has anything says nothing
     let shown: Vec<usize> = (0..lines[0].len())
         .filter(|&k| k == 0 || lines[1..].iter().any(|l| !l[k].is_empty()))
@@ -42,7 +45,10 @@ pub fn table(report: &Report) -> String {
         .map(|l| shown.iter().map(|&k| l[k].clone()).collect())
         .collect();
     let words: Vec<usize> = (0..shown.len()).filter(|&k| matches!(shown[k], 1 | 2)).collect();
-    text += &aligned(&lines, &words);
+    if lines.len() > 1 {
+        text += &aligned(&lines, &words);
+    }
+    text += &staying(report);
     if found
         .modes
         .iter()
@@ -62,6 +68,27 @@ pub fn table(report: &Report) -> String {
         text += "\nundrained: the same shape with every bladder sealed; drained: with networks of one pressure\n";
     }
     text
+}
+
+/// What stays as it is, counted.
+fn staying(report: &Report) -> String {
+    let count = |kind| report.found.modes.iter().filter(|mode| mode.kind == kind).count();
+    let told = |count: usize, one: &str, what: &str| match count {
+        0 => None,
+        1 => Some(format!("1 {one} ({what})")),
+        n => Some(format!("{n} {one}s ({what})")),
+    };
+    let all: Vec<String> = [
+        told(count(Kind::Rigid), Kind::Rigid.word(), "nothing holds them"),
+        told(count(Kind::Volume), Kind::Volume.word(), "fluid of closed networks"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    match all.is_empty() {
+        true => String::new(),
+        false => format!("and with s = 0: {}\n", all.join(", ")),
+    }
 }
 
 fn line(number: usize, mode: &Mode) -> [String; 11] {

@@ -74,9 +74,13 @@ pub fn data(place: &Place) -> Result<Page> {
         (Some(About::Start), _) | (None, 0.0) => String::new(),
         (_, at) => format!(" --at {at}"),
     };
+    let kind = found
+        .of_kind
+        .map_or(String::new(), |sort| format!(" --kind {}", sort.word()));
+    let moving = found.modes.iter().filter(|mode| !mode.kind.stays()).count();
     page.put(
         "command",
-        format!("slcbeam modes {CASE}{at} --count {}{near}", found.modes.len()),
+        format!("slcbeam modes {CASE}{at} --count {moving}{near}{kind}"),
     );
     Ok(page)
 }

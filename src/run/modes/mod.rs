@@ -7,6 +7,7 @@
 //! relaxing     those of a solid that relaxes
 //! sensitivity  derivatives by numbers of the case
 //! kind        oscillation, decay, growth, rigid motion, kept volume
+//! sort        those of one sort, and the order in which they are told
 //! ```
 
 pub mod kind;
@@ -15,6 +16,7 @@ pub mod meshes;
 mod relaxing;
 pub mod sensitivity;
 pub mod shape;
+pub mod sort;
 
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
@@ -30,6 +32,7 @@ pub use linearise::{Fluid, Linearised, at_equilibrium, linearise};
 pub use meshes::{ByMesh, compare_meshes};
 pub use sensitivity::{Sensitivity, differentiate};
 pub use shape::{Shape, Shapes, likeness};
+pub use sort::Sort;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,88 @@
+//! Modes of one sort, and the order in which modes are told.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Kind, Linearised, Mode, Modes, Plan, of};
+use crate::error::Result;
+
+/// What of modes is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sort {
+    /// What swings, growing or not.
+    Oscillation,
+    /// What dies away without swinging.
+    Decay,
+    /// What grows, swinging or not.
+    Growth,
+}
+
+impl Sort {
+    /// Whether a mode is of it.
+    pub fn has(self, kind: Kind) -> bool {
+        match self {
+            Self::Oscillation => kind.swings(),
+            Self::Decay => kind == Kind::Decay,
+            Self::Growth => kind.grows(),
+        }
+    }
+
+    /// As the command line has it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Oscillation => "oscillation",
+            Self::Decay => "decay",
+            Self::Growth => "growth",
+        }
+    }
+}
+
+/// Modes among which those of a sort are looked for, at most.
+const MOST: usize = 1000;
+
+/// Modes of a linearisation, as many of a sort as planned where there are so many among the nearest thousand, with the plan by which all of
+/// them are found: others are among them until [`arrange`] takes them out.
+///
+/// # Errors
+/// As [`of`].
+pub fn of_sort(about: Linearised, plan: &Plan, sort: Option<Sort>) -> Result<(Modes, Plan)> {
+    let Some(sort) = sort else {
+        return Ok((of(about, plan)?, *plan));
+    };
+    let mut wider = Plan { limits: false, ..*plan };
+    let mut about = about;
+    loop {
+        let found = of(about, &wider)?;
+        let own = found.modes.iter().filter(|mode| sort.has(mode.kind)).count();
+        let moving = found.modes.iter().filter(|mode| !mode.kind.stays()).count();
+        let more = own < plan.count && moving >= wider.count && wider.count < MOST;
+        if !more {
+            let plan = Plan {
+                limits: plan.limits,
+                ..wider
+            };
+            return match plan.limits {
+                true => Ok((of(found.about, &plan)?, plan)),
+                false => Ok((found, plan)),
+            };
+        }
+        wider.count = (2 * wider.count).min(MOST);
+        about = found.about;
+    }
+}
+
+/// Puts modes into the order in which they are told: what grows, what swings, what decays, what stays as it is, each in the order in which they
+/// were found; of a sort so many alone.
+pub fn arrange(modes: &mut Vec<Mode>, sort: Option<Sort>, count: usize) {
+    if let Some(sort) = sort {
+        modes.retain(|mode| sort.has(mode.kind));
+        modes.truncate(count);
+    }
+    modes.sort_by_key(|mode| match mode.kind {
+        Kind::Flutter | Kind::Divergence => 0,
+        Kind::Oscillation => 1,
+        Kind::Decay => 2,
+        Kind::Rigid => 3,
+        Kind::Volume => 4,
+    });
+}
