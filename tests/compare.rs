@@ -60,6 +60,35 @@ fn run_into(dir: &Path, text: &str, sets: &[&str]) -> compare::Recording {
     reading::read(dir).unwrap()
 }
 
+/// Goal: a figure's change is told over the first, besides over the quantity's largest figure.
+#[test]
+fn a_change_is_told_over_the_first() {
+    let dir = tempfile::tempdir().unwrap();
+    let [one, two] = ["one", "two"].map(|name| dir.path().join(name));
+    let a = run_into(&one, DRY, &[]);
+    let b = run_into(&two, DRY, &["/loads/0/force_x_n_m/signal/sine/amplitude=15"]);
+    let found = compare::compare(&a, &b);
+    let largest = found.figures.iter().find(|f| f.name == "tip_u1_m.max_abs").unwrap();
+    let change = largest.change.unwrap();
+    assert_eq!(change, (largest.b - largest.a) / largest.a);
+    // three halves of the load, small deflections: to 1 % of that
+    assert!((change - 0.5).abs() < 5e-3, "{change}");
+    assert!((largest.relative - 1.0 / 3.0).abs() < 5e-3, "{}", largest.relative);
+    let said = std::process::Command::new(env!("CARGO_BIN_EXE_slcbeam"))
+        .arg("compare")
+        .args([one, two])
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&said.stdout);
+    assert!(
+        text.contains("(B − A)/|A|") && text.contains("|B − A| over the quantity's largest"),
+        "{text}"
+    );
+    let row = text.lines().find(|line| line.starts_with("tip_u1_m.max_abs")).unwrap();
+    let told = format!("+{:.1} %", 100.0 * change);
+    assert!(row.contains(&told), "{row}: {told}");
+}
+
 #[test]
 fn a_run_equals_itself_and_nearly_its_other_meshes_and_times() {
     let dir = tempfile::tempdir().unwrap();

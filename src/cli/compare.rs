@@ -10,7 +10,7 @@ use crate::case;
 use crate::error::{Error, Result};
 use crate::output::columns::aligned;
 use crate::output::folder::{CASE, replace_alike};
-use crate::output::numbers::{quantity, significant};
+use crate::output::numbers::{percent, quantity, significant};
 use crate::output::{comparison, fit, reading};
 use crate::results;
 use crate::study::compare::changes::Change;
@@ -101,12 +101,14 @@ fn table(found: &Comparison) -> String {
     ];
     let headings = headings.map(|line| line.map(String::from)).into_iter();
     text += &aligned(&headings.chain(histories).collect::<Vec<_>>(), &[0]);
-    let figures = found
-        .figures
-        .iter()
-        .map(|f| [significant(f.a, 6), significant(f.b, 6), format!("{:.1e}", f.relative)]);
+    let figures = found.figures.iter().map(|f| {
+        let change = f.change.map_or_else(|| "-".into(), signed_percent);
+        let of_largest = format!("{:.1e}", f.relative);
+        [significant(f.a, 6), significant(f.b, 6), change, of_largest]
+    });
     let names = found.figures.iter().map(|f| &f.name);
-    text += &beside(["figure", "A", "B", "relative"], names, figures);
+    let headings = ["figure", "A", "B", "(B − A)/|A|", "|B − A| over the quantity's largest"];
+    text += &beside(headings, names, figures);
     let costs = found.costs.iter().map(|c| {
         let ratio = if c.a > 0.0 {
             significant(c.b / c.a, 3)
@@ -130,16 +132,21 @@ fn number(x: f64) -> String {
     }
 }
 
+/// A change as percent, with its sign.
+fn signed_percent(share: f64) -> String {
+    let sign = if share > 0.0 { "+" } else { "" };
+    format!("{sign}{}", percent(share))
+}
+
 /// Numbers of both, a name a line.
-fn beside<'a>(
-    headings: [&str; 4],
+fn beside<'a, const N: usize, const M: usize>(
+    headings: [&str; N],
     names: impl Iterator<Item = &'a String>,
-    numbers: impl Iterator<Item = [String; 3]>,
+    numbers: impl Iterator<Item = [String; M]>,
 ) -> String {
-    let lines = names
-        .zip(numbers)
-        .map(|(name, [a, b, both])| [name.clone(), a, b, both]);
-    let lines: Vec<_> = [headings.map(String::from)].into_iter().chain(lines).collect();
+    let line = |(name, numbers): (&String, [String; M])| [name.clone()].into_iter().chain(numbers).collect();
+    let mut lines: Vec<Vec<String>> = vec![headings.iter().map(ToString::to_string).collect()];
+    lines.extend(names.zip(numbers).map(line));
     format!("\n{}", aligned(&lines, &[0]))
 }
 

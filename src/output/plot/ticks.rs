@@ -2,6 +2,9 @@
 
 use crate::output::numbers::{pretty_unit, scaled_unit, significant};
 
+/// Intervals that are tried beyond as many as are wanted, until two ticks lie within an axis.
+const MORE: usize = 8;
+
 /// A linear axis with its ticks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
@@ -16,14 +19,22 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Exactly from `lo` to `hi`, with at most `count` ticks.
+    /// Exactly from `lo` to `hi`, with about `count` ticks at most, and two at least: one tells no size.
     pub fn exact(lo: f64, hi: f64, unit: &str, count: usize) -> Self {
         let (lo, hi) = if hi > lo { (lo, hi) } else { (lo - 0.5, lo + 0.5) };
         let (factor, shown_unit) = scaled_unit(lo.abs().max(hi.abs()), unit);
-        let step = round_step((hi - lo) / factor, count);
+        let places = |count: usize| {
+            let step = round_step((hi - lo) / factor, count);
+            let first = (lo / factor / step - 1e-9).ceil() as i64;
+            let last = (hi / factor / step + 1e-9).floor() as i64;
+            (step, first, last)
+        };
+        let counts = count..count + MORE;
+        let (step, first, last) = counts
+            .map(places)
+            .find(|(_, first, last)| last > first)
+            .unwrap_or_else(|| places(count));
         let decimals = decimals(step);
-        let first = (lo / factor / step - 1e-9).ceil() as i64;
-        let last = (hi / factor / step + 1e-9).floor() as i64;
         let ticks = (first..=last).map(|k| {
             let shown = k as f64 * step;
             (shown * factor, label(shown, decimals))
@@ -42,7 +53,16 @@ impl Scale {
         let decades = lo.floor() as i32..=hi.ceil() as i32;
         let marks = decades.flat_map(|n| multiples.iter().map(move |m| m * 10_f64.powi(n)));
         let seen = marks.filter(|v| (scale.lo..=scale.hi).contains(&v.log10()));
-        scale.ticks = seen.map(|v| (v.log10(), significant(v, 1))).collect();
+        let ticks: Vec<_> = seen.map(|v| (v.log10(), significant(v, 1))).collect();
+        // within less than a decade there may be none of them
+        scale.ticks = match ticks.len() {
+            0 | 1 => scale
+                .ticks
+                .into_iter()
+                .map(|(x, _)| (x, significant(10_f64.powf(x), 3)))
+                .collect(),
+            _ => ticks,
+        };
         scale
     }
 
@@ -121,6 +141,22 @@ mod tests {
         let scale = Scale::exact(0.45, 0.5, "s", 5);
         assert_eq!(labels(&scale), ["450", "460", "470", "480", "490", "500"]);
         assert_eq!(scale.unit, "ms");
+    }
+
+    /// Goal: wherever an axis begins and ends it has two ticks at least, linear or logarithmic.
+    #[test]
+    fn an_axis_has_two_ticks() {
+        for count in [1, 2, 3, 4, 5, 10] {
+            for k in 0..400 {
+                let lo = -3.7 + 0.01137 * f64::from(k);
+                for width in [0.3, 0.95, 1.9, 3.9, 4.9, 1234.5] {
+                    let scale = Scale::exact(lo, lo + width, "m", count);
+                    assert!(scale.ticks.len() >= 2, "{lo} {width} {count}: {:?}", scale.ticks);
+                    let scale = Scale::logarithmic((lo, lo + 0.1 * width), 0.02, &[1.0, 2.0, 5.0], count);
+                    assert!(scale.ticks.len() >= 2, "{lo} {width} {count}: {:?}", scale.ticks);
+                }
+            }
+        }
     }
 
     #[test]

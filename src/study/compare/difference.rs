@@ -44,6 +44,9 @@ pub struct FigureDifference {
     pub b: f64,
     /// Difference over the largest figure of the quantity.
     pub relative: f64,
+    /// Second less first, over the size of the first; nothing where that is 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub change: Option<f64>,
 }
 
 /// What each run took.
@@ -291,6 +294,7 @@ fn figures(a: &Recording, b: &Recording) -> Vec<FigureDifference> {
                     a,
                     b,
                     relative: (a - b).abs() / size,
+                    change: (a != 0.0).then(|| (b - a) / a.abs()),
                 }),
         );
     }
