@@ -220,6 +220,33 @@ fn messages_and_keys_are_explained() {
     );
     let (_, effect, _) = slcbeam(here, &["explain", "finite_rotation", "--json"]);
     assert!(serde_json::from_str::<Value>(&effect).unwrap()[0]["meaning"].is_string());
+    for (asked, words) in [
+        ("resistance", ["permeability_m4", "resistance_pa_s_m3"]),
+        ("pumps", ["pressure_pa", "flow_m3_s"]),
+        ("tip_angle", ["tip_angle (column): ", "[rad], a column of history.csv"]),
+        ("harvested_energy_j", ["energy harvested [J]", "summary.json"]),
+        ("port_inlet_of_bladder_1_flow", ["port_NAME_flow (result): ", "flow in"]),
+        (
+            "EI",
+            [
+                "EI (symbol): mass per length, axial and bending stiffness",
+                "E1 in docs/model.md",
+            ],
+        ),
+        ("Re", ["Reynolds number of a tube", "E52"]),
+        ("drained", ["(word): bladders whose pressure", "drained"]),
+        ("viscous", ["in whose meanings it stands", "/"]),
+    ] {
+        let (code, said, err) = slcbeam(here, &["explain", asked]);
+        assert!(
+            code == 0 && words.iter().all(|word| said.contains(word)),
+            "{asked}: {said}{err}"
+        );
+    }
+    let (_, symbol, _) = slcbeam(here, &["explain", "EA", "--json"]);
+    assert_eq!(serde_json::from_str::<Value>(&symbol).unwrap()[0]["symbol"], "EA");
+    let (code, _, err) = slcbeam(here, &["explain", "tip_angel"]);
+    assert!(code == 2 && err.contains("did you mean tip_angle"), "{err}");
     let (code, _, err) = slcbeam(here, &["explain", "finite_rotaton"]);
     assert!(code == 2 && err.contains("did you mean finite_rotation"), "{err}");
 }

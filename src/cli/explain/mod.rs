@@ -1,0 +1,145 @@
+//! `slcbeam explain`: what a message, a key, an effect, a column or a symbol means.
+//!
+//! ```text
+//! pages       what pages say of words, symbols and columns
+//! synonyms    words that people look for
+//! ```
+
+mod pages;
+mod synonyms;
+
+use std::fmt::Write as _;
+use std::process::ExitCode;
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use crate::case::{Meaning, meanings, nearest};
+use crate::error::{Code, Error, Result};
+
+/// Keys that are told of a word at most.
+const MOST: usize = 12;
+
+/// `explain`.
+#[derive(Debug, Args)]
+pub struct ExplainArguments {
+    /// Number of a message, or name of a key, an effect, a column of a result, a word or symbol of the glossary [default: list all numbers]
+    pub what: Option<String>,
+    /// Print as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Prints the section of a message or the meaning of a name; without one, all numbers with their headings.
+pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
+    let Some(what) = &asked.what else {
+        let all = Code::ALL.iter();
+        return answer(
+            asked,
+            all.clone()
+                .map(|c| json!({"code": c.id(), "title": c.title()}))
+                .collect(),
+            all.fold(String::new(), |text, c| text + c.id() + "  " + c.title() + "\n"),
+        );
+    };
+    if let Some(code) = Code::find(what) {
+        return answer(
+            asked,
+            json!({"code": code.id(), "title": code.title(), "text": code.text()}),
+            format!("{} {}\n\n{}\n", code.id(), code.title(), code.text().replace("**", "")),
+        );
+    }
+    let name = what.rsplit('/').next().unwrap_or(what);
+    let all = meanings();
+    let named = |name: &str| all.iter().filter(|m| m.name == name).collect::<Vec<_>>();
+    let mut found = named(name);
+    if found.is_empty() {
+        // a turbine stands under turbines
+        found = named(&format!("{name}s"));
+    }
+    let told = pages::of(name);
+    let mut text = String::new();
+    if found.is_empty() && told.is_empty() {
+        let (how, others) = likely(&all, name);
+        if others.is_empty() {
+            return Err(unknown(&all, what, name));
+        }
+        let _ = writeln!(text, "{name} is no key; {how}");
+        found = others;
+    }
+    for one in &told {
+        let _ = writeln!(text, "{} ({}): {}", one.name, one.kind, one.meaning);
+    }
+    for m in &found {
+        let _ = writeln!(text, "{}: {}", m.place, m.meaning);
+        for inner in inside(&all, m) {
+            let _ = writeln!(text, "  {}: {}", inner.place, inner.meaning);
+        }
+    }
+    let row = |m: &Meaning| json!({"key": m.place, "meaning": m.meaning});
+    let keys = found.iter().map(|m| {
+        let mut told = row(m);
+        told["keys"] = inside(&all, m).map(row).collect();
+        told
+    });
+    let others = told.iter().map(|one| {
+        let mut row = json!({"meaning": one.meaning});
+        row[one.kind] = one.name.as_str().into();
+        row
+    });
+    answer(asked, keys.chain(others).collect(), text)
+}
+
+/// Keys that a word may mean, and how they come to be meant: those of which it is a synonym, in whose names it stands, or in whose meanings.
+fn likely<'m>(all: &'m [Meaning], word: &str) -> (&'static str, Vec<&'m Meaning>) {
+    let keys = synonyms::of(word);
+    let meant = keys.iter().flat_map(|key| all.iter().filter(move |m| m.name == *key));
+    let meant: Vec<&Meaning> = meant.take(MOST).collect();
+    if !meant.is_empty() {
+        return ("what has to do with it:", meant);
+    }
+    let word = word.to_lowercase();
+    let part = |m: &&Meaning| word.len() > 2 && m.name.split('_').any(|part| part == word);
+    let parts: Vec<&Meaning> = all.iter().filter(part).take(MOST).collect();
+    if !parts.is_empty() {
+        return ("keys in whose names it stands:", parts);
+    }
+    let says = |m: &&Meaning| {
+        let text = m.meaning.to_lowercase();
+        let mut words = text.split(|c: char| !c.is_alphanumeric());
+        word.len() > 3 && words.any(|one| one == word)
+    };
+    (
+        "keys in whose meanings it stands:",
+        all.iter().filter(says).take(MOST).collect(),
+    )
+}
+
+fn unknown(all: &[Meaning], what: &str, name: &str) -> Error {
+    let known = all
+        .iter()
+        .map(|m| m.name.as_str())
+        .chain(pages::names())
+        .chain(Code::ALL.iter().map(|c| c.id()));
+    let meant = nearest(name, known).map_or_else(String::new, |n| format!("; did you mean {n}?"));
+    Error::Usage(format!(
+        "explain {what}: neither the number of a message (slcbeam explain lists them), nor a key of a case, nor a column or figure of a \
+         result, nor a word or symbol of docs/glossary.md{meant}"
+    ))
+}
+
+/// Keys and words of what stands at a key, one level down.
+fn inside<'m>(all: &'m [Meaning], of: &'m Meaning) -> impl Iterator<Item = &'m Meaning> {
+    all.iter().filter(|m| {
+        of.objects.iter().any(|object| {
+            m.place.strip_prefix(object.as_str()).is_some_and(|rest| {
+                rest.starts_with(" \"") || rest.strip_prefix('/').is_some_and(|key| !key.contains('/'))
+            })
+        })
+    })
+}
+
+fn answer(asked: &ExplainArguments, json: Value, text: String) -> Result<ExitCode> {
+    super::print(&if asked.json { format!("{json:#}\n") } else { text })?;
+    Ok(ExitCode::SUCCESS)
+}

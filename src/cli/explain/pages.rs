@@ -1,0 +1,153 @@
+//! What pages say of words, symbols and columns of results: rows of their tables.
+
+use crate::discrete::quantities::{Field, Interest, Observable};
+
+/// Words and symbols.
+const GLOSSARY: &str = include_str!("../../../docs/glossary.md");
+/// Files of results, with their columns and keys.
+const DATA: &str = include_str!("../../../docs/data.md");
+
+/// What something is called where it is not a key of a case, and what it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Told {
+    /// What kind of thing it is: `symbol`, `word`, `column`, `figure`, `field`, `result`.
+    pub kind: &'static str,
+    /// Its name.
+    pub name: String,
+    /// Its meaning, with unit and where it stands.
+    pub meaning: String,
+}
+
+impl Told {
+    fn new(kind: &'static str, name: &str, meaning: String) -> Self {
+        Self {
+            kind,
+            name: name.into(),
+            meaning,
+        }
+    }
+}
+
+/// Everything of a name.
+pub fn of(name: &str) -> Vec<Told> {
+    let mut found = quantities(name);
+    if found.is_empty() {
+        found = rows(DATA).filter_map(|row| of_results(&row, name)).collect();
+    }
+    found.extend(rows(GLOSSARY).filter_map(|row| of_glossary(&row, name)));
+    found
+}
+
+/// Names that are exactly known, to find the nearest among.
+pub fn names() -> Vec<&'static str> {
+    let columns = Observable::ALL.iter().map(|one| one.name());
+    let figures = Interest::ALL.iter().map(|one| one.name());
+    columns
+        .chain(figures)
+        .chain(Field::ALL.iter().map(|field| field.name()))
+        .collect()
+}
+
+fn quantities(name: &str) -> Vec<Told> {
+    let column = Observable::named(name).map(|one| {
+        let what = format!("{} [{}], a column of history.csv", one.about(), one.unit());
+        Told::new("column", name, what)
+    });
+    let figure = Interest::named(name).map(|one| {
+        let what = format!("{} [{}], under quantities in summary.json", one.words(), one.unit());
+        Told::new("figure", name, what)
+    });
+    let field = Field::named(name).map(|one| {
+        let what = format!("{} [{}], an array of fields.npz", one.about(), one.unit());
+        Told::new("field", name, what)
+    });
+    [column, figure, field].into_iter().flatten().collect()
+}
+
+/// Cells of the rows of all tables of a page, without headings and rules.
+fn rows(page: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
+    let lines = page
+        .lines()
+        .filter(|line| line.starts_with("| ") && !line.contains("|--"));
+    lines.map(|line| line.trim_matches('|').split(" | ").map(str::trim).collect())
+}
+
+fn of_glossary(row: &[&str], name: &str) -> Option<Told> {
+    let names: Vec<&str> = row.first()?.split([',', ';']).map(str::trim).collect();
+    let place = names.iter().position(|one| *one == name)?;
+    match *row {
+        [_, meaning] => Some(Told::new("word", name, meaning.into())),
+        [_, meaning, unit, tag] => {
+            // of as many parts as there are names each is that of one
+            let part = |text: &str| {
+                let parts: Vec<&str> = text.split([',', ';']).map(str::trim).collect();
+                match parts.len() == names.len() {
+                    true => parts[place].to_owned(),
+                    false => text.to_owned(),
+                }
+            };
+            let mut what = part(meaning);
+            if !unit.is_empty() {
+                what += &format!(" [{}]", part(unit));
+            }
+            if !tag.is_empty() {
+                what += &format!(", {tag} in docs/model.md");
+            }
+            Some(Told::new("symbol", name, what))
+        }
+        _ => None,
+    }
+}
+
+fn of_results(row: &[&str], name: &str) -> Option<Told> {
+    let [first, rest @ ..] = row else { return None };
+    let quoted = first.split('`').skip(1).step_by(2);
+    let own = quoted
+        .map(|text| {
+            text.split_once(" [")
+                .map_or((text, ""), |(own, unit)| (own, unit.trim_end_matches(']')))
+        })
+        .find(|(own, _)| fits(own, name))?;
+    let unit = if own.1.is_empty() {
+        String::new()
+    } else {
+        format!(" [{}]", own.1)
+    };
+    let meaning = rest.join("; ").replace('`', "");
+    Some(Told::new("result", own.0, format!("{meaning}{unit}, see docs/data.md")))
+}
+
+/// Whether a name is that of a row, in which words of capitals stand for names and numbers.
+fn fits(pattern: &str, name: &str) -> bool {
+    let wild = pattern
+        .split('_')
+        .find(|part| !part.is_empty() && part.chars().all(|c| c.is_ascii_uppercase()));
+    let Some(wild) = wild else { return pattern == name };
+    let Some((begin, end)) = pattern.split_once(wild) else {
+        return false;
+    };
+    name.len() > begin.len() + end.len() && name.starts_with(begin) && name.ends_with(end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stand_for_others() {
+        assert!(fits("port_NAME_flow", "port_inlet_of_bladder_1_flow") && !fits("port_NAME_flow", "port_flow"));
+        assert!(fits("max_pressure", "max_pressure") && !fits("max_pressure", "min_pressure"));
+    }
+
+    /// Goal: every symbol and word of the glossary is explained.
+    #[test]
+    fn the_glossary_is_found() {
+        let mut count = 0;
+        for row in rows(GLOSSARY).filter(|row| !["word", "symbol"].contains(&row[0])) {
+            let name = row[0].split([',', ';']).next().unwrap_or_default();
+            assert!(!of(name).is_empty(), "{name}");
+            count += 1;
+        }
+        assert!(count > 80, "{count}");
+    }
+}
