@@ -158,6 +158,25 @@ fn a_failure_says_why_and_warnings_come_first() {
     assert!(painted.contains("\u{1b}[1;31mFAILED"));
 }
 
+/// Goal: powers stand in watts beside the energies of the run.
+#[test]
+fn powers_are_told() {
+    let energy = |last, power| Quantity {
+        last: Some(last),
+        window_power_w: Some(power),
+        ..Quantity::default()
+    };
+    let mut harvested = summary(Status::Finished);
+    let energies = [
+        ("input_energy_j", energy(3.0, 0.0123)),
+        ("harvested_energy_j", energy(1.0, 4.5e-3)),
+    ];
+    harvested.quantities = energies.map(|(name, q)| (name.to_string(), q)).into();
+    let text = render(&harvested, Path::new("out"), true, false, 100);
+    let row = "put in 3.00 J (12.3 mW in the window) · harvested 1.00 J (4.50 mW in the window)";
+    assert!(text.contains(row), "{text}");
+}
+
 #[test]
 fn a_long_path_is_not_cut() {
     let path = "out/".to_string() + &"long/".repeat(20);

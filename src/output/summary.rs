@@ -29,6 +29,7 @@ pub fn to_json(summary: &Summary) -> String {
             window_max_abs: finite(q.window_max_abs),
             window_rms: finite(q.window_rms),
             window: finite(q.window),
+            window_power_w: finite(q.window_power_w),
             final_error: finite(q.final_error),
             window_error: finite(q.window_error),
         };

@@ -148,6 +148,7 @@ impl Figures {
             Source::Energy(_) => Quantity {
                 last: Some(t.last()),
                 window: reached.then(|| t.increment()),
+                window_power_w: (self.window_time > 0.0).then(|| t.increment() / self.window_time),
                 ..Quantity::default()
             },
             Source::Efficiency => Quantity {

@@ -47,6 +47,9 @@ pub struct Quantity {
     /// Increment (energies) over the window; of an efficiency, what was harvested in it over all that was spent in it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<f64>,
+    /// Of energies: mean power over the window [W].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window_power_w: Option<f64>,
     /// Of energies: how far the balance was open over the run, relative to `final`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub final_error: Option<f64>,

@@ -170,6 +170,13 @@ fn a_harvester_shows_turbine_loads_and_efficiency() {
     );
     let tiles = browser.text("document.getElementById('tiles').textContent");
     assert!(tiles.contains("Harvested") && tiles.contains("Efficiency"), "{tiles}");
+    assert!(
+        tiles.contains("Power harvested") && tiles.contains("mean over the last part; put in"),
+        "{tiles}"
+    );
+    let cycles = browser
+        .text("data.history.columns.filter(c => c.group === 'Over the last cycle').map(c => c.label).join('; ')");
+    assert_eq!(cycles, "power put in; power harvested; efficiency");
     let legend = browser.text("document.querySelector('#scene .legend').textContent");
     assert!(legend.contains("Turbine") && legend.contains("Load"), "{legend}");
     // What the ledger says should be there is what is there.
@@ -177,6 +184,42 @@ fn a_harvester_shows_turbine_loads_and_efficiency() {
     let sums = browser.eval(sums);
     let head = |k: usize| sums[k].as_str().map(|s| s.chars().take(4).collect::<String>());
     assert_eq!(head(0), head(1), "{sums}");
+}
+
+/// Goal: what acts stands beside what comes of it, sized over the run itself: a profile of 60 ms is not looked for over minutes. Turn, rise and
+/// powers have tiles of their own.
+#[test]
+fn inputs_stand_beside_outputs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let profile = "{\"flow_m3_s\": {\"table\": {\"times_s\": [0, 0.02, 0.04, 0.06], \"values\": [0, 4e-8, 4e-8, 0], \"interpolation\": \"linear\"}}}";
+    let page = made(
+        folder.path(),
+        &[
+            "run",
+            "cases/pluck.json",
+            "--set",
+            &format!("/network/chains/0/ends/0={profile}"),
+            "--set",
+            "/start={}",
+            "--set",
+            "/time={\"end_s\": 0.06, \"output_interval_s\": 0.001}",
+            "--set",
+            "/step_response={}",
+        ],
+    );
+    let text = std::fs::read_to_string(&page).expect("the page");
+    assert!(text.contains("flow up to 40.0 µl/s"), "its size is that of the run");
+    let mut browser = Browser::start();
+    sound(&mut browser, &page, &["scene", "motion", "histories"]);
+    let labels = browser.text("data.history.columns.filter(c => c.group === 'What acts').map(c => c.label).join('; ')");
+    assert_eq!(labels, "tip: force x; flow into inlet of bladder 1");
+    let largest = browser
+        .number("Math.max(...floats(data.history.columns.find(c => c.label.startsWith('flow into')).values)) * 1e9");
+    assert!((largest - 40.0).abs() < 1e-3, "{largest}");
+    let tiles = browser.text("document.getElementById('tiles').textContent");
+    for tile in ["Turn of the tip", "Rise time"] {
+        assert!(tiles.contains(tile), "{tiles}");
+    }
 }
 
 #[test]

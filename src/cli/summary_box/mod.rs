@@ -218,9 +218,17 @@ fn pressure(summary: &Summary) -> Option<String> {
 
 fn energy(summary: &Summary) -> Option<String> {
     let last = |one: Interest| get(summary, one)?.last;
+    // of what is nothing the power is, too
+    let power = |one: Interest| {
+        let quantity = get(summary, one)?;
+        let power = quantity.window_power_w.filter(|_| quantity.last != Some(0.0))?;
+        Some(format!(" ({} in the window)", shown(power, "W")))
+    };
+    let with_power = |one: Interest| power(one).unwrap_or_default();
     let parts = [
-        last(Interest::InputEnergy).map(|e| format!("put in {}", shown(e, "J"))),
-        last(Interest::HarvestedEnergy).map(|e| format!("harvested {}", shown(e, "J"))),
+        last(Interest::InputEnergy).map(|e| format!("put in {}{}", shown(e, "J"), with_power(Interest::InputEnergy))),
+        last(Interest::HarvestedEnergy)
+            .map(|e| format!("harvested {}{}", shown(e, "J"), with_power(Interest::HarvestedEnergy))),
         last(Interest::Efficiency).map(|e| hold(format!("efficiency {}", percent(e)))),
         get(summary, Interest::Efficiency)
             .and_then(|q| q.window)

@@ -64,8 +64,24 @@ impl History {
         Some((*self.first.get(k)?, *self.last.get(k)?))
     }
 
-    /// Columns with names, units, groups and meanings, and a note where rows were joined.
-    pub fn json(&self) -> Value {
+    /// The instants of its thinned columns [s].
+    pub fn times(&self) -> &[f64] {
+        self.columns.first().map_or(&[], Vec::as_slice)
+    }
+
+    /// A thinned column.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let k = self.names.iter().position(|n| n.0 == name)?;
+        self.columns.get(k).map(Vec::as_slice)
+    }
+
+    /// Whether values stand for the least and the largest of several rows.
+    pub fn joined(&self) -> bool {
+        (self.times().len() as u64) < self.rows || self.stretches > 0
+    }
+
+    /// Columns with names, units, groups and meanings, others behind them, and a note where rows were joined.
+    pub fn json(&self, others: Vec<Value>) -> Value {
         if self.rows == 0 {
             return Value::Null;
         }
@@ -98,7 +114,7 @@ impl History {
                 )
             })
         });
-        json!({"columns": columns.collect::<Vec<_>>(), "note": note, "rows": self.rows})
+        json!({"columns": columns.chain(others).collect::<Vec<_>>(), "note": note, "rows": self.rows})
     }
 }
 

@@ -9,6 +9,8 @@
 //! history     history.csv, thinned to what a screen can show
 //! scene       the drawing: beam, bladders, tubes, ports, loads, ends
 //! signals     functions of time in words
+//! inputs      functions of time as columns beside the history
+//! per_cycle   powers and efficiency over the period that has just passed
 //! run         the page of a run or a cycle
 //! energy_balance       the energy ledger, its entries and their sum
 //! facts       effects, solver, wall time, characteristic numbers in words
@@ -31,10 +33,12 @@ mod facts;
 mod fit;
 mod frames;
 mod history;
+mod inputs;
 mod modes;
 mod pack;
 mod page;
 mod parameters;
+mod per_cycle;
 mod run;
 mod scene;
 mod sense;

@@ -5,7 +5,7 @@ use std::io;
 use serde_json::{Value, json};
 
 use super::history::History;
-use super::{Kind, Page, Place, cycles, energy_balance, facts, frames};
+use super::{Kind, Page, Place, cycles, energy_balance, facts, frames, inputs, per_cycle};
 use crate::error::Result;
 use crate::model::characteristic;
 use crate::output::folder::{CASE, FIELDS, SUMMARY};
@@ -50,7 +50,7 @@ pub fn data(place: &Place) -> Result<Page> {
         }
     };
     page.put("motion", motion);
-    page.put("history", history.json());
+    page.put("history", history.json(beside(place, &history, frequency)));
     match &summary {
         Some(summary) => fill(&mut page, summary, &history),
         None => {
@@ -71,6 +71,17 @@ pub fn data(place: &Place) -> Result<Page> {
         page.put("command", format!("slcbeam run {CASE}"));
     }
     Ok(page)
+}
+
+/// Columns beside those of the history: what acts, and of a driven run what a period brings. A cycle counts its time from the beginning of a
+/// period, which is none of the case's.
+fn beside(place: &Place, history: &History, frequency: Option<f64>) -> Vec<Value> {
+    let case = place.case.as_ref().filter(|_| !place.path(CYCLE).is_file());
+    let inputs = case.map_or_else(Vec::new, |case| {
+        inputs::columns(case, history.times(), history.joined())
+    });
+    let cycles = frequency.map_or_else(Vec::new, |f| per_cycle::columns(history, 1.0 / f));
+    inputs.into_iter().chain(cycles).collect()
 }
 
 fn fill(page: &mut Page, summary: &Summary, history: &History) {
@@ -119,6 +130,25 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     };
     tile("Tip, across", length("tip_u1_m"), "largest deflection u₁ at any time");
     tile("Tip, along", length("tip_u3_m"), "largest displacement u₃ at any time");
+    let angle = largest("tip_angle_rad").map(|x| if x < ROUND_OFF { 0.0 } else { x });
+    let degrees = angle.map_or(String::new(), |x| {
+        format!("; {}°", trimmed(&significant(x.to_degrees(), 3)))
+    });
+    tile(
+        "Turn of the tip",
+        angle.map(|x| quantity(x, "rad", 3)),
+        &format!("largest slope angle at any time{degrees}"),
+    );
+    if let Some(step) = summary.step_response.get("tip_u1_m") {
+        let settles = step
+            .settling_time_5_percent_s
+            .map_or(String::new(), |t| format!("; within 5 % after {}", quantity(t, "s", 3)));
+        tile(
+            "Rise time",
+            step.rise_time_s.map(|t| quantity(t, "s", 3)),
+            &format!("of u₁ at the tip, from 10 to 90 % of its way{settles}"),
+        );
+    }
     let window = summary.quantity("max_pressure_pa").and_then(|q| q.window_max_abs);
     let window = window.map_or("gauge, in any bladder".into(), |p| {
         format!("in any bladder; {} in the last part", quantity(p, "Pa", 3))
@@ -137,6 +167,20 @@ fn tiles(summary: &Summary) -> Vec<Value> {
         "Harvested",
         last("harvested_energy_j").map(|e| quantity(e, "J", 3)),
         "by the turbines",
+    );
+    let power = |name: &str| {
+        summary
+            .quantity(name)
+            .and_then(|q| q.window_power_w)
+            .map(|p| quantity(p, "W", 3))
+    };
+    tile(
+        "Power harvested",
+        power("harvested_energy_j"),
+        &format!(
+            "mean over the last part; put in: {}",
+            power("input_energy_j").unwrap_or_else(|| "unknown".into())
+        ),
     );
     let efficiency = summary.quantity("efficiency");
     let window = efficiency

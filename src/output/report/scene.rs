@@ -38,7 +38,7 @@ pub fn of(case: &Case) -> Option<Value> {
             "outlines": case.section.as_ref().and_then(super::cell::outlines),
         })),
         "wiring": case.bladders.as_ref().and(wiring(case)),
-        "ends": [end(&case.ends.root.resolve(), case.ends.root.form().0), end(&case.ends.tip.resolve(), case.ends.tip.form().0)],
+        "ends": [end(&case.ends.root.resolve(), case.ends.root.form().0, end_s), end(&case.ends.tip.resolve(), case.ends.tip.form().0, end_s)],
         "loads": case.loads.iter().map(|l| load(l, end_s)).collect::<Vec<_>>(),
         "walls": Contact::all(case).iter().map(wall).collect::<Vec<_>>(),
     }))
@@ -73,6 +73,7 @@ fn q(x: f64, unit: &str) -> String {
 /// Chains, tubes, ports and turbines, by indices of bladders and names of junctions.
 fn wiring(case: &Case) -> Option<Value> {
     let found = Wiring::of(case).ok()?;
+    let end_s = case.time.end_s;
     let point = |point: &Point| match *point {
         Point::Bladder(bladder, end) => json!({"bladder": bladder, "outlet": end == BladderEnd::Outlet}),
         Point::Junction(_) => json!({"junction": found.label(*point)}),
@@ -88,8 +89,8 @@ fn wiring(case: &Case) -> Option<Value> {
             ChainEnd::Sealed => json!({"kind": "sealed"}),
             ChainEnd::Connected => json!({"kind": "connected"}),
             ChainEnd::PressurePa(p) => json!({"kind": "pressure", "words": pressure(p)}),
-            ChainEnd::FlowM3S(f) => json!({"kind": "flow", "words": flow(f)}),
-            ChainEnd::VolumeM3(v) => json!({"kind": "flow", "words": volume(v)}),
+            ChainEnd::FlowM3S(f) => json!({"kind": "flow", "words": flow(f, end_s)}),
+            ChainEnd::VolumeM3(v) => json!({"kind": "flow", "words": volume(v, end_s)}),
         });
         json!({"bladders": bladders, "ends": ends.collect::<Vec<_>>(), "valve": valve(&chain.opening)})
     });
@@ -123,8 +124,8 @@ fn wiring(case: &Case) -> Option<Value> {
     let ports = found.ports.iter().map(|p| {
         let (kind, words) = match p.given {
             Given::Pressure(signal) => ("pressure", pressure(signal)),
-            Given::Flow(signal) => ("flow", flow(signal)),
-            Given::Volume(signal) => ("flow", volume(signal)),
+            Given::Flow(signal) => ("flow", flow(signal, end_s)),
+            Given::Volume(signal) => ("flow", volume(signal, end_s)),
         };
         json!({"name": p.name, "at": point(&p.at), "kind": kind, "words": words})
     });
@@ -148,29 +149,29 @@ fn pressure(signal: &Signal) -> String {
 }
 
 /// Flow through a port, in microlitres.
-fn flow(signal: &Signal) -> String {
+fn flow(signal: &Signal, end_s: f64) -> String {
     let scaled = Signal::Product(vec![Signal::Constant(1e9), signal.clone()]);
     match signal {
         Signal::Constant(x) => format!("{} µl/s", significant(x * 1e9, 3)),
-        _ => format!("flow up to {} µl/s", significant(peak(&scaled, 1e3).abs(), 3)),
+        _ => format!("flow up to {} µl/s", significant(peak(&scaled, end_s).abs(), 3)),
     }
 }
 
 /// Volume let in through a port, in microlitres.
-fn volume(signal: &Signal) -> String {
+fn volume(signal: &Signal, end_s: f64) -> String {
     let scaled = Signal::Product(vec![Signal::Constant(1e9), signal.clone()]);
-    format!("syringe, up to {} µl", significant(peak(&scaled, 1e3).abs(), 3))
+    format!("syringe, up to {} µl", significant(peak(&scaled, end_s).abs(), 3))
 }
 
 /// An end: its form, what is held, what drives it, what loads it.
-fn end(resolved: &ResolvedEnd, form: &str) -> Value {
+fn end(resolved: &ResolvedEnd, form: &str, end_s: f64) -> Value {
     let driven = |signal: &Signal, unit: &str| (!is_zero(signal)).then(|| words(signal, unit));
     let motion = |t: &Translation| match t {
         Translation::Displacement(s) => driven(s, "m"),
         Translation::Force(_) => None,
     };
     let force = |t: &Translation| match t {
-        Translation::Force(s) => driven(s, "N").map(|w| json!({"words": w, "sign": peak(s, 1e3).signum()})),
+        Translation::Force(s) => driven(s, "N").map(|w| json!({"words": w, "sign": peak(s, end_s).signum()})),
         Translation::Displacement(_) => None,
     };
     let held = |t: &Translation| matches!(t, Translation::Displacement(_));
