@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 74] = [
+const INDEX: [(&str, &str, &str); 76] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -212,6 +212,16 @@ const INDEX: [(&str, &str, &str); 74] = [
         "the_impedance_of_a_rectangular_duct_is_exact_at_both_ends",
     ),
     ("[E74]", "tests/sloshing.rs", "fluid_swings_along_a_bladder"),
+    (
+        "[E75]",
+        "tests/optimize/cycles.rs",
+        "derivatives_of_a_cycle_are_those_of_differences",
+    ),
+    (
+        "[E76]",
+        "tests/optimize/cycles.rs",
+        "derivatives_of_a_cycle_are_those_of_differences",
+    ),
 ];
 
 #[test]

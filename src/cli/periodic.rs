@@ -6,6 +6,7 @@ use super::arguments::PeriodicArguments;
 use super::uncertain::{self, Uncertain};
 use super::{line, size, terminal};
 use crate::case::Case;
+use crate::case::parameter::Parameter;
 use crate::error::{Error, Result};
 use crate::output::floquet as stability;
 use crate::output::kind::Kind;
@@ -15,8 +16,7 @@ use crate::output::report;
 use crate::results;
 use crate::results::cycles::Cycle;
 use crate::run::floquet;
-use crate::run::periodic::{Settled, record, settle};
-use crate::run::periodic::{scene, subharmonic};
+use crate::run::periodic::{Scene, Settled, record, scene, sensitivity, settle, subharmonic};
 use crate::run::record::Control;
 use crate::run::summary::Status;
 use crate::study::refine::{self, meshes::Meshes};
@@ -54,6 +54,10 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         return Err(Error::Usage(what.into()));
     }
     let uncertain = Uncertain::new(&asked.uncertain, &asked.case, &case, What::Periodic, asked.quiet)?;
+    let parameters = Parameter::all(&case, &asked.sensitivities)?;
+    if !parameters.is_empty() {
+        sensitivity::allowed(&case, &Scene::new(&case, None)?, &parameters)?;
+    }
     let result = asked.place.claim(&case, Kind::Cycle)?;
     let out = result.dir().to_path_buf();
     let bar = line::line(asked.quiet);
@@ -69,20 +73,22 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let case = asked_for.as_ref().map_or(&case, |(chosen, _)| chosen);
     let (scene, cycle, periods) = subharmonic::find(case, asked.periods)?;
     let periods = (asked.periods > 1).then_some(periods);
-    let Settled {
-        case,
-        scene,
-        mut cycle,
-        refined,
-    } = settle(case, scene, cycle)?;
-    let found = floquet::multipliers(&scene, &mut cycle, COUNT);
+    let mut settled = settle(case, scene, cycle)?;
+    let found = floquet::multipliers(&settled.scene, &mut settled.cycle, COUNT);
+    let (case, scene) = (&settled.case, &settled.scene);
     let labels = Labels {
         case_name: case.name.clone(),
         case: case.written(),
         frequency_hz: Some(1.0 / scene.drive.period),
     };
     let mut recorder = FolderRecorder::new(result, labels, Box::new(|_| Control::Continue));
-    let mut outcome = record::record(&case, &scene, &cycle, &mut recorder)?;
+    let mut outcome = match parameters.is_empty() {
+        true => record::record(case, scene, &settled.cycle, &mut recorder)?,
+        false => sensitivity::differentiate(&mut settled, &parameters, &mut recorder)?,
+    };
+    let Settled {
+        case, cycle, refined, ..
+    } = settled;
     outcome.summary.accuracy = asked_for.map(|(_, accuracy)| accuracy);
     let short = outcome.summary.accuracy.as_ref().and_then(refine::warning);
     let ended = outcome.summary.status == Status::Finished;
@@ -120,8 +126,9 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let words = || {
         let figures = files::figures(&outcome.summary);
         let (search, words) = (files::search(&told.cycle), stability::words(&told));
+        let slopes = files::slopes(&outcome.summary);
         let spread = uncertain::below(uncertainty.as_ref());
-        format!("{words}\n{figures}{search}{spread}")
+        format!("{words}\n{figures}{slopes}{search}{spread}")
     };
     super::tell(asked.json, &out, || text, words)?;
     Ok(match outcome.fault {

@@ -96,7 +96,14 @@ impl System {
     /// Discretises a changed case with the effects of this system and its scales of unknowns and equations; `None` when the
     /// unknowns are then others.
     pub fn like(&self, case: &Case) -> Result<Option<Self>> {
-        let mut system = Self::starting(case, self.model.like(case)?, |model| Ok(model.clone()))?;
+        self.like_with(case, |_| ())
+    }
+
+    /// The same of a model that is changed before.
+    pub fn like_with(&self, case: &Case, change: impl FnOnce(&mut Model)) -> Result<Option<Self>> {
+        let mut model = self.model.like(case)?;
+        change(&mut model);
+        let mut system = Self::starting(case, model, |model| Ok(model.clone()))?;
         let same =
             system.layout.differential == self.layout.differential && system.layout.waves() == self.layout.waves();
         system.layout = self.layout.clone();

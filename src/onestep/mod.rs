@@ -14,6 +14,7 @@
 //! | [`options`] | what can be asked |
 //! | [`integrator`] | one accepted step at a time |
 //! | [`step_map`] | a march over a fixed grid and its exact derivative |
+//! | [`forced`] | that derivative by a number of the equations |
 //! | `stages` | Newton's iteration from stage to stage, and the estimate of the error |
 //! | `matrix` | Newton's matrix, its factors, and when they are too old |
 //! | `control` | the size of the next step |
@@ -27,6 +28,7 @@
 mod control;
 mod dense;
 mod equations;
+pub mod forced;
 pub mod integrator;
 mod matrix;
 pub mod options;

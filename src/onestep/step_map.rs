@@ -77,26 +77,26 @@ impl AddAssign for StepMapWork {
 }
 
 /// The matrix of one stage.
-struct Slot {
+pub(super) struct Slot {
     klu: Klu,
     /// Whether it holds factors.
     factored: bool,
     /// `∂F/∂y` at the solution, in the order of the pattern.
     of_y: Vec<f64>,
     /// Rates of differential, values of algebraic unknowns.
-    x: Vec<f64>,
+    pub(super) x: Vec<f64>,
 }
 
 /// A march over a fixed grid.
 pub struct StepMap<D: Dae> {
-    equations: Equations<D>,
-    tableau: Tableau,
-    times: Vec<f64>,
-    mask: Vec<f64>,
+    pub(super) equations: Equations<D>,
+    pub(super) tableau: Tableau,
+    pub(super) times: Vec<f64>,
+    pub(super) mask: Vec<f64>,
     /// Of the start, then of every implicit stage in order of time.
-    slots: Vec<Slot>,
+    pub(super) slots: Vec<Slot>,
     values: Vec<f64>,
-    work: StepMapWork,
+    pub(super) work: StepMapWork,
 }
 
 impl<D: Dae> StepMap<D> {
@@ -281,7 +281,7 @@ impl<D: Dae> StepMap<D> {
     }
 
     /// The matrix that gives rates and algebraic unknowns of the start from its differential ones.
-    fn linearise_start(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), StepError> {
+    pub(super) fn linearise_start(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), StepError> {
         let free: Vec<f64> = self.mask.iter().map(|m| 1.0 - m).collect();
         let seeds = Seeds::Columns {
             y: &free,
@@ -346,10 +346,15 @@ impl<D: Dae> StepMap<D> {
 
     /// `out = -A⁻¹ ∂F/∂y v` of a slot, for every column.
     fn respond(&mut self, slot: usize, v: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        self.answer(slot, v, out);
+    }
+
+    /// `out = A⁻¹ (out - ∂F/∂y v)` of a slot, for every column.
+    pub(super) fn answer(&mut self, slot: usize, v: &[f64], out: &mut [f64]) {
         let n = self.mask.len();
         let slot = &mut self.slots[slot];
         let pattern = self.equations.dae.pattern();
-        out.fill(0.0);
         for (out, v) in out.chunks_mut(n).zip(v.chunks(n)) {
             for (column, v) in v.iter().enumerate().filter(|(_, v)| **v != 0.0) {
                 for entry in pattern.column(column) {

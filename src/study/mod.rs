@@ -9,6 +9,7 @@ pub mod fit;
 pub mod measure;
 pub mod refine;
 pub mod sense;
+pub mod slopes;
 pub mod span;
 pub mod stability;
 pub mod sweep;

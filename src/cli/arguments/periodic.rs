@@ -20,6 +20,9 @@ pub struct PeriodicArguments {
     /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
     #[arg(long, value_name = "REL", conflicts_with = "sweep")]
     pub accuracy: Option<f64>,
+    /// Give derivatives with respect to this number of the case too, repeatable: a JSON pointer, such as /fluid/viscosity_pa_s
+    #[arg(long = "sensitivity", value_name = "POINTER", conflicts_with_all = ["accuracy", "sweep"])]
+    pub sensitivities: Vec<String>,
     /// Uncertain numbers.
     #[command(flatten)]
     pub uncertain: UncertainArguments,

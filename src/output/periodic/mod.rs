@@ -13,6 +13,7 @@ use crate::error::Result;
 use crate::results;
 use crate::results::cycles::{Along, Search, Stability};
 use crate::results::run::Summary;
+use crate::run::sensitivity::figures::Sensitivity;
 use crate::study::stability::Member;
 
 /// Stability and search of a cycle, in its result folder.
@@ -153,6 +154,30 @@ pub fn figures(summary: &Summary) -> String {
         lines.push([words.into(), shown + &open]);
     }
     aligned(&lines, &[0, 1])
+}
+
+/// What one per cent more of each number does to the figures over the period, in words.
+pub fn slopes(summary: &Summary) -> String {
+    let of = |(pointer, by): (&String, &Sensitivity)| {
+        let shown = SHOWN.iter().map(|one| (*one, short(*one), "largest "));
+        let energies = [
+            (Interest::InputEnergy, "energy put in", ""),
+            (Interest::HarvestedEnergy, "energy harvested", ""),
+            (Interest::Efficiency, "efficiency", ""),
+        ];
+        let parts = shown.chain(energies).filter_map(|(one, words, largest)| {
+            let figure = |q: &results::run::Quantity| q.window.or(q.window_max_abs);
+            let value = summary.quantities.get(one.name()).and_then(figure)?;
+            let slope = by.quantities.get(one.name()).and_then(figure)?;
+            let ratio = slope * by.value / value;
+            let sign = if ratio > 0.0 { "+" } else { "" };
+            ratio
+                .is_finite()
+                .then(|| format!("{largest}{words} {sign}{} %", significant(ratio, 3)))
+        });
+        format!("{pointer} +1 %: {}\n", parts.collect::<Vec<_>>().join(", "))
+    };
+    summary.sensitivities.iter().map(of).collect()
 }
 
 /// What the search took, in words.

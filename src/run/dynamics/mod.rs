@@ -1,6 +1,7 @@
 //! One run in time: from a case to samples and a summary.
 
 mod begin;
+mod continued;
 mod faults;
 mod finish;
 mod follow;
@@ -10,6 +11,7 @@ mod switch;
 
 use std::time::Instant;
 
+pub use continued::{Along, go_on};
 use faults::{fault, inconsistent, stalled, too_many_steps};
 use pace::Pace;
 
@@ -20,7 +22,7 @@ use super::method::{self, Integrator, Options};
 use super::observe::Observer;
 use super::record::{Control, Header, Progress, Recorder};
 use super::schedule::{self, Outputs, Stop};
-use super::sensitivity::forward::Forward;
+use super::sensitivity::forward::{Alike, Forward};
 use super::strides::Strides;
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
 use super::wall::Laps;
@@ -54,7 +56,7 @@ pub fn run(case: &Case, recorder: &mut dyn Recorder) -> Result<Outcome> {
 /// # Errors
 /// The recorder's, and [`Error::Usage`](crate::error::Error::Usage) for a number by which there is no derivative.
 pub fn run_with(case: &Case, system: System, by: &[Parameter], recorder: &mut dyn Recorder) -> Result<Outcome> {
-    let (run, dae) = Run::of(case, system, by)?;
+    let (run, dae) = Run::of(case, system, by, None)?;
     run.go(dae, None, recorder)
 }
 
@@ -70,28 +72,16 @@ pub fn run_at(
     instants: &[f64],
     recorder: &mut dyn Recorder,
 ) -> Result<Outcome> {
-    let (mut run, dae) = Run::of(case, system, by)?;
+    let (mut run, dae) = Run::of(case, system, by, None)?;
     run.outputs = Outputs::at(case, instants);
     run.go(dae, None, recorder)
-}
-
-/// Runs a system of the case from consistent values and rates of its scaled unknowns at t = 0.
-pub fn go_on(case: &Case, system: System, y: &[f64], yp: &[f64], recorder: &mut dyn Recorder) -> Result<Outcome> {
-    let (mut run, mut dae) = Run::of(case, system, &[])?;
-    dae.enter_smooth_interval(0.5 * run.stops[0].t);
-    run.prepare(&dae);
-    run.state.copy_from_slice(y);
-    run.rates.copy_from_slice(yp);
-    let header = Observer::header(case, dae.system());
-    let end = run.solve(dae, 0.0, 0, Some(header), recorder)?;
-    Ok(run.finish(end))
 }
 
 /// Goes on with the system of a case from a checkpoint of it; the recorder holds what was recorded before.
 pub fn resume(case: &Case, system: System, checkpoint: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
     checkpoint.fits(case, &system)?;
     let parameters = checkpoint.forward.as_ref().map_or(&[][..], |kept| &kept.parameters);
-    let (run, dae) = Run::of(case, system, parameters)?;
+    let (run, dae) = Run::of(case, system, parameters, None)?;
     run.go(dae, Some(checkpoint), recorder)
 }
 
@@ -129,7 +119,12 @@ enum End {
 }
 
 impl<'a> Run<'a> {
-    fn of(case: &'a Case, system: System, parameters: &'a [Parameter]) -> Result<(Self, BeamDae)> {
+    fn of(
+        case: &'a Case,
+        system: System,
+        parameters: &'a [Parameter],
+        alike: Option<&Alike<'_>>,
+    ) -> Result<(Self, BeamDae)> {
         let laps = Laps::since(Instant::now());
         let interval = case.time.output_interval();
         let characteristic = characteristic::numbers(case, &system.model);
@@ -227,7 +222,7 @@ impl<'a> Run<'a> {
         };
         let mut dae = BeamDae::new(system);
         if !parameters.is_empty() {
-            let (forward, with_neighbours) = Forward::new(case, dae, parameters)?;
+            let (forward, with_neighbours) = Forward::new(case, dae, parameters, alike)?;
             (run.forward, dae) = (Some(forward), with_neighbours);
         }
         Ok((run, dae))

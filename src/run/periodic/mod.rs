@@ -6,10 +6,12 @@
 //! subharmonic  cycles that come back after several periods
 //! record  one period of the cycle as a run
 //! settle  the cycle at a tolerance at which its energies add up
+//! sensitivity  its derivatives by numbers of the case
 //! ```
 
 pub mod record;
 pub mod scene;
+pub mod sensitivity;
 pub mod settle;
 pub mod shoot;
 pub mod subharmonic;

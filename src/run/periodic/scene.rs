@@ -68,6 +68,27 @@ impl Scene {
         })
     }
 
+    /// The system of a changed case in the long run, with the unknowns and scales of this one; none when the unknowns are then others.
+    ///
+    /// # Errors
+    /// The case is not valid.
+    pub fn like(&self, case: &Case) -> Result<Option<System>> {
+        self.system
+            .like_with(case, |model| model.replace_signals(settled, settled))
+    }
+
+    /// What is conserved of a system of the same unknowns, and its amount at the start of its case less that in a state: `w · (y₀ - y)`.
+    pub fn kept(system: &System, case: &Case, y: &[f64]) -> Vec<f64> {
+        let start = guess(system, case);
+        let lost = |w: &Vec<f64>| {
+            w.iter()
+                .zip(start.iter().zip(y))
+                .map(|(w, (start, y))| w * (start - y))
+                .sum()
+        };
+        conserved(system).iter().map(lost).collect()
+    }
+
     /// The equations, looking at signals as they are in the long run.
     pub fn dae(&self) -> BeamDae {
         let mut dae = BeamDae::new(self.system.clone());

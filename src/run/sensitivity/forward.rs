@@ -13,7 +13,7 @@ use crate::dae::{BeamDae, Dae as _, PerturbedSystems};
 use crate::discrete::quantities::Observable;
 use crate::discrete::quantities::probes::{self, ProbeColumn};
 use crate::discrete::quantities::stations;
-use crate::discrete::start;
+use crate::discrete::{System, start};
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::integrate::{IntegrationError, consistent_sensitivities};
 use crate::run::equilibrium::{self, Options};
@@ -43,6 +43,9 @@ pub struct Forward<'a> {
     pub(super) row: Vec<f64>,
 }
 
+/// The system of a changed case in the unknowns and scales of that of the case; none when they are others.
+pub type Alike<'a> = dyn Fn(&Case) -> Result<Option<System>> + 'a;
+
 /// What must be known of the moment before a switch.
 pub struct Before {
     state: Vec<f64>,
@@ -52,11 +55,17 @@ pub struct Before {
 }
 
 impl<'a> Forward<'a> {
-    /// Sensitivities of a run of a case to some of its numbers, and the equations with the changed systems beside them.
+    /// Sensitivities of a run of a case to some of its numbers, and the equations with the changed systems beside them, which are `alike`
+    /// where that is not what a case has by itself.
     ///
     /// # Errors
     /// [`Error::Usage`] when a change of a number changes the unknowns or the number of switching times.
-    pub fn new(case: &Case, dae: BeamDae, parameters: &'a [Parameter]) -> Result<(Self, BeamDae)> {
+    pub fn new(
+        case: &Case,
+        dae: BeamDae,
+        parameters: &'a [Parameter],
+        alike: Option<&Alike<'_>>,
+    ) -> Result<(Self, BeamDae)> {
         let (mut perturbed, mut all_cases, mut all_stops) = (vec![], vec![], vec![]);
         let own = schedule::stops(case, &dae.system().model);
         for parameter in parameters {
@@ -67,7 +76,7 @@ impl<'a> Forward<'a> {
                 ))
             };
             let like = |case: &Case| {
-                let system = dae.system().like(case)?;
+                let system = alike.map_or_else(|| dae.system().like(case), |alike| alike(case))?;
                 system.ok_or_else(|| refuse("changes which unknowns there are"))
             };
             let [a, b, c, d] = STEPS.map(|(step, _)| parameter.changed(case, parameter.value * (1.0 + step * CHANGE)));
@@ -146,6 +155,12 @@ impl<'a> Forward<'a> {
             })?;
         }
         Ok(())
+    }
+
+    /// Sensitivities at t = 0 of the differential unknowns, where they are known.
+    pub fn begin_from(&mut self, dae: &mut BeamDae, s: &[Vec<f64>]) {
+        self.look(dae, 0);
+        self.s.clone_from_slice(s);
     }
 
     /// Completes the sensitivities at a consistent state.

@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 use crate::run::dynamics;
 use crate::run::equilibrium::{self, Options};
 use crate::run::record::{Control, Header, Progress, Recorder};
+use crate::study::slopes;
 use crate::study::sweep::pool;
 
 /// What a case gives.
@@ -44,8 +45,7 @@ pub fn simulate(problem: &Problem, values: &[f64], jobs: usize) -> Result<Simula
 fn run(problem: &Problem, values: &[f64], instants: &[f64]) -> Result<Vec<Row>> {
     let case = problem.with(values)?;
     // effects stay those of the case itself: a sum of squares must not jump where another would be chosen
-    let own = System::new(&problem.case)?.like(&case)?;
-    let system = own.map_or_else(|| System::new(&case), Ok)?;
+    let system = slopes::alike_or_own(&case, Some(&System::new(&problem.case)?))?;
     let parameters = problem.parameters(values);
     let mut recorder = Rows {
         problem,

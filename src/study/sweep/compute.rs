@@ -6,21 +6,22 @@ use super::plan::What;
 use super::row::Found;
 use crate::case::Case;
 use crate::discrete::System;
+
 use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::run::dynamics::{self, Outcome};
-use crate::run::equilibrium::{self, Options};
-use crate::run::floquet::{self, Stability};
+use crate::run::equilibrium::{self, Options, Path};
+use crate::run::floquet::{self, Floquet, Stability};
 use crate::run::modes;
 use crate::run::periodic::{Scene, Settled, record, settle, shoot};
-use crate::run::record::{Control, Progress, Unrecorded};
+use crate::run::record::{Column, Control, Progress, Unrecorded};
 use crate::run::summary::{Accuracy, Quantity, Status, Summary};
 use crate::run::{known, periodic};
 use crate::study::refine::{self, meshes, numbers};
 use crate::study::target;
 
 /// Modes told, those lowest.
-const MODES: usize = 6;
+pub const MODES: usize = 6;
 /// Modes looked for at most, where few of the slowest swing.
 const MOST_MODES: usize = 384;
 /// Multipliers looked at.
@@ -86,7 +87,7 @@ pub fn run(case: &Case, accuracy: Option<f64>, stop: &dyn Fn() -> bool) -> Resul
 }
 
 /// What a summary tells.
-fn of_run(summary: &Summary) -> Found {
+pub fn of_run(summary: &Summary) -> Found {
     let mut found = Found {
         status: summary.status,
         reason: summary.reason.clone(),
@@ -149,33 +150,7 @@ fn cycle(case: &Case, ask: Ask) -> Result<Found> {
     let stability = floquet::multipliers(&scene, &mut cycle, MULTIPLIERS);
     let outcome = record::record(&case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?;
     let summary = &outcome.summary;
-    let mut found = Found {
-        steps: Some(cycle.search.work.steps),
-        status: summary.status,
-        reason: summary.reason.clone(),
-        ..empty()
-    };
-    let period = scene.drive.period;
-    found.put("period_s", period);
-    found.put(
-        "stable",
-        f64::from(u8::from(stability.verdict.stability != Stability::Unstable)),
-    );
-    found.put("growth_per_s", stability.multipliers.first().map(|m| m.growth_per_s));
-    for (name, quantity) in &summary.quantities {
-        for (figure, value) in quantity.figures().filter(|(figure, _)| figure.starts_with("window")) {
-            found.put(format!("{name}.{figure}"), value);
-        }
-        found.put(format!("{name}.window_error"), quantity.window_error);
-    }
-    for (energy, power) in [
-        (Interest::HarvestedEnergy, "harvested_power_w"),
-        (Interest::InputEnergy, "input_power_w"),
-    ] {
-        let quantity = summary.quantities.get(energy.name());
-        found.put(format!("{power}.mean"), quantity.and_then(|q| Some(q.window? / period)));
-        found.put(format!("{power}.mean_error"), quantity.and_then(|q| q.window_error));
-    }
+    let mut found = of_cycle(summary, scene.drive.period, cycle.search.work.steps, Some(&stability));
     if let Some((_, accuracy)) = &refined {
         reached(&mut found, accuracy, &|name| name.into());
     } else if ask.meshes && summary.status == Status::Finished {
@@ -185,6 +160,40 @@ fn cycle(case: &Case, ask: Ask) -> Result<Found> {
     }
     found.warn(&summary.warnings);
     Ok(found)
+}
+
+/// Energies whose mean powers over a cycle are told.
+pub const POWERS: [(Interest, &str); 2] = [
+    (Interest::HarvestedEnergy, "harvested_power_w.mean"),
+    (Interest::InputEnergy, "input_power_w.mean"),
+];
+
+/// What the summary of a cycle tells, over its period [s], and its stability, where that is known.
+pub fn of_cycle(summary: &Summary, period: f64, steps: u64, stability: Option<&Floquet>) -> Found {
+    let mut found = Found {
+        steps: Some(steps),
+        status: summary.status,
+        reason: summary.reason.clone(),
+        ..empty()
+    };
+    found.put("period_s", period);
+    if let Some(all) = stability {
+        let stable = all.verdict.stability != Stability::Unstable;
+        found.put("stable", f64::from(u8::from(stable)));
+        found.put("growth_per_s", all.multipliers.first().map(|m| m.growth_per_s));
+    }
+    for (name, quantity) in &summary.quantities {
+        for (figure, value) in quantity.figures().filter(|(figure, _)| figure.starts_with("window")) {
+            found.put(format!("{name}.{figure}"), value);
+        }
+        found.put(format!("{name}.window_error"), quantity.window_error);
+    }
+    for (energy, power) in POWERS {
+        let quantity = summary.quantities.get(energy.name());
+        found.put(power, quantity.and_then(|q| Some(q.window? / period)));
+        found.put(format!("{power}_error"), quantity.and_then(|q| q.window_error));
+    }
+    found
 }
 
 /// Errors of an accuracy that was asked for.
@@ -227,6 +236,25 @@ fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
     })?;
     let system = equilibrium::system(case, options.at_s)?;
     let columns = equilibrium::columns(&system);
+    let mut found = of_path(&columns, &path);
+    let key = |name: &str| {
+        let column = columns.iter().find(|column| column.name == name);
+        column.map_or_else(|| name.into(), |column| column.key())
+    };
+    if let Some((_, accuracy)) = &refined {
+        reached(&mut found, accuracy, &key);
+    } else if ask.meshes && path.fault.is_none() {
+        let here = numbers::of_path(case, &columns, &path)?;
+        let by_mesh = meshes::judge(case, &here, &mut of)?;
+        off(&mut found, &by_mesh, &key);
+    }
+    found.warn(&known::at_rest(case, &system));
+    found.warn(&path.warnings());
+    Ok(found)
+}
+
+/// What the last state of a path tells.
+pub fn of_path(columns: &[Column], path: &Path) -> Found {
     let mut found = Found {
         steps: Some(path.work.iterations),
         ..empty()
@@ -243,20 +271,7 @@ fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
         found.put("stable", stability.map(|s| f64::from(u8::from(s.unstable == 0))));
         found.put("unstable_modes", stability.map(|s| s.unstable as f64));
     }
-    let key = |name: &str| {
-        let column = columns.iter().find(|column| column.name == name);
-        column.map_or_else(|| name.into(), |column| column.key())
-    };
-    if let Some((_, accuracy)) = &refined {
-        reached(&mut found, accuracy, &key);
-    } else if ask.meshes && path.fault.is_none() {
-        let here = numbers::of_path(case, &columns, &path)?;
-        let by_mesh = meshes::judge(case, &here, &mut of)?;
-        off(&mut found, &by_mesh, &key);
-    }
-    found.warn(&known::at_rest(case, &system));
-    found.warn(&path.warnings());
-    Ok(found)
+    found
 }
 
 /// Modes about the start of a case, so many that six of them swing, as far as there are so many; and what was looked for.
@@ -304,11 +319,22 @@ fn small(case: &Case, ask: Ask) -> Result<Found> {
     if ask.meshes && refined.is_none() {
         modes::compare_meshes(case, None, &plan, &mut all);
     }
+    let mut found = of_modes(&all);
+    if let Some((_, accuracy)) = &refined {
+        found.warn(refine::warning(accuracy).as_slice());
+        let worst = accuracy.quantities.values().filter_map(|estimate| estimate.total);
+        found.put("largest_error", worst.reduce(f64::max));
+    }
+    found.warn(&known::at_rest(case, &System::new(case)?));
+    found.warn(all.missing().as_slice());
+    Ok(found)
+}
+
+/// What modes tell: the lowest that swing.
+pub fn of_modes(all: &modes::Modes) -> Found {
     let mut found = empty();
-    found.put(
-        "stable",
-        f64::from(u8::from(!all.modes.iter().any(|mode| mode.kind.grows()))),
-    );
+    let stable = !all.modes.iter().any(|mode| mode.kind.grows());
+    found.put("stable", f64::from(u8::from(stable)));
     for (k, mode) in lowest(&all.modes)
         .into_iter()
         .map(|place| &all.modes[place])
@@ -324,12 +350,5 @@ fn small(case: &Case, ask: Ask) -> Result<Found> {
         found.put(format!("{name}.damping_ratio.error"), mode.rate_error());
         found.put(format!("{name}.growth_per_s"), mode.s.re);
     }
-    if let Some((_, accuracy)) = &refined {
-        found.warn(refine::warning(accuracy).as_slice());
-        let worst = accuracy.quantities.values().filter_map(|estimate| estimate.total);
-        found.put("largest_error", worst.reduce(f64::max));
-    }
-    found.warn(&known::at_rest(case, &System::new(case)?));
-    found.warn(all.missing().as_slice());
-    Ok(found)
+    found
 }

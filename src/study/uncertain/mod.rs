@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! samples  which values sample number k has
-//! slopes   derivatives of the figures about the means
+//! first    derivatives of the figures about the means
 //! spread   what the figures of all samples tell
 //! indices  which share of a variance is whose (Sobol)
 //! ```
@@ -10,18 +10,18 @@
 //! Numbers are taken as independent of each other. Samples are points of Sobol's sequence, its bits shifted by the seed, so that
 //! the same seed gives the same spread on every machine.
 
+pub mod first;
 pub mod indices;
 pub mod samples;
-pub mod slopes;
 pub mod spread;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use first::{Slopes, slopes};
 pub use indices::Index;
 pub use samples::Plan;
-pub use slopes::{Slopes, slopes};
 pub use spread::judge;
 
 /// What uncertain numbers leave open of the figures of a case.

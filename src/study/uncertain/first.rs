@@ -1,0 +1,47 @@
+//! Derivatives of the figures about the means.
+
+use std::collections::BTreeMap;
+
+use crate::case::Case;
+use crate::case::parameter::Parameter;
+use crate::run::summary::Status;
+use crate::study::slopes::{self, Gathered};
+use crate::study::sweep::plan::What;
+
+/// Derivatives by figure, each by the numbers in their order; or why there are none.
+pub type Slopes = Result<slopes::Slopes, String>;
+
+/// Derivatives of the figures of a case by each of its numbers: exact, but by differences of cycles where a number moves their period.
+/// `difference` is told which number, and gives differences of figures over a step of it.
+pub fn slopes(
+    case: &Case,
+    what: What,
+    pointers: &[String],
+    stop: &dyn Fn() -> bool,
+    difference: &dyn Fn(usize) -> Option<BTreeMap<String, f64>>,
+) -> Slopes {
+    let exact = || {
+        let parameters = Parameter::all(case, pointers)?;
+        if what == What::Periodic && slopes::check(case, what, &parameters).is_err() {
+            return Ok(by_differences(pointers.len(), difference));
+        }
+        let (found, slopes) = slopes::slopes(case, what, &parameters, None, stop)?;
+        if found.status == Status::Finished {
+            return Ok(Ok(slopes));
+        }
+        let why = found.reason.unwrap_or_else(|| "the run did not finish".into());
+        Ok(Err(format!("the case about the means, with derivatives: {why}")))
+    };
+    exact().unwrap_or_else(|error: crate::error::Error| Err(error.to_string().replace("--sensitivity ", "")))
+}
+
+fn by_differences(count: usize, difference: &dyn Fn(usize) -> Option<BTreeMap<String, f64>>) -> Slopes {
+    let mut all = Gathered::new(count);
+    for k in 0..count {
+        let Some(found) = difference(k) else {
+            return Err("a cycle beside the means was not found".into());
+        };
+        found.into_iter().for_each(|(name, slope)| all.put(k, name, slope));
+    }
+    Ok(all.whole())
+}

@@ -1,0 +1,3 @@
+//! Numbers that are sought: derivatives of cycles.
+
+mod cycles;
