@@ -205,6 +205,7 @@ fn commands_are_found() {
         "merge",
         "fit",
         "sense",
+        "optimize",
         "new",
         "report",
         "export",

@@ -19,6 +19,7 @@ mod measure;
 mod merge;
 mod modes;
 mod new;
+mod optimize;
 mod paper;
 mod periodic;
 mod place;
@@ -91,6 +92,7 @@ fn act(command: &Command, began: Instant) -> Result<ExitCode> {
         Command::Merge(asked) => merge::merge(asked),
         Command::Fit(asked) => fit::fit(asked),
         Command::Sense(asked) => sense::sense(asked),
+        Command::Optimize(asked) => optimize::optimize(asked),
         Command::Compare(asked) => compare::compare(asked),
         Command::Modes(asked) => modes::modes(asked),
         Command::Export(asked) => export::export(asked),

@@ -93,6 +93,7 @@ codes! {
     Fit = "W029", "A fit that tells less than it seems.";
     UnexplainedPressures = "W032", "Pressures that the loads do not explain.";
     StateAside = "W033", "Loads whose path leads to another state.";
+    Optimum = "W035", "A best that may be none.";
 }
 
 impl Code {

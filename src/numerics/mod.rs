@@ -12,6 +12,7 @@
 //! | [`regression`], [`student`] | least squares with covariance, and intervals by Student's distribution |
 //! | [`levenberg`] | nonlinear least squares between bounds |
 //! | [`inverse`] | linear problems whose answer may not be told by their data: what is, and how surely |
+//! | [`sqp`] | least values between bounds under inequalities |
 //! | [`chance`], [`sobol`] | numbers by chance, and points that fill a cube evenly |
 //! | [`normal`] | quantiles of the normal distribution |
 //! | [`krylov`] | linear systems and eigenvalues of a map known only by what it does |
@@ -31,6 +32,7 @@ pub mod regression;
 pub mod scalar;
 pub mod sets;
 pub mod sobol;
+pub mod sqp;
 pub mod student;
 
 pub use dual::Dual;

@@ -34,11 +34,13 @@ pub enum Kind {
     Fit,
     /// `sense`.
     Sense,
+    /// `optimize`.
+    Optimum,
 }
 
 impl Kind {
     /// All of them; a cycle before the run in its folder, many designs before what has a `sweep.json` too.
-    const ALL: [Self; 12] = [
+    const ALL: [Self; 13] = [
         Self::Cycle,
         Self::Designs,
         Self::Run,
@@ -51,6 +53,7 @@ impl Kind {
         Self::Sweep,
         Self::Fit,
         Self::Sense,
+        Self::Optimum,
     ];
 
     /// Name in the page, command, and sign.
@@ -68,6 +71,7 @@ impl Kind {
             Self::Designs => ["designs", "sweep", "plan.json"],
             Self::Fit => ["fit", "fit", "fit.json"],
             Self::Sense => ["sense", "sense", "sense.json"],
+            Self::Optimum => ["optimum", "optimize", "optimum.json"],
         }
     }
 
@@ -108,6 +112,7 @@ impl Kind {
                 "parallel.svg",
             ],
             Self::Fit => &["fit.csv", "fit.svg", "fitted-case.json"],
+            Self::Optimum => &["designs.csv", "optimum.svg", "optimum-case.json"],
         };
         [self.sign()].into_iter().chain(own.iter().copied()).collect()
     }

@@ -19,6 +19,7 @@
 //! equilibrium  path.csv, shapes.csv, equilibrium.json, path.svg, table
 //! fit       fit.json, fit.csv, fit.svg, fitted-case.json, and their words
 //! floquet   floquet.csv, floquet.json, floquet.svg; map.csv, map.json, map.svg, and their words
+//! optimum   optimum.json, designs.csv, optimum.svg, optimum-case.json, and their words
 //! periodic  cycle.json; sweep.csv, sweep.json, sweep.svg, and their words
 //! sense     sense.csv, sensors.csv, sense.json, sense.svg, table and sentences
 //! study     study.csv, study.json, study.svg, table and sentence
@@ -54,6 +55,7 @@ pub mod machine;
 pub mod modes;
 pub mod npz;
 pub mod numbers;
+pub mod optimum;
 pub mod periodic;
 pub mod pictures;
 pub mod plot;

@@ -11,6 +11,7 @@
 //! | [`sweep`] | `plan.json` and `sweep.json` of `slcbeam sweep` |
 //! | [`uncertainty`] | `uncertainty.json`, beside the result of any command that has figures |
 //! | [`fit`] | `fit.json`, what `compare --json` prints of a run over data |
+//! | [`optimum`] | `optimum.json` |
 //! | [`verify`] | a row of what `verify --json` prints |
 //! | [`provenance`] | what made a result |
 //! | [`ordered`] | numbers by name, in an order of their own |
@@ -22,6 +23,7 @@ pub mod cycles;
 pub mod equilibrium;
 pub mod fit;
 pub mod modes;
+pub mod optimum;
 pub mod ordered;
 pub mod provenance;
 pub mod run;

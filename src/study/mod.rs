@@ -7,6 +7,7 @@ pub mod data;
 pub mod effects;
 pub mod fit;
 pub mod measure;
+pub mod optimize;
 pub mod refine;
 pub mod sense;
 pub mod slopes;

@@ -3,10 +3,26 @@
 use serde::{Deserialize, Serialize};
 
 use super::sweep::vary::{check_pointer, numbers};
+use crate::case::parameter::{Parameter, with};
+use crate::case::{Case, is_below};
 use crate::error::{Error, Result};
+use crate::numerics::sobol::{self, Sobol};
+
+/// What names a number that is sought.
+const OPTION: &str = "--vary";
 
 /// Ratio of the bounds from which on a number is sought by its logarithm.
 const DECADE: f64 = 10.0;
+
+/// One of two bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bound {
+    /// The lower.
+    Low,
+    /// The upper.
+    High,
+}
 
 /// A number that is sought, and where.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,4 +94,68 @@ impl Span {
     pub fn holds(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
+}
+
+/// Values at places between the bounds; none is exactly 0, where a number has no size to differ by.
+pub fn values(spans: &[Span], places: &[f64]) -> Vec<f64> {
+    let value = |(span, place): (&Span, &f64)| {
+        let (value, least) = (span.value(*place), 1e-6 * (span.high - span.low));
+        match value.abs() < least {
+            true if span.high > least => least,
+            true => -least,
+            false => value,
+        }
+    };
+    spans.iter().zip(places).map(value).collect()
+}
+
+/// Values to begin with: those of the case, or the middle of the bounds where these do not hold them. `set` are pointers to what is set
+/// besides.
+///
+/// # Errors
+/// [`Error::Usage`] for what is no number of the model, and for two that would be set at once.
+pub fn begin<'a>(case: &Case, spans: &'a [Span], set: impl Iterator<Item = &'a str>) -> Result<Vec<f64>> {
+    let all: Vec<&str> = spans.iter().map(|span| span.pointer.as_str()).chain(set).collect();
+    for (k, pointer) in all.iter().enumerate() {
+        if let Some(other) = all[..k]
+            .iter()
+            .find(|other| is_below(pointer, other) || is_below(other, pointer))
+        {
+            return Err(Error::Usage(format!(
+                "{pointer} and {other} would be set at once; leave one of them out"
+            )));
+        }
+    }
+    let start = |span: &Span| {
+        let find = |case: &Case| Ok(Parameter::find_as(OPTION, case, &span.pointer)?.value);
+        let own = Parameter::number(OPTION, case, &span.pointer)?.value;
+        let value = match own == 0.0 {
+            // one that is 0 has no size to differ by, but another value has
+            true => {
+                with(case, &[(&span.pointer, span.value(0.5))]).map_or_else(|_| find(case), |middle| find(&middle))?
+            }
+            false => own,
+        };
+        Ok(if span.holds(value) { value } else { span.value(0.5) })
+    };
+    spans.iter().map(start).collect()
+}
+
+/// Places between the bounds from which to search: that of the values to begin with, then those of Sobol's sequence.
+///
+/// # Errors
+/// [`Error::Usage`] for several in more directions than the sequence has.
+pub fn places(spans: &[Span], begin: &[f64], count: usize) -> Result<Vec<Vec<f64>>> {
+    let count = count.max(1);
+    if count > 1 && spans.len() > sobol::MOST {
+        let what = format!("--starts: several are for {} numbers at most", sobol::MOST);
+        return Err(Error::Usage(what));
+    }
+    let own = spans.iter().zip(begin).map(|(span, value)| span.place(*value));
+    let mut all = vec![own.collect()];
+    let axes: Vec<Sobol> = (0..spans.len().min(sobol::MOST)).map(Sobol::along).collect();
+    for k in 1..count {
+        all.push(axes.iter().map(|axis| axis.share(k as u32 - 1, 0)).collect());
+    }
+    Ok(all)
 }

@@ -1,3 +1,6 @@
-//! Numbers that are sought: derivatives of cycles.
+//! Numbers that are sought: derivatives of cycles, and `slcbeam optimize`.
 
+mod best;
+mod common;
 mod cycles;
+mod refused;

@@ -3,6 +3,7 @@
 mod at_rest;
 mod fit;
 mod map;
+mod optimize;
 mod periodic;
 mod run;
 mod sense;
@@ -25,10 +26,11 @@ use super::schema::SchemaArguments;
 pub use at_rest::{EquilibriumArguments, ModesArguments};
 pub use fit::{CompareArguments, FitArguments, FittedThrough};
 pub use map::MapArguments;
+pub use optimize::OptimizeArguments;
 pub use periodic::PeriodicArguments;
 pub use run::RunArguments;
 pub use sense::SenseArguments;
-pub use sweep::{MergeArguments, Script, SweepArguments};
+pub use sweep::{MergeArguments, Script, SweepArguments, Through};
 pub use uncertain::UncertainArguments;
 
 /// Elastic beams with fluid-filled bladders joined by slender tubes: dynamics with error control.
@@ -72,6 +74,8 @@ pub enum Command {
     Fit(FitArguments),
     /// Find loads from measured pressures of bladders at rest, with bands; what pressures tell, which to measure
     Sense(SenseArguments),
+    /// Find the numbers of a case between bounds with which a figure is largest or least, under limits to others
+    Optimize(OptimizeArguments),
     /// Compare two result folders: error norms of every field and quantity, cost ratio; or a run with measured data
     Compare(CompareArguments),
     /// Write a result in other formats: tables of its fields (CSV), surfaces that ParaView opens (VTK)
@@ -110,6 +114,7 @@ impl Command {
             Self::Merge(a) => a.json,
             Self::Fit(a) => a.json,
             Self::Sense(a) => a.json,
+            Self::Optimize(a) => a.json,
             Self::Compare(a) => a.json,
             Self::Mapping(a) => a.json,
             Self::Verify(a) => a.json,

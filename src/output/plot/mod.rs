@@ -38,6 +38,7 @@ pub mod loadpath;
 pub mod measured;
 pub mod modes;
 pub mod multipliers;
+pub mod optimum;
 pub mod overlay;
 pub mod pressure;
 pub mod sensed;

@@ -17,7 +17,7 @@
 //! parameters  the case as a table, described by its schema
 //! sheet       CSV files as tables
 //! warnings    what to know first, in words
-//! equilibrium, modes, studies, cycles, designs, fit, sense   the pages of the other commands
+//! equilibrium, modes, studies, cycles, designs, fit, sense, optimum   the pages of the other commands
 //! vendor      uPlot, which draws histories
 //! ```
 //!
@@ -35,6 +35,7 @@ mod frames;
 mod history;
 mod inputs;
 mod modes;
+mod optimum;
 mod pack;
 mod page;
 mod parameters;
@@ -105,6 +106,7 @@ fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
         Kind::Designs => designs::data(&place)?,
         Kind::Fit => fit::data(&place)?,
         Kind::Sense => sense::data(&place)?,
+        Kind::Optimum => optimum::data(&place)?,
     };
     if kind.files().contains(&UNCERTAINTY) && place.path(UNCERTAINTY).is_file() {
         let found = place.result::<Uncertainty>(UNCERTAINTY)?.result;

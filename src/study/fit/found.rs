@@ -6,6 +6,7 @@ use super::problem::{Drive, Through};
 use super::robust::Loss;
 use crate::run::null;
 use crate::study::data::Match;
+pub use crate::study::span::Bound;
 
 /// A fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,16 +79,6 @@ pub struct Estimate {
     pub at_bound: Option<Bound>,
     /// How far it would move on a finer mesh with a tenth of the tolerance.
     pub finer_change: Option<f64>,
-}
-
-/// One of two bounds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Bound {
-    /// The lower.
-    Low,
-    /// The upper.
-    High,
 }
 
 /// A column of the data beside its quantity.

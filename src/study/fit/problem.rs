@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::robust::Loss;
+use crate::case::nearest;
 use crate::case::parameter::{Parameter, with};
 use crate::case::schema::{Case, Thinning};
-use crate::case::{is_below, nearest};
 use crate::discrete::System;
 use crate::discrete::quantities::Observable;
 use crate::error::{Error, Result};
@@ -13,10 +13,7 @@ use crate::run::equilibrium;
 use crate::run::observe::Observer;
 use crate::study::data::matching::Named;
 use crate::study::data::{Match, Matched, Table, matching, units};
-use crate::study::span::Span;
-
-/// What names a number that is sought.
-const OPTION: &str = "--vary";
+use crate::study::span::{self, Span};
 
 /// What the case goes through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -124,7 +121,12 @@ impl Problem {
     /// # Errors
     /// Everything that does not fit, before anything is computed.
     pub fn new(case: &Case, table: &Table, asked: &Asked) -> Result<Self> {
-        let start = starts(case, &asked.spans, &asked.drives)?;
+        if asked.spans.is_empty() {
+            let what = "nothing to fit: --vary POINTER=LOW:HIGH, such as /beam/young_modulus_pa=1e5:1e7";
+            return Err(Error::Usage(what.into()));
+        }
+        let set = asked.drives.iter().map(|drive| drive.pointer.as_str());
+        let start = span::begin(case, &asked.spans, set)?;
         let mut case = case.clone();
         case.time.history = Thinning::All;
         let names = asked.matches.iter().map(|one| one.placed(&mut case));
@@ -231,17 +233,9 @@ impl Problem {
         self.changes(values).map(parameter).collect()
     }
 
-    /// Values at places between the bounds; none is exactly 0, where a number has no size to differ by.
+    /// Values at places between the bounds.
     pub fn values(&self, places: &[f64]) -> Vec<f64> {
-        let value = |(span, place): (&Span, &f64)| {
-            let (value, least) = (span.value(*place), 1e-6 * (span.high - span.low));
-            match value.abs() < least {
-                true if span.high > least => least,
-                true => -least,
-                false => value,
-            }
-        };
-        self.spans.iter().zip(places).map(value).collect()
+        span::values(&self.spans, places)
     }
 }
 
@@ -255,39 +249,6 @@ fn columns(case: &Case, through: Through) -> Result<Vec<Named>> {
         .into_iter()
         .map(|column| (column.name, column.unit.into()))
         .collect())
-}
-
-/// Values to begin with: those of the case, or the middle of the bounds where these do not hold them.
-fn starts(case: &Case, spans: &[Span], drives: &[Drive]) -> Result<Vec<f64>> {
-    if spans.is_empty() {
-        let what = "nothing to fit: --vary POINTER=LOW:HIGH, such as /beam/young_modulus_pa=1e5:1e7";
-        return Err(Error::Usage(what.into()));
-    }
-    let set = drives.iter().map(|drive| drive.pointer.as_str());
-    let all: Vec<&str> = spans.iter().map(|span| span.pointer.as_str()).chain(set).collect();
-    for (k, pointer) in all.iter().enumerate() {
-        if let Some(other) = all[..k]
-            .iter()
-            .find(|other| is_below(pointer, other) || is_below(other, pointer))
-        {
-            return Err(Error::Usage(format!(
-                "{pointer} and {other} would be set at once; leave one of them out"
-            )));
-        }
-    }
-    let start = |span: &Span| {
-        let find = |case: &Case| Ok(Parameter::find_as(OPTION, case, &span.pointer)?.value);
-        let own = Parameter::number(OPTION, case, &span.pointer)?.value;
-        let value = match own == 0.0 {
-            // one that is 0 has no size to differ by, but another value has
-            true => {
-                with(case, &[(&span.pointer, span.value(0.5))]).map_or_else(|_| find(case), |middle| find(&middle))?
-            }
-            false => own,
-        };
-        Ok(if span.holds(value) { value } else { span.value(0.5) })
-    };
-    spans.iter().map(start).collect()
 }
 
 /// Instants of the rows, none after the end of the run.

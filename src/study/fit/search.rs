@@ -12,7 +12,7 @@ use super::robust::Loss;
 use super::simulate::{Simulated, simulate};
 use crate::error::{Error, Result};
 use crate::numerics::levenberg::{Minimum, minimise};
-use crate::numerics::sobol::{self, Sobol};
+use crate::study::span;
 use crate::study::sweep::pool;
 
 /// Steps of a search at most.
@@ -84,7 +84,7 @@ impl<'a> Search<'a> {
     /// # Errors
     /// The case cannot be simulated at any of them.
     pub fn go(&self) -> Result<Reached> {
-        let places = self.starts()?;
+        let places = span::places(&self.problem.spans, &self.problem.start, self.asked.starts)?;
         let (mut sigmas, given) = self.first_noise();
         let mut weights = vec![1.0; sigmas.len()];
         let numbers: Vec<usize> = (0..places.len()).collect();
@@ -144,25 +144,6 @@ impl<'a> Search<'a> {
             starts,
             steps,
         })
-    }
-
-    /// Places between the bounds: that of the case, then those of Sobol's sequence.
-    fn starts(&self) -> Result<Vec<Vec<f64>>> {
-        let (spans, count) = (&self.problem.spans, self.asked.starts.max(1));
-        if count > 1 && spans.len() > sobol::MOST {
-            let what = format!("--starts: several are for {} numbers at most", sobol::MOST);
-            return Err(Error::Usage(what));
-        }
-        let own = spans
-            .iter()
-            .zip(&self.problem.start)
-            .map(|(span, value)| span.place(*value));
-        let mut all = vec![own.collect()];
-        let axes: Vec<Sobol> = (0..spans.len().min(sobol::MOST)).map(Sobol::along).collect();
-        for k in 1..count {
-            all.push(axes.iter().map(|axis| axis.share(k as u32 - 1, 0)).collect());
-        }
-        Ok(all)
     }
 
     fn minimise(&self, start: &[f64], scale: &[f64], jobs: usize) -> Option<Minimum> {

@@ -1,0 +1,48 @@
+//! What `optimize` can be asked for.
+
+use clap::Args;
+
+use super::{CaseArguments, PlaceArguments, Through};
+
+/// `optimize`.
+#[derive(Debug, Args)]
+pub struct OptimizeArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Seek a number of the case between bounds, repeatable, such as /network/permeability_factor=0.01:1
+    #[arg(long, value_name = "POINTER=LOW:HIGH", allow_hyphen_values = true)]
+    pub vary: Vec<String>,
+    /// The figure that is to be largest, as the table of sweep names it, such as harvested_power_w.mean, tip_u1_m, mode_1.frequency_hz
+    #[arg(
+        long,
+        value_name = "QUANTITY[.FIGURE]",
+        conflicts_with = "minimize",
+        required_unless_present = "minimize"
+    )]
+    pub maximize: Option<String>,
+    /// The figure that is to be least
+    #[arg(long, value_name = "QUANTITY[.FIGURE]")]
+    pub minimize: Option<String>,
+    /// What another figure has to hold, repeatable, such as 'max_pressure_pa<=2e4' or 'tip_u1_m>=0.01'
+    #[arg(long, value_name = "QUANTITY[.FIGURE]<=VALUE")]
+    pub subject_to: Vec<String>,
+    /// What every design goes through
+    #[arg(long, value_enum, default_value_t = Through::Run)]
+    pub command: Through,
+    /// Searches, from the case's own numbers and from places between the bounds
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub starts: u32,
+    /// Searches at once [default: one for every core]
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<usize>,
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print optimum.json instead of the words
+    #[arg(long)]
+    pub json: bool,
+}

@@ -1,0 +1,130 @@
+//! A best in words.
+
+use crate::output::columns::aligned;
+use crate::output::numbers::{count, duration, percent, significant};
+use crate::results::optimum::{Bound, Derivatives, Held, Optimum, Variable};
+
+/// Searches whose figures differ by less came to the same.
+const SAME: f64 = 1e-3;
+
+/// The best, where it is, what holds it there, how it was found.
+pub fn words(found: &Optimum) -> String {
+    let goal = &found.goal;
+    let mut text = format!(
+        "{}: {} of `slcbeam {}`, {}: {}{}\n",
+        found.case,
+        goal.figure,
+        found.command.word(),
+        if goal.largest { "largest" } else { "least" },
+        significant(found.value, 6),
+        found.begin.map_or(String::new(), |begin| format!(
+            ", {} to begin with",
+            significant(begin, 6)
+        ))
+    );
+    if let Some(error) = found.error.filter(|_| found.value != 0.0) {
+        text += &format!(
+            "estimated error of mesh, steps and effects left out: {}\n",
+            percent(error / found.value.abs())
+        );
+    }
+    let heading = ["", "best", "at first", "bounds", "1 % worse at"].map(String::from);
+    let lines: Vec<_> = std::iter::once(heading)
+        .chain(found.variables.iter().map(line))
+        .collect();
+    text += &format!("\n{}", aligned(&lines, &[0, 3, 4]));
+    if !found.limits.is_empty() {
+        let heading = ["", "at the best", "limit", ""].map(String::from);
+        let lines: Vec<_> = std::iter::once(heading).chain(found.limits.iter().map(limit)).collect();
+        text += &format!("\n{}", aligned(&lines, &[0, 3]));
+    }
+    let failed: usize = found.failed.values().sum();
+    text += &format!(
+        "\n{} designs with {} derivatives, {}\n",
+        count(found.evaluations as u64),
+        match found.derivatives {
+            Derivatives::Exact => "exact",
+            Derivatives::Differences => "no exact",
+        },
+        duration(found.wall_s)
+    );
+    for (reason, n) in &found.failed {
+        text += &format!("{n} of {failed} that failed: {reason}\n");
+    }
+    if found.starts.len() > 1 {
+        text += &starts(found);
+    }
+    for warning in &found.warnings {
+        text += &format!("warning: {warning}\n");
+    }
+    text
+}
+
+/// Where a number stands and what holds it.
+pub fn place(one: &Variable) -> String {
+    match (one.at_bound, one.within_1_percent) {
+        (Some(Bound::Low), _) => "at its lower bound".into(),
+        (Some(Bound::High), _) => "at its upper bound".into(),
+        (None, Some([low, high])) => format!("{} and {}", significant(low, 4), significant(high, 4)),
+        (None, None) => "-".into(),
+    }
+}
+
+fn line(one: &Variable) -> [String; 5] {
+    [
+        one.pointer.clone(),
+        significant(one.value, 6),
+        significant(one.start, 4),
+        format!("{} to {}", significant(one.low, 3), significant(one.high, 3)),
+        place(one),
+    ]
+}
+
+fn limit(one: &Held) -> [String; 4] {
+    let sign = match one.limit.sign() {
+        "<=" => "≤",
+        _ => "≥",
+    };
+    let gain = match (one.reached, one.gain) {
+        (true, Some(gain)) => format!("reached; let go, it brings {} for each unit", significant(gain, 3)),
+        (false, Some(_)) => "not reached".into(),
+        (_, None) => "not held".into(),
+    };
+    [
+        one.limit.figure.clone(),
+        significant(one.value, 6),
+        format!("{sign} {}", significant(one.limit.bound, 6)),
+        gain,
+    ]
+}
+
+/// How many searches came to the same, and what others came to.
+fn starts(found: &Optimum) -> String {
+    let all = found.starts.iter();
+    let near = |value: f64| (value - found.value).abs() <= SAME * found.value.abs();
+    let same = all
+        .clone()
+        .filter(|one| one.held && one.value.is_some_and(near))
+        .count();
+    let nothing = all.clone().filter(|one| one.value.is_none()).count();
+    let beyond = all.clone().filter(|one| one.value.is_some() && !one.held).count();
+    let mut others: Vec<f64> = all
+        .filter(|one| one.held)
+        .filter_map(|one| one.value)
+        .filter(|v| !near(*v))
+        .collect();
+    others.sort_by(f64::total_cmp);
+    others.dedup_by(|a, b| (*a - *b).abs() <= SAME * a.abs());
+    let others: Vec<String> = others.iter().map(|value| significant(*value, 5)).collect();
+    let mut text = format!("{same} of {} searches came to it", found.starts.len());
+    if !others.is_empty() {
+        text += &format!("; others ended at {}", others.join(", "));
+    }
+    if beyond > 0 {
+        text += &format!("; {beyond} did not come within the limits");
+    }
+    if nothing > 0 {
+        text += &format!("; {nothing} had nothing to begin with");
+    }
+    text + "\n"
+}

@@ -1,0 +1,97 @@
+//! The page of a best.
+
+use serde_json::json;
+
+use super::{Found, Kind, Page, Place};
+use crate::error::Result;
+use crate::output::numbers::{count, duration, percent, significant};
+use crate::output::optimum::{BEST, CSV, JSON, PICTURE, place as told};
+use crate::results::optimum::{Derivatives, Optimum, Variable};
+
+/// `optimize`.
+pub fn data(place: &Place) -> Result<Page> {
+    let Found { result: found, head } = place.result::<Optimum>(JSON)?;
+    let mut page = place.page(Kind::Optimum, &found.case, Some(&head));
+    page.put("label", "The best between bounds");
+    page.warnings.clone_from(&found.warnings);
+    let goal = &found.goal;
+    let begin = found.begin.map_or(String::new(), |begin| {
+        format!(", {} to begin with", significant(begin, 5))
+    });
+    page.put(
+        "answer",
+        format!(
+            "The {} {} of `slcbeam {}` is {}{begin}; the case with the best numbers is {BEST}.",
+            if goal.largest { "largest" } else { "least" },
+            goal.figure,
+            found.command.word(),
+            significant(found.value, 5)
+        ),
+    );
+    let mut facts = vec![
+        format!("{} designs", count(found.evaluations as u64)),
+        match found.derivatives {
+            Derivatives::Exact => "exact derivatives".into(),
+            Derivatives::Differences => "derivatives by differences".into(),
+        },
+        format!("{} searches", found.starts.len()),
+        format!("found in {}", duration(found.wall_s)),
+    ];
+    if let Some(error) = found.error.filter(|_| found.value != 0.0) {
+        let words = percent(error / found.value.abs());
+        facts.insert(0, format!("estimated error of the simulation {words}"));
+    }
+    page.put("facts", facts);
+    let tile = |one: &Variable| {
+        let note = match one.within_1_percent {
+            Some(_) => format!("1 % worse at {}", told(one)),
+            None => told(one),
+        };
+        json!({"label": one.pointer, "value": significant(one.value, 5), "note": note})
+    };
+    page.put("tiles", found.variables.iter().map(tile).collect::<Vec<_>>());
+    let figure = place.picture(PICTURE).map(|picture| {
+        json!({
+            "title": "The way to the best", "picture": picture,
+            "about": "Rings are designs that were computed, in their order and over each number; faint ones are beyond a limit. The large ring \
+                      is the best.",
+        })
+    });
+    page.put("figures", figure.into_iter().collect::<Vec<_>>());
+    let numbers = found.variables.iter().map(|one| {
+        json!([
+            one.pointer,
+            one.value,
+            one.start,
+            one.low,
+            one.high,
+            one.within_1_percent.map(|w| w[0]),
+            one.within_1_percent.map(|w| w[1]),
+            one.gain
+        ])
+    });
+    let limits = found.limits.iter().map(|one| {
+        let words = format!("{} {} {}", one.limit.figure, one.limit.sign(), one.limit.bound);
+        json!([
+            words,
+            one.value,
+            null,
+            null,
+            null,
+            null,
+            null,
+            one.gain.filter(|_| one.reached)
+        ])
+    });
+    page.put(
+        "table",
+        json!({
+            "title": "Numbers and limits",
+            "about": "In the unit that each key names. What a unit brings is what the figure gains where the bound or the limit is let go by one.",
+            "headings": ["number or limit", "at the best", "at first", "from", "to", "1 % worse below", "1 % worse above", "a unit brings"],
+            "rows": numbers.chain(limits).collect::<Vec<_>>(), "file": CSV,
+        }),
+    );
+    page.put("command", format!("slcbeam {} {BEST}", found.command.word()));
+    Ok(page)
+}

@@ -1,0 +1,74 @@
+//! How flat the best is: second derivatives by differences of slopes.
+
+use nalgebra::DMatrix;
+
+use super::found::Curvature;
+use super::problem::Problem;
+use super::search::{Reached, Search};
+
+/// Change of a place in a difference, to either side.
+const BESIDE: f64 = 0.01;
+/// What counts as 1 % of the figure.
+const SHARE: f64 = 0.01;
+
+/// Second derivatives at a best.
+pub struct Bend {
+    /// By the numbers that are free there, as they were sought.
+    pub free: Vec<usize>,
+    /// By places between the bounds, of the figure over its size, 1 or -1 times.
+    matrix: DMatrix<f64>,
+}
+
+/// Second derivatives of what is sought by the numbers that are not at a bound. Nothing where
+/// a design beside the best cannot be computed.
+pub fn bend(problem: &Problem, search: &Search<'_>, reached: &Reached, start: usize) -> Option<Bend> {
+    let minimum = &reached.minimum;
+    let inside = |k: &usize| minimum.at_bounds[*k] == 0.0 && minimum.x[*k] > BESIDE && minimum.x[*k] < 1.0 - BESIDE;
+    let free: Vec<usize> = (0..problem.spans.len()).filter(inside).collect();
+    let mut matrix = DMatrix::zeros(free.len(), free.len());
+    for (i, k) in free.iter().enumerate() {
+        let at = |change: f64| {
+            let mut places = minimum.x.clone();
+            places[*k] += change;
+            let seen = search.look(start, &places)?;
+            Some(search.point(&seen, &reached.sizes).slope)
+        };
+        let change = (at(BESIDE)? - at(-BESIDE)?) / (2.0 * BESIDE);
+        free.iter().enumerate().for_each(|(j, l)| matrix[(j, i)] = change[*l]);
+    }
+    let matrix = (&matrix + matrix.transpose()) * 0.5;
+    Some(Bend { free, matrix })
+}
+
+impl Bend {
+    /// Values of a number to either side of the best at which the figure would be worse by 1 %, others held.
+    pub fn within(&self, problem: &Problem, reached: &Reached, k: usize) -> Option<[f64; 2]> {
+        let i = self.free.iter().position(|own| *own == k)?;
+        let bend = self.matrix[(i, i)];
+        let worse = SHARE * reached.minimum.at.value.abs();
+        let far = (2.0 * worse / bend).sqrt();
+        let span = &problem.spans[k];
+        let at = |place: f64| span.value(place.clamp(0.0, 1.0));
+        (bend > 0.0 && far.is_finite()).then(|| [at(reached.minimum.x[k] - far), at(reached.minimum.x[k] + far)])
+    }
+
+    /// As it is told: of the figure itself, by numbers or their logarithms.
+    pub fn told(&self, problem: &Problem, reached: &Reached) -> Curvature {
+        let per = |k: usize| {
+            let span = &problem.spans[k];
+            match span.logarithmic() {
+                true => (span.high / span.low).ln(),
+                false => span.high - span.low,
+            }
+        };
+        let scale = problem.goal.sign() * reached.sizes[0];
+        let row = |i: usize| {
+            let of = |j: usize| scale * self.matrix[(i, j)] / per(self.free[i]) / per(self.free[j]);
+            (0..self.free.len()).map(of).collect()
+        };
+        Curvature {
+            pointers: self.free.iter().map(|k| problem.spans[*k].pointer.clone()).collect(),
+            matrix: (0..self.free.len()).map(row).collect(),
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! One design: its figures, and their derivatives by the numbers that are sought.
+
+use std::time::Instant;
+
+use super::found::Derivatives;
+use super::problem::Problem;
+use crate::case::Case;
+use crate::error::{Error, Result};
+use crate::run::dynamics::{self, Outcome};
+use crate::run::record::{Control, Unrecorded};
+use crate::run::summary::Status;
+use crate::study::slopes;
+use crate::study::span;
+use crate::study::sweep::row::Found;
+use crate::study::sweep::{Ask, compute};
+
+/// Change of a place between the bounds in a difference, to either side.
+const BESIDE: f64 = 0.01;
+
+/// What was seen of a design.
+#[derive(Clone, Debug)]
+pub struct Seen {
+    /// Figures in the order of [`Problem::figures`].
+    pub figures: Vec<f64>,
+    /// Of each the derivatives by places between the bounds.
+    pub slopes: Vec<Vec<f64>>,
+    /// Where the derivatives are from.
+    pub from: Derivatives,
+}
+
+/// Looks at a place between the bounds; `tell` hears of every design that is computed.
+///
+/// # Errors
+/// Why there is nothing to see, in words.
+pub fn look(
+    problem: &Problem,
+    places: &[f64],
+    stop: &dyn Fn() -> bool,
+    tell: &dyn Fn(&[f64], &std::result::Result<Vec<f64>, String>, f64),
+) -> std::result::Result<Seen, String> {
+    let begin = Instant::now();
+    let values = span::values(&problem.spans, places);
+    let mut known = None;
+    if problem.differences.is_none() {
+        let found = exact(problem, &values, stop);
+        let (figures, slopes) = match found {
+            Ok((figures, slopes)) => (Ok(figures), slopes),
+            Err(reason) => (Err(reason), None),
+        };
+        tell(&values, &figures, begin.elapsed().as_secs_f64());
+        let figures = figures?;
+        if let Some(mut slopes) = slopes {
+            for row in &mut slopes {
+                for (k, slope) in row.iter_mut().enumerate() {
+                    *slope *= problem.spans[k].slope(values[k]);
+                }
+            }
+            return Ok(Seen {
+                figures,
+                slopes,
+                from: Derivatives::Exact,
+            });
+        }
+        known = Some(figures);
+    }
+    let plain = |places: &[f64]| {
+        let begin = Instant::now();
+        let values = span::values(&problem.spans, places);
+        let figures = plain(problem, &values, stop);
+        tell(&values, &figures, begin.elapsed().as_secs_f64());
+        figures
+    };
+    let figures = known.map_or_else(|| plain(places), Ok)?;
+    let mut slopes = vec![vec![0.0; places.len()]; figures.len()];
+    for k in 0..places.len() {
+        let at = |place: f64| {
+            let mut beside = places.to_vec();
+            beside[k] = place.clamp(0.0, 1.0);
+            Ok::<_, String>((beside[k], plain(&beside)?))
+        };
+        let (above, high) = at(places[k] + BESIDE)?;
+        let (below, low) = at(places[k] - BESIDE)?;
+        for (slopes, (high, low)) in slopes.iter_mut().zip(high.iter().zip(&low)) {
+            slopes[k] = (high - low) / (above - below);
+        }
+    }
+    Ok(Seen {
+        figures,
+        slopes,
+        from: Derivatives::Differences,
+    })
+}
+
+/// Figures with their derivatives per unit of the numbers, where every figure has them.
+type Exact = (Vec<f64>, Option<Vec<Vec<f64>>>);
+
+fn exact(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> std::result::Result<Exact, String> {
+    let found = problem.with(values).and_then(|case| {
+        let parameters = problem.parameters(values);
+        slopes::slopes(&case, problem.what, &parameters, problem.system.as_ref(), stop)
+    });
+    let (found, slopes) = found.map_err(|error| why(&error))?;
+    let figures = wanted(problem, &found)?;
+    let all = problem.figures().into_iter().map(|name| slopes.get(name).cloned());
+    Ok((figures, all.collect()))
+}
+
+/// What the plain command tells of a design.
+fn plain(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> std::result::Result<Vec<f64>, String> {
+    let case = problem.with(values).map_err(|error| why(&error))?;
+    let ask = Ask {
+        what: problem.what,
+        accuracy: None,
+        meshes: false,
+    };
+    let run = |case: &Case| run(problem, case, stop);
+    let found = compute::found(&case, ask, stop, &run).ok_or("interrupted")?;
+    wanted(problem, &found)
+}
+
+fn run(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Result<Outcome> {
+    let system = slopes::alike_or_own(case, problem.system.as_ref())?;
+    let hook = |_: &_| match stop() {
+        true => Control::Stop("interrupted".into()),
+        false => Control::Continue,
+    };
+    dynamics::run_with(case, system, &[], &mut Unrecorded(hook))
+}
+
+/// What is looked at, of everything that a design tells.
+fn wanted(problem: &Problem, found: &Found) -> std::result::Result<Vec<f64>, String> {
+    if found.status != Status::Finished {
+        return Err(found.reason.clone().unwrap_or_else(|| "it did not finish".into()));
+    }
+    let of = |name: &str| found.figure(name).ok_or_else(|| format!("it has no {name}"));
+    problem.figures().into_iter().map(of).collect()
+}
+
+fn why(error: &Error) -> String {
+    Found::failed(error).reason.unwrap_or_default()
+}

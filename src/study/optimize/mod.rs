@@ -1,0 +1,208 @@
+//! The numbers of a case with which a figure is largest or least, between bounds and under limits to other figures.
+//!
+//! ```text
+//! names      figures by name
+//! problem    case, numbers that are sought, goal and limits; everything that does not fit is told here
+//! look       one design, with derivatives
+//! search     from starts to the best
+//! curvature  how flat it is
+//! found      the result
+//! ```
+
+mod curvature;
+pub mod found;
+mod look;
+pub mod names;
+pub mod problem;
+mod search;
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use crate::case::Case;
+use crate::error::{Code, Result};
+use crate::numerics::sqp::{Ended, HELD};
+use crate::study::span::Bound;
+use crate::study::sweep::row::Found;
+use crate::study::sweep::{Ask, compute};
+use found::{Derivatives, Design, Held, Optimum, Variable};
+use problem::{Asked, Limit, Problem};
+use search::{Reached, Search};
+
+/// A figure over its size that is nearer to a limit lies at it.
+const REACHED: f64 = 1e-4;
+/// What the plain command may differ by without a word.
+const SAME: f64 = 1e-3;
+
+/// The best with what its files tell besides.
+#[derive(Clone, Debug)]
+pub struct Optimised {
+    /// The result.
+    pub optimum: Optimum,
+    /// The case with its numbers.
+    pub case: Case,
+    /// Every design that was computed.
+    pub history: Vec<Design>,
+}
+
+/// Searches. `tell` hears of every design: how many there were, and the best figure so far; `stop` ends the search early.
+///
+/// # Errors
+/// No design can be computed at any start.
+pub fn optimise(
+    problem: &Problem,
+    asked: &Asked,
+    stop: &(dyn Fn() -> bool + Sync),
+    tell: &(dyn Fn(usize, Option<f64>) + Sync),
+) -> Result<Optimised> {
+    let begin = Instant::now();
+    let search = Search::new(problem, asked, stop, tell);
+    let reached = search.go()?;
+    let minimum = &reached.minimum;
+    let case = problem.with(&reached.values)?;
+    let found = minimum.ended == Ended::Found && minimum.at.violation() <= HELD;
+    // where a limit is reached the figure changes along numbers in the first order
+    let inner = minimum.multipliers.iter().all(|gain| *gain == 0.0);
+    let bend = (found && inner && !stop())
+        .then(|| curvature::bend(problem, &search, &reached, reached.starts.len()))
+        .flatten();
+    let checked = check(problem, &case, stop);
+    let history = search.history();
+    let mut failed = BTreeMap::new();
+    for reason in history.iter().filter_map(|design| design.reason.clone()) {
+        *failed.entry(reason).or_insert(0) += 1;
+    }
+    let own = |found: &Found| found.figure(&problem.goal.figure);
+    let mut optimum = Optimum {
+        case: problem.case.name.clone(),
+        command: problem.what,
+        goal: problem.goal.clone(),
+        found,
+        value: reached.figures[0],
+        plain: checked.as_ref().and_then(own),
+        error: checked.as_ref().and_then(|found| error(found, &problem.goal.figure)),
+        begin: history
+            .iter()
+            .find(|design| design.start == 0)
+            .and_then(|design| design.figures.as_ref().map(|figures| figures[0])),
+        variables: (0..problem.spans.len())
+            .map(|k| variable(problem, &reached, bend.as_ref(), k))
+            .collect(),
+        limits: (0..problem.limits.len()).map(|i| held(problem, &reached, i)).collect(),
+        curvature: bend.as_ref().map(|bend| bend.told(problem, &reached)),
+        derivatives: search.derivatives(),
+        starts: reached.starts.clone(),
+        evaluations: history.len(),
+        failed,
+        warnings: vec![],
+        wall_s: 0.0,
+    };
+    optimum.warnings = warnings(problem, &optimum, minimum.ended, stop());
+    optimum.wall_s = begin.elapsed().as_secs_f64();
+    Ok(Optimised { optimum, case, history })
+}
+
+/// What the plain command tells of the best, with errors.
+fn check(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Option<Found> {
+    let ask = Ask {
+        what: problem.what,
+        accuracy: None,
+        meshes: true,
+    };
+    compute::found(case, ask, stop, &|case| compute::run(case, None, stop))
+}
+
+/// The estimated error of a figure, absolute.
+fn error(found: &Found, figure: &str) -> Option<f64> {
+    let quantity = figure.split('.').next().unwrap_or_default();
+    let energy = compute::POWERS.iter().find(|(_, power)| *power == figure);
+    let names = [figure, energy.map_or(quantity, |(energy, _)| energy.name())];
+    let relative = names.iter().find_map(|name| found.figure(&format!("{name}.error")))?;
+    Some(relative * found.figure(figure)?.abs())
+}
+
+fn variable(problem: &Problem, reached: &Reached, bend: Option<&curvature::Bend>, k: usize) -> Variable {
+    let (span, place) = (&problem.spans[k], reached.minimum.x[k]);
+    let slope = reached.minimum.at_bounds[k];
+    let at_bound = match place {
+        x if x <= 0.0 => Some(Bound::Low),
+        x if x >= 1.0 => Some(Bound::High),
+        _ => None,
+    };
+    // what the value would fall by, per place between the bounds, is what the figure gains
+    let gain = at_bound.map(|_| slope.abs() * reached.sizes[0] / span.slope(reached.values[k]).abs());
+    Variable {
+        pointer: span.pointer.clone(),
+        low: span.low,
+        high: span.high,
+        logarithmic: span.logarithmic(),
+        start: problem.start[k],
+        value: reached.values[k],
+        at_bound,
+        gain,
+        within_1_percent: bend.and_then(|bend| bend.within(problem, reached, k)),
+    }
+}
+
+fn held(problem: &Problem, reached: &Reached, i: usize) -> Held {
+    let limit: &Limit = &problem.limits[i];
+    Held {
+        limit: limit.clone(),
+        value: reached.figures[i + 1],
+        reached: reached.minimum.at.inequalities[i] > -REACHED,
+        gain: (reached.minimum.at.inequalities[i] < REACHED)
+            .then(|| reached.minimum.multipliers[i] * reached.sizes[0] / reached.sizes[i + 1]),
+    }
+}
+
+fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped: bool) -> Vec<String> {
+    let mut all = vec![];
+    let mut say = |what: String| all.push(Code::Optimum.warning(what));
+    let beyond: Vec<&Held> = found
+        .limits
+        .iter()
+        .filter(|held| held.limit.beyond(held.value) > REACHED * held.limit.bound.abs())
+        .collect();
+    match ended {
+        _ if stopped => say("interrupted; the best is that so far".into()),
+        _ if !beyond.is_empty() => {
+            let names: Vec<String> = beyond
+                .iter()
+                .map(|held| format!("{} {} {}", held.limit.figure, held.limit.sign(), held.limit.bound))
+                .collect();
+            say(format!(
+                "no design was found that holds {}: what is told comes nearest",
+                names.join(" and ")
+            ));
+        }
+        Ended::Found | Ended::Apart => {}
+        Ended::Unfinished => say("the search ran out of steps; the best is where it stood".into()),
+        Ended::Stuck => say(
+            "the search ended where no step makes the figure better, though its derivatives say so: the simulator's own error is larger \
+             than what is left, or the figure has a kink there; a smaller /solver/rtol may help"
+                .into(),
+        ),
+    }
+    if found.derivatives == Derivatives::Differences {
+        let why = match &problem.differences {
+            Some(why) => why.clone(),
+            None => "a figure has no exact ones".into(),
+        };
+        say(format!("derivatives are differences of designs: {why}"));
+    }
+    match found.plain {
+        Some(plain) if (plain - found.value).abs() > SAME * found.value.abs() => say(format!(
+            "`slcbeam {}` gives {} {plain:.6e} at the best, where the search saw {:.6e}: steps of the one or effects of the other are too \
+             coarse to tell them apart; a smaller /solver/rtol may help",
+            problem.what.word(),
+            found.goal.figure,
+            found.value
+        )),
+        None if !stopped => say(format!(
+            "`slcbeam {}` does not come to an end at the best",
+            problem.what.word()
+        )),
+        _ => {}
+    }
+    all
+}

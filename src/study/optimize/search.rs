@@ -1,0 +1,238 @@
+//! From starts to the best, every design on the way kept.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use nalgebra::{DMatrix, DVector};
+
+use super::found::{Derivatives, Design, Start};
+use super::look::{Seen, look};
+use super::problem::{Asked, Problem};
+use crate::error::{Error, Result};
+use crate::numerics::sqp::{HELD, Minimum, Options, Point, minimise};
+use crate::study::span;
+use crate::study::sweep::{What, pool};
+
+/// Steps of a search at most.
+const STEPS: usize = 60;
+/// A step between the bounds that counts as none.
+const CLOSE: f64 = 3e-5;
+/// Error of figures at rest and of modes.
+const EXACT: f64 = 1e-9;
+
+/// A search.
+pub struct Search<'a> {
+    problem: &'a Problem,
+    asked: &'a Asked,
+    stop: &'a (dyn Fn() -> bool + Sync),
+    tell: &'a (dyn Fn(usize, Option<f64>) + Sync),
+    history: Mutex<Vec<Design>>,
+    differences: AtomicBool,
+}
+
+/// Where it ended.
+pub struct Reached {
+    /// Of the best.
+    pub minimum: Minimum,
+    /// Values of the numbers there.
+    pub values: Vec<f64>,
+    /// Figures there.
+    pub figures: Vec<f64>,
+    /// Sizes by which figures were divided, in their order.
+    pub sizes: Vec<f64>,
+    /// Searches.
+    pub starts: Vec<Start>,
+}
+
+impl<'a> Search<'a> {
+    /// Of a problem. `tell` hears of every design: how many there were, and the best figure that holds the limits.
+    pub fn new(
+        problem: &'a Problem,
+        asked: &'a Asked,
+        stop: &'a (dyn Fn() -> bool + Sync),
+        tell: &'a (dyn Fn(usize, Option<f64>) + Sync),
+    ) -> Self {
+        Self {
+            problem,
+            asked,
+            stop,
+            tell,
+            history: Mutex::new(vec![]),
+            differences: AtomicBool::new(false),
+        }
+    }
+
+    /// Every design so far.
+    pub fn history(&self) -> Vec<Design> {
+        self.history.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Where derivatives came from.
+    pub fn derivatives(&self) -> Derivatives {
+        match self.differences.load(Ordering::Relaxed) {
+            true => Derivatives::Differences,
+            false => Derivatives::Exact,
+        }
+    }
+
+    /// Searches from every start; the best is what holds the limits, and of these what is best.
+    ///
+    /// # Errors
+    /// No design can be computed at any start.
+    pub fn go(&self) -> Result<Reached> {
+        let places = span::places(&self.problem.spans, &self.problem.start, self.asked.starts)?;
+        let numbers: Vec<usize> = (0..places.len()).collect();
+        let mut found: Vec<Option<(Minimum, Vec<f64>)>> = vec![None; places.len()];
+        pool::each(
+            &numbers,
+            self.asked.jobs,
+            &|k| (!(self.stop)()).then(|| (k, self.minimise(k, &places[k]))),
+            &mut |(k, minimum)| {
+                found[k] = minimum;
+                Ok(())
+            },
+        )?;
+        let start = |(from, found): (&Vec<f64>, &Option<(Minimum, Vec<f64>)>)| {
+            let at = found
+                .as_ref()
+                .map(|(minimum, sizes)| (minimum, self.figures(minimum, sizes)));
+            Start {
+                from: span::values(&self.problem.spans, from),
+                to: at
+                    .as_ref()
+                    .map(|(minimum, _)| span::values(&self.problem.spans, &minimum.x)),
+                value: at.as_ref().map(|(_, figures)| figures[0]),
+                held: at.as_ref().is_some_and(|(minimum, _)| minimum.at.violation() <= HELD),
+                steps: at.as_ref().map_or(0, |(minimum, _)| minimum.steps),
+            }
+        };
+        let starts = places.iter().zip(&found).map(start).collect();
+        let worth = |(minimum, sizes): &(Minimum, Vec<f64>)| {
+            let violation = minimum.at.violation();
+            let beyond = if violation > HELD { violation } else { 0.0 };
+            (beyond, minimum.at.value * sizes[0])
+        };
+        let best = found.into_iter().flatten().min_by(|a, b| {
+            let ([a, x], [b, y]) = ([worth(a).0, worth(a).1], [worth(b).0, worth(b).1]);
+            a.total_cmp(&b).then(x.total_cmp(&y))
+        });
+        let Some((minimum, sizes)) = best else {
+            let why = self.history().into_iter().find_map(|design| design.reason);
+            let why = why.map_or(String::new(), |why| format!(": {why}"));
+            return Err(Error::Usage(format!("no design at a start can be computed{why}")));
+        };
+        Ok(Reached {
+            values: span::values(&self.problem.spans, &minimum.x),
+            figures: self.figures(&minimum, &sizes),
+            minimum,
+            sizes,
+            starts,
+        })
+    }
+
+    /// Figures at the end of a search.
+    fn figures(&self, minimum: &Minimum, sizes: &[f64]) -> Vec<f64> {
+        let goal = self.problem.goal.sign() * minimum.at.value * sizes[0];
+        let limits = self
+            .problem
+            .limits
+            .iter()
+            .zip(&sizes[1..])
+            .zip(minimum.at.inequalities.iter());
+        let limits = limits.map(|((limit, size), c)| limit.bound + limit.sense() * c * size);
+        std::iter::once(goal).chain(limits).collect()
+    }
+
+    /// The least from one place, and sizes of figures.
+    fn minimise(&self, start: usize, from: &[f64]) -> Option<(Minimum, Vec<f64>)> {
+        let mut sizes: Option<Vec<f64>> = None;
+        let options = Options {
+            steps: STEPS,
+            close: CLOSE,
+            noise: match self.problem.what {
+                What::Run | What::Periodic => self.problem.case.solver.rtol.max(EXACT),
+                What::Equilibrium | What::Modes => EXACT,
+            },
+        };
+        let found = minimise(from, &options, &mut |places| {
+            let seen = self.look(start, places)?;
+            let sizes = sizes.get_or_insert_with(|| self.sizes(&seen.figures));
+            Some(self.point(&seen, sizes))
+        });
+        Some((found?, sizes?))
+    }
+
+    /// Sizes of figures: of what is sought at the start, of limits themselves.
+    fn sizes(&self, figures: &[f64]) -> Vec<f64> {
+        let size = |x: f64, otherwise: f64| match x.abs() > 0.0 {
+            true => x.abs(),
+            false if otherwise.abs() > 0.0 => otherwise.abs(),
+            false => 1.0,
+        };
+        let limits = self.problem.limits.iter().zip(&figures[1..]);
+        let limits = limits.map(|(limit, figure)| size(limit.bound, *figure));
+        std::iter::once(size(figures[0], 1.0)).chain(limits).collect()
+    }
+
+    /// What was seen, as the search wants it.
+    pub fn point(&self, seen: &Seen, sizes: &[f64]) -> Point {
+        let (n, limits) = (self.problem.spans.len(), &self.problem.limits);
+        let scale = self.problem.goal.sign() / sizes[0];
+        let by = |i: usize| limits[i].sense() / sizes[i + 1];
+        Point {
+            value: scale * seen.figures[0],
+            slope: DVector::from_fn(n, |k, _| scale * seen.slopes[0][k]),
+            inequalities: DVector::from_fn(limits.len(), |i, _| {
+                limits[i].beyond(seen.figures[i + 1]) / sizes[i + 1]
+            }),
+            slopes: DMatrix::from_fn(limits.len(), n, |i, k| by(i) * seen.slopes[i + 1][k]),
+        }
+    }
+
+    /// Looks at a place and keeps what is computed for it.
+    pub fn look(&self, start: usize, places: &[f64]) -> Option<Seen> {
+        if (self.stop)() {
+            return None;
+        }
+        let keep = |values: &[f64], figures: &std::result::Result<Vec<f64>, String>, wall_s: f64| {
+            if (self.stop)() {
+                return;
+            }
+            self.keep(start, values, figures, wall_s);
+        };
+        let seen = look(self.problem, places, &|| (self.stop)(), &keep).ok()?;
+        if seen.from == Derivatives::Differences {
+            self.differences.store(true, Ordering::Relaxed);
+        }
+        let finite = seen
+            .figures
+            .iter()
+            .chain(seen.slopes.iter().flatten())
+            .all(|x| x.is_finite());
+        finite.then_some(seen)
+    }
+
+    fn keep(&self, start: usize, values: &[f64], figures: &std::result::Result<Vec<f64>, String>, wall_s: f64) {
+        let limits = &self.problem.limits;
+        let held = |figures: &Vec<f64>| {
+            let each = limits.iter().zip(&figures[1..]);
+            each.map(|(limit, figure)| (limit.beyond(*figure), limit.bound.abs()))
+                .all(|(beyond, size)| beyond <= 1e-5 * size)
+        };
+        let design = Design {
+            start,
+            values: values.to_vec(),
+            held: figures.as_ref().is_ok_and(held),
+            figures: figures.as_ref().ok().cloned(),
+            reason: figures.as_ref().err().cloned(),
+            wall_s,
+        };
+        let mut history = self.history.lock().unwrap_or_else(PoisonError::into_inner);
+        history.push(design);
+        let sign = self.problem.goal.sign();
+        let good = history.iter().filter(|one| one.held);
+        let best = good.filter_map(|one| one.figures.as_ref().map(|figures| figures[0]));
+        let best = best.min_by(|a, b| (sign * a).total_cmp(&(sign * b)));
+        (self.tell)(history.len(), best);
+    }
+}

@@ -1,0 +1,74 @@
+//! What does not fit together is told before anything is computed, and nothing is written.
+
+use crate::common::*;
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let out = path(&dir, "out");
+    let young = ["--vary", "/beam/young_modulus_pa=1e6:1e7"];
+    let tip = ["--maximize", "tip_u1_m"];
+    let with = |parts: &[&[&'static str]]| parts.concat();
+    for (asked, code, words) in [
+        (tip.to_vec(), 2, "nothing to seek: --vary POINTER=LOW:HIGH"),
+        (young.to_vec(), 2, "--maximize"),
+        (
+            with(&[&young, &tip, &["--minimize", "tip_u3_m"]]),
+            2,
+            "cannot be used with",
+        ),
+        (with(&[&young, &["--maximize", "tip_u1"]]), 2, "nearest is tip_u1_m"),
+        (
+            with(&[&young, &["--maximize", "harvested_power_w"]]),
+            2,
+            "`run` tells no such figure",
+        ),
+        (
+            with(&[&young, &tip, &["--subject-to", "tip_u3_m=1"]]),
+            2,
+            "a figure and its limit are wanted",
+        ),
+        (
+            with(&[&young, &tip, &["--subject-to", "tip_u3<=1"]]),
+            2,
+            "nearest is tip_u3_m",
+        ),
+        (
+            with(&[
+                &young,
+                &tip,
+                &["--subject-to", "tip_u3_m>=2", "--subject-to", "tip_u3_m<=1"],
+            ]),
+            2,
+            "tip_u3_m.max_abs cannot be at least 2 and at most 1",
+        ),
+        (
+            with(&[&["--vary", "/beam/young_modulus_pa=1e7:1e6"], &tip]),
+            2,
+            "is not below",
+        ),
+        (with(&[&["--vary", "/beam/young=1:2"], &tip]), 2, "nearest is /beam/"),
+        (
+            with(&[&["--vary", "/bladders/per_row=1:2"], &tip]),
+            2,
+            "a count is not differentiated by",
+        ),
+        (
+            with(&[&["--vary", "/solver/rtol=1e-6:1e-4"], &tip]),
+            2,
+            "not a part of the model",
+        ),
+        (with(&[&["--vary", "/beam/length_m=-1:1"], &tip]), 3, "length_m"),
+        (with(&[&young, &young, &tip]), 2, "would be set at once"),
+        (with(&[&young, &tip, &["--command", "periodic"]]), 2, "period"),
+        (with(&[&young, &tip, &["--starts", "0"]]), 2, "--starts"),
+    ] {
+        let case = "cases/two-bladders.json";
+        let said = say(&[&["optimize", case, "--out", &out, "--quiet"], &asked[..]].concat());
+        // however the terminal breaks lines
+        let plain = said.err.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(said.code, code, "{asked:?}: {plain}");
+        assert!(plain.contains(words), "{asked:?}: {plain}");
+        assert!(!dir.path().join("out").exists(), "{asked:?}: something was written");
+    }
+}
