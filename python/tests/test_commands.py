@@ -83,6 +83,15 @@ def test_measured_data_are_columns(tmp_path):
     assert "/beam/young_modulus_pa" in values
 
 
+def test_a_best_is_found():
+    case = slcbeam.load("tour-actuator", set=COARSE)
+    pump = "/network/chains/0/ends/0/pressure_pa/ramp/to"
+    found = slcbeam.optimize(case, {pump: (1e4, 8e4)}, maximize="tip_u1_m", subject_to="max_pressure_pa<=5e4", command="equilibrium")
+    best = slcbeam.load(found.folder / "optimum-case.json")
+    assert best[pump] == pytest.approx(5e4, rel=1e-4)
+    assert len(found.tables["designs"]) > 2
+
+
 def test_faults_are_exceptions():
     with pytest.raises(slcbeam.UsageError, match="--count"):
         slcbeam.modes("wiring-2", count=0)

@@ -19,7 +19,7 @@ except ImportError as error:
 
 from ._answer import Answer, Columns
 from ._case import Case, load, shipped
-from ._commands import check, effects, equilibrium, fit, floquet, modes, periodic, sense, study, sweep
+from ._commands import check, effects, equilibrium, fit, floquet, modes, optimize, periodic, sense, study, sweep
 from ._errors import CaseError, Error, Fault, FileError, SolverError, UsageError
 from ._result import Fields, Report, Result, Table
 from ._run import run
@@ -48,6 +48,7 @@ __all__ = [
     "floquet",
     "load",
     "modes",
+    "optimize",
     "periodic",
     "run",
     "sense",

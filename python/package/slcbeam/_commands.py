@@ -215,6 +215,10 @@ def _listed(values: Any) -> list[str]:
     return [json.dumps(one, default=plain) for one in each]
 
 
+def _spans(vary: Mapping[str, tuple[float, float]]) -> dict[str, str]:
+    return {pointer: f"{_text(low)}:{_text(high)}" for pointer, (low, high) in vary.items()}
+
+
 def fit(
     case: CaseLike,
     data: Data,
@@ -233,8 +237,30 @@ def fit(
     :param options: ``drive={"p_kpa": POINTER}``, ``noise={COLUMN: SIGMA}``, ``robust="huber"``, ``starts``, ``time``, ``jobs``.
     :returns: ``fit.json``.
     """
-    spans = {pointer: f"{_text(low)}:{_text(high)}" for pointer, (low, high) in vary.items()}
-    return _do("fit", [case], data, out=out, progress=progress, options={"vary": spans, "match": match, **options})
+    return _do("fit", [case], data, out=out, progress=progress, options={"vary": _spans(vary), "match": match, **options})
+
+
+def optimize(
+    case: CaseLike,
+    vary: Mapping[str, tuple[float, float]] | None = None,
+    *,
+    maximize: str | None = None,
+    minimize: str | None = None,
+    subject_to: Sequence[str] = (),
+    out: Place = None,
+    progress: bool = False,
+    **options: Any,
+) -> Answer:
+    """The numbers of a case with which a figure is largest or least (``slcbeam optimize``).
+
+    :param vary: bounds by JSON pointer.
+    :param maximize: a figure as the table of a sweep names it: ``harvested_power_w``, ``tip_u1_m.max_abs``; or ``minimize``.
+    :param subject_to: limits to figures: ``["max_pressure_pa<=5e4"]``.
+    :param options: ``command="run"|"periodic"|"equilibrium"|"modes"``, ``starts``, ``crossovers``, ``choose=[..]``, ``jobs``.
+    :returns: ``optimum.json``; ``tables["designs"]``; the case of the best is ``optimum-case.json`` of the ``folder``.
+    """
+    asked = {"maximize": maximize, "minimize": minimize, "subject_to": [subject_to] if isinstance(subject_to, str) else list(subject_to)}
+    return _do("optimize", [case], out=out, progress=progress, options={"vary": _spans(vary or {}), **asked, **options})
 
 
 def sense(
