@@ -147,5 +147,5 @@ fn exports_do_not_outlive_their_result() {
         other.path().to_str().unwrap(),
     ];
     export(dir.path(), &thin);
-    assert_eq!(fs::read_dir(other.path().join("vtk")).unwrap().count(), 4);
+    assert_eq!(fs::read_dir(other.path().join("vtk")).unwrap().count(), 5);
 }

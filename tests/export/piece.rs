@@ -121,13 +121,25 @@ impl Piece {
 
 /// The collection: time, part's name, file; all files are there and tell the same time.
 pub fn collection(path: &Path) -> Vec<(f64, String, Piece)> {
+    let mut all = vec![];
+    for instant in tags(path) {
+        let t: f64 = attribute(&instant, "timestep").parse().unwrap();
+        for (k, block) in tags(&path.with_file_name(attribute(&instant, "file")))
+            .iter()
+            .enumerate()
+        {
+            assert_eq!(attribute(block, "index"), k.to_string());
+            let piece = Piece::read(&path.with_file_name(attribute(block, "file")));
+            assert_eq!(t, piece.time);
+            all.push((t, attribute(block, "name").to_string(), piece));
+        }
+    }
+    all
+}
+
+/// What a file lists.
+fn tags(path: &Path) -> Vec<String> {
     let text = fs::read_to_string(path).unwrap();
     let sets = text.split('<').filter(|t| t.starts_with("DataSet"));
-    sets.map(|tag| {
-        let piece = Piece::read(&path.with_file_name(attribute(tag, "file")));
-        let t: f64 = attribute(tag, "timestep").parse().unwrap();
-        assert_eq!(t, piece.time);
-        (t, attribute(tag, "name").to_string(), piece)
-    })
-    .collect()
+    sets.map(str::to_owned).collect()
 }

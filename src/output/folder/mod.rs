@@ -217,7 +217,7 @@ impl ResultFolder {
 
     /// Removes what was exported from an older or shorter result, which would pass for the new one's.
     pub fn remove_exports(&self) -> Result<()> {
-        for (name, endings) in [(TABLES, &["csv"][..]), (VTK, &["vtp", "pvd"])] {
+        for (name, endings) in [(TABLES, &["csv"][..]), (VTK, &["vtp", "vtm", "pvd"])] {
             remove_folder_of(&self.path(name), endings)?;
         }
         Ok(())

@@ -1,4 +1,4 @@
-//! `vtk/NAME.pvd` and a `.vtp` a part and instant: what ParaView opens as a film.
+//! `vtk/NAME.pvd`, a `.vtm` an instant and a `.vtp` a part of each: what ParaView opens as a film of blocks with names.
 //!
 //! ```text
 //! surface   points, quadrilaterals, lines and their data, as VTK's XML
@@ -38,6 +38,8 @@ use surface::Surface;
 
 /// What is drawn, each a file an instant.
 const PARTS: [&str; 3] = ["beam", "bladders", "tubes"];
+/// What the names of files begin with that join the parts of an instant.
+const JOINED: &str = "scene";
 
 /// Share of an axis by which two are the same, written by programs that round differently.
 const SAME: f64 = 1e-9;
@@ -53,23 +55,31 @@ pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> R
     let mut sets = String::new();
     for &k in instants {
         let t = from.field_times[k];
+        let mut blocks = String::new();
         for (part, surface) in scene.at(k).into_iter().enumerate() {
             let name = PARTS[part];
             let file = format!("{name}-{k:0digits$}.vtp");
             written.count(put(&staged.path(&file), &surface.file(t))?);
-            sets += &format!(
-                "    <DataSet timestep=\"{}\" part=\"{part}\" name=\"{name}\" file=\"{file}\"/>\n",
-                shortest(t)
-            );
+            blocks += &format!("    <DataSet index=\"{part}\" name=\"{name}\" file=\"{file}\"/>\n");
         }
+        let file = format!("{JOINED}-{k:0digits$}.vtm");
+        let text = xml("vtkMultiBlockDataSet", &blocks);
+        written.count(put(&staged.path(&file), text.as_bytes())?);
+        sets += &format!("    <DataSet timestep=\"{}\" file=\"{file}\"/>\n", shortest(t));
     }
-    let text = format!(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n{sets}  </Collection>\n</VTKFile>\n"
-    );
+    let text = xml("Collection", &sets);
     written.count(put(&staged.path(&collection), text.as_bytes())?);
     // films of another choice of instants would mix with this one
-    staged.place(|name| name.ends_with(".vtp") && PARTS.iter().any(|part| name.starts_with(&format!("{part}-"))))?;
+    let of = |name: &str, part: &str, ending: &str| name.starts_with(&format!("{part}-")) && name.ends_with(ending);
+    staged.place(|name| PARTS.iter().any(|part| of(name, part, ".vtp")) || of(name, JOINED, ".vtm"))?;
     Ok(written)
+}
+
+/// A file of a type that lists others.
+fn xml(kind: &str, sets: &str) -> String {
+    format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <{kind}>\n{sets}  </{kind}>\n</VTKFile>\n"
+    )
 }
 
 /// That the arrays are those of the case: what is drawn is looked up in both.
