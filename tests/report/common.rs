@@ -57,6 +57,10 @@ pub fn sound(browser: &mut Browser, page: &Path, sections: &[&str]) {
         assert_eq!(browser.number(flat), 0.0, "empty pictures at {width}");
         let over = "document.documentElement.scrollWidth - document.documentElement.clientWidth";
         assert_eq!(browser.number(over), 0.0, "sticks out at {width}");
+        let unnamed = "[...document.querySelectorAll('canvas')].filter(e => !e.getAttribute('aria-label')).length";
+        assert_eq!(browser.number(unnamed), 0.0, "pictures without names at {width}");
+        let cut = "[...document.querySelectorAll('.plate')].filter(e => innerWidth < 640 && e.scrollWidth > e.clientWidth + 1).length";
+        assert_eq!(browser.number(cut), 0.0, "pictures that are cut at {width}");
         assert_eq!(browser.problems(), Vec::<String>::new(), "at {width}");
     }
 }

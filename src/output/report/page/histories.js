@@ -51,6 +51,8 @@ function onePanel(host, group, times, series, height, title) {
     hooks: { setScale: [(u, key) => key === "x" && !group.busy && group.plots.some((p) => p.plot === u) && group.zoom(u.scales.x.min, u.scales.x.max)] },
   };
   const plot = new uPlot(options, [Array.from(times), ...series.map((s) => clean(s.values))], holder);
+  plot.ctx.canvas.setAttribute("role", "img");
+  plot.ctx.canvas.setAttribute("aria-label", `${series.map((s) => s.label).join(", ")} over time`);
   const mark = el("div", { class: "nowline" });
   plot.over.append(mark);
   plot.over.addEventListener("dblclick", () => group.zoom(...group.full));

@@ -22,9 +22,9 @@ function showMaps(host, motion, clock, scene) {
 
 function showMap(host, map, motion, clock) {
   const scale = map.scale || robustLimit(map.values);
-  const canvas = el("canvas", {});
+  const canvas = el("canvas", { role: "img", "aria-label": `${map.title} over time and place` });
   const now = el("div", { class: "now" });
-  const holder = el("div", { class: "map", tabindex: "0", role: "img", "aria-label": `${map.title} over time and place. Arrow keys move the time.` }, canvas, now);
+  const holder = el("div", { class: "map", tabindex: "0", role: "group", "aria-label": `${map.title} over time and place. Arrow keys move the time.` }, canvas, now);
   const readout = el("span", { text: "point at the map to read it" });
   const [t0, t1] = [motion.times[0], motion.times.at(-1)];
   const card = el("div", { class: "figure" },

@@ -50,5 +50,9 @@ function tableCard(table) {
 /** A picture made by the program, on white. */
 function pictureCard(part) {
   if (!part.picture) return null;
-  return figure(part.title, part.about, el("div", { class: "plate" }, el("img", { src: part.picture, alt: part.title })));
+  const plate = el("div", { class: "plate" }, el("img", { src: part.picture, alt: part.title }));
+  // On a narrow screen the whole picture is seen first, its words when it is asked for.
+  const enlarge = el("button", { type: "button", class: "enlarge", text: "Enlarge", "aria-pressed": "false" });
+  enlarge.addEventListener("click", () => enlarge.setAttribute("aria-pressed", String(plate.classList.toggle("large"))));
+  return figure(part.title, part.about, plate, enlarge);
 }
