@@ -50,12 +50,20 @@ pub fn render(fault: &CaseError, colour: bool, width: usize) -> String {
         out,
         "{count} {} in {}",
         if count == 1 { "fault" } else { "faults" },
-        visible(&fault.path.display().to_string())
+        named(fault)
     );
     if let Some(first) = fault.violations.first() {
         let _ = writeln!(out, "more about the first: slcbeam explain {}", first.code.id());
     }
     out
+}
+
+/// Where the text came from, for people.
+fn named(fault: &CaseError) -> String {
+    match fault.path.to_str() {
+        Some("-") => "standard input".into(),
+        _ => visible(&fault.path.display().to_string()).into_owned(),
+    }
 }
 
 fn one(fault: &CaseError, violation: &Violation, places: &mut Places, paint: &Paint, width: usize, out: &mut String) {
@@ -74,7 +82,7 @@ fn one(fault: &CaseError, violation: &Violation, places: &mut Places, paint: &Pa
     });
     let name = match &violation.set {
         Some(_) => "--set".to_owned(),
-        None => visible(&fault.path.display().to_string()).into_owned(),
+        None => named(fault),
     };
     let at = if violation.pointer.is_empty() {
         String::new()

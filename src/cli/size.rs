@@ -1,5 +1,6 @@
 //! Whether the machine can hold what a case asks for.
 
+use std::io::IsTerminal as _;
 use std::path::Path;
 
 use super::arguments::CaseArguments;
@@ -26,6 +27,9 @@ pub fn load(asked: &CaseArguments) -> Result<Case> {
 
 /// The same with derivatives by so many numbers.
 pub fn load_with(path: &Path, sets: &[String], parameters: usize) -> Result<Case> {
+    if path == Path::new("-") && std::io::stdin().is_terminal() {
+        terminal::tell("slcbeam: reading a case from standard input; Ctrl-D ends it");
+    }
     let case = case::load(path, sets)?;
     fits(&case, parameters, 1)?;
     Ok(case)
