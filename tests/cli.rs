@@ -116,7 +116,10 @@ fn a_run_fills_a_result_folder() {
             "{quantity}"
         );
     }
-    assert_eq!(keys(&summary["quantities"]["input_energy_j"]), ["final", "window"]);
+    assert_eq!(
+        keys(&summary["quantities"]["input_energy_j"]),
+        ["final", "window", "window_power_w"]
+    );
     for key in ["energy_residual_relative", "volume_residual_relative", "energy_j"] {
         assert!(!summary["balances"][key].is_null(), "balances lack {key}");
     }
@@ -335,6 +338,29 @@ fn the_default_folder_has_the_name_of_the_case() {
         .unwrap();
     assert!(said.status.success());
     assert!(dir.path().join("out/two-bladders/summary.json").is_file());
+}
+
+/// Goal: a case comes from standard input as from a file, and its result goes by its name; without one the fault says that it names the folder.
+#[test]
+fn a_case_on_standard_input_is_run() {
+    let folder = TempDir::new().unwrap();
+    let text = fs::read_to_string(SMALL).unwrap();
+    let piped = |text: &str| {
+        let mut command = slcbeam(&["run", "-", "--quiet"]);
+        command.current_dir(folder.path()).write_stdin(text).output().unwrap()
+    };
+    let ended = piped(&text);
+    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+    assert!(folder.path().join("out/two-bladders/summary.json").is_file());
+    let ended = piped(&text.replace("\"name\": \"two-bladders\",", ""));
+    let told = String::from_utf8_lossy(&ended.stderr);
+    assert_eq!(ended.status.code(), Some(3));
+    assert!(
+        told.contains("1 fault in standard input")
+            && told.contains("\"name\"")
+            && told.contains("the default result folder is"),
+        "{told}"
+    );
 }
 
 #[test]

@@ -200,57 +200,6 @@ fn the_schema_knows_presets_and_remarks() {
     ));
 }
 
-#[test]
-fn messages_and_keys_are_explained() {
-    let here = Path::new(".");
-    let (code, all, _) = slcbeam(here, &["explain"]);
-    assert!(code == 0 && all.lines().count() > 30, "{all}");
-    let (_, one, _) = slcbeam(here, &["explain", "w006"]);
-    assert!(one.contains("Mathieu"), "{one}");
-    let (_, key, _) = slcbeam(here, &["explain", "/bladders/permeability_m4"]);
-    assert!(key.contains("[m^4]") && key.contains("TubeDefaults"), "{key}");
-    let (_, network, _) = slcbeam(here, &["explain", "network"]);
-    assert!(
-        network.contains("Network/chains") && network.contains("Network/turbines"),
-        "{network}"
-    );
-    assert_eq!(
-        slcbeam(here, &["explain", "W6"]).1,
-        slcbeam(here, &["explain", "w006"]).1
-    );
-    let (_, effect, _) = slcbeam(here, &["explain", "finite_rotation", "--json"]);
-    assert!(serde_json::from_str::<Value>(&effect).unwrap()[0]["meaning"].is_string());
-    for (asked, words) in [
-        ("resistance", ["permeability_m4", "resistance_pa_s_m3"]),
-        ("pumps", ["pressure_pa", "flow_m3_s"]),
-        ("tip_angle", ["tip_angle (column): ", "[rad], a column of history.csv"]),
-        ("harvested_energy_j", ["energy harvested [J]", "summary.json"]),
-        ("port_inlet_of_bladder_1_flow", ["port_NAME_flow (result): ", "flow in"]),
-        (
-            "EI",
-            [
-                "EI (symbol): mass per length, axial and bending stiffness",
-                "E1 in docs/model.md",
-            ],
-        ),
-        ("Re", ["Reynolds number of a tube", "E52"]),
-        ("drained", ["(word): bladders whose pressure", "drained"]),
-        ("viscous", ["in whose meanings it stands", "/"]),
-    ] {
-        let (code, said, err) = slcbeam(here, &["explain", asked]);
-        assert!(
-            code == 0 && words.iter().all(|word| said.contains(word)),
-            "{asked}: {said}{err}"
-        );
-    }
-    let (_, symbol, _) = slcbeam(here, &["explain", "EA", "--json"]);
-    assert_eq!(serde_json::from_str::<Value>(&symbol).unwrap()[0]["symbol"], "EA");
-    let (code, _, err) = slcbeam(here, &["explain", "tip_angel"]);
-    assert!(code == 2 && err.contains("did you mean tip_angle"), "{err}");
-    let (code, _, err) = slcbeam(here, &["explain", "finite_rotaton"]);
-    assert!(code == 2 && err.contains("did you mean finite_rotation"), "{err}");
-}
-
 /// A case named by its file is one that can be run.
 #[test]
 fn a_file_with_a_space_names_a_case_without() {

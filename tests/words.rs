@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use serde_json::Value;
 use slcbeam::cli::summary_box::render;
 use slcbeam::output::columns::aligned;
 use slcbeam::output::numbers::{count, duration, quantity, shortest, trimmed};
@@ -181,4 +182,72 @@ fn powers_are_told() {
 fn a_long_path_is_not_cut() {
     let path = "out/".to_string() + &"long/".repeat(20);
     assert!(render(&summary(Status::Finished), Path::new(&path), false, false, 60).contains(&path));
+}
+
+/// Exit code, standard output and standard error of the program.
+fn slcbeam(here: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_slcbeam"));
+    let output = command
+        .current_dir(here)
+        .args(arguments)
+        .output()
+        .expect("the program starts");
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("text");
+    (
+        output.status.code().unwrap_or(-1),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+/// Goal: whatever has a name is explained: messages, keys, effects, columns, symbols, and words that people use instead.
+#[test]
+fn messages_and_keys_are_explained() {
+    let here = Path::new(".");
+    let (code, all, _) = slcbeam(here, &["explain"]);
+    assert!(code == 0 && all.lines().count() > 30, "{all}");
+    let (_, one, _) = slcbeam(here, &["explain", "w006"]);
+    assert!(one.contains("Mathieu"), "{one}");
+    let (_, key, _) = slcbeam(here, &["explain", "/bladders/permeability_m4"]);
+    assert!(key.contains("[m^4]") && key.contains("TubeDefaults"), "{key}");
+    let (_, network, _) = slcbeam(here, &["explain", "network"]);
+    assert!(
+        network.contains("Network/chains") && network.contains("Network/turbines"),
+        "{network}"
+    );
+    assert_eq!(
+        slcbeam(here, &["explain", "W6"]).1,
+        slcbeam(here, &["explain", "w006"]).1
+    );
+    let (_, effect, _) = slcbeam(here, &["explain", "finite_rotation", "--json"]);
+    assert!(serde_json::from_str::<Value>(&effect).unwrap()[0]["meaning"].is_string());
+    for (asked, words) in [
+        ("resistance", ["permeability_m4", "resistance_pa_s_m3"]),
+        ("pumps", ["pressure_pa", "flow_m3_s"]),
+        ("tip_angle", ["tip_angle (column): ", "[rad], a column of history.csv"]),
+        ("harvested_energy_j", ["energy harvested [J]", "summary.json"]),
+        ("port_inlet_of_bladder_1_flow", ["port_NAME_flow (result): ", "flow in"]),
+        (
+            "EI",
+            [
+                "EI (symbol): mass per length, axial and bending stiffness",
+                "E1 in docs/model.md",
+            ],
+        ),
+        ("Re", ["Reynolds number of a tube", "E52"]),
+        ("drained", ["(word): bladders whose pressure", "drained"]),
+        ("dashpot", ["in whose meanings it stands", "damping_x_n_s_m"]),
+    ] {
+        let (code, said, err) = slcbeam(here, &["explain", asked]);
+        assert!(
+            code == 0 && words.iter().all(|word| said.contains(word)),
+            "{asked}: {said}{err}"
+        );
+    }
+    let (_, symbol, _) = slcbeam(here, &["explain", "EA", "--json"]);
+    assert_eq!(serde_json::from_str::<Value>(&symbol).unwrap()[0]["symbol"], "EA");
+    let (code, _, err) = slcbeam(here, &["explain", "tip_angel"]);
+    assert!(code == 2 && err.contains("did you mean tip_angle"), "{err}");
+    let (code, _, err) = slcbeam(here, &["explain", "finite_rotaton"]);
+    assert!(code == 2 && err.contains("did you mean finite_rotation"), "{err}");
 }

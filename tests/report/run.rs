@@ -217,9 +217,33 @@ fn inputs_stand_beside_outputs() {
         .number("Math.max(...floats(data.history.columns.find(c => c.label.startsWith('flow into')).values)) * 1e9");
     assert!((largest - 40.0).abs() < 1e-3, "{largest}");
     let tiles = browser.text("document.getElementById('tiles').textContent");
-    for tile in ["Turn of the tip", "Rise time"] {
-        assert!(tiles.contains(tile), "{tiles}");
-    }
+    assert!(
+        tiles.contains("Turn of the tip") && tiles.contains("largest slope angle at any time; 2.34°"),
+        "{tiles}"
+    );
+}
+
+/// Goal: the rise of a step has a tile.
+#[test]
+fn a_step_rises_on_the_page() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = made(
+        folder.path(),
+        &[
+            "run",
+            "cases/dry-cantilever.json",
+            "--set",
+            "/start={}",
+            "--set",
+            "/beam/damping={\"bending_time_s\": 0.02}",
+            "--set",
+            "/loads=[{\"force_x_n_m\": {\"signal\": {\"ramp\": {\"to\": 1, \"duration_s\": 0.005}}}}]",
+            "--set",
+            "/step_response={}",
+        ],
+    );
+    let text = std::fs::read_to_string(&page).expect("the page");
+    assert!(text.contains("\"Rise time\"") && text.contains("from 10 to 90 % of its way; within 5 % after"));
 }
 
 #[test]

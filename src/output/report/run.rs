@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::history::History;
 use super::{Kind, Page, Place, cycles, energy_balance, facts, frames, inputs, per_cycle};
+use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::model::characteristic;
 use crate::output::folder::{CASE, FIELDS, SUMMARY};
@@ -139,7 +140,7 @@ fn tiles(summary: &Summary) -> Vec<Value> {
         angle.map(|x| quantity(x, "rad", 3)),
         &format!("largest slope angle at any time{degrees}"),
     );
-    if let Some(step) = summary.step_response.get("tip_u1_m") {
+    if let Some(step) = summary.step_response.get(Interest::TipU1.name()) {
         let settles = step
             .settling_time_5_percent_s
             .map_or(String::new(), |t| format!("; within 5 % after {}", quantity(t, "s", 3)));
