@@ -218,6 +218,9 @@ pub fn unit(name: &str) -> &'static str {
     if figure.ends_with("_at_s") {
         return "s";
     }
+    if figure.ends_with("_power_w") {
+        return "W";
+    }
     let ends = [
         ("_frequency_hz", "Hz"),
         ("_bound_hz", "Hz"),
@@ -262,6 +265,7 @@ mod tests {
             ("tip_u1_m.max_abs_at_s", "s"),
             ("tip_u1_m.error", "1"),
             ("harvested_power_w.mean", "W"),
+            ("input_energy_j.window_power_w", "W"),
             ("mode_1.frequency_hz", "Hz"),
             ("mode_1.damping_ratio", "1"),
             ("mode_1.growth_per_s", "1/s"),
