@@ -235,6 +235,54 @@ fn every_key_says_what_it_means() {
     assert!(unitless.is_empty(), "no unit: {unitless:#?}");
 }
 
+/// Goal: an editor has an example for every object, a description for every key and a title for every alternative, of which one alone holds; the
+/// examples are what they are examples of. (`StrainEnergy` is written by `slcbeam coefficients`, not by people.)
+#[test]
+fn the_schema_has_words_for_everything() {
+    let schema = case::schema_json();
+    let definitions = schema["$defs"].as_object().unwrap();
+    let mut silent = vec![];
+    for (name, definition) in definitions {
+        words_of(definition, name, &mut silent);
+        if name.trim_end_matches("OverPreset") == "StrainEnergy" {
+            continue;
+        }
+        let Some(example) = definition["examples"].get(0) else {
+            silent.push(format!("{name}: an example"));
+            continue;
+        };
+        let own = json!({"$ref": format!("#/$defs/{name}"), "$defs": definitions});
+        if let Err(error) = jsonschema::validator_for(&own).unwrap().validate(example) {
+            silent.push(format!("{name}: a valid example: {error}"));
+        }
+    }
+    for choice in ["then", "else"] {
+        words_of(&schema[choice], choice, &mut silent);
+    }
+    assert!(silent.is_empty(), "{silent:#?}");
+    let whole = schema["examples"][0].to_string();
+    case::parse(&whole, Path::new("example.json"), Path::new(""), &[]).expect("a case");
+    assert!(jsonschema::is_valid(&schema, &schema["examples"][0]));
+}
+
+fn words_of(part: &serde_json::Value, place: &str, silent: &mut Vec<String>) {
+    for (key, inner) in part["properties"].as_object().into_iter().flatten() {
+        if inner["description"].as_str().is_none_or(|text| text.len() < 4) {
+            silent.push(format!("{place}/{key}: a description"));
+        }
+        words_of(inner, &format!("{place}/{key}"), silent);
+    }
+    if part.get("anyOf").is_some() {
+        silent.push(format!("{place}: one alternative alone"));
+    }
+    for (k, branch) in part["oneOf"].as_array().into_iter().flatten().enumerate() {
+        if branch["title"].as_str().is_none() {
+            silent.push(format!("{place}: a title of alternative {k}"));
+        }
+        words_of(branch, &format!("{place}/{k}"), silent);
+    }
+}
+
 /// Goal: in whatever order bytes are asked for, each has its line and column.
 #[test]
 fn places_do_not_depend_on_what_was_asked_before() {

@@ -26,6 +26,7 @@ mod render;
 mod rewrite;
 pub mod schema;
 mod schema_json;
+mod schema_words;
 pub mod section;
 mod sets;
 mod slips;

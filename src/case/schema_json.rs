@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 
 use super::presets::SECTIONS;
 use super::schema::Case;
+use super::schema_words;
 
 /// JSON Schema (draft 2020-12) of a case as it is written, with descriptions and defaults: with a preset, what that brings may
 /// be left out; and everywhere a member whose key begins with `//` may stand as a remark.
@@ -54,6 +55,7 @@ pub fn schema_json() -> Value {
             *kind = json!(["number", "null"]);
         }
     }
+    schema_words::complete(&mut schema, PARTLY);
     remarks(&mut schema);
     schema
 }
