@@ -4,21 +4,25 @@ use std::process::ExitCode;
 
 use super::arguments::OptimizeArguments;
 use super::{interrupt, line, size, sweep};
-use crate::error::Result;
+use crate::case::Case;
+use crate::error::{Error, Result};
 use crate::output::kind::Kind;
 use crate::output::numbers::significant;
 use crate::output::optimum as files;
 use crate::output::report;
 use crate::results;
 use crate::study::optimize as study;
+use crate::study::optimize::Candidate;
 use crate::study::optimize::problem::{Asked, Goal, Limit, Problem};
+use crate::study::optimize::wiring::{Alternative, choices, combinations, crossovers};
 use crate::study::span::Span;
 
 /// Searches, writes the folder, prints.
 pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     let case = size::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
     let wanted = wanted(asked)?;
-    let problem = Problem::new(&case, &wanted)?;
+    let candidates = candidates(asked, &case, &wanted)?;
+    let problem = &candidates[0].problem;
     let mut folder = asked.place.claim(&case, Kind::Optimum)?;
     let flag = interrupt::flag();
     let bar = line::line(asked.quiet);
@@ -29,14 +33,43 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
         bar.set_message(format!("{count} designs, {best}"));
         bar.tick();
     };
-    let found = study::optimise(&problem, &wanted, &|| interrupt::raised(&flag), &tell)?;
+    let found = study::optimise(&candidates, &wanted, &|| interrupt::raised(&flag), &tell)?;
     bar.finish_and_clear();
-    files::write(&mut folder, &problem, &found)?;
+    files::write(&mut folder, &candidates[found.chosen].problem, &found)?;
     report::write(folder.dir(), None)?;
     let optimum = &found.optimum;
     let (text, words) = (|| results::text(optimum), || files::words(optimum));
     super::tell(asked.json, folder.dir(), text, words)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The case with each of what is to be chosen from, the case itself where there is nothing.
+fn candidates(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Result<Vec<Candidate>> {
+    let mut sets = asked
+        .choose
+        .iter()
+        .map(|text| choices(text))
+        .collect::<Result<Vec<_>>>()?;
+    sets.extend(asked.crossovers.map(|most| crossovers(case, most)).transpose()?);
+    if wanted.spans.is_empty() && sets.is_empty() {
+        let what = "nothing to seek: --vary POINTER=LOW:HIGH, such as /network/permeability_factor=0.01:1, or --choose, --crossovers";
+        return Err(Error::Usage(what.into()));
+    }
+    let mut all = combinations(sets)?;
+    if all.is_empty() {
+        all.push(Alternative::default());
+    }
+    let candidate = |alternative: Alternative| {
+        let problem = match alternative.sets.is_empty() {
+            true => Problem::new(case, wanted)?,
+            false => {
+                let sets = [&asked.case.sets[..], &alternative.sets].concat();
+                Problem::new(&size::load_with(&asked.case.case, &sets, asked.vary.len())?, wanted)?
+            }
+        };
+        Ok(Candidate { alternative, problem })
+    };
+    all.into_iter().map(candidate).collect()
 }
 
 fn wanted(asked: &OptimizeArguments) -> Result<Asked> {

@@ -9,6 +9,8 @@ use slcbeam::run::periodic::{Scene, Settled, record, settle, shoot};
 use slcbeam::run::record::{Control, Unrecorded};
 use slcbeam::run::summary::{Status, Summary};
 
+use crate::common::*;
+
 /// Relative change of a number in the difference.
 const CHANGE: f64 = 2e-2;
 
@@ -88,14 +90,6 @@ fn derivatives_of_a_cycle_are_those_of_differences() {
     agrees(&case, CONDUCTANCE, &FIGURES, &STEPS, [1e-4, 2e-3]);
 }
 
-/// The same where energies are told as well as motions.
-#[test]
-#[ignore = "a minute"]
-fn derivatives_of_a_cycle_at_a_tight_tolerance() {
-    let case = harvester(&["/solver/rtol=1e-9"]);
-    agrees(&case, CONDUCTANCE, &FIGURES, &STEPS, [1e-4, 1e-4]);
-}
-
 /// What is conserved comes from the start of the case, and so does its derivative.
 #[test]
 fn a_cycle_goes_with_the_volume_of_its_start() {
@@ -123,4 +117,55 @@ fn a_number_that_moves_the_period_is_refused() {
         error.contains(pointer) && error.contains("changes the period"),
         "{error}"
     );
+}
+
+/// Goal: the command tells derivatives in words and files, and refuses before anything is written.
+#[test]
+fn the_command_tells_derivatives_of_the_cycle() {
+    let dir = tempfile::tempdir().unwrap();
+    let ask = |pointer: &str, out: &str| {
+        let coarse = [
+            "--set",
+            "/mesh/cells_per_segment=1",
+            "--set",
+            "/mesh/cells_per_bladder=1",
+        ];
+        let asked = [
+            "periodic",
+            "cases/tour-harvester.json",
+            "--sensitivity",
+            pointer,
+            "--quiet",
+            "--out",
+            out,
+        ];
+        say(&[&asked[..], &coarse].concat())
+    };
+    let out = path(&dir, "out");
+    let said = ask(CONDUCTANCE, &out);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let line = said
+        .out
+        .lines()
+        .find(|line| line.starts_with(CONDUCTANCE))
+        .unwrap_or_default();
+    assert!(
+        line.contains("+1 %: ") && line.contains("energy harvested −0.8"),
+        "{}",
+        said.out
+    );
+    let summary: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(format!("{out}/summary.json")).unwrap()).unwrap();
+    let slope = &summary["sensitivities"][CONDUCTANCE]["quantities"]["harvested_energy_j"]["window"];
+    assert!(number(slope) < 0.0);
+    let table = std::fs::read_to_string(format!("{out}/sensitivities.csv")).unwrap();
+    assert!(
+        table.starts_with("t [s],d tip_u1/d"),
+        "{}",
+        table.lines().next().unwrap_or_default()
+    );
+    let beside = path(&dir, "beside");
+    let said = ask("/loads/0/force_x_n_m/signal/sine/frequency_hz", &beside);
+    assert!(said.code == 2 && said.err.contains("changes the"), "{}", said.err);
+    assert!(!std::path::Path::new(&beside).exists());
 }

@@ -4,3 +4,4 @@ mod best;
 mod common;
 mod cycles;
 mod refused;
+mod wirings;

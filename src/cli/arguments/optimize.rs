@@ -13,6 +13,12 @@ pub struct OptimizeArguments {
     /// Seek a number of the case between bounds, repeatable, such as /network/permeability_factor=0.01:1
     #[arg(long, value_name = "POINTER=LOW:HIGH", allow_hyphen_values = true)]
     pub vary: Vec<String>,
+    /// Choose between alternatives for a part of the case, repeatable, such as '/network/chains/0/bladders=[1, 2, 3]|[1, 3, 2]'
+    #[arg(long, value_name = "POINTER=JSON|JSON..")]
+    pub choose: Vec<String>,
+    /// Choose between all wirings in which the first two chains, of opposite bladders, change sides at most so often along the beam
+    #[arg(long, value_name = "N")]
+    pub crossovers: Option<usize>,
     /// The figure that is to be largest, as the table of sweep names it, such as harvested_power_w.mean, tip_u1_m, mode_1.frequency_hz
     #[arg(
         long,

@@ -13,7 +13,7 @@ use crate::study::optimize::Optimised;
 use crate::study::optimize::found::Design;
 use crate::study::optimize::problem::Problem;
 
-pub use words::{place, words};
+pub use words::{place, ranked, words};
 
 /// Everything that was found.
 pub const JSON: &str = "optimum.json";
@@ -38,7 +38,7 @@ pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Optimised) ->
     }
     let case = Written { json: own.json, tables };
     let mut files = vec![
-        (CSV, table(problem, &found.history, found.optimum.starts.len())),
+        (CSV, table(problem, found)),
         (JSON, results::text(&found.optimum)),
         (CASE, case.json.clone()),
         (BEST, best.json),
@@ -47,18 +47,22 @@ pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Optimised) ->
     folder.fill_with(&case, files).map(|_| ())
 }
 
-fn table(problem: &Problem, history: &[Design], searches: usize) -> String {
-    let begin = ["design", "search"].map(String::from).into_iter();
+fn table(problem: &Problem, found: &Optimised) -> String {
+    let (searches, alternatives) = (found.optimum.starts.len(), &found.optimum.alternatives);
+    let choice = (!alternatives.is_empty()).then_some("alternative");
+    let begin = ["design"].into_iter().chain(choice).chain(["search"]).map(String::from);
     let numbers = problem.spans.iter().map(|span| span.pointer.clone());
     let figures = problem.figures().into_iter().map(String::from);
     let end = ["limits held", "reason", "wall time [s]"].map(String::from);
     let headings = begin.chain(numbers).chain(figures).chain(end);
-    let rows = history.iter().enumerate().map(|(k, one)| {
+    let rows = found.history.iter().enumerate().map(|(k, one)| {
         let search = match one.start < searches {
             true => one.start.to_string(),
             false => "curvature".into(),
         };
-        let mut cells = vec![k.to_string(), search];
+        let mut cells = vec![k.to_string()];
+        cells.extend(alternatives.get(one.alternative).map(|own| own.name.clone()));
+        cells.push(search);
         cells.extend(one.values.iter().map(|x| shortest(*x)));
         match &one.figures {
             Some(figures) => cells.extend(figures.iter().map(|x| shortest(*x))),

@@ -1,9 +1,12 @@
 //! A best in words.
 
+use crate::error::visible;
 use crate::output::columns::aligned;
 use crate::output::numbers::{count, duration, percent, significant};
-use crate::results::optimum::{Bound, Derivatives, Held, Optimum, Variable};
+use crate::results::optimum::{Bound, Compared, Derivatives, Held, Optimum, Variable};
 
+/// Alternatives that are told.
+const SHOWN: usize = 12;
 /// Searches whose figures differ by less came to the same.
 const SAME: f64 = 1e-3;
 
@@ -28,11 +31,14 @@ pub fn words(found: &Optimum) -> String {
             percent(error / found.value.abs())
         );
     }
-    let heading = ["", "best", "at first", "bounds", "1 % worse at"].map(String::from);
-    let lines: Vec<_> = std::iter::once(heading)
-        .chain(found.variables.iter().map(line))
-        .collect();
-    text += &format!("\n{}", aligned(&lines, &[0, 3, 4]));
+    text += &alternatives(found);
+    if !found.variables.is_empty() {
+        let heading = ["", "best", "at first", "bounds", "1 % worse at"].map(String::from);
+        let lines: Vec<_> = std::iter::once(heading)
+            .chain(found.variables.iter().map(line))
+            .collect();
+        text += &format!("\n{}", aligned(&lines, &[0, 3, 4]));
+    }
     if !found.limits.is_empty() {
         let heading = ["", "at the best", "limit", ""].map(String::from);
         let lines: Vec<_> = std::iter::once(heading).chain(found.limits.iter().map(limit)).collect();
@@ -40,11 +46,12 @@ pub fn words(found: &Optimum) -> String {
     }
     let failed: usize = found.failed.values().sum();
     text += &format!(
-        "\n{} designs with {} derivatives, {}\n",
+        "\n{} designs{}, {}\n",
         count(found.evaluations as u64),
         match found.derivatives {
-            Derivatives::Exact => "exact",
-            Derivatives::Differences => "no exact",
+            _ if found.variables.is_empty() => "",
+            Derivatives::Exact => " with exact derivatives",
+            Derivatives::Differences => " with derivatives by differences",
         },
         duration(found.wall_s)
     );
@@ -60,13 +67,56 @@ pub fn words(found: &Optimum) -> String {
     text
 }
 
+/// Alternatives at their best, the best first.
+fn alternatives(found: &Optimum) -> String {
+    if found.alternatives.is_empty() {
+        return String::new();
+    }
+    let heading = ["".into(), "".into(), found.goal.figure.clone(), "".into()];
+    let line = |one: &Compared| {
+        let told = match (&one.reason, one.held) {
+            (Some(reason), _) => visible(reason).into_owned(),
+            (None, true) => String::new(),
+            (None, false) => "beyond a limit".into(),
+        };
+        let value = one.value.map_or("-".into(), |value| significant(value, 6));
+        [String::new(), one.name.clone(), value, told]
+    };
+    let ranked = ranked(found);
+    let shown = ranked.iter().take(SHOWN).map(|one| line(one));
+    let lines: Vec<_> = std::iter::once(heading).chain(shown).collect();
+    let more = match ranked.len().saturating_sub(SHOWN) {
+        0 => String::new(),
+        n => format!("  and {n} more in optimum.json\n"),
+    };
+    format!("\n{}{more}", aligned(&lines, &[1, 3]))
+}
+
+/// Alternatives from the best on: those that hold the limits before those that do not, and what has nothing last.
+pub fn ranked(found: &Optimum) -> Vec<&Compared> {
+    let sign = found.goal.sign();
+    let key = |one: &Compared| {
+        (
+            one.value.is_none(),
+            !one.held,
+            one.value.map_or(0.0, |value| sign * value),
+        )
+    };
+    let mut all: Vec<&Compared> = found.alternatives.iter().collect();
+    all.sort_by(|a, b| {
+        let (a, b) = (key(a), key(b));
+        (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2))
+    });
+    all
+}
+
 /// Where a number stands and what holds it.
 pub fn place(one: &Variable) -> String {
     match (one.at_bound, one.within_1_percent) {
         (Some(Bound::Low), _) => "at its lower bound".into(),
         (Some(Bound::High), _) => "at its upper bound".into(),
         (None, Some([low, high])) => format!("{} and {}", significant(low, 4), significant(high, 4)),
-        (None, None) => "-".into(),
+        (None, None) => "between its bounds".into(),
     }
 }
 

@@ -1,11 +1,11 @@
 //! The page of a best.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{Found, Kind, Page, Place};
 use crate::error::Result;
 use crate::output::numbers::{count, duration, percent, significant};
-use crate::output::optimum::{BEST, CSV, JSON, PICTURE, place as told};
+use crate::output::optimum::{BEST, CSV, JSON, PICTURE, place as told, ranked};
 use crate::results::optimum::{Derivatives, Optimum, Variable};
 
 /// `optimize`.
@@ -34,7 +34,10 @@ pub fn data(place: &Place) -> Result<Page> {
             Derivatives::Exact => "exact derivatives".into(),
             Derivatives::Differences => "derivatives by differences".into(),
         },
-        format!("{} searches", found.starts.len()),
+        match found.starts.len() {
+            1 => "one search".into(),
+            n => format!("{n} searches"),
+        },
         format!("found in {}", duration(found.wall_s)),
     ];
     if let Some(error) = found.error.filter(|_| found.value != 0.0) {
@@ -58,6 +61,10 @@ pub fn data(place: &Place) -> Result<Page> {
         })
     });
     page.put("figures", figure.into_iter().collect::<Vec<_>>());
+    let alternatives = ranked(&found).into_iter().map(|one| {
+        let told = [json!(one.name), json!(one.value)];
+        Value::from([&told[..], &vec![Value::Null; 6]].concat())
+    });
     let numbers = found.variables.iter().map(|one| {
         json!([
             one.pointer,
@@ -86,10 +93,10 @@ pub fn data(place: &Place) -> Result<Page> {
     page.put(
         "table",
         json!({
-            "title": "Numbers and limits",
+            "title": "Numbers, limits and alternatives",
             "about": "In the unit that each key names. What a unit brings is what the figure gains where the bound or the limit is let go by one.",
-            "headings": ["number or limit", "at the best", "at first", "from", "to", "1 % worse below", "1 % worse above", "a unit brings"],
-            "rows": numbers.chain(limits).collect::<Vec<_>>(), "file": CSV,
+            "headings": ["number, limit or alternative", "at the best", "at first", "from", "to", "1 % worse below", "1 % worse above", "a unit brings"],
+            "rows": numbers.chain(limits).chain(alternatives).collect::<Vec<_>>(), "file": CSV,
         }),
     );
     page.put("command", format!("slcbeam {} {BEST}", found.command.word()));

@@ -27,6 +27,12 @@ pub struct Optimum {
     pub error: Option<f64>,
     /// The figure where the first search began.
     pub begin: Option<f64>,
+    /// Alternatives that were compared, each at its best; nothing where there was no choice.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub alternatives: Vec<Compared>,
+    /// Which of them is best, from 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chosen: Option<usize>,
     /// Numbers that were sought.
     pub variables: Vec<Variable>,
     /// What was to be held.
@@ -46,6 +52,23 @@ pub struct Optimum {
     pub warnings: Vec<String>,
     /// Wall time.
     pub wall_s: f64,
+}
+
+/// One of what was chosen from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Compared {
+    /// What it is called.
+    pub name: String,
+    /// What it sets in the case, each as `POINTER=JSON`.
+    pub sets: Vec<String>,
+    /// The figure at its best; nothing where no design was to be had.
+    pub value: Option<f64>,
+    /// Whether limits are held there.
+    pub held: bool,
+    /// Values of the numbers there.
+    pub values: Vec<f64>,
+    /// Why there is nothing.
+    pub reason: Option<String>,
 }
 
 /// Where derivatives of figures came from.
@@ -122,6 +145,8 @@ pub struct Start {
 /// A design that was computed: a row of `history.csv`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
+    /// Place of its alternative.
+    pub alternative: usize,
     /// Number of the search; one more than there are for what is computed about the best.
     pub start: usize,
     /// Values of the numbers.

@@ -28,6 +28,9 @@ pub struct Seen {
     pub from: Derivatives,
 }
 
+/// What hears of a design: values of the numbers, figures or why there are none, wall time [s].
+pub type Tell<'a> = dyn Fn(&[f64], &std::result::Result<Vec<f64>, String>, f64) + 'a;
+
 /// Looks at a place between the bounds; `tell` hears of every design that is computed.
 ///
 /// # Errors
@@ -36,12 +39,12 @@ pub fn look(
     problem: &Problem,
     places: &[f64],
     stop: &dyn Fn() -> bool,
-    tell: &dyn Fn(&[f64], &std::result::Result<Vec<f64>, String>, f64),
+    tell: &Tell<'_>,
 ) -> std::result::Result<Seen, String> {
     let begin = Instant::now();
     let values = span::values(&problem.spans, places);
     let mut known = None;
-    if problem.differences.is_none() {
+    if problem.differences.is_none() && !places.is_empty() {
         let found = exact(problem, &values, stop);
         let (figures, slopes) = match found {
             Ok((figures, slopes)) => (Ok(figures), slopes),
@@ -87,7 +90,10 @@ pub fn look(
     Ok(Seen {
         figures,
         slopes,
-        from: Derivatives::Differences,
+        from: match places.is_empty() {
+            true => Derivatives::Exact,
+            false => Derivatives::Differences,
+        },
     })
 }
 

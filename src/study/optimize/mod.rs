@@ -6,6 +6,7 @@
 //! look       one design, with derivatives
 //! search     from starts to the best
 //! curvature  how flat it is
+//! wiring     what is chosen from a set
 //! found      the result
 //! ```
 
@@ -15,8 +16,10 @@ mod look;
 pub mod names;
 pub mod problem;
 mod search;
+pub mod wiring;
 
 use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use crate::case::Case;
@@ -24,54 +27,88 @@ use crate::error::{Code, Result};
 use crate::numerics::sqp::{Ended, HELD};
 use crate::study::span::Bound;
 use crate::study::sweep::row::Found;
-use crate::study::sweep::{Ask, compute};
-use found::{Derivatives, Design, Held, Optimum, Variable};
+use crate::study::sweep::{Ask, compute, pool};
+use found::{Compared, Derivatives, Design, Held, Optimum, Variable};
 use problem::{Asked, Limit, Problem};
 use search::{Reached, Search};
+use wiring::Alternative;
 
 /// A figure over its size that is nearer to a limit lies at it.
 const REACHED: f64 = 1e-4;
 /// What the plain command may differ by without a word.
 const SAME: f64 = 1e-3;
 
+/// One of what is chosen from.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// What it is.
+    pub alternative: Alternative,
+    /// The case with it, and what is sought.
+    pub problem: Problem,
+}
+
 /// The best with what its files tell besides.
 #[derive(Clone, Debug)]
 pub struct Optimised {
     /// The result.
     pub optimum: Optimum,
+    /// Place of the candidate that is best.
+    pub chosen: usize,
     /// The case with its numbers.
     pub case: Case,
     /// Every design that was computed.
     pub history: Vec<Design>,
 }
 
-/// Searches. `tell` hears of every design: how many there were, and the best figure so far; `stop` ends the search early.
+/// Searches, for every candidate. `tell` hears of every design: how many there were, and the best figure so far; `stop` ends the search
+/// early.
 ///
 /// # Errors
 /// No design can be computed at any start.
 pub fn optimise(
-    problem: &Problem,
+    candidates: &[Candidate],
     asked: &Asked,
     stop: &(dyn Fn() -> bool + Sync),
     tell: &(dyn Fn(usize, Option<f64>) + Sync),
 ) -> Result<Optimised> {
     let begin = Instant::now();
-    let search = Search::new(problem, asked, stop, tell);
-    let reached = search.go()?;
-    let minimum = &reached.minimum;
+    let sign = asked.goal.sign();
+    let so_far = Mutex::new((0, None::<f64>));
+    let tell_all = |_: usize, best: Option<f64>| {
+        let mut so_far = so_far.lock().unwrap_or_else(PoisonError::into_inner);
+        so_far.0 += 1;
+        let both = so_far.1.into_iter().chain(best);
+        so_far.1 = both.min_by(|a, b| (sign * a).total_cmp(&(sign * b)));
+        tell(so_far.0, so_far.1);
+    };
+    let searches = candidates.iter().map(|one| &one.problem).enumerate();
+    let searches: Vec<Search<'_>> = searches.map(|one| Search::new(one, asked, stop, &tell_all)).collect();
+    let mut all = go(&searches, asked.jobs)?;
+    let compared = compared(candidates, &all);
+    let worth = |reached: &Reached| {
+        let violation = reached.minimum.at.violation();
+        let beyond = if violation > HELD { violation } else { 0.0 };
+        (beyond, sign * reached.figures[0])
+    };
+    let places = (0..all.len()).filter_map(|k| Some((k, worth(all[k].as_ref().ok()?))));
+    let best = places.min_by(|a, b| a.1.0.total_cmp(&b.1.0).then(a.1.1.total_cmp(&b.1.1)));
+    let chosen = best.map_or(0, |(k, _)| k);
+    let reached = all.swap_remove(chosen)?;
+    let (problem, search, minimum) = (&candidates[chosen].problem, &searches[chosen], &reached.minimum);
     let case = problem.with(&reached.values)?;
     let found = minimum.ended == Ended::Found && minimum.at.violation() <= HELD;
     // where a limit is reached the figure changes along numbers in the first order
-    let inner = minimum.multipliers.iter().all(|gain| *gain == 0.0);
+    let inner = minimum.multipliers.iter().all(|gain| *gain == 0.0) && !minimum.x.is_empty();
     let bend = (found && inner && !stop())
-        .then(|| curvature::bend(problem, &search, &reached, reached.starts.len()))
+        .then(|| curvature::bend(problem, search, &reached, reached.starts.len()))
         .flatten();
     let checked = check(problem, &case, stop);
-    let history = search.history();
+    let history: Vec<Design> = searches.iter().flat_map(Search::history).collect();
     let mut failed = BTreeMap::new();
     for reason in history.iter().filter_map(|design| design.reason.clone()) {
         *failed.entry(reason).or_insert(0) += 1;
     }
+    let exact = searches.iter().all(|search| search.derivatives() == Derivatives::Exact);
     let own = |found: &Found| found.figure(&problem.goal.figure);
     let mut optimum = Optimum {
         case: problem.case.name.clone(),
@@ -82,15 +119,19 @@ pub fn optimise(
         plain: checked.as_ref().and_then(own),
         error: checked.as_ref().and_then(|found| error(found, &problem.goal.figure)),
         begin: history
-            .iter()
-            .find(|design| design.start == 0)
+            .first()
             .and_then(|design| design.figures.as_ref().map(|figures| figures[0])),
+        chosen: (!compared.is_empty()).then_some(chosen),
+        alternatives: compared,
         variables: (0..problem.spans.len())
             .map(|k| variable(problem, &reached, bend.as_ref(), k))
             .collect(),
         limits: (0..problem.limits.len()).map(|i| held(problem, &reached, i)).collect(),
         curvature: bend.as_ref().map(|bend| bend.told(problem, &reached)),
-        derivatives: search.derivatives(),
+        derivatives: match exact {
+            true => Derivatives::Exact,
+            false => Derivatives::Differences,
+        },
         starts: reached.starts.clone(),
         evaluations: history.len(),
         failed,
@@ -99,7 +140,45 @@ pub fn optimise(
     };
     optimum.warnings = warnings(problem, &optimum, minimum.ended, stop());
     optimum.wall_s = begin.elapsed().as_secs_f64();
-    Ok(Optimised { optimum, case, history })
+    Ok(Optimised {
+        optimum,
+        chosen,
+        case,
+        history,
+    })
+}
+
+/// Where every search ended: of one its starts at once, of many themselves.
+fn go(searches: &[Search<'_>], jobs: usize) -> Result<Vec<Result<Reached>>> {
+    if let [search] = searches {
+        return Ok(vec![search.go(jobs)]);
+    }
+    let numbers: Vec<usize> = (0..searches.len()).collect();
+    let mut all: Vec<(usize, Result<Reached>)> = vec![];
+    pool::each(&numbers, jobs, &|k| Some((k, searches[k].go(1))), &mut |one| {
+        all.push(one);
+        Ok(())
+    })?;
+    all.sort_by_key(|(k, _)| *k);
+    Ok(all.into_iter().map(|(_, reached)| reached).collect())
+}
+
+fn compared(candidates: &[Candidate], all: &[Result<Reached>]) -> Vec<Compared> {
+    let of = |(one, reached): (&Candidate, &Result<Reached>)| {
+        let there = reached.as_ref().ok();
+        Compared {
+            name: one.alternative.name.clone(),
+            sets: one.alternative.sets.clone(),
+            value: there.map(|reached| reached.figures[0]),
+            held: there.is_some_and(|reached| reached.minimum.at.violation() <= HELD),
+            values: there.map_or_else(Vec::new, |reached| reached.values.clone()),
+            reason: reached.as_ref().err().map(ToString::to_string),
+        }
+    };
+    match candidates.len() {
+        1 => vec![],
+        _ => candidates.iter().zip(all).map(of).collect(),
+    }
 }
 
 /// What the plain command tells of the best, with errors.

@@ -137,10 +137,6 @@ impl Problem {
     /// # Errors
     /// Everything that does not fit, before anything is computed.
     pub fn new(case: &Case, asked: &Asked) -> Result<Self> {
-        if asked.spans.is_empty() {
-            let what = "nothing to seek: --vary POINTER=LOW:HIGH, such as /network/permeability_factor=0.01:1";
-            return Err(Error::Usage(what.into()));
-        }
         let start = span::begin(case, &asked.spans, std::iter::empty())?;
         compute::check(case, asked.what)?;
         let names = names(case, asked.what)?;

@@ -28,6 +28,7 @@ pub struct Search<'a> {
     tell: &'a (dyn Fn(usize, Option<f64>) + Sync),
     history: Mutex<Vec<Design>>,
     differences: AtomicBool,
+    alternative: usize,
 }
 
 /// Where it ended.
@@ -45,9 +46,9 @@ pub struct Reached {
 }
 
 impl<'a> Search<'a> {
-    /// Of a problem. `tell` hears of every design: how many there were, and the best figure that holds the limits.
+    /// Of a problem, one of alternatives. `tell` hears of every design: how many there were, and the best figure that holds the limits.
     pub fn new(
-        problem: &'a Problem,
+        (alternative, problem): (usize, &'a Problem),
         asked: &'a Asked,
         stop: &'a (dyn Fn() -> bool + Sync),
         tell: &'a (dyn Fn(usize, Option<f64>) + Sync),
@@ -59,6 +60,7 @@ impl<'a> Search<'a> {
             tell,
             history: Mutex::new(vec![]),
             differences: AtomicBool::new(false),
+            alternative,
         }
     }
 
@@ -75,17 +77,17 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Searches from every start; the best is what holds the limits, and of these what is best.
+    /// Searches from every start, so many at once; the best is what holds the limits, and of these what is best.
     ///
     /// # Errors
     /// No design can be computed at any start.
-    pub fn go(&self) -> Result<Reached> {
+    pub fn go(&self, jobs: usize) -> Result<Reached> {
         let places = span::places(&self.problem.spans, &self.problem.start, self.asked.starts)?;
         let numbers: Vec<usize> = (0..places.len()).collect();
         let mut found: Vec<Option<(Minimum, Vec<f64>)>> = vec![None; places.len()];
         pool::each(
             &numbers,
-            self.asked.jobs,
+            jobs,
             &|k| (!(self.stop)()).then(|| (k, self.minimise(k, &places[k]))),
             &mut |(k, minimum)| {
                 found[k] = minimum;
@@ -220,6 +222,7 @@ impl<'a> Search<'a> {
                 .all(|(beyond, size)| beyond <= 1e-5 * size)
         };
         let design = Design {
+            alternative: self.alternative,
             start,
             values: values.to_vec(),
             held: figures.as_ref().is_ok_and(held),
