@@ -54,7 +54,11 @@ pub fn command(py: Python<'_>, words: Vec<OsString>) -> PyResult<Told> {
     if let Some(error) = other.filter(|error| !error.is_instance_of::<PyKeyboardInterrupt>(py)) {
         return Err(error);
     }
-    let answer = answer.map_err(|error| raised(py, &error))?;
+    let answer = match answer {
+        // what it was asked to stop for
+        Err(_) if stop.load(Ordering::Relaxed) => return Err(PyKeyboardInterrupt::new_err(())),
+        other => other.map_err(|error| raised(py, &error))?,
+    };
     let fault = answer.fault.as_deref().map(told);
     Ok((answer.printed, fault, stop.load(Ordering::Relaxed)))
 }

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use slcbeam::case::parameter::Parameter;
 use slcbeam::discrete::System;
-use slcbeam::error::{Result, SolverError};
+use slcbeam::error::{Error, Result, SolverError};
 use slcbeam::output::folder::ResultFolder;
 use slcbeam::output::kind::Kind;
 use slcbeam::output::recorder::{FolderRecorder, Labels};
@@ -16,7 +16,7 @@ use slcbeam::run::dynamics::{self, Outcome};
 use slcbeam::run::observe::Observer;
 use slcbeam::run::record::{Control, Header, Progress, Recorder};
 use slcbeam::run::summary::{Status, Summary};
-use slcbeam::study::target;
+use slcbeam::study::{refine, target};
 
 use crate::case::Case;
 use crate::errors::{broken, raised, told};
@@ -52,6 +52,10 @@ pub fn run<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Recorded, Bound<'py, PyDict>)> {
     let case = &case.0;
+    if let Some(accuracy) = accuracy.filter(|accuracy| !refine::sensible(*accuracy)) {
+        let what = format!("accuracy {accuracy}: a relative error from 1e-6 to 0.5, such as 0.01 for one per cent");
+        return Err(raised(py, &Error::Usage(what)));
+    }
     let (ended, stopped) = py.detach(|| {
         let watch = Watch::new(progress);
         let ended = match accuracy {

@@ -9,6 +9,8 @@ use slcbeam::run::dynamics::simulator::{self, Input, Snapshot};
 use slcbeam::run::record::{Control, Progress};
 
 use crate::case::Case;
+use slcbeam::error::Error;
+
 use crate::errors::{broken, raised};
 use crate::watch::Watch;
 
@@ -55,17 +57,20 @@ impl Simulator {
             .collect()
     }
 
-    /// Simulates until a time [s] with these values of the inputs; returns the row there, and whether Ctrl-C came first.
+    /// Simulates until a time, or for one [s], with these values of the inputs, or as they are; returns the row there, and whether Ctrl-C came first.
     fn step<'py>(
         &self,
         py: Python<'py>,
-        until: f64,
-        values: PyReadonlyArray1<'_, f64>,
+        time: f64,
+        further: bool,
+        values: Option<PyReadonlyArray1<'_, f64>>,
     ) -> PyResult<(Bound<'py, PyArray1<f64>>, bool)> {
-        let values = values.as_slice()?;
+        let values = values.as_ref().map(|given| given.as_slice()).transpose()?;
         let (row, stopped, watch) = self.free(py, |own| {
             let (watch, mut stopped) = (Watch::new(None), false);
-            own.step(until, values, &mut || {
+            let until = if further { own.time() + time } else { time };
+            let held: Vec<f64> = values.map_or_else(|| own.values().collect(), <[f64]>::to_vec);
+            own.step(until, &held, &mut || {
                 let control = watch.step(&Progress::default());
                 stopped |= control != Control::Continue;
                 control
@@ -123,10 +128,9 @@ pub struct State(Snapshot);
 #[pymethods]
 impl State {
     #[staticmethod]
-    fn read(bytes: &[u8]) -> PyResult<Self> {
-        serde_json::from_slice(bytes)
-            .map(Self)
-            .map_err(|error| broken(&error.to_string()))
+    fn read(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        let read = serde_json::from_slice(bytes).map(Self);
+        read.map_err(|error| raised(py, &Error::Usage(format!("no state of a simulator: {error}"))))
     }
 
     #[getter]

@@ -57,19 +57,26 @@ def test_tables_are_found_from_anywhere(tmp_path, monkeypatch):
     case["loads"] = [{"force_x_n_m": {"signal": {"table": {"csv": "force.csv", "time_column": "t", "value_column": "force"}}}}]
     loaded = slcbeam.load(case)
     monkeypatch.chdir(tmp_path)
-    # a dict's tables are looked for where Python stood when it was loaded
+    # a dict's tables are looked for where Python stands when it is loaded, and stay as they were then
     with pytest.raises(slcbeam.CaseError):
         slcbeam.load(case)
-    assert slcbeam.equilibrium(loaded)["status"] == "finished"
+    (where / "force.csv").write_text("t,force\n0,0\n0.1,7\n")
+    at_first = slcbeam.equilibrium(loaded)["quantities"]["tip_u1_m"]
+    for same in (loaded.set("/name", "other"), pickle.loads(pickle.dumps(loaded))):
+        assert slcbeam.equilibrium(same)["quantities"]["tip_u1_m"] == at_first
+    anew = slcbeam.load("bend-dry", set={"/loads": case["loads"]} | {"/loads/0/force_x_n_m/signal/table/csv": str(where / "force.csv")})
+    assert slcbeam.equilibrium(anew)["quantities"]["tip_u1_m"] > 100 * at_first
 
 
 def test_a_sweep_is_a_table(tmp_path):
     case = slcbeam.load("bend-wet", set=COARSE)
     found = slcbeam.sweep(case, {"/loads/0/force_x_n_m/signal/sigmoid/amplitude": [20, 40, 60]}, command="equilibrium", lean=True)
     table = found.tables["sweep"]
-    assert len(next(iter(table.values()))) == 3
-    frame = table.to_pandas()
-    assert len(frame) == 3
+    np.testing.assert_array_equal(table["/loads/0/force_x_n_m/signal/sigmoid/amplitude"], [20, 40, 60])
+    assert "" not in table and table.units["tip_u1_m.final" if "tip_u1_m.final" in table else table.names[1]] is not None
+    assert list(table.to_pandas().columns) == table.names and len(table.to_pandas()) == 3
+    modes = slcbeam.modes(case, count=2).tables["modes"]
+    assert "kind" in modes and modes["kind"].dtype.kind == "U"
 
 
 def test_measured_data_are_columns(tmp_path):
@@ -100,6 +107,22 @@ def test_faults_are_exceptions():
     with pytest.raises(slcbeam.CaseError) as told:
         slcbeam.sweep("wiring-2", {"/beam/colour": [1, 2]})
     assert told.value.faults[0].pointer == "/beam/colour"
+
+
+def test_calls_that_make_no_sense_are_told():
+    case = slcbeam.load("bend-wet")
+    for wrong in (lambda: case.set("/loads"), lambda: case.set({"/beam/length_m": 0.2}, 0.3), lambda: slcbeam.load(None)):
+        with pytest.raises(slcbeam.UsageError):
+            wrong()
+    for accuracy in (5, 0, float("nan")):
+        with pytest.raises(slcbeam.UsageError, match="1e-6 to 0.5"):
+            slcbeam.run(case, accuracy=accuracy)
+    with pytest.raises(slcbeam.UsageError, match="of equal length"):
+        slcbeam.sense(case, {"pressure_1_pa": [1.0, 2.0], "pressure_2_pa": [1.0]})
+    with pytest.raises(slcbeam.UsageError, match="low, high"):
+        slcbeam.fit(case, {"t_s": [0.0]}, ["/beam/length_m"], {})
+    with pytest.raises(slcbeam.UsageError, match="writes no folder"):
+        slcbeam.check(case).report()
 
 
 def test_ctrl_c_ends_a_sweep_with_what_there_is(tmp_path):

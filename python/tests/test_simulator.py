@@ -87,8 +87,17 @@ def test_several_inputs_and_what_is_refused(case):
         slcbeam.Simulator(case, {INLET.replace("pressure", "presure"): (0, 1)})
     with pytest.raises(slcbeam.UsageError, match="must hold the value"):
         slcbeam.Simulator(case, {INLET: (1.0, 2.0)})
-    with pytest.raises(slcbeam.UsageError, match="another case"):
-        sim.restore(slcbeam.Simulator(case, RANGE).save())
+    state = slcbeam.Simulator(case, RANGE).save()
+    for other in (sim, slcbeam.Simulator(case.set("/beam/young_modulus_pa", 1e6), RANGE), slcbeam.Simulator(case, {INLET: (0.0, 50e3)})):
+        with pytest.raises(slcbeam.UsageError, match="another case"):
+            other.restore(state)
+    for wrong in ([INLET], {INLET: 5}, {INLET: (1, 2, 3)}):
+        with pytest.raises(slcbeam.UsageError, match="inputs are"):
+            slcbeam.Simulator(case, wrong)
+    with pytest.raises(slcbeam.UsageError, match="values of the inputs"):
+        sim.step(1e-3, np.array([[1.0]]))
+    with pytest.raises(slcbeam.UsageError, match="no state"):
+        slcbeam.State.read(b"garbage")
 
 
 def test_the_environment_learns_nothing_new_from_reset():

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::SenseArguments;
-use super::{line, size};
+use super::{interrupt, line, size};
 use crate::error::{Error, Result};
 use crate::output::kind::Kind;
 use crate::output::{report, sense as files};
@@ -32,7 +32,8 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
     let bar = line::line(asked.quiet);
     bar.set_message("looking for the loads");
     bar.tick();
-    let found = find(case, measured.as_ref(), &question);
+    let flag = interrupt::flag();
+    let found = find(case, measured.as_ref(), &question, &|| interrupt::raised(&flag));
     bar.finish_and_clear();
     let mut found = found?;
     found.data = asked.pressures.as_ref().map(|path| path.display().to_string());
@@ -51,9 +52,9 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
 }
 
 fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
-    if let Some(noise) = asked.noise.filter(|noise| !(noise.is_finite() && *noise > 0.0)) {
+    if let Some(noise) = asked.noise.filter(|noise| !(1e-6..=1e9).contains(noise)) {
         return Err(Error::Usage(format!(
-            "--noise {noise}: a standard deviation in Pa, above 0"
+            "--noise {noise:e}: a standard deviation in Pa, from 1e-6 to 1e9"
         )));
     }
     let at_s = asked.at.unwrap_or(end_s);

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._errors import FileError, UsageError
 from ._result import Report, split
 
 if TYPE_CHECKING:
@@ -106,7 +107,10 @@ class Answer(Mapping[str, Any]):
 
     def save(self, dir: str | os.PathLike[str]) -> Path:
         """Copies the folder to another place that is not there yet; returns its path."""
-        shutil.copytree(self._folder(), dir)
+        try:
+            shutil.copytree(self._folder(), dir)
+        except OSError as error:
+            raise FileError(f"cannot copy to {dir}: {error.strerror or error}") from None
         return Path(dir)
 
     def report(self) -> Report:
@@ -115,7 +119,9 @@ class Answer(Mapping[str, Any]):
 
     def _folder(self) -> Path:
         if self.folder is None:
-            raise FileNotFoundError("this command writes no folder")
+            raise UsageError("this command writes no folder")
+        if not self.folder.is_dir():
+            raise FileError(f"{self.folder} is no longer there")
         return self.folder
 
     def __repr__(self) -> str:

@@ -53,19 +53,24 @@ class Case:
         self._text, self._path, self._base, self._sets = text, path, base, tuple(sets)
         self._own = _slcbeam.Case.parse(text, path, base, list(self._sets))
         self._dict: dict[str, Any] | None = None
+        if '"csv"' in text:
+            # tables of files are taken as they are now, whatever becomes of the files
+            self._text = json.dumps(_within(json.loads(text), self.to_dict()), indent=2)
 
     @property
     def name(self) -> str:
         """Its name."""
         return self._own.name
 
-    def set(self, pointer: str | Mapping[str, Any], value: Any = None) -> Case:
+    def set(self, pointer: str | Mapping[str, Any], value: Any = ...) -> Case:
         """Another case with a value at a JSON pointer, or with several: ``case.set({"/a": 1, "/b": 2})``.
 
         ``None`` leaves out what could stand there. Everything is checked again.
         """
+        if isinstance(pointer, Mapping) != (value is ...):
+            raise UsageError("case.set takes a pointer and a value, or a dict of values by pointer")
         changes = dict(pointer) if isinstance(pointer, Mapping) else {pointer: value}
-        return Case(self._text, self._path, self._base, self._sets + _sets(changes))
+        return Case(self._text, self._path, self._base, self._sets + _sets(changes, self._base))
 
     def to_dict(self) -> dict[str, Any]:
         """The whole case with every default filled in; a copy."""
@@ -92,8 +97,26 @@ class Case:
         return (Case, (self._text, self._path, self._base, self._sets))
 
 
-def _sets(changes: Mapping[str, Any]) -> tuple[str, ...]:
-    return tuple(f"{pointer}={_json(value)}" for pointer, value in changes.items())
+def _sets(changes: Mapping[str, Any], base: str) -> tuple[str, ...]:
+    return tuple(f"{pointer}={_json(_absolute(value, base))}" for pointer, value in changes.items())
+
+
+def _absolute(value: Any, base: str) -> Any:
+    """Files of tables as seen from anywhere."""
+    if isinstance(value, Mapping):
+        return {key: os.path.join(base, of) if key == "csv" and isinstance(of, str) else _absolute(of, base) for key, of in value.items()}
+    return [_absolute(one, base) for one in value] if isinstance(value, (list, tuple)) else value
+
+
+def _within(value: Any, resolved: Any) -> Any:
+    """A case with the points of its tables in place of their files."""
+    if isinstance(value, dict) and isinstance(resolved, dict):
+        if "csv" in value and "csv" not in resolved:
+            return resolved
+        return {key: _within(of, resolved.get(key)) for key, of in value.items()}
+    if isinstance(value, list) and isinstance(resolved, list):
+        return [_within(*pair) for pair in zip(value, resolved)]
+    return value
 
 
 def shipped() -> list[str]:
@@ -121,14 +144,16 @@ def load(case: CaseLike, set: Mapping[str, Any] | None = None) -> Case:
     >>> load("wiring-2", set={"/time/end_s": 0.1})
     <slcbeam.Case 'wiring-2', 1 changed>
     """
-    sets = _sets(set or {})
+    sets = _sets(set or {}, case._base if isinstance(case, Case) else os.getcwd())
     if isinstance(case, Case):
         return Case(case._text, case._path, case._base, case._sets + sets) if sets else case
     if isinstance(case, Mapping):
         return Case(json.dumps(dict(case), default=plain, indent=2), "<dict>", os.getcwd(), sets)
     if isinstance(case, str) and case.lstrip().startswith("{"):
         return Case(case, "<text>", os.getcwd(), sets)
-    path = Path(case)
+    if not isinstance(case, (str, os.PathLike)):
+        raise UsageError(f"a case is a file, a name, JSON text, a dict or a Case, not {type(case).__name__}")
+    path = Path(os.fsdecode(case))
     if not path.exists():
         found = CASES / f"{str(case).removesuffix('.json')}.json"
         if found.is_file() and CASES.resolve() in found.resolve().parents:
@@ -140,4 +165,4 @@ def load(case: CaseLike, set: Mapping[str, Any] | None = None) -> Case:
         near = difflib.get_close_matches(path.stem, shipped(), 1)
         meant = f"; did you mean {near[0]!r}?" if near else ""
         raise UsageError(f"cannot read {path}: {why}; nor is there such a case in the package{meant}") from None
-    return Case(text, str(path), str(path.parent), sets)
+    return Case(text, str(path), str(path.parent.resolve()), sets)

@@ -11,10 +11,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Union
 
+import numpy as np
+
 from . import _slcbeam
 from ._answer import Answer
 from ._case import Case, CaseLike, load, plain
-from ._errors import SolverError
+from ._errors import SolverError, UsageError
 
 #: A place for a result.
 Place = Union[str, "os.PathLike[str]", None]
@@ -44,26 +46,14 @@ def _words(options: Mapping[str, Any]) -> list[str]:
     return words
 
 
-def _absolute(value: Any, base: Path) -> Any:
-    """Tables that a case names, as seen from anywhere."""
-    if isinstance(value, dict):
-        return {key: str(base / of) if key == "csv" and isinstance(of, str) else _absolute(of, base) for key, of in value.items()}
-    if isinstance(value, list):
-        return [_absolute(one, base) for one in value]
-    return value
-
-
 def _file(case: Case, folder: Path) -> str:
     """A file that holds the case, without what was set."""
     path = Path(case._path)
     if path.is_file() and path.read_text(encoding="utf-8") == case._text:
         return str(path)
-    text = case._text
-    if '"csv"' in text:
-        text = json.dumps(_absolute(json.loads(text), Path(case._base).resolve()))
     folder.mkdir(exist_ok=True)
     path = folder / f"case-{len(list(folder.iterdir()))}.json"
-    path.write_text(text, encoding="utf-8")
+    path.write_text(case._text, encoding="utf-8")
     return str(path)
 
 
@@ -71,14 +61,17 @@ def _table(data: Data, folder: Path) -> str:
     """A file that holds measured data."""
     if isinstance(data, (str, os.PathLike)):
         return os.fspath(data)
-    columns = {str(name): list(data[name]) for name in data}
+    try:
+        columns = {str(name): np.atleast_1d(np.asarray(data[name], dtype=float)).tolist() for name in data}
+        rows = list(zip(*columns.values(), strict=True))
+    except (TypeError, ValueError, IndexError) as error:
+        raise UsageError(f"measured data are a CSV file, or columns of numbers of equal length by heading: {error}") from None
     folder.mkdir(exist_ok=True)
     path = folder / "data.csv"
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)
-        for row in zip(*columns.values(), strict=True):
-            writer.writerow("" if one is None or one != one else repr(float(one)) for one in row)
+        writer.writerows(["" if one != one else repr(one) for one in row] for row in rows)
     return str(path)
 
 
@@ -100,8 +93,6 @@ def _do(
         words.append(_table(data, given))
     sets = loaded[0]._sets
     if any(case._sets != sets for case in loaded):
-        from ._errors import UsageError
-
         raise UsageError("what is set must be the same in all cases of a sweep; give these as dicts or files")
     words += [f"--set={change}" for change in sets]
     words += _words(options)
@@ -216,7 +207,10 @@ def _listed(values: Any) -> list[str]:
 
 
 def _spans(vary: Mapping[str, tuple[float, float]]) -> dict[str, str]:
-    return {pointer: f"{_text(low)}:{_text(high)}" for pointer, (low, high) in vary.items()}
+    try:
+        return {pointer: f"{_text(low)}:{_text(high)}" for pointer, (low, high) in vary.items()}
+    except (AttributeError, TypeError, ValueError):
+        raise UsageError("vary is a dict of (low, high) by JSON pointer") from None
 
 
 def fit(
@@ -280,4 +274,4 @@ def sense(
     :param options: ``noise=PA``, ``smoothing``, ``at=SECONDS``, ``choose="variances"``.
     :returns: ``sense.json``; ``tables``.
     """
-    return _do("sense", [case], pressures, out=out, progress=progress, options={"load": list(load), **options})
+    return _do("sense", [case], pressures, out=out, progress=progress, options={"load": [load] if isinstance(load, str) else list(load), **options})

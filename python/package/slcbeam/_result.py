@@ -130,9 +130,9 @@ class Report:
 
 
 def split(names: list[str]) -> tuple[list[str], list[str]]:
-    """Names and units of headings such as ``tip_u1 [m]``."""
-    parts = [name.rpartition(" [") for name in names]
-    return [head for head, _, _ in parts], [unit.rstrip("]") for *_, unit in parts]
+    """Names and units of headings such as ``tip_u1 [m]``; the unit is empty where a heading has none."""
+    parts = [name[:-1].partition(" [") if name.endswith("]") else (name, "", "") for name in names]
+    return [head for head, _, _ in parts], [unit for *_, unit in parts]
 
 
 class Result:

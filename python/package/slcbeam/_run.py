@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 
 from . import _slcbeam
 from ._case import CaseLike, load
-from ._errors import SolverError
+from ._errors import SolverError, UsageError
 from ._result import Result
 
 #: Called some 20 times a second with the simulated time [s], its end [s] and the steps so far.
@@ -46,13 +46,12 @@ def run(
     >>> result.status, result.history["t"][-1]
     ('finished', np.float64(0.01))
     """
+    sensitivity = [sensitivity] if isinstance(sensitivity, str) else list(sensitivity)
     if accuracy is not None and sensitivity:
-        from ._errors import UsageError
-
         raise UsageError("accuracy and sensitivity do not go together; take the mesh and tolerance that an accuracy led to from the summary")
     asked = load(case)
     told = _bar if progress is True else (progress or None)
-    recorded, arrays = _slcbeam.run(asked._own, accuracy, list(sensitivity), told)
+    recorded, arrays = _slcbeam.run(asked._own, accuracy, sensitivity, told)
     if progress is True:
         sys.stderr.write("\n")
     result = Result(asked, recorded, arrays)

@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _slcbeam
 from ._case import CaseLike, load
+from ._errors import UsageError
 from ._slcbeam import State
 
 #: Values of the inputs: in their order, or some of them by pointer.
@@ -36,10 +37,13 @@ class Simulator:
         self.case = load(case)
         #: Pointers of the inputs, in their order.
         self.inputs = list(inputs)
+        try:
+            ranges = np.array([inputs[pointer] for pointer in self.inputs], dtype=float).reshape(len(self.inputs), 2)
+        except (TypeError, ValueError):
+            raise UsageError("inputs are a dict of (smallest, largest) by JSON pointer") from None
         #: Smallest and largest values of the inputs: an array of shape (inputs, 2).
-        self.ranges = np.array([[float(low), float(high)] for low, high in inputs.values()]).reshape(-1, 2)
-        given = [(pointer, *map(float, inputs[pointer])) for pointer in self.inputs]
-        self._own = _slcbeam.Simulator(self.case._own, given)
+        self.ranges = ranges
+        self._own = _slcbeam.Simulator(self.case._own, [(one, *range_) for one, range_ in zip(self.inputs, ranges.tolist())])
         columns = self._own.columns()
         #: Names of the columns of :attr:`row`.
         self.columns = [name for name, _, _ in columns]
@@ -57,29 +61,36 @@ class Simulator:
         :raises SolverError: it could not go on; :attr:`t` tells where it stands, and :meth:`restore` leads back.
         :raises KeyboardInterrupt: after the step in which it came; :attr:`t` tells where it stands.
         """
-        return self.step_to(self.t + duration, values)
+        return self._step(duration, True, values)
 
     def step_to(self, t: float, values: Values = None) -> np.ndarray:
         """The same until a time [s]."""
-        row, stopped = self._own.step(float(t), self._given(values))
+        return self._step(t, False, values)
+
+    def _step(self, time: float, further: bool, values: Values) -> np.ndarray:
+        row, stopped = self._own.step(float(time), further, self._given(values))
         if stopped:
             raise KeyboardInterrupt
         row.flags.writeable = False
         return row
 
-    def _given(self, values: Values) -> np.ndarray:
+    def _given(self, values: Values) -> np.ndarray | None:
         if values is None:
-            return self._own.values()
+            return None
         if isinstance(values, Mapping):
             given = self._own.values()
             for pointer, value in values.items():
                 if pointer not in self.inputs:
-                    from ._errors import UsageError
-
                     raise UsageError(f"{pointer} is no input; inputs are {', '.join(self.inputs)}")
                 given[self.inputs.index(pointer)] = value
             return given
-        return np.ascontiguousarray(np.atleast_1d(values), dtype=float)
+        try:
+            given = np.atleast_1d(np.asarray(values, dtype=float))
+        except (TypeError, ValueError):
+            given = np.empty((0, 0))
+        if given.ndim != 1:
+            raise UsageError("values of the inputs are a number, a list of numbers, or a dict by pointer")
+        return np.ascontiguousarray(given)
 
     @property
     def t(self) -> float:

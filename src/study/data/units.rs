@@ -35,6 +35,7 @@ const TABLE: [(&str, &str, f64); 59] = [
     ("Pa", "kPa", 1e3),
     ("Pa", "MPa", 1e6),
     ("Pa", "mbar", 1e2),
+    ("Pa", "hPa", 1e2),
     ("Pa", "bar", 1e5),
     ("Pa", "psi", 6_894.757_293),
     ("rad", "rad", 1.0),

@@ -99,6 +99,8 @@ const CLOSE: f64 = 1e-9;
 const ROUNDS: u32 = 12;
 /// Change of the logarithm of that weight that is none.
 const SAME_WEIGHT: f64 = 0.02;
+/// What is known before, over what is measured, at most.
+const HEAVIEST: f64 = 1e6;
 /// Weights that are tried: logarithms, and their number.
 const WEIGHTS: (f64, f64, usize) = (-14.0, 25.0, 79);
 
@@ -125,11 +127,22 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
         _ => 1.0,
     };
     let chosen = rank > 0 && matches!(ask.smoothing, Smoothing::Likelihood | Smoothing::Discrepancy);
+    if !ask.noise_known && ask.smoothing == Smoothing::Discrepancy {
+        let what = "--smoothing discrepancy leaves the pressures their noise, which must be known: give its deviation, --noise PA";
+        return Err(Error::Usage(what.into()));
+    }
     let before = |weight: f64| match rank {
         0 => DMatrix::zeros(0, ask.differences.ncols()),
         _ => ask.differences * weight,
     };
     let mut states: Vec<State> = problems.iter().map(State::of).collect();
+    // where loads alone could follow every pressure, a weight chosen by the data would take their noise for nothing
+    let alone = |state: &State| state.measured.len() - Seen::of(&state.weighted()).values.len();
+    if !ask.noise_known && chosen && states.iter().map(alone).sum::<usize>() == 0 {
+        return Err(few(&states));
+    }
+    let most = heaviest(&states, ask.differences);
+    weight = weight.min(most);
     let mut noise = 1.0;
     for round in 0..ROUNDS {
         let mut posteriors = vec![];
@@ -156,7 +169,7 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
             break;
         }
         let linear: Vec<Linear> = states.iter().map(State::linear).collect();
-        let next = choose(&linear, &before, rank, ask);
+        let next = choose(&linear, &before, rank, ask, most);
         let same = (next / weight).ln().abs() < SAME_WEIGHT;
         weight = next;
         if same {
@@ -196,11 +209,23 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
     })
 }
 
-/// The rows of both.
+/// The rows of both, each of size 1.
 fn stacked(upper: &DMatrix<f64>, lower: &DMatrix<f64>) -> DMatrix<f64> {
     let m = upper.nrows();
+    let size = |rows: &DMatrix<f64>| {
+        if rows.is_empty() {
+            1.0
+        } else {
+            rows.amax().max(f64::MIN_POSITIVE)
+        }
+    };
+    let sizes = [upper, lower].map(size);
     DMatrix::from_fn(m + lower.nrows(), upper.ncols(), |i, j| {
-        if i < m { upper[(i, j)] } else { lower[(i - m, j)] }
+        if i < m {
+            upper[(i, j)] / sizes[0]
+        } else {
+            lower[(i - m, j)] / sizes[1]
+        }
     })
 }
 
@@ -231,7 +256,7 @@ impl Sums {
 }
 
 /// The weight of what is known before that the data speak for.
-fn choose(linear: &[Linear], before: &dyn Fn(f64) -> DMatrix<f64>, rank: usize, ask: &Ask) -> f64 {
+fn choose(linear: &[Linear], before: &dyn Fn(f64) -> DMatrix<f64>, rank: usize, ask: &Ask, most: f64) -> f64 {
     let rows: usize = linear.iter().map(|one| one.rows).sum();
     // to be made small
     let cost = |log_weight: f64| {
@@ -250,10 +275,25 @@ fn choose(linear: &[Linear], before: &dyn Fn(f64) -> DMatrix<f64>, rank: usize, 
         }
     };
     let (low, high, count) = WEIGHTS;
+    let high = high.min(most.ln());
     let step = (high - low) / (count - 1) as f64;
     let tried = (0..count).map(|k| low + step * k as f64).map(|w| (w, cost(w)));
     let best = tried.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |best| best.0);
-    golden(&cost, best - step, best + step).exp()
+    golden(&cost, best - step, (best + step).min(high)).exp()
+}
+
+/// The weight beyond which what is known before drowns what is measured in round-off, and changes nothing more.
+fn heaviest(states: &[State], differences: &DMatrix<f64>) -> f64 {
+    let measured = states.iter().map(|state| state.weighted().amax()).fold(0.0, f64::max);
+    let before = if differences.is_empty() {
+        0.0
+    } else {
+        differences.amax()
+    };
+    match measured > 0.0 && before > 0.0 {
+        true => HEAVIEST * measured / before,
+        false => f64::INFINITY,
+    }
 }
 
 /// The least of a function between two places (golden section).

@@ -35,11 +35,11 @@ const UNLIKELY: f64 = 1e-3;
 /// Share by which pressures may differ from those along the path from rest.
 const SAME: f64 = 1e-6;
 
-/// Looks for loads; `measured` none: what pressures would tell of them.
+/// Looks for loads; `measured` none: what pressures would tell of them. `stop` is asked before every state.
 ///
 /// # Errors
 /// [`Error::Usage`]: a case without pressures, loads that act where nothing moves, a noise that cannot be told; states that are not found.
-pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked) -> Result<Sensed> {
+pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn Fn() -> bool) -> Result<Sensed> {
     let loads = match asked.loads.is_empty() {
         true => Basis::usual(case),
         false => asked.loads.clone(),
@@ -47,14 +47,13 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked) -> Result<S
     let amplitudes = basis::amplitudes(case, &loads)?;
     let (probed, names) = probed(case)?;
     let options = Options::at(asked.at_s);
-    let mut model = AtRest::new(&probed, &names, &amplitudes, &options)?;
+    let mut model = AtRest::new(&probed, &names, &amplitudes, &options)?.until(stop);
     let zeros = vec![0.0; amplitudes.len()];
     let first = model.at(&zeros)?;
     let all = labels(case);
     let columns = measured.map_or_else(|| (0..all.len()).collect(), |measured| measured.bladders.clone());
     let own = first.1.select_rows(&columns);
     let seen = Seen::of(&own);
-    let combinations = combinations(&seen, &amplitudes);
     // about which the best bladders are looked for: the largest loads that are found
     let mut about = first.1.clone();
     let mut warnings = known::at_rest(case, &equilibrium::system(case, asked.at_s)?);
@@ -64,22 +63,15 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked) -> Result<S
         left_alone: vec![],
         loads,
         loads_at_s: asked.at_s,
-        amplitudes: unknowns(&amplitudes, &seen, &own),
         bladders: columns.iter().map(|b| all[*b]).collect(),
-        seen: Sight {
-            condition: seen
-                .values
-                .first()
-                .map_or(1.0, |most| most / seen.values[seen.values.len() - 1]),
-            blind: seen.blind.iter().map(|change| changed(change, &amplitudes)).collect(),
-            together: combinations.iter().map(|one| one.0.clone()).collect(),
-        },
         ..Sensed::default()
     };
     if seen.values.is_empty() {
-        let what = "no bladder that is measured feels any of these loads: nothing of them can be told";
+        let what = "no bladder that is measured feels any of these loads, since at rest its pressure is that of a port, or it holds no fluid: nothing of \
+                    them can be told";
         return Err(Error::Usage(what.into()));
     }
+    sight(&mut found, &amplitudes, &own);
     if let Some(measured) = measured {
         let differences = differences(&amplitudes, &found.loads);
         let whole = whole(measured, &columns, all.len());
@@ -108,6 +100,16 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked) -> Result<S
             noise_known: deviations.is_some() || asked.noise_pa.is_some(),
         };
         let all_found = estimate(&mut problems, &ask)?;
+        // what goes together is another sum where the beam is bent far
+        if let Some(largest) = largest(&all_found) {
+            sight(&mut found, &amplitudes, &largest.jacobian.select_rows(&columns));
+        }
+        let combinations: Vec<Vec<f64>> = found
+            .seen
+            .together
+            .iter()
+            .map(|one| over_sizes(one, &amplitudes))
+            .collect();
         let told = Told {
             amplitudes: &amplitudes,
             combinations: &combinations,
@@ -145,6 +147,27 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked) -> Result<S
     }
     found.warnings = warnings;
     Ok(found)
+}
+
+/// What pressures tell of loads, by their derivatives.
+fn sight(found: &mut Sensed, amplitudes: &[Amplitude], jacobian: &DMatrix<f64>) {
+    let seen = Seen::of(jacobian);
+    found.amplitudes = unknowns(amplitudes, &seen, jacobian);
+    let most = seen.values.first().copied().unwrap_or(1.0);
+    found.seen = Sight {
+        condition: seen.values.last().map_or(1.0, |least| most / least),
+        blind: seen.blind.iter().map(|change| changed(change, amplitudes)).collect(),
+        together: combinations(&seen, amplitudes),
+    };
+}
+
+/// Factors of a sum for amplitudes over their sizes.
+fn over_sizes(sum: &Combination, amplitudes: &[Amplitude]) -> Vec<f64> {
+    sum.factors
+        .iter()
+        .zip(amplitudes)
+        .map(|(factor, a)| factor * a.size)
+        .collect()
 }
 
 /// Measurements with a place for every bladder.
@@ -208,8 +231,8 @@ fn leading(row: &[f64]) -> usize {
     row.iter().position(|c| (c - 1.0).abs() < 1e-9).unwrap_or(0)
 }
 
-/// Sums of several amplitudes that are told, with their factors for amplitudes over their sizes; the size of the first goes before.
-fn combinations(seen: &Seen, amplitudes: &[Amplitude]) -> Vec<(Combination, Vec<f64>)> {
+/// Sums of several amplitudes that are told.
+fn combinations(seen: &Seen, amplitudes: &[Amplitude]) -> Vec<Combination> {
     let several = |one: &&Vec<f64>| one.iter().filter(|c| **c != 0.0).count() > 1;
     let of = |one: &Vec<f64>| {
         let first = leading(one);
@@ -228,12 +251,11 @@ fn combinations(seen: &Seen, amplitudes: &[Amplitude]) -> Vec<(Combination, Vec<
             };
             name += &format!("{sign}{times}{}", a.name);
         }
-        let combination = Combination {
+        Combination {
             name,
             unit: amplitudes[first].unit.into(),
             factors,
-        };
-        (combination, one.iter().map(|c| c * size).collect())
+        }
     };
     seen.told.iter().filter(several).map(of).collect()
 }
@@ -249,7 +271,7 @@ fn short(x: f64) -> String {
 /// What is told of a row.
 struct Told<'a> {
     amplitudes: &'a [Amplitude],
-    combinations: &'a [(Combination, Vec<f64>)],
+    combinations: &'a [Vec<f64>],
     estimate: &'a Estimate,
 }
 
@@ -277,7 +299,7 @@ impl Told<'_> {
     }
 
     fn together(&self, found: &Found, k: usize) -> Option<Banded> {
-        self.of(found, &self.combinations[k].1)
+        self.of(found, &self.combinations[k])
     }
 }
 

@@ -58,6 +58,11 @@ impl Measured {
         for (k, column) in table.columns.iter().enumerate().filter(|(k, _)| Some(*k) != time) {
             let heading = visible(&column.heading);
             let Some(holds) = holds(&column.name, case) else {
+                if seems_a_bladder(&column.name) {
+                    return Err(wrong(format!(
+                        "column {heading}: not understood as the pressure of a bladder, which is written pressure_3_pa or pressure_-3_kpa"
+                    )));
+                }
                 left_alone.push(column.heading.clone());
                 continue;
             };
@@ -167,6 +172,16 @@ fn holds(name: &str, case: &Case) -> Option<Holds> {
     Some(match deviation {
         true => Holds::Deviation(label),
         false => Holds::Pressure(label),
+    })
+}
+
+/// Whether a heading speaks of a pressure or a bladder with a number, and of no place that results have.
+fn seems_a_bladder(name: &str) -> bool {
+    let name = name.to_lowercase();
+    let words = ["pressure", "bladder"].iter().find_map(|word| name.strip_prefix(word));
+    words.is_some_and(|rest| {
+        rest.trim_start_matches(['_', '@', ' ', '-', '−'])
+            .starts_with(|c: char| c.is_ascii_digit())
     })
 }
 

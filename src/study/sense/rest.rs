@@ -59,7 +59,13 @@ pub struct AtRest<'a> {
     columns: Vec<usize>,
     /// The last state.
     last: Resting,
+    /// Whether to stop, asked before every state.
+    stop: Option<&'a dyn Fn() -> bool>,
 }
+
+/// A pressure that changes by less under loads that bend the beam by its length feels nothing of them: it is that of a port, but for
+/// round-off [Pa].
+const NOTHING: f64 = 1e-6;
 
 impl<'a> AtRest<'a> {
     /// Under the loads of the case alone; `case` and `names` are those of [`probed`].
@@ -83,7 +89,14 @@ impl<'a> AtRest<'a> {
             amplitudes,
             options,
             columns,
+            stop: None,
         })
+    }
+
+    /// The same, asked before every state whether to stop.
+    pub fn until(mut self, stop: &'a dyn Fn() -> bool) -> Self {
+        self.stop = Some(stop);
+        self
     }
 
     /// Pressures along the path from rest to these loads, and what there is to warn of.
@@ -106,6 +119,11 @@ impl<'a> AtRest<'a> {
     /// # Errors
     /// There is no such state.
     pub fn go(&mut self, amplitudes: &[f64]) -> Result<DVector<f64>> {
+        if self.stop.is_some_and(|stop| stop()) {
+            return Err(Error::Usage(
+                "interrupted before the loads were found; nothing is written".into(),
+            ));
+        }
         let case = with(self.case, self.amplitudes, amplitudes);
         self.last = match self.last.beside(&case, self.options)? {
             Some(there) => there,
@@ -143,9 +161,12 @@ impl Forward for AtRest<'_> {
         let directions: Vec<Direction> = self.amplitudes.iter().enumerate().map(direction).collect();
         let case = with(self.case, self.amplitudes, amplitudes);
         let derivatives = self.last.along(&case, self.options, &directions)?;
-        let jacobian = DMatrix::from_fn(self.columns.len(), derivatives.len(), |i, j| {
+        let mut jacobian = DMatrix::from_fn(self.columns.len(), derivatives.len(), |i, j| {
             derivatives[j].row[self.columns[i]]
         });
+        for mut row in jacobian.row_iter_mut().filter(|row| row.amax() < NOTHING) {
+            row.fill(0.0);
+        }
         Ok((values, jacobian))
     }
 }

@@ -1,5 +1,7 @@
 //! Signals of a case that are set from outside.
 
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+
 use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
@@ -26,6 +28,19 @@ pub(super) struct Held {
     pub value: f64,
     /// Signals of the system that it is, in the order in which they are visited.
     pub places: Vec<usize>,
+}
+
+/// What tells a case and its inputs from others.
+pub(super) fn mark(case: &Case, inputs: &[Input]) -> String {
+    let mut hasher = DefaultHasher::new();
+    serde_json::to_string(case.resolved())
+        .unwrap_or_default()
+        .hash(&mut hasher);
+    for input in inputs {
+        input.pointer.hash(&mut hasher);
+        input.range.map(f64::to_bits).hash(&mut hasher);
+    }
+    format!("{:016x}", hasher.finish())
 }
 
 /// The case with signals that go through the whole of their ranges in place of its inputs, by which the model is chosen; its system, and where in

@@ -17,6 +17,7 @@ use crate::functions::{Ramp, RampShape, Signal};
 use crate::integrate::{StartOptions, consistent_start};
 use crate::onestep::OneStep;
 use crate::run::equilibrium;
+use crate::run::known;
 use crate::run::observe::{Observed, Observer};
 use crate::run::record::{Column, Control, Unrecorded};
 use crate::run::schedule::{self, Stop};
@@ -29,6 +30,7 @@ pub struct Snapshot {
     pub t: f64,
     /// Values of the inputs.
     pub values: Vec<f64>,
+    of: String,
     next: usize,
     y: Vec<f64>,
     yp: Vec<f64>,
@@ -38,6 +40,10 @@ pub struct Snapshot {
 
 /// A case that is simulated piece by piece, by a one-step method: what came before an instant, besides the state, does not matter after it.
 pub struct Simulator {
+    /// What tells case and inputs from others.
+    of: String,
+    /// What there is to know of the case.
+    known: Vec<String>,
     held: Vec<Held>,
     solver: OneStep<BeamDae>,
     observer: Observer,
@@ -63,7 +69,9 @@ impl Simulator {
     /// [`Error::Usage`] for an input that is no signal of the case, or one that must not jump; those of [`System::new`](crate::discrete::System::new); a start that cannot be
     /// found.
     pub fn new(case: &Case, inputs: &[Input]) -> Result<Self> {
+        let of = inputs::mark(case, inputs);
         let (case, mut system, held) = inputs::taken(case, inputs)?;
+        let known = known::lasting(&case, &system);
         for one in &held {
             system.put_signal(&one.places, &Signal::Constant(one.value));
         }
@@ -85,6 +93,8 @@ impl Simulator {
             .map_err(|failure| solver(inconsistent(0.0, &failure)))?;
         let zeros = vec![0.0; dae.integrals()];
         let mut this = Self {
+            of,
+            known,
             held,
             solver: OneStep::new(dae, 0.0, &state, &rates, &options).map_err(|failure| solver(fault(&failure)))?,
             observer,
@@ -135,9 +145,11 @@ impl Simulator {
         self.solver.steps()
     }
 
-    /// What to know of what has been simulated.
+    /// What to know of the case, with inputs that go through their ranges, and of what has been simulated.
     pub fn warnings(&self) -> Vec<String> {
-        self.observer.warnings()
+        let mut all = self.known.clone();
+        all.extend(self.observer.warnings());
+        all
     }
 
     /// Gives the inputs these values from now on and simulates until a time [s]. `ask` is asked after every step whether to go on; where it says
@@ -172,6 +184,7 @@ impl Simulator {
         let snapshot = Snapshot {
             t: self.time(),
             values: self.values().collect(),
+            of: self.of.clone(),
             next: self.next,
             y: self.state.clone(),
             yp: self.rates.clone(),
@@ -187,7 +200,8 @@ impl Simulator {
     /// # Errors
     /// [`Error::Usage`] for a state of another case.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
-        let same = snapshot.y.len() == self.state.len()
+        let same = snapshot.of == self.of
+            && snapshot.y.len() == self.state.len()
             && snapshot.yp.len() == self.rates.len()
             && snapshot.integrals.len() == self.carried.len()
             && snapshot.values.len() == self.held.len()
