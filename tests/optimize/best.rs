@@ -235,6 +235,46 @@ fn bounds_and_differences_are_told() {
     );
 }
 
+/// Goal: a figure that no number moves is told to be one, and what is told to begin with is that of the case, whichever search ends first.
+#[test]
+fn a_figure_that_nothing_moves() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let strip = "cases/snap-strip.json";
+    let asked = [
+        strip,
+        "--vary",
+        "/beam/height_m=0.0002:0.02",
+        "--maximize",
+        "tip_u1_m",
+        "--command",
+        "equilibrium",
+    ];
+    let found = best(&dir, &asked);
+    assert!(
+        found["warnings"]
+            .to_string()
+            .contains("does not change with any number"),
+        "{found}"
+    );
+    let found = best(
+        &dir,
+        &[
+            &[
+                "cases/dry-cantilever.json",
+                "--vary",
+                "/beam/height_m=0.01:0.05",
+                "--maximize",
+                "mode_1",
+            ][..],
+            &["--command", "modes", "--starts", "4", "--jobs", "4"],
+        ]
+        .concat(),
+    );
+    let case = case::load("cases/dry-cantilever.json".as_ref(), &[]).expect("a case");
+    let own = figure(&case, What::Modes, &[], "mode_1.frequency_hz");
+    assert!((number(&found["begin"]) / own - 1.0).abs() < 1e-9, "{found}");
+}
+
 /// Goal: what cannot be held is told, with what comes nearest; the exit code is that of a result.
 #[test]
 fn limits_that_nothing_holds() {

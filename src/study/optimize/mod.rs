@@ -119,7 +119,8 @@ pub fn optimise(
         plain: checked.as_ref().and_then(own),
         error: checked.as_ref().and_then(|found| error(found, &problem.goal.figure)),
         begin: history
-            .first()
+            .iter()
+            .find(|design| design.start == 0)
             .and_then(|design| design.figures.as_ref().map(|figures| figures[0])),
         chosen: (!compared.is_empty()).then_some(chosen),
         alternatives: compared,
@@ -139,6 +140,13 @@ pub fn optimise(
         wall_s: 0.0,
     };
     optimum.warnings = warnings(problem, &optimum, minimum.ended, stop());
+    if minimum.at.slope.iter().all(|slope| *slope == 0.0) && !minimum.x.is_empty() {
+        let what = format!(
+            "{} does not change with any number that was sought",
+            problem.goal.figure
+        );
+        optimum.warnings.push(Code::Optimum.warning(what));
+    }
     optimum.wall_s = begin.elapsed().as_secs_f64();
     Ok(Optimised {
         optimum,
