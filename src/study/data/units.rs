@@ -21,7 +21,7 @@ impl Unit {
 }
 
 /// SI unit, unit, how many of the one the other is.
-const TABLE: [(&str, &str, f64); 59] = [
+const TABLE: [(&str, &str, f64); 60] = [
     ("m", "m", 1.0),
     ("m", "cm", 1e-2),
     ("m", "mm", 1e-3),

@@ -33,7 +33,7 @@ pub(super) struct Held {
 /// What tells a case and its inputs from others.
 pub(super) fn mark(case: &Case, inputs: &[Input]) -> String {
     let mut hasher = DefaultHasher::new();
-    serde_json::to_string(case.resolved())
+    serde_json::to_string(&case.resolved())
         .unwrap_or_default()
         .hash(&mut hasher);
     for input in inputs {
