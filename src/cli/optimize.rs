@@ -59,6 +59,9 @@ fn candidates(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Result<
     if all.is_empty() {
         all.push(Alternative::default());
     }
+    if let Some(one) = all.first() {
+        apart(one, wanted)?;
+    }
     let candidate = |alternative: Alternative| {
         let problem = match alternative.sets.is_empty() {
             true => Problem::new(case, wanted)?,
@@ -70,6 +73,26 @@ fn candidates(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Result<
         Ok(Candidate { alternative, problem })
     };
     all.into_iter().map(candidate).collect()
+}
+
+/// What is chosen and what is sought are different parts of the case.
+fn apart(one: &Alternative, wanted: &Asked) -> Result<()> {
+    let mut all: Vec<&str> = one
+        .sets
+        .iter()
+        .filter_map(|set| set.split_once('='))
+        .map(|set| set.0)
+        .collect();
+    all.extend(wanted.spans.iter().map(|span| span.pointer.as_str()));
+    let within = |a: &str, b: &str| a == b || a.strip_prefix(b).is_some_and(|rest| rest.starts_with('/'));
+    for (k, a) in all.iter().enumerate() {
+        if let Some(b) = all[..k].iter().find(|b| within(a, b) || within(b, a)) {
+            return Err(Error::Usage(format!(
+                "{a} and {b}: --vary, --choose and --crossovers must be of different parts of the case"
+            )));
+        }
+    }
+    Ok(())
 }
 
 fn wanted(asked: &OptimizeArguments) -> Result<Asked> {

@@ -111,7 +111,7 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Tries this as the next step [s]; 0 leaves it to the state.
-    pub fn expect(&mut self, size: f64) {
+    pub fn propose(&mut self, size: f64) {
         self.control.begin(size);
     }
 

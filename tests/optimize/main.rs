@@ -3,5 +3,6 @@
 mod best;
 mod common;
 mod cycles;
+mod flat;
 mod refused;
 mod wirings;

@@ -13,6 +13,11 @@ fn what_makes_no_sense_is_refused() {
         (tip.to_vec(), 2, "nothing to seek: --vary POINTER=LOW:HIGH"),
         (young.to_vec(), 2, "--maximize"),
         (
+            with(&[&young, &tip, &["--choose", "/beam/young_modulus_pa=1e6|2e6"]]),
+            2,
+            "must be of different parts",
+        ),
+        (
             with(&[&young, &tip, &["--minimize", "tip_u3_m"]]),
             2,
             "cannot be used with",

@@ -22,14 +22,11 @@ struct Said {
 fn sense(dir: &TempDir, more: &[&str]) -> Said {
     let out = dir.path().join("out");
     let mut command = assert_cmd::Command::cargo_bin("slcbeam").unwrap();
-    command
-        .args(["sense", CASE])
-        .args(more)
-        .args(["--quiet", "--out"])
-        .arg(out);
+    command.args(["sense", CASE]);
     QUICK.iter().for_each(|set| {
         command.args(["--set", set]);
     });
+    command.args(more).args(["--quiet", "--out"]).arg(out);
     let output = command.output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     Said {

@@ -69,7 +69,13 @@ fn rows(page: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
     let lines = page
         .lines()
         .filter(|line| line.starts_with("| ") && !line.contains("|--"));
-    lines.map(|line| line.trim_matches('|').split(" | ").map(str::trim).collect())
+    lines.map(|line| {
+        let cells = line
+            .strip_prefix('|')
+            .and_then(|line| line.strip_suffix('|'))
+            .unwrap_or(line);
+        cells.split('|').map(str::trim).collect()
+    })
 }
 
 fn of_glossary(row: &[&str], name: &str) -> Option<Told> {

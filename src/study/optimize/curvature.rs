@@ -8,6 +8,8 @@ use super::search::{Reached, Search};
 
 /// Change of a place in a difference, to either side.
 const BESIDE: f64 = 0.01;
+/// Share by which values and slopes may tell second derivatives apart.
+const ALIKE: f64 = 0.3;
 /// What counts as 1 % of the figure.
 const SHARE: f64 = 0.01;
 
@@ -31,9 +33,15 @@ pub fn bend(problem: &Problem, search: &Search<'_>, reached: &Reached, start: us
             let mut places = minimum.x.clone();
             places[*k] += change;
             let seen = search.look(start, &places)?;
-            Some(search.point(&seen, &reached.sizes).slope)
+            Some(search.point(&seen, &reached.sizes))
         };
-        let change = (at(BESIDE)? - at(-BESIDE)?) / (2.0 * BESIDE);
+        let (above, below) = (at(BESIDE)?, at(-BESIDE)?);
+        let change = (&above.slope - &below.slope) / (2.0 * BESIDE);
+        // where values bend otherwise than slopes tell there is a kink, or noise
+        let by_values = (above.value + below.value - 2.0 * minimum.at.value) / (BESIDE * BESIDE);
+        if (by_values - change[*k]).abs() > ALIKE * change[*k].abs() {
+            return None;
+        }
         free.iter().enumerate().for_each(|(j, l)| matrix[(j, i)] = change[*l]);
     }
     let matrix = (&matrix + matrix.transpose()) * 0.5;
@@ -41,15 +49,17 @@ pub fn bend(problem: &Problem, search: &Search<'_>, reached: &Reached, start: us
 }
 
 impl Bend {
-    /// Values of a number to either side of the best at which the figure would be worse by 1 %, others held.
+    /// Values of a number to either side of the best at which the figure would be worse by 1 %, others held; nothing where one of them lies
+    /// beyond its bounds.
     pub fn within(&self, problem: &Problem, reached: &Reached, k: usize) -> Option<[f64; 2]> {
         let i = self.free.iter().position(|own| *own == k)?;
         let bend = self.matrix[(i, i)];
         let worse = SHARE * reached.minimum.at.value.abs();
         let far = (2.0 * worse / bend).sqrt();
         let span = &problem.spans[k];
-        let at = |place: f64| span.value(place.clamp(0.0, 1.0));
-        (bend > 0.0 && far.is_finite()).then(|| [at(reached.minimum.x[k] - far), at(reached.minimum.x[k] + far)])
+        let places = [reached.minimum.x[k] - far, reached.minimum.x[k] + far];
+        let within = bend > 0.0 && worse > 0.0 && places.iter().all(|place| (0.0..=1.0).contains(place));
+        within.then(|| places.map(|place| span.value(place)))
     }
 
     /// As it is told: of the figure itself, by numbers or their logarithms.

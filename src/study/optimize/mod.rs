@@ -140,9 +140,12 @@ pub fn optimise(
         wall_s: 0.0,
     };
     optimum.warnings = warnings(problem, &optimum, minimum.ended, stop());
+    optimum
+        .warnings
+        .extend(checked.iter().flat_map(|plain| broken(problem, plain)));
     if minimum.at.slope.iter().all(|slope| *slope == 0.0) && !minimum.x.is_empty() {
         let what = format!(
-            "{} does not change with any number that was sought",
+            "{} does not change there with any number that was sought",
             problem.goal.figure
         );
         optimum.warnings.push(Code::Optimum.warning(what));
@@ -240,6 +243,23 @@ fn held(problem: &Problem, reached: &Reached, i: usize) -> Held {
         gain: (reached.minimum.at.inequalities[i] < REACHED)
             .then(|| reached.minimum.multipliers[i] * reached.sizes[0] / reached.sizes[i + 1]),
     }
+}
+
+/// Limits that the plain command breaks at the best.
+fn broken(problem: &Problem, plain: &Found) -> Vec<String> {
+    let of = |limit: &Limit| {
+        let value = plain.figure(&limit.figure)?;
+        (limit.beyond(value) > REACHED * limit.bound.abs()).then(|| {
+            Code::Optimum.warning(format!(
+                "`slcbeam {}` gives {} {value:.6e} at the best, which does not hold {} {:e}: a smaller /solver/rtol, or a stricter limit, helps",
+                problem.what.word(),
+                limit.figure,
+                limit.sign(),
+                limit.bound
+            ))
+        })
+    };
+    problem.limits.iter().filter_map(of).collect()
 }
 
 fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped: bool) -> Vec<String> {

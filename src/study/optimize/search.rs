@@ -9,7 +9,7 @@ use super::found::{Derivatives, Design, Start};
 use super::look::{Seen, look};
 use super::problem::{Asked, Problem};
 use crate::error::{Error, Result};
-use crate::numerics::sqp::{HELD, Minimum, Options, Point, minimise};
+use crate::numerics::sqp::{Ended, HELD, Minimum, Options, Point, minimise};
 use crate::study::span;
 use crate::study::sweep::{What, pool};
 
@@ -17,6 +17,12 @@ use crate::study::sweep::{What, pool};
 const STEPS: usize = 60;
 /// A step between the bounds that counts as none.
 const CLOSE: f64 = 3e-5;
+/// Searches from where one has ended, at most: what is flat beside the figure at the start may be steep beside that at the end.
+const AGAIN: usize = 6;
+/// Slope over the figure, between the bounds, that counts as none at the end of a search.
+const LEVEL: f64 = 1e-3;
+/// The same where derivatives and kinks are told from each other.
+const STEEP: f64 = 2e-2;
 /// Error of figures at rest and of modes.
 const EXACT: f64 = 1e-9;
 
@@ -118,6 +124,11 @@ impl<'a> Search<'a> {
             let ([a, x], [b, y]) = ([worth(a).0, worth(a).1], [worth(b).0, worth(b).1]);
             a.total_cmp(&b).then(x.total_cmp(&y))
         });
+        if best.is_none() && (self.stop)() {
+            return Err(Error::Usage(
+                "interrupted before a design was computed; nothing is written".into(),
+            ));
+        }
         let Some((minimum, sizes)) = best else {
             let why = self.history().into_iter().find_map(|design| design.reason);
             let why = why.map_or(String::new(), |why| format!(": {why}"));
@@ -156,12 +167,59 @@ impl<'a> Search<'a> {
                 What::Equilibrium | What::Modes => EXACT,
             },
         };
-        let found = minimise(from, &options, &mut |places| {
-            let seen = self.look(start, places)?;
-            let sizes = sizes.get_or_insert_with(|| self.sizes(&seen.figures));
-            Some(self.point(&seen, sizes))
-        });
-        Some((found?, sizes?))
+        let mut found: Option<Minimum> = None;
+        for _ in 0..AGAIN {
+            let from = found.as_ref().map_or(from, |found| &found.x);
+            // what there is where the last search has ended is not computed again
+            let mut here = found
+                .as_ref()
+                .zip(sizes.as_ref())
+                .map(|(found, sizes)| self.rescaled(found, sizes));
+            if let Some((_, own)) = &here {
+                sizes = Some(own.clone());
+            }
+            let next = minimise(from, &options, &mut |places| {
+                if let Some((point, _)) = here.take() {
+                    return Some(point);
+                }
+                let seen = self.look(start, places)?;
+                let sizes = sizes.get_or_insert_with(|| self.sizes(&seen.figures));
+                Some(self.point(&seen, sizes))
+            })?;
+            let steps = found.as_ref().map_or(0, |found| found.steps);
+            let moved = next.steps > 0;
+            let first = found.is_none();
+            let next = Minimum {
+                steps: steps + next.steps,
+                ..next
+            };
+            let level = steepness(&next) <= LEVEL;
+            found = Some(next);
+            if level || !(first || moved) || (self.stop)() {
+                break;
+            }
+        }
+        let mut found = found?;
+        if found.ended == Ended::Found && steepness(&found) > STEEP {
+            found.ended = Ended::Stuck;
+        }
+        Some((found, sizes?))
+    }
+
+    /// What there is at the end of a search, with sizes of the figures there.
+    fn rescaled(&self, found: &Minimum, sizes: &[f64]) -> (Point, Vec<f64>) {
+        let figures = self.figures(found, sizes);
+        let mut own = sizes.to_vec();
+        if figures[0] != 0.0 {
+            own[0] = figures[0].abs();
+        }
+        let share = sizes[0] / own[0];
+        let point = Point {
+            value: found.at.value * share,
+            slope: &found.at.slope * share,
+            ..found.at.clone()
+        };
+        (point, own)
     }
 
     /// Sizes of figures: of what is sought at the start, of limits themselves.
@@ -238,4 +296,20 @@ impl<'a> Search<'a> {
         let best = best.min_by(|a, b| (sign * a).total_cmp(&(sign * b)));
         (self.tell)(history.len(), best);
     }
+}
+
+/// How steep what is sought still is at the end of a search, over its size there: by the numbers that no bound holds, limits with their multipliers
+/// taken along.
+fn steepness(found: &Minimum) -> f64 {
+    let lambda = DVector::from_column_slice(&found.multipliers);
+    let slope = &found.at.slope + found.at.slopes.tr_mul(&lambda);
+    let free = slope
+        .iter()
+        .zip(&found.x)
+        .map(|(slope, x)| match (*x <= 0.0, *x >= 1.0) {
+            (true, _) => -slope.min(0.0),
+            (_, true) => slope.max(0.0),
+            _ => slope.abs(),
+        });
+    free.fold(0.0, f64::max) / found.at.value.abs().max(f64::MIN_POSITIVE)
 }

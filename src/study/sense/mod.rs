@@ -5,6 +5,7 @@
 //! pressures  what was measured
 //! rest       pressures at rest under loads
 //! estimate   amplitudes from measurements, with bands
+//! weight     that of what is known before
 //! choose     which bladders to measure
 //! find       all of it, of a case
 //! sensed     what was found
@@ -17,3 +18,4 @@ pub mod find;
 pub mod pressures;
 pub mod rest;
 pub mod sensed;
+mod weight;

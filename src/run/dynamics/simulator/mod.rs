@@ -254,7 +254,7 @@ impl Simulator {
         }
         self.restart(t)?;
         // inputs that change often change little: a step that is too long for it is rejected
-        self.solver.expect(self.size);
+        self.solver.propose(self.size);
         Ok(())
     }
 

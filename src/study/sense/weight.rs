@@ -1,0 +1,77 @@
+//! The weight of what is known before the data.
+
+use nalgebra::DMatrix;
+
+use super::estimate::{Ask, Smoothing};
+use crate::numerics::inverse::{Linear, Posterior};
+
+/// What is known before, over what is measured, at most.
+const HEAVIEST: f64 = 1e6;
+/// Weights that are tried: logarithms, and their number.
+const WEIGHTS: (f64, f64, usize) = (-14.0, 25.0, 79);
+
+/// The weight of what is known before that the data speak for.
+pub(super) fn choose(
+    linear: &[Linear],
+    before: &dyn Fn(f64) -> DMatrix<f64>,
+    rank: usize,
+    ask: &Ask,
+    most: f64,
+) -> f64 {
+    let rows: usize = linear.iter().map(|one| one.rows).sum();
+    // to be made small
+    let cost = |log_weight: f64| {
+        let before = before(log_weight.exp());
+        let all: Vec<Posterior> = linear.iter().map(|one| one.posterior(&before)).collect();
+        let sum = |of: &dyn Fn(&Posterior) -> f64| all.iter().map(of).sum::<f64>();
+        if ask.smoothing == Smoothing::Discrepancy {
+            return (sum(&|p| p.misfit) / rows as f64).ln().abs();
+        }
+        let left = sum(&|p| p.misfit + p.rough);
+        let volume = sum(&|p| p.log_determinant) - 2.0 * log_weight * (rank * linear.len()) as f64;
+        let free = sum(&|p| p.rank.saturating_sub(rank) as f64);
+        match ask.noise_known {
+            true => volume + left,
+            false => volume + (rows as f64 - free) * left.max(f64::MIN_POSITIVE).ln(),
+        }
+    };
+    let (low, high, count) = WEIGHTS;
+    let high = high.min(most.ln());
+    let step = (high - low) / (count - 1) as f64;
+    let tried = (0..count).map(|k| low + step * k as f64).map(|w| (w, cost(w)));
+    let best = tried.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |best| best.0);
+    golden(&cost, best - step, (best + step).min(high)).exp()
+}
+
+/// The weight beyond which what is known before drowns what is measured in round-off, and changes nothing more.
+pub(super) fn heaviest(weighted: impl Iterator<Item = DMatrix<f64>>, differences: &DMatrix<f64>) -> f64 {
+    let measured = weighted.map(|rows| rows.amax()).fold(0.0, f64::max);
+    let before = if differences.is_empty() {
+        0.0
+    } else {
+        differences.amax()
+    };
+    match measured > 0.0 && before > 0.0 {
+        true => HEAVIEST * measured / before,
+        false => f64::INFINITY,
+    }
+}
+
+/// The least of a function between two places (golden section).
+fn golden(f: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    let share = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut a, mut b) = (high - share * (high - low), low + share * (high - low));
+    let (mut at_a, mut at_b) = (f(a), f(b));
+    while high - low > 1e-3 {
+        if at_a < at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = high - share * (high - low);
+            at_a = f(a);
+        } else {
+            (low, a, at_a) = (a, b, at_b);
+            b = low + share * (high - low);
+            at_b = f(b);
+        }
+    }
+    0.5 * (low + high)
+}
