@@ -77,16 +77,16 @@ fn candidates(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Result<
 
 /// What is chosen and what is sought are different parts of the case.
 fn apart(one: &Alternative, wanted: &Asked) -> Result<()> {
-    let mut all: Vec<&str> = one
+    let chosen: Vec<&str> = one
         .sets
         .iter()
         .filter_map(|set| set.split_once('='))
         .map(|set| set.0)
         .collect();
-    all.extend(wanted.spans.iter().map(|span| span.pointer.as_str()));
+    let sought: Vec<&str> = wanted.spans.iter().map(|span| span.pointer.as_str()).collect();
     let within = |a: &str, b: &str| a == b || a.strip_prefix(b).is_some_and(|rest| rest.starts_with('/'));
-    for (k, a) in all.iter().enumerate() {
-        if let Some(b) = all[..k].iter().find(|b| within(a, b) || within(b, a)) {
+    for (k, a) in chosen.iter().enumerate() {
+        if let Some(b) = chosen[..k].iter().chain(&sought).find(|b| within(a, b) || within(b, a)) {
             return Err(Error::Usage(format!(
                 "{a} and {b}: --vary, --choose and --crossovers must be of different parts of the case"
             )));

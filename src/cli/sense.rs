@@ -54,7 +54,7 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
 fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
     if let Some(noise) = asked.noise.filter(|noise| !(1e-6..=1e9).contains(noise)) {
         return Err(Error::Usage(format!(
-            "--noise {noise:e}: a standard deviation in Pa, from 1e-6 to 1e9"
+            "--noise {noise}: a standard deviation in Pa, from 1e-6 to 1e9"
         )));
     }
     let at_s = asked.at.unwrap_or(end_s);

@@ -253,7 +253,7 @@ fn a_figure_that_nothing_moves() {
     assert!(
         found["warnings"]
             .to_string()
-            .contains("does not change with any number"),
+            .contains("does not change there with any number"),
         "{found}"
     );
     let found = best(

@@ -143,14 +143,28 @@ fn what_is_wrong_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let one = "pressure_1_pa,pressure_3_pa\n-100,-50\n";
     let clamped = r#"/ends/tip="clamped""#;
-    let cases: [(&str, &[&str], i32, &str); 12] = [
+    let cases: [(&str, &[&str], i32, &str); 16] = [
         ("pressure_11_pa\n1\n", &[], 2, "there is no bladder 11"),
         ("pressure_1_mm\n1\n", &[], 2, "is in mm"),
         ("pressure_1_pa\n", &[], 3, "no rows"),
         ("pressure_1_pa\nmuch\n", &[], 3, "is no finite number"),
         ("tip_u1_m\n1\n", &[], 2, "no column holds the pressure of a bladder"),
         (one, &[], 2, "nothing is left to tell the noise by"),
-        (one, &["--noise", "0"], 2, "above 0"),
+        (one, &["--noise", "0"], 2, "from 1e-6 to 1e9"),
+        (one, &["--noise", "1e-300"], 2, "from 1e-6 to 1e9"),
+        (one, &["--load", "profile:2"], 2, "nothing is left to tell the noise by"),
+        (
+            one,
+            &["--load", "profile:3", "--smoothing", "discrepancy"],
+            2,
+            "which must be known",
+        ),
+        (
+            "pressure_1.5_kpa\n1\n",
+            &[],
+            2,
+            "not understood as the pressure of a bladder",
+        ),
         (one, &["--load", "tip-forse"], 2, "nearest is tip-force"),
         (one, &["--load", "uniform", "--load", "uniform"], 2, "asked for twice"),
         (one, &["--load", "tip-force", "--set", clamped], 2, "the tip is held"),
@@ -169,17 +183,20 @@ fn what_is_wrong_is_refused() {
         assert!(said.err.contains(words), "{text}: {}", said.err);
         assert!(!dir.path().join("out/sense.json").exists());
     }
-    let output = assert_cmd::Command::cargo_bin("slcbeam")
-        .unwrap()
-        .args(["sense", "cases/bend-dry.json", "--out"])
-        .arg(dir.path().join("dry"))
-        .output()
-        .unwrap();
-    let err = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(
-        output.status.code() == Some(2) && err.contains("no bladders with fluid"),
-        "{err}"
-    );
+    // without bladders; with bladders that have the pressure of ports at rest, whatever acts
+    for (case, words) in [
+        ("cases/bend-dry.json", "no bladders with fluid"),
+        ("cases/tour-wiring.json", "its pressure is that of a port"),
+    ] {
+        let output = assert_cmd::Command::cargo_bin("slcbeam")
+            .unwrap()
+            .args(["sense", case, "--out"])
+            .arg(dir.path().join("none"))
+            .output()
+            .unwrap();
+        let err = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && err.contains(words), "{err}");
+    }
 }
 
 /// Pressures of another load than the one that is looked for: W032 with the worst bladder; with the noise left open there is none, but a
