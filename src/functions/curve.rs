@@ -238,8 +238,8 @@ mod tests {
                 "{x}: {jet:?}"
             );
         }
-        for k in 1..4 {
-            let (left, right) = (curve.piece(k - 1, x[k]), curve.piece(k, x[k]));
+        for (k, x) in x.iter().enumerate().take(4).skip(1) {
+            let (left, right) = (curve.piece(k - 1, *x), curve.piece(k, *x));
             assert!((left.rate - right.rate).abs() < 1e-13 && left.value == right.value);
         }
     }
