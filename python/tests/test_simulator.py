@@ -37,7 +37,8 @@ def test_pieces_are_what_a_run_with_jumps_is(case):
         theirs, ours = run.history[name][2:], [row[sim.columns.index(name)] for row in rows]
         size = np.abs(run.history[name]).max()
         np.testing.assert_allclose(ours, theirs, rtol=0, atol=2e-6 * size, err_msg=name)
-    assert {told[:4] for told in sim.warnings} <= {told[:4] for told in run.warnings}
+    # what the mesh resolves is judged over all of the range
+    assert {told[:4] for told in sim.warnings} <= {told[:4] for told in run.warnings} | {"W016"}
 
 
 def test_balances_close_over_jumps(case):
