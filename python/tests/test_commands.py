@@ -5,6 +5,7 @@ import os
 import pickle
 import signal
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -128,8 +129,14 @@ def test_calls_that_make_no_sense_are_told():
 def test_ctrl_c_ends_a_sweep_with_what_there_is(tmp_path):
     case = slcbeam.load("bend-wet", set=COARSE | {"/time/end_s": 0.2})
     values = np.linspace(10, 60, 5000)
-    timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT))
-    timer.start()
+    rows = tmp_path / "sweep/designs.jsonl"
+
+    def interrupt():
+        while not (rows.exists() and rows.stat().st_size):
+            time.sleep(0.01)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Thread(target=interrupt, daemon=True).start()
     found = slcbeam.sweep(case, {"/loads/0/force_x_n_m/signal/sigmoid/amplitude": values}, lean=True, out=tmp_path / "sweep")
     assert found.interrupted
     assert 0 < len(next(iter(found.tables["sweep"].values()))) < 5000
