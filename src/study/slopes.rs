@@ -55,7 +55,8 @@ pub fn check(case: &Case, what: What, parameters: &[Parameter]) -> Result<()> {
     }
 }
 
-fn until(stop: &dyn Fn() -> bool) -> impl FnMut(&Progress) -> Control + '_ {
+/// Asks after every step whether to stop.
+pub fn until(stop: &dyn Fn() -> bool) -> impl FnMut(&Progress) -> Control + '_ {
     |_| match stop() {
         true => Control::Stop("interrupted".into()),
         false => Control::Continue,

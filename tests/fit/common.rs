@@ -1,7 +1,6 @@
 //! The program, cases, and data with noise.
 
 use std::fs;
-use std::process::Command;
 
 use serde_json::Value;
 use slcbeam::case::parameter::with;
@@ -12,29 +11,12 @@ use slcbeam::run::equilibrium::{self, Options};
 use slcbeam::run::record::{Control, Memory};
 use tempfile::TempDir;
 
+pub use crate::program::say;
+
 pub const PUMP: &str = "/network/chains/0/ends/0/pressure_pa";
 pub const YOUNG: &str = "/beam/young_modulus_pa";
 pub const OPENING: &str = "/bladders/area_per_moment_m2_per_n_m/opening";
 pub const FORCE: &str = "/ends/tip/free/force_x_n";
-
-pub struct Said {
-    pub code: i32,
-    pub out: String,
-    pub err: String,
-}
-
-pub fn say(arguments: &[&str]) -> Said {
-    let output = Command::new(env!("CARGO_BIN_EXE_slcbeam"))
-        .args(arguments)
-        .output()
-        .expect("a program");
-    let text = |bytes| String::from_utf8(bytes).expect("text");
-    Said {
-        code: output.status.code().unwrap_or(-1),
-        out: text(output.stdout),
-        err: text(output.stderr),
-    }
-}
 
 pub fn well(arguments: &[&str]) -> String {
     let said = say(arguments);

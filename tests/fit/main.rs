@@ -4,6 +4,9 @@
 //! not fit together is told before anything is computed. Data are made by the program itself with noise drawn by SplitMix64 and the normal
 //! quantile, so that every run of a test has the same.
 
+#[path = "../common/program.rs"]
+mod program;
+
 mod beside;
 mod common;
 mod found;

@@ -1,28 +1,9 @@
 //! The program and what it says.
 
-use std::process::Command;
-
 use serde_json::Value;
 use tempfile::TempDir;
 
-pub struct Said {
-    pub code: i32,
-    pub out: String,
-    pub err: String,
-}
-
-pub fn say(arguments: &[&str]) -> Said {
-    let output = Command::new(env!("CARGO_BIN_EXE_slcbeam"))
-        .args(arguments)
-        .output()
-        .expect("a program");
-    let text = |bytes| String::from_utf8(bytes).expect("text");
-    Said {
-        code: output.status.code().unwrap_or(-1),
-        out: text(output.stdout),
-        err: text(output.stderr),
-    }
-}
+pub use crate::program::say;
 
 /// The best that is found, by what is asked besides the folder.
 pub fn best(dir: &TempDir, arguments: &[&str]) -> Value {

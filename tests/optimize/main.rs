@@ -1,5 +1,8 @@
 //! Numbers that are sought: derivatives of cycles, and `slcbeam optimize`.
 
+#[path = "../common/program.rs"]
+mod program;
+
 mod best;
 mod common;
 mod cycles;

@@ -2,36 +2,15 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
+pub use crate::program::{Said, command, say};
+
 pub const CASE: &str = "cases/two-bladders.json";
 pub const AREA: &str = "/bladders/area_per_pressure_m2_per_pa";
 pub const SHORT: [&str; 4] = ["--set", "/time/end_s=0.0005", "--set", "/mesh/cells_per_segment=4"];
-
-pub struct Said {
-    pub code: i32,
-    pub out: String,
-    pub err: String,
-}
-
-pub fn command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_slcbeam"));
-    command.args(arguments);
-    command
-}
-
-pub fn say(arguments: &[&str]) -> Said {
-    let output = command(arguments).output().expect("a program");
-    let text = |bytes| String::from_utf8(bytes).expect("text");
-    Said {
-        code: output.status.code().unwrap_or(-1),
-        out: text(output.stdout),
-        err: text(output.stderr),
-    }
-}
 
 pub fn path(dir: &TempDir, name: &str) -> String {
     dir.path().join(name).display().to_string()

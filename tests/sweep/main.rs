@@ -3,6 +3,9 @@
 //! Goal: the table depends on the designs alone, not on how many are computed at once, nor on kills, nor on shards. Nothing here
 //! has a tolerance: tables are equal byte for byte but for wall times, or they are not.
 
+#[path = "../common/program.rs"]
+mod program;
+
 mod cluster;
 mod common;
 mod going_on;

@@ -1,31 +1,19 @@
 //! `--uncertain`: what uncertain numbers leave open of the figures of every command that has some.
 
+#[path = "../common/program.rs"]
+mod program;
+
 use std::fs;
 use std::process::Command;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
+use program::say;
+
 const CASE: &str = "cases/two-bladders.json";
 const SHORT: [&str; 4] = ["--set", "/time/end_s=0.0005", "--set", "/mesh/cells_per_segment=4"];
 const MODULUS: &str = "/beam/young_modulus_pa=normal:2e6:1e5";
-
-struct Said {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-fn say(arguments: &[&str]) -> Said {
-    let program = env!("CARGO_BIN_EXE_slcbeam");
-    let output = Command::new(program).args(arguments).output().expect("a program");
-    let text = |bytes| String::from_utf8(bytes).expect("text");
-    Said {
-        code: output.status.code().unwrap_or(-1),
-        out: text(output.stdout),
-        err: text(output.stderr),
-    }
-}
 
 fn path(dir: &TempDir, name: &str) -> String {
     dir.path().join(name).display().to_string()

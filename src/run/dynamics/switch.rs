@@ -12,16 +12,26 @@ use crate::run::schedule::Stop;
 use crate::run::sensitivity::forward::Forward;
 use crate::run::summary::Counters;
 
+/// Passes a switch at `t` [s]: the next smooth branch of every signal, by an instant `ahead` within it [s], a consistent state with its rates, and in
+/// the integrals what is done in no time in between.
+pub(super) fn switch(
+    dae: &mut BeamDae,
+    [t, ahead]: [f64; 2],
+    [state, rates]: [&mut [f64]; 2],
+    carried: &mut [f64],
+) -> std::result::Result<(), SolverError> {
+    let (before, within) = (state.to_vec(), dae.within());
+    dae.switch(t, ahead, state);
+    consistent_start(dae, t, state, rates, &StartOptions::default()).map_err(|failure| inconsistent(t, &failure))?;
+    dae.jump(t, (&before, within), state, carried);
+    Ok(())
+}
+
 impl Run<'_> {
-    /// Passes a switch: the next smooth branch of every signal, a consistent state, and what is done in no time in between.
+    /// Passes a switch.
     pub(super) fn switch(&mut self, dae: &mut BeamDae, t: f64, ahead: f64) -> Option<SolverError> {
-        let (before, within) = (self.state.clone(), dae.within());
-        dae.switch(t, ahead, &mut self.state);
-        if let Err(failure) = consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default()) {
-            return Some(inconsistent(t, &failure));
-        }
-        dae.jump(t, (&before, within), &self.state, &mut self.carried);
-        None
+        let values = [&mut self.state[..], &mut self.rates];
+        switch(dae, [t, ahead], values, &mut self.carried).err()
     }
 
     /// Passes a stop: the next smooth branch of every signal, a consistent state, a checkpoint if one is due, a fresh

@@ -7,7 +7,7 @@ use super::problem::Problem;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::run::dynamics::{self, Outcome};
-use crate::run::record::{Control, Unrecorded};
+use crate::run::record::Unrecorded;
 use crate::run::summary::Status;
 use crate::study::slopes;
 use crate::study::span;
@@ -131,11 +131,7 @@ fn plain(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> std::res
 
 fn run(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Result<Outcome> {
     let system = slopes::alike_or_own(case, problem.system.as_ref())?;
-    let hook = |_: &_| match stop() {
-        true => Control::Stop("interrupted".into()),
-        false => Control::Continue,
-    };
-    dynamics::run_with(case, system, &[], &mut Unrecorded(hook))
+    dynamics::run_with(case, system, &[], &mut Unrecorded(slopes::until(stop)))
 }
 
 /// What is looked at, of everything that a design tells.

@@ -30,7 +30,7 @@ use crate::study::sweep::row::Found;
 use crate::study::sweep::{Ask, compute, pool};
 use found::{Compared, Derivatives, Design, Held, Optimum, Variable};
 use problem::{Asked, Limit, Problem};
-use search::{Reached, Search};
+use search::{Reached, Search, better};
 use wiring::Alternative;
 
 /// A figure over its size that is nearer to a limit lies at it.
@@ -85,13 +85,12 @@ pub fn optimise(
     let searches: Vec<Search<'_>> = searches.map(|one| Search::new(one, asked, stop, &tell_all)).collect();
     let mut all = go(&searches, asked.jobs)?;
     let compared = compared(candidates, &all);
-    let worth = |reached: &Reached| {
-        let violation = reached.minimum.at.violation();
-        let beyond = if violation > HELD { violation } else { 0.0 };
-        (beyond, sign * reached.figures[0])
-    };
-    let places = (0..all.len()).filter_map(|k| Some((k, worth(all[k].as_ref().ok()?))));
-    let best = places.min_by(|a, b| a.1.0.total_cmp(&b.1.0).then(a.1.1.total_cmp(&b.1.1)));
+    let ends = all
+        .iter()
+        .enumerate()
+        .filter_map(|(k, end)| Some((k, end.as_ref().ok()?)));
+    let of = |end: &Reached| end.sizes[0];
+    let best = ends.min_by(|(_, a), (_, b)| better((&a.minimum, of(a)), (&b.minimum, of(b))));
     let chosen = best.map_or(0, |(k, _)| k);
     let reached = all.swap_remove(chosen)?;
     let (problem, search, minimum) = (&candidates[chosen].problem, &searches[chosen], &reached.minimum);

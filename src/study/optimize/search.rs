@@ -1,6 +1,7 @@
 //! From starts to the best, every design on the way kept.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::cmp::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector};
@@ -77,7 +78,7 @@ impl<'a> Search<'a> {
 
     /// Where derivatives came from.
     pub fn derivatives(&self) -> Derivatives {
-        match self.differences.load(Ordering::Relaxed) {
+        match self.differences.load(Relaxed) {
             true => Derivatives::Differences,
             false => Derivatives::Exact,
         }
@@ -115,15 +116,8 @@ impl<'a> Search<'a> {
             }
         };
         let starts = places.iter().zip(&found).map(start).collect();
-        let worth = |(minimum, sizes): &(Minimum, Vec<f64>)| {
-            let violation = minimum.at.violation();
-            let beyond = if violation > HELD { violation } else { 0.0 };
-            (beyond, minimum.at.value * sizes[0])
-        };
-        let best = found.into_iter().flatten().min_by(|a, b| {
-            let ([a, x], [b, y]) = ([worth(a).0, worth(a).1], [worth(b).0, worth(b).1]);
-            a.total_cmp(&b).then(x.total_cmp(&y))
-        });
+        let ends = found.into_iter().flatten();
+        let best = ends.min_by(|(a, own), (b, other)| better((a, own[0]), (b, other[0])));
         if best.is_none() && (self.stop)() {
             return Err(Error::Usage(
                 "interrupted before a design was computed; nothing is written".into(),
@@ -262,7 +256,7 @@ impl<'a> Search<'a> {
         };
         let seen = look(self.problem, places, &|| (self.stop)(), &keep).ok()?;
         if seen.from == Derivatives::Differences {
-            self.differences.store(true, Ordering::Relaxed);
+            self.differences.store(true, Relaxed);
         }
         let finite = seen
             .figures
@@ -296,6 +290,18 @@ impl<'a> Search<'a> {
         let best = best.min_by(|a, b| (sign * a).total_cmp(&(sign * b)));
         (self.tell)(history.len(), best);
     }
+}
+
+/// Which of two ends of searches is the better, each with the size of the figure: the one that holds the limits, or nearer does, then the one with
+/// the better figure.
+pub fn better(a: (&Minimum, f64), b: (&Minimum, f64)) -> Ordering {
+    let worth = |(minimum, size): (&Minimum, f64)| {
+        let violation = minimum.at.violation();
+        let beyond = if violation > HELD { violation } else { 0.0 };
+        [beyond, minimum.at.value * size]
+    };
+    let ([a, x], [b, y]) = (worth(a), worth(b));
+    a.total_cmp(&b).then(x.total_cmp(&y))
 }
 
 /// How steep what is sought still is at the end of a search, over its size there: by the numbers that no bound holds, limits with their multipliers

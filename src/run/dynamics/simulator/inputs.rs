@@ -2,12 +2,12 @@
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
+use crate::case::schema::Method;
 use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
-use crate::onestep::{Method, OneStepOptions};
-use crate::run::method::{self, MethodChoice, Options};
-use crate::run::order::OrderChoice;
+use crate::onestep::OneStepOptions;
+use crate::run::method::{self, Options};
 
 /// A signal of the case that is set from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,25 +113,17 @@ pub(super) fn taken(case: &Case, inputs: &[Input]) -> Result<(Case, System, Vec<
     Ok((marked, system, held))
 }
 
-/// Those of the method that the case asks for, or of ESDIRK46, which needs no past.
+/// Those of the one-step method that the case asks for, else of ESDIRK46: it needs no past.
 pub(super) fn options(case: &Case, system: &System, max_step: f64) -> Result<OneStepOptions> {
-    let chosen = method::choose(case, system);
-    let method = chosen.one_step.unwrap_or(Method::Esdirk46);
-    if chosen.one_step.is_none() && chosen.reason == "as asked" {
-        let what = "a simulator starts afresh at every change of its inputs, for which IDA is slow: give /solver/method esdirk46, or auto";
-        return Err(Error::Usage(what.into()));
+    let mut case = case.clone();
+    if case.solver.method == Method::Auto && method::choose(&case, system).one_step.is_none() {
+        case.solver.method = Method::Esdirk46;
     }
-    let choice = MethodChoice {
-        one_step: Some(method),
-        reason: String::new(),
-        order: OrderChoice {
-            order: method.order(),
-            reason: String::new(),
-        },
-    };
-    match Options::new(case, system, &choice, max_step) {
+    match Options::new(&case, system, &method::choose(&case, system), max_step) {
         Options::OneStep(options) => Ok(options),
-        Options::Ida(_) => Err(Error::Usage("a simulator needs a one-step method".into())),
+        Options::Ida(_) => Err(Error::Usage(
+            "a simulator starts afresh at every change of its inputs, for which IDA is slow: give /solver/method esdirk46, or auto".into(),
+        )),
     }
 }
 

@@ -9,6 +9,7 @@ pub use inputs::Input;
 
 use super::faults::{beyond, fault, inconsistent, stalled, too_many_steps};
 use super::pace::Pace;
+use super::switch::switch;
 use crate::case::Case;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::start;
@@ -344,13 +345,8 @@ impl Simulator {
     /// A consistent state behind a jump of signals at the present time, with what is done in no time.
     fn switch(&mut self, t: f64) -> Result<()> {
         let ahead = 0.5 * (t + self.stops[self.next].t);
-        let dae = self.solver.dae_mut();
-        let (before, within) = (self.state.clone(), dae.within());
-        dae.switch(t, ahead, &mut self.state);
-        consistent_start(dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
-            .map_err(|failure| solver(inconsistent(t, &failure)))?;
-        dae.jump(t, (&before, within), &self.state, &mut self.carried);
-        Ok(())
+        let values = [&mut self.state[..], &mut self.rates];
+        switch(self.solver.dae_mut(), [t, ahead], values, &mut self.carried).map_err(solver)
     }
 
     fn restart(&mut self, t: f64) -> Result<()> {
