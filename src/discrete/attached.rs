@@ -57,6 +57,7 @@ impl Attached {
         all.sort_by_key(|attached| attached.node);
         let nodes = 0..mesh.nodes;
         let mut masses: Vec<f64> = nodes.map(|i| section.mass_per_length * mesh.node_length(i)).collect();
+        mesh.lump(&mut masses);
         for attached in &all {
             for (k, weight) in attached.weights.into_iter().enumerate() {
                 masses[attached.node + k] += weight * attachments[attached.number].mass;

@@ -150,7 +150,7 @@ fn added(system: &System, w: &Workspace<f64>, node: usize) -> Matrix2<f64> {
         .as_ref()
         .map_or(0.0, |around| around.added_mass);
     let n = vector(node_tangent(system, w, node).normal());
-    system.mesh.node_length(node) * added * n * n.transpose()
+    system.lengths[node] * added * n * n.transpose()
 }
 
 /// `J/h n nᵀ` of a cell.

@@ -62,6 +62,8 @@ pub struct System {
     pub probes: Vec<Probe>,
     /// Masses of the nodes [kg].
     pub masses: Vec<f64>,
+    /// Lengths over which what surrounds the beam acts on nodes [m].
+    pub lengths: Vec<f64>,
     /// Whether nothing but loads, ends and sections acts on nodes: nothing surrounds the beam, is attached to it or touched by it.
     pub stands_alone: bool,
     /// Whether any load is a distributed moment.
@@ -149,6 +151,7 @@ impl System {
         faults.extend(audit::refusals(case, &self.model));
         faults.extend(self.model.effects.refusals.iter().cloned());
         faults.extend(self.fed_junction());
+        faults.extend(residual::fourth::refusal(&self.model, &self.mesh));
         match faults.is_empty() {
             true => Ok(self),
             false => Err(case.source.fault(faults)),
@@ -196,7 +199,7 @@ impl System {
     }
 
     fn of(case: &Case, model: Model) -> Self {
-        let mesh = Mesh::new(model.length, case.segments(), case.mesh.cells_per_segment);
+        let mesh = Mesh::new(model.length, case.segments(), case.mesh.cells_per_segment).of_order(case.mesh.order);
         let fluid = model
             .wet
             .as_ref()
@@ -209,6 +212,8 @@ impl System {
         let (attached, masses) = Attached::all(&model.attachments, &model.section, &mesh);
         let bodies = Body::all(&model.attachments, &model.ends, model.kinematics, &mesh);
         let touching = Touching::all(&model.contacts, &mesh);
+        let mut lengths: Vec<_> = (0..mesh.nodes).map(|node| mesh.node_length(node)).collect();
+        mesh.lump(&mut lengths);
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
         let nothing_attached = attached.is_empty() && bodies.is_empty() && touching.is_empty();
         Self {
@@ -223,6 +228,7 @@ impl System {
             bodies,
             touching,
             masses,
+            lengths,
             has_moments,
             damped,
         }

@@ -26,7 +26,7 @@ pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
         (&case.start.u3_m, &case.start.u3_rate_m_s),
     ];
     for (axis, (line, (displacement, velocity))) in l.lines.iter().zip(given).enumerate() {
-        let moving = velocity.as_ref().map(|v| shapes::nearest(v, system.mesh.cells));
+        let moving = velocity.as_ref().map(|v| velocities(system, v));
         for (node, u, v) in line.unknowns() {
             let frame = now.carried(axis, node as f64 / last);
             y[u] = at(displacement, node) - frame.value;
@@ -52,6 +52,27 @@ pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
     }
     y
 }
+
+/// Velocities of nodes: nearest to what is given, on a mesh of fourth order as it is where that is smooth.
+fn velocities(system: &System, given: &Profile) -> Vec<f64> {
+    let cells = system.mesh.cells;
+    let nearest = shapes::nearest(given, cells);
+    if !system.mesh.fourth {
+        return nearest;
+    }
+    let at_nodes: Vec<f64> = (0..=cells)
+        .map(|node| given.value(node as f64 / cells as f64))
+        .collect();
+    let most = at_nodes.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let apart = |(a, b): (&f64, &f64)| (a - b).abs() <= SMOOTH * most;
+    match at_nodes.iter().zip(&nearest).all(apart) {
+        true => at_nodes,
+        false => nearest,
+    }
+}
+
+/// Share of the largest velocity by which those nearest may be off where it is smooth: six cells a wave.
+const SMOOTH: f64 = 0.1;
 
 /// Area change of every cell at the start [m^2], of a system in which all of them are unknowns.
 pub fn areas(system: &System, case: &Case) -> Vec<f64> {

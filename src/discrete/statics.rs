@@ -86,7 +86,7 @@ impl Statics {
         let (section, mesh) = (&system.model.section, &system.mesh);
         for (i, node) in self.nodes.iter_mut().enumerate() {
             let mass = if system.layout.inertia { system.masses[i] } else { 0.0 };
-            let drag = mesh.node_length(i) * section.drag;
+            let drag = system.lengths[i] * section.drag;
             *node = (
                 -mass * held.acceleration - drag * held.rate,
                 -mass * held.jerk - drag * held.acceleration,

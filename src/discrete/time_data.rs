@@ -2,6 +2,7 @@
 
 use super::{Statics, System, shapes};
 use crate::case::{Rotation, Translation};
+use crate::functions::profile::Profile;
 use crate::functions::signals::{Clock, Jet, Signal};
 use crate::model::Load;
 use crate::model::attachments::Acting;
@@ -37,9 +38,8 @@ impl SampledLoad {
     /// Puts a load on a mesh.
     pub fn new(load: &Load, mesh: &super::Mesh) -> Self {
         let mut shape = match load.kind {
-            LoadKind::ForceX | LoadKind::ForceZ | LoadKind::RestCurvature => {
-                shapes::at_nodes(&load.profile, mesh.cells)
-            }
+            LoadKind::ForceX | LoadKind::ForceZ => forces_at_nodes(&load.profile, mesh),
+            LoadKind::RestCurvature => shapes::at_nodes(&load.profile, mesh.cells),
             LoadKind::MomentX | LoadKind::MomentZ => shapes::in_cells(&load.profile, mesh.cells),
         };
         shape.iter_mut().for_each(|value| *value *= load.factor);
@@ -49,6 +49,22 @@ impl SampledLoad {
             shape,
         }
     }
+}
+
+/// `b_i` of each node.
+fn forces_at_nodes(profile: &Profile, mesh: &super::Mesh) -> Vec<f64> {
+    let mut values = shapes::at_nodes(profile, mesh.cells);
+    if !mesh.fourth {
+        return values;
+    }
+    let scaled = |values: &mut [f64], by: &dyn Fn(f64) -> f64| {
+        let all = values.iter_mut().enumerate();
+        all.for_each(|(node, value)| *value *= by(mesh.node_length(node)));
+    };
+    scaled(&mut values, &|length| length);
+    mesh.lump(&mut values);
+    scaled(&mut values, &|length| 1.0 / length);
+    values
 }
 
 /// Given values at one end of the beam.

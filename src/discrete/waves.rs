@@ -77,6 +77,7 @@ fn of_solid(system: &System) -> f64 {
     let (m, h, l) = (s.mass_per_length, system.mesh.h, system.model.length);
     let bending = (s.bending_stiffness / m).sqrt();
     let axial = (s.axial_stiffness / m).sqrt();
+    let stiffer = stiffer(system);
     let families = [
         (
             s.bending_damping_time,
@@ -84,10 +85,10 @@ fn of_solid(system: &System) -> f64 {
             if swings {
                 shearing(system)
             } else {
-                4.0 * bending / (h * h)
+                4.0 * bending / (h * h) * stiffer[0]
             },
         ),
-        (s.axial_damping_time, 1.571 * axial / l, 2.0 * axial / h),
+        (s.axial_damping_time, 1.571 * axial / l, 2.0 * axial / h * stiffer[1]),
     ];
     let mut least = f64::INFINITY;
     let carried = families
@@ -107,15 +108,25 @@ fn of_solid(system: &System) -> f64 {
     least
 }
 
+/// By how much more often the shortest waves of bending and of stretch swing by [E77].
+fn stiffer(system: &System) -> [f64; 2] {
+    if system.mesh.fourth {
+        [(5.0_f64 / 3.0).sqrt(), (4.0_f64 / 3.0).sqrt()]
+    } else {
+        [1.0; 2]
+    }
+}
+
 /// Highest angular frequency that the mesh carries [1/s].
 pub fn highest_frequency(system: &System) -> f64 {
     let s = &system.model.section;
     let h = system.mesh.h;
+    let stiffer = stiffer(system);
     let bending = match system.layout.turning.rate {
         Some(_) => s.stiffening.sqrt() * shearing(system),
-        None => 4.0 / (h * h) * (s.stiffening * s.bending_stiffness / s.mass_per_length).sqrt(),
+        None => stiffer[0] * 4.0 / (h * h) * (s.stiffening * s.bending_stiffness / s.mass_per_length).sqrt(),
     };
-    let axial = 2.0 / h * (s.stiffening * s.axial_stiffness / s.mass_per_length).sqrt();
+    let axial = stiffer[1] * 2.0 / h * (s.stiffening * s.axial_stiffness / s.mass_per_length).sqrt();
     let carried = [bending, axial].into_iter().zip(system.layout.waves());
     let carried = carried.filter(|(_, waves)| *waves).map(|(frequency, _)| frequency);
     carried

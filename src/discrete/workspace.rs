@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::System;
+use super::residual::fourth;
 use crate::numerics::{Planar, Scalar};
 
 /// What an evaluation makes of the unknowns, in the order in which it is computed. Names follow the equations.
@@ -113,6 +114,8 @@ pub struct Forces<T> {
     pub relaxing_shear: Vec<T>,
     /// What turns the section of each cell that shears [N m]; empty without.
     pub turning: Vec<T>,
+    /// What the normal force adds to the moment where cells are bent, [E79] [N m]; empty without.
+    pub arc_moment: Vec<T>,
     /// What the section's energy beyond its quadratic part adds to the moment [N m]; empty without.
     pub nonlinear_moment: Vec<T>,
     /// And to the normal force [N].
@@ -292,11 +295,7 @@ impl<T: Scalar> Workspace<T> {
         let zeros = |n: usize| vec![T::zero(); n];
         let vectors = |n: usize| vec![Planar::zero(); n];
         let (n, c) = (system.mesh.nodes, system.mesh.cells);
-        let s = if system.fluid.is_some() {
-            system.mesh.segments
-        } else {
-            0
-        };
+        let s = system.fluid.as_ref().map_or(0, |_| system.mesh.segments);
         let relaxation = &system.layout.relaxation;
         let sheared = system.layout.turning.angle.len();
         let fluid = system.fluid.as_ref();
@@ -354,6 +353,7 @@ impl<T: Scalar> Workspace<T> {
                 relaxing_normal: zeros(relaxation.stretch.len().min(c)),
                 relaxing_shear: zeros(relaxation.shear.len().min(c)),
                 turning: zeros(sheared),
+                arc_moment: zeros(if fourth::bends_its_cells(system) { n } else { 0 }),
                 nonlinear_moment: zeros(nonlinear * n),
                 nonlinear_normal: zeros(nonlinear * c),
             },

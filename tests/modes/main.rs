@@ -2,6 +2,7 @@
 
 mod cli;
 mod common;
+mod fourth;
 mod physics;
 mod sizes;
 mod spectral;

@@ -110,6 +110,7 @@ fn balances_of_loaded_beams_close() {
         ("bend-wet", 0.1),
         ("shake-wet", 0.01),
         ("dry-cantilever", 0.01),
+        ("few-cells", 0.05),
         ("roll-up", 0.5),
         ("spin-up", 2.0),
         ("pluck", 0.1),

@@ -109,6 +109,31 @@ fn the_ledger_closes_for_a_quasi_static_solid() {
     all_combinations(r#"{"solid_inertia":"off"}"#, 0..3);
 }
 
+/// `[E77]` `[E79]` Goal: the same on meshes of fourth order, both formulations, finite and small rotations, with and without stretch.
+#[test]
+fn the_ledger_closes_of_fourth_order() {
+    let order = "/mesh/order=4";
+    let small = r#"/effects={"finite_rotation":"off"}"#;
+    let inextensible = r#"/effects={"finite_rotation":"off","axial_stretch":"off"}"#;
+    let mut closes = |what: &str, sets: &[&str]| {
+        let run = run(&written(EVERYTHING, &[&[order], sets].concat()));
+        let b = &run.summary.balances;
+        let [energy, others @ ..] = [
+            b.energy_residual_relative,
+            b.momentum_residual_relative,
+            b.angular_momentum_residual_relative,
+        ];
+        println!("{what}: {energy:.1e} {others:?}");
+        assert!(energy < 3e-8 && others.iter().all(|r| *r < 3e-8), "{what}: {energy:e} {others:?}");
+    };
+    for (what, ends) in ENDS {
+        closes(what, &[ends, CONSERVATIVE, RECIPROCAL]);
+        closes(what, &[ends, AS_PUBLISHED, PUBLISHED]);
+        closes(what, &[ends, CONSERVATIVE, RECIPROCAL, small]);
+    }
+    closes(ENDS[1].0, &[ENDS[1].1, CONSERVATIVE, RECIPROCAL, inextensible]);
+}
+
 /// Goal: the same where sections shear, with fluid, whatever they turn against and however small rotations are.
 #[test]
 fn the_ledger_closes_with_shear() {

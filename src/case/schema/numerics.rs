@@ -44,6 +44,10 @@ pub struct Mesh {
     #[serde(default = "two")]
     #[schemars(range(min = 1, max = 1000))]
     pub cells_per_bladder: usize,
+    /// Order of what the beam's cells leave out, 2 or 4: halved cells leave a quarter, or a sixteenth.
+    #[serde(default = "second", skip_serializing_if = "is_second")]
+    #[schemars(extend("enum" = [2, 4]))]
+    pub order: u8,
     /// Segments of a dry beam; with bladders it is their number per row. Absent: 10.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 100000))]
@@ -55,6 +59,7 @@ impl Default for Mesh {
         Self {
             cells_per_segment: 4,
             cells_per_bladder: 2,
+            order: 2,
             segments: None,
         }
     }
@@ -240,6 +245,14 @@ pub enum MaxOrder {
 
 fn two() -> usize {
     2
+}
+
+fn second() -> u8 {
+    2
+}
+
+fn is_second(order: &u8) -> bool {
+    *order == 2
 }
 
 fn four() -> usize {

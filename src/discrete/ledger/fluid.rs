@@ -65,7 +65,7 @@ pub(super) fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64
 }
 
 /// Stretch by pressure of a beam that does not stretch otherwise, and with it the motion along, `[E28]`.
-pub fn foreshorten(system: &System, w: &mut Workspace<f64>) {
+pub fn foreshorten(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     if let Some(wet) = &system.model.wet
         && system.model.effects.has(Effect::PressureToStretch)
     {
@@ -83,7 +83,7 @@ pub fn foreshorten(system: &System, w: &mut Workspace<f64>) {
                 .0
         })
     };
-    small::foreshorten(system, stretch_rate, w);
+    small::foreshorten(system, now, stretch_rate, w);
 }
 
 /// Power that a coupling without reciprocity adds, and the rate of curvature at an end with a given moment, less that of `M/EI`.

@@ -214,7 +214,7 @@ pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Work
     residual::complete(system, now, yp, w);
     fluid::complete(system, now, yp, w);
     if !system.model.effects.has(Effect::AxialStretch) {
-        fluid::foreshorten(system, w);
+        fluid::foreshorten(system, now, w);
     }
     State(w)
 }
@@ -232,7 +232,7 @@ pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     e.relaxing = residual::relaxation::energy_and_loss(system, now, &w)[0];
     e.section = residual::nonlinear::energy(system, &w);
     e.around = (0..system.mesh.nodes)
-        .map(|i| system.mesh.node_length(i) * residual::around::kinetic(system, now, &w, i))
+        .map(|i| system.lengths[i] * residual::around::kinetic(system, now, &w, i))
         .sum();
     e
 }

@@ -28,6 +28,8 @@ pub fn compared(system: &System, now: &TimeData, w: State) -> [f64; 2] {
     {
         return squares;
     }
+    // the end lies beyond the nearest cell by this share of what lies between the two, by masses of nodes
+    let beyond = system.lengths[0] / system.lengths[1];
     for (node, near, next) in [(0, 0, 1), (mesh.nodes - 1, mesh.cells - 1, mesh.cells - 2)] {
         let end = &now.ends[usize::from(node > 0)];
         let outward = if node > 0 { 1.0 } else { -1.0 };
@@ -44,10 +46,11 @@ pub fn compared(system: &System, now: &TimeData, w: State) -> [f64; 2] {
                 continue;
             }
             let inertia = if l.inertia { section.mass_per_length } else { 0.0 };
-            let half_cell = w.motion.a[node] * inertia - now.force[node] + w.motion.v[node] * section.drag;
+            let carried = (w.motion.a[node] * inertia + w.motion.v[node] * section.drag) * system.lengths[node];
+            let half_cell = carried - now.force[node] * length;
             let n = &w.forces.section;
-            let reaction = length * half_cell[axis] + outward * n[near][axis];
-            let difference = reaction - outward * (1.5 * n[near][axis] - 0.5 * n[next][axis]);
+            let reaction = half_cell[axis] + outward * n[near][axis];
+            let difference = reaction - outward * (n[near][axis] + beyond * (n[near][axis] - n[next][axis]));
             squares[0] += reaction * reaction;
             squares[1] += difference * difference;
         }

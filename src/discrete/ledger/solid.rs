@@ -2,9 +2,9 @@
 
 use super::{Energies, EnergyRate, add};
 use crate::case::schema::Effect;
-use crate::discrete::residual::relaxation;
 use crate::discrete::residual::rows::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
+use crate::discrete::residual::{fourth, relaxation};
 use crate::discrete::{System, TimeData, Workspace, attached};
 use crate::model::Kinematics;
 use crate::numerics::Planar;
@@ -111,27 +111,42 @@ fn bending(
     let length = mesh.node_length(i);
     let published = system.model.published();
     let end = now.end(i);
-    let (stretch, stretch_rate) = if published {
-        let (a, b) = (i.saturating_sub(1), i.min(last - 1));
-        (
-            node_stretch(w, i, last),
-            0.5 * (w.shape.stretch_rate[a] + w.shape.stretch_rate[b]),
-        )
-    } else {
-        (1.0, 0.0)
+    let stretches = |i: usize| {
+        if published {
+            let (a, b) = (i.saturating_sub(1), i.min(last - 1));
+            (
+                node_stretch(w, i, last),
+                0.5 * (w.shape.stretch_rate[a] + w.shape.stretch_rate[b]),
+            )
+        } else {
+            (1.0, 0.0)
+        }
     };
+    let (stretch, stretch_rate) = stretches(i);
     // Where the moment is given, the curvature follows from it.
     let kappa_rate = match end {
         Some(e) if e.slope.is_none() => {
             let free_rate = curvature_rate(w, i) + now.rest_curvature_rate(i);
-            let alpha_rate = e.moment.rate / section.bending_stiffness + free_rate - w.shape.kappa[i] * stretch_rate;
+            let mut elastic_rate = e.moment.rate / section.bending_stiffness;
+            if mesh.fourth {
+                let beside = fourth::neighbour(system, i);
+                let (left, right) = mesh.segments_of_node(beside);
+                // curvatures that pressure has on the left of nodes
+                let by_pressure = 0.5 * (curvature_rate(w, beside) + curvature_rate(w, beside + right - left));
+                let (stretch, stretch_rate) = stretches(beside);
+                let alpha_rate = stretch * w.shape.kappa_rate[beside] + stretch_rate * w.shape.kappa[beside];
+                let free_rate = by_pressure + now.rest_curvature_rate(beside);
+                elastic_rate = (2.0 * elastic_rate + alpha_rate - free_rate) / 3.0;
+            }
+            let alpha_rate = elastic_rate + free_rate - w.shape.kappa[i] * stretch_rate;
             relaxation::curvature_rate(system, now, w, i, alpha_rate, stretch)
         }
         _ => w.shape.kappa_rate[i],
     };
     let part = |moments: &[f64]| moments.get(i).copied().unwrap_or(0.0);
     let forces = &w.forces;
-    let elastic = forces.moment[i] + part(&forces.nonlinear_moment) + part(&forces.relaxing_moment);
+    let besides = part(&forces.nonlinear_moment) + part(&forces.relaxing_moment);
+    let elastic = forces.moment[i] + besides;
     let moment = elastic + forces.viscous_moment[i];
     if let Some(e) = end {
         let (sign, cell) = if i == 0 { (1.0, 0) } else { (-1.0, last - 1) };
@@ -139,8 +154,9 @@ fn bending(
             Some(slope) => slope.rate,
             None => w.shape.angle_rate[cell] + sign * 0.5 * mesh.h * kappa_rate,
         };
-        add(out, EnergyRate::Ends, sign * moment * angle_rate);
-        add(out, EnergyRate::AngularImpulse, sign * moment);
+        let whole = moment + part(&forces.arc_moment);
+        add(out, EnergyRate::Ends, sign * whole * angle_rate);
+        add(out, EnergyRate::AngularImpulse, sign * whole);
     }
     let rest_rate = now.rest_curvature_rate(i);
     add(
@@ -219,7 +235,11 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies
             let along = carried(system, now, w, i);
             e.kinetic += 0.5 * system.masses[i] * (w.motion.v[i].x * w.motion.v[i].x + along * along);
         }
-        e.bending += 0.5 * length * w.forces.moment[i] * w.forces.moment[i] / section.bending_stiffness;
+        e.bending += if mesh.fourth {
+            fourth::of_bending(system, now, w, i)
+        } else {
+            0.5 * length * w.forces.moment[i] * w.forces.moment[i] / section.bending_stiffness
+        };
     }
     if system.layout.inertia {
         for body in &system.bodies {
@@ -230,7 +250,11 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies
     }
     for c in 0..mesh.cells {
         if system.model.effects.has(Effect::AxialStretch) {
-            e.axial += 0.5 * mesh.h * w.forces.normal[c] * w.forces.normal[c] / section.axial_stiffness;
+            e.axial += if mesh.fourth {
+                fourth::of_stretch(system, w, c)
+            } else {
+                0.5 * mesh.h * w.forces.normal[c] * w.forces.normal[c] / section.axial_stiffness
+            };
         }
         if let Some(shear) = w.shape.sections.shear.get(c) {
             e.bending += 0.5 * mesh.h * section.shear_stiffness * shear * shear;

@@ -1,7 +1,7 @@
 //! Moments, and the shear that keeps sections across the beam.
 
-use super::relaxation;
 use super::solid::node_stretch;
+use super::{fourth, relaxation};
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::numerics::Scalar;
@@ -51,6 +51,9 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
     for node in [0, last] {
         given_moment(system, now, node, w);
     }
+    if system.mesh.fourth {
+        fourth::moments(&system.mesh, now, &mut w.forces.moment);
+    }
     relaxation::moments(system, now, w);
     if section.bending_damping_time > 0.0 {
         let first = usize::from(now.ends[0].slope.is_none());
@@ -61,6 +64,9 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
                 rate -= T::constant(*rest);
             }
             w.forces.viscous_moment[i] = rate * (ei * section.bending_damping_time);
+        }
+        if system.mesh.fourth {
+            fourth::moments(&system.mesh, now, &mut w.forces.viscous_moment);
         }
     }
 }
@@ -86,7 +92,10 @@ fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut
         elastic -= *nonlinear;
     }
     w.forces.moment[node] = elastic;
-    let alpha = free_curvature + elastic / T::constant(ei);
+    let mut alpha = free_curvature + elastic / T::constant(ei);
+    if system.mesh.fourth {
+        alpha = free_curvature + (elastic * (2.0 / ei) + fourth::beside(system, w, node)) * (1.0 / 3.0);
+    }
     if w.relaxed.curvature.is_empty() {
         w.shape.kappa[node] = if published { alpha / stretch } else { alpha };
     } else {
@@ -103,9 +112,14 @@ pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     for (drop, pair) in drops.zip(forces.moment.windows(2)) {
         *drop = pair[0] - pair[1];
     }
-    let mut parts = [&forces.nonlinear_moment[..], &forces.relaxing_moment, &[]];
+    let mut parts = [
+        &forces.nonlinear_moment[..],
+        &forces.relaxing_moment,
+        &forces.arc_moment,
+        &[],
+    ];
     if system.model.section.bending_damping_time > 0.0 {
-        parts[2] = &forces.viscous_moment;
+        parts[3] = &forces.viscous_moment;
     }
     for part in parts {
         for (drop, pair) in forces.shear.iter_mut().zip(part.windows(2)) {
@@ -125,6 +139,9 @@ pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize)
         drop += *left - *right;
     }
     if let [left, right, ..] = w.forces.relaxing_moment.get(c..).unwrap_or_default() {
+        drop += *left - *right;
+    }
+    if let [left, right, ..] = w.forces.arc_moment.get(c..).unwrap_or_default() {
         drop += *left - *right;
     }
     if system.model.section.bending_damping_time > 0.0 {

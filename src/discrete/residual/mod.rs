@@ -4,6 +4,7 @@ pub mod around;
 pub mod bar;
 pub mod bending;
 pub mod fluid;
+pub mod fourth;
 pub mod nonlinear;
 pub mod relaxation;
 pub mod rows;
@@ -49,10 +50,12 @@ pub fn beyond_strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
             if sheared {
                 sheared::kinematics(system, now, w);
             }
+            fourth::arcs(system, now, w);
             small::rates(system, now, w);
             small::normal_forces(system, now, w);
             relaxation::normal_forces(system, w);
             bending::moments(system, now, w);
+            fourth::arc_moments(system, now, w);
             if sheared {
                 sheared::forces(system, now, w);
             } else {
@@ -65,10 +68,12 @@ pub fn beyond_strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
             } else {
                 solid::kinematics(system, now, w);
             }
+            fourth::arcs(system, now, w);
             solid::rates(system, now, w);
             solid::normal_forces(system, w);
             relaxation::normal_forces(system, w);
             bending::moments(system, now, w);
+            fourth::arc_moments(system, now, w);
             if sheared {
                 sheared::forces(system, now, w);
             } else {

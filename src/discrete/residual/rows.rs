@@ -2,6 +2,7 @@
 
 use super::around::{self, node_tangent};
 use super::fluid::{driving, over_bridge};
+use super::fourth;
 use crate::discrete::attached::at_node;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, MeshLink, Place};
 use crate::discrete::ledger::EnergyRate;
@@ -67,12 +68,12 @@ pub fn outer_forces<T: Scalar>(
     }
     each(Some(EnergyRate::Loads), given);
     if system.model.published() {
-        each(Some(EnergyRate::Formulation), published_force(system, w, node));
+        each(Some(EnergyRate::Formulation), published_force(system, now, w, node));
     }
     if system.stands_alone {
         return;
     }
-    around::forces(system, now, w, node, length, &mut each);
+    around::forces(system, now, w, node, system.lengths[node], &mut each);
     for (attached, weight) in at_node(&system.attached, node) {
         let given = attached.given(system, now, w);
         each(Some(EnergyRate::Loads), given * weight);
@@ -172,7 +173,7 @@ fn end_angle<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node:
 /// c_i = h_i (κ_i - M_i/EI) (V^ e_t(φ^) - N^ e_n(φ^))        ^ mean of the neighbouring cells
 /// ```
 #[inline]
-pub fn published_force<T: Scalar>(system: &System, w: &Workspace<T>, i: usize) -> Planar<T> {
+pub fn published_force<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, i: usize) -> Planar<T> {
     let last = system.mesh.nodes - 1;
     let (a, b) = (i.saturating_sub(1), i.min(last - 1));
     let (forces, tangent) = (&w.forces, node_tangent(system, w, i));
@@ -184,8 +185,12 @@ pub fn published_force<T: Scalar>(system: &System, w: &Workspace<T>, i: usize) -
         normal += (*left + *right) * 0.5;
     }
     let shear = (forces.shear[a] + forces.shear[b]) * 0.5;
-    let excess = (w.shape.kappa[i] - forces.moment[i] * (1.0 / system.model.section.bending_stiffness))
-        * system.mesh.node_length(i);
+    let elastic = if system.mesh.fourth {
+        fourth::elastic_curvature(system, now, w, i)
+    } else {
+        forces.moment[i] * (1.0 / system.model.section.bending_stiffness)
+    };
+    let excess = (w.shape.kappa[i] - elastic) * system.lengths[i];
     (tangent.times(shear) - tangent.normal().times(normal)).times(excess)
 }
 

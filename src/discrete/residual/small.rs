@@ -1,8 +1,8 @@
 //! The beam that turns little: von Karman's, and the linear one.
 
 use super::bending::total_moment_drop;
-use super::sheared;
 use super::solid::{self, couple, curvature_rates, normal_force};
+use super::{fourth, sheared};
 use crate::case::Translation;
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace, attached, bodies};
@@ -96,7 +96,12 @@ pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspa
 
 /// Displacement and velocity along of a beam that does not stretch, from the end that is held on, `[E28]`; with the rates
 /// of stretch by pressure in each segment.
-pub fn foreshorten(system: &System, stretch_rate: impl Fn(&Workspace<f64>, usize) -> f64, w: &mut Workspace<f64>) {
+pub fn foreshorten(
+    system: &System,
+    now: &TimeData,
+    stretch_rate: impl Fn(&Workspace<f64>, usize) -> f64,
+    w: &mut Workspace<f64>,
+) {
     let (h, k, last) = (system.mesh.h, system.mesh.cells_per_segment, system.mesh.cells);
     let tension = system.model.kinematics == Kinematics::SmallRotation;
     let root_held = matches!(system.model.ends[0].axial, Translation::Displacement(_));
@@ -116,6 +121,10 @@ pub fn foreshorten(system: &System, stretch_rate: impl Fn(&Workspace<f64>, usize
         if tension {
             u -= outward * h * 0.5 * w.shape.d3[cell].x * w.shape.d3[cell].x;
             v -= outward * w.shape.d3[cell].x * (w.motion.v[cell + 1].x - w.motion.v[cell].x);
+        }
+        if fourth::bends_its_cells(system) {
+            u -= outward * h * fourth::arc(system, now, &w.shape.kappa, cell);
+            v -= outward * h * fourth::arc_rate(system, now, w, cell);
         }
         (w.motion.u[node].z, w.motion.v[node].z) = (u, v);
     }

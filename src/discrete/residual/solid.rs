@@ -1,6 +1,6 @@
 //! Kinematics, resultants and section forces of the beam.
 
-use super::sheared;
+use super::{fourth, sheared};
 use crate::case::schema::Effect;
 use crate::discrete::workspace::{Sections, Shape};
 use crate::discrete::{System, TimeData, Workspace, attached, bodies};
@@ -177,6 +177,12 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
             *force = *rate * (ea * section.axial_damping_time);
         }
     }
+    if system.mesh.fourth {
+        fourth::normal_forces(&mut w.forces.normal);
+        if section.axial_damping_time > 0.0 {
+            fourth::normal_forces(&mut w.forces.viscous_normal);
+        }
+    }
 }
 
 /// `N_total` of a cell [N].
@@ -234,6 +240,12 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
     let (normal, shear) = (&forces.normal[..cells], &forces.shear[..cells]);
     for c in 0..cells {
         section_force[c] = tangent[c].times(normal[c]) + tangent[c].normal().times(shear[c]);
+    }
+    if fourth::bends_its_cells(system) {
+        for c in 0..cells {
+            let share = fourth::arc(system, now, &shape.kappa, c);
+            section_force[c] += tangent[c].times(normal[c] * share);
+        }
     }
     let mut parts = [&forces.nonlinear_normal[..], &forces.relaxing_normal, &[]];
     if section.axial_damping_time > 0.0 {

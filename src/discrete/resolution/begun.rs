@@ -57,7 +57,8 @@ impl<'a> Begun<'a> {
                 } else {
                     What::Velocity
                 },
-                vibrations: waves.then(|| Vibrations::new(profile, displacement, bends, model, case.time.end_s)),
+                vibrations: waves
+                    .then(|| Vibrations::new(profile, displacement, bends, model, case.time.end_s, system.mesh.fourth)),
             })
         };
         given.into_iter().filter_map(of).collect()

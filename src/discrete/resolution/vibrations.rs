@@ -32,11 +32,13 @@ pub(super) struct Vibrations {
     damping: [f64; 2],
     /// End of the run [s].
     end: f64,
+    /// Whether the mesh is of fourth order.
+    fourth: bool,
 }
 
 impl Vibrations {
     /// Of a displacement, or of a velocity, over the length.
-    pub fn new(profile: &Profile, displacement: bool, bends: bool, model: &Model, end: f64) -> Self {
+    pub fn new(profile: &Profile, displacement: bool, bends: bool, model: &Model, end: f64, fourth: bool) -> Self {
         let s = &model.section;
         let length = model.length;
         let (unit, material) = if bends {
@@ -81,6 +83,7 @@ impl Vibrations {
             relaxation: model.relaxation.clone(),
             damping: [s.drag / s.mass_per_length, material],
             end,
+            fourth,
         }
     }
 
@@ -92,6 +95,7 @@ impl Vibrations {
     /// ```
     ///
     /// t the run, or the time in which damping takes them; beyond half a cell they are not there at all. A phase beyond half a turn is any.
+    /// Those of fourth order, [E77], are as much faster as their energy is more: by `(1 + 2 sin²x/3)^(1/2)` and `(1 + sin²x/3)^(1/2)`.
     pub fn left_out(&self, cells: usize) -> f64 {
         let (mut lost, mut whole) = (0.0, 0.0);
         for (k, &(beta, amplitude)) in self.content.iter().enumerate() {
@@ -111,15 +115,16 @@ impl Vibrations {
             return 1.0;
         }
         let slower = x.sin() / x;
+        let square = if self.fourth { x.sin() * x.sin() / 3.0 } else { 0.0 };
         let (omega, ratio) = if self.bends {
-            (beta * beta * self.unit, slower * slower)
+            (beta * beta * self.unit, slower * slower * (1.0 + 2.0 * square).sqrt())
         } else {
-            (beta * self.unit, slower)
+            (beta * self.unit, slower * (1.0 + square).sqrt())
         };
         let [omega, relaxing] = relaxation::vibration(&self.relaxation, omega);
         let decay = relaxing + 0.5 * (self.damping[0] + self.damping[1] * omega * omega);
         let time = self.end.min(1.0 / decay.max(f64::MIN_POSITIVE));
-        let phase = omega * (1.0 - ratio) * time;
+        let phase = omega * (1.0 - ratio).abs() * time;
         if phase < FRAC_PI_2 {
             2.0 * (0.5 * phase).sin()
         } else {

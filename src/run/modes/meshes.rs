@@ -12,8 +12,8 @@ use crate::case::schema::Effect;
 use crate::error::{Code, Result};
 use crate::run::estimate::words::LARGE;
 
-/// What meshes of second order leave of a difference: to half the cells, to twice the cells.
-const TO_HALF: f64 = 1.0 / 3.0;
+/// What meshes of second and of fourth order leave of a difference to half the cells, and of second to twice the cells.
+const TO_HALF: [f64; 2] = [1.0 / 3.0, 1.0 / 15.0];
 const TO_TWICE: f64 = 4.0 / 3.0;
 
 /// By how much meshes are off, `s` of an ever finer one less `s` [1/s]; none where the mesh was not changed, or where the other one has no
@@ -24,6 +24,17 @@ pub struct ByMesh {
     pub beam: Option<Complex<f64>>,
     /// Along bladders.
     pub bladders: Option<Complex<f64>>,
+    /// Whether cells of the beam are of fourth order: a part of what they leave out may then be of second, and their error be as large as that.
+    pub fourth: bool,
+}
+
+impl ByMesh {
+    /// What it may be off by: along the beam, and along bladders [1/s].
+    pub fn off(&self) -> impl Iterator<Item = Complex<f64>> {
+        let [second, fourth] = TO_HALF;
+        let by = if self.fourth { second / fourth } else { 1.0 };
+        self.beam.map(|beam| beam * by).into_iter().chain(self.bladders)
+    }
 }
 
 /// Looks for the same modes on other meshes, about the start or the equilibrium under the loads of an instant [s].
@@ -72,9 +83,11 @@ fn along_the_beam(about: Result<Linearised>, plan: &Plan, found: &mut Modes) {
     let Some((others, pairs)) = elsewhere(about, plan, &every_other, found) else {
         return;
     };
+    let fourth = found.about.system().mesh.fourth;
     for (k, j, likeness) in pairs {
         let (mode, other) = (&mut found.modes[k], &others[j]);
-        mode.by_mesh.beam = Some((mode.s - other.s) * TO_HALF);
+        mode.by_mesh.beam = Some((mode.s - other.s) * TO_HALF[usize::from(fourth)]);
+        mode.by_mesh.fourth = fourth;
         mode.coarse = other
             .frequency_hz()
             .map(|frequency_hz| Limit { frequency_hz, likeness });

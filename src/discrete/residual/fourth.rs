@@ -1,0 +1,194 @@
+//! A beam whose mesh leaves out what is of fourth order.
+
+use super::bending::pressure_curvature;
+use super::solid::node_stretch;
+use crate::case::schema::Effect;
+use crate::discrete::{Mesh, System, TimeData, Workspace};
+use crate::error::{Code, Violation};
+use crate::model::{Kinematics, Model};
+use crate::numerics::Scalar;
+
+/// Cells that a beam has at least: at fewer the weights of its two ends would meet.
+const FEWEST: usize = 6;
+
+/// `[E77]` Between nodes `κ` and in cells `λ` are means, over the hat of a node and over the cell: what their squares leave out of the elastic
+/// energy is that of their differences,
+///
+/// ```text
+/// E = EI/2 Σ h_i e_i² + EI h/2 Σ_c g_c (e_{c+1} - e_c)²      e_i = κ_i - α_p - κ_0      g = 1/6, 1/4 beside a slope that is given
+///   + EA/2 Σ h e_c² + EA h/2 Σ_i g_i (e_i+ - e_i-)²          e_c = λ_c - 1 - λ_p        g = 1/12, 1/8 beside an end
+/// ```
+///
+/// which, with loads and masses as in [E78], leaves out of the Lagrangian what is of the order `h^4`, at ends too. Forces and moments are its derivatives,
+///
+/// ```text
+/// M_i = EI [e_i - (h/h_i) (g_i (e_{i+1} - e_i) - g_{i-1} (e_i - e_{i-1}))]      N_c likewise
+/// ```
+///
+/// so that balances and reciprocity stay exact; at a node M is then `M - h² M''/12`, whose mean over a segment is that of M. Jumps of pressure
+/// between segments are in `α_p` and `λ_p`, and e is smooth across them. Where the moment is given, e of the end follows from it, and the curvature
+/// that turns the end is the mean `κ_n = α_p + κ_0 + (2 M_n/EI + e_{n-1})/3`; its part of the energy is `h_n M_n (κ_n - α_p - κ_0)/2`.
+pub fn moments<T: Scalar>(mesh: &Mesh, now: &TimeData, moment: &mut [T]) {
+    let last = mesh.nodes - 1;
+    let [held_at_root, held_at_tip] = [0, 1].map(|end: usize| now.ends[end].slope.is_some());
+    let weight = |c: usize| {
+        let held = (c == 0 && held_at_root) || (c + 1 == last && held_at_tip);
+        if held { 0.25 } else { 1.0 / 6.0 }
+    };
+    let mut before = (moment[1] - moment[0]) * weight(0);
+    if held_at_root {
+        moment[0] -= before * 2.0;
+    }
+    for c in 1..last {
+        let step = (moment[c + 1] - moment[c]) * weight(c);
+        moment[c] += before - step;
+        before = step;
+    }
+    if held_at_tip {
+        moment[last] += before * 2.0;
+    }
+}
+
+/// Normal forces of cells, likewise.
+pub fn normal_forces<T: Scalar>(normal: &mut [T]) {
+    let last = normal.len() - 1;
+    let mut before = T::zero();
+    for c in 0..last {
+        let weight = if c == 0 || c + 1 == last { 0.125 } else { 1.0 / 12.0 };
+        let step = (normal[c + 1] - normal[c]) * weight;
+        normal[c] += before - step;
+        before = step;
+    }
+    normal[last] += before;
+}
+
+/// `[E79]` Between the ends of a cell the line of a beam that bends is longer than their distance, and steeper and less steep than straight:
+///
+/// ```text
+/// λ_c gains λ_c h²/24 mean(κ²)      for small rotations   e gains g h²/24 mean(κ²)      mean(κ²) = (κ_c² + κ_{c+1}²)/2
+/// ```
+///
+/// beside an end whose moment is given that of the other node, κ of the end being no unknown. What N does by it is a moment,
+/// `M_i gains (h/h_i) h²/24 κ_i Σ_c N_c λ_c` over the cells beside the node.
+pub fn arcs<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    if !bends_its_cells(system) {
+        return;
+    }
+    let finite = system.model.kinematics == Kinematics::FiniteRotation;
+    for c in 0..system.mesh.cells {
+        let mut longer = arc(system, now, &w.shape.kappa, c);
+        if finite {
+            longer = longer * w.shape.stretch[c];
+        }
+        w.shape.strain[c] += longer;
+    }
+}
+
+/// Whether [`arcs`] tells of this beam: it bends, and stretch knows of it.
+pub fn bends_its_cells(system: &System) -> bool {
+    let tension = matches!(
+        system.model.kinematics,
+        Kinematics::SmallRotation | Kinematics::FiniteRotation
+    );
+    system.mesh.fourth && tension && !system.model.published()
+}
+
+/// By how much a cell's line is longer than its ends are apart, a share of that.
+#[inline]
+pub fn arc<T: Scalar>(system: &System, now: &TimeData, kappa: &[T], cell: usize) -> T {
+    let [left, right] = shares(system, now, cell);
+    (kappa[cell].squared() * left + kappa[cell + 1].squared() * right) * (system.mesh.h * system.mesh.h / 48.0)
+}
+
+/// Its rate [1/s].
+pub fn arc_rate(system: &System, now: &TimeData, w: &Workspace<f64>, cell: usize) -> f64 {
+    let [left, right] = shares(system, now, cell);
+    let of = |node: usize| 2.0 * w.shape.kappa[node] * w.shape.kappa_rate[node];
+    (left * of(cell) + right * of(cell + 1)) * (system.mesh.h * system.mesh.h / 48.0)
+}
+
+/// Weights of the squares at a cell's two nodes.
+#[inline]
+fn shares(system: &System, now: &TimeData, cell: usize) -> [f64; 2] {
+    if cell == 0 && now.ends[0].slope.is_none() {
+        [0.0, 2.0]
+    } else if cell + 1 == system.mesh.cells && now.ends[1].slope.is_none() {
+        [2.0, 0.0]
+    } else {
+        [1.0; 2]
+    }
+}
+
+/// What N does by [`arcs`].
+pub fn arc_moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    if !bends_its_cells(system) {
+        return;
+    }
+    let mesh = &system.mesh;
+    let finite = system.model.kinematics == Kinematics::FiniteRotation;
+    w.forces.arc_moment.fill(T::zero());
+    for c in 0..mesh.cells {
+        let mut force = w.forces.normal[c] * (mesh.h * mesh.h / 24.0);
+        if finite {
+            force = force * w.shape.stretch[c];
+        }
+        for (node, share) in [c, c + 1].into_iter().zip(shares(system, now, c)) {
+            let moment = w.shape.kappa[node] * force * (share * mesh.h / mesh.node_length(node));
+            w.forces.arc_moment[node] += moment;
+        }
+    }
+}
+
+/// Elastic curvature of the node beside an end, from moments that are not yet [`moments`].
+pub fn beside<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
+    w.forces.moment[neighbour(system, node)] * (1.0 / system.model.section.bending_stiffness)
+}
+
+/// The node beside an end.
+pub fn neighbour(system: &System, node: usize) -> usize {
+    if node == 0 { 1 } else { system.mesh.nodes - 2 }
+}
+
+/// `e_i = α_i - α_p - κ_0` of a node.
+pub fn elastic_curvature<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> T {
+    let mut alpha = w.shape.kappa[node];
+    if system.model.published() {
+        alpha = alpha * node_stretch(w, node, system.mesh.nodes - 1);
+    }
+    alpha - pressure_curvature(system, w, node) - T::constant(now.rest_curvature(node))
+}
+
+/// Energy of bending at a node [J].
+pub fn of_bending(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> f64 {
+    0.5 * system.mesh.node_length(node) * w.forces.moment[node] * elastic_curvature(system, now, w, node)
+}
+
+/// Energy of stretch in a cell [J].
+pub fn of_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
+    let mut elastic = w.shape.strain[cell];
+    if system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch) {
+        elastic -= w.coupling.pressure_stretch[cell / system.mesh.cells_per_segment];
+    }
+    0.5 * system.mesh.h * w.forces.normal[cell] * elastic
+}
+
+/// What fourth order is refused for.
+pub fn refusal(model: &Model, mesh: &Mesh) -> Option<Violation> {
+    let what = if !mesh.fourth {
+        return None;
+    } else if mesh.cells < FEWEST {
+        format!(
+            "a beam of {} cells has no room for fourth order, which takes {FEWEST}",
+            mesh.cells
+        )
+    } else if model.effects.has(Effect::Shear) {
+        "a beam that shears is of second order".to_owned()
+    } else if !model.relaxation.is_empty() {
+        "a solid that relaxes is of second order".to_owned()
+    } else if model.strain_energy().is_some() {
+        "a section at finite strain is of second order".to_owned()
+    } else {
+        return None;
+    };
+    Some(Violation::new(Code::Together, "/mesh/order", what).hint("leave \"order\" out, and take more cells"))
+}

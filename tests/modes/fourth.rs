@@ -1,0 +1,162 @@
+//! Source: frequencies of straight beams (Timoshenko), of columns under a load, and large deflections (Bisshopp & Drucker 1945, Rohde 1953).
+//! Goal: `"order": 4` leaves out what is of fourth order, with every kind of end, for small and for large motions, along and across.
+//! Tolerance: an observed order above 3.4 on the worst of three frequencies, the coarsest mesh at four cells a half-wave or more; errors with
+//! twenty cells a tenth above those measured.
+
+use std::f64::consts::PI;
+
+use serde_json::{Value, json};
+use slcbeam::discrete::System;
+use slcbeam::run::equilibrium;
+use slcbeam::run::modes::Kind;
+use slcbeam::run::record::Control;
+
+use super::common::{checked, slowest};
+
+/// Length 1 m, EI 1 N m^2, 1 kg/m, EA 1.2e5 N.
+fn beam(cells: usize, order: u8) -> Value {
+    json!({
+        "name": "fourth",
+        "beam": {"length_m": 1.0, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1.2e9, "density_kg_m3": 1e4},
+        "ends": {"root": "clamped", "tip": "free"},
+        "effects": {"rotary_inertia": "off"},
+        "mesh": {"segments": cells, "cells_per_segment": 1, "order": order},
+        "time": {"end_s": 1.0}
+    })
+}
+
+/// Errors of the first frequencies across, each relative to `exact`, those of rigid motions left out.
+fn errors(case: &Value, exact: &[f64]) -> Vec<f64> {
+    let found = slowest(case, exact.len() + 3);
+    let swings = found.modes.iter().filter(|m| m.kind == Kind::Oscillation && m.s.im > 1.0);
+    let found: Vec<f64> = swings.map(|m| m.s.im).collect();
+    exact.iter().zip(found).map(|(exact, found)| found / exact - 1.0).collect()
+}
+
+fn worst(errors: &[f64]) -> f64 {
+    errors.iter().fold(0.0, |most, e| most.max(e.abs()))
+}
+
+/// `[E77]` `[E78]` The first three frequencies of beams with all pairs of ends: 20 cells leave out less than 160 of second order.
+#[test]
+fn frequencies_are_of_fourth_order() {
+    let free = json!({"free": {}});
+    for (root, tip, roots, limit) in [
+        (json!("clamped"), free.clone(), [1.875104068711961, 4.694091132974174, 7.854757438237613], 1.9e-4),
+        (json!("clamped"), json!("clamped"), [4.730040744862704, 7.853204624095838, 10.995607838001671], 6.3e-4),
+        (json!("pinned"), json!("pinned"), [PI, 2.0 * PI, 3.0 * PI], 1.6e-3),
+        (json!("clamped"), json!("pinned"), [3.926602312047919, 7.068582745628732, 10.210176122813031], 1.3e-3),
+        (free.clone(), free, [4.730040744862704, 7.853204624095838, 10.995607838001671], 1.4e-3),
+    ] {
+        let exact = roots.map(|root: f64| root * root);
+        let of = |cells, order| {
+            let mut case = beam(cells, order);
+            case["ends"] = json!({"root": root, "tip": tip});
+            worst(&errors(&case, &exact))
+        };
+        let [coarse, fine, second] = [of(20, 4), of(40, 4), of(160, 2)];
+        let order = (coarse / fine).log2();
+        println!("{root} {tip}: {coarse:.1e}, {fine:.1e}, order {order:.2}; of second order, 160 cells: {second:.1e}");
+        assert!(coarse < limit && order > 3.4, "{root} {tip}: {coarse} {fine}");
+        assert!(second > coarse * 0.9, "{root} {tip}: {second} {coarse}");
+    }
+}
+
+/// Along, sealed and clamped to free: the first two frequencies of a bar.
+#[test]
+fn waves_along_are_of_fourth_order() {
+    let of = |cells| {
+        let mut case = beam(cells, 4);
+        case["effects"] = json!({"transverse_motion": "off"});
+        let exact = [0.5, 1.5].map(|k| k * PI * 1.2e5_f64.sqrt());
+        worst(&errors(&case, &exact))
+    };
+    let [coarse, fine] = [of(10), of(20)];
+    println!("{coarse:.1e} {fine:.1e}");
+    assert!(coarse < 4e-4 && (coarse / fine).log2() > 3.7, "{coarse} {fine}");
+}
+
+/// `[E79]` A beam under tension, pinned at both ends: `ω² = β⁴ EI/m + N β²/m`; what the arc of a cell is longer than its chord is of second order there.
+#[test]
+fn tension_is_of_fourth_order() {
+    // stretched by a hundredth of a percent: N = 12 N, of the size of Euler's load
+    let strain = 1e-4;
+    let exact = [1.0, 2.0, 3.0].map(|k: f64| {
+        let beta = k * PI;
+        (beta.powi(4) + strain * 1.2e5 * beta * beta).sqrt()
+    });
+    for kinematics in ["finite", "small"] {
+        let of = |cells| {
+            let mut case = beam(cells, 4);
+            case["ends"] = json!({"root": "pinned", "tip": {"pinned": {"u3_m": strain}}});
+            case["start"] = json!({"u3_m": {"polynomial": {"coefficients": [0.0, strain]}}});
+            if kinematics == "small" {
+                case["effects"]["finite_rotation"] = json!("off");
+            }
+            worst(&errors(&case, &exact))
+        };
+        let [coarse, fine] = [of(20), of(40)];
+        println!("{kinematics}: {coarse:.1e} {fine:.1e}");
+        assert!(coarse < 1.5e-3 && (coarse / fine).log2() > 3.7, "{kinematics}: {coarse} {fine}");
+    }
+}
+
+/// Shortening, deflection and angle of the tip at rest under all of the load.
+fn at_rest(case: &Value) -> [f64; 3] {
+    let case = checked(case);
+    let path = equilibrium::follow(&case, &equilibrium::Options::at(1.0), &mut |_| Control::Continue).unwrap();
+    let columns = equilibrium::columns(&equilibrium::system(&case, 1.0).unwrap());
+    let last = |name: &str| path.last().row[columns.iter().position(|c| c.name == name).unwrap()];
+    [-last("tip_u3"), last("tip_u1"), last("tip_angle")]
+}
+
+/// `[E77]` `[E78]` `[E79]` Cantilevers that bend far under a force, a uniform load and a moment at the tip.
+#[test]
+fn large_deflections_are_of_fourth_order() {
+    let growing = |rate: f64| json!({"polynomial": {"coefficients": [0.0, rate]}});
+    let of = |cells: usize, change: &dyn Fn(&mut Value)| {
+        let mut case = beam(cells, 4);
+        case["beam"]["axial_stiffness_factor"] = json!(1000.0);
+        change(&mut case);
+        at_rest(&case)
+    };
+    let force = |case: &mut Value| case["ends"]["tip"] = json!({"free": {"force_x_n": growing(5.0)}});
+    let load = |case: &mut Value| case["loads"] = json!([{"force_x_n_m": {"signal": growing(10.0)}}]);
+    let moment = |case: &mut Value| case["ends"]["tip"] = json!({"free": {"moment_n_m": growing(-3.0)}});
+    type Change<'a> = &'a dyn Fn(&mut Value);
+    let all: [(&str, Change, [f64; 3], f64, f64); 3] = [
+        ("force", &force, [0.387628360724, 0.713791523612, 1.21536811761], 3.4, 3e-5),
+        ("load", &load, [0.343646239, 0.700199716, 1.052643117], 3.4, 3e-5),
+        ("moment", &moment, [1.0 - 3_f64.sin() / 3.0, (1.0 - 3_f64.cos()) / 3.0, 3.0], 3.4, 3e-5),
+    ];
+    for (what, change, exact, least, limit) in all {
+        let error = |cells| {
+            let found = of(cells, change);
+            worst(&[0, 1, 2].map(|k| found[k] - exact[k]))
+        };
+        let [coarse, fine] = [error(10), error(20)];
+        println!("{what}: {coarse:.1e} {fine:.1e}, order {:.2}", (coarse / fine).log2());
+        assert!(fine < limit && (coarse / fine).log2() > least, "{what}: {coarse} {fine}");
+    }
+}
+
+/// What fourth order does not go with is refused, in one sentence each.
+#[test]
+fn what_is_of_second_order_is_refused() {
+    let refused = |change: &dyn Fn(&mut Value)| {
+        let mut case = beam(20, 4);
+        change(&mut case);
+        System::new(&checked(&case)).map(|_| ()).unwrap_err().to_string()
+    };
+    let few = refused(&|case| case["mesh"]["segments"] = json!(5));
+    assert!(few.contains("5 cells") && few.contains("/mesh/order"), "{few}");
+    let relaxing = refused(&|case| {
+        case["beam"]["viscoelasticity"] = json!({"prony": [{"modulus_ratio": 0.5, "time_s": 0.1}]});
+    });
+    assert!(relaxing.contains("relaxes"), "{relaxing}");
+    let sheared = refused(&|case| {
+        case["beam"]["shear_stiffness_n"] = json!(1e4);
+        case["effects"]["shear"] = json!("on");
+    });
+    assert!(sheared.contains("shears"), "{sheared}");
+}
