@@ -102,7 +102,9 @@ RODS = {
     "PyElastica": ("dry-cantilever-sheared", "elastica", [10, 20, 40, 80, 160], [4, 8, 16, 32, 64], [1e-2, 3e-3, 1e-3], 100.0),
     "Exudyn": ("swing", "exudyn", [2, 4, 8, 16], [1, 2, 4, 8, 16], ACCURACIES, None),
 }
-OWN_CELLS = [1, 2, 4, 8, 16]
+OWN_CELLS = ["1", "2", "4", "8", "16"]
+# Of fourth order, where nothing shears.
+OWN_FOURTH = {"swing": ["1/4", "2/4", "4/4"]}
 
 
 def measure_rods(all):
@@ -112,7 +114,7 @@ def measure_rods(all):
         fine = [run(all["peers"], f"{scene}:{k}", "esdirk57", 1e-7, 120.0)["histories"][0] for k in (16, 32)]
         limit = [[b + (b - a) / 3.0 for a, b in zip(*fine)], [0.0]]
         own, theirs = [], []
-        for k in OWN_CELLS:
+        for k in OWN_CELLS + OWN_FOURTH.get(scene, []):
             for method in ("esdirk34", "esdirk46", "ida2"):
                 for rtol in (1e-1, 10**-1.5, 1e-2, 10**-2.5, 1e-3, 1e-4, 1e-5):
                     ran = run(all["peers"], f"{scene}:{k}", method, rtol)
@@ -148,8 +150,9 @@ def measure_rods(all):
             for k, p in enumerate(pair):
                 if p:
                     seconds = statistics.median(times[k]) if times[k] else p["seconds"]
-                    mesh = p["scene"].partition(":")[2]
-                    cells[k] = f"{shown(seconds)} `{p['method']}`, {mesh + ' cells a segment, ' if mesh else ''}{p['rtol']:.0e}"
+                    mesh, _, order = p["scene"].partition(":")[2].partition("/")
+                    mesh = mesh and f"{mesh} cells a segment{order and ' of fourth order'}, "
+                    cells[k] = f"{shown(seconds)} `{p['method']}`, {mesh}{p['rtol']:.0e}"
             ratio = f"{ratios[-1]:.3g}" if None not in pair else "–"
             out["rows"].append([f"{name}, `{scene}`", f"{accuracy:.0e}", *cells, ratio])
         if wanted and ratios:
@@ -158,13 +161,13 @@ def measure_rods(all):
     return out
 
 
-def program(cells, fluid, rtol):
+def program(order, cells, fluid, rtol):
     """Wall time of the whole process, `wall_s`, figures, and rows of the history of one run of the program."""
     folder = BUILT / "run"
     binary = os.environ.get("CARGO_TARGET_DIR", str(ROOT / "target")) + "/release/slcbeam"
     sets = {
-        "/ends/root/clamped/u3_m/sine/ramp_cycles": 1, "/mesh/cells_per_segment": cells, "/mesh/cells_per_bladder": fluid,
-        "/solver/rtol": rtol,
+        "/ends/root/clamped/u3_m/sine/ramp_cycles": 1, "/mesh/order": order, "/mesh/cells_per_segment": cells,
+        "/mesh/cells_per_bladder": fluid, "/solver/rtol": rtol,
     }
     command = [binary, "run", "cases/wiring-2.json", "--quiet", "--out", str(folder)]
     command += [word for key, value in sets.items() for word in ("--set", f"{key}={value}")]
@@ -181,23 +184,24 @@ def program(cells, fluid, rtol):
 
 def measure_program():
     """The program on wiring-2, smooth start: time of the whole process against the error of its figures."""
-    coarse, fine = (program(k, k // 2, 1e-6)["figures"] for k in (16, 32))
+    coarse, fine = (program(2, k, k // 2, 1e-6)["figures"] for k in (16, 32))
     limit = [b + (b - a) / 3.0 for a, b in zip(coarse, fine)]
     rows = [
-        ["cells a segment", "rtol", "error, over the run", "in the window", "process", "`total` of `wall_s`", "output", "output a row"]
+        ["order", "cells a segment", "rtol", "error, over the run", "in the window", "process", "`total` of `wall_s`", "output", "output a row"]
     ]
     points, out = [], {"held": []}
-    for cells in (2, 4, 6, 8, 12, 16):
+    meshes = [(2, cells) for cells in (2, 4, 6, 8, 12, 16)] + [(4, cells) for cells in (1, 2, 3, 4, 6, 8)]
+    for order, cells in meshes:
         for rtol in (1e-2, 1e-3, 1e-4, 1e-5):
-            runs = [program(cells, max(1, cells // 2), rtol) for _ in range(ROUNDS)]
+            runs = [program(order, cells, max(1, cells // 2), rtol) for _ in range(ROUNDS)]
             errors = [abs(a - b) / abs(b) for a, b in zip(runs[0]["figures"], limit)]
             run_error, window_error = max(errors[0::2]), max(errors[1::2])
             middle = sorted(runs, key=lambda r: r["seconds"])[len(runs) // 2]
-            points.append({"errors": [run_error, max(errors)], "seconds": middle["seconds"], "cells": cells, "rtol": rtol})
+            points.append({"errors": [run_error, max(errors)], "seconds": middle["seconds"], "order": order, "cells": cells, "rtol": rtol})
             wall, simulated = middle["wall_s"], middle["time_s"]
             a_row = f"{1e6 * wall['output'] / middle['rows']:.1f} us"
             rows.append([
-                cells, f"{rtol:.0e}", f"{run_error:.1e}", f"{window_error:.1e}", shown(middle["seconds"]), shown(wall["total"]),
+                order, cells, f"{rtol:.0e}", f"{run_error:.1e}", f"{window_error:.1e}", shown(middle["seconds"]), shown(wall["total"]),
                 shown(wall["output"]), a_row,
             ])
     for accuracy, part in ((1e-2, 30.0), (1e-3, 5.0)):

@@ -18,15 +18,25 @@ pub fn fault(number: &Number, schema: &Value, pointer: &str) -> Option<Violation
     }
     let value = number.as_f64()?;
     let bound = |key: &str| schema.get(key).and_then(Value::as_f64);
-    let inside = bound("minimum").is_none_or(|b| value >= b)
+    let inside = one_of(schema).is_none_or(|all| all.contains(&value))
+        && bound("minimum").is_none_or(|b| value >= b)
         && bound("maximum").is_none_or(|b| value <= b)
         && bound("exclusiveMinimum").is_none_or(|b| value > b)
         && bound("exclusiveMaximum").is_none_or(|b| value < b);
     (!inside).then(|| Violation::new(Code::Range, pointer, format!("{number} is out of range")).allowed(range(schema)))
 }
 
+/// The numbers that there are, where these are few.
+fn one_of(schema: &Value) -> Option<Vec<f64>> {
+    let all = schema.get("enum")?.as_array()?;
+    Some(all.iter().filter_map(Value::as_f64).collect())
+}
+
 /// The range of a number, in words.
 fn range(schema: &Value) -> String {
+    if let Some(all) = one_of(schema) {
+        return all.into_iter().map(plain).collect::<Vec<_>>().join(" or ");
+    }
     let bound = |key: &str, words: &str| schema.get(key)?.as_f64().map(|b| format!("{words} {}", plain(b)));
     let low = bound("minimum", "at least").or_else(|| bound("exclusiveMinimum", "greater than"));
     let high = bound("maximum", "at most").or_else(|| bound("exclusiveMaximum", "less than"));

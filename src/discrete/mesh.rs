@@ -53,10 +53,10 @@ impl Mesh {
         }
     }
 
-    /// Has what acts on nodes by their hat functions act so that its work on a smooth motion is of the order of the mesh:
+    /// `[E78]` Has what acts on nodes by their hat functions act so that its work on a smooth motion is of the order of the mesh:
     ///
     /// ```text
-    /// [E78]  ∫ b u dθ = Σ B_i (u_i - δ²u_i/12) + O(h^4)      B_i = ∫ b hat_i dθ      δ²u_0 = δ²u_1, at the other end alike
+    /// ∫ b u dθ = Σ B_i (u_i - δ²u_i/12) + O(h^4)      B_i = ∫ b hat_i dθ      δ²u_0 = δ²u_1, at the other end alike
     /// ```
     ///
     /// Total and first moment stay what they are. What is uniform comes to `(3/8, 7/6, 23/24, 1, ..) h b` (Gregory).

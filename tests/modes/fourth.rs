@@ -4,9 +4,12 @@
 //! twenty cells a tenth above those measured.
 
 use std::f64::consts::PI;
+use std::path::Path;
 
 use serde_json::{Value, json};
+use slcbeam::case;
 use slcbeam::discrete::System;
+use slcbeam::error::Error;
 use slcbeam::run::equilibrium;
 use slcbeam::run::modes::Kind;
 use slcbeam::run::record::Control;
@@ -28,25 +31,52 @@ fn beam(cells: usize, order: u8) -> Value {
 /// Errors of the first frequencies across, each relative to `exact`, those of rigid motions left out.
 fn errors(case: &Value, exact: &[f64]) -> Vec<f64> {
     let found = slowest(case, exact.len() + 3);
-    let swings = found.modes.iter().filter(|m| m.kind == Kind::Oscillation && m.s.im > 1.0);
+    let swings = found
+        .modes
+        .iter()
+        .filter(|m| m.kind == Kind::Oscillation && m.s.im > 1.0);
     let found: Vec<f64> = swings.map(|m| m.s.im).collect();
-    exact.iter().zip(found).map(|(exact, found)| found / exact - 1.0).collect()
+    exact
+        .iter()
+        .zip(found)
+        .map(|(exact, found)| found / exact - 1.0)
+        .collect()
 }
 
 fn worst(errors: &[f64]) -> f64 {
     errors.iter().fold(0.0, |most, e| most.max(e.abs()))
 }
 
-/// `[E77]` `[E78]` The first three frequencies of beams with all pairs of ends: 20 cells leave out less than 160 of second order.
+/// `[E77]` `[E78]` The first three frequencies of beams with all pairs of ends: 20 cells leave out less than a third of what 40 of second order do.
 #[test]
 fn frequencies_are_of_fourth_order() {
     let free = json!({"free": {}});
     for (root, tip, roots, limit) in [
-        (json!("clamped"), free.clone(), [1.875104068711961, 4.694091132974174, 7.854757438237613], 1.9e-4),
-        (json!("clamped"), json!("clamped"), [4.730040744862704, 7.853204624095838, 10.995607838001671], 6.3e-4),
+        (
+            json!("clamped"),
+            free.clone(),
+            [1.875104068711961, 4.694091132974174, 7.854757438237613],
+            1.9e-4,
+        ),
+        (
+            json!("clamped"),
+            json!("clamped"),
+            [4.730040744862704, 7.853204624095838, 10.995607838001671],
+            6.3e-4,
+        ),
         (json!("pinned"), json!("pinned"), [PI, 2.0 * PI, 3.0 * PI], 1.6e-3),
-        (json!("clamped"), json!("pinned"), [3.926602312047919, 7.068582745628732, 10.210176122813031], 1.3e-3),
-        (free.clone(), free, [4.730040744862704, 7.853204624095838, 10.995607838001671], 1.4e-3),
+        (
+            json!("clamped"),
+            json!("pinned"),
+            [3.926602312047919, 7.068582745628732, 10.210176122813031],
+            1.3e-3,
+        ),
+        (
+            free.clone(),
+            free,
+            [4.730040744862704, 7.853204624095838, 10.995607838001671],
+            1.4e-3,
+        ),
     ] {
         let exact = roots.map(|root: f64| root * root);
         let of = |cells, order| {
@@ -54,11 +84,11 @@ fn frequencies_are_of_fourth_order() {
             case["ends"] = json!({"root": root, "tip": tip});
             worst(&errors(&case, &exact))
         };
-        let [coarse, fine, second] = [of(20, 4), of(40, 4), of(160, 2)];
+        let [coarse, fine, second] = [of(20, 4), of(40, 4), of(40, 2)];
         let order = (coarse / fine).log2();
-        println!("{root} {tip}: {coarse:.1e}, {fine:.1e}, order {order:.2}; of second order, 160 cells: {second:.1e}");
+        println!("{root} {tip}: {coarse:.1e}, {fine:.1e}, order {order:.2}; of second order, 40 cells: {second:.1e}");
         assert!(coarse < limit && order > 3.4, "{root} {tip}: {coarse} {fine}");
-        assert!(second > coarse * 0.9, "{root} {tip}: {second} {coarse}");
+        assert!(second > 3.0 * coarse, "{root} {tip}: {second} {coarse}");
     }
 }
 
@@ -79,15 +109,16 @@ fn waves_along_are_of_fourth_order() {
 /// `[E79]` A beam under tension, pinned at both ends: `ω² = β⁴ EI/m + N β²/m`; what the arc of a cell is longer than its chord is of second order there.
 #[test]
 fn tension_is_of_fourth_order() {
-    // stretched by a hundredth of a percent: N = 12 N, of the size of Euler's load
-    let strain = 1e-4;
+    // N = 12 N, of the size of Euler's load, in a beam that hardly stretches
+    let (stiffness, strain) = (1.2e8, 1e-7);
     let exact = [1.0, 2.0, 3.0].map(|k: f64| {
         let beta = k * PI;
-        (beta.powi(4) + strain * 1.2e5 * beta * beta).sqrt()
+        (beta.powi(4) + strain * stiffness * beta * beta).sqrt()
     });
     for kinematics in ["finite", "small"] {
         let of = |cells| {
             let mut case = beam(cells, 4);
+            case["beam"]["axial_stiffness_factor"] = json!(stiffness / 1.2e5);
             case["ends"] = json!({"root": "pinned", "tip": {"pinned": {"u3_m": strain}}});
             case["start"] = json!({"u3_m": {"polynomial": {"coefficients": [0.0, strain]}}});
             if kinematics == "small" {
@@ -97,7 +128,11 @@ fn tension_is_of_fourth_order() {
         };
         let [coarse, fine] = [of(20), of(40)];
         println!("{kinematics}: {coarse:.1e} {fine:.1e}");
-        assert!(coarse < 1.5e-3 && (coarse / fine).log2() > 3.7, "{kinematics}: {coarse} {fine}");
+        println!("order {:.2}", (coarse / fine).log2());
+        assert!(
+            coarse < 1.5e-3 && (coarse / fine).log2() > 3.7,
+            "{kinematics}: {coarse} {fine}"
+        );
     }
 }
 
@@ -125,9 +160,21 @@ fn large_deflections_are_of_fourth_order() {
     let moment = |case: &mut Value| case["ends"]["tip"] = json!({"free": {"moment_n_m": growing(-3.0)}});
     type Change<'a> = &'a dyn Fn(&mut Value);
     let all: [(&str, Change, [f64; 3], f64, f64); 3] = [
-        ("force", &force, [0.387628360724, 0.713791523612, 1.21536811761], 3.4, 3e-5),
-        ("load", &load, [0.343646239, 0.700199716, 1.052643117], 3.4, 3e-5),
-        ("moment", &moment, [1.0 - 3_f64.sin() / 3.0, (1.0 - 3_f64.cos()) / 3.0, 3.0], 3.4, 3e-5),
+        (
+            "force",
+            &force,
+            [0.387628360724, 0.713791523612, 1.21536811761],
+            3.4,
+            2e-6,
+        ),
+        ("load", &load, [0.343646239, 0.700199716, 1.052643117], 3.0, 4e-6),
+        (
+            "moment",
+            &moment,
+            [1.0 - 3_f64.sin() / 3.0, (1.0 - 3_f64.cos()) / 3.0, 3.0],
+            3.4,
+            3e-5,
+        ),
     ];
     for (what, change, exact, least, limit) in all {
         let error = |cells| {
@@ -136,7 +183,10 @@ fn large_deflections_are_of_fourth_order() {
         };
         let [coarse, fine] = [error(10), error(20)];
         println!("{what}: {coarse:.1e} {fine:.1e}, order {:.2}", (coarse / fine).log2());
-        assert!(fine < limit && (coarse / fine).log2() > least, "{what}: {coarse} {fine}");
+        assert!(
+            fine < limit && (coarse / fine).log2() > least,
+            "{what}: {coarse} {fine}"
+        );
     }
 }
 
@@ -146,17 +196,30 @@ fn what_is_of_second_order_is_refused() {
     let refused = |change: &dyn Fn(&mut Value)| {
         let mut case = beam(20, 4);
         change(&mut case);
-        System::new(&checked(&case)).map(|_| ()).unwrap_err().to_string()
+        let Err(Error::Case(told)) = System::new(&checked(&case)) else {
+            panic!("not refused");
+        };
+        let [fault] = &told.violations[..] else {
+            panic!("{told:?}")
+        };
+        assert_eq!(fault.pointer, "/mesh/order");
+        fault.what.clone()
     };
     let few = refused(&|case| case["mesh"]["segments"] = json!(5));
-    assert!(few.contains("5 cells") && few.contains("/mesh/order"), "{few}");
+    assert!(few.contains("5 cells"), "{few}");
     let relaxing = refused(&|case| {
         case["beam"]["viscoelasticity"] = json!({"prony": [{"modulus_ratio": 0.5, "time_s": 0.1}]});
     });
     assert!(relaxing.contains("relaxes"), "{relaxing}");
     let sheared = refused(&|case| {
         case["beam"]["shear_stiffness_n"] = json!(1e4);
+        case["loads"] = json!([{"force_x_n_m": {"signal": 1.0}}]);
         case["effects"]["shear"] = json!("on");
     });
     assert!(sheared.contains("shears"), "{sheared}");
+    let third = case::parse(&beam(20, 3).to_string(), Path::new("test.json"), Path::new(""), &[]);
+    let Err(Error::Case(told)) = third else {
+        panic!("order 3")
+    };
+    assert_eq!(told.violations[0].allowed.as_deref(), Some("2 or 4"));
 }

@@ -115,7 +115,7 @@ fn the_ledger_closes_of_fourth_order() {
     let order = "/mesh/order=4";
     let small = r#"/effects={"finite_rotation":"off"}"#;
     let inextensible = r#"/effects={"finite_rotation":"off","axial_stretch":"off"}"#;
-    let mut closes = |what: &str, sets: &[&str]| {
+    let closes = |what: &str, sets: &[&str]| {
         let run = run(&written(EVERYTHING, &[&[order], sets].concat()));
         let b = &run.summary.balances;
         let [energy, others @ ..] = [
@@ -124,7 +124,10 @@ fn the_ledger_closes_of_fourth_order() {
             b.angular_momentum_residual_relative,
         ];
         println!("{what}: {energy:.1e} {others:?}");
-        assert!(energy < 3e-8 && others.iter().all(|r| *r < 3e-8), "{what}: {energy:e} {others:?}");
+        assert!(
+            energy < 3e-8 && others.iter().all(|r| *r < 3e-8),
+            "{what}: {energy:e} {others:?}"
+        );
     };
     for (what, ends) in ENDS {
         closes(what, &[ends, CONSERVATIVE, RECIPROCAL]);

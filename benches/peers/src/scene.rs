@@ -129,7 +129,7 @@ pub fn root() -> std::path::PathBuf {
 }
 
 /// The case of a scene. Rotary inertia is left out, so that `F(t, y, y') = M y' - f(t, y)` with a constant diagonal `M`, the form
-/// that most peers take. `name:cells` has another mesh, `name@end`
+/// that most peers take. `name:cells` has another mesh, `name:cells/4` one of fourth order, `name@end`
 /// another end, `dry-cantilever-sheared` shear and rotary inertia, `swing` is the dry cantilever let fall.
 pub fn case_of(name: &str) -> Case {
     let cut = |name, at| match str::split_once(name, at) {
@@ -138,6 +138,9 @@ pub fn case_of(name: &str) -> Case {
     };
     let (name, end) = cut(name, '@');
     let (name, cells) = cut(name, ':');
+    let (cells, order) = cells.map_or((None, None), |cells| match cut(cells, '/') {
+        (cells, order) => (Some(cells), order),
+    });
     let plain = r#"/effects={"rotary_inertia":"off","finite_rotation":"on","axial_stretch":"on","axial_inertia":"on"}"#;
     let (file, sets): (&str, Vec<&str>) = match name {
         "shaken-sealed" => ("shaken-sealed", vec![plain]),
@@ -167,6 +170,7 @@ pub fn case_of(name: &str) -> Case {
     };
     let mut sets: Vec<String> = sets.into_iter().map(str::to_owned).collect();
     sets.extend(cells.map(|cells| format!("/mesh/cells_per_segment={cells}")));
+    sets.extend(order.map(|order| format!("/mesh/order={order}")));
     let times = |end| [format!("/time/end_s={end}"), format!("/time/window_s={end}")];
     sets.extend(end.into_iter().flat_map(times));
     let path = root().join(format!("cases/{file}.json"));
