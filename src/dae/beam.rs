@@ -139,6 +139,9 @@ impl BeamDae {
         self.enter_smooth_interval(within);
         let after = self.instant(t).1.clone();
         let (system, b) = (&self.system, &mut self.plain);
+        if before.moves_like(&after) {
+            return;
+        }
         start::change_frame(system, &before, &after, y);
         b.take_up(system, &after, y);
         if let Some(jumps) = kick::spread(system, [&before, &after], &b.workspace) {
@@ -181,6 +184,10 @@ impl BeamDae {
             for (total, part) in integrals.iter_mut().zip(&part) {
                 *total += 0.5 * part;
             }
+        }
+        let still = |k: usize| before[k] == after[k];
+        if from.moves_like(&to) && l.moved().all(|(u, v)| still(u) && v.is_none_or(still)) {
+            return;
         }
         let velocities = [(before, &from), (after, &to)].map(|(state, side)| {
             b.take_up(system, side, state);

@@ -231,6 +231,11 @@ impl TimeData {
         self.frame(axis).map_or_else(Jet::default, |frame| frame.at(share))
     }
 
+    /// Whether ends are driven as in another, at this instant.
+    pub fn moves_like(&self, other: &Self) -> bool {
+        self.ends.iter().zip(&other.ends).all(|(one, two)| one.u == two.u)
+    }
+
     /// Has every signal evaluated anew next time.
     pub fn forget(&mut self) {
         self.clock = None;
