@@ -164,6 +164,10 @@ impl BeamDae {
         let to = self.instant(t).1.clone();
         let (system, b) = (&self.system, &mut self.plain);
         let l = &system.layout;
+        let unmoved = l.unmoved(before, after);
+        if unmoved && l.unfilled(before, after) && from.works_like(&to) {
+            return;
+        }
         let mut part = vec![0.0; integrals.len()];
         for (state, side) in [(before, &from), (after, &to)] {
             let mut now = side.clone();
@@ -185,8 +189,7 @@ impl BeamDae {
                 *total += 0.5 * part;
             }
         }
-        let still = |k: usize| before[k] == after[k];
-        if from.moves_like(&to) && l.moved().all(|(u, v)| still(u) && v.is_none_or(still)) {
+        if unmoved && from.moves_like(&to) {
             return;
         }
         let velocities = [(before, &from), (after, &to)].map(|(state, side)| {
