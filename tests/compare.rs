@@ -195,3 +195,72 @@ fn cubics_are_exact_for_cubics_and_kinks_do_not_ring() {
         assert!((0.0..=1.0).contains(&y), "{y}");
     }
 }
+
+/// Goal: of several results each is compared with the first, or with the one that is named, as two are; nonsense is refused.
+#[test]
+fn several_are_compared_with_one() {
+    let dir = tempfile::tempdir().unwrap();
+    let load = "/loads/0/force_x_n_m/signal/sine/amplitude";
+    let names = ["weak", "usual", "strong"];
+    let all: Vec<_> = names
+        .iter()
+        .zip([5, 10, 15])
+        .map(|(name, n)| {
+            run_into(
+                &dir.path().join(name),
+                DRY,
+                &[&format!("{load}={n}"), "/time/end_s=0.03"],
+            )
+        })
+        .collect();
+    let found = compare::Beside::of(&all, 1);
+    assert_eq!(found.comparisons[0], compare::compare(&all[1], &all[0]));
+    assert_eq!(found.comparisons[1], compare::compare(&all[1], &all[2]));
+    let said = |more: &[&str]| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_slcbeam"))
+            .arg("compare")
+            .args(names)
+            .args(more)
+            .current_dir(dir.path())
+            .output()
+            .unwrap();
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        (output.status.code(), text(&output.stdout), text(&output.stderr))
+    };
+    let (code, out, _) = said(&["--with", "usual"]);
+    assert_eq!(code, Some(0));
+    // small deflections: half and three halves of the load, to a percent of that
+    let row = out.lines().find(|line| line.starts_with("tip_u1_m.max_abs")).unwrap();
+    let change = |percent: &str| -> f64 {
+        percent
+            .trim()
+            .trim_start_matches('+')
+            .replace('−', "-")
+            .parse()
+            .unwrap()
+    };
+    let told: Vec<f64> = row
+        .split('(')
+        .skip(1)
+        .map(|part| change(part.split('%').next().unwrap()))
+        .collect();
+    assert!((told[0] + 50.0).abs() < 0.5 && (told[1] - 50.0).abs() < 0.5, "{row}");
+    assert!(out.starts_with("A  usual\nB  weak\nC  strong\n"), "{out}");
+    let (_, out, _) = said(&["--json"]);
+    let json: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(
+        (&json["reference"], json["comparisons"].as_array().unwrap().len()),
+        (&"weak".into(), 2)
+    );
+    for (more, words) in [
+        (&["--with", "other"][..], "it is none of the folders"),
+        (&["--out", "picture.svg"], "a picture is of two"),
+        (
+            &["--match", "a=tip_u1"],
+            "one result folder and one file of data, not 3",
+        ),
+    ] {
+        let (code, _, err) = said(more);
+        assert!(code == Some(2) && err.contains(words), "{code:?} {err}");
+    }
+}

@@ -106,6 +106,12 @@ impl Simulator {
         py.detach(|| self.own().steps())
     }
 
+    /// Wall time of integration, of jumps, of watching [s].
+    fn spent(&self, py: Python<'_>) -> (f64, f64, f64) {
+        let spent = py.detach(|| self.own().spent());
+        (spent.integration, spent.jumps, spent.watching)
+    }
+
     fn warnings(&self, py: Python<'_>) -> Vec<String> {
         py.detach(|| self.own().warnings())
     }

@@ -101,6 +101,31 @@ def test_several_inputs_and_what_is_refused(case):
         slcbeam.State.read(b"garbage")
 
 
+def test_wall_times_are_parts_of_the_whole(case):
+    """Each part grows with what is done: jumps with changed inputs alone."""
+    spec = importlib.util.spec_from_file_location("step_cost", EXAMPLE.parent / "step_cost.py")
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    changed = example.cost(100.0, steps=20)
+    unchanged = example.cost(0.0, steps=20)
+    assert changed["integration"] > 0 and changed["watching"] > 0 and changed["call"] > 0
+    assert changed["jumps"] > 10 * unchanged["jumps"]
+    # a jump of inputs asks for no shorter steps
+    assert changed["steps"] < 1.5 and unchanged["steps"] == 1
+
+
+def test_a_changed_input_gives_what_a_new_simulator_gives(case):
+    """Factors and step sizes that are kept change a motion by less than the tolerance."""
+    kept, fresh = slcbeam.Simulator(case, RANGE), slcbeam.Simulator(case, RANGE)
+    for k in range(20):
+        value = 60e3 * ((7 * k) % 11) / 11
+        one = kept.step(2e-3, value)
+        fresh.save()
+        other = fresh.step(2e-3, value)
+        place = kept.columns.index("tip_u1")
+        assert abs(one[place] - other[place]) < 1e-4 * max(abs(one[place]), 1e-3)
+
+
 def test_the_environment_learns_nothing_new_from_reset():
     gymnasium = pytest.importorskip("gymnasium")
     from gymnasium.utils.env_checker import check_env

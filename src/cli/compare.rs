@@ -1,52 +1,146 @@
-//! `slcbeam compare`: two results side by side, or a run over measured data.
+//! `slcbeam compare`: results side by side, or a run over measured data.
 
 use std::fmt::Write as _;
+use std::path::Path;
 use std::process::ExitCode;
 
 use serde_json::Value;
 
 use super::arguments::CompareArguments;
+use super::terminal;
 use crate::case;
 use crate::error::{Error, Result};
 use crate::output::columns::aligned;
 use crate::output::folder::{CASE, replace_alike};
 use crate::output::numbers::{percent, quantity, significant};
-use crate::output::{comparison, fit, reading};
+use crate::output::{comparison, fit, reading, report};
 use crate::results;
 use crate::study::compare::changes::Change;
 use crate::study::compare::difference::Difference;
-use crate::study::compare::{Comparison, compare as differences};
+use crate::study::compare::{Beside, Comparison};
 use crate::study::data::{Match, Table};
 use crate::study::fit::beside;
 
 /// Changes shown of each kind; the rest is counted.
 const CHANGES: usize = 8;
 
-/// Reads both folders, compares, draws when asked, prints.
+/// Most folders at once: beyond, columns say nothing.
+const MOST: usize = 40;
+
+/// Reads the folders, compares, draws when asked, prints.
 pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     if !asked.matches.is_empty() {
         return with_data(asked);
     }
-    if asked.b.is_file() {
-        return Err(Error::Usage(format!(
+    let usage = |what: String| Err(Error::Usage(what));
+    if let Some(file) = asked.results.iter().find(|one| one.is_file()) {
+        return usage(format!(
             "{} is a file; data are compared with --match COLUMN=QUANTITY[@PLACE], such as angle_deg=tip_angle",
-            asked.b.display()
-        )));
+            file.display()
+        ));
     }
-    let a = reading::read(&asked.a)?.without_gaps();
-    let b = reading::read(&asked.b)?.without_gaps();
-    let found = differences(&a, &b);
+    if asked.results.len() > MOST {
+        return usage(format!("{} folders: at most {MOST} at once", asked.results.len()));
+    }
+    let reference = match &asked.with {
+        None => 0,
+        Some(one) => match asked.results.iter().position(|own| own == one) {
+            Some(place) => place,
+            None => return usage(format!("--with {}: it is none of the folders", one.display())),
+        },
+    };
+    let all = asked
+        .results
+        .iter()
+        .map(|dir| Ok(reading::read(dir)?.without_gaps()))
+        .collect::<Result<Vec<_>>>()?;
+    let found = Beside::of(&all, reference);
     if let Some(path) = &asked.out {
-        let text = comparison::picture(&a, &b, &found)
-            .ok_or_else(|| Error::Usage("nothing to draw: the two have no quantity in common".into()))?;
-        replace_alike(path, &text, &["<svg", "<?xml"])?;
+        if picture(path) {
+            let [one] = found.comparisons.as_slice() else {
+                return usage(format!(
+                    "--out {}: a picture is of two; name a folder for a page of all",
+                    path.display()
+                ));
+            };
+            let other = usize::from(reference == 0);
+            let text = comparison::picture(&all[reference], &all[other], one)
+                .ok_or_else(|| Error::Usage("nothing to draw: the two have no quantity in common".into()))?;
+            replace_alike(path, &text, &["<svg", "<?xml"])?;
+        } else {
+            let place = report::compared(path, &all, reference, &found)?.path;
+            if !asked.json {
+                terminal::tell(&format!("page: {}", place.display()));
+            }
+        }
     }
-    if asked.json {
-        super::print(&results::text(&found))?;
-    } else {
-        super::print(&table(&found))?;
-    }
+    super::print(&match (found.comparisons.as_slice(), asked.json) {
+        ([one], true) => results::text(one),
+        ([one], false) => table(one),
+        (_, true) => results::text(&found),
+        (_, false) => several(&found),
+    })?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Whether a path is that of a picture.
+fn picture(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("svg"))
+}
+
+/// A column a result.
+fn several(found: &Beside) -> String {
+    let letter = |k: usize| match u8::try_from(k) {
+        Ok(k) if k < 26 => char::from(b'A' + k).to_string(),
+        _ => format!("R{}", k + 1),
+    };
+    let mut text = String::new();
+    for (k, folder) in found.folders().into_iter().enumerate() {
+        let _ = writeln!(text, "{}  {folder}", letter(k));
+    }
+    for (k, one) in found.comparisons.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "\n{} beside A: both cover {} to {}",
+            letter(k + 1),
+            quantity(one.from_s, "s", 4),
+            quantity(one.to_s, "s", 4)
+        );
+        for (words, list) in [
+            ("another problem", &one.physics),
+            ("computed differently", &one.numerics),
+        ] {
+            if !list.is_empty() {
+                text += &format!("{words}\n");
+                changes(&mut text, list);
+            }
+        }
+    }
+    let letters: Vec<String> = (1..=found.comparisons.len()).map(letter).collect();
+    let mut lines = vec![[vec!["difference from A, relative, L2".to_string()], letters.clone()].concat()];
+    for (name, norms) in found.norms() {
+        let cells = norms
+            .iter()
+            .map(|x| x.map_or_else(|| "-".into(), |x| format!("{x:.1e}")));
+        lines.push([name].into_iter().chain(cells).collect());
+    }
+    text += &format!("\n{}", aligned(&lines, &[0]));
+    let mut lines = vec![[vec!["figure".to_string(), "A".into()], letters].concat()];
+    for figure in found.figures() {
+        let cells = figure.others.iter().map(|one| match one {
+            Some((value, Some(change))) => format!("{} ({})", significant(*value, 5), signed_percent(*change)),
+            Some((value, None)) => significant(*value, 5),
+            None => "-".into(),
+        });
+        let first = [figure.name.clone(), significant(figure.reference, 5)];
+        lines.push(first.into_iter().chain(cells).collect());
+    }
+    text += &format!(
+        "\n{}in brackets: the difference from A over the size of A's figure\n",
+        aligned(&lines, &[0])
+    );
+    text
 }
 
 /// A run over measured data.
@@ -56,10 +150,16 @@ fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
         .iter()
         .map(|text| Match::parse(text))
         .collect::<Result<Vec<_>>>()?;
-    let table = Table::read(&asked.b)?;
-    let run = reading::read(&asked.a)?.without_gaps();
-    let case = case::load(&asked.a.join(CASE), &[]).ok();
-    let name = asked.b.display().to_string();
+    let [folder, data] = asked.results.as_slice() else {
+        return Err(Error::Usage(format!(
+            "--match: one result folder and one file of data, not {} of them",
+            asked.results.len()
+        )));
+    };
+    let table = Table::read(data)?;
+    let run = reading::read(folder)?.without_gaps();
+    let case = case::load(&folder.join(CASE), &[]).ok();
+    let name = data.display().to_string();
     let found = beside::compare(&run, case.as_ref(), &table, &name, &matches, asked.time.as_deref())?;
     if let Some(path) = &asked.out {
         let curve = |name: &str| {
@@ -69,7 +169,14 @@ fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
                 .collect()
         };
         let text = fit::picture(&found, curve).ok_or_else(|| Error::Usage("nothing to draw".into()))?;
-        replace_alike(path, &text, &["<svg", "<?xml"])?;
+        if picture(path) {
+            replace_alike(path, &text, &["<svg", "<?xml"])?;
+        } else {
+            let place = report::over_data(path, &text, &found)?.path;
+            if !asked.json {
+                terminal::tell(&format!("page: {}", place.display()));
+            }
+        }
     }
     super::print(&match asked.json {
         true => results::text(&found),

@@ -139,6 +139,9 @@ impl BeamDae {
         self.enter_smooth_interval(within);
         let after = self.instant(t).1.clone();
         let (system, b) = (&self.system, &mut self.plain);
+        if before.moves_like(&after) {
+            return;
+        }
         start::change_frame(system, &before, &after, y);
         b.take_up(system, &after, y);
         if let Some(jumps) = kick::spread(system, [&before, &after], &b.workspace) {
@@ -161,6 +164,10 @@ impl BeamDae {
         let to = self.instant(t).1.clone();
         let (system, b) = (&self.system, &mut self.plain);
         let l = &system.layout;
+        let unmoved = l.unmoved(before, after);
+        if unmoved && l.unfilled(before, after) && from.works_like(&to) {
+            return;
+        }
         let mut part = vec![0.0; integrals.len()];
         for (state, side) in [(before, &from), (after, &to)] {
             let mut now = side.clone();
@@ -181,6 +188,9 @@ impl BeamDae {
             for (total, part) in integrals.iter_mut().zip(&part) {
                 *total += 0.5 * part;
             }
+        }
+        if unmoved && from.moves_like(&to) {
+            return;
         }
         let velocities = [(before, &from), (after, &to)].map(|(state, side)| {
             b.take_up(system, side, state);

@@ -247,6 +247,24 @@ impl TimeData {
         self.frame(axis).map_or_else(Jet::default, |frame| frame.at(share))
     }
 
+    /// Whether ends are driven as in another, at this instant.
+    pub fn moves_like(&self, other: &Self) -> bool {
+        self.ends.iter().zip(&other.ends).all(|(one, two)| one.u == two.u)
+    }
+
+    /// Whether nothing that does work in no time is other than in another: ends with their moments, curvature at rest, volumes let in, normal
+    /// forces that follow from loads alone.
+    pub fn works_like(&self, other: &Self) -> bool {
+        let ends = self.ends.iter().zip(&other.ends);
+        self.moves_like(other)
+            && ends
+                .into_iter()
+                .all(|(one, two)| (one.slope, one.moment) == (two.slope, two.moment))
+            && self.rest_curvature == other.rest_curvature
+            && self.source_volume == other.source_volume
+            && (&self.statics.force, &self.statics.mean) == (&other.statics.force, &other.statics.mean)
+    }
+
     /// Has every signal evaluated anew next time.
     pub fn forget(&mut self) {
         self.clock = None;

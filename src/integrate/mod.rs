@@ -19,5 +19,5 @@ pub use counters::{Counters, Wall};
 pub(crate) use failure::not_finite;
 pub use failure::{IntegrationError, Worst};
 pub use sensitivity_start::consistent_sensitivities;
-pub use start::{Start, StartError, StartOptions, consistent_start};
+pub use start::{Start, StartError, StartOptions, Starter, consistent_start};
 pub use tolerances::Absolute;

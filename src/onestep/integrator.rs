@@ -82,7 +82,6 @@ impl<D: Dae> OneStep<D> {
 
     /// Takes up a state, without a past.
     fn begin(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
-        self.matrix.forget();
         self.integrals.restart();
         self.time = t;
         self.last.h = 0.0;
@@ -259,8 +258,23 @@ impl<D: Dae> OneStep<D> {
     ///
     /// Panics when a slice has another length than the unknowns.
     pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
+        self.matrix.forget();
+        self.go_on(t, y, yp)
+    }
+
+    /// As [`OneStep::restart`], with the factors and pivots that there are: for a jump that changes forces more than stiffness. Factors with
+    /// which Newton's iteration does not converge are made anew.
+    ///
+    /// Panics when a slice has another length than the unknowns.
+    pub fn go_on(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         self.counters.restarts += 1;
+        self.matrix.doubt();
         self.begin(t, y, yp)
+    }
+
+    /// The step that would be tried next, if no stop were near [s]; 0 where that is left to the state.
+    pub fn size(&self) -> f64 {
+        self.control.size
     }
 
     /// Accepted steps since the integrator was created.

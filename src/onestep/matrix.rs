@@ -54,6 +54,11 @@ impl Matrix {
         self.singular = None;
     }
 
+    /// What was measured of the factors no longer holds.
+    pub fn doubt(&mut self) {
+        self.rate = UNKNOWN_RATE;
+    }
+
     /// A new attempt at a step begins.
     pub fn begin(&mut self) {
         self.stale |= std::mem::take(&mut self.slow) && !self.fresh;

@@ -310,11 +310,23 @@ impl<D: Dae> StepMap<D> {
         assert!(block.len().is_multiple_of(n), "disturbances of another system");
         self.work.disturbances += (block.len() / n) as u64;
         for part in block.chunks_mut(n * BLOCK) {
-            self.carry_part(part);
+            self.carry_part(part, &mut |_| {});
         }
     }
 
-    fn carry_part(&mut self, d: &mut [f64]) {
+    /// As [`StepMap::propagate`], of a few disturbances, which `look` sees at the beginning and at the end of every step.
+    pub fn propagate_by_steps(&mut self, block: &mut [f64], look: &mut dyn FnMut(&[f64])) {
+        let n = self.mask.len();
+        let count = block.len() / n;
+        assert!(
+            block.len() == count * n && count <= BLOCK,
+            "disturbances of another system, or too many"
+        );
+        self.work.disturbances += count as u64;
+        self.carry_part(block, look);
+    }
+
+    fn carry_part(&mut self, d: &mut [f64], look: &mut dyn FnMut(&[f64])) {
         let s = self.tableau.stages;
         let keep = |mask: &[f64], v: &mut [f64]| {
             for column in v.chunks_mut(mask.len()) {
@@ -322,6 +334,7 @@ impl<D: Dae> StepMap<D> {
             }
         };
         keep(&self.mask, d);
+        look(d);
         let mut k: Vec<Vec<f64>> = vec![vec![0.0; d.len()]; s];
         self.respond(0, d, &mut k[0]);
         keep(&self.mask, &mut k[0]);
@@ -340,6 +353,7 @@ impl<D: Dae> StepMap<D> {
             }
             d.copy_from_slice(&base);
             add(d, scale, &k[s - 1]);
+            look(d);
             k.swap(0, s - 1);
         }
     }

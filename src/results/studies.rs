@@ -10,3 +10,5 @@ impl Kept for Study {}
 impl Kept for Ablation {}
 
 impl Kept for Comparison {}
+
+impl Kept for crate::study::compare::Beside {}

@@ -163,6 +163,9 @@ impl Limits {
 
     /// What lies beyond the model in a state, if anything does.
     pub fn beyond(&self, g: &Glance) -> Option<String> {
+        if self.hold(g) {
+            return None;
+        }
         let at = match g.t {
             t if t.abs() < 1e-3 => format!("t = {t:.3e} s"),
             t => format!("t = {t:.6} s"),

@@ -78,10 +78,23 @@ fn studies_say_what_they_found_first() {
             .text("document.querySelector('p.answer').textContent")
             .is_empty()
     );
+    // the picture is a drawing with a name, whose marks are read with the arrow keys, and whose series are switched
+    let name = browser.text("document.querySelector('#answer svg.fig').getAttribute('aria-label')");
     assert!(
-        browser.number("document.querySelector('.plate img').naturalWidth") > 100.0,
-        "the picture is broken"
+        name.starts_with("Error and time: least wall time over relative error, "),
+        "{name}"
     );
+    let marks = "document.querySelectorAll('#answer svg.fig g circle').length";
+    let all = browser.number(marks);
+    assert!(all > 3.0, "{all} marks");
+    browser.eval("document.querySelector('#answer .chart').focus()");
+    let readout = "document.querySelector('#answer .readout').textContent";
+    browser.press("ArrowRight");
+    let first = browser.text(readout);
+    browser.press("ArrowRight");
+    assert!(first.contains("a segment") && browser.text(readout) != first, "{first}");
+    browser.eval("document.querySelector('#answer .chips button').click()");
+    assert!(browser.number(marks) < all);
     sorted_both_ways(&mut browser);
     let page = made(
         &effects,
@@ -93,6 +106,21 @@ fn studies_say_what_they_found_first() {
             .text("document.getElementById('table').textContent")
             .contains("finite_rotation")
     );
+    // an entry a bar, each with its words, put in order by buttons
+    let rows = "[...document.querySelectorAll('#answer .bars li')].map(r => r.textContent).join('|')";
+    let listed = browser.text(rows);
+    assert!(
+        listed.contains("finite rotation") && listed.contains("of the work"),
+        "{listed}"
+    );
+    browser.eval("document.querySelectorAll('#answer .chips button')[2].click()");
+    let ordered = browser.text(rows);
+    let sorted = |text: &str| {
+        let mut all: Vec<String> = text.split('|').map(String::from).collect();
+        all.sort();
+        all
+    };
+    assert_eq!(sorted(&ordered), sorted(&listed));
     sorted_both_ways(&mut browser);
 }
 
@@ -237,4 +265,65 @@ fn the_cell_of_a_section_is_drawn_under_its_loads() {
     // A circle has many corners.
     let outlines = "[...document.querySelectorAll('#scene svg.fig path')].filter(p => p.getAttribute('d').split('L').length > 12).length";
     assert_eq!(browser.number(outlines), 20.0);
+}
+
+/// Goal: the page of a run over data has the picture and a row for each column of the data.
+#[test]
+fn a_run_stands_over_its_data() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut browser = Browser::start();
+    let [run, out] = ["run", "page"].map(|name| folder.path().join(name).display().to_string());
+    made(
+        std::path::Path::new(&run),
+        &["run", "cases/tour-actuator.json", "--set", "/mesh/cells_per_segment=1"],
+    );
+    let data = "cases/actuator-step.csv";
+    let said = crate::common::slcbeam(&["compare", &run, data, "--match", "tip_mm=tip_u1", "--out", &out]);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    sound(
+        &mut browser,
+        &folder.path().join("page/report.html"),
+        &["answer", "table"],
+    );
+    assert_eq!(
+        browser.number("document.querySelectorAll('#table tbody tr').length"),
+        1.0
+    );
+}
+
+/// Goal: the page of three results has their histories over each other, a curve each with its name, and tables with a column each.
+#[test]
+fn results_stand_side_by_side() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut browser = Browser::start();
+    let names = ["thin", "usual", "thick"];
+    let runs = names.map(|name| folder.path().join(name).display().to_string());
+    for (run, height) in runs.iter().zip(["0.018", "0.02", "0.022"]) {
+        let set = format!("/beam/height_m={height}");
+        let all = [
+            "run",
+            "cases/dry-cantilever.json",
+            "--set",
+            "/time/end_s=0.02",
+            "--set",
+            &set,
+        ];
+        made(std::path::Path::new(run), &all);
+    }
+    let out = folder.path().join("page");
+    let words = out.display().to_string();
+    let said = crate::common::slcbeam(&[
+        "compare", &runs[0], &runs[1], &runs[2], "--with", &runs[1], "--out", &words,
+    ]);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let page = out.join("report.html");
+    sound(&mut browser, &page, &["histories", "table-1", "table-2", "table-3"]);
+    let legend = browser.text("document.querySelector('#histories .u-legend').textContent");
+    let at = |name: &str| legend.find(name).unwrap_or_else(|| panic!("{name}: {legend}"));
+    assert!(at("usual") < at("thin") && at("thin") < at("thick"));
+    let panels = "document.querySelectorAll('#histories .uplot').length";
+    let before = browser.number(panels);
+    browser.eval("[...document.querySelectorAll('#histories .chips button')].find(b => b.getAttribute('aria-pressed') === 'false').click()");
+    assert_eq!(browser.number(panels), before + 1.0);
+    assert_eq!(browser.problems(), Vec::<String>::new());
 }

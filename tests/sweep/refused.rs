@@ -153,3 +153,42 @@ fn a_part_is_no_place_for_the_whole() {
     );
     assert_eq!(table(&parts[0]), before);
 }
+
+/// Goal: parts that have one design with other figures are refused, with the design, the figure and the folders, and nothing is written; a row
+/// that finished takes the place of one that did not, whichever comes first.
+#[test]
+fn parts_that_differ_are_not_merged() {
+    let dir = TempDir::new().expect("a folder");
+    let [one, two, whole] = ["one", "two", "whole"].map(|name| path(&dir, name));
+    for part in [&one, &two] {
+        well(&swept(part, &["--vary", &format!("{AREA}=1e-10,2e-10")]));
+    }
+    let merge = |whole: &str| say(&["merge", &one, &two, "--lean", "--out", whole]);
+    well(&merge(&whole));
+    let journal = Path::new(&two).join("designs.jsonl");
+    let text = fs::read_to_string(&journal).expect("rows");
+    let mut lines: Vec<serde_json::Value> = text.lines().map(|l| serde_json::from_str(l).expect("a row")).collect();
+    let second = lines.iter_mut().find(|row| row["number"] == 1).expect("the second");
+    let figure = second["figures"][0].clone();
+    let put = |rows: &[serde_json::Value]| {
+        let text: String = rows.iter().map(|row| format!("{row}\n")).collect();
+        fs::write(&journal, text).expect("written");
+    };
+    second["figures"][0][1] = (1.01 * figure[1].as_f64().expect("a number") + 1.0).into();
+    put(&lines);
+    let other = path(&dir, "other");
+    let said = merge(&other);
+    let name = figure[0].as_str().expect("a name");
+    assert_eq!(said.code, 2, "{}", said.err);
+    for part in ["design 1 is there twice", name, &one, &two] {
+        assert!(said.err.contains(part), "{part}: {}", said.err);
+    }
+    assert!(!Path::new(&other).join("sweep.csv").exists());
+    // one that did not finish is no conflict, and gives way
+    let second = lines.iter_mut().find(|row| row["number"] == 1).expect("the second");
+    second["status"] = "failed".into();
+    put(&lines);
+    let turned = path(&dir, "turned");
+    well(&say(&["merge", &two, &one, "--lean", "--out", &turned]));
+    assert_eq!(table(&turned), table(&whole));
+}

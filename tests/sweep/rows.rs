@@ -105,12 +105,51 @@ fn other_commands_tell_their_figures() {
             assert_eq!(rows[1][name].parse().ok(), there, "{name}");
         }
         assert_eq!(rows[1]["stable"], "1");
+        // what the command warns of the row warns of; the bladders are filled, so that modes are about a state that moves
+        let code = |warning: &Value| warning.as_str().expect("a text")[..4].to_string();
+        let warned = told["warnings"].as_array().expect("warnings").iter().map(code);
+        let (row, alone): (Vec<_>, Vec<_>) = (rows[1]["warnings"].split(' ').collect(), warned.collect());
+        assert_eq!(alone.contains(&"W013".to_string()), what == "modes", "{alone:?}");
+        assert!(what != "modes" || row.contains(&"W013"), "{row:?}");
+        // of the modes that it tells
+        let worst = rows[1]
+            .iter()
+            .filter(|(name, _)| name.starts_with("mode_") && name.ends_with(".error"))
+            .filter_map(|(_, error)| error.parse::<f64>().ok())
+            .fold(0.0, f64::max);
+        assert!(
+            what != "modes" || row.contains(&"W021") == (worst > 0.05),
+            "{row:?}, {worst}"
+        );
         let error = if what == "modes" {
             "mode_1.frequency_hz.error"
         } else {
             "max_pressure_pa.error"
         };
         assert!(rows[1][error].parse::<f64>().expect("an error") < 0.1);
+    }
+}
+
+/// Goal: a design that does not reach the accuracy that was asked for says so in its row and in the words at the end, one that does has no
+/// reason.
+#[test]
+fn an_accuracy_that_is_not_reached_is_told() {
+    let dir = TempDir::new().expect("a folder");
+    let vary = format!("{AREA}=2e-10");
+    for (command, accuracy, reached) in [("equilibrium", "0.3", true), ("modes", "1e-6", false)] {
+        let out = path(&dir, command);
+        let said = swept(&out, &["--vary", &vary, "--command", command, "--accuracy", accuracy]);
+        well(&said);
+        let row = &rows(&out)[0];
+        assert_eq!(row["accuracy_reached"], if reached { "1" } else { "0" }, "{row:?}");
+        assert_eq!(row["warnings"].contains("W012"), !reached, "{row:?}");
+        assert_eq!(row["reason"].starts_with("W012 accuracy 1e-6"), !reached, "{row:?}");
+        assert_eq!(
+            said.out.contains("1 design does not reach the accuracy"),
+            !reached,
+            "{}",
+            said.out
+        );
     }
 }
 

@@ -108,6 +108,12 @@ class Simulator:
         return self._own.steps
 
     @property
+    def wall_s(self) -> dict[str, float]:
+        """Wall time of all steps so far [s]: ``integration``; ``jumps``, for consistent values behind changed inputs; ``watching``, for
+        limits of the model, balances and the row."""
+        return dict(zip(("integration", "jumps", "watching"), self._own.spent()))
+
+    @property
     def values(self) -> np.ndarray:
         """Values of the inputs, in their order."""
         return self._own.values()

@@ -83,18 +83,20 @@ pub struct FitArguments {
 /// `compare`.
 #[derive(Debug, Args)]
 pub struct CompareArguments {
-    /// First result folder
-    pub a: PathBuf,
-    /// Second result folder; or measured data (CSV), with --match
-    pub b: PathBuf,
+    /// Result folders, two or more, which are compared with the first; or one, and measured data (CSV) with --match
+    #[arg(required = true, num_args = 2.., value_name = "RESULT")]
+    pub results: Vec<PathBuf>,
+    /// Compare with this one of the folders [default: the first]
+    #[arg(long, value_name = "FOLDER", conflicts_with = "matches")]
+    pub with: Option<PathBuf>,
     /// A column of the data beside a quantity of the run, repeatable, such as angle_deg=tip_angle
     #[arg(long = "match", value_name = "COLUMN=QUANTITY[@PLACE]")]
     pub matches: Vec<String>,
     /// Column of time of the data [default: t or time]
     #[arg(long, value_name = "COLUMN", requires = "matches")]
     pub time: Option<String>,
-    /// Draw both over each other into this SVG file
-    #[arg(long, value_name = "FILE")]
+    /// A page of tables and of histories over each other, report.html in this folder; or a picture of two, where it ends in .svg
+    #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
     /// Print as JSON
     #[arg(long)]

@@ -76,7 +76,7 @@ pub enum Command {
     Sense(SenseArguments),
     /// Find the numbers of a case between bounds with which a figure is largest or least, under limits to others
     Optimize(OptimizeArguments),
-    /// Compare two result folders: error norms of every field and quantity, cost ratio; or a run with measured data
+    /// Compare result folders: error norms of every field and quantity, figures, cost; or a run with measured data
     Compare(CompareArguments),
     /// Write a result in other formats: tables of its fields (CSV), surfaces that ParaView opens (VTK)
     Export(ExportArguments),

@@ -100,6 +100,18 @@ impl Layout {
         nodes.chain(self.turning.unknowns())
     }
 
+    /// Whether nothing is elsewhere, or faster, in one state than in another.
+    pub fn unmoved(&self, one: &[f64], other: &[f64]) -> bool {
+        let still = |k: usize| one[k] == other[k];
+        self.moved().all(|(u, v)| still(u) && v.is_none_or(still))
+    }
+
+    /// Whether all bladders hold what they hold in another state; not where a network has one pressure.
+    pub fn unfilled(&self, one: &[f64], other: &[f64]) -> bool {
+        let areas = self.network.area.clone().chain(self.coupling.nonlinear_area.clone());
+        self.network.lumped_pressure.is_empty() && areas.into_iter().all(|k| one[k] == other[k])
+    }
+
     /// Blocks of unknowns that are moved with velocities that are unknowns, and these.
     pub fn moved_blocks(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
         let nodes = self

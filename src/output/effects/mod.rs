@@ -87,7 +87,7 @@ pub fn write(folder: &mut ResultFolder, found: &Ablation, shown: &Shown) -> Resu
 }
 
 /// The picture's data.
-fn bars(found: &Ablation, shown: &Shown) -> AblationBars {
+pub fn bars(found: &Ablation, shown: &Shown) -> AblationBars {
     let bar = |name: &str, compared: &Compared, verdict: Option<Verdict>| Bar {
         name: name.into(),
         change: shown.change(compared),

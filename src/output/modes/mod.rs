@@ -17,7 +17,7 @@ use crate::error::{Code, Result};
 use crate::model::passivity::{self, Passivity};
 use crate::results;
 use crate::results::modes::{self as kept, About};
-use crate::run::modes::{Kind, Mode, Modes, Plan, Sensitivity, Sort, meshes};
+use crate::run::modes::{Kind, Mode, Modes, Plan, Sensitivity, Sort};
 use crate::run::summary::Accuracy;
 use crate::study::refine;
 
@@ -90,14 +90,6 @@ impl Report<'_> {
 
     /// What to know before trusting the modes.
     pub fn warnings(&self) -> Vec<String> {
-        let about = &self.found.about;
-        let moving = about.moving().then(|| {
-            Code::NotAtRest.warning(format!(
-                "{} is no equilibrium under the loads at t = {} s: unknowns would change at up to {:.2e} of their size a second; \
-                 the modes are those of the state held where it is",
-                self.about(), about.at, about.rate
-            ))
-        });
         let still = (self.found.modes.is_empty() && self.sort.is_none()).then(|| {
             Code::NothingMoves.warning(
                 "nothing can move: the case leaves out inertia of the solid (/effects/solid_inertia) and no bladder exchanges fluid",
@@ -105,9 +97,8 @@ impl Report<'_> {
         });
         let short = self.accuracy.and_then(refine::warning);
         let known = self.known.iter().cloned();
-        let by_mesh = meshes::warning(self.found).into_iter().chain(self.found.forgotten());
-        let by_mesh = by_mesh.chain(self.found.missing());
-        known.chain(moving).chain(still).chain(by_mesh).chain(short).collect()
+        let own = self.found.warnings(&self.about());
+        known.chain(still).chain(own).chain(short).collect()
     }
 
     /// What a number of the case does to each mode: `mode 2: +0.0608 Hz, −1.2e-5 1/s`, for one percent of it.

@@ -17,6 +17,7 @@
 //! parameters  the case as a table, described by its schema
 //! sheet       CSV files as tables
 //! warnings    what to know first, in words
+//! compared    the pages of several results beside one of them, and of one beside measured data
 //! equilibrium, modes, studies, cycles, designs, fit, sense, optimum   the pages of the other commands
 //! vendor      uPlot, which draws histories
 //! ```
@@ -25,6 +26,7 @@
 //! text, so that nothing in it is taken for markup. The same folder gives the same bytes.
 
 mod cell;
+mod compared;
 mod cycles;
 mod designs;
 mod energy_balance;
@@ -53,6 +55,8 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
+
+pub use compared::{compared, over_data};
 
 use super::folder::{CASE, REPORT, ResultFolder, entries, name_of, open, replace, replace_alike, text_of};
 use super::kind::Kind;

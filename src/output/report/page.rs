@@ -12,7 +12,7 @@ const STYLES: [&str; 4] = [
 ];
 
 /// In the order in which they are read: each uses what stands before it.
-const SCRIPTS: [&str; 17] = [
+const SCRIPTS: [&str; 18] = [
     include_str!("page/base.js"),
     include_str!("page/colour.js"),
     include_str!("page/clock.js"),
@@ -26,6 +26,7 @@ const SCRIPTS: [&str; 17] = [
     include_str!("page/histories.js"),
     include_str!("page/ledger.js"),
     include_str!("page/tables.js"),
+    include_str!("page/charts.js"),
     include_str!("page/facts.js"),
     include_str!("page/kinds.js"),
     include_str!("page/states.js"),

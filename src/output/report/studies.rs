@@ -4,13 +4,16 @@ use serde_json::{Value, json};
 
 use super::{Found, Kind, Page, Place, capital};
 use crate::error::Result;
+use crate::output::effects::{self as effects_files, Shown};
 use crate::output::folder::CASE;
 use crate::output::numbers::{count, duration, percent, significant};
-use crate::output::{effects as effects_files, study as study_files};
+use crate::output::plot::ablation::Bar;
+use crate::output::plot::workprecision::{Line, Marker, WorkPrecision};
+use crate::output::study as study_files;
 use crate::results::studies::{Ablation, Study};
 use crate::study::accuracy::study::Point;
 use crate::study::accuracy::{Budget, Plan, Scheme};
-use crate::study::effects::Row;
+use crate::study::effects::{Row, Verdict};
 
 fn yes(it_is: bool) -> &'static str {
     if it_is { "yes" } else { "no" }
@@ -38,15 +41,8 @@ pub fn study(place: &Place) -> Result<Page> {
             format!("judged by {measure}"),
         ],
     );
-    page.put(
-        "figures",
-        json!([{
-            "title": "Error and time",
-            "picture": place.picture(study_files::PICTURE),
-            "about": "Each mark is one setting: a mesh, a method and a tolerance. Further left is more exact, further down is \
-                      faster; the settings worth using lie along the lower left edge.",
-        }]),
-    );
+    let charts = study_files::picture(&found).and_then(|data| cost(&data));
+    page.put("charts", charts.into_iter().collect::<Vec<_>>());
     let row = |(k, point): (usize, &Point)| {
         let (trial, error) = (&point.trial, found.error(k));
         let setting = trial.setting;
@@ -82,6 +78,103 @@ pub fn study(place: &Place) -> Result<Page> {
     Ok(page)
 }
 
+/// Error against time, a mark a run.
+fn cost(data: &WorkPrecision) -> Option<Value> {
+    let mut meshes: Vec<usize> = data.lines.iter().map(|line| line.cells).collect();
+    meshes.sort_unstable();
+    meshes.dedup();
+    let drawn = |marker: &&Marker| marker.error > 0.0 && marker.least_s > 0.0;
+    let series = |line: &Line| {
+        let cells = match line.cells {
+            1 => "1 cell".into(),
+            n => format!("{n} cells"),
+        };
+        let name = format!("{cells}, {}", method(line.scheme));
+        let point = |marker: &Marker| {
+            let worth = if marker.front { "; worth using" } else { "" };
+            let told = if marker.judged {
+                ""
+            } else {
+                "; the reference is too coarse to judge it"
+            };
+            let words = format!(
+                "{cells} a segment, {}, tolerance {:e}: error {:.1e}, {}{worth}{told}",
+                method(line.scheme),
+                marker.rtol,
+                marker.error,
+                duration(marker.least_s)
+            );
+            json!([marker.error, marker.least_s, words, marker.judged])
+        };
+        let points: Vec<Value> = line.markers.iter().filter(drawn).map(point).collect();
+        (!points.is_empty()).then(|| {
+            json!({
+                "name": name, "points": points, "dash": if line.scheme.is_ida() { None } else { Some("7 3") },
+                "colour": meshes.iter().position(|cells| *cells == line.cells),
+            })
+        })
+    };
+    let lines: Vec<Value> = data.lines.iter().filter_map(series).collect();
+    let markers = data.lines.iter().flat_map(|line| &line.markers).filter(drawn);
+    let mut front: Vec<[f64; 2]> = markers.filter(|m| m.front).map(|m| [m.error, m.least_s]).collect();
+    front.sort_by(|a, b| b[0].total_cmp(&a[0]));
+    (!lines.is_empty()).then(|| {
+        json!({
+            "kind": "marks", "title": "Error and time",
+            "about": format!(
+                "Each mark is one setting: a mesh, a method and a tolerance. The error is that of {}. Further left is more exact, further down is \
+                 faster; the settings worth using lie along the lower left edge, which is shaded as a line. Hollow marks, and what lies on the dark \
+                 ground at the left, the reference is too coarse to judge. Broken lines are one-step methods.",
+                data.measure
+            ),
+            "x": {"name": "relative error", "unit": "1"}, "y": {"name": "least wall time", "unit": "s"},
+            "series": lines, "front": front, "limit": {"at": 10.0 * data.own},
+        })
+    })
+}
+
+/// What changes without each effect.
+fn changes(found: &Ablation) -> Value {
+    let data = effects_files::bars(found, &Shown::choose(found, None));
+    let row = |bar: &Bar| {
+        let verdict = bar.verdict.map(|verdict| json!(verdict));
+        let verdict = verdict
+            .as_ref()
+            .and_then(Value::as_str)
+            .unwrap_or("a choice as a whole");
+        let largest = bar.largest.filter(|x| *x > 0.0);
+        let most = largest.map_or(String::new(), |x| format!(", at most {} in any quantity", percent(x)));
+        let work = if bar.work.is_finite() {
+            format!(", {} of the work", percent(bar.work))
+        } else {
+            String::new()
+        };
+        let tone = match bar.verdict {
+            Some(Verdict::Needed | Verdict::Failed) => "bad",
+            Some(Verdict::Saves) => "good",
+            Some(Verdict::Harmless) => "fair",
+            _ => "",
+        };
+        json!({
+            "name": bar.name.replace('_', " "), "value": bar.change, "ring": bar.largest, "tone": tone,
+            "work": bar.work.is_finite().then_some(bar.work), "words": format!("{verdict}{most}{work}"),
+        })
+    };
+    let own = data.own.map_or(String::new(), |own| {
+        format!(" Changes below {} are the integrator's own error.", percent(own))
+    });
+    json!({
+        "kind": "bars", "title": "Changes and cost", "limit": {"at": found.tolerance},
+        "about": format!(
+            "For every effect, the full model is run once more without it. Bar: the change of {}; ring: that of the quantity that changes most. \
+             Where the ring stays left of the broken line at {}, the effect may be left out.{own}",
+            data.measure,
+            percent(found.tolerance)
+        ),
+        "rows": data.bars.iter().map(row).collect::<Vec<_>>(),
+    })
+}
+
 /// Options of the command that made a study.
 fn options(plan: &Plan) -> String {
     let list = |values: Vec<String>| values.join(",");
@@ -108,16 +201,7 @@ pub fn effects(place: &Place) -> Result<Page> {
             format!("{} spent", duration(found.spent_s)),
         ],
     );
-    page.put(
-        "figures",
-        json!([{
-            "title": "Changes and cost",
-            "picture": place.picture(effects_files::PICTURE),
-            "about": format!("For every effect, the full model is run once more without it. Bar: the quantity of the picture; \
-                      ring: the one that changes most. Where the ring stays below {}, the effect may be left out.",
-                      percent(found.tolerance)),
-        }]),
-    );
+    page.put("charts", vec![changes(&found)]);
     let row = |r: &Row| -> Value {
         let left_out = r.left_out.as_ref();
         let largest = left_out.and_then(|c| c.largest.as_ref());

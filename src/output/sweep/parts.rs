@@ -1,11 +1,15 @@
 //! Shards joined to one table; what is lost of them.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::{JOURNAL, Journal, PLAN, Survey};
 use crate::error::{Error, Result};
 use crate::output::folder::{ResultFolder, result};
+use crate::output::numbers::significant;
 use crate::results::sweep::{Plan, Shard};
+use crate::run::summary::Status;
+use crate::study::sweep::row::Found;
 
 /// A folder with a part of a sweep.
 #[derive(Clone, Debug)]
@@ -61,19 +65,31 @@ pub fn read(dirs: &[PathBuf]) -> Result<Vec<Part>> {
     Ok(all)
 }
 
-/// Puts the rows of all parts into the journal of a folder, which is none of theirs, each design once; rows that are there already stay.
+/// Puts the rows of all parts into the journal of a folder, which is none of theirs, each design once; rows that are there already stay, but
+/// for those that did not finish and now have.
 ///
 /// # Errors
-/// Something cannot be read or written.
+/// Something cannot be read or written; [`Error::Usage`] where two rows of one design finished with other figures, before anything is written.
 pub fn join(parts: &[Part], folder: &ResultFolder, plan: &Plan) -> Result<Survey> {
     let path = folder.path(JOURNAL);
     let mut there = Survey::of(&path, plan)?;
-    for part in parts {
-        let own = Survey::of(&part.dir.join(JOURNAL), &part.plan)?;
+    let surveys = parts
+        .iter()
+        .map(|part| Survey::of(&part.dir.join(JOURNAL), &part.plan))
+        .collect::<Result<Vec<_>>>()?;
+    let dirs = parts.iter().map(|part| part.dir.as_path());
+    agree(
+        &[(folder.dir(), &there)]
+            .into_iter()
+            .chain(dirs.zip(&surveys))
+            .collect::<Vec<_>>(),
+    )?;
+    for own in &surveys {
         let mut journal = Journal::go_on(folder, &there)?;
         let mut failed = None;
         own.each(|row| {
-            if failed.is_none() && !there.has(row.number) {
+            let better = row.found.status == Status::Finished && !there.finished(row.number);
+            if failed.is_none() && (better || !there.has(row.number)) {
                 failed = journal.put(&row).err();
             }
             Ok(())
@@ -82,6 +98,44 @@ pub fn join(parts: &[Part], folder: &ResultFolder, plan: &Plan) -> Result<Survey
         there = Survey::of(&path, plan)?;
     }
     Ok(there)
+}
+
+/// Refuses folders of which two have a design that finished with other figures.
+fn agree(all: &[(&Path, &Survey)]) -> Result<()> {
+    let twice = |number: usize| all.iter().filter(|(_, survey)| survey.finished(number)).count() > 1;
+    let mut known: BTreeMap<usize, (usize, Found)> = BTreeMap::new();
+    for (place, (dir, survey)) in all.iter().enumerate() {
+        let mut conflict = None;
+        survey.each(|row| {
+            if conflict.is_some() || !survey.finished(row.number) || !twice(row.number) {
+                return Ok(());
+            }
+            if let Some((first, found)) = known.get(&row.number) {
+                conflict = found.conflict(&row.found).map(|what| (row.number, *first, what));
+            } else {
+                known.insert(row.number, (place, row.found));
+            }
+            Ok(())
+        })?;
+        if let Some((number, first, (name, [a, b]))) = conflict {
+            let told = |x: f64| {
+                if x.is_nan() {
+                    "missing".into()
+                } else {
+                    significant(x, 7)
+                }
+            };
+            return Err(Error::Usage(format!(
+                "design {number} is there twice, and its rows differ: {name} is {} in {} and {} in {}; merge only one of them, or compute one \
+                 again",
+                told(a),
+                all[first].0.display(),
+                told(b),
+                dir.display()
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// What is missing, shard by shard.

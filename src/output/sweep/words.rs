@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::output::numbers::count;
 use crate::results::sweep::Sweep;
 use crate::run::summary::Status;
+use crate::study::sweep::compute::ACCURACY;
 use crate::study::sweep::designs::pairs;
 use crate::study::sweep::row::word;
 
@@ -58,6 +59,19 @@ pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
         Ok(())
     })?;
     text += &first.concat();
+    let mut short = 0;
+    survey.each(|row| {
+        short += usize::from(row.found.figure(ACCURACY) == Some(0.0));
+        Ok(())
+    })?;
+    if short > 0 {
+        let verb = if short == 1 { "does" } else { "do" };
+        let _ = writeln!(
+            text,
+            "  {} {verb} not reach the accuracy that was asked for: {ACCURACY} is 0 in sweep.csv",
+            several(short)
+        );
+    }
     let others: usize = survey
         .statuses
         .iter()

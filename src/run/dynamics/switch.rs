@@ -4,7 +4,7 @@ use super::Run;
 use super::faults::{fault, inconsistent};
 use crate::dae::BeamDae;
 use crate::error::{Result, SolverError};
-use crate::integrate::{StartOptions, consistent_start};
+use crate::integrate::{StartOptions, Starter};
 use crate::run::checkpoint::{Checkpoint, VERSION};
 use crate::run::method::Integrator;
 use crate::run::record::Recorder;
@@ -16,13 +16,15 @@ use crate::run::summary::Counters;
 /// the integrals what is done in no time in between.
 pub(super) fn switch(
     dae: &mut BeamDae,
+    (starter, options): (&mut Starter, &StartOptions),
     [t, ahead]: [f64; 2],
     [state, rates]: [&mut [f64]; 2],
     carried: &mut [f64],
 ) -> std::result::Result<(), SolverError> {
     let (before, within) = (state.to_vec(), dae.within());
     dae.switch(t, ahead, state);
-    consistent_start(dae, t, state, rates, &StartOptions::default()).map_err(|failure| inconsistent(t, &failure))?;
+    let start = starter.start(dae, t, state, rates, options);
+    start.map_err(|failure| inconsistent(t, &failure))?;
     dae.jump(t, (&before, within), state, carried);
     Ok(())
 }
@@ -31,7 +33,12 @@ impl Run<'_> {
     /// Passes a switch.
     pub(super) fn switch(&mut self, dae: &mut BeamDae, t: f64, ahead: f64) -> Option<SolverError> {
         let values = [&mut self.state[..], &mut self.rates];
-        switch(dae, [t, ahead], values, &mut self.carried).err()
+        let mut starter = match Starter::new(dae) {
+            Ok(starter) => starter,
+            Err(failure) => return Some(inconsistent(t, &failure)),
+        };
+        let start = (&mut starter, &StartOptions::default());
+        switch(dae, start, [t, ahead], values, &mut self.carried).err()
     }
 
     /// Passes a stop: the next smooth branch of every signal, a consistent state, a checkpoint if one is due, a fresh

@@ -36,7 +36,8 @@ pub struct Multiplier {
     pub modulus: f64,
     /// Growth rate [1/s], negative when it decays.
     pub growth_per_s: f64,
-    /// Frequency [Hz]: of those that the angle allows the nearest to the mode's own.
+    /// Frequency [Hz]: of those that the angle allows, which differ by multiples of the drive, the nearest to that at which the disturbance
+    /// turns within a period; where steps are too long to follow it, to that of its part when dry.
     pub frequency_hz: f64,
     /// What most of its energy is in.
     pub part: Part,
@@ -92,7 +93,8 @@ pub fn multipliers(scene: &Scene, cycle: &mut Cycle, count: usize) -> Floquet {
         .filter(|eigen| eigen.value.norm() > DEAD)
         .map(|eigen| {
             let (part, share) = modes.dominant(&scene.system, &eigen.vector);
-            let own = modes.frequency(&scene.system, part, &eigen.vector);
+            let dry = modes.frequency(&scene.system, part, &eigen.vector);
+            let own = turns(scene, cycle, &modes, part, &eigen.vector, dry).unwrap_or(dry);
             let frequency = nearest(eigen.value.arg(), period, own);
             Multiplier {
                 re: eigen.value.re,
@@ -115,6 +117,36 @@ pub fn multipliers(scene: &Scene, cycle: &mut Cycle, count: usize) -> Floquet {
         multipliers,
         verdict,
     }
+}
+
+/// Angle that a part may turn by in a step [rad], by its frequency when dry, for its turns to be counted.
+const FOLLOWED: f64 = 2.0;
+
+/// How fast a disturbance `a + ib` swings in a part of the beam [1/s]: the angle by which it turns there over a period, step by step, whole
+/// turns included, which the multiplier does not tell. None where steps are too long to follow it, or nothing turns.
+///
+/// ```text
+/// Σₙ arg⟨cₙ, cₙ₊₁⟩ / T     c coordinates whose squares are twice the energy
+/// ```
+fn turns(scene: &Scene, cycle: &mut Cycle, modes: &Modes, part: Part, v: &[Vec<f64>; 2], dry: f64) -> Option<f64> {
+    let longest = cycle.march.times().windows(2).map(|t| t[1] - t[0]).fold(0.0, f64::max);
+    let n = v[0].len();
+    if part == Part::Fluid || dry * longest > FOLLOWED || v[1].iter().all(|x| *x == 0.0) {
+        return None;
+    }
+    let mut block = [&v[0][..], &v[1]].concat();
+    let mut before: Option<[Vec<f64>; 2]> = None;
+    let mut total = 0.0;
+    cycle.march.propagate_by_steps(&mut block, &mut |block| {
+        let now = [0, 1].map(|k| modes.coordinates(&scene.system, part, &block[k * n..(k + 1) * n]));
+        if let Some([a, b]) = &before {
+            let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+            let [c, d] = &now;
+            total += (dot(a, d) - dot(b, c)).atan2(dot(a, c) + dot(b, d));
+        }
+        before = Some(now);
+    });
+    Some(total.abs() / scene.drive.period)
 }
 
 /// The angular frequency [1/s] `(±angle + 2π k)/period` nearest to `own`.

@@ -117,6 +117,35 @@ impl Modes {
         (bending.collect(), along, fluid)
     }
 
+    /// What the energy of a disturbance of the scaled unknowns in a part is made of: the squares add up to twice that [J^(1/2)]. Empty for
+    /// the fluid.
+    pub fn coordinates(&self, system: &System, part: Part, v: &[f64]) -> Vec<f64> {
+        let (l, s) = (&system.layout, &system.model.section);
+        let [across, along] = &l.lines;
+        let at = |k: usize| v[k] * l.scales[k];
+        match part {
+            Part::Bending(mode) => {
+                let (shape, w) = (&self.shapes[mode - 1], self.frequencies[mode - 1]);
+                let modal = |first: usize| -> f64 {
+                    let terms = shape.iter().zip(&self.masses).enumerate();
+                    terms.map(|(k, (shape, mass))| shape * mass * at(first + k)).sum()
+                };
+                let rate = across.v.as_ref().map_or(0.0, |v| modal(v.start));
+                vec![w * modal(across.u.start), rate]
+            }
+            Part::Along => {
+                let h = system.mesh.h;
+                let u3 = displacements(system, v);
+                let stretch = u3.windows(2).map(|u| (u[1] - u[0]) * (s.axial_stiffness / h).sqrt());
+                let speeds = along.v.iter().flat_map(|v| v.clone());
+                stretch
+                    .chain(speeds.map(|k| at(k) * (s.mass_per_length * h).sqrt()))
+                    .collect()
+            }
+            Part::Fluid => vec![],
+        }
+    }
+
     /// Angular frequency [1/s] that the dry beam has in the shape of a disturbance most of whose energy is in `part`: of motion
     /// along it by Rayleigh's quotient; 0 for the fluid.
     pub fn frequency(&self, system: &System, part: Part, v: &[Vec<f64>; 2]) -> f64 {
@@ -153,15 +182,21 @@ impl Modes {
     }
 }
 
-/// `Σ Δu3²/h` over the cells and `Σ u3² h` over the free nodes of a disturbance.
-fn stretched(system: &System, v: &[f64]) -> (f64, f64) {
-    let (l, h) = (&system.layout, system.mesh.h);
+/// Displacements along the beam of a disturbance [m] at the free nodes and at held ends.
+fn displacements(system: &System, v: &[f64]) -> Vec<f64> {
+    let l = &system.layout;
     let held = |k: usize| matches!(system.model.ends[k].axial, Translation::Displacement(_));
-    let free: Vec<f64> = l.lines[1].u.clone().map(|k| v[k] * l.scales[k]).collect();
-    let squares = free.iter().map(|u| u * u).sum::<f64>() * h;
-    let u3: Vec<f64> = (held(0).then_some(0.0).into_iter())
+    let free = l.lines[1].u.clone().map(|k| v[k] * l.scales[k]);
+    (held(0).then_some(0.0).into_iter())
         .chain(free)
         .chain(held(1).then_some(0.0))
-        .collect();
+        .collect()
+}
+
+/// `Σ Δu3²/h` over the cells and `Σ u3² h` over the free nodes of a disturbance.
+fn stretched(system: &System, v: &[f64]) -> (f64, f64) {
+    let h = system.mesh.h;
+    let u3 = displacements(system, v);
+    let squares = u3.iter().map(|u| u * u).sum::<f64>() * h;
     (u3.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum::<f64>() / h, squares)
 }

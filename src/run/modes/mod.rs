@@ -8,6 +8,7 @@
 //! sensitivity  derivatives by numbers of the case
 //! kind        oscillation, decay, growth, rigid motion, kept volume
 //! sort        those of one sort, and the order in which they are told
+//! warnings    what to know before trusting them
 //! ```
 
 pub mod kind;
@@ -17,12 +18,12 @@ mod relaxing;
 pub mod sensitivity;
 pub mod shape;
 pub mod sort;
+mod warnings;
 
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
-use crate::case::schema::Effect;
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::run::null;
 use crate::spectral::{self, Options, Pair, Pencil, SpectralError};
@@ -169,46 +170,6 @@ pub struct Modes {
     pub lost: usize,
     /// Whether there is a mesh along bladders that could be compared with another.
     pub bladders_compared: bool,
-}
-
-/// Error of a tube's impedance from which on it is told.
-const FORGOTTEN: f64 = 0.01;
-
-impl Modes {
-    /// That modes of a solid that relaxes are missing, where some are.
-    pub fn missing(&self) -> Option<String> {
-        (self.lost > 0).then(|| {
-            Code::LostModes.warning(format!(
-                "{} of the modes that the beam has in the long term were not found again where it relaxes: they are damped too strongly to \
-                 swing, or lie far from where they were expected",
-                self.lost
-            ))
-        })
-    }
-
-    /// What is lost where tubes have Poiseuille's friction, of the mode that swings fastest: error of the impedance `Wo⁴/1152`.
-    pub fn forgotten(&self) -> Option<String> {
-        let model = &self.about.system().model;
-        let has = |effect| model.effects.has(effect);
-        if !has(Effect::TubeInertia) || has(Effect::UnsteadyFriction) {
-            return None;
-        }
-        let tubes = model.wet.iter().flat_map(|wet| &wet.network.links);
-        let rates = tubes.filter_map(|link| Some(link.tube.as_ref()?.viscous_rate));
-        let along = model.wet.iter().filter_map(|wet| wet.network.along_bladders.as_ref());
-        let rates = rates.chain(along.map(|along| along.viscous_rate));
-        let slowest = rates.fold(f64::INFINITY, f64::min);
-        let swinging = self.modes.iter().filter(|mode| mode.kind.swings());
-        let womersley = swinging
-            .map(|mode| (mode.s.im.abs() / slowest).sqrt())
-            .fold(0.0, f64::max);
-        (womersley.powi(4) / 1152.0 > FORGOTTEN).then(|| {
-            Code::FastFlow.warning(format!(
-                "the fluid has the friction of steady profiles here, and Womersley numbers up to {womersley:.1}: frequencies and damping of modes that \
-                 move much fluid are off; {{\"unsteady_friction\": \"on\"}} has them right, its own decays among them"
-            ))
-        })
-    }
 }
 
 /// Modes of everything that a case describes, about its start.

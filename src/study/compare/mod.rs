@@ -6,6 +6,7 @@
 //! align        one recording at the times and places of the other
 //! changes      what differs between the two cases
 //! difference   norms of every field, history and quantity
+//! many         several results beside one of them
 //! ```
 //!
 //! The recording with fewer instants is never interpolated in time, that with fewer positions never along the beam: the
@@ -17,7 +18,9 @@ mod align;
 pub mod changes;
 pub mod difference;
 pub mod interpolate;
+pub mod many;
 pub mod recording;
 
 pub use difference::{Comparison, compare};
+pub use many::Beside;
 pub use recording::{Array, Recording, Series};

@@ -8,7 +8,7 @@ use crate::case::Case;
 use crate::discrete::System;
 
 use crate::discrete::quantities::Interest;
-use crate::error::Result;
+use crate::error::{Code, Result};
 use crate::run::dynamics::{self, Outcome};
 use crate::run::equilibrium::{self, Options, Path};
 use crate::run::floquet::{self, Floquet, Stability};
@@ -26,6 +26,8 @@ pub const MODES: usize = 6;
 const MOST_MODES: usize = 384;
 /// Multipliers looked at.
 const MULTIPLIERS: usize = 2;
+/// Whether an accuracy that was asked for is reached, 1 or 0.
+pub const ACCURACY: &str = "accuracy_reached";
 /// Points on a path of equilibria at least, as the command has them.
 const POINTS: usize = 16;
 
@@ -109,6 +111,9 @@ pub fn of_run(summary: &Summary) -> Found {
     let balances = &summary.balances;
     found.put("energy_residual_relative", balances.energy_residual_relative);
     found.put("volume_residual_relative", balances.volume_residual_relative);
+    if let Some(accuracy) = &summary.accuracy {
+        short(&mut found, accuracy);
+    }
     found
 }
 
@@ -201,6 +206,19 @@ pub fn of_cycle(summary: &Summary, period: f64, steps: u64, stability: Option<&F
 fn reached(found: &mut Found, accuracy: &Accuracy, name: &dyn Fn(&str) -> String) {
     for (own, estimate) in &accuracy.quantities {
         found.put(format!("{}.error", name(own)), estimate.total);
+    }
+    short(found, accuracy);
+}
+
+/// Whether an accuracy that was asked for is reached: a row that lacks it tells so by its reason too.
+fn short(found: &mut Found, accuracy: &Accuracy) {
+    found.put(ACCURACY, f64::from(u8::from(accuracy.reached)));
+    if let (false, None, Status::Finished) = (accuracy.reached, &found.reason, found.status) {
+        found.reason = Some(format!(
+            "{} accuracy {:e} is not reached",
+            Code::Accuracy.id(),
+            accuracy.asked
+        ));
     }
     found.warn(refine::warning(accuracy).as_slice());
 }
@@ -322,12 +340,17 @@ fn small(case: &Case, ask: Ask) -> Result<Found> {
     }
     let mut found = of_modes(&all);
     if let Some((_, accuracy)) = &refined {
-        found.warn(refine::warning(accuracy).as_slice());
+        short(&mut found, accuracy);
         let worst = accuracy.quantities.values().filter_map(|estimate| estimate.total);
         found.put("largest_error", worst.reduce(f64::max));
     }
     found.warn(&known::at_rest(case, &System::new(case)?));
-    found.warn(all.missing().as_slice());
+    // what is told of is warned of
+    all.modes = lowest(&all.modes)
+        .into_iter()
+        .map(|place| all.modes[place].clone())
+        .collect();
+    found.warn(&all.warnings("the start"));
     Ok(found)
 }
 

@@ -7,6 +7,9 @@ use super::designs::Design;
 use crate::error::{Error, visible};
 use crate::run::summary::Status;
 
+/// Relative difference of figures of one design that another computer may make.
+const ALIKE: f64 = 1e-6;
+
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -28,7 +31,7 @@ pub struct Row {
 pub struct Found {
     /// How it ended.
     pub status: Status,
-    /// Why, when it did not finish.
+    /// Why, when it did not finish, or not as well as was asked.
     pub reason: Option<String>,
     /// Steps of time, of Newton along a path; none where there are none.
     pub steps: Option<u64>,
@@ -71,6 +74,16 @@ impl Found {
             .iter()
             .find(|(own, _)| own == name)
             .map(|(_, value)| *value)
+    }
+
+    /// The first figure in which two that finished differ by more than computers do, with both values; NaN where one has none.
+    pub fn conflict(&self, other: &Self) -> Option<(String, [f64; 2])> {
+        let lack = |name: &str, one: &Self| one.figure(name).unwrap_or(f64::NAN);
+        let all = self.figures.iter().chain(&other.figures).map(|(name, _)| name);
+        let apart = |a: f64, b: f64| (a - b).abs() > ALIKE * a.abs().max(b.abs()) || a.is_nan() != b.is_nan();
+        all.map(|name| (name, [lack(name, self), lack(name, other)]))
+            .find(|(_, [a, b])| apart(*a, *b))
+            .map(|(name, values)| (name.clone(), values))
     }
 
     /// Keeps the numbers of warnings, each once.

@@ -163,12 +163,15 @@ function telling(motion, scene) {
 }
 
 function showMany() {
+  showCharts();
   for (const part of data.figures || []) {
     const card = pictureCard(part);
     if (!card) continue;
     if (!document.getElementById("answer")) section("answer", "The picture", null);
     document.getElementById("answer").append(card);
   }
+  if (data.overlay) showOverlay(data.overlay);
   if (data.table) section("table", data.table.title, null).append(tableCard({ ...data.table, title: null }));
+  (data.tables || []).forEach((table, k) => section(`table-${k + 1}`, table.title, null).append(tableCard({ ...table, title: null })));
   if (data.scene) showScene();
 }

@@ -19,7 +19,7 @@ function tickTexts(all, factor) {
 }
 
 /**
- * A chart of given height. `x` and `y` are {low, high, unit, name}; returns {node, place(x, y), area, clear()} whose
+ * A chart of given height. `x` and `y` are {low, high, unit, name}, with `marks` of [value, text] where these are not round numbers; returns {node, place(x, y), area, clear()} whose
  * `area` takes what is drawn within the frame.
  */
 function chart(width, height, x, y, label) {
@@ -31,16 +31,21 @@ function chart(width, height, x, y, label) {
   const py = (v) => box.top + h - ((v - y.low) / room(y)) * h;
   const [fx, ux] = scaledUnit(Math.max(Math.abs(x.low), Math.abs(x.high)), x.unit);
   const [fy, uy] = scaledUnit(Math.max(Math.abs(y.low), Math.abs(y.high)), y.unit);
-  const tx = ticks(x.low, x.high, Math.max(2, Math.floor(w / 90)));
-  const ty = ticks(y.low, y.high, Math.max(2, Math.floor(h / 44)));
-  tickTexts(tx, fx).forEach((text, k) => {
-    node.append(svg("line", { class: "axis", x1: px(tx[k]), x2: px(tx[k]), y1: box.top, y2: box.top + h }));
-    node.append(svg("text", { x: px(tx[k]), y: box.top + h + 17, "text-anchor": "middle", text }));
-  });
-  tickTexts(ty, fy).forEach((text, k) => {
-    node.append(svg("line", { class: "axis", x1: box.left, x2: box.left + w, y1: py(ty[k]), y2: py(ty[k]) }));
-    node.append(svg("text", { x: box.left - 8, y: py(ty[k]) + 4, "text-anchor": "end", text }));
-  });
+  const marks = (a, factor, count) => {
+    if (a.marks) return a.marks;
+    // one mark tells no size
+    let all = [];
+    for (let more = 0; all.length < 2 && more < 8; more++) all = ticks(a.low, a.high, Math.max(2, count) + more);
+    return tickTexts(all, factor).map((text, k) => [all[k], text]);
+  };
+  for (const [v, text] of marks(x, fx, Math.floor(w / 90))) {
+    node.append(svg("line", { class: "axis", x1: px(v), x2: px(v), y1: box.top, y2: box.top + h }));
+    node.append(svg("text", { x: px(v), y: box.top + h + 17, "text-anchor": "middle", text }));
+  }
+  for (const [v, text] of marks(y, fy, Math.floor(h / 44))) {
+    node.append(svg("line", { class: "axis", x1: box.left, x2: box.left + w, y1: py(v), y2: py(v) }));
+    node.append(svg("text", { x: box.left - 8, y: py(v) + 4, "text-anchor": "end", text }));
+  }
   const unitOf = (u) => (u ? ` [${u}]` : "");
   node.append(svg("text", { x: box.left + w / 2, y: height - 6, "text-anchor": "middle", text: `${x.name}${unitOf(ux)}` }));
   node.append(svg("text", { transform: `translate(13 ${box.top + h / 2}) rotate(-90)`, "text-anchor": "middle", text: `${y.name}${unitOf(uy)}` }));

@@ -1,11 +1,15 @@
 //! A run from one control instant to the next, with inputs that are held in between: for learning and control.
 
 mod inputs;
+mod snapshot;
+mod spent;
 
-use serde::{Deserialize, Serialize};
+use std::time::Instant;
 
 use inputs::Held;
 pub use inputs::Input;
+pub use snapshot::Snapshot;
+pub use spent::Spent;
 
 use super::faults::{beyond, fault, inconsistent, stalled, too_many_steps};
 use super::pace::Pace;
@@ -15,29 +19,17 @@ use crate::dae::{BeamDae, Dae};
 use crate::discrete::start;
 use crate::error::{Error, Result, SolverError};
 use crate::functions::{Ramp, RampShape, Signal};
-use crate::integrate::{StartOptions, consistent_start};
+use crate::integrate::{StartOptions, Starter};
 use crate::onestep::OneStep;
 use crate::run::equilibrium;
 use crate::run::known;
-use crate::run::observe::{Observed, Observer};
+use crate::run::observe::Observer;
 use crate::run::record::{Column, Control, Unrecorded};
 use crate::run::schedule::{self, Stop};
 use crate::run::strides::Strides;
 
-/// Everything from which a [`Simulator`] of the same case and inputs goes on bit for bit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Snapshot {
-    /// Simulated time [s].
-    pub t: f64,
-    /// Values of the inputs.
-    pub values: Vec<f64>,
-    of: String,
-    next: usize,
-    y: Vec<f64>,
-    yp: Vec<f64>,
-    integrals: Vec<f64>,
-    observed: Observed,
-}
+/// Error of consistent values behind a jump of inputs, as a part of the relative tolerance: rates count by a step's length of them.
+const CONSISTENT: f64 = 0.1;
 
 /// A case that is simulated piece by piece, by a one-step method: what came before an instant, besides the state, does not matter after it.
 pub struct Simulator {
@@ -47,6 +39,8 @@ pub struct Simulator {
     known: Vec<String>,
     held: Vec<Held>,
     solver: OneStep<BeamDae>,
+    starter: Starter,
+    consistent: StartOptions,
     observer: Observer,
     columns: Vec<Column>,
     stops: Vec<Stop>,
@@ -54,13 +48,12 @@ pub struct Simulator {
     strides: Strides,
     end: f64,
     max_steps: u64,
-    /// Size of the last step [s]; 0 before there is one.
-    size: f64,
     state: Vec<f64>,
     rates: Vec<f64>,
     integrals: Vec<f64>,
     /// Integrals up to the last restart.
     carried: Vec<f64>,
+    spent: Spent,
 }
 
 impl Simulator {
@@ -90,13 +83,20 @@ impl Simulator {
             state = equilibrium::at_start(&case, &options, &mut dae, &state).map_err(solver)?;
         }
         let mut rates = vec![0.0; state.len()];
-        consistent_start(&mut dae, 0.0, &mut state, &mut rates, &StartOptions::default())
+        let mut starter = Starter::new(&dae).map_err(|failure| solver(inconsistent(0.0, &failure)))?;
+        starter
+            .start(&mut dae, 0.0, &mut state, &mut rates, &StartOptions::default())
             .map_err(|failure| solver(inconsistent(0.0, &failure)))?;
         let zeros = vec![0.0; dae.integrals()];
         let mut this = Self {
             of,
             known,
             held,
+            starter,
+            consistent: StartOptions {
+                tolerance: CONSISTENT * case.solver.rtol,
+                ..StartOptions::default()
+            },
             solver: OneStep::new(dae, 0.0, &state, &rates, &options).map_err(|failure| solver(fault(&failure)))?,
             observer,
             columns,
@@ -105,11 +105,11 @@ impl Simulator {
             strides,
             end: case.time.end_s,
             max_steps: case.solver.max_steps,
-            size: 0.0,
             state,
             rates,
             integrals: zeros.clone(),
             carried: zeros,
+            spent: Spent::default(),
         };
         this.enter()?;
         this.sample()?;
@@ -146,6 +146,11 @@ impl Simulator {
         self.solver.steps()
     }
 
+    /// Wall time of [`Simulator::step`] so far.
+    pub fn spent(&self) -> Spent {
+        self.spent
+    }
+
     /// What to know of the case, with inputs that go through their ranges, and of what has been simulated.
     pub fn warnings(&self) -> Vec<String> {
         let mut all = self.known.clone();
@@ -160,7 +165,7 @@ impl Simulator {
     /// [`Error::Usage`] for a time or values that cannot be; [`Error::Solver`] where the simulation cannot go on: it then stands where it
     /// last could, and [`Simulator::restore`] leads back.
     pub fn step(&mut self, until: f64, values: &[f64], ask: &mut dyn FnMut() -> Control) -> Result<()> {
-        let t = self.time();
+        let (t, mut clock) = (self.time(), Instant::now());
         if !(until > t && until <= self.end * (1.0 + 1e-12)) {
             return Err(Error::Usage(format!(
                 "a step from t = {t} s to {until} s: it must lead on, and not beyond /time/end_s, which is {} s",
@@ -171,62 +176,12 @@ impl Simulator {
         if self.held.iter().zip(values).any(|(one, value)| one.value != *value) {
             self.set(values)?;
         }
+        Spent::add(&mut self.spent.jumps, &mut clock);
         let done = self.advance(until.min(self.end), ask);
+        let mut clock = Instant::now();
         self.sample()?;
+        Spent::add(&mut self.spent.watching, &mut clock);
         done
-    }
-
-    /// The present state. The simulator goes on from it as one that restores it does, bit for bit: its next step is a first one.
-    ///
-    /// # Errors
-    /// The integrator's.
-    pub fn save(&mut self) -> Result<Snapshot> {
-        self.read(self.time())?;
-        let snapshot = Snapshot {
-            t: self.time(),
-            values: self.values().collect(),
-            of: self.of.clone(),
-            next: self.next,
-            y: self.state.clone(),
-            yp: self.rates.clone(),
-            integrals: self.integrals.clone(),
-            observed: self.observer.seen.clone(),
-        };
-        self.restore(&snapshot)?;
-        Ok(snapshot)
-    }
-
-    /// Goes back, or on, to a state that a simulator of the same case and inputs was in.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] for a state of another case.
-    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
-        let same = snapshot.of == self.of
-            && snapshot.y.len() == self.state.len()
-            && snapshot.yp.len() == self.rates.len()
-            && snapshot.integrals.len() == self.carried.len()
-            && snapshot.values.len() == self.held.len()
-            && snapshot.observed.row.values().len() == self.columns.len()
-            && snapshot.next < self.stops.len()
-            && (0.0..=self.end).contains(&snapshot.t);
-        if !same {
-            return Err(Error::Usage("the state belongs to another case or other inputs".into()));
-        }
-        inputs::admit(&self.held, &snapshot.values)?;
-        let t = snapshot.t;
-        self.state.copy_from_slice(&snapshot.y);
-        self.rates.copy_from_slice(&snapshot.yp);
-        self.carried.copy_from_slice(&snapshot.integrals);
-        (self.next, self.size) = (snapshot.next, 0.0);
-        self.observer.seen.clone_from(&snapshot.observed);
-        let ahead = 0.5 * (t + self.stops[self.next].t);
-        let dae = self.solver.dae_mut();
-        for (one, value) in self.held.iter_mut().zip(&snapshot.values) {
-            one.value = *value;
-            dae.put_signal(&one.places, &Signal::Constant(*value));
-        }
-        dae.enter_smooth_interval(ahead);
-        self.restart(t)
     }
 
     /// Inputs jump to other values at the present time.
@@ -253,23 +208,27 @@ impl Simulator {
             one.value = *value;
             dae.put_signal(&one.places, &Signal::Constant(*value));
         }
-        self.restart(t)?;
-        // inputs that change often change little: a step that is too long for it is rejected
-        self.solver.propose(self.size);
-        Ok(())
+        // inputs that change often change little: factors and steps that do not do are given up by the integrator
+        let size = self.solver.size();
+        let restarted = self.solver.go_on(t, &self.state, &self.rates);
+        restarted.map_err(|failure| solver(fault(&failure)))?;
+        self.solver.propose(size);
+        self.enter()
     }
 
     /// Steps until a time, past whatever the case itself switches on the way.
     fn advance(&mut self, until: f64, ask: &mut dyn FnMut() -> Control) -> Result<()> {
         let (mut pace, mut steps) = (Pace::new(self.time()), 0);
+        let mut clock = Instant::now();
         while self.time() < until {
             let stop = self.stops[self.next];
             let stride = self.strides.at(self.time());
             self.solver.limit(stride.largest);
             let target = until.min(stop.t).min(stride.to);
             let step = self.solver.step(target).map_err(|failure| solver(fault(&failure)))?;
-            self.size = step.size;
+            Spent::add(&mut self.spent.integration, &mut clock);
             self.watch(step.time)?;
+            Spent::add(&mut self.spent.watching, &mut clock);
             steps += 1;
             if steps >= self.max_steps {
                 return Err(solver(too_many_steps(step.time, step.size)));
@@ -288,6 +247,7 @@ impl Simulator {
                         .enter_smooth_interval(0.5 * (step.time + self.stops[self.next].t));
                 }
                 self.restart(step.time)?;
+                Spent::add(&mut self.spent.jumps, &mut clock);
             }
             if let Control::Stop(_) = ask() {
                 break;
@@ -346,7 +306,8 @@ impl Simulator {
     fn switch(&mut self, t: f64) -> Result<()> {
         let ahead = 0.5 * (t + self.stops[self.next].t);
         let values = [&mut self.state[..], &mut self.rates];
-        switch(self.solver.dae_mut(), [t, ahead], values, &mut self.carried).map_err(solver)
+        let start = (&mut self.starter, &self.consistent);
+        switch(self.solver.dae_mut(), start, [t, ahead], values, &mut self.carried).map_err(solver)
     }
 
     fn restart(&mut self, t: f64) -> Result<()> {

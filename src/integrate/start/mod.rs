@@ -1,68 +1,14 @@
 //! Consistent initial values by Newton's iteration.
 
-use std::fmt;
+mod chords;
+mod told;
+
+pub use told::{Start, StartError, StartOptions};
 
 use super::not_finite;
 use crate::dae::{Dae, EvaluationError, Seeds};
 use crate::numerics::kernels;
 use crate::sparse::{Klu, KluError};
-
-/// Settings of [`consistent_start`].
-#[derive(Clone, Debug, PartialEq)]
-pub struct StartOptions {
-    /// Correction, relative to 1 + |unknown|, below which the values count as consistent.
-    pub tolerance: f64,
-    /// Newton steps allowed.
-    pub max_iterations: u16,
-    /// Smallest damping factor.
-    pub smallest_damping: f64,
-}
-
-impl Default for StartOptions {
-    fn default() -> Self {
-        Self {
-            tolerance: 1e-13,
-            max_iterations: 100,
-            smallest_damping: 1e-8,
-        }
-    }
-}
-
-/// How consistent values were found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Start {
-    /// Newton steps.
-    pub iterations: u16,
-    /// Residuals evaluated.
-    pub residual_evaluations: u64,
-    /// Last correction, largest relative to 1 + |unknown|.
-    pub correction: f64,
-    /// Largest residual left.
-    pub residual: f64,
-}
-
-/// Why no consistent values were found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StartError {
-    /// What happened.
-    pub what: String,
-    /// Unknown that is worst, by position and name.
-    pub worst: Option<(usize, String)>,
-    /// Newton steps done.
-    pub iterations: u16,
-}
-
-impl fmt::Display for StartError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "no consistent start: {}", self.what)?;
-        match &self.worst {
-            Some((_, name)) => write!(f, "; worst is {name}, after {} iterations", self.iterations),
-            None => Ok(()),
-        }
-    }
-}
-
-impl std::error::Error for StartError {}
 
 /// Solves `F(t, y, y') = 0` for the algebraic unknowns and the derivatives of the differential ones.
 ///
@@ -79,7 +25,7 @@ pub fn consistent_start<D: Dae>(
     yp: &mut [f64],
     options: &StartOptions,
 ) -> Result<Start, StartError> {
-    Newton::new(dae, t, y, yp)?.solve(options)
+    Starter::new(dae)?.start(dae, t, y, yp, options)
 }
 
 /// Corrections this small that decrease no more are round-off, whatever the estimate of it.
@@ -88,48 +34,114 @@ const ROUND_OFF: f64 = 1e-8;
 /// Rounding errors of one term of a residual, in units of the last place.
 const ROUNDINGS: f64 = 16.0;
 
+/// What consistent starts of one system share: the analysis of its pattern, room, the factors of the last one.
+pub struct Starter {
+    differential: Vec<bool>,
+    y_seeds: Vec<f64>,
+    yp_seeds: Vec<f64>,
+    values: Vec<f64>,
+    klu: Klu,
+    /// Whether the factors are those of a start that was found.
+    factored: bool,
+    residual: Vec<f64>,
+    correction: Vec<f64>,
+    guess: Vec<f64>,
+}
+
+impl Starter {
+    /// Room for starts of a system, and of all with its pattern.
+    ///
+    /// # Errors
+    /// When the pattern determines no unknown.
+    pub fn new<D: Dae>(dae: &D) -> Result<Self, StartError> {
+        let n = dae.len();
+        let differential = dae.differential().to_vec();
+        let seed = |kind: bool| differential.iter().map(|&d| f64::from(u8::from(d == kind))).collect();
+        let (y_seeds, yp_seeds) = (seed(false), seed(true));
+        let klu = Klu::new(dae.pattern()).map_err(|fault| singular(dae, fault, 0))?;
+        let zeros = || vec![0.0; n];
+        Ok(Self {
+            differential,
+            y_seeds,
+            yp_seeds,
+            values: vec![0.0; klu.entries()],
+            klu,
+            factored: false,
+            residual: zeros(),
+            correction: zeros(),
+            guess: zeros(),
+        })
+    }
+
+    /// Forgets the factors: the next start is found as by a new one, bit for bit.
+    pub fn forget(&mut self) {
+        self.klu.forget();
+        self.factored = false;
+    }
+
+    /// As [`consistent_start`]. Where there are factors of an earlier start they are tried first: corrections with them end when what is left is below
+    /// the tolerance, and are dropped where they do not contract well.
+    ///
+    /// # Errors
+    /// When there is no start near the guess, or none could be found.
+    pub fn start<D: Dae>(
+        &mut self,
+        dae: &mut D,
+        t: f64,
+        y: &mut [f64],
+        yp: &mut [f64],
+        options: &StartOptions,
+    ) -> Result<Start, StartError> {
+        let n = dae.len();
+        assert!(y.len() == n && yp.len() == n, "values of another system");
+        for (yp, _) in yp.iter_mut().zip(&self.differential).filter(|(_, d)| !**d) {
+            *yp = 0.0;
+        }
+        let mut newton = Newton {
+            dae,
+            t,
+            y,
+            yp,
+            room: self,
+            residuals: 0,
+            iterations: 0,
+        };
+        if let Some(start) = newton.with_old_factors(options) {
+            return Ok(start);
+        }
+        newton.room.forget();
+        let start = newton.solve(options)?;
+        self.factored = true;
+        Ok(start)
+    }
+}
+
 /// The iteration: unknowns z are y where algebraic, y' where differential.
 struct Newton<'a, D: Dae> {
     dae: &'a mut D,
     t: f64,
     y: &'a mut [f64],
     yp: &'a mut [f64],
-    differential: Vec<bool>,
-    y_seeds: Vec<f64>,
-    yp_seeds: Vec<f64>,
-    values: Vec<f64>,
-    klu: Klu,
-    residual: Vec<f64>,
+    room: &'a mut Starter,
     residuals: u64,
     iterations: u16,
 }
 
-impl<'a, D: Dae> Newton<'a, D> {
-    fn new(dae: &'a mut D, t: f64, y: &'a mut [f64], yp: &'a mut [f64]) -> Result<Self, StartError> {
-        let n = dae.len();
-        assert!(y.len() == n && yp.len() == n, "values of another system");
-        let differential = dae.differential().to_vec();
-        let seed = |kind: bool| differential.iter().map(|&d| f64::from(u8::from(d == kind))).collect();
-        let (y_seeds, yp_seeds) = (seed(false), seed(true));
-        let klu = Klu::new(dae.pattern()).map_err(|fault| singular(dae, fault, 0))?;
-        for (yp, _) in yp.iter_mut().zip(&differential).filter(|(_, d)| !**d) {
-            *yp = 0.0;
+impl<D: Dae> Newton<'_, D> {
+    fn unknown(&self, i: usize) -> f64 {
+        if self.room.differential[i] {
+            self.yp[i]
+        } else {
+            self.y[i]
         }
-        let (values, residual) = (vec![0.0; klu.entries()], vec![0.0; n]);
-        Ok(Self {
-            dae,
-            t,
-            y,
-            yp,
-            differential,
-            y_seeds,
-            yp_seeds,
-            values,
-            klu,
-            residual,
-            residuals: 0,
-            iterations: 0,
-        })
+    }
+
+    fn unknown_mut(&mut self, i: usize) -> &mut f64 {
+        if self.room.differential[i] {
+            &mut self.yp[i]
+        } else {
+            &mut self.y[i]
+        }
     }
 
     fn solve(mut self, options: &StartOptions) -> Result<Start, StartError> {
@@ -167,8 +179,8 @@ impl<'a, D: Dae> Newton<'a, D> {
             self.go(&from, correction, damping);
             match self.evaluate() {
                 Ok(()) => {
-                    let mut next = self.residual.clone();
-                    let small = self.klu.solve(&mut next)
+                    let mut next = self.room.residual.clone();
+                    let small = self.room.klu.solve(&mut next)
                         && self.norm(&next, &from) <= (1.0 - 0.25 * damping) * self.norm(correction, &from);
                     // near the end round-off decides the test, not the direction
                     if small || size <= ROUND_OFF {
@@ -191,10 +203,10 @@ impl<'a, D: Dae> Newton<'a, D> {
     /// Takes the last correction too and reports.
     fn finish(mut self, correction: &[f64], size: f64) -> Result<Start, StartError> {
         let from = self.unknowns();
-        let before = kernels::max_abs(&self.residual);
+        let before = kernels::max_abs(&self.room.residual);
         self.go(&from, correction, 1.0);
         self.evaluate().map_err(|fault| self.give_up(text(fault), None))?;
-        let mut after = kernels::max_abs(&self.residual);
+        let mut after = kernels::max_abs(&self.room.residual);
         if after > before {
             self.go(&from, correction, 0.0);
             after = before;
@@ -209,13 +221,13 @@ impl<'a, D: Dae> Newton<'a, D> {
 
     fn evaluate(&mut self) -> Result<(), EvaluationError> {
         self.residuals += 1;
-        self.dae.residual(self.t, self.y, self.yp, &mut self.residual)?;
-        match kernels::first_not_finite(&self.residual) {
+        self.dae.residual(self.t, self.y, self.yp, &mut self.room.residual)?;
+        match kernels::first_not_finite(&self.room.residual) {
             None => Ok(()),
             Some(i) => Err(EvaluationError::Recoverable(format!(
                 "the equation of {} gives {}",
                 self.dae.name(i),
-                self.residual[i]
+                self.room.residual[i]
             ))),
         }
     }
@@ -223,20 +235,21 @@ impl<'a, D: Dae> Newton<'a, D> {
     /// Newton's correction, to be subtracted: `J dz = F`.
     fn correction(&mut self) -> Result<Vec<f64>, StartError> {
         let seeds = Seeds::Columns {
-            y: &self.y_seeds,
-            yp: &self.yp_seeds,
+            y: &self.room.y_seeds,
+            yp: &self.room.yp_seeds,
         };
-        if let Err(fault) = self.dae.jacobian(self.t, self.y, self.yp, seeds, &mut self.values) {
+        if let Err(fault) = self.dae.jacobian(self.t, self.y, self.yp, seeds, &mut self.room.values) {
             return Err(self.give_up(text(fault), None));
         }
-        if let Some(entry) = kernels::first_not_finite(&self.values) {
+        if let Some(entry) = kernels::first_not_finite(&self.room.values) {
             return Err(self.give_up(not_finite(self.dae, entry, self.t), None));
         }
-        self.klu
-            .factor(&self.values)
+        self.room
+            .klu
+            .factor(&self.room.values)
             .map_err(|fault| singular(self.dae, fault, self.iterations))?;
-        let mut correction = self.residual.clone();
-        self.klu.solve(&mut correction);
+        let mut correction = self.room.residual.clone();
+        self.room.klu.solve(&mut correction);
         match kernels::first_not_finite(&correction) {
             None => Ok(correction),
             Some(i) => Err(self.give_up("the matrix is singular to working precision".to_owned(), Some(i))),
@@ -253,35 +266,29 @@ impl<'a, D: Dae> Newton<'a, D> {
         let n = self.y.len();
         let (one, zero) = (vec![1.0; n], vec![0.0; n]);
         let seeds = Seeds::Columns { y: &one, yp: &zero };
-        if let Err(fault) = self.dae.jacobian(self.t, self.y, self.yp, seeds, &mut self.values) {
+        if let Err(fault) = self.dae.jacobian(self.t, self.y, self.yp, seeds, &mut self.room.values) {
             return Err(self.give_up(text(fault), None));
         }
         let mut noise = vec![0.0; n];
         let pattern = self.dae.pattern();
         for (column, y) in self.y.iter().enumerate() {
             for entry in pattern.column(column) {
-                noise[pattern.rows[entry] as usize] += ROUNDINGS * f64::EPSILON * (self.values[entry] * y).abs();
+                noise[pattern.rows[entry] as usize] += ROUNDINGS * f64::EPSILON * (self.room.values[entry] * y).abs();
             }
         }
-        self.klu.solve(&mut noise);
+        self.room.klu.solve(&mut noise);
         Ok(self.size(&noise).max(ROUND_OFF))
     }
 
     /// The present z.
     fn unknowns(&self) -> Vec<f64> {
-        let pick = |i: usize| if self.differential[i] { self.yp[i] } else { self.y[i] };
-        (0..self.differential.len()).map(pick).collect()
+        (0..self.y.len()).map(|i| self.unknown(i)).collect()
     }
 
     /// Sets z to `from - damping * correction`.
     fn go(&mut self, from: &[f64], correction: &[f64], damping: f64) {
         for i in 0..from.len() {
-            let z = if self.differential[i] {
-                &mut self.yp[i]
-            } else {
-                &mut self.y[i]
-            };
-            *z = from[i] - damping * correction[i];
+            *self.unknown_mut(i) = from[i] - damping * correction[i];
         }
     }
 
@@ -316,7 +323,7 @@ impl<'a, D: Dae> Newton<'a, D> {
 
     fn name(&self, i: usize) -> String {
         let name = self.dae.name(i);
-        if self.differential[i] {
+        if self.room.differential[i] {
             format!("the rate of {name}")
         } else {
             name

@@ -1,0 +1,285 @@
+//! The pages of several results beside one of them, and of one beside measured data.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::{Page, Written, pack, page, warnings};
+use crate::discrete::quantities::{Observable, Role};
+use crate::error::Result;
+use crate::output::folder::{REPORT, fault, replace_alike};
+use crate::output::numbers::{percent, quantity};
+use crate::study::compare::many::column_at;
+use crate::study::compare::{Beside, Recording};
+use crate::study::fit::beside::{Beside as Data, Column};
+
+/// Instants of a history that are shown, at most.
+const INSTANTS: usize = 1500;
+
+/// Writes the page into a folder, which is made where there is none; `reference` is a place among the results.
+///
+/// # Errors
+/// It cannot be written, or something else stands in its place.
+pub fn compared(dir: &Path, all: &[Recording], reference: usize, found: &Beside) -> Result<Written> {
+    let names = names(found);
+    let mut page = Page {
+        name: format!("{} and {}", names[0], others(names.len() - 1)),
+        ..Page::default()
+    };
+    let title = page.name.clone();
+    page.put("kind", "comparison");
+    page.put("version", env!("CARGO_PKG_VERSION"));
+    page.put("label", "Results side by side");
+    page.put("name", title);
+    page.put("answer", answer(found, &names));
+    page.put("warnings", warnings::groups(&[]));
+    page.put(
+        "facts",
+        found
+            .folders()
+            .iter()
+            .zip(&names)
+            .map(|(folder, name)| format!("{name}: {folder}"))
+            .collect::<Vec<_>>(),
+    );
+    let order = || {
+        std::iter::once(&all[reference]).chain(all.iter().enumerate().filter(|(k, _)| *k != reference).map(|(_, r)| r))
+    };
+    if let Some(overlay) = overlay(&order().collect::<Vec<_>>(), &names) {
+        page.put("overlay", overlay);
+    }
+    page.put("tables", tables(found, &names));
+    put(&page, dir)
+}
+
+/// Writes the page of a run over measured data into a folder, which is made where there is none; `picture` is an SVG.
+///
+/// # Errors
+/// It cannot be written, or something else stands in its place.
+pub fn over_data(dir: &Path, picture: &str, found: &Data) -> Result<Written> {
+    let mut page = Page {
+        name: format!("{} over {}", found.case, file_name(&found.data)),
+        ..Page::default()
+    };
+    let title = page.name.clone();
+    page.put("kind", "comparison");
+    page.put("version", env!("CARGO_PKG_VERSION"));
+    page.put("label", "A run over measured data");
+    page.put("name", title);
+    page.put(
+        "facts",
+        vec![format!("Run: {}", found.run), format!("Data: {}", found.data)],
+    );
+    page.put(
+        "figures",
+        json!([{
+            "title": "Data and run", "picture": pack::image("image/svg+xml", picture.as_bytes()),
+            "about": "Rings are measured, the line is the run. Below, run less data.",
+        }]),
+    );
+    let row = |one: &Column| {
+        let left = &one.left;
+        json!([
+            one.matched.words(),
+            one.quantity,
+            one.unit,
+            left.count,
+            left.rms,
+            left.max,
+            one.max_at_s,
+            left.bias,
+            100.0 * left.rms_relative,
+            100.0 * left.max_relative,
+            left.r_squared
+        ])
+    };
+    page.put(
+        "table",
+        json!({
+            "title": "Run less data", "about": "In the unit of the quantity; percent are of the largest value of the data.",
+            "headings": ["match", "quantity", "unit", "values", "rms", "largest", "at [s]", "bias", "rms [%]", "largest [%]", "R²"],
+            "rows": found.columns.iter().map(row).collect::<Vec<_>>(),
+        }),
+    );
+    put(&page, dir)
+}
+
+fn put(page: &Page, dir: &Path) -> Result<Written> {
+    fs::create_dir_all(dir).map_err(|e| fault("make", dir, e))?;
+    let path = dir.join(REPORT);
+    let text = page::assemble(page);
+    replace_alike(&path, &text, &["<!doctype html"])?;
+    Ok(Written {
+        path,
+        bytes: text.len(),
+    })
+}
+
+/// The last part of a path.
+fn file_name(path: &str) -> String {
+    let name = Path::new(path).file_name();
+    name.map_or_else(|| path.to_string(), |name| name.to_string_lossy().into_owned())
+}
+
+fn others(count: usize) -> String {
+    match count {
+        1 => "one other".into(),
+        n => format!("{n} others"),
+    }
+}
+
+/// What results are called: the last part of their folders, the whole where two end alike.
+fn names(found: &Beside) -> Vec<String> {
+    let folders = found.folders();
+    let all: Vec<String> = folders.iter().map(|folder| file_name(folder)).collect();
+    let twice = |name: &String| all.iter().filter(|own| *own == name).count() > 1;
+    let either = all
+        .iter()
+        .zip(&folders)
+        .map(|(name, folder)| if twice(name) { (*folder).into() } else { name.clone() });
+    either.collect()
+}
+
+/// Which differs most, of the quantities that matter most.
+fn answer(found: &Beside, names: &[String]) -> String {
+    let headline = |name: &str| Observable::named(name).is_some_and(|one| one.role() == Role::Headline);
+    let all = found.comparisons.iter().zip(&names[1..]).flat_map(|(one, name)| {
+        let histories = one.histories.iter().filter(|d| headline(&d.name));
+        histories.map(move |d| (d, name))
+    });
+    match all.max_by(|a, b| a.0.relative.l2.total_cmp(&b.0.relative.l2)) {
+        None => "The results have no history in common.".into(),
+        Some((most, _)) if most.relative.l2 == 0.0 => format!("No quantity that matters differs from {}.", names[0]),
+        Some((most, name)) => format!(
+            "The largest difference from {} is that of {} in {name}: {} of its size over all instants, {} at most, at {}.",
+            names[0],
+            most.name,
+            percent(most.relative.l2),
+            percent(most.relative.max),
+            quantity(most.at_s, "s", 4)
+        ),
+    }
+}
+
+/// Histories at the output times of the first.
+fn overlay(all: &[&Recording], names: &[String]) -> Option<Value> {
+    let first = all.first()?;
+    let every = first.times.len().div_ceil(INSTANTS).max(1);
+    let times: Vec<f64> = first.times.iter().copied().step_by(every).collect();
+    let quantities = first.columns.iter().filter_map(|column| {
+        let values = all.iter().map(|one| column_at(one, &column.name, &times)).collect::<Vec<_>>();
+        let there = values.iter().flatten().flatten().any(|x| x.is_finite() && *x != 0.0);
+        let one = Observable::named(&column.name);
+        there.then(|| {
+            let none = vec![f64::NAN; times.len()];
+            let packed = values.iter().map(|v| pack::numbers(v.as_ref().unwrap_or(&none).iter().copied()));
+            json!({
+                "name": column.name, "unit": column.unit, "label": one.map_or(column.name.as_str(), |one| one.label()),
+                "about": one.map_or("", Observable::about), "usual": one.is_some_and(|one| one.role() == Role::Headline),
+                "values": packed.collect::<Vec<_>>(),
+            })
+        })
+    });
+    let quantities: Vec<Value> = quantities.collect();
+    let note = format!(
+        "At the output times of {}{}; the others are interpolated by cubics, and drawn where they have been computed.",
+        names[0],
+        if every > 1 {
+            format!(", one in {every}")
+        } else {
+            String::new()
+        }
+    );
+    (times.len() > 1 && !quantities.is_empty()).then(|| {
+        json!({"times": pack::numbers(times.iter().copied()), "runs": names, "quantities": quantities, "note": note})
+    })
+}
+
+fn tables(found: &Beside, names: &[String]) -> Vec<Value> {
+    let columns = |first: &[&str], each: &dyn Fn(&String) -> Vec<String>| -> Vec<String> {
+        let first = first.iter().map(ToString::to_string);
+        first.chain(names[1..].iter().flat_map(each)).collect()
+    };
+    let figures = found.figures();
+    let figures = figures.iter().map(|figure| {
+        let cells = figure.others.iter().flat_map(|one| match one {
+            Some((value, change)) => [json!(value), json!(change.map(|x| 100.0 * x))],
+            None => [Value::Null, Value::Null],
+        });
+        let first = [json!(figure.name), json!(figure.reference)];
+        Value::from(first.into_iter().chain(cells).collect::<Vec<_>>())
+    });
+    let figures = figures.collect::<Vec<_>>();
+    let norms = found.norms().into_iter().map(|(name, norms)| {
+        let cells = norms.into_iter().map(|x| json!(x));
+        Value::from(std::iter::once(json!(name)).chain(cells).collect::<Vec<_>>())
+    });
+    let norms = norms.collect::<Vec<_>>();
+    let changes = found.comparisons.iter().zip(&names[1..]).flat_map(|(one, name)| {
+        let both = [("physics", &one.physics), ("numerics", &one.numerics)];
+        both.into_iter().flat_map(move |(kind, list)| {
+            list.iter()
+                .map(move |change| json!([name, kind, change.pointer, word(&change.a), word(&change.b)]))
+        })
+    });
+    let changes = changes.collect::<Vec<_>>();
+    let costs = found.comparisons.first().map_or(&[][..], |one| &one.costs);
+    let costs = costs.iter().enumerate().map(|(k, cost)| {
+        let others = found
+            .comparisons
+            .iter()
+            .map(|one| json!(one.costs.get(k).map(|cost| cost.b)));
+        let first = [json!(cost.name), json!(cost.a)];
+        Value::from(first.into_iter().chain(others).collect::<Vec<_>>())
+    });
+    let costs = costs.collect::<Vec<_>>();
+    let alone = |name: &String| vec![name.clone()];
+    let all = [
+        (
+            "Figures",
+            format!(
+                "A figure of each result; beside it its difference from {} in percent of that.",
+                names[0]
+            ),
+            columns(&["figure", &names[0]], &|name| {
+                vec![name.clone(), format!("{name}: change [%]")]
+            }),
+            figures,
+        ),
+        (
+            "Differences of histories and fields",
+            format!(
+                "Root mean square of the difference from {} over all instants and places that both have, \
+          over that of the larger of the two.",
+                names[0]
+            ),
+            columns(&["quantity"], &alone),
+            norms,
+        ),
+        (
+            "What differs in the cases",
+            format!(
+                "Where physics differs, differences are no errors. The last two columns are {} and the other.",
+                names[0]
+            ),
+            ["result", "of", "key", "there", "here"].map(String::from).to_vec(),
+            changes,
+        ),
+        ("Cost", String::new(), columns(&["cost", &names[0]], &alone), costs),
+    ];
+    let all = all.into_iter().filter(|(.., rows)| !rows.is_empty());
+    all.map(
+        |(title, about, headings, rows)| json!({"title": title, "about": about, "headings": headings, "rows": rows}),
+    )
+    .collect()
+}
+
+/// A value of a case in a cell.
+fn word(value: &Value) -> Value {
+    match value {
+        Value::Null => json!("absent"),
+        Value::Object(_) | Value::Array(_) => json!("..."),
+        other => json!(other.to_string()),
+    }
+}

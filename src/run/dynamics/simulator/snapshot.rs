@@ -1,0 +1,89 @@
+//! States from which a simulator goes on.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Simulator, inputs};
+use crate::dae::Dae as _;
+use crate::error::{Error, Result};
+use crate::functions::Signal;
+use crate::run::observe::Observed;
+
+/// Everything from which a [`Simulator`] of the same case and inputs goes on bit for bit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    /// Simulated time [s].
+    pub t: f64,
+    /// Values of the inputs.
+    pub values: Vec<f64>,
+    of: String,
+    next: usize,
+    /// The step to try next [s]; 0 leaves it to the state.
+    #[serde(default)]
+    size: f64,
+    y: Vec<f64>,
+    yp: Vec<f64>,
+    integrals: Vec<f64>,
+    observed: Observed,
+}
+
+impl Simulator {
+    /// The present state. The simulator goes on from it as one that restores it does, bit for bit: it forgets what
+    /// it knows besides.
+    ///
+    /// # Errors
+    /// The integrator's.
+    pub fn save(&mut self) -> Result<Snapshot> {
+        self.read(self.time())?;
+        let snapshot = Snapshot {
+            t: self.time(),
+            values: self.values().collect(),
+            of: self.of.clone(),
+            next: self.next,
+            size: self.solver.size(),
+            y: self.state.clone(),
+            yp: self.rates.clone(),
+            integrals: self.integrals.clone(),
+            observed: self.observer.seen.clone(),
+        };
+        self.restore(&snapshot)?;
+        Ok(snapshot)
+    }
+
+    /// Goes back, or on, to a state that a simulator of the same case and inputs was in.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a state of another case.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
+        let same = snapshot.of == self.of
+            && snapshot.y.len() == self.state.len()
+            && snapshot.yp.len() == self.rates.len()
+            && snapshot.integrals.len() == self.carried.len()
+            && snapshot.values.len() == self.held.len()
+            && snapshot.observed.row.values().len() == self.columns.len()
+            && snapshot.next < self.stops.len()
+            && (0.0..f64::INFINITY).contains(&snapshot.size)
+            && (0.0..=self.end).contains(&snapshot.t);
+        if !same {
+            return Err(Error::Usage("the state belongs to another case or other inputs".into()));
+        }
+        inputs::admit(&self.held, &snapshot.values)?;
+        let t = snapshot.t;
+        self.state.copy_from_slice(&snapshot.y);
+        self.rates.copy_from_slice(&snapshot.yp);
+        self.carried.copy_from_slice(&snapshot.integrals);
+        self.next = snapshot.next;
+        self.starter.forget();
+        self.observer.seen.clone_from(&snapshot.observed);
+        let ahead = 0.5 * (t + self.stops[self.next].t);
+        let dae = self.solver.dae_mut();
+        for (one, value) in self.held.iter_mut().zip(&snapshot.values) {
+            one.value = *value;
+            dae.put_signal(&one.places, &Signal::Constant(*value));
+        }
+        dae.enter_smooth_interval(ahead);
+        dae.approach(0.0);
+        self.restart(t)?;
+        self.solver.propose(snapshot.size);
+        Ok(())
+    }
+}
