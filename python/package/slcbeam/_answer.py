@@ -11,13 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _page
 from ._errors import FileError, UsageError
-from ._result import Report, split
+from ._page import Report
+from ._result import split
 
 if TYPE_CHECKING:
     import os
 
     import pandas
+    import polars
 
 
 class Columns(Mapping[str, np.ndarray]):
@@ -45,6 +48,16 @@ class Columns(Mapping[str, np.ndarray]):
         import pandas
 
         return pandas.DataFrame(self._columns)
+
+    def to_polars(self) -> polars.DataFrame:
+        """A frame of polars with a column a name. Needs polars."""
+        import polars
+
+        return polars.DataFrame(self._columns)
+
+    def _repr_html_(self) -> str:
+        rows = list(zip(*(column.tolist() for column in self._columns.values())))
+        return _page.columns(repr(self), self.names, [self.units[name] for name in self.names], rows)
 
     def __repr__(self) -> str:
         return f"<{len(self)} columns of {self._rows} rows: {', '.join(self.names[:6])}{', ..' if len(self) > 6 else ''}>"
@@ -84,7 +97,8 @@ class Answer(Mapping[str, Any]):
     @property
     def warnings(self) -> list[str]:
         """What to know before trusting it."""
-        return self._told.get("warnings", [])
+        warnings: list[str] = self._told.get("warnings", [])
+        return warnings
 
     @property
     def tables(self) -> dict[str, Columns]:
@@ -123,6 +137,9 @@ class Answer(Mapping[str, Any]):
         if not self.folder.is_dir():
             raise FileError(f"{self.folder} is no longer there")
         return self.folder
+
+    def _repr_html_(self) -> str:
+        return _page.summary(repr(self), self.warnings)
 
     def __repr__(self) -> str:
         case = self._told.get("case") or self._told.get("name")
