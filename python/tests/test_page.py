@@ -1,4 +1,4 @@
-"""What docs/python.md and the help of every name show runs."""
+"""What the pages on Python and the help of every name show runs."""
 
 import doctest
 import importlib
@@ -10,16 +10,17 @@ import pytest
 
 import slcbeam
 
-PAGE = Path(__file__).resolve().parents[2] / "docs/python.md"
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
-def test_the_page_runs(tmp_path, monkeypatch):
+@pytest.mark.parametrize("page, least", [("python.md", 8), ("python-clusters.md", 6), ("measured-data.md", 1)])
+def test_the_page_runs(page, least, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)
-    assert len(blocks) > 3
+    blocks = re.findall(r"```python\n(.*?)```", (DOCS / page).read_text(encoding="utf-8"), re.S)
+    assert len(blocks) >= least
     names = {"__name__": "page"}
     for block in blocks:
-        exec(compile(block, str(PAGE), "exec"), names)
+        exec(compile(block, page, "exec"), names)
 
 
 def test_examples_in_the_help_hold():

@@ -18,9 +18,9 @@ except ImportError as error:
         ) from error
     raise
 
-from ._answer import Answer, Columns
+from ._answer import Answer, Columns, read
 from ._case import Case, load, shipped
-from ._commands import check, effects, equilibrium, fit, floquet, modes, optimize, periodic, sense, study, sweep
+from ._commands import check, effects, equilibrium, fit, floquet, merge, modes, optimize, periodic, sense, study, sweep
 from ._errors import CaseError, Error, Fault, FileError, SolverError, UsageError
 from ._page import Report
 from ._result import Fields, Result, Table
@@ -49,9 +49,11 @@ __all__ = [
     "fit",
     "floquet",
     "load",
+    "merge",
     "modes",
     "optimize",
     "periodic",
+    "read",
     "run",
     "sense",
     "shipped",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -151,6 +152,27 @@ class Answer(Mapping[str, Any]):
         if self.folder is not None and self._kept is not None:
             files = {str(p.relative_to(self.folder)): p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
         return (_again, (self._told, None if files is not None else self.folder, self.interrupted, files))
+
+
+#: Files that tell what a command found, those first that stand beside another.
+MAIN = ("cycle", "sweep", "summary", "equilibrium", "modes", "study", "effects", "floquet", "map", "fit", "sense", "optimum")
+
+
+def read(dir: str | os.PathLike[str]) -> Answer:
+    """What a result folder holds, of whichever command and machine: values of its JSON file, tables, arrays, page.
+
+    Of a run these are ``summary.json``, ``tables["history"]`` and the ``arrays`` of ``fields.npz``.
+
+    :raises FileError: it holds no result.
+    """
+    folder = Path(dir)
+    found = [path for path in (folder / f"{name}.json" for name in MAIN) if path.is_file()]
+    if not found:
+        raise FileError(f"{folder} holds no result: none of {', '.join(f'{name}.json' for name in MAIN)}")
+    try:
+        return Answer(json.loads(found[0].read_text(encoding="utf-8")), folder)
+    except (OSError, ValueError) as error:
+        raise FileError(f"cannot read {found[0]}: {error}") from None
 
 
 def _again(told: dict[str, Any], folder: Path | None, interrupted: bool, files: dict[str, bytes] | None) -> Answer:

@@ -216,6 +216,18 @@ def sweep(
         return _do("sweep", cases, out=out, progress=progress, options={"vary": specs, "designs": listed, **options})
 
 
+def merge(parts: Iterable[str | os.PathLike[str]], *, out: str | os.PathLike[str]) -> Answer:
+    """Joins parts of a sweep that were computed apart, ``shard="1/8"``, into one folder (``slcbeam merge``).
+
+    :param parts: folders of the parts.
+    :returns: as :func:`sweep` does; where something is missing, ``complete`` is false, ``missing`` tells what, and standard error the commands
+        that compute it.
+    :raises UsageError: parts of different sweeps.
+    """
+    printed, _, interrupted = _slcbeam.command(["merge", *map(os.fspath, parts), f"--out={os.fspath(out)}", "--json"])
+    return Answer(json.loads(printed), Path(out), interrupted=interrupted)
+
+
 def _listed(values: Any) -> list[str]:
     each = values if isinstance(values, Iterable) else [values]
     return [json.dumps(one, default=plain) for one in each]
