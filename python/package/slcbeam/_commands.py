@@ -224,7 +224,7 @@ def merge(parts: Iterable[str | os.PathLike[str]], *, out: str | os.PathLike[str
         that compute it.
     :raises UsageError: parts of different sweeps.
     """
-    printed, _, interrupted = _slcbeam.command(["merge", *map(os.fspath, parts), f"--out={os.fspath(out)}", "--json"])
+    printed, _, interrupted = _slcbeam.command(["merge", *(os.fspath(part) for part in parts), f"--out={os.fspath(out)}", "--json"])
     return Answer(json.loads(printed), Path(out), interrupted=interrupted)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 #: Rows and columns of a table that are shown: as many from its begin and from its end.
-ROWS, COLUMNS = 10, 12
+ROWS, COLUMNS = 10, 9
 
 
 class Report:
@@ -43,11 +43,15 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     return "<table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
 
 
+def _cut(row: Sequence[Any]) -> list[Any]:
+    return [*row] if len(row) <= COLUMNS else [*row[:COLUMNS], "…"]
+
+
 def columns(told: str, names: Sequence[str], units: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
     """Begin and end of a table with units, below its description."""
-    heads = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, units)][:COLUMNS]
+    heads = _cut([f"{name} [{unit}]" if unit else name for name, unit in zip(names, units)])
     half = ROWS // 2
-    shown = [list(row)[:COLUMNS] for row in (rows if len(rows) <= ROWS else [*rows[:half], *rows[-half:]])]
+    shown = [_cut(row) for row in (rows if len(rows) <= ROWS else [*rows[:half], *rows[-half:]])]
     if len(rows) > ROWS:
         shown.insert(half, ["…"] * len(heads))
     return f"<p>{html.escape(told)}</p>" + table(heads, shown)
