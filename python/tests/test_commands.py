@@ -8,6 +8,7 @@ import threading
 import time
 
 import numpy as np
+import pandas
 import pytest
 
 import slcbeam
@@ -171,3 +172,16 @@ def test_a_folder_of_any_command_is_read(command, tmp_path):
         np.testing.assert_array_equal(found.arrays["u1_m"], told.fields["u1_m"])
     else:
         assert dict(found) == dict(told)
+
+
+def test_designs_of_a_table_go_on_and_are_told_from_others(tmp_path):
+    case = slcbeam.load("tour-actuator", set=COARSE)
+    pointer = "/network/chains/0/ends/0/pressure_pa/ramp/to"
+    how = {"command": "equilibrium", "lean": True, "no_mesh_errors": True, "out": tmp_path / "designs"}
+    first = slcbeam.sweep(case, designs={pointer: [1e4, 2e4]}, **how).tables["sweep"]
+    again = slcbeam.sweep(case, designs=pandas.DataFrame({pointer: [1e4, 2e4]}), **how).tables["sweep"]
+    np.testing.assert_array_equal(again["wall_s"], first["wall_s"])
+    with pytest.raises(slcbeam.UsageError, match="the table of designs has changed"):
+        slcbeam.sweep(case, designs={pointer: [1e4, 3e4]}, **how)
+    with pytest.raises(slcbeam.UsageError, match="columns of numbers"):
+        slcbeam.sweep(case, designs={pointer: ["much"]}, **how)
