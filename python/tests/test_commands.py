@@ -8,6 +8,7 @@ import threading
 import time
 
 import numpy as np
+import pandas
 import pytest
 
 import slcbeam
@@ -140,3 +141,47 @@ def test_ctrl_c_ends_a_sweep_with_what_there_is(tmp_path):
     found = slcbeam.sweep(case, {"/loads/0/force_x_n_m/signal/sigmoid/amplitude": values}, lean=True, out=tmp_path / "sweep")
     assert found.interrupted
     assert 0 < len(next(iter(found.tables["sweep"].values()))) < 5000
+
+
+def test_parts_are_joined_and_folders_read(tmp_path):
+    case = slcbeam.load("tour-actuator", set=COARSE)
+    vary = {"/network/chains/0/ends/0/pressure_pa/ramp/to": [1e4, 2e4, 3e4]}
+    how = {"command": "equilibrium", "lean": True, "no_mesh_errors": True}
+    parts = [tmp_path / "1", tmp_path / "2"]
+    for number, part in enumerate(parts, 1):
+        slcbeam.sweep(case, vary, shard=f"{number}/2", out=part, **how)
+    joined = slcbeam.merge(parts, out=tmp_path / "whole")
+    whole = slcbeam.sweep(case, vary, **how).tables["sweep"]
+    assert joined["complete"]
+    for table in (joined.tables["sweep"], slcbeam.read(tmp_path / "whole").tables["sweep"]):
+        np.testing.assert_array_equal(table["tip_u1_m"], whole["tip_u1_m"])
+    less = slcbeam.merge(parts[:1], out=tmp_path / "less")
+    assert not less["complete"] and less["missing"] and len(less.tables["sweep"]["design"]) < 3
+    with pytest.raises(slcbeam.FileError, match="no result"):
+        slcbeam.read(tmp_path)
+
+
+@pytest.mark.parametrize("command", ["run", "equilibrium", "modes", "periodic", "floquet"])
+def test_a_folder_of_any_command_is_read(command, tmp_path):
+    case = slcbeam.load("tour-harvester", set=COARSE)
+    told = getattr(slcbeam, command)(case, out=tmp_path / "there")
+    found = slcbeam.read(tmp_path / "there")
+    if command == "run":
+        assert found["quantities"] == told.summary["quantities"]
+        np.testing.assert_array_equal(found.tables["history"]["tip_u1"], told.history["tip_u1"])
+        np.testing.assert_array_equal(found.arrays["u1_m"], told.fields["u1_m"])
+    else:
+        assert dict(found) == dict(told)
+
+
+def test_designs_of_a_table_go_on_and_are_told_from_others(tmp_path):
+    case = slcbeam.load("tour-actuator", set=COARSE)
+    pointer = "/network/chains/0/ends/0/pressure_pa/ramp/to"
+    how = {"command": "equilibrium", "lean": True, "no_mesh_errors": True, "out": tmp_path / "designs"}
+    first = slcbeam.sweep(case, designs={pointer: [1e4, 2e4]}, **how).tables["sweep"]
+    again = slcbeam.sweep(case, designs=pandas.DataFrame({pointer: [1e4, 2e4]}), **how).tables["sweep"]
+    np.testing.assert_array_equal(again["wall_s"], first["wall_s"])
+    with pytest.raises(slcbeam.UsageError, match="the table of designs has changed"):
+        slcbeam.sweep(case, designs={pointer: [1e4, 3e4]}, **how)
+    with pytest.raises(slcbeam.UsageError, match="columns of numbers"):
+        slcbeam.sweep(case, designs={pointer: ["much"]}, **how)

@@ -10,18 +10,20 @@ Numbers are in SI units, which names of figures and fields carry. A case is what
 try:
     from . import _slcbeam
 except ImportError as error:
-    if "libsundials" in str(error) or "libklu" in str(error):
+    if any(library in str(error) for library in ("libsundials", "libklu", "libamd", "libcolamd", "libbtf", "libsuitesparse")):
         raise ImportError(
-            f"{error}\nslcbeam needs SUNDIALS 6 and KLU of SuiteSparse: "
-            "apt-get install libsundials-idas5 libsundials-kinsol6 libklu1"
+            f"{error}\nThis build of slcbeam needs SUNDIALS 6 and KLU of SuiteSparse on the system. Debian 12 brings them by\n"
+            "    apt-get install libsundials-idas5 libsundials-kinsol6 libsundials-nvecserial6 libklu1\n"
+            "A wheel that carries them is built by scripts/package, see docs/install.md."
         ) from error
     raise
 
-from ._answer import Answer, Columns
+from ._answer import Answer, Columns, read
 from ._case import Case, load, shipped
-from ._commands import check, effects, equilibrium, fit, floquet, modes, optimize, periodic, sense, study, sweep
+from ._commands import check, effects, equilibrium, fit, floquet, merge, modes, optimize, periodic, sense, study, sweep
 from ._errors import CaseError, Error, Fault, FileError, SolverError, UsageError
-from ._result import Fields, Report, Result, Table
+from ._page import Report
+from ._result import Fields, Result, Table
 from ._run import run
 from ._simulator import Simulator, State
 
@@ -47,9 +49,11 @@ __all__ = [
     "fit",
     "floquet",
     "load",
+    "merge",
     "modes",
     "optimize",
     "periodic",
+    "read",
     "run",
     "sense",
     "shipped",

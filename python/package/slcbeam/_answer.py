@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -11,13 +12,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _page
 from ._errors import FileError, UsageError
-from ._result import Report, split
+from ._page import Report
+from ._result import split
 
 if TYPE_CHECKING:
     import os
 
     import pandas
+    import polars
 
 
 class Columns(Mapping[str, np.ndarray]):
@@ -45,6 +49,16 @@ class Columns(Mapping[str, np.ndarray]):
         import pandas
 
         return pandas.DataFrame(self._columns)
+
+    def to_polars(self) -> polars.DataFrame:
+        """A frame of polars with a column a name. Needs polars."""
+        import polars
+
+        return polars.DataFrame(self._columns)
+
+    def _repr_html_(self) -> str:
+        rows = list(zip(*(column.tolist() for column in self._columns.values())))
+        return _page.columns(repr(self), self.names, [self.units[name] for name in self.names], rows)
 
     def __repr__(self) -> str:
         return f"<{len(self)} columns of {self._rows} rows: {', '.join(self.names[:6])}{', ..' if len(self) > 6 else ''}>"
@@ -84,7 +98,8 @@ class Answer(Mapping[str, Any]):
     @property
     def warnings(self) -> list[str]:
         """What to know before trusting it."""
-        return self._told.get("warnings", [])
+        warnings: list[str] = self._told.get("warnings", [])
+        return warnings
 
     @property
     def tables(self) -> dict[str, Columns]:
@@ -124,6 +139,9 @@ class Answer(Mapping[str, Any]):
             raise FileError(f"{self.folder} is no longer there")
         return self.folder
 
+    def _repr_html_(self) -> str:
+        return _page.summary(repr(self), self.warnings)
+
     def __repr__(self) -> str:
         case = self._told.get("case") or self._told.get("name")
         of = f" of {case!r}" if isinstance(case, str) else ""
@@ -134,6 +152,27 @@ class Answer(Mapping[str, Any]):
         if self.folder is not None and self._kept is not None:
             files = {str(p.relative_to(self.folder)): p.read_bytes() for p in self.folder.rglob("*") if p.is_file()}
         return (_again, (self._told, None if files is not None else self.folder, self.interrupted, files))
+
+
+#: Files that tell what a command found, those first that stand beside another.
+MAIN = ("cycle", "sweep", "summary", "equilibrium", "modes", "study", "effects", "floquet", "map", "fit", "sense", "optimum")
+
+
+def read(dir: str | os.PathLike[str]) -> Answer:
+    """What a result folder holds, of whichever command and machine: values of its JSON file, tables, arrays, page.
+
+    Of a run these are ``summary.json``, ``tables["history"]`` and the ``arrays`` of ``fields.npz``.
+
+    :raises FileError: it holds no result.
+    """
+    folder = Path(dir)
+    found = [path for path in (folder / f"{name}.json" for name in MAIN) if path.is_file()]
+    if not found:
+        raise FileError(f"{folder} holds no result: none of {', '.join(f'{name}.json' for name in MAIN)}")
+    try:
+        return Answer(json.loads(found[0].read_text(encoding="utf-8")), folder)
+    except (OSError, ValueError) as error:
+        raise FileError(f"cannot read {found[0]}: {error}") from None
 
 
 def _again(told: dict[str, Any], folder: Path | None, interrupted: bool, files: dict[str, bytes] | None) -> Answer:

@@ -74,7 +74,8 @@ class Case:
 
     def to_dict(self) -> dict[str, Any]:
         """The whole case with every default filled in; a copy."""
-        return json.loads(self._own.json())
+        whole: dict[str, Any] = json.loads(self._own.json())
+        return whole
 
     def __getitem__(self, pointer: str) -> Any:
         """The value at a JSON pointer, defaults included."""

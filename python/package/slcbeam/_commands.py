@@ -57,17 +57,17 @@ def _file(case: Case, folder: Path) -> str:
     return str(path)
 
 
-def _table(data: Data, folder: Path) -> str:
-    """A file that holds measured data."""
+def _table(data: Data, folder: Path, name: str = "data.csv") -> str:
+    """A file that holds a table of numbers."""
     if isinstance(data, (str, os.PathLike)):
         return os.fspath(data)
     try:
         columns = {str(name): np.atleast_1d(np.asarray(data[name], dtype=float)).tolist() for name in data}
         rows = list(zip(*columns.values(), strict=True))
     except (TypeError, ValueError, IndexError) as error:
-        raise UsageError(f"measured data are a CSV file, or columns of numbers of equal length by heading: {error}") from None
+        raise UsageError(f"a table is a CSV file, or columns of numbers of equal length by heading: {error}") from None
     folder.mkdir(exist_ok=True)
-    path = folder / "data.csv"
+    path = folder / name
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)
@@ -85,8 +85,9 @@ def _do(
     progress: bool = False,
     options: Mapping[str, Any],
 ) -> Answer:
-    kept = tempfile.TemporaryDirectory(prefix="slcbeam-")
-    given = Path(kept.name) / "given"
+    kept: tempfile.TemporaryDirectory[str] | None
+    kept = temporary = tempfile.TemporaryDirectory(prefix="slcbeam-")
+    given = Path(temporary.name) / "given"
     loaded = [load(case) for case in cases]
     words = [command, *(_file(case, given) for case in loaded)]
     if data is not None:
@@ -98,7 +99,7 @@ def _do(
     words += _words(options)
     folder = None
     if writes:
-        folder = Path(out) if out is not None else Path(kept.name) / "result"
+        folder = Path(out) if out is not None else Path(temporary.name) / "result"
         words.append(f"--out={folder}")
         if not progress:
             words.append("--quiet")
@@ -115,8 +116,8 @@ def check(case: CaseLike, **options: Any) -> Answer:
     """Characteristic numbers, audit of the coupling, effects chosen and why (``slcbeam check``).
 
     >>> import slcbeam
-    >>> slcbeam.check("bend-wet")["name"]
-    'bend-wet'
+    >>> slcbeam.check("bend-wet")["effects"]["shear"]
+    {'value': 'off', 'reason': 'the published form does not shear'}
     """
     return _do("check", [case], writes=False, options=options)
 
@@ -143,6 +144,11 @@ def modes(case: CaseLike, *, out: Place = None, progress: bool = False, **option
 
     :param options: ``count``, ``near=HZ``, ``at=SECONDS``, ``sensitivity=[POINTER, ...]``, ``accuracy``, ``uncertain={..}``, ..
     :returns: ``modes.json``; ``tables["modes"]``; shapes in ``arrays``.
+
+    >>> import slcbeam
+    >>> found = slcbeam.modes("bend-dry", count=1)
+    >>> round(found["modes"][0]["frequency_hz"], 1)
+    17.7
     """
     return _do("modes", [case], out=out, progress=progress, options=options)
 
@@ -185,6 +191,7 @@ def sweep(
     case: CaseLike | Sequence[CaseLike],
     vary: Mapping[str, Any] | None = None,
     *,
+    designs: Data | None = None,
     out: Place = None,
     progress: bool = False,
     **options: Any,
@@ -193,12 +200,32 @@ def sweep(
 
     :param case: one case, or several that are compared in every design.
     :param vary: by JSON pointer a list of values, or a text such as ``"log:0.01:1:25"``, ``"uniform:LOW:HIGH"``.
+    :param designs: in place of ``vary`` a table, a row a design: numbers by JSON pointer as a dict of columns or a frame, or a CSV file.
     :param options: ``command="run"|"periodic"|"equilibrium"|"modes"``, ``design="sobol:64"``, ``jobs``, ``lean=True``, ``accuracy``, ..
     :returns: ``sweep.json``; ``tables["sweep"]``, a row a design.
+
+    >>> import slcbeam
+    >>> table = slcbeam.sweep("bend-wet", {"/beam/length_m": [0.1, 0.11]}, command="equilibrium", lean=True).tables["sweep"]
+    >>> table["status"].tolist(), bool(table["tip_u1_m"][1] > table["tip_u1_m"][0] > 0)
+    (['finished', 'finished'], True)
     """
     cases = [case] if isinstance(case, (str, os.PathLike, Mapping, Case)) else list(case)
     specs = {pointer: values if isinstance(values, str) else ",".join(_listed(values)) for pointer, values in (vary or {}).items()}
-    return _do("sweep", cases, out=out, progress=progress, options={"vary": specs, **options})
+    with tempfile.TemporaryDirectory(prefix="slcbeam-") as folder:
+        listed = None if designs is None else _table(designs, Path(folder), "designs.csv")
+        return _do("sweep", cases, out=out, progress=progress, options={"vary": specs, "designs": listed, **options})
+
+
+def merge(parts: Iterable[str | os.PathLike[str]], *, out: str | os.PathLike[str]) -> Answer:
+    """Joins parts of a sweep that were computed apart, ``shard="1/8"``, into one folder (``slcbeam merge``).
+
+    :param parts: folders of the parts.
+    :returns: as :func:`sweep` does; where something is missing, ``complete`` is false, ``missing`` tells what, and standard error the commands
+        that compute it.
+    :raises UsageError: parts of different sweeps.
+    """
+    printed, _, interrupted = _slcbeam.command(["merge", *(os.fspath(part) for part in parts), f"--out={os.fspath(out)}", "--json"])
+    return Answer(json.loads(printed), Path(out), interrupted=interrupted)
 
 
 def _listed(values: Any) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import json
 import os
 import tempfile
@@ -12,11 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _slcbeam
+from . import _page, _slcbeam
 from ._case import Case
+from ._page import Report
 
 if TYPE_CHECKING:
     import pandas
+    import polars
     import xarray
 
 
@@ -26,7 +27,13 @@ def _frozen(array: np.ndarray) -> np.ndarray:
 
 
 class Table(Mapping[str, np.ndarray]):
-    """Columns of equal length by name; each is read-only, of shape (rows,). No column is copied."""
+    """Columns of equal length by name; each is read-only, of shape (rows,), in the unit of :attr:`units`. No column is copied.
+
+    >>> import slcbeam
+    >>> history = slcbeam.run("bend-wet").history
+    >>> history["tip_u1"].shape, history.units["tip_u1"], history.about["tip_u1"]
+    ((1001,), 'm', 'transverse displacement of the tip')
+    """
 
     def __init__(self, names: list[str], units: list[str], rows: np.ndarray, about: list[str] | None = None) -> None:
         #: Names of the columns, without units.
@@ -61,12 +68,29 @@ class Table(Mapping[str, np.ndarray]):
         frame = pandas.DataFrame(self.values_2d, columns=self.names)
         return frame.set_index("t") if "t" in self._place else frame
 
+    def to_polars(self) -> polars.DataFrame:
+        """A frame of polars with a column a name. Needs polars."""
+        import polars
+
+        return polars.DataFrame({name: np.ascontiguousarray(self[name]) for name in self.names})
+
+    def _repr_html_(self) -> str:
+        return _page.columns(repr(self), self.names, [self.units[name] for name in self.names], self.values_2d.tolist())
+
     def __repr__(self) -> str:
         return f"<{len(self)} columns of {len(self.values_2d)} rows: {', '.join(self.names[:6])}{', ..' if len(self) > 6 else ''}>"
 
 
 class Fields(Mapping[str, np.ndarray]):
-    """Arrays over time and places by name, each of shape (times, places); coordinates by their names, too."""
+    """Arrays over time and places by name, each of shape (times, places), in the unit of its name; coordinates by their names, too.
+
+    >>> import slcbeam
+    >>> fields = slcbeam.run("bend-wet").fields
+    >>> fields["u1_m"].shape == (len(fields.t), len(fields["theta_node_m"]))
+    True
+    >>> fields.axis["u1_m"], fields.axis["pressure_pa"], fields.units["pressure_pa"]
+    ('theta_node_m', 'x_f', 'Pa')
+    """
 
     def __init__(
         self,
@@ -111,24 +135,6 @@ class Fields(Mapping[str, np.ndarray]):
         return f"<{len(self)} fields at {len(self.t)} times: {', '.join(self)}>"
 
 
-class Report:
-    """A page. A notebook shows it; :meth:`save` writes it."""
-
-    def __init__(self, text: str) -> None:
-        #: The whole page as HTML; it needs nothing else.
-        self.html = text
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the page."""
-        Path(path).write_text(self.html, encoding="utf-8")
-
-    def _repr_html_(self) -> str:
-        return f'<iframe srcdoc="{html.escape(self.html)}" style="width:100%;height:80vh;border:0"></iframe>'
-
-    def __repr__(self) -> str:
-        return f"<slcbeam.Report of {len(self.html) // 1000} kB>"
-
-
 def split(names: list[str]) -> tuple[list[str], list[str]]:
     """Names and units of headings such as ``tip_u1 [m]``; the unit is empty where a heading has none."""
     parts = [name[:-1].partition(" [") if name.endswith("]") else (name, "", "") for name in names]
@@ -160,12 +166,19 @@ class Result:
     @property
     def status(self) -> str:
         """``finished``, ``stopped``, ``out_of_range`` or ``failed``."""
-        return self.summary["status"]
+        status: str = self.summary["status"]
+        return status
 
     @property
-    def quantities(self) -> dict[str, dict[str, float]]:
+    def quantities(self) -> dict[str, dict[str, Any]]:
         """Figures of every quantity by name and unit: ``final``, ``max_abs``, ``window_rms`` .. in the unit of its name, and ``error``, its
-        estimated relative error, where one is known."""
+        estimated relative error, ``None`` where none is known.
+
+        >>> import slcbeam
+        >>> tip = slcbeam.run("bend-wet").quantities["tip_u1_m"]
+        >>> round(1e3 * tip["final"], 1), tip["error"] < 0.01
+        (28.3, True)
+        """
         judged = (self.summary.get("accuracy") or self.summary.get("estimate") or {}).get("quantities", {})
         all = self.summary["quantities"] | self.summary.get("probes", {})
         return {name: figures | {"error": judged.get(name, {}).get("total")} for name, figures in all.items()}
@@ -173,12 +186,14 @@ class Result:
     @property
     def sensitivities(self) -> dict[str, dict[str, Any]]:
         """Derivatives of the quantities by the JSON pointers of the numbers that were asked for, as in ``summary.json``."""
-        return self.summary.get("sensitivities", {})
+        told: dict[str, dict[str, Any]] = self.summary.get("sensitivities", {})
+        return told
 
     @property
     def warnings(self) -> list[str]:
         """What to know before trusting the result."""
-        return self.summary["warnings"]
+        warnings: list[str] = self.summary["warnings"]
+        return warnings
 
     def save(self, dir: str | os.PathLike[str], force: bool = False) -> Path:
         """Writes the folder that ``slcbeam run --out`` writes, the page with it; returns its path.
@@ -193,6 +208,13 @@ class Result:
         with tempfile.TemporaryDirectory() as folder:
             page = self.save(Path(folder) / "result") / "report.html"
             return Report(page.read_text(encoding="utf-8"))
+
+    def _repr_html_(self) -> str:
+        kinds = {"final": "at the end", "max_abs": "largest", "window_rms": "rms in the window", "error": "relative error"}
+        quantities = self.quantities
+        shown = [kind for kind in kinds if any(of.get(kind) is not None for of in quantities.values())]
+        rows = [[name, *(of.get(kind) for kind in shown)] for name, of in quantities.items()]
+        return _page.summary(repr(self), self.warnings, _page.table(["quantity", *(kinds[kind] for kind in shown)], rows))
 
     def __repr__(self) -> str:
         warned = f", {len(self.warnings)} warnings" if self.warnings else ""

@@ -10,7 +10,7 @@ import numpy as np
 from . import _slcbeam
 from ._case import CaseLike, load
 from ._errors import UsageError
-from ._slcbeam import State
+from ._slcbeam import State as State
 
 #: Values of the inputs: in their order, or some of them by pointer.
 Values = Union[None, float, Sequence[float], np.ndarray, Mapping[str, float]]
