@@ -6,6 +6,9 @@ use slcbeam::case::parameter::Parameter;
 use slcbeam::run::dynamics;
 use slcbeam::run::equilibrium::{Options, columns, differentiate, follow, system};
 use slcbeam::run::record::{Control, Memory};
+use slcbeam::study::sense::basis::Basis;
+use slcbeam::study::sense::find::{Asked, find};
+use slcbeam::study::sense::pressures::Measured;
 
 use crate::common::{parse, path_of};
 
@@ -56,6 +59,7 @@ fn what_a_port_had_filled_stays_behind_its_valve() {
         let rest = last(&case, &at, name);
         assert!((rest / run - 1.0).abs() < 0.01, "{name}: {rest}, in the run {run}");
     }
+    sensed(&case, &record);
     let path = path_of(&case, &at);
     let warning = path.warnings().join("\n");
     let resolved = at.resolved(&case).expect("stages");
@@ -68,6 +72,34 @@ fn what_a_port_had_filled_stays_behind_its_valve() {
         "{resolved:?}"
     );
     assert_eq!(path.last().stage, 1);
+}
+
+/// The push, 0.3 N, out of the pressures that the run ends with: it came after the valve had shut, and is felt behind it.
+fn sensed(case: &Case, record: &Memory) {
+    let mut without = case.clone();
+    without.ends.tip = serde_json::from_value(json!("free")).expect("an end");
+    let pressure = |name: &str| record.column(name).and_then(|all| all.last().copied());
+    let names = ["near", "middle", "far"].map(|name| format!("{name}_pressure_upper"));
+    let measured = Measured {
+        times: None,
+        bladders: vec![0, 5, 9],
+        rows: vec![names.iter().map(|name| pressure(name)).collect()],
+        deviations: None,
+        lines: vec![2],
+        left_alone: vec![],
+    };
+    let asked = Asked {
+        loads: vec![Basis::TipForce],
+        noise_pa: Some(5.0),
+        at_s: 6.0,
+        ..Asked::default()
+    };
+    let found = find(&without, Some(&measured), &asked, &|| false).expect("loads");
+    let told = found.rows[0].amplitudes[0].as_ref().expect("a force");
+    assert!((told.value / 0.3 - 1.0).abs() < 0.01, "{told:?}");
+    assert!(told.low < 0.3 && 0.3 < told.high, "{told:?}");
+    let trapped = found.warnings.iter().filter(|warning| warning.starts_with("W030"));
+    assert_eq!((trapped.count(), found.warnings.len()), (1, 1), "{:?}", found.warnings);
 }
 
 /// Goal: what jumps at the very instant at which a valve shuts does so behind it; and what it trapped depends on nothing later.
