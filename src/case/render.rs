@@ -81,7 +81,7 @@ fn one(fault: &CaseError, violation: &Violation, places: &mut Places, paint: &Pa
         None => Excerpt::cut(places, span, width),
     });
     let name = match &violation.set {
-        Some(_) => "--set".to_owned(),
+        Some(_) => violation.option.to_owned(),
         None => named(fault),
     };
     let at = if violation.pointer.is_empty() {

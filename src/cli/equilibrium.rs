@@ -74,9 +74,10 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         Some(_) if path.fault.is_none() => equilibrium::differentiate(case, &options, &path, &parameters)?,
         _ => vec![],
     };
+    let stages = options.resolved(case)?;
     let found = files::Found {
         case,
-        options: &options,
+        options: &stages,
         path: &path,
         columns: &columns,
         wall_s: begin.elapsed().as_secs_f64(),
@@ -125,6 +126,7 @@ fn options(asked: &EquilibriumArguments, case: &Case, at_s: f64) -> Result<Optio
             .via
             .as_deref()
             .map_or(Ok(vec![]), |text| via(text, case.time.end_s))?,
+        valves_s: vec![],
         share: asked.load_factor,
         points: Some(asked.points),
         branches: !asked.keep_branch,

@@ -13,6 +13,7 @@ use crate::output::kind::Kind;
 use crate::output::modes::{self as files, Report};
 use crate::output::report;
 use crate::results::modes::About;
+use crate::run::equilibrium;
 use crate::run::known;
 use crate::run::modes::{self, Plan, Sort, sort};
 use crate::study::refine;
@@ -64,6 +65,10 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         Some(at) => (modes::at_equilibrium(case, at)?, About::Equilibrium),
         None => (modes::linearise(case, 0.0, None)?, About::Start),
     };
+    let mut known = known::at_rest(case, &system);
+    if let Some(at) = asked.at {
+        known.extend(equilibrium::trapped(case, &equilibrium::Options::at(at))?);
+    }
     let parameters = Parameter::all(case, &asked.sensitivity)?;
     let (mut found, wider) = sort::of_sort(about, &plan, kind)?;
     modes::compare_meshes(case, asked.at, &wider, &mut found);
@@ -77,7 +82,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         state,
         sensitivities: &sensitivities,
         accuracy: refined.as_ref().map(|(_, accuracy)| accuracy),
-        known: &known::at_rest(case, &system),
+        known: &known,
     };
     files::write(&mut folder, &report)?;
     let uncertainty = uncertain::into(uncertain.as_ref(), &folder)?;

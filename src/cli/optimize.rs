@@ -10,32 +10,41 @@ use crate::output::kind::Kind;
 use crate::output::numbers::significant;
 use crate::output::optimum as files;
 use crate::output::report;
+use crate::output::sweep::words::several;
 use crate::results;
 use crate::study::optimize as study;
 use crate::study::optimize::Candidate;
+use crate::study::optimize::choice::{Choice, Part};
 use crate::study::optimize::problem::{Asked, Goal, Limit, Problem};
-use crate::study::optimize::wiring::{Alternative, choices, combinations, crossovers};
+use crate::study::optimize::wiring::{Alternative, Crossing, choices};
 use crate::study::span::Span;
 
 /// Searches, writes the folder, prints.
 pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     let case = size::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
     let wanted = wanted(asked)?;
-    let candidates = candidates(asked, &case, &wanted)?;
-    let problem = &candidates[0].problem;
+    let choice = choice(asked, &case, &wanted)?;
+    let make = |alternative: &Alternative| problem(asked, &case, &wanted, alternative);
+    let candidates = candidates(&choice, &make)?;
+    let figure = &candidates[0].problem.goal.figure;
     let mut folder = asked.place.claim(&case, Kind::Optimum)?;
     let flag = interrupt::flag();
     let bar = line::line(asked.quiet);
     let tell = |count: usize, best: Option<f64>| {
         let best = best.map_or("none within the limits yet".into(), |best| {
-            format!("best {} {}", problem.goal.figure, significant(best, 5))
+            format!("best {figure} {}", significant(best, 5))
         });
-        bar.set_message(format!("{count} designs, {best}"));
+        bar.set_message(format!("{}, {best}", several(count)));
         bar.tick();
     };
-    let found = study::optimise(&candidates, &wanted, &|| interrupt::raised(&flag), &tell)?;
+    let stop = || interrupt::raised(&flag);
+    let found = match choice.is_large() {
+        true => study::explore(&choice, &make, &wanted, &stop, &tell),
+        false => study::optimise(&candidates, &wanted, &stop, &tell),
+    };
     bar.finish_and_clear();
-    files::write(&mut folder, &candidates[found.chosen].problem, &found)?;
+    let found = found?;
+    files::write(&mut folder, &found.problem, &found)?;
     report::write(folder.dir(), None)?;
     let optimum = &found.optimum;
     let (text, words) = (|| results::text(optimum), || files::words(optimum));
@@ -43,36 +52,69 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The case with each of what is to be chosen from, the case itself where there is nothing.
-fn candidates(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Result<Vec<Candidate>> {
-    let mut sets = asked
-        .choose
-        .iter()
-        .map(|text| choices(text))
-        .collect::<Result<Vec<_>>>()?;
-    sets.extend(asked.crossovers.map(|most| crossovers(case, most)).transpose()?);
-    if wanted.spans.is_empty() && sets.is_empty() {
+/// What is to be chosen from.
+fn choice(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Result<Choice> {
+    let lists = asked.choose.iter().map(|text| choices(text).map(Part::Of));
+    let crossing = asked
+        .crossovers
+        .map(|most| Crossing::of(case, most).map(Part::Crossovers));
+    let parts: Vec<Part> = lists.chain(crossing).collect::<Result<_>>()?;
+    if wanted.spans.is_empty() && parts.is_empty() {
         let what = "nothing to seek: --vary POINTER=LOW:HIGH, such as /network/permeability_factor=0.01:1, or --choose, --crossovers";
         return Err(Error::Usage(what.into()));
     }
-    let mut all = combinations(sets)?;
+    let choice = Choice(parts);
+    apart(&choice.at(&choice.first()), wanted)?;
+    Ok(choice)
+}
+
+/// All that is to be chosen from, the case itself where there is nothing; of more than can be computed those that differ from the first in one
+/// place, so that what makes no case is told before anything is computed.
+fn candidates(choice: &Choice, make: &dyn Fn(&Alternative) -> Result<Problem>) -> Result<Vec<Candidate>> {
+    let mut all: Vec<Alternative> = match choice.is_large() {
+        true => choice.singles().iter().map(|digits| choice.at(digits)).collect(),
+        false => choice.all()?,
+    };
     if all.is_empty() {
         all.push(Alternative::default());
     }
-    if let Some(one) = all.first() {
-        apart(one, wanted)?;
-    }
     let candidate = |alternative: Alternative| {
-        let problem = match alternative.sets.is_empty() {
-            true => Problem::new(case, wanted)?,
-            false => {
-                let sets = [&asked.case.sets[..], &alternative.sets].concat();
-                Problem::new(&size::load_with(&asked.case.case, &sets, asked.vary.len())?, wanted)?
-            }
-        };
+        let problem = make(&alternative)?;
         Ok(Candidate { alternative, problem })
     };
     all.into_iter().map(candidate).collect()
+}
+
+/// What is sought in the case with an alternative.
+fn problem(asked: &OptimizeArguments, case: &Case, wanted: &Asked, alternative: &Alternative) -> Result<Problem> {
+    if alternative.sets.is_empty() {
+        return Problem::new(case, wanted);
+    }
+    let sets = [&asked.case.sets[..], &alternative.sets].concat();
+    let with = size::load_with(&asked.case.case, &sets, asked.vary.len());
+    Problem::new(&with.map_err(|error| by_choice(error, alternative))?, wanted)
+}
+
+/// An error of what is chosen names the option that chooses.
+fn by_choice(error: Error, alternative: &Alternative) -> Error {
+    let own = |set: &str| alternative.sets.iter().any(|one| one == set);
+    match error {
+        Error::Case(mut fault) => {
+            let of_choice = |set: &Option<String>| set.as_deref().is_some_and(own);
+            let chosen = fault.violations.iter_mut().filter(|one| of_choice(&one.set));
+            chosen.for_each(|one| one.option = "--choose");
+            Error::Case(fault)
+        }
+        Error::Usage(text) => {
+            let pointers = alternative.sets.iter().filter_map(|set| set.split_once('='));
+            let mut text = text;
+            for (pointer, _) in pointers {
+                text = text.replace(&format!("--set '{pointer}="), &format!("--choose '{pointer}="));
+            }
+            Error::Usage(text)
+        }
+        other => other,
+    }
 }
 
 /// What is chosen and what is sought are different parts of the case.

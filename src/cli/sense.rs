@@ -61,7 +61,7 @@ fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
     if !at_s.is_finite() {
         return Err(Error::Usage(format!("--at {at_s}: an instant in seconds")));
     }
-    let smoothing = match asked.smoothing.as_str() {
+    let smoothing = match asked.smoothing.as_deref().unwrap_or("likelihood") {
         "likelihood" => Smoothing::Likelihood,
         "discrepancy" => Smoothing::Discrepancy,
         "off" => Smoothing::Off,
@@ -78,12 +78,19 @@ fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
         .choose
         .as_deref()
         .or(asked.pressures.is_none().then_some("variances"));
+    let loads: Vec<Basis> = asked
+        .loads
+        .iter()
+        .map(|text| Basis::parse(text))
+        .collect::<Result<_>>()?;
+    let profile = loads.iter().any(|load| matches!(load, Basis::Profile(_)));
+    if let Some(how) = asked.smoothing.as_ref().filter(|_| !profile) {
+        return Err(Error::Usage(format!(
+            "--smoothing {how}: only a profile is smooth, and none is looked for; ask for one (--load profile:10), or leave --smoothing out"
+        )));
+    }
     Ok(Asked {
-        loads: asked
-            .loads
-            .iter()
-            .map(|text| Basis::parse(text))
-            .collect::<Result<_>>()?,
+        loads,
         noise_pa: asked.noise,
         smoothing,
         at_s,

@@ -91,6 +91,7 @@ codes! {
     DeepContact = "W027", "A wall that the beam is deep in.";
     Overshoot = "W028", "A curve that swings beyond its points.";
     Fit = "W029", "A fit that tells less than it seems.";
+    Trapped = "W030", "Fluid behind a valve that has shut.";
     UnexplainedPressures = "W032", "Pressures that the loads do not explain.";
     StateAside = "W033", "Loads whose path leads to another state.";
     Optimum = "W035", "A best that may be none.";

@@ -27,6 +27,8 @@ pub struct Violation {
     pub span: Option<std::ops::Range<usize>>,
     /// The `--set` argument the value came from; `span` then points into it instead of the file.
     pub set: Option<String>,
+    /// The option that has this argument.
+    pub option: &'static str,
 }
 
 impl Violation {
@@ -42,6 +44,7 @@ impl Violation {
             hint: None,
             span: None,
             set: None,
+            option: "--set",
         }
     }
 

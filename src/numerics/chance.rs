@@ -36,7 +36,7 @@ impl Chance {
     }
 
     /// A number below `count`.
-    fn below(&mut self, count: u64) -> u64 {
+    pub fn below(&mut self, count: u64) -> u64 {
         ((u128::from(self.next()) * u128::from(count)) >> 64) as u64
     }
 

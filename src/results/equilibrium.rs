@@ -25,6 +25,9 @@ pub struct Equilibrium {
     /// Instants whose loads were to be reached before [s].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub via_s: Vec<f64>,
+    /// Instants as of which valves stood on the way there, where these are the instants at which valves shut [s].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub valves_s: Vec<f64>,
     /// Load factor of the last state: share of the loads, 1 more for every stage before; nothing without states.
     pub load_factor: Option<f64>,
     /// States on the path.

@@ -6,3 +6,4 @@ mod derivatives;
 mod fluid;
 mod paths;
 mod stages;
+mod trapped;

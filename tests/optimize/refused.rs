@@ -67,6 +67,16 @@ fn what_makes_no_sense_is_refused() {
         (with(&[&young, &young, &tip]), 2, "would be set at once"),
         (with(&[&young, &tip, &["--command", "periodic"]]), 2, "period"),
         (with(&[&young, &tip, &["--starts", "0"]]), 2, "--starts"),
+        (
+            with(&[&tip, &["--choose", "/beam/young_modulus_pa=1e6|much"]]),
+            2,
+            "--choose '/beam/young_modulus_pa=much'",
+        ),
+        (
+            with(&[&tip, &["--choose", "/beam/young_modulus_pa=1e6|-1e6"]]),
+            3,
+            "--> --choose at /beam/young_modulus_pa",
+        ),
     ] {
         let case = "cases/two-bladders.json";
         let said = say(&[&["optimize", case, "--out", &out, "--quiet"], &asked[..]].concat());
@@ -76,4 +86,34 @@ fn what_makes_no_sense_is_refused() {
         assert!(plain.contains(words), "{asked:?}: {plain}");
         assert!(!dir.path().join("out").exists(), "{asked:?}: something was written");
     }
+}
+
+/// Goal: a case without an answer is a matter of the solver, exit code 4, as with the command itself: a pump that fills what nothing empties.
+#[test]
+fn a_start_that_cannot_be_computed_is_the_solvers() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let out = path(&dir, "out");
+    let fed = "/network/chains/1/ends=[{\"flow_m3_s\": 1e-7}, \"sealed\"]";
+    let sets = ["--set", fed, "--set", "/start={}"];
+    let asked = [
+        "--vary",
+        "/beam/young_modulus_pa=1e6:1e7",
+        "--maximize",
+        "tip_u1_m",
+        "--command",
+        "equilibrium",
+    ];
+    let own = say(&[&["equilibrium", "cases/pluck.json", "--out", &out], &sets[..]].concat());
+    let said = say(&[
+        &["optimize", "cases/pluck.json", "--out", &out, "--quiet"],
+        &sets[..],
+        &asked,
+    ]
+    .concat());
+    assert_eq!((own.code, said.code), (4, 4), "{}", said.err);
+    assert!(
+        said.err.contains("no design at a start can be computed"),
+        "{}",
+        said.err
+    );
 }

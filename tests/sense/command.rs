@@ -143,7 +143,7 @@ fn what_is_wrong_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let one = "pressure_1_pa,pressure_3_pa\n-100,-50\n";
     let clamped = r#"/ends/tip="clamped""#;
-    let cases: [(&str, &[&str], i32, &str); 16] = [
+    let cases: [(&str, &[&str], i32, &str); 18] = [
         ("pressure_11_pa\n1\n", &[], 2, "there is no bladder 11"),
         ("pressure_1_mm\n1\n", &[], 2, "is in mm"),
         ("pressure_1_pa\n", &[], 3, "no rows"),
@@ -168,6 +168,13 @@ fn what_is_wrong_is_refused() {
         (one, &["--load", "tip-forse"], 2, "nearest is tip-force"),
         (one, &["--load", "uniform", "--load", "uniform"], 2, "asked for twice"),
         (one, &["--load", "tip-force", "--set", clamped], 2, "the tip is held"),
+        (
+            one,
+            &["--load", "tip-force", "--noise", "1", "--smoothing", "likelihood"],
+            2,
+            "only a profile is smooth",
+        ),
+        (one, &["--smoothing", "5"], 2, "--load profile:10"),
         (one, &["--smoothing", "much"], 2, "likelihood, discrepancy, off"),
         (
             "pressure_1_pa,pressure_1_sd_pa\n1,2\n",
@@ -197,6 +204,26 @@ fn what_is_wrong_is_refused() {
         let err = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.code() == Some(2) && err.contains(words), "{err}");
     }
+}
+
+/// Goal: of many places of a profile most leave no trace; how many, and which, is one line, not a line each.
+#[test]
+fn many_places_that_leave_no_trace_are_one_line() {
+    let dir = tempfile::tempdir().unwrap();
+    let said = sense(&dir, &["--load", "profile:60"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let blind: Vec<&str> = said.out.lines().filter(|line| line.contains("no trace")).collect();
+    assert_eq!(blind.len(), 1, "{}", said.out);
+    assert!(
+        blind[0].contains("leave no trace: ") && blind[0].contains("places of a profile, profile_"),
+        "{}",
+        blind[0]
+    );
+    let before = said.out.split("the best bladders").next().unwrap();
+    assert!(
+        before.lines().count() < 12 && before.lines().all(|line| line.len() < 400),
+        "{before}"
+    );
 }
 
 /// Pressures of another load than the one that is looked for: W032 with the worst bladder; with the noise left open there is none, but a

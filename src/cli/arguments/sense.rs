@@ -25,8 +25,9 @@ pub struct SenseArguments {
     pub noise: Option<f64>,
     /// How smooth a profile is taken to be: as the data speak for (likelihood), so that they are left their noise (discrepancy), off,
     /// or the standard deviation of its second differences [N/m]
-    #[arg(long, value_name = "HOW", default_value = "likelihood")]
-    pub smoothing: String,
+    /// [default: likelihood]
+    #[arg(long, value_name = "HOW")]
+    pub smoothing: Option<String>,
     /// Instant whose own loads of the case act besides [default: the end of the run]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub at: Option<f64>,

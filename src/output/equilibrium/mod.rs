@@ -85,6 +85,7 @@ pub fn json(found: &Found) -> String {
         reason: path.fault.as_ref().map(|f| f.what.clone()),
         loads_at_s: found.options.at_s,
         via_s: found.options.via_s.clone(),
+        valves_s: found.options.valves_s.clone(),
         load_factor: last.map(State::load_factor),
         states: path.states.len(),
         quantities: last.map(|s| keyed(&s.row)),

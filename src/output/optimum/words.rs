@@ -3,6 +3,7 @@
 use crate::error::visible;
 use crate::output::columns::aligned;
 use crate::output::numbers::{count, duration, percent, significant};
+use crate::output::sweep::words::several;
 use crate::results::optimum::{Bound, Compared, Derivatives, Held, Optimum, Variable};
 
 /// Alternatives that are told.
@@ -46,8 +47,8 @@ pub fn words(found: &Optimum) -> String {
     }
     let failed: usize = found.failed.values().sum();
     text += &format!(
-        "\n{} designs{}, {}\n",
-        count(found.evaluations as u64),
+        "\n{}{}, {}\n",
+        several(found.evaluations),
         match found.derivatives {
             _ if found.variables.is_empty() => "",
             Derivatives::Exact => " with exact derivatives",
@@ -89,7 +90,25 @@ fn alternatives(found: &Optimum) -> String {
         0 => String::new(),
         n => format!("  and {n} more in optimum.json\n"),
     };
-    format!("\n{}{more}", aligned(&lines, &[1, 3]))
+    let searched = searched(found).map_or(String::new(), |searched| searched + "\n");
+    format!("\n{}{more}{searched}", aligned(&lines, &[1, 3]))
+}
+
+/// That alternatives were searched among, and how far that goes; nothing where all were computed.
+pub fn searched(found: &Optimum) -> Option<String> {
+    let one = found.explored?;
+    let of = match one.of < 1e9 {
+        true => count(one.of as u64),
+        false => significant(one.of, 3),
+    };
+    Some(format!(
+        "a search, not all of them: {} of {of} alternatives were computed; {} of {} searches from different ones came to this best, {} ended where \
+         nothing next to it is better",
+        count(one.tried as u64),
+        one.came_to_best,
+        one.searches,
+        one.ended
+    ))
 }
 
 /// Alternatives from the best on: those that hold the limits before those that do not, and what has nothing last.

@@ -96,7 +96,9 @@ pub fn data(place: &Place) -> Result<Page> {
 
 /// The argument that names the stages before the last one.
 fn via(found: &Equilibrium) -> String {
-    let instants: Vec<String> = found.via_s.iter().map(f64::to_string).collect();
+    // those of valves come by themselves
+    let asked = found.via_s.iter().filter(|_| found.valves_s.is_empty());
+    let instants: Vec<String> = asked.map(f64::to_string).collect();
     match instants.as_slice() {
         [] => String::new(),
         _ => format!(" --via {}", instants.join(",")),

@@ -4,8 +4,10 @@ use serde_json::{Value, json};
 
 use super::{Found, Kind, Page, Place};
 use crate::error::Result;
-use crate::output::numbers::{count, duration, percent, significant};
-use crate::output::optimum::{BEST, CSV, JSON, PICTURE, place as told, ranked};
+use crate::output::numbers::{duration, percent, quantity, significant};
+use crate::output::optimum::{BEST, CSV, JSON, PICTURE, place as told, ranked, searched};
+use crate::output::sweep::unit;
+use crate::output::sweep::words::several;
 use crate::results::optimum::{Derivatives, Optimum, Variable};
 
 /// `optimize`.
@@ -15,9 +17,11 @@ pub fn data(place: &Place) -> Result<Page> {
     page.put("label", "The best between bounds");
     page.warnings.clone_from(&found.warnings);
     let goal = &found.goal;
-    let begin = found.begin.map_or(String::new(), |begin| {
-        format!(", {} to begin with", significant(begin, 5))
-    });
+    // a figure with its unit
+    let figure = |value: f64| quantity(value, unit(&goal.figure), 5);
+    let begin = found
+        .begin
+        .map_or(String::new(), |begin| format!(", {} to begin with", figure(begin)));
     page.put(
         "answer",
         format!(
@@ -25,11 +29,11 @@ pub fn data(place: &Place) -> Result<Page> {
             if goal.largest { "largest" } else { "least" },
             goal.figure,
             found.command.word(),
-            significant(found.value, 5)
+            figure(found.value)
         ),
     );
     let mut facts = vec![
-        format!("{} designs", count(found.evaluations as u64)),
+        several(found.evaluations),
         match found.derivatives {
             Derivatives::Exact => "exact derivatives".into(),
             Derivatives::Differences => "derivatives by differences".into(),
@@ -44,6 +48,7 @@ pub fn data(place: &Place) -> Result<Page> {
         let words = percent(error / found.value.abs());
         facts.insert(0, format!("estimated error of the simulation {words}"));
     }
+    facts.extend(searched(&found));
     page.put("facts", facts);
     let tile = |one: &Variable| {
         let note = match one.within_1_percent {
@@ -78,7 +83,8 @@ pub fn data(place: &Place) -> Result<Page> {
         ])
     });
     let limits = found.limits.iter().map(|one| {
-        let words = format!("{} {} {}", one.limit.figure, one.limit.sign(), one.limit.bound);
+        let bound = quantity(one.limit.bound, unit(&one.limit.figure), 6);
+        let words = format!("{} {} {bound}", one.limit.figure, one.limit.sign());
         json!([
             words,
             one.value,
@@ -94,11 +100,19 @@ pub fn data(place: &Place) -> Result<Page> {
         "table",
         json!({
             "title": "Numbers, limits and alternatives",
-            "about": "In the unit that each key names. What a unit brings is what the figure gains where the bound or the limit is let go by one.",
+            "about": format!("In the unit that each key names; alternatives by {}{}. What a unit brings is what the figure gains where the bound or the limit is let go by one.", goal.figure, bracketed(&goal.figure)),
             "headings": ["number, limit or alternative", "at the best", "at first", "from", "to", "1 % worse below", "1 % worse above", "a unit brings"],
             "rows": numbers.chain(limits).chain(alternatives).collect::<Vec<_>>(), "file": CSV,
         }),
     );
     page.put("command", format!("slcbeam {} {BEST}", found.command.word()));
     Ok(page)
+}
+
+/// The unit of a figure behind its name.
+fn bracketed(figure: &str) -> String {
+    match unit(figure) {
+        "1" => String::new(),
+        unit => format!(" [{unit}]"),
+    }
 }

@@ -2,10 +2,12 @@
 
 use crate::output::columns::aligned;
 use crate::output::numbers::{count, significant};
-use crate::results::sense::{Banded, NoiseFrom, Sensed};
+use crate::results::sense::{Banded, NoiseFrom, Sensed, Unknown};
 
 /// Rows of a table at most.
 const ROWS: usize = 12;
+/// Lines of a kind of which all are told, at most.
+const MANY: usize = 6;
 
 /// What pressures tell, the loads, how they fit, which bladders to measure, what to know.
 pub fn words(found: &Sensed) -> String {
@@ -45,23 +47,46 @@ pub fn about_sight(found: &Sensed) -> String {
         found.case,
         loads.join(" + ")
     );
-    let alone = found.amplitudes.iter().filter_map(|a| {
-        let error = significant(a.error_per_pa?, 3);
-        Some(format!(
-            "  {} is told: its standard error is {error} {} for each Pa of noise\n",
-            a.name, a.unit
-        ))
-    });
-    text.extend(alone);
-    let lost = found.amplitudes.iter().filter(|a| a.error_per_pa.is_none());
-    let lost: Vec<&str> = lost.map(|a| a.name.as_str()).collect();
+    let alone = |a: &&Unknown| a.error_per_pa.is_some();
+    let told: Vec<&Unknown> = found.amplitudes.iter().filter(alone).collect();
+    if told.len() > MANY {
+        text += &format!("  told, each by itself: {}\n", listed(&told));
+    } else {
+        text.extend(told.iter().filter_map(|a| {
+            let error = significant(a.error_per_pa?, 3);
+            Some(format!(
+                "  {} is told: its standard error is {error} {} for each Pa of noise\n",
+                a.name, a.unit
+            ))
+        }));
+    }
+    let lost: Vec<&Unknown> = found.amplitudes.iter().filter(|a| !alone(a)).collect();
     if !lost.is_empty() {
-        text += &format!("  not told by these pressures alone: {}\n", lost.join(", "));
+        text += &format!("  not told by these pressures alone: {}\n", listed(&lost));
     }
-    for one in &found.seen.together {
-        text += &format!("  told together: {} [{}], numbers in SI units\n", one.name, one.unit);
+    let (together, blind) = (&found.seen.together, &found.seen.blind);
+    if together.len() > MANY {
+        let in_any = |k: usize| together.iter().any(|one| one.factors.get(k).is_some_and(|c| *c != 0.0));
+        text += &format!(
+            "  told together: {} sums of {}\n",
+            together.len(),
+            listed(&of(found, &in_any))
+        );
+    } else {
+        for one in together {
+            text += &format!("  told together: {} [{}], numbers in SI units\n", one.name, one.unit);
+        }
     }
-    for change in &found.seen.blind {
+    if blind.len() > MANY {
+        let in_any = |k: usize| blind.iter().any(|change| change.get(k).is_some_and(|c| *c != 0.0));
+        text += &format!(
+            "  leave no trace: {} changes that do not follow from each other, of {}; sense.json has them\n",
+            blind.len(),
+            listed(&of(found, &in_any))
+        );
+        return text;
+    }
+    for change in blind {
         let parts = change.iter().zip(&found.amplitudes).filter(|(c, _)| **c != 0.0);
         let parts: Vec<String> = parts
             .map(|(c, a)| format!("{} {} of {}", significant(*c, 4), a.unit, a.name))
@@ -69,6 +94,26 @@ pub fn about_sight(found: &Sensed) -> String {
         text += &format!("  leaves no trace: {}\n", parts.join(" with "));
     }
     text
+}
+
+/// Those of the amplitudes of which something holds.
+fn of<'a>(found: &'a Sensed, holds: &dyn Fn(usize) -> bool) -> Vec<&'a Unknown> {
+    let all = found.amplitudes.iter().enumerate();
+    all.filter(|(k, _)| holds(*k)).map(|(_, a)| a).collect()
+}
+
+/// Names of amplitudes; of many places of a profile how many, and between which.
+fn listed(all: &[&Unknown]) -> String {
+    let (places, others): (Vec<&Unknown>, Vec<&Unknown>) = all.iter().partition(|a| a.place.is_some());
+    let (from_places, rest) = match places.as_slice() {
+        [first, .., last] if places.len() > MANY => {
+            let range = format!("{} places of a profile, {} to {}", places.len(), first.name, last.name);
+            (Some(range), others)
+        }
+        _ => (None, all.to_vec()),
+    };
+    let names = rest.into_iter().map(|a| a.name.clone());
+    names.chain(from_places).collect::<Vec<_>>().join(", ")
 }
 
 /// A load with half of its band.

@@ -7,13 +7,15 @@
 //! predict  where the next point probably is
 //! path     step by step along the path, as far as predictions hold; limit points, bifurcations
 //! sensitivity  derivatives by numbers of the case, or along any change of it
+//! trapped  stages that valves ask for which shut before: what is behind them
 //! resting  states under loads that differ a little from those of a known one
 //! branch   from one path onto another that crosses it
 //! state    what is read off a state; one state as the unknowns of another system
 //! ```
 //!
 //! Everything that acts grows in proportion from nothing: loads, motions of the ends, pressures and flows of ports, volumes
-//! of closed networks. Valves stand as they do under the full load. Where loads of other instants come first, each stage of the
+//! of closed networks. Valves stand as they do under the full load; where one has shut before, the path goes first to the loads under
+//! which it did. Where loads of other instants come first, each stage of the
 //! path goes along the straight line from the loads of one instant to those of the next.
 
 mod arclength;
@@ -26,6 +28,7 @@ mod resting;
 mod sensitivity;
 mod stages;
 mod state;
+mod trapped;
 
 use crate::case::schema::{Case, EquilibriumStart};
 use crate::dae::BeamDae;
@@ -39,6 +42,7 @@ pub use resting::Resting;
 pub use sensitivity::{Derivative, Direction, Sensitivity, along, differentiate};
 pub use stages::follow;
 pub use state::{Stability, State, columns, restate};
+pub use trapped::warning as trapped;
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +51,9 @@ pub struct Options {
     pub at_s: f64,
     /// Instants whose loads are reached before, one after the other [s].
     pub via_s: Vec<f64>,
+    /// Instants as of which valves stand in these stages, where they are those of valves that shut ([`Options::resolved`]); none:
+    /// each as at its end [s].
+    pub valves_s: Vec<f64>,
     /// Share of the last stage, from the loads before to the full ones, at which the path ends.
     pub share: f64,
     /// Largest share of an arc that a step may take, a number of points at least; none: as far as predictions hold.
@@ -61,6 +68,7 @@ impl Options {
         Self {
             at_s,
             via_s: vec![],
+            valves_s: vec![],
             share: 1.0,
             points: None,
             branches: true,
@@ -104,6 +112,8 @@ pub struct Path {
     pub reynolds: [f64; 2],
     /// Likewise the largest Mach number.
     pub mach: [f64; 2],
+    /// What is to be said of fluid behind valves that have shut before, where there is some.
+    pub trapped: Option<String>,
 }
 
 /// A remarkable point of a path.
@@ -164,7 +174,8 @@ impl Path {
                  passes no more than at 1, so that real flow is slower than this"
             ))
         });
-        beyond.chain(fast).chain(choked).collect()
+        let trapped = self.trapped.clone();
+        trapped.into_iter().chain(beyond).chain(fast).chain(choked).collect()
     }
 
     /// The last state.
@@ -203,6 +214,9 @@ pub fn at_start_watched(
     y: &[f64],
     ask: &mut dyn FnMut() -> Control,
 ) -> Result<Vec<f64>, SolverError> {
+    let options = &options
+        .resolved(case)
+        .map_err(|error| path::fault(0.0, &error.to_string()))?;
     let model = dae.system().model.clone();
     let grow = |stage: &stages::Stage| stages::growing(case, model.at_rest(case)?, stage);
     let path = stages::follow_of(case, &grow, options, false, &mut |_| ask());

@@ -27,6 +27,7 @@ impl Resting {
     /// # Errors
     /// Those of [`follow`], and [`Error::Solver`] where the path ends early.
     pub fn follow(case: &Case, options: &Options) -> Result<Self> {
+        let options = &options.resolved(case)?;
         let mut path = follow(case, options, &mut |_| Control::Continue)?;
         if let Some(fault) = path.fault.take() {
             return Err(Error::Solver(Box::new(fault)));
@@ -47,7 +48,7 @@ impl Resting {
     /// # Errors
     /// Those of [`crate::discrete::System::new`].
     pub fn beside(&self, case: &Case, options: &Options) -> Result<Option<Self>> {
-        let stages = options.stages();
+        let stages = options.resolved(case)?.stages();
         let [stage] = stages.as_slice() else {
             return Ok(None);
         };

@@ -1,6 +1,6 @@
 //! Derivatives of an equilibrium with respect to numbers of its case.
 
-use super::stages::{Held, Stage, begin, grow};
+use super::stages::{Held, begin, grow};
 use super::state::State;
 use super::{Options, Path};
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
@@ -82,7 +82,8 @@ pub fn differentiate(
 pub fn along(case: &Case, options: &Options, path: &Path, directions: &[Direction]) -> Result<Vec<Derivative>> {
     let mut found: Vec<Derivative> = vec![];
     let mut before: Option<Held> = None;
-    for (number, stage) in options.stages().iter().enumerate() {
+    let stages = options.resolved(case)?.stages();
+    for (number, stage) in stages.iter().enumerate() {
         let Some(state) = path.states.iter().rfind(|state| state.stage == number) else {
             return Err(singular());
         };
@@ -96,7 +97,7 @@ pub fn along(case: &Case, options: &Options, path: &Path, directions: &[Directio
         let mut now = vec![];
         for (k, direction) in directions.iter().enumerate() {
             let earlier = before.as_ref().zip(found.get(k)).map(|(held, one)| (held, &*one.y));
-            let mut changed = changed(stage, direction, &statics, earlier)?;
+            let mut changed = changed((options, number, stages.len()), direction, &statics, earlier)?;
             let mut y = by_parameter(&statics, &mut changed, state)?;
             y.iter_mut().for_each(|y| *y = -*y);
             factors.solve(&mut y);
@@ -124,7 +125,7 @@ fn singular() -> Error {
 /// Steps of a number, their weights, and the equations of the stage with them, which begin in the state that the stage before
 /// then ends in: a state and its derivative.
 fn changed(
-    stage: &Stage,
+    (options, number, count): (&Options, usize, usize),
     direction: &Direction,
     statics: &StaticBeam,
     before: Option<(&Held, &[f64])>,
@@ -132,6 +133,12 @@ fn changed(
     let one = |(steps, weight): (f64, f64)| {
         let step = steps * direction.step;
         let case = (direction.moved)(steps)?;
+        // a valve may shut a little earlier
+        let stages = options.resolved(&case)?.stages();
+        let Some(stage) = stages.get(number).filter(|_| stages.len() == count) else {
+            let what = "valves shut another number of times with it";
+            return Err(Error::Usage(format!("{}: {what}", direction.name)));
+        };
         let held = before.map(|(held, derivative)| Held {
             y: held.y.iter().zip(derivative).map(|(y, d)| y + step * d).collect(),
             layout: held.layout.clone(),

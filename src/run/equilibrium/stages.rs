@@ -4,6 +4,7 @@ use super::arclength::Arclength;
 use super::natural::Natural;
 use super::path::{End, Follower, dry, fault, weights};
 use super::state::State;
+use super::trapped::{self, TIGHT};
 use super::{Options, Path};
 use crate::case::schema::Case;
 use crate::dae::{Dae as _, StaticBeam};
@@ -21,10 +22,10 @@ use crate::sundials::Kinsol;
 /// A stretch of the path: signals go along the straight line from what they are at one instant to what they are at another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stage {
-    /// Instant of the loads with which it begins [s]; none: nothing acts.
-    from: Option<f64>,
-    /// Instant of the loads with which it ends [s].
-    to: f64,
+    /// Instant of the loads with which it begins; none: nothing acts.
+    from: Option<Clock>,
+    /// Instant of the loads with which it ends.
+    to: Clock,
     /// Instant as of which valves stand [s].
     valves: f64,
 }
@@ -34,21 +35,34 @@ impl Stage {
     pub fn from_nothing(to: f64) -> Self {
         Self {
             from: None,
-            to,
+            to: Clock { t: to, within: to },
             valves: to,
         }
     }
 }
 
 impl Options {
-    /// The stages of the path, in order; at least one.
+    /// The stages of the path, in order; at least one. Loads jump after a valve has shut where they do so at that instant.
     pub(super) fn stages(&self) -> Vec<Stage> {
         let mut from = None;
-        let stage = |&to: &f64| Stage {
-            from: from.replace(to),
-            ..Stage::from_nothing(to)
+        let stage = |(k, &t): (usize, &f64)| {
+            let valves = self.valves_s.get(k).copied();
+            let to = Clock {
+                t,
+                within: valves.map_or(t, |_| t.next_down()),
+            };
+            Stage {
+                from: from.replace(to),
+                to,
+                valves: valves.unwrap_or(t),
+            }
         };
-        self.via_s.iter().chain([&self.at_s]).map(stage).collect()
+        self.via_s.iter().chain([&self.at_s]).enumerate().map(stage).collect()
+    }
+
+    /// Whether the stages before the last one are those of valves that shut.
+    pub(super) fn follows_valves(&self) -> bool {
+        !self.valves_s.is_empty()
     }
 }
 
@@ -80,7 +94,7 @@ pub(super) fn grow(case: &Case, stage: &Stage) -> error::Result<Grown> {
 
 /// The same of a model of the case.
 pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Result<Grown> {
-    let at = |signal: &Signal, t: f64| signal.jet(Clock { t, within: t }).value;
+    let at = |signal: &Signal, clock: Clock| signal.jet(clock).value;
     let growing = |signal: &Signal| {
         let [from, to] = [stage.from.map_or(0.0, |from| at(signal, from)), at(signal, stage.to)];
         if from == to {
@@ -95,12 +109,21 @@ pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Re
     let pumped = sources.map(|source| match &source.feed {
         Feed::Volume(_) => [0.0; 2],
         Feed::Flow(flow) => [
-            stage.from.map_or(0.0, |from| flow.integral(from)),
-            flow.integral(stage.to),
+            stage.from.map_or(0.0, |from| flow.integral(from.t)),
+            flow.integral(stage.to.t),
         ],
     });
     let pumped = pumped.collect();
-    model.replace_signals(growing, |opening| Signal::Constant(at(opening, stage.valves)));
+    let stands = |opening: &Signal| {
+        let valves = Clock {
+            t: stage.valves,
+            within: stage.valves,
+        };
+        let value = at(opening, valves);
+        let shut = !opening.is_constant() && value <= TIGHT;
+        Signal::Constant(if shut { 0.0 } else { value })
+    };
+    model.replace_signals(growing, stands);
     model.relaxation.clear();
     let section = &mut model.section;
     (section.drag, section.axial_damping_time, section.bending_damping_time) = (0.0, 0.0, 0.0);
@@ -148,8 +171,12 @@ pub(super) fn follow_of(
     judged: bool,
     watch: &mut dyn FnMut(&State) -> Control,
 ) -> error::Result<Path> {
+    let options = &options.resolved(case)?;
     let stages = options.stages();
-    let mut path = Path::default();
+    let mut path = Path {
+        trapped: trapped::warning(case, options)?,
+        ..Path::default()
+    };
     let mut held: Option<Held> = None;
     let mut valves = vec![];
     for (number, stage) in stages.iter().enumerate() {
@@ -167,7 +194,8 @@ pub(super) fn follow_of(
         valves = stand;
         let (statics, y) = begin(case, grown, held.as_ref());
         if let Some(inflow) = statics.fed() {
-            path.fault = Some(fed(number, inflow));
+            let shuts = (options.follows_valves() && number + 1 < stages.len()).then_some(stage.to.t);
+            path.fault = Some(fed(number, inflow, shuts));
             return Ok(path);
         }
         let layout = statics.system().layout.clone();
@@ -279,18 +307,27 @@ fn openings(system: &System) -> Vec<f64> {
         .collect()
 }
 
-/// That a closed network takes in what nothing lets out.
-fn fed(stage: usize, inflow: f64) -> SolverError {
-    let what = format!(
-        "there is no equilibrium while it pumps: a closed network takes in {inflow:.3e} m^3/s at that instant, and nothing lets it out"
-    );
-    SolverError {
-        cause: Some("a port of prescribed flow without one of prescribed pressure in the same network".into()),
-        hint: Some(
+/// That a closed network takes in what nothing lets out; or does so when a valve shuts [s].
+fn fed(stage: usize, inflow: f64, shuts: Option<f64>) -> SolverError {
+    let [what, hint] = match shuts {
+        Some(t) => [
+            format!(
+                "a valve shuts at t = {t} s while a closed network takes in {inflow:.3e} m^3/s: how much of it is behind the valve depends on how it flows"
+            ),
+            "let the flow stop before the valve shuts; or take what a run has at that instant (slcbeam run)".into(),
+        ],
+        None => [
+            format!(
+                "there is no equilibrium while it pumps: a closed network takes in {inflow:.3e} m^3/s at that instant, and nothing lets it out"
+            ),
             "ask for an instant at which the flow has stopped (--at): what went in before counts; or prescribe what went in by volume_m3, open \
              the network by a port with pressure_pa, or let the flows sum to zero"
                 .into(),
-        ),
+        ],
+    };
+    SolverError {
+        cause: Some("a port of prescribed flow without one of prescribed pressure in the same network".into()),
+        hint: Some(hint),
         ..fault(stage as f64, &what)
     }
 }

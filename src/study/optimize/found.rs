@@ -5,6 +5,10 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::problem::{Goal, Limit};
+use super::search::Reached;
+use super::wiring::Alternative;
+use crate::error::Result;
+use crate::numerics::sqp::HELD;
 pub use crate::study::span::Bound;
 use crate::study::sweep::What;
 
@@ -33,6 +37,9 @@ pub struct Optimum {
     /// Which of them is best, from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen: Option<usize>,
+    /// How they were found, where there were too many to compute all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub explored: Option<Explored>,
     /// Numbers that were sought.
     pub variables: Vec<Variable>,
     /// What was to be held.
@@ -69,6 +76,36 @@ pub struct Compared {
     pub values: Vec<f64>,
     /// Why there is nothing.
     pub reason: Option<String>,
+}
+
+impl Compared {
+    /// Of where a search with an alternative ended.
+    pub(super) fn of(alternative: &Alternative, reached: &Result<Reached>) -> Self {
+        let there = reached.as_ref().ok();
+        Self {
+            name: alternative.name.clone(),
+            sets: alternative.sets.clone(),
+            value: there.map(|reached| reached.figures[0]),
+            held: there.is_some_and(|reached| reached.minimum.at.violation() <= HELD),
+            values: there.map_or_else(Vec::new, |reached| reached.values.clone()),
+            reason: reached.as_ref().err().map(ToString::to_string),
+        }
+    }
+}
+
+/// A search among alternatives of which only a part was computed: from one to a better one next to it, from several starts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Explored {
+    /// How many there are.
+    pub of: f64,
+    /// How many were computed.
+    pub tried: usize,
+    /// Searches, each from another start.
+    pub searches: usize,
+    /// Of these, those that ended where nothing next to it is better.
+    pub ended: usize,
+    /// Of these, those that came to the best figure.
+    pub came_to_best: usize,
 }
 
 /// Where derivatives of figures came from.

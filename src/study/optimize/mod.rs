@@ -7,10 +7,14 @@
 //! search     from starts to the best
 //! curvature  how flat it is
 //! wiring     what is chosen from a set
+//! choice     all combinations of several sets
+//! explore    a search among more of these than can be computed
 //! found      the result
 //! ```
 
+pub mod choice;
 mod curvature;
+mod explore;
 pub mod found;
 mod look;
 pub mod names;
@@ -28,7 +32,9 @@ use crate::numerics::sqp::{Ended, HELD};
 use crate::study::span::Bound;
 use crate::study::sweep::row::Found;
 use crate::study::sweep::{Ask, compute, pool};
-use found::{Compared, Derivatives, Design, Held, Optimum, Variable};
+use choice::Choice;
+use explore::Tried;
+use found::{Compared, Derivatives, Design, Explored, Held, Optimum, Variable};
 use problem::{Asked, Limit, Problem};
 use search::{Reached, Search, better};
 use wiring::Alternative;
@@ -52,8 +58,8 @@ pub struct Candidate {
 pub struct Optimised {
     /// The result.
     pub optimum: Optimum,
-    /// Place of the candidate that is best.
-    pub chosen: usize,
+    /// What was sought, with the best of what was chosen from.
+    pub problem: Problem,
     /// The case with its numbers.
     pub case: Case,
     /// Every design that was computed.
@@ -72,28 +78,115 @@ pub fn optimise(
     tell: &(dyn Fn(usize, Option<f64>) + Sync),
 ) -> Result<Optimised> {
     let begin = Instant::now();
+    let tell_all = together(asked, tell);
+    let searches = candidates.iter().map(|one| &one.problem).enumerate();
+    let searches: Vec<Search<'_>> = searches.map(|one| Search::new(one, asked, stop, &tell_all)).collect();
+    let mut all = go(&searches, asked.jobs)?;
+    let compared = match candidates {
+        [_] => vec![],
+        _ => {
+            let each = candidates.iter().zip(&all);
+            each.map(|(one, reached)| Compared::of(&one.alternative, reached))
+                .collect()
+        }
+    };
+    let chosen = best(all.iter());
+    let reached = all.swap_remove(chosen)?;
+    let set = Set {
+        chosen,
+        compared,
+        explored: None,
+    };
+    let kept = || {
+        let exact = searches.iter().all(|search| search.derivatives() == Derivatives::Exact);
+        (searches.iter().flat_map(Search::history).collect(), exact)
+    };
+    finish(
+        (&candidates[chosen].problem, &searches[chosen]),
+        reached,
+        set,
+        &kept,
+        stop,
+        begin,
+    )
+}
+
+/// The same among more alternatives than can be computed, each made into what is sought by `make`: a search, whose result says so.
+///
+/// # Errors
+/// No design can be computed at any start.
+pub fn explore(
+    choice: &Choice,
+    make: &(dyn Fn(&Alternative) -> Result<Problem> + Sync),
+    asked: &Asked,
+    stop: &(dyn Fn() -> bool + Sync),
+    tell: &(dyn Fn(usize, Option<f64>) + Sync),
+) -> Result<Optimised> {
+    let begin = Instant::now();
+    let tell_all = together(asked, tell);
+    let (mut tried, explored) = explore::explore(choice, make, asked, stop, &tell_all)?;
+    let chosen = best(tried.iter().map(|one| &one.reached));
+    let set = Set {
+        chosen,
+        compared: tried.iter().map(Tried::compared).collect(),
+        explored: Some(explored),
+    };
+    let history: Vec<Design> = tried.iter().flat_map(|one| one.history.clone()).collect();
+    let exact = tried.iter().all(|one| one.exact);
+    let Tried {
+        alternative, reached, ..
+    } = tried.swap_remove(chosen);
+    let (reached, problem) = (reached?, make(&alternative)?);
+    let search = Search::new((chosen, &problem), asked, stop, &tell_all);
+    let kept = || {
+        let exact = exact && search.derivatives() == Derivatives::Exact;
+        (history.iter().cloned().chain(search.history()).collect(), exact)
+    };
+    finish((&problem, &search), reached, set, &kept, stop, begin)
+}
+
+/// Counts designs of all searches, and the best figure of all.
+fn together<'a>(
+    asked: &Asked,
+    tell: &'a (dyn Fn(usize, Option<f64>) + Sync),
+) -> impl Fn(usize, Option<f64>) + Sync + use<'a> {
     let sign = asked.goal.sign();
     let so_far = Mutex::new((0, None::<f64>));
-    let tell_all = |_: usize, best: Option<f64>| {
+    move |_, best| {
         let mut so_far = so_far.lock().unwrap_or_else(PoisonError::into_inner);
         so_far.0 += 1;
         let both = so_far.1.into_iter().chain(best);
         so_far.1 = both.min_by(|a, b| (sign * a).total_cmp(&(sign * b)));
         tell(so_far.0, so_far.1);
-    };
-    let searches = candidates.iter().map(|one| &one.problem).enumerate();
-    let searches: Vec<Search<'_>> = searches.map(|one| Search::new(one, asked, stop, &tell_all)).collect();
-    let mut all = go(&searches, asked.jobs)?;
-    let compared = compared(candidates, &all);
-    let ends = all
-        .iter()
-        .enumerate()
-        .filter_map(|(k, end)| Some((k, end.as_ref().ok()?)));
+    }
+}
+
+/// Which of several ends is best; the first where there is none.
+fn best<'a>(all: impl Iterator<Item = &'a Result<Reached>>) -> usize {
+    let ends = all.enumerate().filter_map(|(k, end)| Some((k, end.as_ref().ok()?)));
     let of = |end: &Reached| end.sizes[0];
     let best = ends.min_by(|(_, a), (_, b)| better((&a.minimum, of(a)), (&b.minimum, of(b))));
-    let chosen = best.map_or(0, |(k, _)| k);
-    let reached = all.swap_remove(chosen)?;
-    let (problem, search, minimum) = (&candidates[chosen].problem, &searches[chosen], &reached.minimum);
+    best.map_or(0, |(k, _)| k)
+}
+
+/// What was chosen from.
+struct Set {
+    chosen: usize,
+    compared: Vec<Compared>,
+    explored: Option<Explored>,
+}
+
+/// The result of where a search ended: how flat it is there, what holds it, what the plain command says. `kept` has all designs in the end, and whether
+/// derivatives were exact.
+fn finish(
+    (problem, search): (&Problem, &Search),
+    reached: Reached,
+    set: Set,
+    kept: &dyn Fn() -> (Vec<Design>, bool),
+    stop: &(dyn Fn() -> bool + Sync),
+    begin: Instant,
+) -> Result<Optimised> {
+    let minimum = &reached.minimum;
     let case = problem.with(&reached.values)?;
     let found = minimum.ended == Ended::Found && minimum.at.violation() <= HELD;
     // where a limit is reached the figure changes along numbers in the first order
@@ -102,12 +195,11 @@ pub fn optimise(
         .then(|| curvature::bend(problem, search, &reached, reached.starts.len()))
         .flatten();
     let checked = check(problem, &case, stop);
-    let history: Vec<Design> = searches.iter().flat_map(Search::history).collect();
+    let (history, exact) = kept();
     let mut failed = BTreeMap::new();
     for reason in history.iter().filter_map(|design| design.reason.clone()) {
         *failed.entry(reason).or_insert(0) += 1;
     }
-    let exact = searches.iter().all(|search| search.derivatives() == Derivatives::Exact);
     let own = |found: &Found| found.figure(&problem.goal.figure);
     let mut optimum = Optimum {
         case: problem.case.name.clone(),
@@ -121,8 +213,9 @@ pub fn optimise(
             .iter()
             .find(|design| design.start == 0)
             .and_then(|design| design.figures.as_ref().map(|figures| figures[0])),
-        chosen: (!compared.is_empty()).then_some(chosen),
-        alternatives: compared,
+        chosen: (!set.compared.is_empty()).then_some(set.chosen),
+        alternatives: set.compared,
+        explored: set.explored,
         variables: (0..problem.spans.len())
             .map(|k| variable(problem, &reached, bend.as_ref(), k))
             .collect(),
@@ -152,7 +245,7 @@ pub fn optimise(
     optimum.wall_s = begin.elapsed().as_secs_f64();
     Ok(Optimised {
         optimum,
-        chosen,
+        problem: problem.clone(),
         case,
         history,
     })
@@ -171,24 +264,6 @@ fn go(searches: &[Search<'_>], jobs: usize) -> Result<Vec<Result<Reached>>> {
     })?;
     all.sort_by_key(|(k, _)| *k);
     Ok(all.into_iter().map(|(_, reached)| reached).collect())
-}
-
-fn compared(candidates: &[Candidate], all: &[Result<Reached>]) -> Vec<Compared> {
-    let of = |(one, reached): (&Candidate, &Result<Reached>)| {
-        let there = reached.as_ref().ok();
-        Compared {
-            name: one.alternative.name.clone(),
-            sets: one.alternative.sets.clone(),
-            value: there.map(|reached| reached.figures[0]),
-            held: there.is_some_and(|reached| reached.minimum.at.violation() <= HELD),
-            values: there.map_or_else(Vec::new, |reached| reached.values.clone()),
-            reason: reached.as_ref().err().map(ToString::to_string),
-        }
-    };
-    match candidates.len() {
-        1 => vec![],
-        _ => candidates.iter().zip(all).map(of).collect(),
-    }
 }
 
 /// What the plain command tells of the best, with errors.
@@ -288,6 +363,12 @@ fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped: bool) -> 
              than what is left, or the figure has a kink there; a smaller /solver/rtol may help"
                 .into(),
         ),
+    }
+    if let Some(one) = found.explored.filter(|one| one.came_to_best < 2 && !stopped) {
+        say(format!(
+            "only {} of {} searches among the alternatives came to the best: there may well be better ones; more searches (--starts) look further",
+            one.came_to_best, one.searches
+        ));
     }
     if found.derivatives == Derivatives::Differences {
         let why = match &problem.differences {

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use super::found::{Derivatives, Design, Start};
 use super::look::{Seen, look};
 use super::problem::{Asked, Problem};
-use crate::error::{Error, Result};
+use crate::error::{At, Code, Error, Result, SolverError};
 use crate::numerics::sqp::{Ended, HELD, Minimum, Options, Point, minimise};
 use crate::study::span;
 use crate::study::sweep::{What, pool};
@@ -89,7 +89,13 @@ impl<'a> Search<'a> {
     /// # Errors
     /// No design can be computed at any start.
     pub fn go(&self, jobs: usize) -> Result<Reached> {
-        let places = span::places(&self.problem.spans, &self.problem.start, self.asked.starts)?;
+        // without numbers there is nowhere else to begin
+        let starts = if self.problem.spans.is_empty() {
+            1
+        } else {
+            self.asked.starts
+        };
+        let places = span::places(&self.problem.spans, &self.problem.start, starts)?;
         let numbers: Vec<usize> = (0..places.len()).collect();
         let mut found: Vec<Option<(Minimum, Vec<f64>)>> = vec![None; places.len()];
         pool::each(
@@ -126,7 +132,19 @@ impl<'a> Search<'a> {
         let Some((minimum, sizes)) = best else {
             let why = self.history().into_iter().find_map(|design| design.reason);
             let why = why.map_or(String::new(), |why| format!(": {why}"));
-            return Err(Error::Usage(format!("no design at a start can be computed{why}")));
+            return Err(Error::Solver(Box::new(SolverError {
+                code: match self.problem.what {
+                    What::Run => Code::Integrator,
+                    What::Periodic => Code::NoCycle,
+                    What::Equilibrium => Code::NoEquilibrium,
+                    What::Modes => Code::NoModes,
+                },
+                at: At::Time(0.0),
+                what: format!("no design at a start can be computed{why}"),
+                unknown: None,
+                cause: None,
+                hint: Some("look at the case alone with the command that designs go through; begin elsewhere (--set, --starts)".into()),
+            })));
         };
         Ok(Reached {
             values: span::values(&self.problem.spans, &minimum.x),
@@ -295,13 +313,15 @@ impl<'a> Search<'a> {
 /// Which of two ends of searches is the better, each with the size of the figure: the one that holds the limits, or nearer does, then the one with
 /// the better figure.
 pub fn better(a: (&Minimum, f64), b: (&Minimum, f64)) -> Ordering {
-    let worth = |(minimum, size): (&Minimum, f64)| {
-        let violation = minimum.at.violation();
-        let beyond = if violation > HELD { violation } else { 0.0 };
-        [beyond, minimum.at.value * size]
-    };
-    let ([a, x], [b, y]) = (worth(a), worth(b));
+    let ([a, x], [b, y]) = (worth(a.0, a.1), worth(b.0, b.1));
     a.total_cmp(&b).then(x.total_cmp(&y))
+}
+
+/// How far the end of a search is beyond its limits, and its figure with the sign that makes less the better.
+pub fn worth(minimum: &Minimum, size: f64) -> [f64; 2] {
+    let violation = minimum.at.violation();
+    let beyond = if violation > HELD { violation } else { 0.0 };
+    [beyond, minimum.at.value * size]
 }
 
 /// How steep what is sought still is at the end of a search, over its size there: by the numbers that no bound holds, limits with their multipliers

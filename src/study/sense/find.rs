@@ -57,6 +57,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
     // about which the best bladders are looked for: the largest loads that are found
     let mut about = first.1.clone();
     let mut warnings = known::at_rest(case, &equilibrium::system(case, asked.at_s)?);
+    warnings.extend(equilibrium::trapped(case, &options)?);
     let mut found = Sensed {
         case: case.name.clone(),
         data: None,
@@ -136,7 +137,12 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
         found.noise = Some(noise(asked, measured, &all_found));
         warnings.extend(unexplained(&found, &ask, &problems, &all_found));
         if let Some(largest) = largest(&all_found) {
-            warnings.extend(aside(&model, largest)?);
+            let more = aside(&model, largest)?;
+            warnings.extend(
+                more.into_iter()
+                    .filter(|more| !warnings.contains(more))
+                    .collect::<Vec<_>>(),
+            );
             about.clone_from(&largest.jacobian);
         }
     }

@@ -9,6 +9,7 @@ use crate::case::schema::{Case, Probe};
 use crate::case::wiring::bladder_label;
 use crate::error::{Error, Result};
 use crate::functions::Signal;
+use crate::functions::signals::{Ramp, RampShape};
 use crate::run::equilibrium::{self, Direction, Options, Resting};
 
 /// The case with a probe in the middle of each pair of bladders, and the names of the columns with the pressures of all bladders, upper row first.
@@ -59,6 +60,8 @@ pub struct AtRest<'a> {
     columns: Vec<usize>,
     /// The last state.
     last: Resting,
+    /// When the last valve has shut, where one has that keeps fluid: the loads come then [s].
+    since: Option<f64>,
     /// Whether to stop, asked before every state.
     stop: Option<&'a dyn Fn() -> bool>,
 }
@@ -73,7 +76,9 @@ impl<'a> AtRest<'a> {
     /// # Errors
     /// There is no such state.
     pub fn new(case: &'a Case, names: &[String], amplitudes: &'a [Amplitude], options: &'a Options) -> Result<Self> {
-        let own = with(case, amplitudes, &vec![0.0; amplitudes.len()]);
+        // what is behind a valve that has shut was there before the loads that are looked for came
+        let since = options.resolved(case)?.via_s.last().copied();
+        let own = with(case, amplitudes, &vec![0.0; amplitudes.len()], since);
         // what is read off a state depends on which loads there are
         let columns = equilibrium::columns(&equilibrium::system(&own, options.at_s)?);
         let place = |name: &String| columns.iter().position(|column| column.name == *name);
@@ -89,6 +94,7 @@ impl<'a> AtRest<'a> {
             amplitudes,
             options,
             columns,
+            since,
             stop: None,
         })
     }
@@ -104,7 +110,7 @@ impl<'a> AtRest<'a> {
     /// # Errors
     /// There is no such path.
     pub fn followed(&self, amplitudes: &[f64]) -> Result<(DVector<f64>, Vec<String>)> {
-        let case = with(self.case, self.amplitudes, amplitudes);
+        let case = with(self.case, self.amplitudes, amplitudes, self.since);
         let there = Resting::follow(&case, self.options)?;
         Ok((self.pressures(&there), there.path.warnings()))
     }
@@ -124,7 +130,7 @@ impl<'a> AtRest<'a> {
                 "interrupted before the loads were found; nothing is written".into(),
             ));
         }
-        let case = with(self.case, self.amplitudes, amplitudes);
+        let case = with(self.case, self.amplitudes, amplitudes, self.since);
         self.last = match self.last.beside(&case, self.options)? {
             Some(there) => there,
             None => Resting::follow(&case, self.options)?,
@@ -133,12 +139,19 @@ impl<'a> AtRest<'a> {
     }
 }
 
-/// The case with loads of so many of their sizes.
-fn with(case: &Case, amplitudes: &[Amplitude], sizes: &[f64]) -> Case {
-    let signals = amplitudes
-        .iter()
-        .zip(sizes)
-        .map(|(a, size)| Signal::Constant(a.size * size));
+/// The case with loads of so many of their sizes, from an instant on where there is one.
+fn with(case: &Case, amplitudes: &[Amplitude], sizes: &[f64], since: Option<f64>) -> Case {
+    let signal = |load: f64| match since {
+        None => Signal::Constant(load),
+        Some(start_s) => Signal::Ramp(Ramp {
+            from: 0.0,
+            to: load,
+            start_s,
+            duration_s: 0.0,
+            shape: RampShape::Linear,
+        }),
+    };
+    let signals = amplitudes.iter().zip(sizes).map(|(a, size)| signal(a.size * size));
     loaded(case, amplitudes, signals)
 }
 
@@ -146,7 +159,7 @@ impl Forward for AtRest<'_> {
     fn at(&mut self, amplitudes: &[f64]) -> Result<(DVector<f64>, DMatrix<f64>)> {
         let values = self.go(amplitudes)?;
         let direction = |(k, amplitude): (usize, &Amplitude)| {
-            let (own, all) = (self.case, self.amplitudes);
+            let (own, all, since) = (self.case, self.amplitudes, self.since);
             let from = amplitudes.to_vec();
             Direction {
                 name: format!("--load {}", amplitude.name),
@@ -154,12 +167,12 @@ impl Forward for AtRest<'_> {
                 moved: Box::new(move |steps| {
                     let mut there = from.clone();
                     there[k] += steps * CHANGE;
-                    Ok(with(own, all, &there))
+                    Ok(with(own, all, &there, since))
                 }),
             }
         };
         let directions: Vec<Direction> = self.amplitudes.iter().enumerate().map(direction).collect();
-        let case = with(self.case, self.amplitudes, amplitudes);
+        let case = with(self.case, self.amplitudes, amplitudes, self.since);
         let derivatives = self.last.along(&case, self.options, &directions)?;
         let mut jacobian = DMatrix::from_fn(self.columns.len(), derivatives.len(), |i, j| {
             derivatives[j].row[self.columns[i]]
