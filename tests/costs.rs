@@ -13,7 +13,6 @@ use slcbeam::discrete::System;
 use slcbeam::output::kind::Kind;
 use slcbeam::output::{FolderRecorder, Labels, ResultFolder, checkpoint, summary};
 use slcbeam::run::dynamics;
-use slcbeam::run::dynamics::simulator::{Input, Simulator};
 use slcbeam::run::observe::Observer;
 use slcbeam::run::record::{Control, Memory, Progress};
 use tempfile::TempDir;
@@ -285,52 +284,4 @@ fn two_hundred_thousand_bladders_run() {
     let kib: u64 = most.trim().trim_end_matches(" kB").parse().expect("a number");
     println!("{kib} KiB at most");
     assert!(kib < 20 << 20, "{kib} KiB");
-}
-
-/// Inlet pressure of the actuator of the tour, with the steps of its method.
-const INLET: &str = "/network/chains/0/ends/0/pressure_pa";
-
-fn actuator() -> Simulator {
-    let sets = ["/solver/method=\"esdirk46\"", "/time/end_s=100"].map(String::from);
-    let case = case::load("cases/tour-actuator.json".as_ref(), &sets).expect("a case");
-    let input = Input {
-        pointer: INLET.into(),
-        range: [0.0, 60e3],
-    };
-    Simulator::new(&case, &[input]).expect("a simulator")
-}
-
-/// Prints what a control step costs: `cargo test --release --test costs control_step -- --ignored --nocapture`.
-#[test]
-#[ignore = "times a machine"]
-fn what_a_control_step_costs() {
-    for (what, change) in [("as it is", 0.0), ("changed", 100.0), ("far", 5e3)] {
-        for duration in [1e-4, 1e-3, 1e-2] {
-            let mut sim = actuator();
-            let mut step = |k: u32| {
-                let value = 20e3 + change * f64::from(k % 7);
-                sim.step(sim.time() + duration, &[value], &mut || Control::Continue)
-                    .expect("a step");
-            };
-            (0..200).for_each(&mut step);
-            const STEPS: u32 = 500;
-            let (steps, spent, begin) = (sim.steps(), sim.spent(), Instant::now());
-            let mut step = |k: u32| {
-                let value = 20e3 + change * f64::from(k % 7);
-                sim.step(sim.time() + duration, &[value], &mut || Control::Continue)
-                    .expect("a step");
-            };
-            (0..STEPS).for_each(&mut step);
-            let all = begin.elapsed().as_secs_f64();
-            let (now, per) = (sim.spent(), 1e6 / f64::from(STEPS));
-            println!(
-                "{what:>9}, {duration:6} s: {:5.2} steps, {:6.1} us; integration {:6.1}, jumps {:6.1}, watching {:6.1}",
-                (sim.steps() - steps) as f64 / f64::from(STEPS),
-                all * per,
-                (now.integration - spent.integration) * per,
-                (now.jumps - spent.jumps) * per,
-                (now.watching - spent.watching) * per,
-            );
-        }
-    }
 }
