@@ -137,12 +137,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
         found.noise = Some(noise(asked, measured, &all_found));
         warnings.extend(unexplained(&found, &ask, &problems, &all_found));
         if let Some(largest) = largest(&all_found) {
-            let more = aside(&model, largest)?;
-            warnings.extend(
-                more.into_iter()
-                    .filter(|more| !warnings.contains(more))
-                    .collect::<Vec<_>>(),
-            );
+            warnings.extend(aside(&model, largest)?);
             about.clone_from(&largest.jacobian);
         }
     }

@@ -105,13 +105,14 @@ impl<'a> AtRest<'a> {
         self
     }
 
-    /// Pressures along the path from rest to these loads, and what there is to warn of.
+    /// Pressures along the path from rest to these loads, and what there is to warn of besides what valves trap.
     ///
     /// # Errors
     /// There is no such path.
     pub fn followed(&self, amplitudes: &[f64]) -> Result<(DVector<f64>, Vec<String>)> {
         let case = with(self.case, self.amplitudes, amplitudes, self.since);
-        let there = Resting::follow(&case, self.options)?;
+        let mut there = Resting::follow(&case, self.options)?;
+        there.path.trapped = None;
         Ok((self.pressures(&there), there.path.warnings()))
     }
 
