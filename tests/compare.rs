@@ -255,6 +255,7 @@ fn several_are_compared_with_one() {
     for (more, words) in [
         (&["--with", "other"][..], "it is none of the folders"),
         (&["--out", "picture.svg"], "a picture is of two"),
+        (&["--out", "usual"], "it holds a result"),
         (
             &["--match", "a=tip_u1"],
             "one result folder and one file of data, not 3",

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::{Page, Written, pack, page, warnings};
+use super::{Kind, Page, Written, pack, page, warnings};
 use crate::discrete::quantities::{Observable, Role};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::folder::{REPORT, fault, replace_alike};
 use crate::output::numbers::{percent, quantity};
 use crate::study::compare::many::column_at;
@@ -106,6 +106,12 @@ pub fn over_data(dir: &Path, picture: &str, found: &Data) -> Result<Written> {
 }
 
 fn put(page: &Page, dir: &Path) -> Result<Written> {
+    if Kind::find(dir).is_ok() {
+        return Err(Error::Usage(format!(
+            "--out {}: it holds a result, whose page would be written over; name another folder",
+            dir.display()
+        )));
+    }
     fs::create_dir_all(dir).map_err(|e| fault("make", dir, e))?;
     let path = dir.join(REPORT);
     let text = page::assemble(page);
