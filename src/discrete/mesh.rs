@@ -34,11 +34,11 @@ impl Mesh {
         }
     }
 
-    /// The same mesh, of fourth order or of second.
+    /// The same mesh, of fourth order or of second: with fewer than six cells the weights of its two ends would meet, and it is of second.
     #[must_use]
     pub fn of_order(self, order: u8) -> Self {
         Self {
-            fourth: order == 4,
+            fourth: order == 4 && self.cells >= 6,
             ..self
         }
     }

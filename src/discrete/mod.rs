@@ -10,6 +10,7 @@ pub mod ledger;
 pub mod let_in;
 pub mod mesh;
 pub mod quantities;
+pub mod readings;
 pub mod residual;
 pub mod resolution;
 pub mod shapes;

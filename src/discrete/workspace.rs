@@ -1,14 +1,15 @@
 //! Intermediate quantities of one evaluation, stage by stage; allocated once, for each scalar type.
 
-use std::borrow::Cow;
-
 use super::System;
+use super::readings::Readings;
 use super::residual::fourth;
 use crate::numerics::{Planar, Scalar};
 
 /// What an evaluation makes of the unknowns, in the order in which it is computed. Names follow the equations.
 #[derive(Clone, Debug)]
 pub struct Workspace<T> {
+    /// What is read off, where that is not what the equations have.
+    pub readings: Readings,
     /// How the nodes move.
     pub motion: Motion<T>,
     /// How the beam is bent and stretched.
@@ -268,27 +269,6 @@ impl Fluid<f64> {
     }
 }
 
-impl Forces<f64> {
-    /// Moments M of nodes without what damps them [N m].
-    pub fn moments(&self) -> Cow<'_, [f64]> {
-        together(&self.moment, [&self.nonlinear_moment, &self.relaxing_moment])
-    }
-
-    /// Normal forces N of cells without what damps them [N].
-    pub fn normals(&self) -> Cow<'_, [f64]> {
-        together(&self.normal, [&self.nonlinear_normal, &self.relaxing_normal])
-    }
-}
-
-/// The sum of parts, of which all but the first may be absent.
-fn together<'a>(part: &'a [f64], others: [&[f64]; 2]) -> Cow<'a, [f64]> {
-    let mut sum = Cow::Borrowed(part);
-    for other in others.into_iter().filter(|other| !other.is_empty()) {
-        sum.to_mut().iter_mut().zip(other).for_each(|(sum, more)| *sum += more);
-    }
-    sum
-}
-
 impl<T: Scalar> Workspace<T> {
     /// Room for a system.
     pub fn new(system: &System) -> Self {
@@ -311,6 +291,7 @@ impl<T: Scalar> Workspace<T> {
         // What is the same at all times is set here, and stays.
         let kept = fluid.map_or(&[][..], |f| &f.area_at_start);
         Self {
+            readings: Readings::new(system),
             motion: Motion {
                 u: vectors(n),
                 v: vectors(n),

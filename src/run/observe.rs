@@ -263,7 +263,7 @@ impl Observer {
         let balance = ledger::balance(stored, *at_start, integrals);
         let residuals = &mut self.seen.residuals;
         residuals.take(system, w, &balance, [first, &invariants], integrals);
-        let least_force = w.forces.normals().iter().copied().fold(f64::INFINITY, f64::min);
+        let least_force = w.normals().iter().copied().fold(f64::INFINITY, f64::min);
         self.seen.growth.take(
             now,
             glance.t,

@@ -312,6 +312,23 @@ fn half_the_cells_tell_the_error_of_the_mesh() {
     }
 }
 
+/// Goal: where the cells of the beam cannot be halved its part of the error is not known, and none is told: that of the bladders alone was nil.
+#[test]
+fn no_error_is_told_of_half_a_mesh() {
+    let mut case = across(2, 8.68e-4, 5e-6);
+    case["mesh"] = json!({"cells_per_segment": 3, "cells_per_bladder": 2});
+    let case = checked(&case);
+    let mut found = modes::modes(&case, &plan(4)).unwrap();
+    modes::compare_meshes(&case, None, &plan(4), &mut found);
+    assert!(found.modes.iter().any(|m| m.by_mesh.bladders.is_some()));
+    assert!(
+        found
+            .modes
+            .iter()
+            .all(|m| m.mesh_error().is_none() && m.rate_error().is_none() && m.extrapolated().is_none())
+    );
+}
+
 #[test]
 fn as_many_networks_as_bladders_keep_as_many_volumes() {
     // Ten pairs: an eigenvalue of zero ten times over, beside those that pencils of algebraic unknowns have at infinity.

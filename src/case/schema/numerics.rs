@@ -44,7 +44,8 @@ pub struct Mesh {
     #[serde(default = "two")]
     #[schemars(range(min = 1, max = 1000))]
     pub cells_per_bladder: usize,
-    /// Order of what the beam's cells leave out, 2 or 4: halved cells leave a quarter, or a sixteenth.
+    /// Order of what the beam's cells leave out, 2 or 4: halved cells leave a quarter, or a sixteenth. On fewer than
+    /// six cells it is 2.
     #[serde(default = "second", skip_serializing_if = "is_second")]
     #[schemars(extend("enum" = [2, 4]))]
     pub order: u8,

@@ -18,7 +18,7 @@ pub use solid::reaction;
 use crate::case::schema::Effect;
 use serde::{Deserialize, Serialize};
 
-use super::{State, System, TimeData, Workspace, residual, touching};
+use super::{State, System, TimeData, Workspace, readings, residual, touching};
 
 /// Rates that are integrated along the run, and what they add up to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -216,6 +216,7 @@ pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Work
     if !system.model.effects.has(Effect::AxialStretch) {
         fluid::foreshorten(system, now, w);
     }
+    readings::read(system, now, w);
     State(w)
 }
 

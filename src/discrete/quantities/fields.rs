@@ -81,10 +81,10 @@ impl Field {
             Self::U3 => ("u3_m", "m", Nodes, Studied, "axial displacement", |w| w.motion.u.iter().map(|u| u.z).collect()),
             Self::V1 => ("v1_m_s", "m/s", Nodes, Studied, "transverse velocity", |w| w.motion.v.iter().map(|v| v.x).collect()),
             Self::V3 => ("v3_m_s", "m/s", Nodes, Studied, "axial velocity", |w| w.motion.v.iter().map(|v| v.z).collect()),
-            Self::Curvature => ("curvature_1_m", "1/m", Nodes, Recorded, "curvature, positive with the +x fibre in tension", |w| Cow::Borrowed(&w.shape.kappa)),
+            Self::Curvature => ("curvature_1_m", "1/m", Nodes, Recorded, "curvature, positive with the +x fibre in tension", |w| Cow::Borrowed(w.curvature())),
             Self::SectionAngle => ("section_angle_rad", "rad", Cells, Recorded, "angle of the section, where sections shear", |w| Cow::Borrowed(&w.shape.sections.angle)),
-            Self::Moment => ("moment_n_m", "N m", Nodes, Recorded, "bending moment", |w| w.forces.moments()),
-            Self::NormalForce => ("normal_force_n", "N", Cells, Recorded, "normal force", |w| w.forces.normals()),
+            Self::Moment => ("moment_n_m", "N m", Nodes, Recorded, "bending moment", |w| w.moments()),
+            Self::NormalForce => ("normal_force_n", "N", Cells, Recorded, "normal force", |w| w.normals()),
             Self::Pressure => ("pressure_pa", "Pa", Network, Recorded, "pressure of the bladder cells", |w| Cow::Borrowed(&w.fluid.pressure)),
             Self::AreaChange => ("area_change_m2", "m^2", Network, Recorded, "area change of the bladder cells", |w| Cow::Borrowed(w.fluid.area_changes())),
         }

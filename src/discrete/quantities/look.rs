@@ -195,7 +195,7 @@ pub fn largest_strain(system: &System, now: &TimeData, half_height: f64, w: &Wor
     (0..=last)
         .map(|i| {
             (
-                (node_stretch(w, i, last) - 1.0).abs() + (w.shape.kappa[i] - now.rest_curvature(i)).abs() * half_height,
+                (node_stretch(w, i, last) - 1.0).abs() + (w.curvature()[i] - now.rest_curvature(i)).abs() * half_height,
                 i,
             )
         })

@@ -32,12 +32,12 @@ const TABLE: [Entry; 11] = [
     ("u1", "m", "transverse displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].x)),
     ("u3", "m", "axial displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].z)),
     ("angle", "rad", "slope angle phi, counted over full turns", false, Probe::angle),
-    ("curvature", "1/m", "curvature", false, |p, look| p.of_nodes(|i| look.w.shape.kappa[i])),
+    ("curvature", "1/m", "curvature", false, |p, look| { let kappa = look.w.curvature(); p.of_nodes(|i| kappa[i]) }),
     ("strain_upper", "1", "strain lambda - 1 + kappa h_s/2 of the upper surface", false, |p, look| p.surface(look, 1.0)),
     ("strain_lower", "1", "strain lambda - 1 - kappa h_s/2 of the lower surface", false, |p, look| p.surface(look, -1.0)),
-    ("normal_force", "N", "normal force without viscous damping", false, |p, look| { let n = look.w.forces.normals(); p.of_cells(|c| n[c]) }),
-    ("moment", "N m", "bending moment without viscous damping", false, |p, look| { let m = look.w.forces.moments(); p.of_nodes(|i| m[i]) }),
-    ("shear_force", "N", "shear force", false, |p, look| p.of_cells(|c| look.w.forces.shear[c])),
+    ("normal_force", "N", "normal force without viscous damping", false, |p, look| { let n = look.w.normals(); p.of_cells(|c| n[c]) }),
+    ("moment", "N m", "bending moment without viscous damping", false, |p, look| { let m = look.w.moments(); p.of_nodes(|i| m[i]) }),
+    ("shear_force", "N", "shear force", false, |p, look| p.of_cells(|c| look.w.shears()[c])),
     ("pressure_upper", "Pa", "mean pressure of the upper bladder", true, |p, look| p.pressure(look, 0)),
     ("pressure_lower", "Pa", "mean pressure of the lower bladder", true, |p, look| p.pressure(look, 1)),
 ];
@@ -146,7 +146,7 @@ impl Probe {
     fn surface(&self, look: &Look, side: f64) -> f64 {
         let shape = &look.w.shape;
         self.of_cells(|c| shape.strain[c])
-            + side * self.half_height * self.of_nodes(|i| shape.kappa[i] - look.now.rest_curvature(i))
+            + side * self.half_height * self.of_nodes(|i| look.w.curvature()[i] - look.now.rest_curvature(i))
     }
 
     fn pressure(&self, look: &Look, row: usize) -> f64 {

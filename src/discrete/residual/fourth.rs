@@ -8,9 +8,6 @@ use crate::error::{Code, Violation};
 use crate::model::{Kinematics, Model};
 use crate::numerics::Scalar;
 
-/// Cells that a beam has at least: at fewer the weights of its two ends would meet.
-const FEWEST: usize = 6;
-
 /// `[E77]` Between nodes `κ` and in cells `λ` are means, over the hat of a node and over the cell: what their squares leave out of the elastic
 /// energy is that of their differences,
 ///
@@ -176,17 +173,14 @@ pub fn of_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
 pub fn refusal(model: &Model, mesh: &Mesh) -> Option<Violation> {
     let what = if !mesh.fourth {
         return None;
-    } else if mesh.cells < FEWEST {
-        format!(
-            "a beam of {} cells has no room for fourth order, which takes {FEWEST}",
-            mesh.cells
-        )
     } else if model.effects.has(Effect::Shear) {
-        "a beam that shears is of second order".to_owned()
+        "a beam that shears is of second order"
     } else if !model.relaxation.is_empty() {
-        "a solid that relaxes is of second order".to_owned()
+        "a solid that relaxes is of second order"
     } else if model.strain_energy().is_some() {
-        "a section at finite strain is of second order".to_owned()
+        "a section at finite strain is of second order"
+    } else if !model.attachments.is_empty() || !model.contacts.is_empty() {
+        "what is attached to the beam, or touches it, acts at a point, which fourth order does not resolve"
     } else {
         return None;
     };

@@ -72,6 +72,11 @@ fn halved(case: &Case) -> Option<Case> {
 }
 
 fn along_the_beam(about: Result<Linearised>, plan: &Plan, found: &mut Modes) {
+    let fourth = found.about.system().mesh.fourth;
+    // a mesh of few cells is of another order
+    if about.as_ref().is_ok_and(|other| other.system().mesh.fourth != fourth) {
+        return;
+    }
     let every_other: Vec<Mode> = found
         .modes
         .iter()
@@ -83,7 +88,6 @@ fn along_the_beam(about: Result<Linearised>, plan: &Plan, found: &mut Modes) {
     let Some((others, pairs)) = elsewhere(about, plan, &every_other, found) else {
         return;
     };
-    let fourth = found.about.system().mesh.fourth;
     for (k, j, likeness) in pairs {
         let (mode, other) = (&mut found.modes[k], &others[j]);
         mode.by_mesh.beam = Some((mode.s - other.s) * TO_HALF[usize::from(fourth)]);

@@ -100,13 +100,10 @@ impl Mode {
     /// s ≈ s(h, g) + (s(h, g) - s(2h, g))/3 + 4 (s(h, g/2) - s(h, g))/3        h: cells of the beam, g: of a bladder
     /// ```
     ///
-    /// and a 15th of the difference on a beam of fourth order, [E77]. None where neither mesh could be compared.
+    /// and a 15th of the difference on a beam of fourth order, [E77]. None where the beam could not be compared.
     pub fn extrapolated(&self) -> Option<Complex<f64>> {
         let ByMesh { beam, bladders, .. } = self.by_mesh;
-        beam.into_iter()
-            .chain(bladders)
-            .reduce(|a, b| a + b)
-            .map(|more| self.s + more)
+        Some(self.s + beam? + bladders.unwrap_or_default())
     }
 
     /// The frequency to which meshes point [Hz]; None where nothing swings or no other mesh has such a mode.
@@ -131,6 +128,7 @@ impl Mode {
     }
 
     fn off(&self, part: fn(Complex<f64>) -> f64, of: f64) -> Option<f64> {
+        self.by_mesh.beam?;
         let both = self.by_mesh.off();
         both.map(|more| part(more).abs())
             .reduce(|a, b| a + b)

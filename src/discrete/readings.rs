@@ -1,0 +1,136 @@
+//! Curvature and section forces as they are read off a state: at nodes and in the middle of cells, also where the equations know of means.
+
+use std::borrow::Cow;
+
+use super::residual::bending::pressure_curvature;
+use super::residual::solid::node_stretch;
+use super::{System, TimeData, Workspace};
+use crate::case::schema::Effect;
+use crate::model::Kinematics;
+
+/// Values of a beam of fourth order, [E77]; empty otherwise, and where the equations' own are the same.
+#[derive(Clone, Debug, Default)]
+pub struct Readings {
+    curvature: Vec<f64>,
+    moment: Vec<f64>,
+    normal: Vec<f64>,
+    shear: Vec<f64>,
+}
+
+impl Readings {
+    /// Room for those of a system.
+    pub fn new(system: &System) -> Self {
+        let mesh = &system.mesh;
+        let bends = system.model.kinematics != Kinematics::Bar;
+        let of = |there: bool, len: usize| if there { vec![0.0; len] } else { vec![] };
+        Self {
+            curvature: of(mesh.fourth && bends, mesh.nodes),
+            moment: of(mesh.fourth && bends, mesh.nodes),
+            normal: of(mesh.fourth, mesh.cells),
+            shear: of(mesh.fourth && bends, mesh.cells),
+        }
+    }
+}
+
+impl Workspace<f64> {
+    /// Curvature at nodes [1/m].
+    pub fn curvature(&self) -> &[f64] {
+        own(&self.readings.curvature, &self.shape.kappa)
+    }
+
+    /// Moments M at nodes without what damps them [N m].
+    pub fn moments(&self) -> Cow<'_, [f64]> {
+        let forces = &self.forces;
+        let moment = own(&self.readings.moment, &forces.moment);
+        together(moment, [&forces.nonlinear_moment, &forces.relaxing_moment])
+    }
+
+    /// Normal forces N in cells without what damps them [N].
+    pub fn normals(&self) -> Cow<'_, [f64]> {
+        let forces = &self.forces;
+        let normal = own(&self.readings.normal, &forces.normal);
+        together(normal, [&forces.nonlinear_normal, &forces.relaxing_normal])
+    }
+
+    /// Shear forces V in cells [N].
+    pub fn shears(&self) -> &[f64] {
+        own(&self.readings.shear, &self.forces.shear)
+    }
+}
+
+fn own<'a>(read: &'a [f64], known: &'a [f64]) -> &'a [f64] {
+    if read.is_empty() { known } else { read }
+}
+
+/// The sum of parts, of which all but the first may be absent.
+fn together<'a>(part: &'a [f64], others: [&[f64]; 2]) -> Cow<'a, [f64]> {
+    let mut sum = Cow::Borrowed(part);
+    for other in others.into_iter().filter(|other| !other.is_empty()) {
+        sum.to_mut().iter_mut().zip(other).for_each(|(sum, more)| *sum += more);
+    }
+    sum
+}
+
+/// Reads off what [`Readings`] holds, of an evaluated state. Loads that are weighed by [E78] leave at a node `M - h² M''/12`, at the one beside an end
+/// `M - h² M''/8`, and M itself at the ends; M'' there is that of the third node, which no end touches. Curvature follows from M, normal forces from
+/// strains.
+pub fn read(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
+    if !system.mesh.fourth {
+        return;
+    }
+    let mut readings = std::mem::take(&mut w.readings);
+    if system.model.kinematics != Kinematics::Bar {
+        bending(system, now, w, &mut readings);
+    }
+    stretch(system, w, &mut readings.normal);
+    w.readings = readings;
+}
+
+fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut Readings) {
+    let (mesh, moment) = (&system.mesh, &w.forces.moment);
+    let last = mesh.cells;
+    for i in 0..=last {
+        let from_end = i.min(last - i);
+        let at = i.clamp(3, last - 3);
+        let bend = moment[at - 1] - moment[at] * 2.0 + moment[at + 1];
+        let share = match from_end {
+            0 => 0.0,
+            1 => 1.0 / 8.0,
+            _ => 1.0 / 12.0,
+        };
+        readings.moment[i] = moment[i] + share * bend;
+        let alpha = readings.moment[i] / system.model.section.bending_stiffness
+            + pressure_curvature(system, w, i)
+            + now.rest_curvature(i);
+        let published = system.model.published();
+        readings.curvature[i] = alpha / if published { node_stretch(w, i, last) } else { 1.0 };
+    }
+    for c in 0..last {
+        let [known, read] = [moment, &readings.moment].map(|m| m[c] - m[c + 1]);
+        let more = (read - known) * w.shape.per_stretch[c] / mesh.h;
+        readings.shear[c] = w.forces.shear[c] + more;
+    }
+}
+
+fn stretch(system: &System, w: &Workspace<f64>, normal: &mut [f64]) {
+    if system.model.effects.has(Effect::AxialStretch) {
+        let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
+        for (c, normal) in normal.iter_mut().enumerate() {
+            let free = if pressed {
+                w.coupling.pressure_stretch[c / system.mesh.cells_per_segment]
+            } else {
+                0.0
+            };
+            *normal = system.model.section.axial_stiffness * (w.shape.strain[c] - free);
+        }
+        return;
+    }
+    // what statics sums over nodes up to the middle of a cell, less what that lacks beside an end
+    normal.copy_from_slice(&w.forces.normal);
+    let last = normal.len() - 1;
+    let [near, far] = [normal[3] - normal[2], normal[last - 2] - normal[last - 3]];
+    normal[0] += near / 8.0;
+    normal[1] -= near / 24.0;
+    normal[last] -= far / 8.0;
+    normal[last - 1] += far / 24.0;
+}
