@@ -151,7 +151,7 @@ def measure_rods(all):
                 if p:
                     seconds = statistics.median(times[k]) if times[k] else p["seconds"]
                     mesh, _, order = p["scene"].partition(":")[2].partition("/")
-                    mesh = mesh and f"{mesh} cells a segment{order and ' of fourth order'}, "
+                    mesh = mesh and f"{mesh} cell{'s' if mesh != '1' else ''} a segment{order and ' of fourth order'}, "
                     cells[k] = f"{shown(seconds)} `{p['method']}`, {mesh}{p['rtol']:.0e}"
             ratio = f"{ratios[-1]:.3g}" if None not in pair else "–"
             out["rows"].append([f"{name}, `{scene}`", f"{accuracy:.0e}", *cells, ratio])
