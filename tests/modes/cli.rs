@@ -200,3 +200,32 @@ fn an_accuracy_is_reached_or_not() {
             < 0.01
     );
 }
+
+/// Goal: where the cells of the beam cannot be halved the table says that the mesh's error is not known, and has none.
+#[test]
+fn an_error_that_is_not_known_is_not_told() {
+    let dir = TempDir::new().unwrap();
+    let said = |cells: &str| {
+        let set = format!("/mesh/cells_per_segment={cells}");
+        let out = dir.path().join(cells);
+        let arguments = [
+            "cases/bend-wet.json",
+            "--set",
+            &set,
+            "--count",
+            "4",
+            "--out",
+            out.to_str().unwrap(),
+        ];
+        modes(&arguments).1
+    };
+    let (odd, even) = (said("3"), said("2"));
+    assert!(
+        odd.contains("mesh error: not known") && !odd.contains("half the cells"),
+        "{odd}"
+    );
+    assert!(
+        even.contains("half the cells of the beam") && !even.contains("not known"),
+        "{even}"
+    );
+}

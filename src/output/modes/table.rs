@@ -49,11 +49,7 @@ pub fn table(report: &Report) -> String {
         text += &aligned(&lines, &words);
     }
     text += &staying(report);
-    if found
-        .modes
-        .iter()
-        .any(|m| m.by_mesh.beam.or(m.by_mesh.bladders).is_some())
-    {
+    if found.modes.iter().any(|m| m.mesh_error().or(m.rate_error()).is_some()) {
         let bladders = if found.bladders_compared {
             " and twice those of each bladder"
         } else {
@@ -63,6 +59,8 @@ pub fn table(report: &Report) -> String {
             text,
             "\nmesh error: how far half the cells of the beam{bladders} say that this one is off, to second order"
         );
+    } else if found.modes.iter().any(|m| m.by_mesh.bladders.is_some()) {
+        text += "\nmesh error: not known, since the beam's cells cannot be halved; an even /mesh/cells_per_segment tells it\n";
     }
     if found.modes.iter().any(|m| m.undrained.is_some() || m.drained.is_some()) {
         text += "\nundrained: the same shape with every bladder sealed; drained: with networks of one pressure\n";
