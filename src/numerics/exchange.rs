@@ -1,9 +1,16 @@
 //! The best of many combinations, by going from one to the next as long as that is better.
 
+use std::cmp::Ordering;
+
 use super::chance::Chance;
 
 /// What a combination is worth, the less the better: how far it breaks what it has to hold first, then the figure.
 pub type Worth = [f64; 2];
+
+/// The order of two, the better first.
+pub fn order(a: &Worth, b: &Worth) -> Ordering {
+    a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+}
 
 /// What there is to choose: for every digit one of `0..size`.
 pub struct Space<'a> {
@@ -56,7 +63,6 @@ pub fn descend(
     chance: &mut Chance,
     worth: &mut dyn FnMut(&[usize]) -> Option<Worth>,
 ) -> Option<End> {
-    let below = |a: &Worth, b: &Worth| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).is_lt();
     let steps = space.steps();
     let mut end = End {
         worth: worth(&start)?,
@@ -77,7 +83,7 @@ pub fn descend(
             let Some(there) = worth(&next) else {
                 return Some(end);
             };
-            if below(&there, &end.worth) {
+            if order(&there, &end.worth).is_lt() {
                 end.at.clone_from(&next);
                 end.worth = there;
                 continue 'better;

@@ -10,7 +10,7 @@ use super::search::{Reached, Search, worth};
 use super::wiring::{Alternative, MOST};
 use crate::error::{Error, Result};
 use crate::numerics::chance::Chance;
-use crate::numerics::exchange::{End, Space, Worth, descend};
+use crate::numerics::exchange::{End, Space, Worth, descend, order};
 use crate::study::sweep::pool;
 
 /// Searches, where no number of them is asked for.
@@ -142,11 +142,7 @@ pub fn explore(
             "interrupted before a design was computed; nothing is written".into(),
         ));
     }
-    let best = tried
-        .iter()
-        .map(Tried::worth)
-        .min_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])))
-        .unwrap_or(NOTHING);
+    let best = tried.iter().map(Tried::worth).min_by(order).unwrap_or(NOTHING);
     let same = |end: &&End| end.worth[0] == best[0] && (end.worth[1] - best[1]).abs() <= SAME * best[1].abs();
     let explored = Explored {
         of: choice.count(),

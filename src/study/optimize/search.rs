@@ -10,6 +10,7 @@ use super::found::{Derivatives, Design, Start};
 use super::look::{Seen, look};
 use super::problem::{Asked, Problem};
 use crate::error::{At, Code, Error, Result, SolverError};
+use crate::numerics::exchange::{Worth, order};
 use crate::numerics::sqp::{Ended, HELD, Minimum, Options, Point, minimise};
 use crate::study::span;
 use crate::study::sweep::{What, pool};
@@ -313,12 +314,11 @@ impl<'a> Search<'a> {
 /// Which of two ends of searches is the better, each with the size of the figure: the one that holds the limits, or nearer does, then the one with
 /// the better figure.
 pub fn better(a: (&Minimum, f64), b: (&Minimum, f64)) -> Ordering {
-    let ([a, x], [b, y]) = (worth(a.0, a.1), worth(b.0, b.1));
-    a.total_cmp(&b).then(x.total_cmp(&y))
+    order(&worth(a.0, a.1), &worth(b.0, b.1))
 }
 
 /// How far the end of a search is beyond its limits, and its figure with the sign that makes less the better.
-pub fn worth(minimum: &Minimum, size: f64) -> [f64; 2] {
+pub fn worth(minimum: &Minimum, size: f64) -> Worth {
     let violation = minimum.at.violation();
     let beyond = if violation > HELD { violation } else { 0.0 };
     [beyond, minimum.at.value * size]
