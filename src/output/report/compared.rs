@@ -23,15 +23,8 @@ const INSTANTS: usize = 1500;
 /// It cannot be written, or something else stands in its place.
 pub fn compared(dir: &Path, all: &[Recording], reference: usize, found: &Beside) -> Result<Written> {
     let names = names(found);
-    let mut page = Page {
-        name: format!("{} and {}", names[0], others(names.len() - 1)),
-        ..Page::default()
-    };
-    let title = page.name.clone();
-    page.put("kind", "comparison");
-    page.put("version", env!("CARGO_PKG_VERSION"));
-    page.put("label", "Results side by side");
-    page.put("name", title);
+    let name = format!("{} and {}", names[0], others(names.len() - 1));
+    let mut page = begun("Results side by side", name);
     page.put("answer", answer(found, &names));
     page.put("warnings", warnings::groups(&[]));
     page.put(
@@ -58,15 +51,8 @@ pub fn compared(dir: &Path, all: &[Recording], reference: usize, found: &Beside)
 /// # Errors
 /// It cannot be written, or something else stands in its place.
 pub fn over_data(dir: &Path, picture: &str, found: &Data) -> Result<Written> {
-    let mut page = Page {
-        name: format!("{} over {}", found.case, file_name(&found.data)),
-        ..Page::default()
-    };
-    let title = page.name.clone();
-    page.put("kind", "comparison");
-    page.put("version", env!("CARGO_PKG_VERSION"));
-    page.put("label", "A run over measured data");
-    page.put("name", title);
+    let name = format!("{} over {}", found.case, file_name(&found.data));
+    let mut page = begun("A run over measured data", name);
     page.put(
         "facts",
         vec![format!("Run: {}", found.run), format!("Data: {}", found.data)],
@@ -103,6 +89,19 @@ pub fn over_data(dir: &Path, picture: &str, found: &Data) -> Result<Written> {
         }),
     );
     put(&page, dir)
+}
+
+/// A page that says what it is.
+fn begun(label: &str, name: String) -> Page {
+    let mut page = Page {
+        name: name.clone(),
+        ..Page::default()
+    };
+    page.put("kind", "comparison");
+    page.put("version", env!("CARGO_PKG_VERSION"));
+    page.put("label", label);
+    page.put("name", name);
+    page
 }
 
 fn put(page: &Page, dir: &Path) -> Result<Written> {
