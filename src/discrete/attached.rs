@@ -49,15 +49,13 @@ pub struct Attached {
 }
 
 impl Attached {
-    /// All of a model in the order of their places, with the masses of the nodes [kg].
-    pub fn all(attachments: &[Attachment], section: &Section, mesh: &Mesh) -> (Vec<Self>, Vec<f64>) {
+    /// All of a model in the order of their places, with the masses of the nodes [kg], of which the beam has those of these lengths [m].
+    pub fn all(attachments: &[Attachment], section: &Section, mesh: &Mesh, lengths: &[f64]) -> (Vec<Self>, Vec<f64>) {
         let mut all: Vec<_> = (0..attachments.len())
             .map(|number| Self::new(number, &attachments[number], section, mesh))
             .collect();
         all.sort_by_key(|attached| attached.node);
-        let nodes = 0..mesh.nodes;
-        let mut masses: Vec<f64> = nodes.map(|i| section.mass_per_length * mesh.node_length(i)).collect();
-        mesh.lump(&mut masses);
+        let mut masses: Vec<f64> = lengths.iter().map(|length| section.mass_per_length * length).collect();
         for attached in &all {
             for (k, weight) in attached.weights.into_iter().enumerate() {
                 masses[attached.node + k] += weight * attachments[attached.number].mass;

@@ -63,7 +63,7 @@ pub struct System {
     pub probes: Vec<Probe>,
     /// Masses of the nodes [kg].
     pub masses: Vec<f64>,
-    /// Lengths over which what surrounds the beam acts on nodes [m].
+    /// Lengths whose mass nodes have, and over which what surrounds the beam acts on them [m].
     pub lengths: Vec<f64>,
     /// Whether nothing but loads, ends and sections acts on nodes: nothing surrounds the beam, is attached to it or touched by it.
     pub stands_alone: bool,
@@ -210,11 +210,11 @@ impl System {
         let has_moments = loads
             .iter()
             .any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ));
-        let (attached, masses) = Attached::all(&model.attachments, &model.section, &mesh);
-        let bodies = Body::all(&model.attachments, &model.ends, model.kinematics, &mesh);
-        let touching = Touching::all(&model.contacts, &mesh);
         let mut lengths: Vec<_> = (0..mesh.nodes).map(|node| mesh.node_length(node)).collect();
         mesh.lump(&mut lengths);
+        let (attached, masses) = Attached::all(&model.attachments, &model.section, &mesh, &lengths);
+        let bodies = Body::all(&model.attachments, &model.ends, model.kinematics, &mesh);
+        let touching = Touching::all(&model.contacts, &mesh);
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
         let nothing_attached = attached.is_empty() && bodies.is_empty() && touching.is_empty();
         Self {

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::residual::bending::pressure_curvature;
+use super::residual::fourth;
 use super::residual::solid::node_stretch;
 use super::{System, TimeData, Workspace};
 use crate::case::schema::Effect;
@@ -114,14 +115,8 @@ fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut R
 
 fn stretch(system: &System, w: &Workspace<f64>, normal: &mut [f64]) {
     if system.model.effects.has(Effect::AxialStretch) {
-        let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
         for (c, normal) in normal.iter_mut().enumerate() {
-            let free = if pressed {
-                w.coupling.pressure_stretch[c / system.mesh.cells_per_segment]
-            } else {
-                0.0
-            };
-            *normal = system.model.section.axial_stiffness * (w.shape.strain[c] - free);
+            *normal = system.model.section.axial_stiffness * fourth::elastic_stretch(system, w, c);
         }
         return;
     }

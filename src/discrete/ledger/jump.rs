@@ -1,6 +1,6 @@
 //! What is done in no time: work at a switch, where a solid without inertia jumps with its load and ends turn with their moment.
 
-use super::{EnergyRate, add, complete, fluid, ports, solid};
+use super::{EnergyRate, add, add_rates, fluid, ports, solid};
 use crate::discrete::kick::{self, Nodal};
 use crate::discrete::{System, TimeData, Workspace};
 use crate::functions::signals::Jet;
@@ -39,7 +39,7 @@ pub fn travel(now: &mut TimeData, [before, after]: [&TimeData; 2]) {
 /// trapezoid rule along the straight way, exact where the response is linear.
 pub fn side(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
-    let w = &*complete(system, now, yp, w);
+    add_rates(system, now, yp, w);
     let rates = fluid::rates(system, w, out);
     solid::flows(system, now, rates, w, out);
     fluid::lumped_jump(system, now, w, out);

@@ -201,9 +201,9 @@ pub fn by_law(integrals: &[f64], open: usize, count: usize) -> (f64, f64) {
 /// The workspace must hold [`residual::evaluate`] of the same state; rates are added to it here.
 pub fn flows(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
-    let state = complete(system, now, yp, w);
-    let rates = fluid::rates(system, &state, out);
-    solid::flows(system, now, rates, &state, out);
+    add_rates(system, now, yp, w);
+    let rates = fluid::rates(system, w, out);
+    solid::flows(system, now, rates, w, out);
     fluid::flows(system, now, w, out);
     ports::rates(system, now, w, out);
 }
@@ -211,13 +211,18 @@ pub fn flows(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>
 /// What balances and samples need and no equation does: rates of strain, means, motion along where it has no unknowns.
 /// The workspace must hold [`residual::evaluate`] of the same state.
 pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Workspace<f64>) -> State<'w> {
+    add_rates(system, now, yp, w);
+    readings::read(system, now, w);
+    State(w)
+}
+
+/// What balances need: all of [`complete`] but what is read off.
+fn add_rates(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>) {
     residual::complete(system, now, yp, w);
     fluid::complete(system, now, yp, w);
     if !system.model.effects.has(Effect::AxialStretch) {
         fluid::foreshorten(system, now, w);
     }
-    readings::read(system, now, w);
-    State(w)
 }
 
 /// Energies of a state.

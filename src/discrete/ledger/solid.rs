@@ -145,8 +145,7 @@ fn bending(
     };
     let part = |moments: &[f64]| moments.get(i).copied().unwrap_or(0.0);
     let forces = &w.forces;
-    let besides = part(&forces.nonlinear_moment) + part(&forces.relaxing_moment);
-    let elastic = forces.moment[i] + besides;
+    let elastic = forces.moment[i] + part(&forces.nonlinear_moment) + part(&forces.relaxing_moment);
     let moment = elastic + forces.viscous_moment[i];
     if let Some(e) = end {
         let (sign, cell) = if i == 0 { (1.0, 0) } else { (-1.0, last - 1) };

@@ -160,13 +160,20 @@ pub fn of_bending(system: &System, now: &TimeData, w: &Workspace<f64>, node: usi
     0.5 * system.mesh.node_length(node) * w.forces.moment[node] * elastic_curvature(system, now, w, node)
 }
 
+/// `e_c = λ_c - 1 - λ_p` of a cell.
+pub fn elastic_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
+    let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
+    let free = if pressed {
+        w.coupling.pressure_stretch[cell / system.mesh.cells_per_segment]
+    } else {
+        0.0
+    };
+    w.shape.strain[cell] - free
+}
+
 /// Energy of stretch in a cell [J].
 pub fn of_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
-    let mut elastic = w.shape.strain[cell];
-    if system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch) {
-        elastic -= w.coupling.pressure_stretch[cell / system.mesh.cells_per_segment];
-    }
-    0.5 * system.mesh.h * w.forces.normal[cell] * elastic
+    0.5 * system.mesh.h * w.forces.normal[cell] * elastic_stretch(system, w, cell)
 }
 
 /// What fourth order is refused for.
