@@ -11,7 +11,7 @@ use crate::results;
 use crate::study::sense::basis::{Basis, amplitudes};
 use crate::study::sense::choose::Criterion;
 use crate::study::sense::estimate::Smoothing;
-use crate::study::sense::find::{Asked, find};
+use crate::study::sense::find::{Asked, Dynamic, find};
 use crate::study::sense::pressures::Measured;
 use crate::study::sense::rest::probed;
 
@@ -84,9 +84,14 @@ fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
         .map(|text| Basis::parse(text))
         .collect::<Result<_>>()?;
     let profile = loads.iter().any(|load| matches!(load, Basis::Profile(_)));
-    if let Some(how) = asked.smoothing.as_ref().filter(|_| !profile) {
+    if let (Smoothing::Fixed(deviation), true) = (smoothing, asked.dynamic) {
         return Err(Error::Usage(format!(
-            "--smoothing {how}: only a profile is smooth, and none is looked for; ask for one (--load profile:10), or leave --smoothing out"
+            "--smoothing {deviation}: over time there are likelihood, discrepancy and off; several loads have several units"
+        )));
+    }
+    if let Some(how) = asked.smoothing.as_ref().filter(|_| !profile && !asked.dynamic) {
+        return Err(Error::Usage(format!(
+            "--smoothing {how}: only a profile, or a load over time, is smooth, and none is looked for; ask for one (--load profile:10, --dynamic), or leave --smoothing out"
         )));
     }
     Ok(Asked {
@@ -94,6 +99,9 @@ fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
         noise_pa: asked.noise,
         smoothing,
         at_s,
+        dynamic: asked.dynamic.then(|| Dynamic {
+            knots: asked.knots.map(usize::from),
+        }),
         choose: by.map(|by| match by {
             "volume" => Criterion::Volume,
             _ => Criterion::Variances,

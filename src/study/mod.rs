@@ -6,6 +6,7 @@ pub mod counted;
 pub mod data;
 pub mod effects;
 pub mod fit;
+pub mod followed;
 pub mod measure;
 pub mod optimize;
 pub mod refine;

@@ -164,12 +164,17 @@ impl<D: Dae> Ida<D> {
     ///
     /// Carries sensitivities along from the present time on, `sₖ` and `sₖ'` for each of the equations' parameters, consistent
     /// with [`super::consistent_sensitivities`]. Their tolerances are those of the unknowns, relative one and smallest absolute one.
-    /// To be called before the first step.
+    /// Those of the integrals go along where they are wanted. To be called before the first step.
     ///
     /// Panics when a sensitivity has another length than the unknowns.
-    pub fn carry(&mut self, from: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Box<IntegrationError>> {
+    pub fn carry(
+        &mut self,
+        from: &[Vec<f64>],
+        rates: &[Vec<f64>],
+        integrals: bool,
+    ) -> Result<(), Box<IntegrationError>> {
         let (count, n) = (self.dae().parameters(), self.dae().len());
-        let integrals = self.dae().integrals();
+        let integrals = if integrals { self.dae().integrals() } else { 0 };
         assert!(from.len() == count && rates.len() == count && from.iter().chain(rates).all(|s| s.len() == n));
         if count == 0 {
             return Ok(());

@@ -12,14 +12,14 @@ use crate::common::{QUICK, sensor};
 
 const CASE: &str = "cases/tour-sensor.json";
 
-struct Said {
-    code: i32,
+pub struct Said {
+    pub code: i32,
     out: String,
-    err: String,
+    pub err: String,
 }
 
 /// `sense` of the sensor's case without its own load on a quick mesh, `out` in the folder.
-fn sense(dir: &TempDir, more: &[&str]) -> Said {
+pub fn sense(dir: &TempDir, more: &[&str]) -> Said {
     let out = dir.path().join("out");
     let mut command = assert_cmd::Command::cargo_bin("slcbeam").unwrap();
     command.args(["sense", CASE]);
@@ -36,14 +36,14 @@ fn sense(dir: &TempDir, more: &[&str]) -> Said {
     }
 }
 
-fn found(dir: &TempDir, more: &[&str]) -> Value {
+pub fn found(dir: &TempDir, more: &[&str]) -> Value {
     let said = sense(dir, more);
     assert_eq!(said.code, 0, "{}", said.err);
     serde_json::from_str(&fs::read_to_string(dir.path().join("out/sense.json")).unwrap()).unwrap()
 }
 
 /// A file in the folder.
-fn file(dir: &TempDir, text: &str) -> String {
+pub fn file(dir: &TempDir, text: &str) -> String {
     let path = dir.path().join("p.csv");
     fs::write(&path, text).unwrap();
     path.to_str().unwrap().into()
@@ -71,7 +71,7 @@ fn pressures(sets: &[&str], loads: &[Basis], rows: &[&[f64]], bladders: &[i64]) 
     (text, amplitudes.iter().map(|a| a.size).collect())
 }
 
-fn number(value: &Value) -> f64 {
+pub fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 

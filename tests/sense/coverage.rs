@@ -38,7 +38,7 @@ fn noisy(truth: &DVector<f64>, sensors: &[usize], chance: &mut Chance) -> Vec<Op
 }
 
 /// Whether each amplitude lies within its band.
-fn within(found: &Estimate, truth: &[f64]) -> Vec<bool> {
+pub fn within(found: &Estimate, truth: &[f64]) -> Vec<bool> {
     let one = &found.found[0];
     let inside =
         |(k, truth): (usize, &f64)| (one.mean[k] - truth).abs() <= found.quantile * one.covariance[(k, k)].sqrt();
@@ -46,7 +46,7 @@ fn within(found: &Estimate, truth: &[f64]) -> Vec<bool> {
 }
 
 /// Share of trials in which each of the amplitudes is held.
-fn shares(trials: usize, one: &mut dyn FnMut(usize) -> Vec<bool>) -> Vec<f64> {
+pub fn shares(trials: usize, one: &mut dyn FnMut(usize) -> Vec<bool>) -> Vec<f64> {
     let mut held: Vec<usize> = vec![];
     for trial in 0..trials {
         let inside = one(trial);
@@ -141,7 +141,7 @@ fn bands_hold_the_loads_where_the_noise_is_estimated() {
     }
 }
 
-fn linear<'a>(jacobian: &DMatrix<f64>, data: Vec<Option<f64>>, deviation: f64) -> Problem<'a> {
+pub fn linear<'a>(jacobian: &DMatrix<f64>, data: Vec<Option<f64>>, deviation: f64) -> Problem<'a> {
     Problem {
         forward: Box::new(Linear(jacobian.clone())),
         deviation: vec![deviation; data.len()],

@@ -3,4 +3,5 @@
 mod command;
 mod common;
 mod coverage;
+mod over_time;
 mod rest;

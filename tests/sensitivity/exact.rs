@@ -47,7 +47,7 @@ fn closed_network_keeps_its_volume() {
         ..IdaOptions::default()
     };
     let mut ida = Ida::new(dae, 0.0, &y, &yp, &options).unwrap();
-    ida.carry(&s, &sp).unwrap();
+    ida.carry(&s, &sp, true).unwrap();
     let (mut largest, mut lost) = (0.0_f64, 0.0_f64);
     while !ida.step(0.01).unwrap().stopped {
         let t = ida.time();

@@ -293,12 +293,12 @@ def sense(
     progress: bool = False,
     **options: Any,
 ) -> Answer:
-    """Loads from measured pressures of bladders at rest, with bands of 95 % (``slcbeam sense``).
+    """Loads from measured pressures of bladders, at rest or over time, with bands of 95 % (``slcbeam sense``).
 
-    :param pressures: a CSV file, a dict of columns, or a frame of pandas: ``pressure_3_pa``, a row a measurement; without it, what pressures
-        would tell.
+    :param pressures: a CSV file, a dict of columns, or a frame of pandas: ``pressure_3_pa``, a row a measurement, or an
+        instant ``t_s`` with ``dynamic=True``; without it, what pressures would tell.
     :param load: what is looked for: ``tip-force``, ``tip-moment``, ``uniform``, ``point:0.5``, ``profile:8``, ..
-    :param options: ``noise=PA``, ``smoothing``, ``at=SECONDS``, ``choose="variances"``.
+    :param options: ``noise=PA``, ``smoothing``, ``dynamic=True``, ``knots``, ``at=SECONDS``, ``choose="variances"``.
     :returns: ``sense.json``; ``tables``.
     """
     return _do("sense", [case], pressures, out=out, progress=progress, options={"load": [load] if isinstance(load, str) else list(load), **options})

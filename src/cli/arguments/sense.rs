@@ -12,8 +12,8 @@ pub struct SenseArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
-    /// Measured pressures (CSV), a column a bladder such as `pressure_3_pa` or `pressure_-3_kpa`, a row a measurement at rest;
-    /// without it: what pressures would tell, and which to measure
+    /// Measured pressures (CSV), a column a bladder such as `pressure_3_pa` or `pressure_-3_kpa`, a row a measurement at rest, or
+    /// an instant (--dynamic); without it: what pressures would tell, and which to measure
     pub pressures: Option<PathBuf>,
     /// A load that is looked for, repeatable: tip-force, tip-moment, tip-axial, uniform, uniform-axial, profile:N with N places,
     /// point:S at a share S of the length [default: tip-force where the tip is free, uniform]
@@ -23,11 +23,18 @@ pub struct SenseArguments {
     /// loads leave]
     #[arg(long, value_name = "PA")]
     pub noise: Option<f64>,
-    /// How smooth a profile is taken to be: as the data speak for (likelihood), so that they are left their noise (discrepancy), off,
+    /// How smooth a profile, or a load over time, is taken to be: as the data speak for (likelihood), so that they are left their noise (discrepancy), off,
     /// or the standard deviation of its second differences [N/m]
     /// [default: likelihood]
     #[arg(long, value_name = "HOW")]
     pub smoothing: Option<String>,
+    /// Rows are instants (column t_s) of a run of the case, and the loads change while it lasts: with inertia and flow, by runs
+    #[arg(long, conflicts_with_all = ["at", "choose"], requires = "pressures")]
+    pub dynamic: bool,
+    /// Equally spaced instants between which a load over time is a smooth curve, from 4 to 200
+    /// [default: as many as rows, at most 41]
+    #[arg(long, value_name = "N", requires = "dynamic", value_parser = clap::value_parser!(u16).range(4..=200))]
+    pub knots: Option<u16>,
     /// Instant whose own loads of the case act besides [default: the end of the run]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub at: Option<f64>,

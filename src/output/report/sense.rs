@@ -66,6 +66,7 @@ pub fn data(place: &Place) -> Result<Page> {
     }
     let loads: String = found.loads.iter().map(|load| format!(" --load {load}")).collect();
     let data = found.data.as_ref().map_or(String::new(), |data| format!(" {data}"));
-    page.put("command", format!("slcbeam sense {CASE}{data}{loads}"));
+    let dynamic = if found.over_time.is_some() { " --dynamic" } else { "" };
+    page.put("command", format!("slcbeam sense {CASE}{data}{loads}{dynamic}"));
     Ok(page)
 }

@@ -127,7 +127,10 @@ fn drawn(found: &Sensed) -> Drawn {
             }
         }
     }
-    parts.extend(pressures(found));
+    match found.over_time {
+        Some(_) => parts.extend(pressures_over_time(found)),
+        None => parts.extend(pressures(found)),
+    }
     for (k, a) in found.amplitudes.iter().enumerate().take(MOST) {
         let of = found
             .choice
@@ -156,6 +159,34 @@ fn drawn(found: &Sensed) -> Drawn {
         about,
         parts,
     }
+}
+
+/// Bladders whose pressures over time are drawn, at most.
+const DRAWN: usize = 3;
+
+/// Pressures over time of the bladders in which they are largest.
+fn pressures_over_time(found: &Sensed) -> Vec<Part> {
+    let size = |k: usize| {
+        let all = found.rows.iter().filter_map(|row| row.measured_pa[k]);
+        all.fold(0.0_f64, |most, p| most.max(p.abs()))
+    };
+    let mut order: Vec<usize> = (0..found.bladders.len()).collect();
+    order.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
+    let part = |k: &usize| {
+        let timed = || found.rows.iter().filter_map(|row| Some((row.t_s?, row)));
+        let series = Series {
+            line: timed().map(|(t, row)| (t, row.modelled_pa[*k], 0.0)).collect(),
+            points: timed().filter_map(|(t, row)| Some((t, row.measured_pa[*k]?))).collect(),
+        };
+        Part {
+            axes: [
+                ("t".into(), "s".into()),
+                (format!("pressure of bladder {}", found.bladders[*k]), "Pa".into()),
+            ],
+            series: vec![series],
+        }
+    };
+    order.iter().take(DRAWN).map(part).collect()
 }
 
 /// Pressures along the beam of the row in which they are largest.

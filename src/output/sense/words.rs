@@ -16,7 +16,12 @@ pub fn words(found: &Sensed) -> String {
         let (headings, rows) = table(found);
         let mut lines = vec![headings];
         let more = rows.len().saturating_sub(ROWS);
-        lines.extend(rows.into_iter().take(ROWS));
+        // of a curve some instants from its start to its end, of measurements by themselves the first
+        let every = match found.over_time {
+            Some(_) => rows.len().div_ceil(ROWS),
+            None => 1,
+        };
+        lines.extend(rows.into_iter().step_by(every.max(1)).take(ROWS));
         text += &format!("\n{}", aligned(&lines, &[0]));
         if more > 0 {
             text += &format!("{} more rows in sense.csv\n", count(more as u64));
@@ -43,9 +48,13 @@ pub fn about_sight(found: &Sensed) -> String {
         many => format!("{many} bladders"),
     };
     let mut text = format!(
-        "{}: {} from the pressures of {bladders} at rest\n",
+        "{}: {} from the pressures of {bladders} {}\n",
         found.case,
-        loads.join(" + ")
+        loads.join(" + "),
+        match found.over_time {
+            Some(_) => "over time; of loads that do not change:",
+            None => "at rest",
+        }
     );
     let alone = |a: &&Unknown| a.error_per_pa.is_some();
     let told: Vec<&Unknown> = found.amplitudes.iter().filter(alone).collect();
@@ -192,11 +201,29 @@ pub fn about_noise(found: &Sensed) -> String {
     }
     if let Some(smoothed) = &found.smoothing {
         text += &format!(
-            "\nknown before: second differences of the profile have a standard deviation of {} N/m; bands include that",
-            significant(smoothed.deviation_n_m, 3)
+            "\nknown before: {}; bands include that",
+            match smoothed.deviation_n_m {
+                Some(deviation) => format!(
+                    "second differences of the profile have a standard deviation of {} N/m",
+                    significant(deviation, 3)
+                ),
+                None => "loads are smooth over time, as much as the pressures speak for".into(),
+            }
         );
     }
-    if found.rows.iter().any(|row| row.t_s.is_some()) {
+    if let Some(over_time) = &found.over_time {
+        let told = found.amplitudes.iter().zip(&over_time.told);
+        let told: Vec<String> = told
+            .map(|(a, told)| format!("{} of {}", significant(*told, 3), a.name))
+            .collect();
+        text += &format!(
+            "\nover time: {} values of each load, one every {} s, a smooth curve between; the pressures tell {}; {} runs",
+            over_time.knots,
+            significant(over_time.until_s / (over_time.knots - 1) as f64, 3),
+            told.join(", "),
+            over_time.runs
+        );
+    } else if found.rows.iter().any(|row| row.t_s.is_some()) {
         text += "\neach row is taken as at rest: inertia and flow are not in it";
     }
     text

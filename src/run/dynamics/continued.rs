@@ -6,7 +6,7 @@ use crate::case::schema::Case;
 use crate::discrete::System;
 use crate::error::Result;
 use crate::run::record::Recorder;
-use crate::run::sensitivity::forward::Alike;
+use crate::run::sensitivity::forward::{Alike, By};
 
 /// Derivatives that are carried along from a known beginning.
 pub struct Along<'a> {
@@ -26,8 +26,11 @@ pub fn go_on(
     along: Option<&Along<'_>>,
     recorder: &mut dyn Recorder,
 ) -> Result<Outcome> {
-    let (by, alike) = along.map_or((&[][..], None), |along| (along.by, Some(along.alike)));
-    let (mut run, mut dae) = Run::of(case, system, by, alike)?;
+    let by = along.map_or(By::default(), |along| By {
+        alike: Some(along.alike),
+        ..By::pointers(along.by)
+    });
+    let (mut run, mut dae) = Run::of(case, system, by)?;
     dae.enter_smooth_interval(0.5 * run.stops[0].t);
     run.prepare(&dae);
     run.state.copy_from_slice(y);

@@ -22,7 +22,7 @@ use super::method::{self, Integrator, Options};
 use super::observe::Observer;
 use super::record::{Control, Header, Progress, Recorder};
 use super::schedule::{self, Outputs, Stop};
-use super::sensitivity::forward::{Alike, Forward};
+use super::sensitivity::forward::{By, Forward};
 use super::strides::Strides;
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
 use super::wall::Laps;
@@ -56,7 +56,7 @@ pub fn run(case: &Case, recorder: &mut dyn Recorder) -> Result<Outcome> {
 /// # Errors
 /// The recorder's, and [`Error::Usage`](crate::error::Error::Usage) for a number by which there is no derivative.
 pub fn run_with(case: &Case, system: System, by: &[Parameter], recorder: &mut dyn Recorder) -> Result<Outcome> {
-    let (run, dae) = Run::of(case, system, by, None)?;
+    let (run, dae) = Run::of(case, system, By::pointers(by))?;
     run.go(dae, None, recorder)
 }
 
@@ -68,11 +68,11 @@ pub fn run_with(case: &Case, system: System, by: &[Parameter], recorder: &mut dy
 pub fn run_at(
     case: &Case,
     system: System,
-    by: &[Parameter],
+    by: By<'_>,
     instants: &[f64],
     recorder: &mut dyn Recorder,
 ) -> Result<Outcome> {
-    let (mut run, dae) = Run::of(case, system, by, None)?;
+    let (mut run, dae) = Run::of(case, system, by)?;
     run.outputs = Outputs::at(case, instants);
     run.go(dae, None, recorder)
 }
@@ -81,7 +81,7 @@ pub fn run_at(
 pub fn resume(case: &Case, system: System, checkpoint: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
     checkpoint.fits(case, &system)?;
     let parameters = checkpoint.forward.as_ref().map_or(&[][..], |kept| &kept.parameters);
-    let (run, dae) = Run::of(case, system, parameters, None)?;
+    let (run, dae) = Run::of(case, system, By::pointers(parameters))?;
     run.go(dae, Some(checkpoint), recorder)
 }
 
@@ -119,21 +119,16 @@ enum End {
 }
 
 impl<'a> Run<'a> {
-    fn of(
-        case: &'a Case,
-        system: System,
-        parameters: &'a [Parameter],
-        alike: Option<&Alike<'_>>,
-    ) -> Result<(Self, BeamDae)> {
+    fn of(case: &'a Case, system: System, by: By<'a>) -> Result<(Self, BeamDae)> {
         let laps = Laps::since(Instant::now());
         let interval = case.time.output_interval();
         let characteristic = characteristic::numbers(case, &system.model);
         let mut warnings = known::lasting(case, &system);
-        if !parameters.is_empty() {
+        if !by.parameters.is_empty() {
             warnings.extend(audit::derivatives(case));
         }
         let decisions = &system.model.effects.decisions;
-        let chosen = if parameters.is_empty() {
+        let chosen = if by.parameters.is_empty() {
             method::choose(case, &system)
         } else {
             method::with_sensitivities(case, &system)
@@ -221,8 +216,8 @@ impl<'a> Run<'a> {
             earlier: Counters::default(),
         };
         let mut dae = BeamDae::new(system);
-        if !parameters.is_empty() {
-            let (forward, with_neighbours) = Forward::new(case, dae, parameters, alike)?;
+        if !by.parameters.is_empty() {
+            let (forward, with_neighbours) = Forward::new(case, dae, by)?;
             (run.forward, dae) = (Some(forward), with_neighbours);
         }
         Ok((run, dae))

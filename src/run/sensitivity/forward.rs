@@ -10,9 +10,9 @@ use super::kept::Kept;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, PerturbedSystems};
-use crate::discrete::quantities::Observable;
 use crate::discrete::quantities::probes::{self, ProbeColumn};
 use crate::discrete::quantities::stations;
+use crate::discrete::quantities::{Observable, Read};
 use crate::discrete::{System, start};
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::integrate::{IntegrationError, consistent_sensitivities};
@@ -41,10 +41,37 @@ pub struct Forward<'a> {
     pub(super) carried: Vec<Vec<f64>>,
     pub(super) figures: Vec<Figures>,
     pub(super) row: Vec<f64>,
+    pub(super) states_only: bool,
 }
 
 /// The system of a changed case in the unknowns and scales of that of the case; none when they are others.
 pub type Alike<'a> = dyn Fn(&Case) -> Result<Option<System>> + 'a;
+
+/// The case with a value of the parameter that stands at this place among all.
+pub type Changed<'a> = dyn Fn(usize, f64) -> Result<Case> + 'a;
+
+/// Numbers by which a run is differentiated, and how changed cases and their systems come about.
+#[derive(Clone, Copy, Default)]
+pub struct By<'a> {
+    /// The numbers.
+    pub parameters: &'a [Parameter],
+    /// Systems of changed cases, where it is not those that each has by itself.
+    pub alike: Option<&'a Alike<'a>>,
+    /// Changed cases, where it is not by pointers: then a parameter is a name, and its value the size of which its changes are shares.
+    pub changed: Option<&'a Changed<'a>>,
+    /// Only what is read off states at output times, beam and probes: no figures, nothing of integrals, which cost more than all else.
+    pub states_only: bool,
+}
+
+impl<'a> By<'a> {
+    /// Numbers at their pointers.
+    pub fn pointers(parameters: &'a [Parameter]) -> Self {
+        Self {
+            parameters,
+            ..Self::default()
+        }
+    }
+}
 
 /// What must be known of the moment before a switch.
 pub struct Before {
@@ -55,20 +82,15 @@ pub struct Before {
 }
 
 impl<'a> Forward<'a> {
-    /// Sensitivities of a run of a case to some of its numbers, and the equations with the changed systems beside them, which are `alike`
-    /// where that is not what a case has by itself.
+    /// Sensitivities of a run of a case to some of its numbers, and the equations with the changed systems beside them.
     ///
     /// # Errors
     /// [`Error::Usage`] when a change of a number changes the unknowns or the number of switching times.
-    pub fn new(
-        case: &Case,
-        dae: BeamDae,
-        parameters: &'a [Parameter],
-        alike: Option<&Alike<'_>>,
-    ) -> Result<(Self, BeamDae)> {
+    pub fn new(case: &Case, dae: BeamDae, by: By<'a>) -> Result<(Self, BeamDae)> {
         let (mut perturbed, mut all_cases, mut all_stops) = (vec![], vec![], vec![]);
+        let parameters = by.parameters;
         let own = schedule::stops(case, &dae.system().model);
-        for parameter in parameters {
+        for (k, parameter) in parameters.iter().enumerate() {
             let refuse = |what: &str| {
                 Error::Usage(format!(
                     "--sensitivity {}: a small change of it {what}",
@@ -76,10 +98,14 @@ impl<'a> Forward<'a> {
                 ))
             };
             let like = |case: &Case| {
-                let system = alike.map_or_else(|| dae.system().like(case), |alike| alike(case))?;
+                let system = by.alike.map_or_else(|| dae.system().like(case), |alike| alike(case))?;
                 system.ok_or_else(|| refuse("changes which unknowns there are"))
             };
-            let [a, b, c, d] = STEPS.map(|(step, _)| parameter.changed(case, parameter.value * (1.0 + step * CHANGE)));
+            let changed = |value: f64| match by.changed {
+                Some(changed) => changed(k, value),
+                None => parameter.changed(case, value),
+            };
+            let [a, b, c, d] = STEPS.map(|(step, _)| changed(parameter.value * (1.0 + step * CHANGE)));
             let cases = [a?, b?, c?, d?];
             let [a, b, c, d] = cases.each_ref().map(like);
             let systems = [a?, b?, c?, d?];
@@ -96,7 +122,8 @@ impl<'a> Forward<'a> {
         }
         let count = parameters.len();
         let columns = Observable::of(dae.system()).into_iter();
-        let columns: Vec<_> = columns.filter(|one| one.has_derivative()).collect();
+        let read_off = |one: &Observable| !by.states_only || matches!(one.read(), Read::State(_));
+        let columns: Vec<_> = columns.filter(|one| one.has_derivative() && read_off(one)).collect();
         let turbines = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
         let window_start = case.time.end_s - case.time.window() * (1.0 + schedule::SAME);
         let forward = Self {
@@ -104,8 +131,15 @@ impl<'a> Forward<'a> {
             cases: all_cases,
             stops: all_stops,
             columns,
-            stations: stations::columns(dae.system(), false),
-            volumes: stations::integrated(dae.system()),
+            stations: match by.states_only {
+                true => vec![],
+                false => stations::columns(dae.system(), false),
+            },
+            volumes: match by.states_only {
+                true => vec![],
+                false => stations::integrated(dae.system()),
+            },
+            states_only: by.states_only,
             probes: probes::columns(dae.system()).collect(),
             s: vec![vec![0.0; dae.len()]; count],
             sp: vec![vec![0.0; dae.len()]; count],
@@ -180,7 +214,7 @@ impl<'a> Forward<'a> {
         if again {
             ida.carry_on(&self.s, &self.sp)
         } else {
-            ida.carry(&self.s, &self.sp)
+            ida.carry(&self.s, &self.sp, !self.states_only)
         }
     }
 

@@ -37,6 +37,9 @@ impl Forward<'_> {
         row: &Row,
     ) -> std::result::Result<&[f64], Box<IntegrationError>> {
         self.derive(ida, t, state)?;
+        if self.states_only {
+            return Ok(&self.row);
+        }
         let (columns, each, behind) = (&self.columns, self.each(), self.before_probes());
         for (figures, derivatives) in self.figures.iter_mut().zip(parts(&self.row, each)) {
             let probed = derivatives[behind..].iter().zip(row.at_probes());
@@ -57,6 +60,9 @@ impl Forward<'_> {
         t: f64,
         state: [&[f64]; 2],
     ) -> std::result::Result<(), Box<IntegrationError>> {
+        if self.states_only {
+            return Ok(());
+        }
         self.derive(ida, t, state)?;
         let reads = self.reads();
         let (system, now, w) = ida.dae_mut().evaluate(t, state[0], state[1]);

@@ -9,7 +9,9 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::run::dynamics;
 use crate::run::equilibrium::{self, Options};
-use crate::run::record::{Control, Header, Progress, Recorder};
+use crate::run::record::Control;
+use crate::run::sensitivity::forward::By;
+use crate::study::followed::{Followed, Row};
 use crate::study::slopes;
 use crate::study::sweep::pool;
 
@@ -21,9 +23,6 @@ pub struct Simulated {
     /// Derivatives by each number, per unit of it.
     pub slopes: DMatrix<f64>,
 }
-
-/// A row: a value of each matched column, and derivatives by each number.
-type Row = (Vec<f64>, Vec<Vec<f64>>);
 
 /// Simulates a problem with values of its numbers.
 ///
@@ -47,78 +46,11 @@ fn run(problem: &Problem, values: &[f64], instants: &[f64]) -> Result<Vec<Row>> 
     // effects stay those of the case itself: a sum of squares must not jump where another would be chosen
     let system = slopes::alike_or_own(&case, Some(&System::new(&problem.case)?))?;
     let parameters = problem.parameters(values);
-    let mut recorder = Rows {
-        problem,
-        places: vec![],
-        slopes: vec![],
-        rows: vec![],
-    };
-    let outcome = dynamics::run_at(&case, system, &parameters, instants, &mut recorder)?;
-    let rows = recorder.rows;
-    if rows.len() == instants.len() && rows.iter().all(|row| !row.1.is_empty()) {
-        return Ok(rows);
-    }
-    Err(match outcome.fault {
-        Some(fault) => Error::Solver(Box::new(fault)),
-        None => Error::Usage(
-            outcome
-                .summary
-                .reason
-                .unwrap_or_else(|| "the run ended before the data".into()),
-        ),
-    })
-}
-
-/// Keeps the rows of a run.
-struct Rows<'a> {
-    problem: &'a Problem,
-    places: Vec<usize>,
-    slopes: Vec<Vec<usize>>,
-    rows: Vec<Row>,
-}
-
-impl Recorder for Rows<'_> {
-    fn begin(&mut self, header: &Header) -> Result<()> {
-        let missing = |name: &str| Error::Usage(format!("the run has no {name} with these numbers"));
-        for one in &self.problem.matched {
-            let place = header.columns.iter().position(|column| column.name == one.name);
-            self.places.push(place.ok_or_else(|| missing(&one.name))?);
-        }
-        for span in &self.problem.spans {
-            let of = |name: &str| {
-                let begin = format!("d {name}/d {} [", span.pointer);
-                let place = header.sensitivities.iter().position(|own| own.starts_with(&begin));
-                place.ok_or_else(|| missing(&format!("derivative of {name}")))
-            };
-            let places = self.problem.matched.iter().map(|one| of(&one.name));
-            self.slopes.push(places.collect::<Result<_>>()?);
-        }
-        Ok(())
-    }
-
-    fn history(&mut self, row: &[f64]) -> Result<()> {
-        self.rows.push((self.places.iter().map(|k| row[*k]).collect(), vec![]));
-        Ok(())
-    }
-
-    fn sensitivities(&mut self, row: &[f64]) -> Result<()> {
-        let of = |places: &Vec<usize>| places.iter().map(|k| row[*k]).collect();
-        if let Some(last) = self.rows.last_mut() {
-            last.1 = self.slopes.iter().map(of).collect();
-        }
-        Ok(())
-    }
-
-    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
-        Ok(())
-    }
-
-    fn progress(&mut self, _: &Progress) -> Result<Control> {
-        Ok(match self.rows.len() < self.problem.rows() {
-            true => Control::Continue,
-            false => Control::Stop("all instants of the data are passed".into()),
-        })
-    }
+    let names: Vec<String> = problem.matched.iter().map(|one| one.name.clone()).collect();
+    let by: Vec<&str> = parameters.iter().map(|parameter| parameter.pointer.as_str()).collect();
+    let mut recorder = Followed::new(&names, &by, problem.rows(), &|| false);
+    let outcome = dynamics::run_at(&case, system, By::pointers(&parameters), instants, &mut recorder)?;
+    recorder.of(outcome)
 }
 
 /// Every row an equilibrium of its own; as many at once as there are jobs.

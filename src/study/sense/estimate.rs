@@ -15,6 +15,11 @@ pub trait Forward {
     /// # Errors
     /// There is no such state.
     fn at(&mut self, amplitudes: &[f64]) -> Result<(DVector<f64>, DMatrix<f64>)>;
+
+    /// Share of the values below which they are not smooth in the amplitudes.
+    fn grain(&self) -> f64 {
+        CLOSE
+    }
 }
 
 /// Measurements that some amplitudes are to explain.
@@ -69,8 +74,8 @@ pub struct Found {
     pub jacobian: DMatrix<f64>,
     /// What of the amplitudes is told, by the measurements and what is known before.
     pub seen: Seen,
-    /// Steps of the iteration.
-    pub steps: u32,
+    /// Times that values were computed.
+    pub runs: u32,
 }
 
 /// Amplitudes of all problems, and what they share.
@@ -116,7 +121,7 @@ const SAME_WEIGHT: f64 = 0.02;
 pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
     let rank = match ask.smoothing {
         Smoothing::Off => 0,
-        _ => ask.differences.nrows(),
+        _ => rank(ask.differences),
     };
     let mut weight = match ask.smoothing {
         Smoothing::Fixed(deviation) => 1.0 / deviation,
@@ -191,7 +196,7 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
         covariance: posterior.spread * (noise * noise),
         predicted: state.values,
         jacobian: state.jacobian,
-        steps: state.steps,
+        runs: state.runs,
     });
     Ok(Estimate {
         found: found.collect(),
@@ -204,6 +209,14 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
         },
         deviation_of_differences: (rank > 0).then(|| noise / own),
     })
+}
+
+/// Differences that do not follow from the others.
+fn rank(differences: &DMatrix<f64>) -> usize {
+    match differences.is_empty() {
+        true => 0,
+        false => Seen::of(differences).values.len(),
+    }
 }
 
 /// The rows of both, each of size 1.
@@ -259,7 +272,7 @@ struct State {
     jacobian: DMatrix<f64>,
     /// Values that were measured: place, measurement, deviation.
     measured: Vec<(usize, f64, f64)>,
-    steps: u32,
+    runs: u32,
 }
 
 impl State {
@@ -272,7 +285,7 @@ impl State {
             values,
             jacobian,
             measured: measured.collect(),
-            steps: 0,
+            runs: 1,
         }
     }
 
@@ -312,7 +325,7 @@ impl State {
             let posterior = self.linear().posterior(before);
             let whole = &posterior.x - &self.at;
             let change = (self.weighted() * &whole).norm().max((before * &whole).norm());
-            if change <= CLOSE * size.max(f64::MIN_POSITIVE) {
+            if change <= problem.forward.grain() * size.max(f64::MIN_POSITIVE) {
                 return Ok(posterior);
             }
             let cost = |at: &DVector<f64>, values: &DVector<f64>| {
@@ -320,11 +333,12 @@ impl State {
             };
             let now = cost(&self.at, &self.values);
             let mut share = 1.0;
-            let mut taken = None;
+            let (mut taken, mut runs) = (None, 0);
             for _ in 0..HALVINGS {
                 let there = &self.at + &whole * share;
+                runs += 1;
                 match problem.forward.at(there.as_slice()) {
-                    Ok((values, jacobian)) if cost(&there, &values) <= now * (1.0 + 1e-9) => {
+                    Ok((values, jacobian)) if cost(&there, &values) <= now * (1.0 + problem.forward.grain()) => {
                         taken = Some((there, values, jacobian));
                         break;
                     }
@@ -333,7 +347,7 @@ impl State {
                     Err(_) => share *= 0.5,
                 }
             }
-            self.steps += 1;
+            self.runs += runs;
             match taken {
                 Some(taken) => (self.at, self.values, self.jacobian) = taken,
                 // no step makes it better: it is as good as round-off lets it be

@@ -7,7 +7,11 @@
 //! estimate   amplitudes from measurements, with bands
 //! weight     that of what is known before
 //! choose     which bladders to measure
+//! sight      what pressures tell at all
+//! told       what an estimate tells
 //! find       all of it, of a case
+//! in_time    pressures in time under loads that change
+//! over_time  loads that change
 //! sensed     what was found
 //! ```
 
@@ -15,7 +19,11 @@ pub mod basis;
 pub mod choose;
 pub mod estimate;
 pub mod find;
+pub mod in_time;
+mod over_time;
 pub mod pressures;
 pub mod rest;
 pub mod sensed;
+mod sight;
+mod told;
 mod weight;

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::basis::{Amplitude, loaded};
 use super::estimate::Forward;
+use super::in_time::interrupted;
 use crate::case::parameter::CHANGE;
 use crate::case::schema::{Case, Probe};
 use crate::case::wiring::bladder_label;
@@ -127,9 +128,7 @@ impl<'a> AtRest<'a> {
     /// There is no such state.
     pub fn go(&mut self, amplitudes: &[f64]) -> Result<DVector<f64>> {
         if self.stop.is_some_and(|stop| stop()) {
-            return Err(Error::Usage(
-                "interrupted before the loads were found; nothing is written".into(),
-            ));
+            return Err(interrupted());
         }
         let case = with(self.case, self.amplitudes, amplitudes, self.since);
         self.last = match self.last.beside(&case, self.options)? {

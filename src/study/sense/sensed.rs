@@ -32,6 +32,9 @@ pub struct Sensed {
     /// What was known before.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub smoothing: Option<Smoothed>,
+    /// How loads over time were found; none where each row is at rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub over_time: Option<OverTime>,
     /// One a row of the measurements.
     pub rows: Vec<Row>,
     /// The best bladders to measure, where that was asked.
@@ -105,13 +108,29 @@ pub struct Noise {
     pub quantile: f64,
 }
 
-/// What was known before: that a profile has small second differences.
+/// What was known before: that a profile, or a load over time, has small second differences.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Smoothed {
     /// How their deviation was chosen.
     pub by: Smoothing,
-    /// Their deviation [N/m].
-    pub deviation_n_m: f64,
+    /// That of a profile at rest [N/m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deviation_n_m: Option<f64>,
+}
+
+/// Loads over time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OverTime {
+    /// Equally spaced instants between which each load is a natural cubic spline.
+    pub knots: usize,
+    /// The last of them; the first is the start of the run [s].
+    pub until_s: f64,
+    /// Of each load how many of the values at knots the pressures tell; the others are known by its smoothness.
+    pub told: Vec<f64>,
+    /// Correlation of what is left of a pressure with what is left of it an instant before: about nothing, where that is noise.
+    pub correlation: f64,
+    /// Runs that it took.
+    pub runs: u32,
 }
 
 /// A number with its band of 95 %.

@@ -1,0 +1,101 @@
+//! Columns of a run at chosen instants, with their derivatives.
+
+use crate::error::{Error, Result};
+use crate::run::dynamics::Outcome;
+use crate::run::record::{Control, Header, Progress, Recorder};
+
+/// A row: a value of each column, and of each number the derivatives of all columns.
+pub type Row = (Vec<f64>, Vec<Vec<f64>>);
+
+/// Keeps chosen columns of a run.
+pub struct Followed<'a> {
+    /// Names of the columns.
+    names: &'a [String],
+    /// Names of the numbers by which is differentiated.
+    by: &'a [&'a str],
+    /// Rows that are looked for; the run may end with the last.
+    count: usize,
+    /// Asked at every step whether to stop.
+    stop: &'a dyn Fn() -> bool,
+    places: Vec<usize>,
+    slopes: Vec<Vec<usize>>,
+    rows: Vec<Row>,
+}
+
+impl<'a> Followed<'a> {
+    /// So many rows of columns, with derivatives.
+    pub fn new(names: &'a [String], by: &'a [&'a str], count: usize, stop: &'a dyn Fn() -> bool) -> Self {
+        Self {
+            names,
+            by,
+            count,
+            stop,
+            places: vec![],
+            slopes: vec![],
+            rows: vec![],
+        }
+    }
+
+    /// The rows of a run that has ended.
+    ///
+    /// # Errors
+    /// It ended before the last of them.
+    pub fn of(self, outcome: Outcome) -> Result<Vec<Row>> {
+        if self.rows.len() == self.count && self.rows.iter().all(|row| row.1.len() == self.by.len()) {
+            return Ok(self.rows);
+        }
+        Err(match outcome.fault {
+            Some(fault) => Error::Solver(Box::new(fault)),
+            None => Error::Usage(
+                outcome
+                    .summary
+                    .reason
+                    .unwrap_or_else(|| "the run ended before the data".into()),
+            ),
+        })
+    }
+}
+
+impl Recorder for Followed<'_> {
+    fn begin(&mut self, header: &Header) -> Result<()> {
+        let missing = |name: &str| Error::Usage(format!("the run has no {name} with these numbers"));
+        for name in self.names {
+            let place = header.columns.iter().position(|column| column.name == *name);
+            self.places.push(place.ok_or_else(|| missing(name))?);
+        }
+        for number in self.by {
+            let of = |name: &String| {
+                let begin = format!("d {name}/d {number} [");
+                let place = header.sensitivities.iter().position(|own| own.starts_with(&begin));
+                place.ok_or_else(|| missing(&format!("derivative of {name}")))
+            };
+            self.slopes.push(self.names.iter().map(of).collect::<Result<_>>()?);
+        }
+        Ok(())
+    }
+
+    fn history(&mut self, row: &[f64]) -> Result<()> {
+        self.rows.push((self.places.iter().map(|k| row[*k]).collect(), vec![]));
+        Ok(())
+    }
+
+    fn sensitivities(&mut self, row: &[f64]) -> Result<()> {
+        let of = |places: &Vec<usize>| places.iter().map(|k| row[*k]).collect();
+        if let Some(last) = self.rows.last_mut() {
+            last.1 = self.slopes.iter().map(of).collect();
+        }
+        Ok(())
+    }
+
+    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
+        Ok(())
+    }
+
+    fn progress(&mut self, _: &Progress) -> Result<Control> {
+        Ok(match ((self.stop)(), self.rows.len() < self.count) {
+            (true, _) => Control::Stop("interrupted".into()),
+            (_, true) => Control::Continue,
+            (_, false) => Control::Stop("all instants of the data are passed".into()),
+        })
+    }
+}

@@ -1,0 +1,251 @@
+//! Loads that change while pressures are measured, with inertia and flow.
+//!
+//! A load is a natural cubic spline through its values at knots, which are found as amplitudes of loads at rest are:
+//!
+//! ```text
+//! a = argmin Σ ((p(t_i) - p(t_i; a))/σ)² + |R a|²/τ²        R: second differences of each load in time
+//! ```
+//!
+//! The spline through given values is the curve with the least integral of its squared second derivative: with many knots, the mean is that
+//! of a load that is the integral of a Wiener process before anything is measured (Wahba, J. R. Stat. Soc. B 40, 364, 1978).
+
+use nalgebra::{DMatrix, DVector};
+
+use super::basis::{self, Amplitude};
+use super::estimate::{Ask, Estimate, Forward as _, Found, Problem, estimate};
+use super::find::{Asked, differences as along_the_beam, nothing_told};
+use super::in_time::{InTime, Knots};
+use super::pressures::Measured;
+use super::rest::{labels, probed};
+use super::sensed::{OverTime, Row, Sensed, Smoothed};
+use super::sight::{over_sizes, sight};
+use super::told::{self, Left, banded, left, unexplained};
+use crate::case::schema::Case;
+use crate::error::{Code, Error, Result};
+use crate::numerics::inverse::{Seen, second_differences};
+use crate::run::known;
+
+/// Knots at least: a spline with fewer is hardly one.
+const FEWEST: usize = 4;
+/// Knots where nothing else is asked for, at most.
+const USUAL: usize = 41;
+/// Amplitudes of all loads at all knots, at most: every one of them is differentiated by in each run.
+const ALL: usize = 400;
+/// Standard errors of a correlation, above which what is left is not noise.
+const UNLIKELY: f64 = 4.0;
+
+/// Looks for loads over time behind measured pressures.
+///
+/// # Errors
+/// [`Error::Usage`]: no instants, too few or after the end of the run; too many knots; those of the runs.
+pub(super) fn find(
+    case: &Case,
+    measured: &Measured,
+    asked: &Asked,
+    knots: Option<usize>,
+    stop: &dyn Fn() -> bool,
+) -> Result<Sensed> {
+    let loads = asked.loads(case);
+    let amplitudes = basis::amplitudes(case, &loads)?;
+    let instants = instants(case, measured)?;
+    let knots = Knots::new(
+        knot_count(knots, instants.len(), amplitudes.len())?,
+        instants[instants.len() - 1],
+    );
+    let (probed, names) = probed(case)?;
+    let all = labels(case);
+    let names: Vec<String> = measured.bladders.iter().map(|b| names[*b].clone()).collect();
+    let mut model = InTime::new(&probed, names, &amplitudes, &knots, &instants, stop)?;
+    let zeros = vec![0.0; knots.at.len() * amplitudes.len()];
+    let first = model.at(&zeros)?;
+    let mut found = Sensed {
+        case: case.name.clone(),
+        loads,
+        bladders: measured.bladders.iter().map(|b| all[*b]).collect(),
+        ..Sensed::default()
+    };
+    let lasting = constant(&first.1, amplitudes.len());
+    if Seen::of(&lasting).values.is_empty() {
+        return Err(nothing_told());
+    }
+    sight(&mut found, &amplitudes, &lasting);
+    let differences = differences(&amplitudes, &found, knots.at.len());
+    let deviation = (0..instants.len()).flat_map(|row| match &measured.deviations {
+        Some(all) => all[row].clone(),
+        None => vec![asked.noise_pa.unwrap_or(1.0); measured.bladders.len()],
+    });
+    let warnings = known::lasting(case, &model.system(&model.loaded(&zeros))?);
+    let mut problems = [Problem {
+        forward: Box::new(model),
+        data: measured.rows.iter().flatten().copied().collect(),
+        deviation: deviation.collect(),
+        start: DVector::zeros(zeros.len()),
+        first,
+    }];
+    let ask = Ask {
+        differences: &differences,
+        smoothing: asked.smoothing,
+        noise_known: measured.deviations.is_some() || asked.noise_pa.is_some(),
+    };
+    let estimate = estimate(&mut problems, &ask)?;
+    let one = &estimate.found[0];
+    sight(&mut found, &amplitudes, &constant(&one.jacobian, amplitudes.len()));
+    found.rows = rows(&found, measured, (&knots, &amplitudes), &estimate);
+    found.noise = Some(told::noise(asked, measured, &estimate));
+    found.smoothing = estimate.deviation_of_differences.map(|_| Smoothed {
+        by: asked.smoothing,
+        deviation_n_m: None,
+    });
+    let left: Vec<Left> = left(&problems[0], one, &measured.bladders).collect();
+    let correlation = correlation(&left);
+    found.over_time = Some(OverTime {
+        knots: knots.at.len(),
+        until_s: instants[instants.len() - 1],
+        told: resolved(one, &problems[0], &estimate, amplitudes.len()),
+        correlation,
+        runs: one.runs,
+    });
+    found.warnings = warnings;
+    let off = ask
+        .noise_known
+        .then(|| unexplained(&found, &left, all.len(), &estimate))
+        .flatten();
+    let coloured = coloured(&found, correlation, left.len(), knots.at.len());
+    found.warnings.extend(off);
+    found.warnings.extend(coloured);
+    Ok(found)
+}
+
+/// Instants of the measurements, in the run.
+fn instants(case: &Case, measured: &Measured) -> Result<Vec<f64>> {
+    let usage = |what: String| Error::Usage(format!("--dynamic: {what}"));
+    let Some(times) = &measured.times else {
+        return Err(usage(
+            "the measurements have no instants; they stand in a column t_s, from the start of the run on".into(),
+        ));
+    };
+    if times.len() < FEWEST {
+        return Err(usage(format!(
+            "{} instants are too few to follow a load by; {FEWEST} are the fewest",
+            times.len()
+        )));
+    }
+    let end = case.time.end_s;
+    if let Some(late) = times.iter().position(|t| *t > end * (1.0 + 1e-12)) {
+        return Err(usage(format!(
+            "line {}: {} s is after the end of the run at {end} s; --set /time/end_s={} runs that long",
+            measured.lines[late],
+            times[late],
+            times[times.len() - 1]
+        )));
+    }
+    Ok(times.iter().map(|t| t.min(end)).collect())
+}
+
+fn knot_count(asked: Option<usize>, rows: usize, loads: usize) -> Result<usize> {
+    let room = ALL / loads;
+    let count = asked.unwrap_or(USUAL.min(rows).min(room));
+    if count > room {
+        return Err(Error::Usage(format!(
+            "--knots {count}: {loads} loads have {} values at so many knots, and {ALL} is the most; at most {room} knots, or fewer loads",
+            count * loads
+        )));
+    }
+    match count >= FEWEST {
+        true => Ok(count),
+        false => Err(Error::Usage(format!(
+            "--dynamic: {loads} loads are too many: each needs {FEWEST} knots, and {ALL} values is the most"
+        ))),
+    }
+}
+
+/// Derivatives by loads that do not change.
+fn constant(jacobian: &DMatrix<f64>, loads: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(jacobian.nrows(), loads, |i, k| {
+        (k..jacobian.ncols()).step_by(loads).map(|j| jacobian[(i, j)]).sum()
+    })
+}
+
+/// Second differences of every load in time, and at every knot those of a profile along the beam.
+fn differences(amplitudes: &[Amplitude], found: &Sensed, knots: usize) -> DMatrix<f64> {
+    let loads = amplitudes.len();
+    let in_time = second_differences(knots).kronecker(&DMatrix::identity(loads, loads));
+    let along = DMatrix::identity(knots, knots).kronecker(&along_the_beam(amplitudes, &found.loads));
+    let mut all = DMatrix::zeros(in_time.nrows() + along.nrows(), knots * loads);
+    all.rows_mut(0, in_time.nrows()).copy_from(&in_time);
+    all.rows_mut(in_time.nrows(), along.nrows()).copy_from(&along);
+    all
+}
+
+/// A row an instant: loads and sums of them, read off their curves.
+fn rows(
+    found: &Sensed,
+    measured: &Measured,
+    (knots, amplitudes): (&Knots, &[Amplitude]),
+    estimate: &Estimate,
+) -> Vec<Row> {
+    let (one, loads, each) = (&estimate.found[0], amplitudes.len(), measured.bladders.len());
+    let sums: Vec<Vec<f64>> = found
+        .seen
+        .together
+        .iter()
+        .map(|sum| over_sizes(sum, amplitudes))
+        .collect();
+    let times = measured.times.as_deref().unwrap_or_default();
+    let row = |(k, t): (usize, &f64)| {
+        let weights = knots.weights(*t);
+        let of = |factors: &[f64]| {
+            let whole = weights.iter().flat_map(|w| factors.iter().map(move |f| w * f));
+            banded(estimate, one, &whole.collect::<Vec<_>>())
+        };
+        let alone = |j: usize| {
+            let mut factors = vec![0.0; loads];
+            factors[j] = amplitudes[j].size;
+            of(&factors)
+        };
+        Row {
+            line: measured.lines[k],
+            t_s: Some(*t),
+            amplitudes: (0..loads).map(alone).collect(),
+            together: sums.iter().map(|sum| of(sum)).collect(),
+            measured_pa: measured.rows[k].clone(),
+            modelled_pa: one.predicted.as_slice()[k * each..(k + 1) * each].to_vec(),
+        }
+    };
+    times.iter().enumerate().map(row).collect()
+}
+
+/// Values at knots of each load that the data tell: the trace of `cov a J^T J/σ^2`, a load's share of it.
+fn resolved(one: &Found, problem: &Problem, estimate: &Estimate, loads: usize) -> Vec<f64> {
+    let measured: Vec<usize> = (0..problem.data.len()).filter(|k| problem.data[*k].is_some()).collect();
+    let weighted = DMatrix::from_fn(measured.len(), one.jacobian.ncols(), |i, j| {
+        one.jacobian[(measured[i], j)] / (problem.deviation[measured[i]] * estimate.noise)
+    });
+    let whole = &one.covariance * weighted.transpose() * weighted;
+    let of = |k: usize| (k..whole.ncols()).step_by(loads).map(|j| whole[(j, j)]).sum();
+    (0..loads).map(of).collect()
+}
+
+/// Correlation of what is left of a pressure with what is left of it at the instant before.
+fn correlation(left: &[Left]) -> f64 {
+    let (mut products, mut squares) = (0.0, 0.0);
+    let mut last = std::collections::BTreeMap::new();
+    for one in left {
+        squares += one.over_noise.powi(2);
+        if let Some(before) = last.insert(one.bladder, one.over_noise) {
+            products += before * one.over_noise;
+        }
+    }
+    products / squares.max(f64::MIN_POSITIVE)
+}
+
+/// What is said where neighbours in time go together in what is left.
+fn coloured(found: &Sensed, correlation: f64, count: usize, knots: usize) -> Option<String> {
+    (correlation * (count as f64).sqrt() > UNLIKELY).then(|| {
+        Code::UnexplainedPressures.warning(format!(
+            "what {} with {knots} knots leaves of the pressures is no noise: neighbours in time go together (correlation {correlation:.2}); the load changes \
+             faster than the knots let it (--knots), or the model or the noise does it: bands are too narrow",
+            told::names(found)
+        ))
+    })
+}
