@@ -81,7 +81,7 @@ function held(text) {
 
 function showTiles(main) {
   if (!data.tiles?.length) return;
-  main.append(el("div", { class: data.tiles.length > 6 ? "tiles four" : "tiles", id: "tiles" }, data.tiles.map((t) =>
+  main.append(el("div", { class: { 6: "tiles three" }[data.tiles.length] || (data.tiles.length > 6 ? "tiles four" : "tiles"), id: "tiles" }, data.tiles.map((t) =>
     el("div", { class: "tile" }, el("div", { class: "label", text: t.label }), el("div", { class: "value", text: held(t.value) }), el("div", { class: "note", text: held(t.note) })))));
 }
 
