@@ -14,7 +14,7 @@ function showLedger(host, ledger, history, clock) {
   row("energy at the start", ledger.start);
   // numbers have the signs with which they add up, words have none
   for (const e of ledger.in) row(e.words, e.joule);
-  for (const e of ledger.out) row(e.words, -e.joule);
+  for (const e of ledger.out) row(e.words, e.joule);
   row("makes", ledger.expected, true);
   group("What is there at the end");
   for (const e of ledger.stored) row(e.words, e.joule);
