@@ -151,6 +151,30 @@ fn sections_that_cannot_be_are_refused_at_their_place() {
         assert!(places.iter().all(|p| p.starts_with("/section/")), "{places:?}");
     }
     assert_eq!(refused(&["/section/heigth_m=0.02"]), ["/section/heigth_m"]);
+    // of other than the ten bladders of what stands in for the section: only the section is at fault
+    let longer = ["/beam/length_m=0.16", "/network/chains/0/bladders=[11, 12, 20]"];
+    for fault in ["/section/material/poisson_ratio=0.5", "/section/heigth_mm=20"] {
+        let places = refused(&[&longer[..], &[fault]].concat());
+        assert_eq!(places, [fault.split('=').next().unwrap()]);
+    }
+    // which is shown in the argument that brought it, in numbers as one writes them
+    for (set, says) in [
+        (
+            "/section/bladders/upper/shape/circle/radius_m=0.0061",
+            "reaches 0.0113 m",
+        ),
+        ("/beam/length_m=0.0843", "0.088 m of a beam of 0.0843 m"),
+    ] {
+        let Err(Error::Case(fault)) = read(&[set]) else {
+            panic!("{set}")
+        };
+        let told = fault
+            .violations
+            .iter()
+            .find(|v| v.what.contains(says) && v.set.is_some());
+        let told = told.unwrap_or_else(|| panic!("{}", case::render(&fault, false, 100)));
+        assert_eq!(told.set.as_deref(), Some(set));
+    }
     assert_eq!(
         refused(&["/section/bladders/upper/center_m=-0.0052"]),
         ["/section/bladders/upper/center_m"]
@@ -166,10 +190,8 @@ fn sections_that_cannot_be_are_refused_at_their_place() {
         let places = refused(&[size]);
         assert!(places.iter().any(|p| size.starts_with(p.as_str())), "{size} {places:?}");
     }
-    assert_eq!(
-        refused(&[&format!("{circle}=1e-9")]),
-        ["/section/bladders/upper", "/section/bladders/lower"]
-    );
+    // what mirrors it has the same fault, which is told once
+    assert_eq!(refused(&[&format!("{circle}=1e-9")]), ["/section/bladders/upper"]);
 }
 
 /// Goal: whatever is no row, no shape or no polygon is refused, by a case and by `coefficients`: no other beam is simulated in its place.

@@ -111,7 +111,8 @@ fn a_finished_run_in_a_glance() {
     let text = render(&summary(Status::Finished), Path::new("out/wiring-2"), true, false, 76);
     insta::assert_snapshot!(text, @r"
     ╭─ wiring-2 ──────────────────────────────────────────────────── finished ─╮
-    │ deflection  tip, largest: u₁ 123 µm · u₃ 1.25 mm                         │
+    │ tip         at the end: u₁ 123 µm · u₃ 1.25 mm                           │
+    │             largest: u₁ 123 µm · u₃ 1.25 mm                              │
     │ pressure    largest in a bladder: 9.01 kPa                               │
     │ balances    open by (relative): energy 3.0·10⁻⁸                          │
     │ integrator  12 345 steps, mostly of order 4 · 0 rejected · 371 unknowns  │
@@ -144,7 +145,8 @@ fn a_failure_says_why_and_warnings_come_first() {
     │             few words                                    │
     │             and 2 more in summary.json; slcbeam explain  │
     │             says more of each number                     │
-    │ deflection  tip, largest: u₁ 123 µm · u₃ 1.25 mm         │
+    │ tip         at the end: u₁ 123 µm · u₃ 1.25 mm           │
+    │             largest: u₁ 123 µm · u₃ 1.25 mm              │
     │ pressure    largest in a bladder: 9.01 kPa               │
     │ balances    open by (relative): energy 3.0·10⁻⁸ ·        │
     │             volume –                                     │
@@ -210,6 +212,11 @@ fn messages_and_keys_are_explained() {
     assert!(one.contains("Mathieu"), "{one}");
     let (_, key, _) = slcbeam(here, &["explain", "/bladders/permeability_m4"]);
     assert!(key.contains("[m^4]") && key.contains("TubeDefaults"), "{key}");
+    let (_, flow, _) = slcbeam(here, &["explain", "flow"]);
+    assert!(
+        flow.contains("EffectChoices/flow") && flow.contains("flow_m3_s"),
+        "{flow}"
+    );
     let (_, network, _) = slcbeam(here, &["explain", "network"]);
     assert!(
         network.contains("Network/chains") && network.contains("Network/turbines"),
@@ -250,4 +257,21 @@ fn messages_and_keys_are_explained() {
     assert!(code == 2 && err.contains("did you mean tip_angle"), "{err}");
     let (code, _, err) = slcbeam(here, &["explain", "finite_rotaton"]);
     assert!(code == 2 && err.contains("did you mean finite_rotation"), "{err}");
+}
+
+/// Goal: what to do stands at the end of a warning, which is not cut; the tip has its sign, when it was furthest away, and where it ends.
+#[test]
+fn warnings_are_whole_and_the_tip_has_its_end() {
+    let mut told = summary(Status::Finished);
+    let long = "W001 pressures bend the beam 124 times as much as moments open bladders; energies and efficiencies are wrong by that \
+                factor, and so is whatever they are compared with; what to do stands at the very end: use \"reciprocal\"";
+    told.warnings = vec![long.to_string()];
+    let tip = told.quantities.get_mut("tip_u1_m").expect("a tip");
+    (tip.last, tip.max_abs, tip.extreme, tip.max_abs_at_s) = (Some(1.14e-3), Some(2.57e-3), Some(-2.57e-3), Some(0.0));
+    let text = render(&told, Path::new("out/wiring-2"), true, false, 60);
+    let words: Vec<&str> = text.split(['│', ' ', '\n']).filter(|word| !word.is_empty()).collect();
+    let text = words.join(" ");
+    assert!(text.contains("stands at the very end: use \"reciprocal\""), "{text}");
+    assert!(text.contains("tip at the end: u₁ 1.14 mm"), "{text}");
+    assert!(text.contains("largest: u₁ −2.57 mm at 0 s"), "{text}");
 }

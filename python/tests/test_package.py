@@ -5,6 +5,7 @@ import inspect
 import shutil
 import subprocess
 import sys
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -51,3 +52,7 @@ def test_a_library_that_is_not_there_is_named_with_what_brings_it(tmp_path, libr
     told = subprocess.run([sys.executable, "-c", "import slcbeam"], env={"PYTHONPATH": str(tmp_path)}, capture_output=True, text=True)
     assert told.returncode == 1 and f"{library}.s-" in told.stderr
     assert "apt-get install libsundials-idas5 libsundials-kinsol6 libsundials-nvecserial6 libklu1" in told.stderr
+
+
+def test_the_version_is_that_of_the_package():
+    assert slcbeam.__version__ == metadata.version("slcbeam")

@@ -211,3 +211,18 @@ def test_a_result_goes_to_another_process_and_back(quick, tmp_path):
     ours, theirs = result.save(tmp_path / "a"), again.save(tmp_path / "b")
     for name in ("history.csv", "case.json"):
         assert (ours / name).read_bytes() == (theirs / name).read_bytes()
+
+
+def test_a_name_that_is_none_is_told_with_the_nearest(quick):
+    result = slcbeam.run(quick)
+    for look, nearest in [
+        (lambda: result.quantities["tip_u1"], "tip_u1_m"),
+        (lambda: result.quantities["tip_u1_m"]["maxabs"], "max_abs"),
+        (lambda: result.history["tip_u1_m"], "tip_u1"),
+        (lambda: result.fields["u1"], "u1_m"),
+    ]:
+        with pytest.raises(KeyError, match=f"did you mean '{nearest}'"):
+            look()
+    assert result.quantities.get("tip_u1") is None
+    tip = result.quantities["tip_u1_m"]
+    assert abs(tip["extreme"]) == tip["max_abs"]

@@ -25,12 +25,33 @@ pub struct Violations {
     overfull: bool,
     /// Whether [`Code::Implausible`] is no fault.
     all_plausible: bool,
+    /// Values that are not what was meant, beside those with faults.
+    unsound: Vec<String>,
 }
 
 impl Violations {
     /// Adds a fault in a value.
     pub fn push(&mut self, violation: Violation) {
         self.keep(violation, Mark::Value);
+    }
+
+    /// Adds the fault that a value does not go with others, unless it has one already or one of these has: then that is the cause, and
+    /// limits computed from it are nonsense.
+    pub fn push_beside(&mut self, parts: &[&str], violation: Violation) {
+        if self.are_sound(parts) && self.are_sound(&[violation.pointer.as_str()]) {
+            self.push(violation.beside(parts));
+        }
+    }
+
+    /// Whether values are what was meant, as far as is known.
+    pub fn are_sound(&self, parts: &[&str]) -> bool {
+        let below = |found: &str| parts.iter().any(|part| is_below(found, part));
+        !self.list.iter().any(|(fault, _)| below(&fault.pointer)) && !self.unsound.iter().any(|at| below(at))
+    }
+
+    /// From now on takes no value at a pointer as meant.
+    pub fn doubt(&mut self, pointer: impl Into<String>) {
+        self.unsound.push(pointer.into());
     }
 
     /// From now on takes every size as meant.
@@ -94,11 +115,6 @@ impl Violations {
                 members.retain(|key, _| !keys.contains(key));
             }
         }
-    }
-
-    /// Whether something was found at a pointer.
-    pub fn has(&self, pointer: &str) -> bool {
-        self.list.iter().any(|(fault, _)| fault.pointer == pointer)
     }
 
     /// How many were found.
@@ -221,6 +237,22 @@ impl Source {
         self.file.as_ref().is_some_and(|node| node.place("/preset").is_some())
     }
 
+    /// The argument that made a fault, and what of the case it set: the last that set the value, or something around it; or a value
+    /// that it does not go with; or, of a section, whose shapes are faulty as a whole, something inside it.
+    fn changed(&self, fault: &Violation) -> Option<(&SetValue, String)> {
+        let around = |pointer: &str| self.sets.iter().rev().find(|set| is_below(pointer, &set.pointer));
+        let all = std::iter::once(&fault.pointer).chain(&fault.beside);
+        let found = all
+            .into_iter()
+            .find_map(|pointer| Some((around(pointer)?, pointer.clone())));
+        found.or_else(|| {
+            let inside = |set: &&SetValue| is_below(&set.pointer, &fault.pointer);
+            let of_section = fault.pointer.starts_with("/section/");
+            let set = self.sets.iter().rev().filter(|_| of_section).find(inside)?;
+            Some((set, set.pointer.clone()))
+        })
+    }
+
     fn place(&self, fault: Violation, mark: Mark) -> Violation {
         if fault.span.is_some() {
             return fault;
@@ -231,19 +263,13 @@ impl Source {
             (Mark::Key, None) => place.value.start..place.value.start + 1,
             (Mark::Value, _) => place.value,
         };
-        // The last argument that set the value, or something around it, has it.
-        if let Some(set) = self
-            .sets
-            .iter()
-            .rev()
-            .find(|set| is_below(&fault.pointer, &set.pointer))
-        {
+        if let Some((set, pointer)) = self.changed(&fault) {
             let inner = set
                 .node
                 .as_ref()
-                .and_then(|node| node.place(&fault.pointer[set.pointer.len()..]));
+                .and_then(|node| node.place(pointer.get(set.pointer.len()..)?));
             let span = match inner {
-                Some(place) if fault.pointer != set.pointer || mark == Mark::Value => {
+                Some(place) if pointer != set.pointer || mark == Mark::Value => {
                     let span = span_of(place);
                     set.json_at + span.start..set.json_at + span.end
                 }

@@ -87,6 +87,9 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         return Err(source.error(violations));
     };
     let mut value = file.to_value();
+    if section::is_one(&value) {
+        return Err(source.error(vec![section::no_case()]));
+    }
     let sets = sets::apply(&mut value, sets)?;
     if section::changes(&sets) {
         section::release(&mut value, &file.to_value());
@@ -106,6 +109,8 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
     let told: Vec<String> = told.filter(|p| value.pointer(p).is_some_and(Value::is_null)).collect();
 
     let mut faults = Violations::default();
+    told.iter().for_each(|pointer| faults.doubt(pointer));
+    section.iter().for_each(|section| section.doubt(&own, &mut faults));
     validate::validate(&value, &own, &schema_json::CASE, &mut faults);
     faults.drop_below(&told);
     // `null` from the command line leaves out what could stand there.

@@ -61,6 +61,11 @@ pub fn plain(number: f64) -> String {
     }
 }
 
+/// A number that was computed from others, without what binary fractions add to it.
+pub fn rounded(number: f64) -> String {
+    plain(format!("{number:.8e}").parse().unwrap_or(number))
+}
+
 /// Three digits of a number, which are enough to be told by.
 pub fn digits(number: f64) -> String {
     plain(format!("{number:.2e}").parse().unwrap_or(number))

@@ -211,6 +211,9 @@ impl<'a> Walk<'a> {
             Some((meant, hint)) => (Some(meant), Some(hint)),
             None => (nearest(key, absent), None),
         };
+        if let Some(meant) = &nearest {
+            self.faults.doubt(child(pointer, meant));
+        }
         let fault = Violation::new(
             Code::Key,
             child(pointer, key),

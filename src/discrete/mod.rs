@@ -152,6 +152,7 @@ impl System {
         faults.extend(audit::refusals(case, &self.model));
         faults.extend(self.model.effects.refusals.iter().cloned());
         faults.extend(self.fed_junction());
+        faults.extend(self.unheld_start(case));
         faults.extend(residual::fourth::refusal(&self.model, &self.mesh));
         match faults.is_empty() {
             true => Ok(self),
@@ -163,6 +164,18 @@ impl System {
     #[inline]
     pub fn turns_with_its_line(&self) -> bool {
         self.model.effects.has(Effect::RotaryInertia) && !self.model.effects.has(Effect::Shear)
+    }
+
+    /// A start in equilibrium of a beam that nothing holds.
+    fn unheld_start(&self, case: &Case) -> Option<Violation> {
+        let directions = self.model.unheld();
+        case.start.equilibrium.as_ref().filter(|_| !directions.is_empty())?;
+        let what = format!(
+            "nothing holds the beam {}: it has no equilibrium to start from",
+            directions.join(" and ")
+        );
+        let fault = Violation::new(Code::Start, "/start/equilibrium", what);
+        Some(fault.hint("hold an end in /ends or attach a spring to ground; or leave the equilibrium out, and the straight beam is let go"))
     }
 
     /// A junction of tubes with inertia alone into which a port prescribes the flow: the tubes would have to jump with it.

@@ -94,6 +94,7 @@ codes! {
     Trapped = "W030", "Fluid behind a valve that has shut.";
     UnexplainedPressures = "W032", "Pressures that the loads do not explain.";
     StateAside = "W033", "Loads whose path leads to another state.";
+    ModesExchanged = "W034", "Modes that change places from one design to the next.";
     Optimum = "W035", "A best that may be none.";
 }
 

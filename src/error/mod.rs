@@ -23,6 +23,8 @@ pub struct Violation {
     pub nearest: Option<String>,
     /// What to do.
     pub hint: Option<String>,
+    /// Pointers of other values that it does not go with: one of them may be what was changed.
+    pub beside: Vec<String>,
     /// Bytes of the text to point at; filled in by [`crate::case`] from the pointer when absent.
     pub span: Option<std::ops::Range<usize>>,
     /// The `--set` argument the value came from; `span` then points into it instead of the file.
@@ -42,6 +44,7 @@ impl Violation {
             allowed: None,
             nearest: None,
             hint: None,
+            beside: vec![],
             span: None,
             set: None,
             option: "--set",
@@ -52,6 +55,14 @@ impl Violation {
     pub fn allowed(self, allowed: impl Into<String>) -> Self {
         Self {
             allowed: Some(allowed.into()),
+            ..self
+        }
+    }
+
+    /// Says with which other values it does not go, by their pointers.
+    pub fn beside(self, parts: &[&str]) -> Self {
+        Self {
+            beside: parts.iter().map(ToString::to_string).collect(),
             ..self
         }
     }

@@ -24,6 +24,9 @@ pub struct Sweep {
     pub statuses: BTreeMap<String, usize>,
     /// Columns of the table, in its order.
     pub columns: Vec<Column>,
+    /// What to know of the table as a whole.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
 }
 
 /// A column of the table.

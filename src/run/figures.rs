@@ -69,7 +69,7 @@ impl Figures {
         let in_window = glance.t >= self.window_start;
         for (one, track) in self.each() {
             if let Source::Motion(watched) = one.source() {
-                track.see(value(glance, watched).abs(), glance.t, in_window);
+                track.see(value(glance, watched), glance.t, in_window);
             }
         }
     }
@@ -102,7 +102,8 @@ impl Figures {
 
     /// Takes a turning point of the cubic between two steps, so that largest values change steadily with the motion. Returns whether
     /// it is worth a look at the state itself: much larger than what has been seen, and no mere round-off.
-    pub fn turn(&mut self, which: Watched, size: f64, t: f64) -> bool {
+    pub fn turn(&mut self, which: Watched, value: f64, t: f64) -> bool {
+        let size = value.abs();
         let in_window = t >= self.window_start;
         let [length, modulus] = self.sizes;
         let follows = |one: Interest| matches!(one.source(), Source::Motion(watched) if watched.contains(&which));
@@ -119,7 +120,7 @@ impl Figures {
         }
         let worth = track.worth(size, in_window);
         if !worth {
-            track.see(size, t, in_window);
+            track.see(value, t, in_window);
         }
         worth
     }
@@ -144,7 +145,11 @@ impl Figures {
             ratio.is_finite().then_some(ratio)
         };
         let quantity = |one: Interest, t: &Track| match one.source() {
-            Source::Motion(_) => t.swing(reached, self.window_time),
+            Source::Motion(watched) => {
+                let swing = t.swing(reached, self.window_time);
+                let extreme = swing.extreme.filter(|_| has_sign(watched));
+                Quantity { extreme, ..swing }
+            }
             Source::Energy(_) => Quantity {
                 last: Some(t.last()),
                 window: reached.then(|| t.increment()),
@@ -161,6 +166,12 @@ impl Figures {
         all.map(|(one, track)| (one.name().into(), quantity(one, track)))
             .collect()
     }
+}
+
+/// Whether what is followed has a sign: what is largest anywhere is a size.
+fn has_sign(watched: &[Watched]) -> bool {
+    let sizes = [Watched::Largest1, Watched::Largest3];
+    matches!(watched, [which] if !sizes.contains(which))
 }
 
 /// A value as its quantity has it: of several the larger in size.

@@ -283,7 +283,7 @@ impl Observer {
             let cubic = Cubic::new(figures::sized(before, which), figures::sized(now, which), h);
             for x in cubic.turns() {
                 let (t, value) = (before.t + x * h, cubic.at(x));
-                let worth = self.seen.figures.turn(which, value.abs(), t);
+                let worth = self.seen.figures.turn(which, value, t);
                 if worth || self.limits.matters(which, value, &self.seen.range) {
                     self.turning.push(t);
                 }

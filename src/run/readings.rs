@@ -113,7 +113,7 @@ impl ProbeFigures {
         let in_window = t >= self.window_start;
         for (track, value) in self.tracks.iter_mut().zip(values) {
             track.take(*value, in_window);
-            track.see(value.abs(), t, in_window);
+            track.see(*value, t, in_window);
         }
     }
 
@@ -129,7 +129,7 @@ impl ProbeFigures {
         for (track, cubic) in self.tracks.iter_mut().zip(cubics.skip(TIP.len())) {
             for x in [0.0, 1.0].into_iter().chain(cubic.turns()) {
                 let t = begin + x * h;
-                track.see(cubic.at(x).abs(), t, t >= self.window_start);
+                track.see(cubic.at(x), t, t >= self.window_start);
             }
             if from < 1.0 {
                 track.square(h * cubic::integral(from, |x| cubic.at(x).powi(2)));

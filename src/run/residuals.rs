@@ -185,7 +185,8 @@ impl Residuals {
         if missed > OPEN {
             all.push(Code::PortFlow.warning(format!(
                 "flow through ports: what the ports' law lets through and what the network stores differ by {missed:.1e} of the \
-                 volume passed; tighten solver/rtol until answers no longer change"
+                 volume passed: the pressures that drive it are last digits of pressures. Flows and volumes of ports are told from what is \
+                 stored; only how several ports of one network share them is not sure: tighten solver/rtol until that no longer changes"
             )));
         }
         let (momentum, angular) = (self.momentum_relative(), self.angular_relative());

@@ -38,6 +38,9 @@ pub struct Quantity {
     /// When it was reached [s].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_abs_at_s: Option<f64>,
+    /// The value there, with its sign, where it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extreme: Option<f64>,
     /// Largest absolute value in the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window_max_abs: Option<f64>,
@@ -59,6 +62,11 @@ pub struct Quantity {
 }
 
 impl Quantity {
+    /// Its largest value over the run, with its sign where that is known.
+    pub fn largest(&self) -> Option<f64> {
+        self.extreme.or(self.max_abs)
+    }
+
     /// Its largest figure, without sign.
     pub fn size(&self) -> f64 {
         self.figures().fold(0.0, |s, (_, x)| s.max(x.abs()))

@@ -13,6 +13,8 @@ const WORTH: f64 = 1e-3;
 pub struct Track {
     last: f64,
     max_abs: f64,
+    /// Whether the value was negative there.
+    negative: bool,
     /// When that was first reached [s].
     max_abs_at: f64,
     window_max_abs: f64,
@@ -33,10 +35,11 @@ impl Track {
         }
     }
 
-    /// Takes the size of a value at any time [s].
-    pub fn see(&mut self, size: f64, t: f64, in_window: bool) {
+    /// Takes a value at any time [s].
+    pub fn see(&mut self, value: f64, t: f64, in_window: bool) {
+        let size = value.abs();
         if size > self.max_abs {
-            (self.max_abs, self.max_abs_at) = (size, t);
+            (self.max_abs, self.max_abs_at, self.negative) = (size, t, value < 0.0);
         }
         if in_window && size > self.window_max_abs {
             (self.window_max_abs, self.window_max_abs_at) = (size, t);
@@ -80,6 +83,7 @@ impl Track {
             last: Some(self.last),
             max_abs: Some(self.max_abs),
             max_abs_at_s: (self.max_abs > 0.0).then_some(self.max_abs_at),
+            extreme: Some(if self.negative { -self.max_abs } else { self.max_abs }),
             window_max_abs: reached.then_some(self.window_max_abs),
             window_rms: (window_time > 0.0).then(|| (self.window_squares / window_time).sqrt()),
             ..Quantity::default()

@@ -125,8 +125,25 @@ fn command_says_what_cannot_be() {
         ),
         (
             vec!["equilibrium", "cases/elastica.json", "--set", "/ends/root=\"free\""],
-            4,
+            3,
             "nothing holds",
+        ),
+        (
+            vec!["check", "cases/tour-actuator.json", "--set", "/ends/root=\"free\""],
+            3,
+            "nothing holds the beam along and across",
+        ),
+        (
+            vec![
+                "equilibrium",
+                "cases/tour-actuator.json",
+                "--set",
+                "/ends/root=\"free\"",
+                "--set",
+                "/start={}",
+            ],
+            4,
+            "nothing holds the beam along and across",
         ),
         (
             vec!["equilibrium", "cases/elastica.json", "--set", "/beam/length=1"],

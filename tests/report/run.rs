@@ -218,9 +218,20 @@ fn inputs_stand_beside_outputs() {
     assert!((largest - 40.0).abs() < 1e-3, "{largest}");
     let tiles = browser.text("document.getElementById('tiles').textContent");
     assert!(
-        tiles.contains("Turn of the tip") && tiles.contains("largest slope angle at any time; 2.34°"),
+        tiles.contains("Turn of the tip") && tiles.contains("largest slope angle, 2.34°, at"),
         "{tiles}"
     );
+    // the end beside the largest, numbers held to their units
+    let answer = browser.text("document.querySelector('.answer').textContent");
+    assert!(
+        answer.contains("At the end the tip stands at u₁ = −2.07\u{a0}mm; its largest deflection is"),
+        "{answer}"
+    );
+    // what is lost is less than nothing, and no sign stands before a sign
+    let lost = "[...document.querySelectorAll('#energy tr')].find(e => e.textContent.startsWith('lost to flow')).querySelector('td.n').textContent";
+    assert!(browser.text(lost).starts_with('−'), "{}", browser.text(lost));
+    let columns = browser.text("data.history.columns.map(c => c.label).filter(l => l.startsWith('port')).join('; ')");
+    assert!(columns.contains("port inlet of bladder 1 flow"), "{columns}");
 }
 
 /// Goal: the rise of a step has a tile.

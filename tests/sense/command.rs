@@ -325,3 +325,18 @@ fn a_profile_shows_where_a_load_is() {
     let said = sense(&dir, &[&path, "--load", "profile:7", "--noise", "1"]);
     assert!(said.out.contains("inertia and flow are not in it"), "{}", said.out);
 }
+
+/// Goal: loads of the case that act besides are told: what is found comes on top of them.
+#[test]
+fn own_loads_are_told() {
+    let dir = TempDir::new().unwrap();
+    let said = sense(&dir, &[]);
+    assert!(said.code == 0 && !said.out.contains("own loads"), "{}", said.out);
+    let said = sense(&dir, &["--set", r#"/loads=[{"gravity": {"x_m_s2": -9.81}}]"#]);
+    assert!(
+        said.out.contains("own loads act besides") && said.out.contains("/loads/0/gravity"),
+        "{}{}",
+        said.out,
+        said.err
+    );
+}

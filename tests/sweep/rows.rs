@@ -328,3 +328,49 @@ fn what_never_began_has_no_figures() {
         "{row:?}"
     );
 }
+
+/// Source: the beam of the tour, whose valves are varied: at 0.32 a mode of the fluid, nearly critically damped, lies below the beam's first. Goal:
+/// the sweep says that `mode_1` is another mode there, in its words and in `sweep.json`, and the row what it is.
+#[test]
+fn modes_that_change_places_are_told() {
+    let dir = TempDir::new().expect("a folder");
+    let out = path(&dir, "valves");
+    let vary = "/network/permeability_factor=0.178,0.316,0.562";
+    let sweep = [
+        "sweep",
+        "cases/tour-wiring.json",
+        "--quiet",
+        "--no-mesh-errors",
+        "--command",
+        "modes",
+        "--out",
+        &out,
+    ];
+    let said = say(&[&sweep[..], &["--vary", vary]].concat());
+    well(&said);
+    assert!(
+        said.out
+            .contains("W034 modes change places: mode_1 of design 0 is mode_2 of design 1"),
+        "{}",
+        said.out
+    );
+    let told = json(&out, "sweep.json");
+    assert!(
+        told["warnings"][0]
+            .as_str()
+            .is_some_and(|text| text.starts_with("W034")),
+        "{told}"
+    );
+    let rows = rows(&out);
+    let strong: Vec<&str> = rows.iter().map(|row| row["mode_1.strongly_damped"].as_str()).collect();
+    assert_eq!(
+        strong.iter().map(|text| text.parse::<f64>().ok()).collect::<Vec<_>>(),
+        [Some(0.0), Some(1.0), Some(0.0)]
+    );
+    // two gaps in the curve of mode_1, on both sides of it
+    let picture = fs::read_to_string(Path::new(&out).join("sweep.svg")).expect("a picture");
+    let first = picture.split("mode_1.frequency_hz").next().unwrap_or_default();
+    assert!(!first.is_empty());
+    let page = fs::read_to_string(Path::new(&out).join("report.html")).expect("a page");
+    assert!(page.contains("\"code\":\"W034\""));
+}

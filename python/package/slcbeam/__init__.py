@@ -18,6 +18,8 @@ except ImportError as error:
         ) from error
     raise
 
+from importlib import metadata as _metadata
+
 from ._answer import Answer, Columns, read
 from ._case import Case, load, shipped
 from ._commands import check, effects, equilibrium, fit, floquet, merge, modes, optimize, periodic, sense, study, sweep
@@ -26,6 +28,12 @@ from ._page import Report
 from ._result import Fields, Result, Table
 from ._run import run
 from ._simulator import Simulator, State
+
+try:
+    __version__ = _metadata.version("slcbeam")
+except _metadata.PackageNotFoundError:
+    # on the path without having been installed
+    __version__ = "unknown"
 
 __all__ = [
     "Answer",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +24,24 @@ if TYPE_CHECKING:
 def _frozen(array: np.ndarray) -> np.ndarray:
     array.flags.writeable = False
     return array
+
+
+def unknown(name: object, names: Iterable[str]) -> KeyError:
+    """That there is no such name, with the nearest that there is."""
+    import difflib
+
+    names = list(names)
+    # a name without its unit is one, too
+    begins = [own for own in names if own.startswith(f"{name}_")]
+    near = begins or difflib.get_close_matches(str(name), names, 1)
+    return KeyError(f"{name}; did you mean {near[0]!r}?" if near else name)
+
+
+class Named(dict[str, Any]):
+    """Figures by name; one that is not there is told with the nearest that is."""
+
+    def __missing__(self, name: str) -> Any:
+        raise unknown(name, self)
 
 
 class Table(Mapping[str, np.ndarray]):
@@ -50,10 +68,7 @@ class Table(Mapping[str, np.ndarray]):
         try:
             return self.values_2d[:, self._place[name]]
         except KeyError:
-            import difflib
-
-            near = difflib.get_close_matches(name, self.names, 1)
-            raise KeyError(name + (f"; did you mean {near[0]!r}?" if near else "")) from None
+            raise unknown(name, self.names) from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.names)
@@ -112,7 +127,10 @@ class Fields(Mapping[str, np.ndarray]):
         self._arrays = {field[0]: _frozen(array) for field, array in zip(fields, arrays)}
 
     def __getitem__(self, name: str) -> np.ndarray:
-        return self.coordinates[name] if name in self.coordinates else self._arrays[name]
+        found = self.coordinates.get(name, self._arrays.get(name))
+        if found is None:
+            raise unknown(name, [*self._arrays, *self.coordinates])
+        return found
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._arrays)
@@ -171,8 +189,9 @@ class Result:
 
     @property
     def quantities(self) -> dict[str, dict[str, Any]]:
-        """Figures of every quantity by name and unit: ``final``, ``max_abs``, ``window_rms`` .. in the unit of its name, and ``error``, its
-        estimated relative error, ``None`` where none is known.
+        """Figures of every quantity by name and unit: ``final``, ``max_abs`` at ``max_abs_at_s``, ``extreme``, which has its sign,
+        ``window_rms`` .. in the unit of its name, and ``error``, its estimated relative error, ``None`` where none is known. Columns of
+        :attr:`history` have names without units: ``tip_u1``.
 
         >>> import slcbeam
         >>> tip = slcbeam.run("bend-wet").quantities["tip_u1_m"]
@@ -181,7 +200,7 @@ class Result:
         """
         judged = (self.summary.get("accuracy") or self.summary.get("estimate") or {}).get("quantities", {})
         all = self.summary["quantities"] | self.summary.get("probes", {})
-        return {name: figures | {"error": judged.get(name, {}).get("total")} for name, figures in all.items()}
+        return Named({name: Named(figures | {"error": judged.get(name, {}).get("total")}) for name, figures in all.items()})
 
     @property
     def sensitivities(self) -> dict[str, dict[str, Any]]:

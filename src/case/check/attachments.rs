@@ -1,7 +1,7 @@
 //! What is attached to the beam.
 
 use crate::case::faults::Violations;
-use crate::case::numbers::digits;
+use crate::case::numbers::{digits, rounded};
 use crate::case::schema::Case;
 use crate::error::{Code, Violation};
 
@@ -9,6 +9,16 @@ use crate::error::{Code, Violation};
 const FAR: f64 = 10.0;
 /// Masses of the beam, in that distance, of which no body has more rotary inertia.
 const HEAVY: f64 = 100.0;
+
+const LENGTH: &str = "/beam/length_m";
+/// What the beam's mass is made of.
+const MASS: [&str; 5] = [
+    LENGTH,
+    "/beam/height_m",
+    "/beam/width_m",
+    "/beam/density_kg_m3",
+    "/beam/mass_factor",
+];
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     let beam = &case.beam;
@@ -25,7 +35,8 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             } else if offset.abs() > far {
                 let what = format!("a mass centre {offset} m from its place");
                 let fault = Violation::new(Code::Implausible, at, what);
-                faults.push(fault.allowed(format!("-{far} to {far} m, ten lengths of the beam")));
+                let fault = fault.allowed(format!("-{0} to {0} m, ten lengths of the beam", rounded(far)));
+                faults.push_beside(&[LENGTH], fault);
             }
         }
         let inertia = attachment.rotary_inertia_kg_m2;
@@ -36,7 +47,8 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             );
             let fault = Violation::new(Code::Implausible, format!("{pointer}/rotary_inertia_kg_m2"), what);
             let hint = "rotary inertias are in kg m^2; a g mm^2 is 1e-9";
-            faults.push(fault.allowed(format!("up to {} kg m^2", digits(hardest))).hint(hint));
+            let fault = fault.allowed(format!("up to {} kg m^2", digits(hardest)));
+            faults.push_beside(&MASS, fault.hint(hint));
         }
         if attachment.is_empty() {
             let what = format!("nothing is attached at {}", attachment.at);

@@ -3,6 +3,7 @@
 use slcbeam_section::finite::energy::monomials;
 
 use crate::case::faults::Violations;
+use crate::case::numbers::rounded;
 use crate::case::schema::{Bladders, Case, Coupling, Formulation, StrainEnergy};
 use crate::error::{Code, Violation};
 
@@ -41,10 +42,14 @@ fn dry(case: &Case, faults: &mut Violations) {
     }
 }
 
+/// Where the number of bladders stands.
+pub(super) const PER_ROW: &str = "/bladders/per_row";
+
 fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     let beam = &case.beam;
-    let mut refuse = |key: &str, what: String, allowed: String| {
-        faults.push(Violation::new(Code::Geometry, format!("/bladders/{key}"), what).allowed(allowed));
+    let mut refuse = |key: &str, beside: &[&str], what: String, allowed: String| {
+        let fault = Violation::new(Code::Geometry, format!("/bladders/{key}"), what).allowed(allowed);
+        faults.push_beside(beside, fault);
     };
     let segment = beam.length_m / bladders.per_row.max(1) as f64;
     // A part in 1e9 forgives what decimal fractions lose.
@@ -56,8 +61,9 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
         );
         refuse(
             "width_m",
+            &["/beam/length_m", PER_ROW],
             what,
-            format!("at most {segment} m each, the length of a segment"),
+            format!("at most {} m each, the length of a segment", rounded(segment)),
         );
     }
     if exceeds(2.0 * bladders.height_m, beam.height_m) {
@@ -67,8 +73,12 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
         );
         refuse(
             "height_m",
+            &["/beam/height_m"],
             what,
-            format!("at most {} m, half the height of the beam", beam.height_m / 2.0),
+            format!(
+                "at most {} m, half the height of the beam",
+                rounded(beam.height_m / 2.0)
+            ),
         );
     }
     if exceeds(bladders.length_m, beam.width_m) {
@@ -78,6 +88,7 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
         );
         refuse(
             "length_m",
+            &["/beam/width_m"],
             what,
             format!("at most {} m, the width of the beam", beam.width_m),
         );
@@ -88,11 +99,9 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
             "/mesh/segments",
             format!("{segments} segments for {} bladders a row", bladders.per_row),
         );
-        faults.push(
-            fault
-                .allowed(bladders.per_row.to_string())
-                .hint("leave it out: it is the number of bladders per row"),
-        );
+        let fault = fault.allowed(bladders.per_row.to_string());
+        let hint = "leave it out: it is the number of bladders per row";
+        faults.push_beside(&[PER_ROW], fault.hint(hint));
     }
 }
 
@@ -118,11 +127,9 @@ fn slopes(bladders: &Bladders, faults: &mut Violations) {
         if large < small {
             let what = format!("the slope {large_key} ({large}) is smaller than {small_key} ({small})");
             let fault = Violation::new(Code::Slopes, format!("{pointer}/{large_key}"), what);
-            faults.push(
-                fault
-                    .allowed(format!("at least {small}"))
-                    .hint("closing stiffens a bladder; are the two exchanged?"),
-            );
+            let fault = fault.allowed(format!("at least {small}"));
+            let hint = "closing stiffens a bladder; are the two exchanged?";
+            faults.push_beside(&[&format!("{pointer}/{small_key}")], fault.hint(hint));
         }
     }
 }
@@ -133,7 +140,7 @@ fn strain_energy(case: &Case, bladders: &Bladders, energy: &StrainEnergy, faults
     // the schema has said so of a degree that is none
     let (degree, given) = (energy.degree, energy.coefficients_n.len());
     let wanted = || monomials(degree).count();
-    if !faults.any_below(at) && given != wanted() {
+    if faults.are_sound(&[at]) && given != wanted() {
         let what = format!("{given} coefficients of degree {degree}");
         let fault = Violation::new(Code::Count, format!("{at}/coefficients_n"), what);
         faults.push(fault.allowed(wanted().to_string()));

@@ -11,6 +11,16 @@ use crate::error::{Code, Violation};
 /// of their size; a millimetre in place of a metre is a thousand, its square a million.
 const BEYOND: f64 = 1e5;
 
+/// What suggests the coefficients of bladders.
+const SIZES: [&str; 6] = [
+    "/beam/young_modulus_pa",
+    "/beam/height_m",
+    "/beam/width_m",
+    "/bladders/height_m",
+    "/bladders/width_m",
+    "/bladders/length_m",
+];
+
 /// Each coefficient against the one that its section's sizes and modulus suggest.
 ///
 /// ```text
@@ -18,16 +28,17 @@ const BEYOND: f64 = 1e5;
 /// q1 ~ A²/(8π), that of a circle of the same area, which no other shape exceeds
 /// ```
 pub(super) fn check(case: &Case, faults: &mut Violations) {
-    let mut look = |pointer: &str, value: f64, suggested: f64, unit: &str, hint: &str| {
+    let mut look = |pointer: &str, value: f64, (suggested, by): (f64, &[&str]), unit: &str, hint: &str| {
         let largest = BEYOND * suggested;
-        if value > largest && largest.is_finite() && !faults.has(pointer) {
+        if value > largest && largest.is_finite() {
             let what = format!(
                 "{} {unit} is {:.0e} times what the sizes suggest",
                 plain(value),
                 value / suggested
             );
             let fault = Violation::new(Code::Implausible, pointer, what);
-            faults.push(fault.allowed(format!("up to {} {unit}", digits(largest))).hint(hint));
+            let fault = fault.allowed(format!("up to {} {unit}", digits(largest)));
+            faults.push_beside(by, fault.hint(hint));
         }
     };
     let duct = "permeabilities are in m^4; a circle has pi r^4/8, r in metres";
@@ -35,6 +46,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         && let Some(permeability) = tubes.permeability_m4
     {
         let own = PI * tubes.radius_m.powi(4) / 8.0;
+        let own = (own, &["/tubes/radius_m"][..]);
         look("/tubes/permeability_m4", permeability, own, "m^4", duct);
     }
     let Some(b) = &case.bladders else {
@@ -47,6 +59,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         soft / (beam.width_m * beam.height_m),
         soft / (beam.width_m * beam.height_m.powi(2)),
     );
+    let [soft, per_force, per_moment] = [soft, per_force, per_moment].map(|x| (x, &SIZES[..]));
     let squares = "areas are in m^2; is this in mm^2?";
     look(
         "/bladders/area_per_pressure_m2_per_pa",
@@ -67,7 +80,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     if let Coupling::Published(c) = &b.coupling {
         let at = "/bladders/coupling/published";
         let strain = b.length_m * beam.young_modulus_pa;
-        let (slope, length) = (strain * per_moment, strain * per_force);
+        let [slope, length] = [per_moment, per_force].map(|(x, by)| (strain * x, by));
         let hint = "per unit of pressure/E, not per Pa";
         let pointer = format!("{at}/slope_per_pressure_rad");
         look(&pointer, c.slope_per_pressure_rad, slope, "rad", hint);
@@ -80,7 +93,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         );
     }
     if let Some(permeability) = b.permeability_m4 {
-        let circle = area * area / (8.0 * PI);
+        let circle = (area * area / (8.0 * PI), &SIZES[..]);
         look("/bladders/permeability_m4", permeability, circle, "m^4", duct);
     }
 }

@@ -80,7 +80,9 @@ fn vessels(case: &Case, fluid: &Fluid, faults: &mut Violations) {
                     "above -{} Pa, -volume_m3/compliance_m3_pa",
                     plain(volume_m3 / compliance_m3_pa)
                 );
-                faults.push(Violation::new(Code::Range, start, what).allowed(least));
+                let parts = ["volume_m3", "compliance_m3_pa"].map(|key| format!("{pointer}/kind/elastic/{key}"));
+                let fault = Violation::new(Code::Range, start, what).allowed(least);
+                faults.push_beside(&parts.each_ref().map(String::as_str), fault);
             }
             AccumulatorKind::Gas { .. } if fluid.kind == FluidKind::Gas && one.start_pressure_pa < 0.0 => {
                 let what = format!(
@@ -98,10 +100,11 @@ fn vessels(case: &Case, fluid: &Fluid, faults: &mut Violations) {
 /// A gauge pressure of gas, at the least.
 fn above_vacuum(fluid: &Fluid, pointer: String, lowest: f64, faults: &mut Violations) {
     let ambient = fluid.ambient_pressure();
-    if lowest <= -ambient && !faults.has(&pointer) {
+    if lowest <= -ambient {
         let what = format!("{} Pa, at or below absolute vacuum", plain(lowest));
         let fault = Violation::new(Code::Range, pointer, what).allowed(format!("above -{} Pa", plain(ambient)));
-        faults.push(fault.hint("pressures are those above ambient_pressure_pa, and gas fills what is left"));
+        let hint = "pressures are those above ambient_pressure_pa, and gas fills what is left";
+        faults.push_beside(&["/fluid/ambient_pressure_pa"], fault.hint(hint));
     }
 }
 

@@ -1,5 +1,6 @@
 //! Functions of time and place: tables that make a curve, values in range, no jumps where something moves.
 
+use super::time::END;
 use crate::case::faults::Violations;
 use crate::case::locate::child;
 use crate::case::numbers::plain;
@@ -61,7 +62,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     for (pointer, role, signal) in signals(case) {
         let known = faults.count();
         signal_parts(&pointer, signal, faults);
-        if faults.count() == known {
+        if faults.count() == known && faults.are_sound(&[END, &pointer]) {
             values(&pointer, role, signal, case.time.end_s, faults);
         }
     }

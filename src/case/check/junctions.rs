@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::network::Joined;
+use super::time::END;
 use crate::case::faults::Violations;
 use crate::case::schema::Case;
 use crate::case::wiring::Point;
@@ -29,7 +30,8 @@ pub(super) fn check(case: &Case, joined: &Joined, faults: &mut Violations) {
         faults.push(fault.hint("attach tubes to it or remove it"));
     }
     let mut dead: BTreeMap<usize, f64> = BTreeMap::new();
-    for t in instants(joined, case.time.end_s) {
+    let end = if faults.are_sound(&[END]) { case.time.end_s } else { 0.0 };
+    for t in instants(joined, end) {
         let reached = reached(joined, t);
         for point in joined.attached.keys().filter(|point| !reached.contains(point)) {
             if let Point::Junction(i) = point {
@@ -53,7 +55,7 @@ fn instants(joined: &Joined, end: f64) -> Vec<f64> {
     let mut instants = vec![0.0];
     let openings = joined.branches.iter().filter_map(|(_, opening)| *opening);
     let moving: Vec<&Signal> = openings.filter(|o| !o.is_constant()).collect();
-    if !moving.is_empty() {
+    if !moving.is_empty() && end > 0.0 {
         instants.extend((1..=INSTANTS).map(|i| end * i as f64 / INSTANTS as f64));
         for opening in moving {
             instants.extend(

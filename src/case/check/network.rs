@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use super::bladders::two_permeabilities;
+use super::bladders::{PER_ROW, two_permeabilities};
 use super::junctions;
 use super::tubes::{loss_coefficient, radius, roughness, size};
 use crate::case::faults::Violations;
@@ -14,6 +14,10 @@ use crate::error::{Code, Violation};
 use crate::functions::signals::Signal;
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
+    // of how many bladders there are none is told apart from what is none
+    if !faults.are_sound(&[PER_ROW]) {
+        return;
+    }
     let (_, joined) = resolve(case, faults);
     if !joined.lost {
         junctions::check(case, &joined, faults);
@@ -306,11 +310,9 @@ impl<'a> Rules<'a, '_> {
                 "up to its forward conductance, {}",
                 plain(valve.forward_conductance_m3_s_pa)
             );
-            self.faults.push(
-                fault
-                    .allowed(allowed)
-                    .hint("are the two conductances the wrong way round? A tube's valve opens from \"from\" to \"to\""),
-            );
+            let hint = "are the two conductances the wrong way round? A tube's valve opens from \"from\" to \"to\"";
+            let forward = format!("{pointer}/forward_conductance_m3_s_pa");
+            self.faults.push_beside(&[&forward], fault.allowed(allowed).hint(hint));
         }
     }
 

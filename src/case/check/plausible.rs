@@ -1,7 +1,7 @@
 //! Sizes that no such device has: almost always a unit.
 
 use crate::case::faults::Violations;
-use crate::case::numbers::plain;
+use crate::case::numbers::{plain, rounded};
 use crate::case::schema::{Case, CrossSection};
 use crate::error::{Code, Violation};
 
@@ -53,6 +53,9 @@ const SHEAR: Range = Range::new(
 const RELAXATION: Range = Range::new(1e-9, 1e9, "s", "times are in seconds");
 const DURATION: Range = Range::new(1e-9, 1e7, "s", "times are in seconds");
 
+/// What [`SHEAR`] is relative to.
+const FULL_SECTION: [&str; 3] = ["/beam/young_modulus_pa", "/beam/height_m", "/beam/width_m"];
+
 /// Longest beam, in heights: dry, and with bladders, which cover a good part of it.
 const MOST_SLENDER: [f64; 2] = [1e5, 4e3];
 /// Longest tube, in lengths of the beam.
@@ -60,17 +63,7 @@ const LONGEST_TUBE: f64 = 100.0;
 
 /// Sizes of everything that has a size.
 pub(super) fn sizes(case: &Case, faults: &mut Violations) {
-    let mut look = |pointer: &str, value: f64, range: &Range| {
-        if !(range.low..=range.high).contains(&value) && !faults.has(pointer) {
-            let fault = Violation::new(
-                Code::Implausible,
-                pointer,
-                format!("{} {} is not a plausible size", plain(value), unit(range)),
-            );
-            let allowed = format!("{} to {} {}", plain(range.low), plain(range.high), unit(range));
-            faults.push(fault.allowed(allowed.trim_end()).hint(range.hint));
-        }
-    };
+    let mut look = |pointer: &str, value: f64, range: &Range| look(pointer, value, range, faults);
     let beam = &case.beam;
     look("/beam/length_m", beam.length_m, &BEAM_LENGTH);
     look("/beam/height_m", beam.height_m, &SECTION);
@@ -79,9 +72,6 @@ pub(super) fn sizes(case: &Case, faults: &mut Violations) {
     look("/beam/density_kg_m3", beam.density_kg_m3, &SOLID_DENSITY);
     look("/beam/axial_stiffness_factor", beam.axial_stiffness_factor, &FACTOR);
     look("/beam/bending_stiffness_factor", beam.bending_stiffness_factor, &FACTOR);
-    let full = beam.young_modulus_pa * beam.height_m * beam.width_m;
-    let shear = beam.shear_stiffness_n.unwrap_or(full);
-    look("/beam/shear_stiffness_n", shear, &SHEAR.times(full));
     look("/beam/mass_factor", beam.mass_factor.unwrap_or(1.0), &FACTOR);
     let branches = beam.viscoelasticity.iter().flat_map(|relaxing| &relaxing.prony);
     for (k, branch) in branches.enumerate() {
@@ -136,6 +126,23 @@ pub(super) fn sizes(case: &Case, faults: &mut Violations) {
             look(&format!("{tube_at}/cross_section/{key}"), size, &RADIUS);
         }
     }
+    if let Some(shear) = beam.shear_stiffness_n.filter(|_| faults.are_sound(&FULL_SECTION)) {
+        let full = beam.young_modulus_pa * beam.height_m * beam.width_m;
+        self::look("/beam/shear_stiffness_n", shear, &SHEAR.times(full), faults);
+    }
+}
+
+fn look(pointer: &str, value: f64, range: &Range, faults: &mut Violations) {
+    if (range.low..=range.high).contains(&value) {
+        return;
+    }
+    let fault = Violation::new(
+        Code::Implausible,
+        pointer,
+        format!("{} {} is not a plausible size", plain(value), unit(range)),
+    );
+    let allowed = format!("{} to {} {}", plain(range.low), plain(range.high), unit(range));
+    faults.push_beside(&[], fault.allowed(allowed.trim_end()).hint(range.hint));
 }
 
 /// Lengths that do not go together.
@@ -143,14 +150,11 @@ pub(super) fn proportions(case: &Case, faults: &mut Violations) {
     let beam = &case.beam;
     let slenderness = beam.length_m / beam.height_m;
     let most = MOST_SLENDER[usize::from(case.bladders.is_some())];
-    if slenderness > most && !faults.has("/beam/length_m") && !faults.has("/beam/height_m") {
+    if slenderness > most {
         let what = format!("a beam {} times as long as it is high", slenderness.round());
         let fault = Violation::new(Code::Implausible, "/beam/length_m", what);
-        faults.push(
-            fault
-                .allowed(format!("up to {most} times the height"))
-                .hint(MILLIMETRES),
-        );
+        let fault = fault.allowed(format!("up to {most} times the height"));
+        faults.push_beside(&["/beam/height_m"], fault.hint(MILLIMETRES));
     }
     let shared = case
         .tubes
@@ -160,13 +164,14 @@ pub(super) fn proportions(case: &Case, faults: &mut Violations) {
     let single = single.filter_map(|(i, t)| Some((format!("/network/tubes/{i}/length_m"), t.length_m?)));
     for (pointer, length) in shared.chain(single) {
         let longest = LONGEST_TUBE * beam.length_m;
-        if length > longest && !faults.has(&pointer) {
+        if length > longest {
             let fault = Violation::new(
                 Code::Implausible,
                 pointer,
                 format!("a tube of {} m on a beam of {} m", plain(length), plain(beam.length_m)),
             );
-            faults.push(fault.allowed(format!("up to {} m", plain(longest))).hint(MILLIMETRES));
+            let fault = fault.allowed(format!("up to {} m", rounded(longest)));
+            faults.push_beside(&["/beam/length_m"], fault.hint(MILLIMETRES));
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::time::END;
 use crate::case::faults::Violations;
 use crate::case::schema::Case;
 use crate::error::{Code, Violation};
@@ -38,7 +39,8 @@ pub(super) fn step(case: &Case, faults: &mut Violations) {
         step.at_s, case.time.end_s
     );
     let fault = Violation::new(Code::StepTime, "/step_response/at_s", what).allowed("times before /time/end_s");
-    faults.push(fault.hint("make the run longer than the response takes to settle"));
+    let fault = fault.hint("make the run longer than the response takes to settle");
+    faults.push_beside(&[END], fault);
 }
 
 /// The tip has columns of its own.

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
+use super::bladders::PER_ROW;
 use super::strength::inlets;
+use super::time::END;
 use crate::case::ends::{Rotation, Translation};
 use crate::case::faults::Violations;
 use crate::case::locate::child;
@@ -20,7 +22,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
 }
 
 fn pressures(case: &Case, faults: &mut Violations) {
-    let Some(bladders) = &case.bladders else {
+    let Some(bladders) = case.bladders.as_ref().filter(|_| faults.are_sound(&[PER_ROW])) else {
         return;
     };
     let mut known = HashMap::new();
@@ -40,6 +42,9 @@ fn pressures(case: &Case, faults: &mut Violations) {
 /// Volumes that ports let in begin at what the network holds of them.
 fn volumes(case: &Case, faults: &mut Violations) {
     for (pointer, signal) in inlets(case).volumes {
+        if !faults.are_sound(&[END, &pointer]) {
+            continue;
+        }
         let (begins, holds) = (signal.value(0.0), case.held_at_start(signal));
         if (begins - holds).abs() > 1e-9 * signal.largest(case.time.end_s).value.max(holds.abs()) {
             let what = format!("a volume that begins at {begins} m^3, of which the start holds {holds} m^3");
@@ -68,7 +73,7 @@ fn equilibrium(case: &Case, faults: &mut Violations) {
             let pointer = format!("/start/equilibrium/via_s/{i}");
             let what = format!("the instant {instant} s is not one before the end of the run");
             let allowed = format!("finite, at most {} s", case.time.end_s);
-            faults.push(Violation::new(Code::Start, pointer, what).allowed(allowed));
+            faults.push_beside(&[END], Violation::new(Code::Start, pointer, what).allowed(allowed));
         }
     }
     for (key, given) in [("u1_m", &case.start.u1_m), ("u3_m", &case.start.u3_m)] {
@@ -82,6 +87,9 @@ fn equilibrium(case: &Case, faults: &mut Violations) {
 /// Displacement and slope at an end as the start has them and as the end is driven.
 fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Violations) {
     let (form, given) = end.form();
+    if !faults.are_sound(&[END, "/beam/length_m", &format!("/ends/{name}")]) {
+        return;
+    }
     let length = case.beam.length_m;
     let resolved = end.resolve();
     let mut compare = |key: &str, start_key: &str, starts: f64, signal: &Signal, tolerance: f64, unit: &str| {

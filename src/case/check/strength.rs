@@ -1,6 +1,8 @@
 //! Loads, pressures and flows that no such beam bears: almost always a unit.
 
+use super::bladders::PER_ROW;
 use super::size::{size_along, size_of, size_of_integral};
+use super::time::END;
 use crate::case::faults::Violations;
 use crate::case::numbers::digits;
 use crate::case::schema::{AccumulatorKind, Bladders, Case, ChainEnd, Load, Rectifier};
@@ -15,10 +17,45 @@ const FASTEST_FILL: f64 = 10.0;
 /// What a load may be [its unit], and what that means.
 struct Bound {
     largest: f64,
+    /// What it is computed from.
+    of: &'static [&'static str],
     unit: &'static str,
     meaning: &'static str,
     hint: &'static str,
 }
+
+/// What bounds of loads are computed from: modulus, section, length, mass.
+const BEAM: [&str; 8] = [
+    "/beam/young_modulus_pa",
+    "/beam/height_m",
+    "/beam/width_m",
+    "/beam/axial_stiffness_factor",
+    "/beam/bending_stiffness_factor",
+    "/beam/length_m",
+    "/beam/density_kg_m3",
+    "/beam/mass_factor",
+];
+/// What bounds of flows are computed from.
+const FILLED: [&str; 7] = [
+    BEAM[0],
+    BEAM[1],
+    "/beam/density_kg_m3",
+    "/bladders/height_m",
+    "/bladders/width_m",
+    "/bladders/length_m",
+    PER_ROW,
+];
+/// What bounds of volumes are computed from.
+const ROOM: [&str; 8] = [
+    BEAM[0],
+    "/bladders/area_per_pressure_m2_per_pa",
+    "/bladders/height_m",
+    "/bladders/width_m",
+    "/bladders/length_m",
+    PER_ROW,
+    "/fluid",
+    "/network/accumulators",
+];
 
 /// Speed of sound in air [m/s]: no stream of the model is faster.
 const SOUND: f64 = 343.0;
@@ -45,8 +82,9 @@ impl Bounds {
         let mass = beam.density_kg_m3 * area * beam.length_m * beam.mass_factor.unwrap_or(1.0);
         let (force, moment) = (MOST * ea, 2.0 * MOST * ei / beam.height_m);
         let strain = "that strains the beam by 1000 %";
-        let bound = |largest, unit, meaning, hint| Bound {
+        let bound = |largest, of, unit, meaning, hint| Bound {
             largest,
+            of,
             unit,
             meaning,
             hint,
@@ -55,23 +93,38 @@ impl Bounds {
         Self {
             pressure: bound(
                 MOST * beam.young_modulus_pa,
+                &BEAM[..1],
                 "Pa",
                 "ten times Young's modulus",
                 "pressures are in Pa; a kPa is 1e3, a bar 1e5",
             ),
-            force: bound(force, "N", strain, newtons),
-            moment: bound(moment, "N m", strain, "moments are in N m; is this in N mm?"),
-            force_along: bound(force / beam.length_m, "N/m", strain, newtons),
-            moment_along: bound(moment / beam.length_m, "N", strain, "first moments per length are in N"),
-            body: bound(force / mass, "m/s^2", strain, "accelerations are in m/s^2"),
+            force: bound(force, &BEAM[..5], "N", strain, newtons),
+            moment: bound(
+                moment,
+                &BEAM[..5],
+                "N m",
+                strain,
+                "moments are in N m; is this in N mm?",
+            ),
+            force_along: bound(force / beam.length_m, &BEAM[..6], "N/m", strain, newtons),
+            moment_along: bound(
+                moment / beam.length_m,
+                &BEAM[..6],
+                "N",
+                strain,
+                "first moments per length are in N",
+            ),
+            body: bound(force / mass, &BEAM, "m/s^2", strain, "accelerations are in m/s^2"),
             curvature: bound(
                 2.0 * MOST / beam.height_m,
+                &BEAM[1..2],
                 "1/m",
                 "ten over half the height",
                 "is this in 1/mm?",
             ),
             stream: bound(
                 SOUND,
+                &[],
                 "m/s",
                 "the speed of sound in air",
                 "velocities are in m/s; a km/h is 0.278",
@@ -84,13 +137,38 @@ impl Bounds {
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     let bounds = Bounds::new(case);
     let end = case.time.end_s;
+    let timed = faults.are_sound(&[END]);
     let mut look = |pointer: String, size: f64, bound: &Bound| {
         if size > bound.largest && bound.largest.is_finite() && size.is_finite() {
             let what = format!("{} {} is more than {}", digits(size), bound.unit, bound.meaning);
             let allowed = format!("up to {} {}", digits(bound.largest), bound.unit);
-            refuse(faults, &pointer, what, allowed, bound.hint);
+            refuse(faults, &pointer, bound.of, what, allowed, bound.hint);
         }
     };
+    for (i, load) in case.loads.iter().enumerate() {
+        if let Load::Gravity { x_m_s2, z_m_s2 } = load {
+            look(format!("/loads/{i}/gravity/x_m_s2"), x_m_s2.abs(), &bounds.body);
+            look(format!("/loads/{i}/gravity/z_m_s2"), z_m_s2.abs(), &bounds.body);
+        }
+    }
+    for (i, some) in case.start.pressures.iter().enumerate() {
+        let pointer = format!("/start/pressures/{i}/pressure_pa");
+        look(pointer, size_along(&some.pressure_pa), &bounds.pressure);
+    }
+    for (i, turbine) in case.network.iter().flat_map(|n| &n.turbines).enumerate() {
+        if let Rectifier::CheckValves(valve) = &turbine.rectifier {
+            let pointer = format!("/network/turbines/{i}/rectifier/check_valves/cracking_pressure_pa");
+            look(pointer, valve.cracking_pressure_pa, &bounds.pressure);
+        }
+    }
+    for (i, accumulator) in case.network.iter().flat_map(|n| &n.accumulators).enumerate() {
+        let pointer = format!("/network/accumulators/{i}/start_pressure_pa");
+        look(pointer, accumulator.start_pressure_pa.abs(), &bounds.pressure);
+    }
+    // what signals reach is told where it is known until when
+    if !timed {
+        return;
+    }
     for (side, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
         let (form, given) = side.form();
         for (key, signal) in given.given() {
@@ -103,10 +181,6 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         }
     }
     for (i, load) in case.loads.iter().enumerate() {
-        if let Load::Gravity { x_m_s2, z_m_s2 } = load {
-            look(format!("/loads/{i}/gravity/x_m_s2"), x_m_s2.abs(), &bounds.body);
-            look(format!("/loads/{i}/gravity/z_m_s2"), z_m_s2.abs(), &bounds.body);
-        }
         if let Some((key, load)) = load.distributed() {
             let bound = match key {
                 "force_x_n_m" | "force_z_n_m" => &bounds.force_along,
@@ -128,18 +202,8 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             look(format!("/attachments/{i}/{key}"), size_of(signal, end), &bounds.force);
         }
     }
-    for (i, some) in case.start.pressures.iter().enumerate() {
-        let pointer = format!("/start/pressures/{i}/pressure_pa");
-        look(pointer, size_along(&some.pressure_pa), &bounds.pressure);
-    }
     for (pointer, signal) in inlets(case).pressures {
         look(pointer, size_of(signal, end), &bounds.pressure);
-    }
-    for (i, turbine) in case.network.iter().flat_map(|n| &n.turbines).enumerate() {
-        if let Rectifier::CheckValves(valve) = &turbine.rectifier {
-            let pointer = format!("/network/turbines/{i}/rectifier/check_valves/cracking_pressure_pa");
-            look(pointer, valve.cracking_pressure_pa, &bounds.pressure);
-        }
     }
     for (i, tube) in case.network.iter().flat_map(|n| &n.tubes).enumerate() {
         if let Some(valve) = &tube.check_valve {
@@ -150,10 +214,6 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             let pointer = format!("/network/tubes/{i}/pump/pressure_pa");
             look(pointer, size_of(&pump.pressure_pa, end), &bounds.pressure);
         }
-    }
-    for (i, accumulator) in case.network.iter().flat_map(|n| &n.accumulators).enumerate() {
-        let pointer = format!("/network/accumulators/{i}/start_pressure_pa");
-        look(pointer, accumulator.start_pressure_pa.abs(), &bounds.pressure);
     }
     if let Some(bladders) = &case.bladders {
         flows(case, bladders, faults);
@@ -177,7 +237,8 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
         if size > largest && size.is_finite() {
             let (size, volume) = (digits(size), digits(volume));
             let what = format!("{size} m^3/s fills all bladders, {volume} m^3, before sound has crossed the beam");
-            refuse(faults, pointer, what, format!("up to {} m^3/s", digits(largest)), hint);
+            let allowed = format!("up to {} m^3/s", digits(largest));
+            refuse(faults, pointer, &FILLED, what, allowed, hint);
         }
     }
     if !found.pressures.is_empty() {
@@ -208,7 +269,8 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
         let size = size_of(signal, end);
         if size > room {
             let what = format!("{} m^3 let into {beyond}", digits(size));
-            refuse(faults, pointer, what, format!("up to {} m^3", digits(room)), VOLUME);
+            let allowed = format!("up to {} m^3", digits(room));
+            refuse(faults, pointer, &ROOM, what, allowed, VOLUME);
         }
     }
     let all: Vec<&Signal> = found.flows.iter().map(|(_, signal)| *signal).collect();
@@ -219,19 +281,14 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     {
         let what = format!("flows leave {} m^3 in {beyond}", digits(left));
         let allowed = format!("up to {} m^3 by the end of the run", digits(room));
-        refuse(faults, pointer, what, allowed, FLOW);
+        refuse(faults, pointer, &ROOM, what, allowed, FLOW);
     }
 }
 
-/// Refuses what is implausible, where nothing else was found at its place.
-fn refuse(faults: &mut Violations, pointer: &str, what: String, allowed: String, hint: &str) {
-    if !faults.has(pointer) {
-        faults.push(
-            Violation::new(Code::Implausible, pointer, what)
-                .allowed(allowed)
-                .hint(hint),
-        );
-    }
+/// Refuses what is implausible, where nothing else was found at its place or in what its bound is computed from.
+fn refuse(faults: &mut Violations, pointer: &str, of: &[&str], what: String, allowed: String, hint: &str) {
+    let fault = Violation::new(Code::Implausible, pointer, what);
+    faults.push_beside(of, fault.allowed(allowed).hint(hint));
 }
 
 /// Ports and ends of chains with what they prescribe.

@@ -10,15 +10,21 @@ const MOST_ROWS: f64 = 1e7;
 /// Checkpoints at most; each costs a start afresh of the integrator.
 const MOST_CHECKPOINTS: f64 = 1e5;
 
+/// Where a run ends.
+pub(super) const END: &str = "/time/end_s";
+/// What other intervals go with.
+const OUTPUT: &str = "/time/output_interval_s";
+
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     let time = &case.time;
     // what is no length of time has its fault already
     let sound = |time: &f64| *time > 0.0;
-    if !sound(&time.end_s) {
+    if !sound(&time.end_s) || !faults.are_sound(&[END]) {
         return;
     }
     let mut refuse = |key: &str, what: String, allowed: String| {
-        faults.push(Violation::new(Code::Times, format!("/time/{key}"), what).allowed(allowed));
+        let fault = Violation::new(Code::Times, format!("/time/{key}"), what).allowed(allowed);
+        faults.push_beside(&[OUTPUT], fault);
     };
     let intervals = [
         ("output_interval_s", time.output_interval_s),

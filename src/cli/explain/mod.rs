@@ -70,7 +70,15 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
     for one in &told {
         let _ = writeln!(text, "{} ({}): {}", one.name, one.kind, one.meaning);
     }
-    for m in &found {
+    // a word may be a key and mean others too: flow is an effect, and a port has flow_m3_s
+    let known = found.len();
+    let also = synonyms::of(name).into_iter().flat_map(|key| named(key)).take(MOST);
+    let also: Vec<&Meaning> = also.filter(|m| !found.contains(m)).collect();
+    found.extend(also);
+    for (k, m) in found.iter().enumerate() {
+        if k == known && k > 0 {
+            let _ = writeln!(text, "what else has to do with it:");
+        }
         let _ = writeln!(text, "{}: {}", m.place, m.meaning);
         for inner in inside(&all, m) {
             let _ = writeln!(text, "  {}: {}", inner.place, inner.meaning);

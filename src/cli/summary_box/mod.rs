@@ -14,7 +14,7 @@ use crate::run::summary::{Quantity, Status, Summary};
 
 /// Warnings shown; the rest is counted.
 const WARNINGS: usize = 3;
-/// Lines a single entry may take; the reason of a failure half as many again.
+/// Lines a single entry may take; what to know, and why something failed, is told to its end, where what to do stands.
 const LINES: usize = 2;
 /// Shares of the wall time that are told.
 const LEAST_SHARE: f64 = 0.005;
@@ -94,7 +94,10 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     let more = summary.warnings.len().saturating_sub(WARNINGS);
     let more = (more > 0).then(|| format!("and {more} more in summary.json; slcbeam explain says more of each number"));
     add("", more, Tone::Warning);
-    add("deflection", deflection(summary), Tone::Plain);
+    let [end, largest] = tip(summary);
+    let below = if end.is_some() { "" } else { "tip" };
+    add("tip", end, Tone::Plain);
+    add(below, largest, Tone::Plain);
     add("pressure", pressure(summary), Tone::Plain);
     add("step", step(summary), Tone::Plain);
     add("energy", energy(summary), Tone::Plain);
@@ -155,9 +158,8 @@ fn sensitivities(summary: &Summary) -> Option<String> {
 fn push_row(out: &mut String, row: &Row, width: usize, colour: bool) {
     let room = width - NAME - 5;
     let mut lines = lines(&row.text, room);
-    let most = if row.tone == Tone::Bad { LINES + 1 } else { LINES };
-    if lines.len() > most {
-        lines.truncate(most);
+    if row.tone == Tone::Plain && lines.len() > LINES {
+        lines.truncate(LINES);
         if let Some(last) = lines.last_mut() {
             *last = format!("{} …", start(last, room - 2)).into();
         }
@@ -197,14 +199,20 @@ fn get(summary: &Summary, one: Interest) -> Option<&Quantity> {
     summary.quantities.get(one.name())
 }
 
-fn deflection(summary: &Summary) -> Option<String> {
-    let tip = [("u₁", Interest::TipU1), ("u₃", Interest::TipU3)];
-    let parts = tip.into_iter().filter_map(|(symbol, one)| {
-        let largest = get(summary, one)?.max_abs?;
-        Some(hold(format!("{symbol} {}", shown(largest, "m"))))
-    });
-    let parts: Vec<_> = parts.collect();
-    (!parts.is_empty()).then(|| format!("tip, largest: {}", parts.join(BETWEEN)))
+/// Where the tip is at the end, and where it was furthest away, and when.
+fn tip(summary: &Summary) -> [Option<String>; 2] {
+    let joined = |words: &str, told: &dyn Fn(&Quantity) -> Option<String>| {
+        let tip = [("u₁", Interest::TipU1), ("u₃", Interest::TipU3)];
+        let one = |(symbol, one)| Some(hold(format!("{symbol} {}", told(get(summary, one)?)?)));
+        let parts: Vec<String> = tip.into_iter().filter_map(one).collect();
+        (!parts.is_empty()).then(|| format!("{words}: {}", parts.join(BETWEEN)))
+    };
+    let last = |q: &Quantity| Some(shown(q.last?, "m"));
+    let largest = |q: &Quantity| {
+        let at = q.max_abs_at_s.map(|t| format!(" at {}", trimmed(&quantity(t, "s", 3))));
+        Some(shown(q.largest()?, "m") + &at.unwrap_or_default())
+    };
+    [joined("at the end", &last), joined("largest", &largest)]
 }
 
 fn pressure(summary: &Summary) -> Option<String> {

@@ -10,7 +10,7 @@ use crate::discrete::residual::rows::{driven, mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace, let_in};
 use crate::model::bladder::{kink_curvature, kink_slope};
-use crate::model::network::{LinkKind, Node};
+use crate::model::network::{LinkKind, Network, Node};
 use crate::model::{AreaLaw, Coupling, LumpedKind, LumpedNetwork, Wet};
 
 /// What no equation needs but the balances: means, rates of lumped networks' pressures and of their bladders' areas.
@@ -54,6 +54,7 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
             w.fluid.area_rate[fluid.cells_of(bladder)].fill(stored);
         }
     }
+    surplus(system, now, w);
 }
 
 /// Rate of the area that moment, force and finite strain impose on a bladder.
@@ -188,17 +189,11 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         return;
     };
     let network = &wet.network;
-    let k = fluid.cells_per_bladder;
     for face in fluid.creeping_faces() {
         let lost = compressed::lost_between(wet, w, fluid.conductance, face);
         add(out, EnergyRate::Bladders, lost);
     }
-    let component = |place: Place| match place {
-        Place::Cell(c) => Some(network.component_of_bladder[c / k]),
-        Place::Junction(j) => Some(network.component_of_junction[fluid.junctions[j]]),
-        Place::Port(_) => None,
-    };
-    surplus(system, now, w);
+    let component = |place: Place| component(network, fluid, place);
     let w = &*w;
     let count = network.open.len();
     // `noise` is the flow of which the law misses a share: `g |p|` of a pressure
@@ -251,13 +246,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
             },
             rest,
         );
-        let share =
-            |c: usize| w.fluid.volume_defect[c] * conductance / w.fluid.port_conductance[c].max(f64::MIN_POSITIVE);
-        let surplus = match (component(link.from), component(link.to)) {
-            (None, Some(c)) => share(c),
-            (Some(c), None) => -share(c),
-            _ => 0.0,
-        };
+        let surplus = beyond_stored(w, conductance, [component(link.from), component(link.to)]);
         let ends = [link.from, link.to].map(|place| wet.potential(pressure_at(place, now, w)).abs());
         let size = ends[0].max(ends[1]);
         cross(link.from, link.to, [q - surplus, q, conductance * size], out);
@@ -327,6 +316,25 @@ pub fn lumped_jump(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mu
             out[ENERGY_RATES.len() + 2 * open + 1] += outward.abs();
             out[ENERGY_RATES.len() + 2 * (count + open)] += outward;
         }
+    }
+}
+
+/// What of the flow along a link from or to a pressure port its component does not store: its share of [`surplus`].
+pub(super) fn beyond_stored(w: &Workspace<f64>, conductance: f64, components: [Option<usize>; 2]) -> f64 {
+    let share = |c: usize| w.fluid.volume_defect[c] * conductance / w.fluid.port_conductance[c].max(f64::MIN_POSITIVE);
+    match components {
+        [None, Some(c)] => share(c),
+        [Some(c), None] => -share(c),
+        _ => 0.0,
+    }
+}
+
+/// The component in which a place lies; none of a port.
+pub(super) fn component(network: &Network, fluid: &FluidMesh, place: Place) -> Option<usize> {
+    match place {
+        Place::Cell(c) => Some(network.component_of_bladder[c / fluid.cells_per_bladder]),
+        Place::Junction(j) => Some(network.component_of_junction[fluid.junctions[j]]),
+        Place::Port(_) => None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! What passes each port by itself.
 
-use super::fluid::stored_rate;
+use super::fluid::{beyond_stored, component, stored_rate};
 use super::{ENERGY_RATES, rate_count};
 use crate::discrete::fluid_mesh::{MeshBridge, Place};
 use crate::discrete::residual::fluid::{pressure_at, through_bridge};
@@ -26,7 +26,8 @@ pub fn let_in(system: &System, integrals: &[f64], port: usize) -> f64 {
         .unwrap_or(0.0)
 }
 
-/// Adds the flow that comes in through each port [m^3/s].
+/// Adds the flow that comes in through each port [m^3/s]: of ports of given pressure what their network stores, shared by the ports' law, whose
+/// pressure differences may be last digits of pressures. The workspace must hold [`super::complete`] of the state.
 pub fn flows(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -38,8 +39,9 @@ pub fn flows(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64
             }
         }
     };
-    for (link, &q) in fluid.links.iter().zip(&w.fluid.flow) {
-        across(link.from, link.to, q);
+    for ((link, &q), &conductance) in fluid.links.iter().zip(&w.fluid.flow).zip(&now.conductance) {
+        let components = [link.from, link.to].map(|place| component(&wet.network, fluid, place));
+        across(link.from, link.to, q - beyond_stored(w, conductance, components));
     }
     for (k, &MeshBridge { from, to, .. }) in fluid.bridges.iter().enumerate() {
         across(from, to, through_bridge(wet, fluid, k, now, w));

@@ -8,6 +8,7 @@ use super::extent;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
 use crate::output::numbers::{count, quantity};
+use crate::study::sweep::exchanged::Exchange;
 
 /// One number of every design.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,11 +40,22 @@ pub struct Drawn {
     pub curves: Vec<String>,
     /// Whether designs of a curve follow each other.
     pub joined: bool,
+    /// Neighbours whose modes are not joined.
+    pub apart: Vec<Exchange>,
     /// Designs that there are; the first of them are drawn.
     pub of: usize,
 }
 
 impl Drawn {
+    /// Whether a figure is that of one mode in the first of two designs and of another in the second.
+    fn parted(&self, figure: &str, designs: [usize; 2]) -> bool {
+        let mode = figure.split_once('.').and_then(|(name, _)| name.strip_prefix("mode_"));
+        let mode: Option<usize> = mode.and_then(|number| number.parse().ok());
+        let between = |found: &Exchange| found.designs == designs || found.designs == [designs[1], designs[0]];
+        let mut all = self.apart.iter().filter(|found| between(found));
+        mode.is_some_and(|mode| all.any(|found| found.all.contains(&mode)))
+    }
+
     /// What stands below the title.
     fn about(&self, what: &str) -> String {
         match self.designs.len() {
@@ -115,12 +127,16 @@ pub fn along(data: &Drawn) -> Option<String> {
                         .curve
                         .iter()
                         .zip(&points)
-                        .filter(|(c, _)| **c == curve)
-                        .map(|(_, p)| *p)
+                        .zip(&data.designs)
+                        .filter(|((c, _), _)| **c == curve)
+                        .map(|((_, p), number)| (*p, *number))
                         .collect();
                     if data.joined {
-                        own.sort_by(|a, b| a.0.total_cmp(&b.0));
-                        panel.curve(canvas, own.into_iter(), Stroke::solid(colour, 1.2));
+                        own.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
+                        for piece in own.chunk_by(|a, b| !data.parted(&figure.name, [a.1, b.1])) {
+                            let points = piece.iter().map(|(point, _)| *point);
+                            panel.curve(canvas, points, Stroke::solid(colour, 1.2));
+                        }
                     }
                 }
                 for ((point, curve), number) in points.iter().zip(&data.curve).zip(&data.designs) {
@@ -327,6 +343,7 @@ mod tests {
             curve: vec![0, 0],
             curves: vec![String::new()],
             joined: true,
+            apart: vec![],
             of: 5,
         };
         for picture in [along(&data), over_two(&data), beside(&data)] {

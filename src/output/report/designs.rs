@@ -6,7 +6,7 @@ use super::{Found, Kind, MOST_ROWS, Page, Place, capital};
 use crate::error::Result;
 use crate::output::numbers::count;
 use crate::output::sweep::words::several;
-use crate::output::sweep::{JOURNAL, Survey, TABLE, about, table};
+use crate::output::sweep::{JOURNAL, Survey, TABLE, about, exchanged, table};
 use crate::results::sweep::{Plan, Sweep};
 
 /// Columns of the page's table at most; the file has the rest.
@@ -20,6 +20,7 @@ pub fn data(place: &Place) -> Result<Page> {
     let found = about(&plan, &survey);
     let mut page = place.page(Kind::Designs, &found.case, Some(&head));
     page.put("label", "Many designs");
+    page.warnings = exchanged::warnings(&exchanged::of(&plan, &survey)?);
     let kinds: Vec<String> = found
         .statuses
         .iter()
@@ -65,7 +66,7 @@ pub fn data(place: &Place) -> Result<Page> {
         figure(
             "Along what is varied",
             "sweep.svg",
-            "Designs that finished. Every ring is one of them; its number stands beside it where there is room, and in the table.",
+            "Designs that finished. Every ring is one of them; its number stands beside it where there is room, and in the table. Modes that change places are not joined.",
         ),
         figure("Over two numbers", "map.svg", "Each cell is a design that finished."),
         figure(

@@ -91,7 +91,8 @@ impl History {
             all.insert("unit".into(), unit.as_str().into());
             let one = Observable::named(name);
             all.insert("group".into(), one.map_or("More", |one| one.group().title()).into());
-            all.insert("label".into(), one.map_or(name.as_str(), |one| one.label()).into());
+            let label = one.map_or_else(|| spoken(name), |one| one.label().into());
+            all.insert("label".into(), label.into());
             all.insert("about".into(), one.map_or("", Observable::about).into());
             all.insert("usual".into(), one.is_some_and(usual).into());
             all.insert("values".into(), pack::numbers(values.iter().copied()));
@@ -116,6 +117,11 @@ impl History {
         });
         json!({"columns": columns.chain(others).collect::<Vec<_>>(), "note": note, "rows": self.rows})
     }
+}
+
+/// A name of a column as words: in names `__1` is the number of a lower bladder.
+fn spoken(name: &str) -> String {
+    name.replace("__", " −").replace('_', " ")
 }
 
 /// Whether a quantity is shown unless others are chosen: headlines, and what belongs to the same pressures.

@@ -69,6 +69,7 @@ pub fn data(place: &Place) -> Result<Page> {
         page.put("command", format!("slcbeam periodic {CASE}"));
     } else {
         page.put("label", "Run");
+        page.put("answer", summary.as_ref().and_then(answer));
         page.put("command", format!("slcbeam run {CASE}"));
     }
     Ok(page)
@@ -116,8 +117,47 @@ fn facts_line(summary: &Summary) -> Vec<String> {
     ]
 }
 
+/// Round-off is nothing.
+fn settled(x: f64) -> f64 {
+    if x.abs() < ROUND_OFF { 0.0 } else { x }
+}
+
+/// When something was largest, and what it is at the end; angles in degrees.
+fn when_and_end(summary: &Summary, one: Interest) -> String {
+    let Some(found) = summary.quantity(one.name()) else {
+        return String::new();
+    };
+    let degrees = |x: f64| format!("{}°", trimmed(&significant(settled(x).to_degrees(), 3)));
+    let angle = one.unit() == "rad";
+    let largest = found.largest().filter(|_| angle).map(|x| format!(", {}", degrees(x)));
+    let at = found.max_abs_at_s.map(|t| format!(", at {}", time(t)));
+    let end = found.last.map(|x| match angle {
+        true => format!("; {} at the end", degrees(x)),
+        false => format!("; {} at the end", quantity(settled(x), one.unit(), 3)),
+    });
+    [largest, at, end].into_iter().flatten().collect()
+}
+
+fn time(t: f64) -> String {
+    trimmed(&quantity(t, "s", 3))
+}
+
+/// Where the tip comes to, in a sentence.
+fn answer(summary: &Summary) -> Option<String> {
+    let one = Interest::TipU1;
+    let found = summary.quantity(one.name())?;
+    let (last, largest) = (settled(found.last?), settled(found.largest()?));
+    let at = found.max_abs_at_s.map(|t| format!(", at t = {}", time(t)));
+    Some(format!(
+        "At the end the tip stands at u₁ = {}; its largest deflection is {}{}.",
+        quantity(last, "m", 3),
+        quantity(largest, "m", 3),
+        at.unwrap_or_default()
+    ))
+}
+
 fn tiles(summary: &Summary) -> Vec<Value> {
-    let largest = |name: &str| summary.quantity(name).and_then(|q| q.max_abs);
+    let largest = |name: &str| summary.quantity(name)?.largest();
     let last = |name: &str| summary.quantity(name).and_then(|q| q.last);
     let mut all = vec![];
     let mut tile = |label: &str, value: Option<String>, note: &str| {
@@ -125,21 +165,15 @@ fn tiles(summary: &Summary) -> Vec<Value> {
             all.push(json!({"label": label, "value": value, "note": note}));
         }
     };
-    let length = |name: &str| {
-        let settled = |x: f64| if x < ROUND_OFF { 0.0 } else { x };
-        largest(name).map(|x| quantity(settled(x), "m", 3))
-    };
-    tile("Tip, across", length("tip_u1_m"), "largest deflection u₁ at any time");
-    tile("Tip, along", length("tip_u3_m"), "largest displacement u₃ at any time");
-    let angle = largest("tip_angle_rad").map(|x| if x < ROUND_OFF { 0.0 } else { x });
-    let degrees = angle.map_or(String::new(), |x| {
-        format!("; {}°", trimmed(&significant(x.to_degrees(), 3)))
-    });
-    tile(
-        "Turn of the tip",
-        angle.map(|x| quantity(x, "rad", 3)),
-        &format!("largest slope angle at any time{degrees}"),
-    );
+    let tip = [
+        (Interest::TipU1, "Tip, across", "largest deflection u₁"),
+        (Interest::TipU3, "Tip, along", "largest displacement u₃"),
+        (Interest::TipAngle, "Turn of the tip", "largest slope angle"),
+    ];
+    for (one, label, words) in tip {
+        let value = largest(one.name()).map(|x| quantity(settled(x), one.unit(), 3));
+        tile(label, value, &format!("{words}{}", when_and_end(summary, one)));
+    }
     if let Some(step) = summary.step_response.get(Interest::TipU1.name()) {
         let settles = step
             .settling_time_5_percent_s

@@ -1,7 +1,7 @@
 //! Loads from pressures in words.
 
 use crate::output::columns::aligned;
-use crate::output::numbers::{count, significant};
+use crate::output::numbers::{count, significant, trimmed};
 use crate::results::sense::{Banded, NoiseFrom, Sensed, Unknown};
 
 /// Rows of a table at most.
@@ -56,6 +56,13 @@ pub fn about_sight(found: &Sensed) -> String {
             None => "at rest",
         }
     );
+    if !found.own_loads.is_empty() {
+        text += &format!(
+            "  the case's own loads act besides, as at t = {} s: {}; what is found comes on top of them\n",
+            trimmed(&significant(found.loads_at_s, 4)),
+            found.own_loads.join(", ")
+        );
+    }
     let alone = |a: &&Unknown| a.error_per_pa.is_some();
     let told: Vec<&Unknown> = found.amplitudes.iter().filter(alone).collect();
     if told.len() > MANY {

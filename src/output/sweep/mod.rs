@@ -4,6 +4,7 @@
 //! journal   designs.jsonl: a line a design, safe on disk as soon as it is computed
 //! table     sweep.csv: a row a design
 //! arrays    sweep.npz: the same numbers
+//! exchanged modes that change places from one design to the next
 //! pictures  sweep.svg, map.svg, parallel.svg
 //! words     what is said of it
 //! script    jobs for Slurm and GNU parallel
@@ -13,6 +14,7 @@
 //! Rows are read from the journal one by one, in the order of their numbers; what is kept in memory of each is where its line begins.
 
 pub mod arrays;
+pub mod exchanged;
 pub mod journal;
 pub mod parts;
 pub mod pictures;
@@ -135,7 +137,10 @@ pub fn keep_case(folder: &ResultFolder, name: &str, case: &Written) -> Result<()
 /// # Errors
 /// Something cannot be read or written.
 pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, lean: bool) -> Result<Sweep> {
-    let told = about(plan, survey);
+    let told = Sweep {
+        warnings: exchanged::warnings(&exchanged::of(plan, survey)?),
+        ..about(plan, survey)
+    };
     table::write(folder, plan, survey, &told.columns)?;
     arrays::write(folder, plan, survey, &told.columns)?;
     folder.write(JSON, results::text(&told).as_bytes())?;
@@ -168,6 +173,7 @@ pub fn about(plan: &Plan, survey: &Survey) -> Sweep {
         missing: expected.saturating_sub(rows),
         statuses: statuses.collect(),
         columns: columns(plan, survey),
+        warnings: vec![],
     }
 }
 

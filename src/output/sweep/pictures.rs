@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Survey, numeric, table, unit};
+use super::{Survey, exchanged, numeric, table, unit};
 use crate::error::Result;
 use crate::output::plot::designs::{self, Drawn, Numbers};
 use crate::results::sweep::Plan;
@@ -130,6 +130,7 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
             })
             .collect(),
         joined: numbered.iter().all(|&k| plan.listed(k)),
+        apart: exchanged::of(plan, survey)?,
         designs: numbers,
         of,
         figures,

@@ -85,6 +85,9 @@ pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
             count((others - first.len()) as u64)
         );
     }
+    for warning in &told.warnings {
+        let _ = writeln!(text, "  warning: {warning}");
+    }
     Ok(text)
 }
 

@@ -181,6 +181,11 @@ pub(super) fn follow_of(
     let mut valves = vec![];
     for (number, stage) in stages.iter().enumerate() {
         let grown = grow(stage)?;
+        let unheld = grown.system.model.unheld();
+        if !unheld.is_empty() {
+            path.fault = Some(not_held(&unheld));
+            return Ok(path);
+        }
         let stand = openings(&grown.system);
         let mut new = number == 0;
         if let (Some(before), Some(from)) = (&mut held, stage.from.filter(|_| stand != valves)) {
@@ -305,6 +310,19 @@ fn openings(system: &System) -> Vec<f64> {
         .filter_map(|link| link.opening.as_ref())
         .map(|opening| opening.value(0.0))
         .collect()
+}
+
+/// That nothing holds the beam in some directions.
+fn not_held(directions: &[&str]) -> SolverError {
+    let directions = directions.join(" and ");
+    let what = format!("there is no equilibrium of a beam that nothing holds {directions}");
+    SolverError {
+        cause: Some(format!(
+            "nothing holds the beam {directions}: loads push it away as a whole"
+        )),
+        hint: Some("hold an end (/ends), or attach a spring to ground (/attachments)".into()),
+        ..fault(0.0, &what)
+    }
 }
 
 /// That a closed network takes in what nothing lets out; or does so when a valve shuts [s].

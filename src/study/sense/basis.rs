@@ -31,6 +31,40 @@ pub enum Basis {
     Point(f64),
 }
 
+/// Pointers of the loads of a case that act at an instant [s] besides those that are looked for.
+pub fn own(case: &Case, at_s: f64) -> Vec<String> {
+    let acts = |signal: &Signal| signal.value(at_s) != 0.0;
+    let mut all = vec![];
+    for (i, load) in case.loads.iter().enumerate() {
+        match (load, load.distributed()) {
+            (Load::Gravity { x_m_s2, z_m_s2 }, _) if *x_m_s2 != 0.0 || *z_m_s2 != 0.0 => {
+                all.push(format!("/loads/{i}/gravity"));
+            }
+            (_, Some((key, given))) if acts(&given.signal) => all.push(format!("/loads/{i}/{key}")),
+            _ => {}
+        }
+    }
+    for (i, attachment) in case.attachments.iter().enumerate() {
+        let forces = attachment.forces().into_iter().filter(|(_, signal)| acts(signal));
+        all.extend(forces.map(|(key, _)| format!("/attachments/{i}/{key}")));
+    }
+    for (end, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
+        let (form, given) = end.form();
+        let forces = [
+            "force_x_n",
+            "force_z_n",
+            "moment_n_m",
+            "follower_normal_n",
+            "follower_shear_n",
+        ];
+        let given = given
+            .given()
+            .filter(|(key, signal)| forces.contains(key) && acts(signal));
+        all.extend(given.map(|(key, _)| format!("/ends/{name}/{form}/{key}")));
+    }
+    all
+}
+
 /// Places of a profile at most.
 const MOST: usize = 200;
 

@@ -88,6 +88,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
         left_alone: vec![],
         loads,
         loads_at_s: asked.at_s,
+        own_loads: basis::own(case, asked.at_s),
         bladders: columns.iter().map(|b| all[*b]).collect(),
         ..Sensed::default()
     };

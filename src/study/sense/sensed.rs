@@ -20,6 +20,9 @@ pub struct Sensed {
     pub loads: Vec<Basis>,
     /// Instant whose own loads of the case act besides [s].
     pub loads_at_s: f64,
+    /// Pointers of those that do.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub own_loads: Vec<String>,
     /// Their amplitudes.
     pub amplitudes: Vec<Unknown>,
     /// Bladders whose pressures are taken, upper ones first; all without measurements.

@@ -24,6 +24,8 @@ use crate::study::target;
 pub const MODES: usize = 6;
 /// Modes looked for at most, where few of the slowest swing.
 const MOST_MODES: usize = 384;
+/// Damping ratio above which a mode falls to less than a thirtieth within a period: it hardly swings.
+const STRONG: f64 = 0.5;
 /// Multipliers looked at.
 const MULTIPLIERS: usize = 2;
 /// Whether an accuracy that was asked for is reached, 1 or 0.
@@ -123,6 +125,7 @@ fn put(found: &mut Found, name: &str, quantity: &Quantity) {
         found.put(format!("{name}.{figure}"), value);
     }
     found.put(format!("{name}.max_abs_at_s"), quantity.max_abs_at_s);
+    found.put(format!("{name}.extreme"), quantity.extreme);
     found.put(format!("{name}.window_power_w"), quantity.window_power_w);
     found.put(format!("{name}.final_error"), quantity.final_error);
     found.put(format!("{name}.window_error"), quantity.window_error);
@@ -373,6 +376,8 @@ pub fn of_modes(all: &modes::Modes) -> Found {
         found.put(format!("{name}.damping_ratio_bound"), mode.error / size);
         found.put(format!("{name}.damping_ratio.error"), mode.rate_error());
         found.put(format!("{name}.growth_per_s"), mode.s.re);
+        let strong = mode.damping_ratio().map(|ratio| f64::from(u8::from(ratio > STRONG)));
+        found.put(format!("{name}.strongly_damped"), strong);
     }
     found
 }

@@ -7,6 +7,7 @@
 //! plan     everything that decides what the rows are
 //! row      what came out of a design
 //! compute  the row of a case, by each command
+//! exchanged modes that change places from one design to the next
 //! pool     designs on all cores
 //! ```
 //!
@@ -15,6 +16,7 @@
 
 pub mod compute;
 pub mod designs;
+pub mod exchanged;
 pub mod plan;
 pub mod pool;
 pub mod row;

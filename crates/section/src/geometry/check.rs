@@ -47,7 +47,7 @@ pub fn check(section: &Section) -> Vec<Fault> {
     good &= rules.faults.is_empty();
     rules.material("/material", &section.material);
     let length = section.bladders.length_m;
-    if rules.positive("/bladders/length_m".to_owned(), length) && length > section.width_m {
+    if rules.positive("/bladders/length_m".to_owned(), length) && 0.0 < section.width_m && section.width_m < length {
         let what = format!(
             "the bladders are longer, {length} m, than the beam is wide, {} m",
             section.width_m
@@ -108,11 +108,18 @@ pub fn check(section: &Section) -> Vec<Fault> {
     rules.faults
 }
 
+/// A number that was computed from others, without what binary fractions add to it.
+fn rounded(number: f64) -> f64 {
+    format!("{number:.8e}").parse().unwrap_or(number)
+}
+
 /// What lies outside, touches or overlaps.
 fn room(rules: &mut Rules, section: &Section, rows: &[(String, Outline)], regions: &[(String, Outline)]) {
     let half = [section.pitch_m / 2.0, section.height_m / 2.0];
     let least = THINNEST * section.pitch_m.min(section.height_m);
-    for (place, outline) in rows {
+    // what mirrors the other row has its faults
+    let mirrored = section.bladders.lower == Row::Mirrored;
+    for (place, outline) in rows.iter().take(if mirrored { 1 } else { 2 }) {
         let chords = outline.chords();
         let size = |k: usize| {
             let most = chords.iter().fold(f64::NEG_INFINITY, |m, p| m.max(p[k]));
@@ -128,8 +135,8 @@ fn room(rules: &mut Rules, section: &Section, rows: &[(String, Outline)], region
         if half[0] - most(0) < least {
             let what = format!(
                 "reaches {} m along the beam, its neighbour begins at half the pitch, {} m",
-                most(0),
-                half[0]
+                rounded(most(0)),
+                rounded(half[0])
             );
             rules.fault(place, what);
         }
@@ -138,18 +145,25 @@ fn room(rules: &mut Rules, section: &Section, rows: &[(String, Outline)], region
                 place,
                 format!(
                     "reaches {} m from the mid-plane, the beam's surface lies at {} m",
-                    most(1),
-                    half[1]
+                    rounded(most(1)),
+                    rounded(half[1])
                 ),
             );
         }
     }
-    if let [(_, upper), (place, lower)] = rows {
+    let sound = |rules: &Rules, at: &str| !rules.faults.iter().any(|fault| fault.place == at);
+    if let [(above, upper), (place, lower)] = rows
+        && (!mirrored || sound(rules, above))
+    {
         match meeting(upper, lower) {
             gap if gap >= least => {}
             gap if gap > 0.0 => rules.fault(
                 place,
-                format!("the wall to the upper bladder is {gap} m thick, less than {least} m"),
+                format!(
+                    "the wall to the upper bladder is {} m thick, less than {} m",
+                    rounded(gap),
+                    rounded(least)
+                ),
             ),
             _ => rules.fault(place, "overlaps the upper bladder"),
         }

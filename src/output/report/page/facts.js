@@ -44,7 +44,7 @@ function showHead(main) {
   main.append(el("div", { class: "head" },
     el("div", { class: "titleline" }, el("h1", { text: data.name }), status ? el("span", { class: `badge ${status.tone}`, text: status.word }) : null),
     data.about ? el("p", { class: "about" }, prose(data.about)) : null,
-    data.answer ? el("p", { class: "answer", text: data.answer }) : null,
+    data.answer ? el("p", { class: "answer", text: held(data.answer) }) : null,
     data.facts ? el("ul", { class: "factline" }, data.facts.map((text) => el("li", { text }))) : null));
   if (status?.reason) {
     const title = status.tone === "bad" ? (data.kind === "run" ? "The run did not reach its end" : "It did not reach its end") : "Why it ended early";
@@ -74,10 +74,15 @@ function showWarnings(main) {
     rest.length ? el("details", {}, el("summary", { text: `${rest.length} more` }), el("ul", {}, rest.map(item))) : null));
 }
 
+/** A text whose numbers do not part from their units where lines break. */
+function held(text) {
+  return text.replace(/(\d) (?=(?:[fpnµmkMG]?(?:m|s|Pa|J|W|N|Hz|rad|l)\b|%))/g, "$1\u00a0");
+}
+
 function showTiles(main) {
   if (!data.tiles?.length) return;
-  main.append(el("div", { class: data.tiles.length > 6 ? "tiles four" : "tiles", id: "tiles" }, data.tiles.map((t) =>
-    el("div", { class: "tile" }, el("div", { class: "label", text: t.label }), el("div", { class: "value", text: t.value }), el("div", { class: "note", text: t.note })))));
+  main.append(el("div", { class: { 6: "tiles three" }[data.tiles.length] || (data.tiles.length > 6 ? "tiles four" : "tiles"), id: "tiles" }, data.tiles.map((t) =>
+    el("div", { class: "tile" }, el("div", { class: "label", text: t.label }), el("div", { class: "value", text: held(t.value) }), el("div", { class: "note", text: held(t.note) })))));
 }
 
 function showRemarks(main) {

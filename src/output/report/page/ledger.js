@@ -12,8 +12,9 @@ function showLedger(host, ledger, history, clock) {
   const group = (words) => rows.push(el("tr", { class: "group" }, el("td", { colspan: 3, text: words })));
   group("What should be there");
   row("energy at the start", ledger.start);
-  for (const e of ledger.in) row(`+ ${e.words}`, e.joule);
-  for (const e of ledger.out) row(`− ${e.words}`, e.joule);
+  // numbers have the signs with which they add up, words have none
+  for (const e of ledger.in) row(e.words, e.joule);
+  for (const e of ledger.out) row(e.words, e.joule);
   row("makes", ledger.expected, true);
   group("What is there at the end");
   for (const e of ledger.stored) row(e.words, e.joule);

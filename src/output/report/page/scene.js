@@ -70,6 +70,7 @@ function sceneDrawing(scene, layout, width, chosen) {
   if (layout.bladders.length) drawBladders(add, layout, X, Y, scale, thicker);
   drawWires(add, layout, X, Y, scale);
   drawMarks(add, layout, X, Y, scene, thicker);
+  if (layout.bladders.length) drawNumbers(add, layout, X, Y, scale, thicker);
   drawLoads(add, scene, X, Y(scene.height / 2) - (layout.marks.some((m) => m.kind !== "sealed" && m.row > 0) ? 34 : 8), width, height);
   scaleBar(add, scene, X, height, scale);
   node.thicker = thicker;
@@ -92,13 +93,22 @@ function sceneDrawing(scene, layout, width, chosen) {
 
 function drawBladders(add, layout, X, Y, scale, thicker) {
   const [w, h] = [layout.size[0] * scale, layout.size[1] * scale * thicker];
-  const numbered = w >= 17;
   for (const b of layout.bladders) {
     const colour = wireColour(layout.colourOf(b.network));
     const style = `fill:${css("--card")};stroke:${colour};stroke-width:${w > 8 ? 1.5 : 0.6}`;
     if (b.outline) add(svg("path", { d: `M${b.outline.map(([z, x]) => `${X(b.a + z).toFixed(1)} ${Y(b.e + x).toFixed(1)}`).join("L")}Z`, style }));
     else add(svg("rect", { x: X(b.a) - w / 2, y: Y(b.e) - h / 2, width: w, height: h, rx: Math.min(3, w / 4), style }));
-    if (numbered) add(svg("text", { x: X(b.a), y: b.row > 0 ? Y(b.e) - h / 2 + Math.min(12, h * 0.42) : Y(b.e) + h / 2 - 3, "text-anchor": "middle", style: `font-size:${Math.min(11, w / 2.2)}px`, text: String(b.label).replace("-", "−") }));
+  }
+}
+
+/** Numbers of bladders, over whatever crosses them. */
+function drawNumbers(add, layout, X, Y, scale, thicker) {
+  const [w, h] = [layout.size[0] * scale, layout.size[1] * scale * thicker];
+  if (w < 17) return;
+  const style = `font-size:${Math.min(11, w / 2.2)}px;paint-order:stroke;stroke:${css("--card")};stroke-width:3.5px;stroke-linejoin:round;pointer-events:none`;
+  for (const b of layout.bladders) {
+    const y = b.row > 0 ? Y(b.e) - h / 2 + Math.min(12, h * 0.42) : Y(b.e) + h / 2 - 3;
+    add(svg("text", { x: X(b.a), y, "text-anchor": "middle", style, text: String(b.label).replace("-", "−") }));
   }
 }
 

@@ -1,20 +1,21 @@
 //! The coefficients of a case that gives its section by its geometry.
 
-use std::path::Path;
-
 use serde_json::{Value, json};
 use serde_path_to_error::Segment;
-use slcbeam_section::coefficients::Coefficients;
 use slcbeam_section::error::Error;
-use slcbeam_section::finite::StrainEnergy;
 use slcbeam_section::input::Section;
-use slcbeam_section::three::Spatial;
 
-use super::faults::{SetValue, Source, Violations, is_below};
+use super::faults::{SetValue, Violations, is_below};
+use super::numbers::rounded;
 use super::origins::Origin;
 use super::presets::Preset;
-use super::{computed, parameter, schema_json, sets};
-use crate::error::{Code, Result, Violation};
+use super::{computed, parameter, sets};
+use crate::error::{Code, Violation};
+
+mod file;
+
+pub use file::{Written, parse};
+pub(super) use file::{is_one, no_case};
 
 /// Where it stands in a case.
 const KEY: &str = "section";
@@ -82,7 +83,7 @@ pub(super) fn of(case: &Value) -> Option<Brought> {
             stands_in: false,
         },
         Err(told) => Brought {
-            values: stand_in(),
+            values: stand_in(case),
             three_d: false,
             stands_in: true,
             told,
@@ -130,6 +131,25 @@ impl Brought {
         self.stands_in
     }
 
+    /// Takes what stands in for its own as nothing to compare with, of a case `own`.
+    pub(super) fn doubt(&self, own: &Value, faults: &mut Violations) {
+        if self.stands_in {
+            // the number of bladders is that of its pitch
+            let pitched = !self.told.iter().any(|fault| is_below(&fault.pointer, PITCH));
+            let doubted = self.in_place(own).into_iter();
+            let doubted = doubted.filter(|pointer| pointer != PER_ROW || !pitched);
+            doubted.for_each(|pointer| faults.doubt(pointer));
+        }
+    }
+
+    /// Pointers of what a case `own` has not itself.
+    fn in_place(&self, own: &Value) -> Vec<String> {
+        let mut at = vec![];
+        parameter::numbers(&self.values, String::new(), &mut at);
+        at.retain(|pointer| own.pointer(pointer).is_none());
+        at
+    }
+
     /// Whether a number that the case has at a pointer is the section's, as in the case of a result.
     pub(super) fn gives(&self, pointer: &str, number: &Value) -> bool {
         let own = self.values.pointer(pointer).and_then(Value::as_f64);
@@ -146,9 +166,7 @@ impl Brought {
     /// the section comes first.
     pub(super) fn tell(&self, own: &Value, faults: &mut Violations) {
         if self.stands_in {
-            let mut at = vec![];
-            parameter::numbers(&self.values, String::new(), &mut at);
-            at.retain(|pointer| own.pointer(pointer).is_none());
+            let mut at = self.in_place(own);
             at.push("/bladders".into());
             faults.drop_below(&at);
             if faults.any_below(AT) {
@@ -192,11 +210,16 @@ pub(super) fn remove(case: &mut Value) {
 }
 
 /// What a preset has of what a section brings.
-fn stand_in() -> Value {
+fn stand_in(case: &Value) -> Value {
     let mut preset = Preset::MatiaGatBeam.values();
     if let Some(beam) = preset["beam"].as_object_mut() {
         beam.shift_remove("length_m");
     }
+    let pitch = case.pointer(PITCH).and_then(Value::as_f64);
+    let number = pitch
+        .filter(|pitch| *pitch > 0.0)
+        .and_then(|pitch| per_row(case, pitch).ok());
+    preset["bladders"]["per_row"] = number.into();
     json!({"beam": preset["beam"], "bladders": preset["bladders"]})
 }
 
@@ -284,8 +307,8 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
                 Ok(number) => values["bladders"]["per_row"] = number.into(),
                 Err(what) => {
                     let fault = match case.pointer(PER_ROW) {
-                        Some(_) => Violation::new(Code::Range, PER_ROW, what),
-                        None => fault("/pitch_m", what),
+                        Some(_) => Violation::new(Code::Range, PER_ROW, what).beside(&["/beam/length_m", PITCH]),
+                        None => fault("/pitch_m", what).beside(&["/beam/length_m"]),
                     };
                     faults.push(fault.hint("/beam/length_m is a whole number of pitches"));
                 }
@@ -296,6 +319,9 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
     }
     if faults.is_empty() { Ok(values) } else { Err(faults) }
 }
+
+/// Where the length of a cell stands.
+const PITCH: &str = "/section/pitch_m";
 
 const ONE_ROW: &str = "a case has two rows alike; `slcbeam coefficients` has the numbers of any section";
 
@@ -310,78 +336,7 @@ fn per_row(case: &Value, pitch: f64) -> std::result::Result<u64, String> {
         number if (number * pitch - length).abs() <= 1e-6 * length => Ok(count as u64),
         number => Err(format!(
             "{number} bladders of {pitch} m are {} m of a beam of {length} m",
-            number * pitch
+            rounded(number * pitch)
         )),
     }
-}
-
-/// A section in its file.
-#[derive(Debug)]
-pub struct Written {
-    /// The section.
-    pub section: Section,
-    source: Source,
-    at: &'static str,
-}
-
-impl Written {
-    /// Its coefficients.
-    ///
-    /// # Errors
-    /// [`crate::error::Error::Case`] with every rule that it breaks, or why its cell has no solution.
-    pub fn coefficients(&self) -> Result<Coefficients> {
-        self.solved(computed::coefficients(&self.section))
-    }
-
-    /// Its energy at finite strain, where its material has a law.
-    ///
-    /// # Errors
-    /// As [`Self::coefficients`].
-    pub fn strain_energy(&self) -> Result<Option<StrainEnergy>> {
-        self.solved(computed::strain_energy(&self.section))
-    }
-
-    /// Its compliance by the cell in three dimensions.
-    ///
-    /// # Errors
-    /// As [`Self::coefficients`].
-    pub fn three_dimensional(&self) -> Result<Spatial> {
-        self.solved(self.section.three_dimensional())
-    }
-
-    fn solved<T>(&self, found: std::result::Result<T, Error>) -> Result<T> {
-        found.map_err(|error| self.source.fault(violations(error, self.at)))
-    }
-}
-
-/// Reads a section from the text of a file that is one, or of a case that has one.
-///
-/// # Errors
-/// [`crate::error::Error::Case`] with what cannot be read of it.
-pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Written> {
-    let source = Source::of(path, text);
-    let (file, violations) = super::parse::parse(text);
-    let Some(file) = file.filter(|_| violations.is_empty()) else {
-        return Err(source.error(violations));
-    };
-    let mut value = file.to_value();
-    let source = Source {
-        sets: super::sets::apply(&mut value, sets)?,
-        file: Some(file),
-        ..source
-    };
-    let of_case = value.get(KEY).is_some();
-    if !of_case && value.get("ends").is_some() {
-        let what = "this case has no section: its coefficients are given, or those of its preset";
-        return Err(source.error(vec![Violation::new(Code::Missing, "", what)]));
-    }
-    let (schema, at) = schema_json::section(of_case);
-    let mut faults = Violations::default();
-    super::validate::validate(&value, &value, &schema, &mut faults);
-    match value.pointer(at).map(|section| read(section, at)) {
-        Some(Ok(section)) if faults.is_empty() => return Ok(Written { section, source, at }),
-        Some(Err(violation)) if !faults.any_below(at) => faults.push(*violation),
-        _ => {}
-    }
-    Err(source.error(faults.placed(&source)))
 }

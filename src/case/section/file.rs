@@ -1,0 +1,100 @@
+//! A section in a file of its own, or in that of a case.
+
+use std::path::Path;
+
+use serde_json::Value;
+use slcbeam_section::coefficients::Coefficients;
+use slcbeam_section::error::Error;
+use slcbeam_section::finite::StrainEnergy;
+use slcbeam_section::input::Section;
+use slcbeam_section::three::Spatial;
+
+use super::{KEY, read, violations};
+use crate::case::faults::{Source, Violations};
+use crate::case::{computed, parse as json, schema_json, sets, validate};
+use crate::error::{Code, Result, Violation};
+
+/// A section in its file.
+#[derive(Debug)]
+pub struct Written {
+    /// The section.
+    pub section: Section,
+    source: Source,
+    at: &'static str,
+}
+
+impl Written {
+    /// Its coefficients.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Case`] with every rule that it breaks, or why its cell has no solution.
+    pub fn coefficients(&self) -> Result<Coefficients> {
+        self.solved(computed::coefficients(&self.section))
+    }
+
+    /// Its energy at finite strain, where its material has a law.
+    ///
+    /// # Errors
+    /// As [`Self::coefficients`].
+    pub fn strain_energy(&self) -> Result<Option<StrainEnergy>> {
+        self.solved(computed::strain_energy(&self.section))
+    }
+
+    /// Its compliance by the cell in three dimensions.
+    ///
+    /// # Errors
+    /// As [`Self::coefficients`].
+    pub fn three_dimensional(&self) -> Result<Spatial> {
+        self.solved(self.section.three_dimensional())
+    }
+
+    fn solved<T>(&self, found: std::result::Result<T, Error>) -> Result<T> {
+        found.map_err(|error| self.source.fault(violations(error, self.at)))
+    }
+}
+
+/// Reads a section from the text of a file that is one, or of a case that has one.
+///
+/// # Errors
+/// [`crate::error::Error::Case`] with what cannot be read of it.
+pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Written> {
+    let source = Source::of(path, text);
+    let (file, violations) = json::parse(text);
+    let Some(file) = file.filter(|_| violations.is_empty()) else {
+        return Err(source.error(violations));
+    };
+    let mut value = file.to_value();
+    let source = Source {
+        sets: sets::apply(&mut value, sets)?,
+        file: Some(file),
+        ..source
+    };
+    let of_case = value.get(KEY).is_some();
+    if !of_case && value.get("ends").is_some() {
+        let what = "this case has no section: its coefficients are given, or those of its preset";
+        return Err(source.error(vec![Violation::new(Code::Missing, "", what)]));
+    }
+    let (schema, at) = schema_json::section(of_case);
+    let mut faults = Violations::default();
+    validate::validate(&value, &value, &schema, &mut faults);
+    match value.pointer(at).map(|section| read(section, at)) {
+        Some(Ok(section)) if faults.is_empty() => return Ok(Written { section, source, at }),
+        Some(Err(violation)) if !faults.any_below(at) => faults.push(*violation),
+        _ => {}
+    }
+    Err(source.error(faults.placed(&source)))
+}
+
+/// Whether the text of a file, as a value, is a section by itself and no case.
+pub(in crate::case) fn is_one(value: &Value) -> bool {
+    let has = |key: &str| value.get(key).is_some();
+    let rows = ["/bladders/upper", "/bladders/lower"];
+    let of_case = ["beam", "ends", "time", "preset", KEY].into_iter().any(has);
+    !of_case && (has("pitch_m") || rows.iter().any(|row| value.pointer(row).is_some()))
+}
+
+/// That such a file is no case.
+pub(in crate::case) fn no_case() -> Violation {
+    let hint = "`slcbeam coefficients` has its coefficients; in a case it stands under \"section\", beside beam, ends and time";
+    Violation::new(Code::Missing, "", "this is a section by its geometry, not a case").hint(hint)
+}

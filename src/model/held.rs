@@ -1,0 +1,26 @@
+//! What holds the beam as a whole: without it there is no state at rest.
+
+use super::Model;
+use crate::case::Translation;
+use crate::case::schema::Effect;
+
+impl Model {
+    /// Directions in which neither an end nor a spring holds the beam: loads push it away as a whole, and without loads every
+    /// displaced state is one at rest too. A wall may stop it; what a beam held at one place turns into is for its loads to tell.
+    pub fn unheld(&self) -> Vec<&'static str> {
+        if !self.contacts.is_empty() {
+            return vec![];
+        }
+        let driven = |of: &Translation| matches!(of, Translation::Displacement(_));
+        let ends = &self.ends;
+        let springs = &self.attachments;
+        let along = ends.iter().any(|end| driven(&end.axial)) || springs.iter().any(|one| one.stiffness.z > 0.0);
+        let across = ends.iter().any(|end| driven(&end.transverse)) || springs.iter().any(|one| one.stiffness.x > 0.0);
+        let moves_across = self.effects.has(Effect::TransverseMotion);
+        let all = [("along", !along), ("across", !across && moves_across)];
+        all.into_iter()
+            .filter(|(_, free)| *free)
+            .map(|(word, _)| word)
+            .collect()
+    }
+}

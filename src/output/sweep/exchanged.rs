@@ -1,0 +1,51 @@
+//! Modes that change places from one design to the next, in words.
+
+use super::Survey;
+use crate::error::{Code, Result};
+use crate::output::numbers::{significant, trimmed};
+use crate::results::sweep::Plan;
+use crate::study::sweep::exchanged::{Exchange, MOST, Swinging, exchanges};
+
+/// Exchanges told one by one.
+const TOLD: usize = 3;
+
+/// Those of designs that finished, as far as they are compared.
+///
+/// # Errors
+/// The journal cannot be read.
+pub fn of(plan: &Plan, survey: &Survey) -> Result<Vec<Exchange>> {
+    let mut designs = vec![];
+    survey.each(|row| {
+        if designs.len() < MOST {
+            designs.extend(Swinging::of(&row));
+        }
+        Ok(())
+    })?;
+    Ok(exchanges(plan, &designs))
+}
+
+/// What is told of them; nothing where there are none.
+pub fn warnings(all: &[Exchange]) -> Vec<String> {
+    let one = |found: &Exchange| {
+        let ([a, b], [from, to], [k, j]) = (found.designs, found.values, found.modes);
+        let number = |x: f64| trimmed(&significant(x, 3));
+        format!(
+            "mode_{k} of design {a} is mode_{j} of design {b} ({} from {} to {})",
+            found.pointer,
+            number(from),
+            number(to)
+        )
+    };
+    let told: Vec<String> = all.iter().take(TOLD).map(one).collect();
+    let more = match all.len().saturating_sub(TOLD) {
+        0 => String::new(),
+        n => format!("; and so between {n} more pairs of designs"),
+    };
+    let warning = || {
+        Code::ModesExchanged.warning(format!(
+            "modes change places: {}{more}; read damping_ratio beside each frequency",
+            told.join("; ")
+        ))
+    };
+    (!all.is_empty()).then(warning).into_iter().collect()
+}

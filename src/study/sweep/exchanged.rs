@@ -1,0 +1,166 @@
+//! Modes that change places from one design to the next: the first of one is not what the first of the other is.
+//!
+//! Modes are told by their frequencies, the lowest first. Where one of the fluid, damped so much that it hardly swings, comes in below one of
+//! the beam, every number behind it goes to another mode. Which mode of one design is which of the next is told by the eigenvalues
+//!
+//! ```text
+//! least over all pairings of   Σ |ln(s_k/s'_j)|
+//! ```
+//!
+//! so that a frequency and a damping ratio that change a little count little, whatever their sizes are.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Complex;
+use serde_json::Value;
+
+use super::compute::MODES;
+use super::{Plan, Row};
+use crate::run::summary::Status;
+
+/// How much better another pairing must be than that by numbers.
+const BETTER: f64 = 0.2;
+/// Designs compared at most.
+pub const MOST: usize = 2000;
+
+/// Modes of a design.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Swinging {
+    number: usize,
+    case: usize,
+    values: Vec<Value>,
+    /// `s`, the lowest frequency first [1/s].
+    s: Vec<Complex<f64>>,
+}
+
+impl Swinging {
+    /// Those that a row tells; none of another command.
+    pub fn of(row: &Row) -> Option<Self> {
+        let mode = |k: usize| {
+            let figure = |name: &str| row.found.figure(&format!("mode_{k}.{name}"));
+            let frequency = figure("frequency_hz")?;
+            Some(Complex::new(figure("growth_per_s")?, std::f64::consts::TAU * frequency))
+        };
+        let s: Vec<_> = (1..=MODES).map_while(mode).collect();
+        (row.found.status == Status::Finished && !s.is_empty()).then(|| Self {
+            number: row.number,
+            case: row.case,
+            values: row.values.clone(),
+            s,
+        })
+    }
+}
+
+/// Two designs beside each other whose modes do not go by the same numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exchange {
+    /// Their numbers.
+    pub designs: [usize; 2],
+    /// What is varied between them.
+    pub pointer: String,
+    /// Its values.
+    pub values: [f64; 2],
+    /// Numbers, from 1, of one mode in both: the first that has two.
+    pub modes: [usize; 2],
+    /// Numbers, from 1, of modes that are another in the second.
+    pub all: Vec<usize>,
+}
+
+/// Exchanges between neighbours along each number that is listed.
+pub fn exchanges(plan: &Plan, designs: &[Swinging]) -> Vec<Exchange> {
+    let mut all = vec![];
+    for (axis, varied) in plan.axes.iter().enumerate().filter(|(k, _)| plan.listed(*k)) {
+        let mut lines: BTreeMap<(usize, String), Vec<(f64, &Swinging)>> = BTreeMap::new();
+        for one in designs {
+            let Some(value) = one.values.get(axis).and_then(Value::as_f64) else {
+                continue;
+            };
+            let others: Vec<&Value> = one
+                .values
+                .iter()
+                .enumerate()
+                .filter(|(k, _)| *k != axis)
+                .map(|(_, v)| v)
+                .collect();
+            let key = serde_json::to_string(&others).unwrap_or_default();
+            lines.entry((one.case, key)).or_default().push((value, one));
+        }
+        for line in lines.values_mut() {
+            line.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for pair in line.windows(2) {
+                let [(from, a), (to, b)] = [pair[0], pair[1]];
+                let moved = moved(&a.s, &b.s);
+                if let Some(&first) = moved.first() {
+                    all.push(Exchange {
+                        designs: [a.number, b.number],
+                        pointer: varied.pointer.clone(),
+                        values: [from, to],
+                        modes: first.map(|k| k + 1),
+                        all: moved.iter().map(|[k, _]| k + 1).collect(),
+                    });
+                }
+            }
+        }
+    }
+    all
+}
+
+/// Places of modes that have another in the other list; none where the pairing by numbers is as good as the best.
+fn moved(a: &[Complex<f64>], b: &[Complex<f64>]) -> Vec<[usize; 2]> {
+    let count = a.len().min(b.len());
+    let far = |k: usize, j: usize| (a[k] / b[j]).ln().norm();
+    let by_number: f64 = (0..count).map(|k| far(k, k)).sum();
+    let mut best = (by_number - BETTER, vec![]);
+    let mut taken = vec![];
+    search(count, &far, 0.0, &mut taken, &mut best);
+    let found = best.1.into_iter().enumerate();
+    found.map(|(k, j)| [k, j]).filter(|[k, j]| k != j).collect()
+}
+
+/// The best of all pairings that begin with those taken, where it is better than what is known.
+fn search(
+    count: usize,
+    far: &dyn Fn(usize, usize) -> f64,
+    so_far: f64,
+    taken: &mut Vec<usize>,
+    best: &mut (f64, Vec<usize>),
+) {
+    if so_far >= best.0 {
+        return;
+    }
+    let k = taken.len();
+    if k == count {
+        *best = (so_far, taken.clone());
+        return;
+    }
+    for j in 0..count {
+        if !taken.contains(&j) {
+            taken.push(j);
+            search(count, far, so_far + far(k, j), taken, best);
+            taken.pop();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn s(frequency: f64, ratio: f64) -> Complex<f64> {
+        let size = frequency / (1.0 - ratio * ratio).sqrt();
+        Complex::new(-ratio * size, frequency)
+    }
+
+    /// Source: the published beam, its valves varied. Goal: a mode of the fluid that comes in below those of the beam moves them; one
+    /// that changes with its design, by much, does not.
+    #[test]
+    fn a_mode_that_comes_in_moves_the_others() {
+        let before = [s(12.6, 0.03), s(78.0, 0.02), s(220.0, 0.01)];
+        let after = [s(8.71, 0.999), s(12.587, 0.044), s(77.5, 0.02)];
+        assert_eq!(moved(&before, &after), [[0, 1], [1, 2], [2, 0]]);
+        assert_eq!(moved(&after, &before)[0], [0, 2]);
+        let shorter = [s(50.4, 0.03), s(312.0, 0.02), s(880.0, 0.01)];
+        assert!(moved(&before, &shorter).is_empty());
+        assert!(moved(&before, &before[..1]).is_empty());
+    }
+}
