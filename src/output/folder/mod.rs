@@ -137,7 +137,9 @@ impl ResultFolder {
         if Kind::within(dir) != Some(Kind::Run) {
             return Err(Error::Usage(format!("{} holds no run to go on with", dir.display())));
         }
-        Self::claim(dir, Kind::Run, false)
+        let mut folder = Self::claim(dir, Kind::Run, false)?;
+        folder.origin.stays = true;
+        Ok(folder)
     }
 
     /// Where it is.
@@ -210,6 +212,7 @@ impl ResultFolder {
 
     /// Removes the files of an older result, by name; whatever else lies there stays.
     pub fn clear(&mut self) -> Result<()> {
+        self.tell_origin()?;
         let Some(older) = self.older else { return Ok(()) };
         // A history stays until another run's is begun, which empties it: by it the folder is known for a run's, whenever this ends.
         let stays = |name: &str| name == HISTORY && matches!(self.kind, Kind::Run | Kind::Cycle);

@@ -1,6 +1,7 @@
 //! Of which case file the result in a folder is.
 
 use std::fs;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -14,7 +15,10 @@ pub const ORIGIN: &str = ".slcbeam.case";
 /// The case file of what is about to be written, and whether the folder says so by now.
 #[derive(Debug, Default)]
 pub(super) struct Origin {
+    /// The way to it, where one is known.
     file: Option<String>,
+    /// Whether what the folder says holds on: a run goes on, a result's own case is run.
+    pub(super) stays: bool,
     told: AtomicBool,
 }
 
@@ -23,17 +27,18 @@ impl ResultFolder {
     #[must_use]
     pub fn of(mut self, case: &Case) -> Self {
         self.origin.file = way(&self.dir, &case.source.path);
+        self.origin.stays = self.origin.file.is_none();
         self
     }
 
-    /// Tells it, once.
+    /// Tells it, once; where it is not known nothing is told any more.
     pub(super) fn tell_origin(&self) -> Result<()> {
+        if self.origin.stays || self.origin.told.swap(true, Ordering::Relaxed) {
+            return Ok(());
+        }
         match &self.origin.file {
-            Some(file) if !self.origin.told.swap(true, Ordering::Relaxed) => {
-                use std::io::Write as _;
-                put_whole(&self.path(ORIGIN), |out| out.write_all(file.as_bytes()))
-            }
-            _ => Ok(()),
+            Some(file) => put_whole(&self.path(ORIGIN), |out| out.write_all(file.as_bytes())),
+            None => self.remove(ORIGIN),
         }
     }
 }
@@ -46,12 +51,13 @@ pub fn other_origin(dir: &Path, case: &Case) -> Option<String> {
     (there != here && !same()).then(|| shown(dir, &there))
 }
 
-/// The way from a folder to a file; the name alone where there is no such file, as of standard input, and nothing where it lies inside.
+/// The way from a folder to a file; the name alone where there is no such file, as of standard input, and nothing where it is
+/// the result's own case.
 fn way(dir: &Path, file: &Path) -> Option<String> {
     let (Ok(dir), Ok(whole)) = (fs::canonicalize(dir), fs::canonicalize(file)) else {
         return Some(file.display().to_string());
     };
-    if whole.starts_with(&dir) {
+    if whole == dir.join(CASE) {
         return None;
     }
     let common = dir
