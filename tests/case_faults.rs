@@ -98,6 +98,27 @@ fn a_wrong_key_beside_a_preset_and_with_another_unit_is_offered() {
             Some("numbers there are 0.001 times those in mm"),
         ),
         (r#""loads": [{"gravity": {"z_mm_s2": 9810}}]"#, "z_m_s2", None),
+        // what is called otherwise, or has no fixed factor
+        (
+            r#""loads": [{"gravity": {"x_g": 2}}]"#,
+            "x_m_s2",
+            Some(r#"write "x_m_s2": 19.6133, which is 2 g"#),
+        ),
+        (
+            r#""fluid": {"viscosity_cp": 300}"#,
+            "viscosity_pa_s",
+            Some(r#"write "viscosity_pa_s": 0.3, which is 300 cP"#),
+        ),
+        (
+            r#""fluid": {"viscosity_cst": 300}"#,
+            "viscosity_pa_s",
+            Some("cSt is of a viscosity over the density: times 1e-6 and density_kg_m3 it is in Pa s"),
+        ),
+        (
+            r#""loads": [{"force_x_n_m": {"signal": {"sine": {"amplitude": 1, "omega": 62.83185307179586}}}}]"#,
+            "frequency_hz",
+            Some(r#"write "frequency_hz": 10, which is 62.83185307179586 rad/s"#),
+        ),
     ] {
         let fault = fault_of(&case(inner));
         let [found] = fault.violations.as_slice() else {
@@ -109,6 +130,109 @@ fn a_wrong_key_beside_a_preset_and_with_another_unit_is_offered() {
             "{inner}"
         );
     }
+}
+
+/// Goal: a pressure, flow or volume of an end in another unit is told with its number; what is set besides a key that is there, too. Before, the key
+/// alone was named: to follow it was a factor of a thousand.
+#[test]
+fn forms_and_what_is_set_are_told_with_their_factor() {
+    let of = |set: &str| match case::parse(WIRING, Path::new("good.json"), Path::new("cases"), &[set.into()]) {
+        Err(Error::Case(fault)) => {
+            let [found] = &fault.violations[..] else {
+                panic!("{}", case::render(&fault, false, 100))
+            };
+            (
+                found.nearest.clone().unwrap_or_default(),
+                found.hint.clone().unwrap_or_default(),
+            )
+        }
+        other => panic!("{set}: {:?}", other.err()),
+    };
+    for (set, meant, hint) in [
+        (
+            r#"/network/chains/1/ends/0={"pressure_kpa": 60}"#,
+            "pressure_pa",
+            r#"write "pressure_pa": 60000, which is 60 kPa"#,
+        ),
+        (
+            r#"/network/chains/1/ends/0={"pressure_bar": 2}"#,
+            "pressure_pa",
+            r#"write "pressure_pa": 200000, which is 2 bar"#,
+        ),
+        (
+            r#"/network/chains/1/ends/0={"flow_ml_min": 6}"#,
+            "flow_m3_s",
+            r#"write "flow_m3_s": 1e-7, which is 6 ml/min"#,
+        ),
+        (
+            r#"/network/chains/1/ends/0={"volume_ml": 2}"#,
+            "volume_m3",
+            r#"write "volume_m3": 2e-6, which is 2 ml"#,
+        ),
+        (
+            "/fluid/viscosity_cp=300",
+            "viscosity_pa_s",
+            r#"write "viscosity_pa_s": 0.3, which is 300 cP"#,
+        ),
+        ("/fluid/viscosity=300", "viscosity_pa_s", ""),
+        (
+            r#"/ends/root={"clamped": {"angle_deg": 180}}"#,
+            "slope_rad",
+            r#"write "slope_rad": 3.14159265359, which is 180 deg"#,
+        ),
+    ] {
+        assert_eq!(of(set), (meant.to_owned(), hint.to_owned()), "{set}");
+    }
+}
+
+/// Goal: what is wrong with a number is told of the number, not of a text; what stands in an array that has fewer places is told of the array.
+#[test]
+fn remedies_are_of_what_is_wrong() {
+    let set = |set: &str| {
+        let error = case::parse(WIRING, Path::new("good.json"), Path::new("cases"), &[set.into()]).expect_err(set);
+        error.to_string()
+    };
+    for (given, said) in [
+        (
+            "/fluid/viscosity_pa_s=0.5Pas",
+            "a number has no unit behind it, the key names it: --set '/fluid/viscosity_pa_s=0.5'",
+        ),
+        (
+            "/fluid/viscosity_pa_s=0,5",
+            "decimals stand behind a point: --set '/fluid/viscosity_pa_s=0.5'",
+        ),
+        ("/name=mine", "a text needs double quotes"),
+        (
+            "/network/chains/2/ends/0/pressure_pa=0",
+            "/network/chains has 2 items, 0 to 1; there is no /network/chains/2",
+        ),
+    ] {
+        let found = set(given);
+        assert!(found.contains(said), "{found}");
+    }
+    let hint = |text: &str, name: &str| match case::parse(text, Path::new(name), Path::new(""), &[]) {
+        Err(Error::Case(fault)) => (
+            fault.violations[0].what.clone(),
+            fault.violations[0].hint.clone().unwrap_or_default(),
+        ),
+        other => panic!("{:?}", other.err()),
+    };
+    assert_eq!(
+        hint(r#"{"time": {"end_s": 0,3}}"#, "a.json").1,
+        "decimals stand behind a point"
+    );
+    assert!(
+        hint(r#"{"time": {"end_s": 3s}}"#, "a.json")
+            .1
+            .contains("no unit behind it")
+    );
+    let (what, remedy) = hint("# of a pump\nt_s,p_kpa\n0,1\n", "pump.csv");
+    assert!(
+        what.contains("seems to be a table") && remedy.contains("slcbeam fit CASE.json DATA.csv"),
+        "{what}"
+    );
+    let folder = case::load(Path::new("cases"), &[]).expect_err("a folder").to_string();
+    assert!(folder.contains("it is a folder"), "{folder}");
 }
 
 /// Goal: a comma that is missing is told behind the value after which it belongs, not in the line below.

@@ -75,6 +75,7 @@ fn a_run_fills_a_result_folder() {
         said.out
     );
     let files = [
+        ".slcbeam.case",
         "case.json",
         "deflection.svg",
         "energy.svg",
@@ -606,4 +607,55 @@ fn a_run_gives_derivatives() {
     let said = run(&folder, &["--sensitivity", "/fluid/viscosty_pa_s"]);
     assert_eq!(said.code, 2);
     assert!(said.err.contains("nearest is /fluid/viscosity_pa_s"), "{}", said.err);
+}
+
+/// Goal: the usual folder of a name is that of one case file. Before, the result of another file with the same name was replaced without a word.
+#[test]
+fn the_result_of_another_case_file_is_not_replaced() {
+    let dir = TempDir::new().unwrap();
+    let (here, there) = (dir.path().join("here"), dir.path().join("there"));
+    fs::create_dir(&here).unwrap();
+    let text = fs::read_to_string(SMALL).unwrap();
+    for (name, end) in [("a.json", 1.0), ("b.json", 0.5), ("c.json", 1.0)] {
+        let mut case: Value = serde_json::from_str(&text).unwrap();
+        case["time"]["end_s"] = (end * case["time"]["end_s"].as_f64().unwrap()).into();
+        fs::write(here.join(name), case.to_string()).unwrap();
+    }
+    let run = |folder: &Path, arguments: &[&str]| {
+        let mut command = slcbeam(&["run", "--lean", "--quiet"]);
+        let output = command.args(arguments).current_dir(folder).output().unwrap();
+        (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    let well = (0, String::new());
+    assert_eq!(run(&here, &["a.json"]), well);
+    assert_eq!(
+        run(&here, &["./a.json", "--set", "/solver/rtol=1e-5"]),
+        well,
+        "the same file"
+    );
+    assert_eq!(run(&here, &["a.json"]), well);
+    assert_eq!(run(&here, &["c.json"]), well, "the same case");
+    let before = fs::read(here.join("out/two-bladders/summary.json")).unwrap();
+    let (code, said) = run(&here, &["b.json"]);
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        code == 5 && said.contains("the result of another case file, c.json"),
+        "{code} {said}"
+    );
+    assert!(said.contains("--out") && said.contains("--force"), "{said}");
+    assert_eq!(fs::read(here.join("out/two-bladders/summary.json")).unwrap(), before);
+    assert_eq!(run(&here, &["b.json", "--force"]), well);
+    // moved together they still belong together
+    fs::rename(&here, &there).unwrap();
+    assert_eq!(run(&there, &["b.json"]), well);
+    let (code, said) = run(&there, &["a.json", "--out", "out/two-bladders"]);
+    assert!(
+        code == 0 && said.contains("out/two-bladders held the result of b.json"),
+        "{code} {said}"
+    );
+    assert_eq!(
+        run(&there, &["out/two-bladders/case.json"]),
+        well,
+        "a result's own case"
+    );
 }

@@ -218,6 +218,9 @@ fn tables_are_read_in_their_units() {
         "pressure [kPa],volume [ml]\n1,1\n2,2\n",
         "# lab 3\n\n\"Pressure [mbar]\"; note; Volume [cm³]\r\n10; a; 1\r\n20; b; 2\r\n",
         "volume [mm^3]\tpressure [Pa]\n1e3\t1000\n2e3\t2000",
+        // as docs/measured-data.md has it
+        "pressure_kpa,volume_ml\n1,1\n2,2\n",
+        "Pressure (kPa),volume_mm3\n1,1e3\n2,2e3\n",
     ] {
         let found = read(text).unwrap();
         let near =
@@ -245,6 +248,11 @@ fn tables_are_read_in_their_units() {
     assert!(
         units[0].contains("torr") && units[0].contains("kPa") && units[1].contains("no unit"),
         "{units:?}"
+    );
+    let ends = faults("pressure_torr,volume_ml\n1,1\n");
+    assert!(
+        ends[0].contains("the unit torr at the end of pressure_torr is not known"),
+        "{ends:?}"
     );
     assert!(faults("p [kPa],volume [ml]\n1,1\n")[0].contains("no column is named pressure"));
     assert!(faults("# nothing\n")[0].contains("no header"));

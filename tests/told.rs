@@ -328,3 +328,64 @@ fn a_spline_beyond_its_points_is_told() {
     assert!(told(&[("interpolation", "cubic")])[0].starts_with("W028 /network/chains/0/ends/0/flow_m3_s: "));
     assert!(told(&[]).is_empty());
 }
+
+/// Goal: numbers that are seldom meant are told before anything is computed, by their places; usual ones are not.
+#[test]
+fn what_is_seldom_meant_is_told() {
+    let told = |sets: &[(&str, Value)]| {
+        let mut case = through();
+        for (pointer, value) in sets {
+            let (parent, key) = pointer.rsplit_once('/').unwrap();
+            case.pointer_mut(parent).expect("a place")[key] = value.clone();
+        }
+        let folder = TempDir::new().unwrap();
+        let path = folder.path().join("case.json");
+        std::fs::write(&path, case.to_string()).unwrap();
+        let output = Command::cargo_bin("slcbeam")
+            .unwrap()
+            .args(["check", path.to_str().unwrap(), "--json"])
+            .output()
+            .unwrap();
+        let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let all = json["warnings"]
+            .as_array()
+            .expect("warnings")
+            .iter()
+            .filter_map(Value::as_str);
+        all.filter(|w| w.starts_with("W031"))
+            .map(String::from)
+            .collect::<Vec<_>>()
+    };
+    let end = "/network/chains/0/ends";
+    let pump = |signal: Value| vec![(end, json!([{"pressure_pa": signal}, {"pressure_pa": 0}]))];
+    assert!(told(&[]).is_empty());
+    assert!(told(&pump(json!({"ramp": {"to": 5000, "start_s": 0.4, "duration_s": 1}}))).is_empty());
+    for (sets, said) in [
+        (
+            pump(json!({"ramp": {"to": 5000, "start_s": 0.5, "duration_s": 1}})),
+            "/network/chains/0/ends/0/pressure_pa/ramp: it begins at 0.5 s, and the run ends at 0.5 s",
+        ),
+        (
+            pump(json!({"sum": [1, {"table": {"times_s": [0, 500, 1000], "values": [0, 0, 5000]}}]})),
+            "/network/chains/0/ends/0/pressure_pa/sum/1/table: it begins at 500 s",
+        ),
+        (
+            vec![("/beam/density_kg_m3", json!(1.07))],
+            "/beam/density_kg_m3: a solid of 1.07 kg/m^3",
+        ),
+        (
+            vec![("/fluid/viscosity_pa_s", json!(300))],
+            "/fluid/viscosity_pa_s: a viscosity of 300 Pa s",
+        ),
+        (
+            vec![(
+                "/ends/root",
+                json!({"clamped": {"u1_m": {"sine": {"amplitude": 3, "frequency_hz": 3}}}}),
+            )],
+            "/ends/root/clamped/u1_m: the end moves to",
+        ),
+    ] {
+        let found = told(&sets);
+        assert!(found.len() == 1 && found[0].contains(said), "{said}: {found:?}");
+    }
+}

@@ -48,7 +48,11 @@ pub fn text(path: &Path) -> Result<String> {
     } else {
         let there = std::fs::metadata(path).map_err(unreadable)?;
         if !there.is_file() {
-            let what = "it is no file with an end; a case on standard input is named -";
+            let what = match (there.is_dir(), path.join("case.json")) {
+                (true, own) if own.is_file() => format!("it is a folder; its case is {}", own.display()),
+                (true, _) => "it is a folder".into(),
+                (false, _) => "it is no file with an end; a case on standard input is named -".into(),
+            };
             return Err(unreadable(std::io::Error::new(std::io::ErrorKind::InvalidInput, what)));
         }
         bounded(std::fs::File::open(path).map_err(unreadable)?).map_err(unreadable)?
@@ -84,7 +88,16 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
     let source = Source::of(path, text);
     let (file, mut violations) = json::parse(text);
     let Some(file) = file else {
-        return Err(source.error(violations));
+        let table = path
+            .extension()
+            .is_some_and(|x| ["csv", "tsv", "txt", "dat"].iter().any(|y| x.eq_ignore_ascii_case(y)));
+        return Err(source.error(match table {
+            true => vec![
+                Violation::new(Code::Text, "", "this is no case, which is a JSON object; it seems to be a table")
+                    .hint("a table stands behind the case or the result: slcbeam fit CASE.json DATA.csv, slcbeam compare RUN DATA.csv"),
+            ],
+            false => violations,
+        }));
     };
     let mut value = file.to_value();
     if section::is_one(&value) {

@@ -150,7 +150,8 @@ pub fn with(case: &Case, values: &[(&str, f64)]) -> Result<Case> {
         changes.push(format!("{pointer} = {value}"));
     }
     let name = format!("{} with {}", case.name, changes.join(", "));
-    parse(&resolved.to_string(), Path::new(&name), Path::new(""), &[])
+    // in lines, of which a fault quotes one
+    parse(&format!("{resolved:#}"), Path::new(&name), Path::new(""), &[])
 }
 
 /// Pointers of all numbers that are not counts.

@@ -245,7 +245,11 @@ impl Parser<'_> {
                 .allowed("finite numbers of magnitude up to 1.797e308"),
             Err(_) => {
                 let fault = self.fault(start..self.at, format!("`{}` is not a JSON value", short(word)));
-                return self.fail(fault.hint("text needs double quotes"));
+                let number = word.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+                return self.fail(fault.hint(match number {
+                    true => "a number has no unit behind it; the key names it",
+                    false => "text needs double quotes",
+                }));
             }
         };
         self.report(fault);
@@ -259,9 +263,17 @@ impl Parser<'_> {
                 fault.hint("JSON has no comments; write a member whose key begins with //, such as \"// why\": \"...\"")
             }
             Some(b'\'') => fault.hint("text needs double quotes"),
+            Some(b) if b.is_ascii_digit() && self.is_behind_decimal_comma() => {
+                fault.hint("decimals stand behind a point")
+            }
             _ => fault,
         };
         self.fail(fault)
+    }
+
+    /// Whether what is here stands at once behind a digit and a comma: `0,3`.
+    fn is_behind_decimal_comma(&self) -> bool {
+        matches!(self.text.as_bytes()[..self.at], [.., digit, b','] if digit.is_ascii_digit())
     }
 
     /// The next member follows without one: told behind the last, where it belongs, not in the line below.

@@ -34,6 +34,17 @@ fn apply_one(value: &mut Value, argument: &str) -> Result<SetValue> {
         (Some(node), None) => node,
         (_, fault) => {
             let why = fault.map_or("not JSON", |f| f.what.as_str());
+            if let Some((number, behind)) = begun(json) {
+                return Err(usage(match behind.starts_with(',') {
+                    true => format!(
+                        "decimals stand behind a point: --set '{pointer}={}'",
+                        json.replacen(',', ".", 1)
+                    ),
+                    false => {
+                        format!("{why}; a number has no unit behind it, the key names it: --set '{pointer}={number}'")
+                    }
+                }));
+            }
             let text = Value::from(json);
             return Err(usage(format!(
                 "{why}; a text needs double quotes inside single ones: --set '{pointer}={text}'"
@@ -55,6 +66,19 @@ fn apply_one(value: &mut Value, argument: &str) -> Result<SetValue> {
         json_at,
         node,
     })
+}
+
+/// The number that a text begins with, and what stands behind it: a unit, or decimals behind a comma.
+fn begun(text: &str) -> Option<(&str, &str)> {
+    let ends = (1..text.len()).rev().filter(|end| text.is_char_boundary(*end));
+    let (number, behind) = ends
+        .map(|end| text.split_at(end))
+        .find(|(number, _)| serde_json::from_str::<f64>(number).is_ok())?;
+    let unit = behind
+        .trim_start()
+        .starts_with(|c: char| c.is_alphabetic() || "%°".contains(c));
+    let decimals = behind.strip_prefix(',').is_some_and(|rest| rest.parse::<u64>().is_ok());
+    (unit || decimals).then_some((number.trim(), behind))
 }
 
 /// Takes out the member or item at a pointer.
@@ -80,7 +104,7 @@ pub fn remove(value: &mut Value, pointer: &str) {
 fn insert(value: &mut Value, pointer: &str, given: Value) -> std::result::Result<String, String> {
     let mut place = value;
     let mut here = String::new();
-    let mut parts = tokens(pointer).peekable();
+    let mut parts = tokens(pointer).collect::<Vec<_>>().into_iter().peekable();
     while let Some(token) = parts.next() {
         let absent = match parts.peek() {
             Some(next) if next == "-" => Value::Array(vec![]),
@@ -99,6 +123,17 @@ fn insert(value: &mut Value, pointer: &str, given: Value) -> std::result::Result
                         "{here} is an array of {count}; `{token}` is not one of its places (0 to {count}, or `-` to add)"
                     ));
                 };
+                // an array inside of what is not there is nobody's to guess
+                if index == count && token != "-" && parts.clone().any(|part| part.parse::<usize>().is_ok()) {
+                    let there = match count {
+                        0 => "is empty".to_owned(),
+                        1 => "has one item, 0".to_owned(),
+                        _ => format!("has {count} items, 0 to {}", count - 1),
+                    };
+                    return Err(format!(
+                        "{here} {there}; there is no {here}/{index} to set something in"
+                    ));
+                }
                 if index == count {
                     items.push(absent);
                 }

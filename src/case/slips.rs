@@ -1,68 +1,74 @@
 //! Keys with the unit of another key: what was meant, and the number in the unit of the case.
 
-use std::f64::consts::PI;
+use std::f64::consts::TAU;
 
 use serde_json::Value;
 
+use super::units::{self, Suffix};
 use super::wording::nearest;
 
-/// Units as keys end with them, each with its name, the unit that cases have and how many of those it is; `mpa_s` before `mpa`.
-const UNITS: [(&str, &str, &str, f64); 31] = [
-    ("mpa_s", "mPa s", "pa_s", 1e-3),
-    ("cp", "cP", "pa_s", 1e-3),
-    ("ul_min", "uL/min", "m3_s", 1e-9 / 60.0),
-    ("ml_min", "mL/min", "m3_s", 1e-6 / 60.0),
-    ("l_min", "L/min", "m3_s", 1e-3 / 60.0),
-    ("ul_s", "uL/s", "m3_s", 1e-9),
-    ("ml_s", "mL/s", "m3_s", 1e-6),
-    ("mm3_s", "mm^3/s", "m3_s", 1e-9),
-    ("g_cm3", "g/cm^3", "kg_m3", 1e3),
-    ("mm_s", "mm/s", "m_s", 1e-3),
-    ("mm4", "mm^4", "m4", 1e-12),
-    ("mm3", "mm^3", "m3", 1e-9),
-    ("ml", "mL", "m3", 1e-6),
-    ("ul", "uL", "m3", 1e-9),
-    ("mm2", "mm^2", "m2", 1e-6),
-    ("gpa", "GPa", "pa", 1e9),
-    ("mpa", "MPa", "pa", 1e6),
-    ("kpa", "kPa", "pa", 1e3),
-    ("mbar", "mbar", "pa", 1e2),
-    ("bar", "bar", "pa", 1e5),
-    ("psi", "psi", "pa", 6_894.757_293_168_36),
-    ("mm", "mm", "m", 1e-3),
-    ("cm", "cm", "m", 1e-2),
-    ("um", "um", "m", 1e-6),
-    ("mn", "mN", "n", 1e-3),
-    ("ms", "ms", "s", 1e-3),
-    ("us", "us", "s", 1e-6),
-    ("min", "min", "s", 60.0),
-    ("khz", "kHz", "hz", 1e3),
-    ("rpm", "rpm", "hz", 1.0 / 60.0),
-    ("deg", "deg", "rad", PI / 180.0),
-];
+/// Standard gravity [m/s^2].
+const GRAVITY: f64 = 9.806_65;
+
+/// Units of which an object rarely has more than one key, so that this one is meant whatever it is called.
+const RARE: [&str; 4] = ["rad", "pa_s", "hz", "kg_m3"];
 
 /// The key that one with another unit means, and what to write there.
 pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> + Clone) -> Option<(String, String)> {
     let key = key.to_lowercase();
-    UNITS.iter().find_map(|&(written, name, unit, size)| {
-        let stem = key.strip_suffix(written)?.strip_suffix('_')?;
-        let meant = format!("{stem}_{unit}");
-        let alike = known.clone().filter(|name| unit_of(name, unit));
-        let meant = nearest(&meant, alike)?;
-        let hint = match value.as_f64() {
-            Some(number) => format!(
-                "write \"{meant}\": {}, which is {number} {name}",
-                number_of(number * size)
-            ),
-            None => format!("numbers there are {} times those in {name}", number_of(size)),
+    let of = |unit: &str| {
+        let end = format!("_{unit}");
+        known.clone().filter(move |name| name.ends_with(&end))
+    };
+    // times gravity, over a turn, by the density
+    if let Some(meant) = key
+        .strip_suffix("_g")
+        .and_then(|stem| nearest(&format!("{stem}_m_s2"), of("m_s2")))
+    {
+        let hint = told(&meant, value, GRAVITY, "g");
+        return Some((meant, hint));
+    }
+    if key == "omega" || key.starts_with("omega_") || key.ends_with("_rad_s") {
+        if let Some(meant) = known.clone().find(|name| *name == "frequency_hz") {
+            return Some((meant.to_owned(), told(meant, value, 1.0 / TAU, "rad/s")));
+        }
+    }
+    if let Some(meant) = key
+        .strip_suffix("_cst")
+        .and_then(|stem| nearest(&format!("{stem}_pa_s"), of("pa_s")))
+    {
+        let hint = "cSt is of a viscosity over the density: times 1e-6 and density_kg_m3 it is in Pa s";
+        return Some((meant, hint.to_owned()));
+    }
+    [None, Some("N/m")].into_iter().find_map(|si| {
+        let Suffix::Known(stem, unit) = units::suffix(&key, si) else {
+            return None;
         };
-        Some((meant, hint))
+        let end = unit.key();
+        let meant = nearest(&format!("{stem}_{end}"), of(&end)).or_else(|| {
+            let mut all = of(&end);
+            let only = all
+                .next()
+                .filter(|_| all.next().is_none() && RARE.contains(&end.as_str()));
+            only.map(str::to_owned)
+        })?;
+        // the same unit is no slip
+        (unit.scale != 1.0).then(|| {
+            let hint = told(&meant, value, unit.scale, unit.name);
+            (meant, hint)
+        })
     })
 }
 
-/// Whether a key ends with a unit as a word of its own.
-fn unit_of(key: &str, unit: &str) -> bool {
-    key.strip_suffix(unit).is_some_and(|stem| stem.ends_with('_'))
+/// What to write under a key: the number in its unit, or by what numbers grow.
+fn told(meant: &str, value: &Value, size: f64, name: &str) -> String {
+    match value.as_f64() {
+        Some(number) => format!(
+            "write \"{meant}\": {}, which is {number} {name}",
+            number_of(number * size)
+        ),
+        None => format!("numbers there are {} times those in {name}", number_of(size)),
+    }
 }
 
 /// A number without the round-off of the product that gave it.

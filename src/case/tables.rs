@@ -5,7 +5,9 @@ use std::path::Path;
 use serde_json::{Map, Value};
 
 use super::faults::Violations;
+use super::heading::Heading;
 use super::locate::child;
+use super::units;
 use super::wording::nearest;
 use super::written::checksum;
 use crate::error::{Code, Violation};
@@ -73,11 +75,13 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         };
         return Err(at("csv", format!("{} is {why}", base.join(&name).display())));
     }
+    let text_of = std::fs::read(base.join(&name))
+        .map_err(|e| at("csv", format!("cannot read {}: {e}", base.join(&name).display())))?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
-        .from_path(base.join(&name))
-        .map_err(|e| at("csv", format!("cannot read {}: {e}", base.join(&name).display())))?;
+        .delimiter(separator(&text_of))
+        .from_reader(text_of.as_slice());
     let headings = reader
         .headers()
         .map_err(|e| at("csv", format!("cannot read {name}: {e}")))?
@@ -103,15 +107,34 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         })
     };
     let columns = [column("time_column", 0)?, column("value_column", 1)?];
+    let scale = |column: usize, key: &str, dimensions: &[&str], what: &str| -> Read<f64> {
+        let key = if table.contains_key(key) { key } else { "csv" };
+        let heading = Heading::of(headings.get(column).unwrap_or_default());
+        let read = dimensions.iter().map(|si| heading.scale(si, what));
+        let (known, faults): (Vec<_>, Vec<_>) = read.partition(Result::is_ok);
+        let first = known.into_iter().chain(faults).next().unwrap_or(Ok(1.0));
+        first.map_err(|fault| at(key, format!("{name}: {fault}")))
+    };
+    let value = Of::pointer(pointer);
+    let scales = [
+        scale(columns[0], "time_column", &["s"], "time")?,
+        scale(columns[1], "value_column", &value.dimensions, &value.key)?,
+    ];
     let (mut times, mut values): (Vec<f64>, Vec<f64>) = (vec![], vec![]);
     for record in reader.records() {
         let record = record.map_err(|e| at("csv", format!("cannot read {name}: {e}")))?;
         let line = record.position().map_or(0, csv::Position::line);
-        for (column, out) in columns.iter().zip([&mut times, &mut values]) {
+        for ((column, scale), out) in columns.iter().zip(scales).zip([&mut times, &mut values]) {
             let cell = record.get(*column).unwrap_or("");
             let number = cell.parse::<f64>().ok().filter(|n| n.is_finite());
-            let number = number.ok_or_else(|| at("csv", format!("{name}, line {line}: \"{cell}\" is not a number")))?;
-            out.push(number);
+            let number = number.ok_or_else(|| {
+                let fault = at("csv", format!("{name}, line {line}: \"{cell}\" is not a number"));
+                match cell.contains(',') {
+                    true => Box::new(fault.hint("decimals stand behind a point")),
+                    false => fault,
+                }
+            })?;
+            out.push(number * scale);
         }
     }
     if let Some(wanted) = wanted {
@@ -130,4 +153,40 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
     table.insert("times_s".to_owned(), times.into());
     table.insert("values".to_owned(), values.into());
     Ok(())
+}
+
+/// What a table stands under: the key, and the dimensions that its values may have, by their SI units; none where the key has no unit.
+struct Of {
+    key: String,
+    dimensions: Vec<&'static str>,
+}
+
+impl Of {
+    fn pointer(pointer: &str) -> Self {
+        let is_form =
+            |key: &str| ["table", "sum", "product", "signal", "profile"].contains(&key) || key.parse::<usize>().is_ok();
+        let keys = || pointer.rsplit('/').filter(|key| !key.is_empty());
+        let key = keys().find(|key| !is_form(key)).unwrap_or_default().to_owned();
+        let own = match key.as_str() {
+            "opening" => Some("1"),
+            _ => units::of_pointer(pointer).map(|unit| unit.si),
+        };
+        // factors, the profile of a load among them, are shares of what another one brings
+        let factor = keys().any(|key| ["product", "signal"].contains(&key));
+        let share = own.and(factor.then_some("1")).filter(|share| own != Some(share));
+        Self {
+            key,
+            dimensions: own.into_iter().chain(share).collect(),
+        }
+    }
+}
+
+/// What stands between cells: semicolons or tabs where the first line that counts has any, else commas.
+fn separator(text: &[u8]) -> u8 {
+    let line = text.split(|b| *b == b'\n').find(|line| {
+        let line = line.trim_ascii_start();
+        !line.is_empty() && !line.starts_with(b"#")
+    });
+    let of = |line: &[u8]| [b';', b'\t'].into_iter().find(|b| line.contains(b));
+    line.and_then(of).unwrap_or(b',')
 }

@@ -156,8 +156,13 @@ impl<'a> Walk<'a> {
         let what = format!("unknown name \"{}\"", short(key));
         let fault = Violation::new(Code::Name, child(pointer, key), what).allowed(allowed);
         let word = all.iter().flat_map(|b| words(b)).any(|word| word == key);
-        let hint = word.then(|| format!("write \"{key}\" without braces"));
-        let nearest = nearest(key, fitting.iter().filter_map(|b| tag(b))).filter(|_| !word);
+        let tags = fitting.iter().filter_map(|b| tag(b));
+        let slip = members.get(key).and_then(|value| slips::unit(key, value, tags.clone()));
+        let (nearest, hint) = match slip {
+            _ if word => (None, Some(format!("write \"{key}\" without braces"))),
+            Some((meant, hint)) => (Some(meant), Some(hint)),
+            None => (nearest(key, tags), None),
+        };
         self.faults.push_at_key(Violation { nearest, hint, ..fault });
         None
     }
@@ -206,10 +211,12 @@ impl<'a> Walk<'a> {
             .keys()
             .map(String::as_str)
             .filter(|name| written.is_none_or(|members| members.get(*name).is_none()));
-        let slip = slips::unit(key, value, absent.clone());
+        // one that is there already may be meant by what is set besides
+        let names = || properties.keys().map(String::as_str);
+        let slip = slips::unit(key, value, absent.clone()).or_else(|| slips::unit(key, value, names()));
         let (nearest, hint) = match slip {
             Some((meant, hint)) => (Some(meant), Some(hint)),
-            None => (nearest(key, absent), None),
+            None => (nearest(key, absent).or_else(|| nearest(key, names())), None),
         };
         if let Some(meant) = &nearest {
             self.faults.doubt(child(pointer, meant));

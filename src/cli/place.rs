@@ -1,13 +1,14 @@
 //! Where a command's result goes.
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use clap::Args;
 
+use super::terminal;
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::output::folder::{CASE, RAW_FIELDS, REPORT, ResultFolder, TABLES, VTK};
+use crate::output::folder::{CASE, RAW_FIELDS, REPORT, ResultFolder, TABLES, VTK, fault, other_origin};
 use crate::output::kind::Kind;
 
 /// A folder for results.
@@ -49,7 +50,19 @@ impl PlaceArguments {
                 case.source.path.display()
             )));
         }
-        ResultFolder::claim(&dir, kind, self.force)
+        // who names a folder knows what is in it; the usual one goes by the name in the case, which copies of a file share
+        if let Some(other) = other_origin(&dir, case).filter(|_| !self.force && Kind::within(&dir) == Some(kind)) {
+            if self.out.is_none() {
+                let why = format!(
+                    "it holds the result of another case file, {other}, of the same name \"{}\"; give this case a name of its own, name \
+                     another folder with --out, or take this one with --force",
+                    case.name
+                );
+                return Err(fault("use", &dir, io::Error::new(io::ErrorKind::AlreadyExists, why)));
+            }
+            terminal::tell(&format!("slcbeam: {} held the result of {other}", dir.display()));
+        }
+        Ok(ResultFolder::claim(&dir, kind, self.force)?.of(case))
     }
 }
 

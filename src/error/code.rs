@@ -92,6 +92,7 @@ codes! {
     Overshoot = "W028", "A curve that swings beyond its points.";
     Fit = "W029", "A fit that tells less than it seems.";
     Trapped = "W030", "Fluid behind a valve that has shut.";
+    Seldom = "W031", "A number that is seldom meant.";
     UnexplainedPressures = "W032", "Pressures that the loads do not explain.";
     StateAside = "W033", "Loads whose path leads to another state.";
     ModesExchanged = "W034", "Modes that change places from one design to the next.";

@@ -144,13 +144,15 @@ pub(super) struct TableText {
     /// Values at these times.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     values: Vec<f64>,
-    /// CSV file to take the points from, relative to the case file.
+    /// CSV file to take the points from, relative to the case file: a line of headings, then numbers. A heading tells the unit of its column behind
+    /// its name or in brackets (`t_ms`, `p_kpa`, `flow [ml/min]`); without one it is in SI units.
     #[serde(default, skip_serializing)]
     csv: Option<String>,
-    /// Heading of the column with the times [s]; absent: the first column.
+    /// Heading of the column with the times; absent: the first column. In the unit that it names, else in s.
     #[serde(default, skip_serializing)]
     time_column: Option<String>,
-    /// Heading of the column with the values; absent: the second column.
+    /// Heading of the column with the values; absent: the second column. In the unit that it names, which must be one of the quantity's, else in
+    /// the unit of the key under which the table stands.
     #[serde(default, skip_serializing)]
     value_column: Option<String>,
     /// Checksum of the points that the file holds, as the program writes it; a file with other points is refused.

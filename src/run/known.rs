@@ -1,6 +1,7 @@
 //! What is known of a case before anything is computed, for every command in the same words.
 
 use crate::case::schema::Case;
+use crate::case::seldom;
 use crate::discrete::{System, resolution};
 use crate::error::Code;
 use crate::model::{audit, characteristic};
@@ -28,11 +29,19 @@ pub fn without_outputs(case: &Case, system: &System) -> Vec<String> {
 /// nothing of its flows.
 pub fn at_rest(case: &Case, system: &System) -> Vec<String> {
     let mut all = without_outputs(case, system);
-    all.retain(|warning| !warning.starts_with(Code::FastFlow.id()));
+    let late = told(seldom::late(case));
+    all.retain(|warning| !warning.starts_with(Code::FastFlow.id()) && !late.contains(warning));
     all
 }
 
+fn told(seldom: Vec<(String, String)>) -> Vec<String> {
+    let told = |(at, what)| Code::Seldom.warning(format!("{at}: {what}"));
+    seldom.into_iter().map(told).collect()
+}
+
 fn with_the_mesh(mut all: Vec<String>, case: &Case, system: &System) -> Vec<String> {
+    all.extend(told(seldom::sizes(case)));
+    all.extend(told(seldom::late(case)));
     all.extend(resolution::warnings(case, system));
     all
 }

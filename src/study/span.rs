@@ -45,6 +45,13 @@ impl Span {
         let wanted = "a JSON pointer and two bounds are wanted, such as /fluid/viscosity_pa_s=1e-4:1e-2";
         let (pointer, bounds) = text.split_once('=').ok_or_else(|| wrong(wanted.into()))?;
         check_pointer(pointer).map_err(wrong)?;
+        if bounds.contains(',') {
+            let what = format!(
+                "POINTER=LOW:HIGH, two bounds and a colon between them: {pointer}={}",
+                bounds.replacen(',', ":", 1)
+            );
+            return Err(wrong(what));
+        }
         match numbers(bounds).map_err(wrong)?[..] {
             [low, high] if low < high => Ok(Self {
                 pointer: pointer.into(),

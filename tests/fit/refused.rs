@@ -141,6 +141,49 @@ fn data_and_options_that_do_not_go_together() {
             2,
             "the column u_mm is in mm, but",
         ),
+        // a unit that is not known is refused as in brackets
+        (
+            "t_s,u_in,u_mm\n0.0005,1,1\n0.001,1,1\n",
+            [&vary[..], &["--match", "u_in=tip_u1"]].concat(),
+            2,
+            "the unit in at the end of u_in is not known; for tip_u1 there are m, cm, mm, um",
+        ),
+        (
+            "t_s,a_degrees\n0.0005,1\n0.001,1\n",
+            [&vary[..], &["--match", "a_degrees=tip_angle"]].concat(),
+            2,
+            "the unit degrees at the end of a_degrees is not known",
+        ),
+        (
+            "t_s,u_mm,u_sd_inch\n0.0005,1,1\n0.001,1,1\n0.0015,1,1\n",
+            [&vary[..], &["--match", "u_mm=tip_u1"]].concat(),
+            2,
+            "the unit inch at the end of u_sd_inch is not known",
+        ),
+        (
+            "p_torr,u_mm\n1,1\n2,1\n3,1\n",
+            with(&["--drive", "p_torr=/start/pressures/0/pressure_pa"]),
+            2,
+            "the unit torr at the end of p_torr is not known",
+        ),
+        (
+            "l_mm,u_mm\n1,1\n2,1\n3,1\n",
+            with(&["--drive", "l_mm=/bladders/area_per_pressure_m2_per_pa"]),
+            2,
+            "the column l_mm is in mm, which is not known of area_per_pressure_m2_per_pa",
+        ),
+        (
+            good,
+            [&vary[..], &["--match", "u_mm=angle"]].concat(),
+            2,
+            "the result has no quantity angle; nearest is tip_angle",
+        ),
+        (
+            good,
+            vec!["--vary", "/tubes/permeability_m4=1e-13,1e-11", "--match", "u_mm=tip_u1"],
+            2,
+            "two bounds and a colon between them: /tubes/permeability_m4=1e-13:1e-11",
+        ),
         (
             good,
             vec!["--vary", "/tubes/permeability_m5=1:2", "--match", "u_mm=tip_u1"],

@@ -12,6 +12,7 @@ pub mod network;
 mod plausible;
 mod probes;
 mod relaxation;
+pub mod seldom;
 mod size;
 mod start;
 mod strength;

@@ -137,11 +137,11 @@ pub fn overridden(sets: &[String], again: &[String], why: impl Fn(&str) -> Strin
 
 fn claim(asked: &SweepArguments, source: &Source) -> Result<ResultFolder> {
     let mut place = asked.place.clone();
-    let mut dir = place.folder(&source.first.name, Kind::Designs);
     if let (None, Some(shard)) = (&place.out, asked.shard) {
-        dir = PathBuf::from(format!("{}-{}-of-{}", dir.display(), shard.index, shard.of));
+        let dir = place.folder(&source.first.name, Kind::Designs);
+        let dir = PathBuf::from(format!("{}-{}-of-{}", dir.display(), shard.index, shard.of));
+        place.out = Some(dir);
     }
-    place.out = Some(dir);
     place.claim(&source.first, Kind::Designs)
 }
 

@@ -109,7 +109,7 @@ fn drawn(problem: &Problem, found: &Fitted) -> Drawn {
     let x = match &problem.abscissa {
         Abscissa::Time(_) => ("time t".into(), "s".into()),
         Abscissa::Drives(_) => {
-            let unit = crate::study::data::units::of_pointer(name).map_or("1", |unit| unit.si);
+            let unit = crate::case::units::of_pointer(name).map_or("1", |unit| unit.si);
             (name.rsplit('/').next().unwrap_or(name).replace('_', " "), unit.into())
         }
     };

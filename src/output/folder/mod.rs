@@ -2,6 +2,7 @@
 
 mod cased;
 mod lock;
+mod origin;
 mod whole;
 
 use std::fs::{self, File};
@@ -14,6 +15,8 @@ use crate::case::Written;
 use crate::error::{Error, Result};
 use crate::results;
 use lock::Lock;
+use origin::ORIGIN;
+pub use origin::other_origin;
 pub(crate) use whole::{damaged, entries, name_of, open, put_whole, result, text_of};
 pub use whole::{replace, replace_alike};
 
@@ -70,6 +73,7 @@ pub struct ResultFolder {
     /// Whether it was made here; it goes again if nothing comes into it.
     made: bool,
     lock: Option<Lock>,
+    origin: origin::Origin,
 }
 
 impl ResultFolder {
@@ -104,6 +108,7 @@ impl ResultFolder {
             older,
             made,
             lock: Some(lock),
+            origin: origin::Origin::default(),
         };
         folder.sweep();
         Ok(folder)
@@ -111,7 +116,7 @@ impl ResultFolder {
 
     /// Removes what a killed process had half written here, which is hidden; what cannot be removed does no harm.
     fn sweep(&self) {
-        let own: Vec<&str> = self.kind.files().into_iter().chain([CASE]).collect();
+        let own: Vec<&str> = self.kind.files().into_iter().chain([CASE, ORIGIN]).collect();
         for path in entries(&self.dir).unwrap_or_default() {
             let name = name_of(&path);
             let half = name.strip_prefix('.').and_then(|name| name.strip_suffix(".part"));
@@ -132,7 +137,9 @@ impl ResultFolder {
         if Kind::within(dir) != Some(Kind::Run) {
             return Err(Error::Usage(format!("{} holds no run to go on with", dir.display())));
         }
-        Self::claim(dir, Kind::Run, false)
+        let mut folder = Self::claim(dir, Kind::Run, false)?;
+        folder.origin.stays = true;
+        Ok(folder)
     }
 
     /// Where it is.
@@ -147,6 +154,7 @@ impl ResultFolder {
 
     /// Writes a file whole or not at all: under another name first, safe on disk, then renamed.
     pub fn write(&self, name: &str, contents: &[u8]) -> Result<PathBuf> {
+        self.tell_origin()?;
         let target = self.path(name);
         put_whole(&target, |file| file.write_all(contents))?;
         Ok(target)
@@ -183,6 +191,7 @@ impl ResultFolder {
 
     /// Brings the names of files to the disk itself.
     pub fn secure(&self) -> Result<()> {
+        self.tell_origin()?;
         let sync = || File::open(&self.dir)?.sync_all();
         sync().map_err(|e| fault("write", &self.dir, e))
     }
@@ -203,6 +212,7 @@ impl ResultFolder {
 
     /// Removes the files of an older result, by name; whatever else lies there stays.
     pub fn clear(&mut self) -> Result<()> {
+        self.tell_origin()?;
         let Some(older) = self.older else { return Ok(()) };
         // A history stays until another run's is begun, which empties it: by it the folder is known for a run's, whenever this ends.
         let stays = |name: &str| name == HISTORY && matches!(self.kind, Kind::Run | Kind::Cycle);
@@ -240,7 +250,7 @@ impl ResultFolder {
         };
         let aside = (0..).map(name).find(|dir| !dir.exists()).unwrap_or_else(|| name(0));
         fs::create_dir_all(&aside).map_err(|e| fault("create", &aside, e))?;
-        let names = [RAW_FIELDS, TABLES, VTK, CASE, REPORT];
+        let names = [RAW_FIELDS, TABLES, VTK, CASE, ORIGIN, REPORT];
         // the sign last, so that what was cut short does not pass for a result
         let all = names.into_iter().chain(older.files().into_iter().rev());
         for from in self.tables()?.into_iter().chain(all.map(|name| self.path(name))) {

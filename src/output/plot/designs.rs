@@ -1,7 +1,5 @@
 //! Pictures of many designs: curves along one number, a map over two, all numbers beside each other.
 
-use std::collections::BTreeSet;
-
 use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words, picture};
 use super::colour::{Colour, PALETTE, of_time};
 use super::extent;
@@ -73,6 +71,8 @@ const GAP: f64 = 36.0;
 /// Side of a map, and what lies between two.
 const SIDE: f64 = 320.0;
 const BETWEEN: f64 = 74.0;
+/// Half the side of a cell where designs are no grid.
+const DOT: f64 = 4.0;
 /// Designs whose numbers stand beside their rings at most.
 const NUMBERED: usize = 40;
 /// Curves told apart by colours.
@@ -85,6 +85,15 @@ impl Numbers {
 
     fn on_axis(&self) -> Vec<f64> {
         self.values.iter().map(|&x| self.shown(x)).collect()
+    }
+
+    /// Where values lie on the axis, each once, ascending.
+    fn places(&self) -> Vec<f64> {
+        let mut all = self.on_axis();
+        all.retain(|at| at.is_finite());
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
     }
 
     /// The axis; none where there is no value.
@@ -193,22 +202,16 @@ fn legend(canvas: &mut Canvas, data: &Drawn, height: f64) {
 pub fn over_two(data: &Drawn) -> Option<String> {
     let [x, y, ..] = &data.varied[..] else { return None };
     let (mut across, mut up) = (x.scale(7)?, y.scale(7)?);
-    let steps = |all: &Numbers| {
-        all.values
-            .iter()
-            .map(|v| v.to_bits())
-            .collect::<BTreeSet<_>>()
-            .len()
-            .max(1) as f64
-    };
+    let (columns, lines) = (x.places(), y.places());
     // cells touch where the designs are a grid, and are small where they are not
-    let grid = steps(x) * steps(y) <= 1.5 * data.designs.len() as f64;
-    let half = |all: &Numbers| if grid { 0.5 * SIDE / steps(all) } else { 4.0 };
-    for (scale, all) in [(&mut across, x), (&mut up, y)] {
-        let (lo, hi) = extent(all.on_axis().into_iter())?;
-        let spread = if hi > lo { hi - lo } else { 1.0 };
-        let margin = spread * if grid { 0.5 / (steps(all) - 1.0).max(1.0) } else { 0.04 };
-        (scale.lo, scale.hi) = (lo - margin, hi + margin);
+    let grid = (columns.len() * lines.len()) as f64 <= 1.5 * data.designs.len() as f64;
+    for (scale, places) in [(&mut across, &columns), (&mut up, &lines)] {
+        let (lo, hi) = (*places.first()?, *places.last()?);
+        let margin = 0.04 * if hi > lo { hi - lo } else { 1.0 };
+        (scale.lo, scale.hi) = match &edges(places)[..] {
+            [first, .., last] if grid => (*first, *last),
+            _ => (lo - margin, hi + margin),
+        };
         let range = scale.lo..=scale.hi;
         scale.ticks.retain(|(at, _)| range.contains(at));
     }
@@ -222,18 +225,24 @@ pub fn over_two(data: &Drawn) -> Option<String> {
                 };
                 let place = Place::new(LEFT, TOP + k as f64 * (SIDE + BETWEEN), SIDE, SIDE);
                 let panel = Panel::new(place, across.clone(), up.clone());
-                let (dx, dy) = (half(x), half(y));
                 for ((a, b), value) in x.on_axis().into_iter().zip(y.on_axis()).zip(&figure.values) {
                     if !(a.is_finite() && b.is_finite() && value.is_finite()) {
                         continue;
                     }
+                    let (left, right) = around(&columns, a);
+                    let (low_edge, high_edge) = around(&lines, b);
                     let at = panel.at((a, b));
+                    let (from, to) = match grid {
+                        true => (panel.at((left, high_edge)), panel.at((right, low_edge))),
+                        false => ((at.0 - DOT, at.1 - DOT), (at.0 + DOT, at.1 + DOT)),
+                    };
                     // a little more, so that no hairline shows between cells
-                    let corner = (
-                        (at.0 + dx + 0.4).min(place.right() + 4.0),
-                        (at.1 + dy + 0.4).min(place.bottom() + 4.0),
+                    let most = if grid { 0.0 } else { DOT };
+                    let to = (
+                        (to.0 + 0.4).min(place.right() + most),
+                        (to.1 + 0.4).min(place.bottom() + most),
                     );
-                    canvas.rectangle((at.0 - dx, at.1 - dy), corner, shade(*value, low, high));
+                    canvas.rectangle(from, to, shade(*value, low, high));
                 }
                 panel.axes(canvas, Some(&x.name), &y.name);
                 name(canvas, place, &figure.name);
@@ -241,6 +250,26 @@ pub fn over_two(data: &Drawn) -> Option<String> {
             }
         })
     })
+}
+
+/// Between places in their order: half way to the neighbours, and as far beyond the first and the last.
+fn edges(places: &[f64]) -> Vec<f64> {
+    let [first, .., last] = places else {
+        return places.iter().flat_map(|at| [at - 0.5, at + 0.5]).collect();
+    };
+    let within: Vec<f64> = places.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+    let ends = within.first().zip(within.last());
+    let (before, after) = ends.map_or((*first, *last), |(a, b)| (2.0 * first - a, 2.0 * last - b));
+    [before].into_iter().chain(within).chain([after]).collect()
+}
+
+/// The edges on both sides of a place.
+fn around(places: &[f64], at: f64) -> (f64, f64) {
+    let edges = edges(places);
+    let k = places
+        .partition_point(|place| *place < at)
+        .min(places.len().saturating_sub(1));
+    (edges[k], edges[k + 1])
 }
 
 fn shade(value: f64, low: f64, high: f64) -> Colour {
@@ -353,6 +382,8 @@ mod tests {
                 "{picture}"
             );
         }
+        assert_eq!(edges(&[11.0, 12.3, 14.0]), [10.35, 11.65, 13.15, 14.85]);
+        assert_eq!(around(&[0.0, 1.0, 3.0], 1.0), (0.5, 2.0));
         data.of = 2;
         assert!(!along(&data).expect("a picture").contains("of 2"));
         data.figures.clear();

@@ -125,7 +125,7 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
             .map(|&k| Numbers {
                 name: plan.axes[k].pointer.clone(),
                 unit: String::new(),
-                logarithmic: plan.logarithmic(k),
+                logarithmic: plan.logarithmic(k) || plan.listed(k) && by_factors(&varied[k]),
                 values: varied[k].iter().map(|x| x.unwrap_or(f64::NAN)).collect(),
             })
             .collect(),
@@ -137,4 +137,37 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
         curve,
         curves,
     })
+}
+
+/// Whether values follow each other by factors rather than by steps: a decade of them at least, more evenly spaced by their logarithms.
+fn by_factors(values: &[Option<f64>]) -> bool {
+    let mut all: Vec<f64> = values.iter().flatten().copied().collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    let [low, _, .., high] = all[..] else { return false };
+    let uneven = |of: fn(f64) -> f64| {
+        let steps = || all.windows(2).map(|pair| of(pair[1]) - of(pair[0]));
+        steps().fold(0.0, f64::max) / steps().fold(f64::INFINITY, f64::min)
+    };
+    low > 0.0 && high >= 10.0 * low && uneven(f64::ln) < uneven(|x| x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::by_factors;
+
+    #[test]
+    fn axes_follow_the_spacing_of_values() {
+        let are = |values: &[f64]| by_factors(&values.iter().copied().map(Some).collect::<Vec<_>>());
+        assert!(are(&[0.1, 1.0, 10.0]) && are(&[1e-3, 3e-3, 1e-2, 3e-2]));
+        for values in [
+            &[11.0, 12.3, 14.0][..],
+            &[1.0, 10.0],
+            &[1.0, 5.5, 10.0],
+            &[-10.0, 0.1, 1.0],
+            &[0.0, 1.0, 10.0],
+        ] {
+            assert!(!are(values), "{values:?}");
+        }
+    }
 }

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::places;
 use super::table::Table;
-use super::units::suffixed;
 use crate::case::nearest;
 use crate::case::schema::Case;
+use crate::case::units::suffixed;
 use crate::discrete::quantities::probes;
 use crate::error::{Error, Result};
 
@@ -114,8 +114,9 @@ pub fn resolve(table: &Table, matches: &[Match], names: &[String], columns: &[Na
         let index = find(columns, name).ok_or_else(|| {
             let known = columns.iter().map(|(name, _)| name.as_str());
             let meant = nearest(name, known.clone()).or_else(|| {
-                let plain = suffixed(name)?.0.to_owned();
-                nearest(&plain, known)
+                let plain = suffixed(name).map_or(name.as_str(), |(plain, _)| plain);
+                let whole = known.clone().find(|known| known.ends_with(&format!("_{plain}")));
+                whole.map(str::to_owned).or_else(|| nearest(plain, known))
             });
             let meant = meant.map_or(String::new(), |meant| format!("; nearest is {meant}"));
             wrong(format!("the result has no quantity {name}{meant}"))

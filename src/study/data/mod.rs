@@ -1,7 +1,6 @@
 //! Measured data: a table of numbers and what of a simulation its columns are.
 //!
 //! ```text
-//! units     units of a laboratory, and how a heading tells its own
 //! table     a CSV file: one line of headings, then numbers
 //! matching  COLUMN=QUANTITY[@PLACE]: a column beside a column of a result
 //! places    where along the beam and the network a quantity is
@@ -10,8 +9,6 @@
 pub mod matching;
 pub mod places;
 pub mod table;
-pub mod units;
 
 pub use matching::{Match, Matched};
 pub use table::Table;
-pub use units::Unit;

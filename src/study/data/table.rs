@@ -4,48 +4,10 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::units::{self, Unit};
+use crate::case::heading::Heading;
 use crate::case::{self, Source, nearest};
 use crate::error::{Code, Error, Result, Violation, visible};
 use crate::study::measure::table::{MOST, cells, fault, lines};
-
-/// A heading.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Column {
-    /// As it stands there.
-    pub heading: String,
-    /// Without its unit.
-    pub name: String,
-    /// The unit that it names, as far as one is known.
-    pub unit: Option<Unit>,
-    /// What stands between brackets and is no known unit.
-    pub unknown: Option<String>,
-}
-
-impl Column {
-    fn of(heading: &str) -> Self {
-        let brackets = [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
-            let (name, unit) = heading.trim_end().strip_suffix(close)?.rsplit_once(open)?;
-            Some((name.trim(), unit.trim()))
-        });
-        let column = |name: &str, unit, unknown: Option<&str>| Self {
-            heading: heading.into(),
-            name: name.into(),
-            unit,
-            unknown: unknown.map(String::from),
-        };
-        match brackets {
-            Some((name, unit)) => match units::bracketed(unit) {
-                Some(known) => column(name, Some(known), None),
-                None => column(name, None, Some(unit)),
-            },
-            None => match units::suffixed(heading) {
-                Some((name, unit)) => column(name, Some(unit), None),
-                None => column(heading, None, None),
-            },
-        }
-    }
-}
 
 /// A cell and where it stands in the text.
 type Cell = (String, Range<usize>);
@@ -64,7 +26,7 @@ pub struct Table {
     /// Check sum of the text.
     pub crc32: u32,
     /// Its columns.
-    pub columns: Vec<Column>,
+    pub columns: Vec<Heading>,
     rows: Vec<Row>,
 }
 
@@ -104,7 +66,7 @@ impl Table {
             let what = "numbers where headings are wanted; the first line names the columns, such as t_s, angle_deg";
             faults.push(fault(span, what.into()));
         }
-        let columns = headings.iter().map(|(heading, _)| Column::of(heading)).collect();
+        let columns = headings.iter().map(|(heading, _)| Heading::of(heading)).collect();
         let mut rows = vec![];
         for line in lines {
             let all = cells(&line, separator);
@@ -190,7 +152,7 @@ impl Table {
         if let Some(name) = asked {
             return self.wanted(name, "--time");
         }
-        let called = |column: &Column| ["t", "time"].contains(&column.name.to_lowercase().as_str());
+        let called = |column: &Heading| ["t", "time"].contains(&column.name.to_lowercase().as_str());
         self.columns.iter().position(called).ok_or_else(|| {
             let headings: Vec<&str> = self.columns.iter().map(|column| column.heading.as_str()).collect();
             Error::Usage(format!(
@@ -267,31 +229,7 @@ impl Table {
     /// # Errors
     /// [`Error::Usage`] where the heading names another dimension, or a unit that is not known.
     pub fn scale(&self, column: usize, si: &str, what: &str) -> Result<f64> {
-        let Column {
-            heading, unit, unknown, ..
-        } = &self.columns[column];
-        let known = || {
-            units::of_dimension(si)
-                .map(|unit| unit.name)
-                .collect::<Vec<_>>()
-                .join(", ")
-        };
-        if let Some(unknown) = unknown {
-            let what = format!(
-                "the unit [{unknown}] of the column {heading} is not known; for {what} there are {}",
-                known()
-            );
-            return Err(Error::Usage(what));
-        }
-        match unit {
-            None => Ok(1.0),
-            Some(unit) if unit.si == si => Ok(unit.scale),
-            Some(unit) => Err(Error::Usage(format!(
-                "the column {heading} is in {}, but {what} is in {}",
-                unit.name,
-                if si == "1" { "no unit".into() } else { known() }
-            ))),
-        }
+        self.columns[column].scale(si, what).map_err(Error::Usage)
     }
 
     /// A fault at a cell.

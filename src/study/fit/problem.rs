@@ -3,16 +3,17 @@
 use serde::{Deserialize, Serialize};
 
 use super::robust::Loss;
-use crate::case::nearest;
+use crate::case::heading::Heading;
 use crate::case::parameter::{Parameter, with};
 use crate::case::schema::{Case, Thinning};
+use crate::case::{nearest, units};
 use crate::discrete::System;
 use crate::discrete::quantities::Observable;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, visible};
 use crate::run::equilibrium;
 use crate::run::observe::Observer;
 use crate::study::data::matching::Named;
-use crate::study::data::{Match, Matched, Table, matching, units};
+use crate::study::data::{Match, Matched, Table, matching};
 use crate::study::span::{self, Span};
 
 /// What the case goes through.
@@ -282,9 +283,9 @@ fn driven(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result<V
             let meant = meant.map_or(String::new(), |meant| format!("; nearest is {parent}/{meant}"));
             return Err(wrong(format!("the case has nothing there{meant}")));
         }
-        let scale = match (units::of_pointer(&drive.pointer), table.columns[column].unit) {
-            (Some(unit), _) => table.scale(column, unit.si, &drive.pointer)?,
-            (None, unit) => unit.map_or(1.0, |unit| unit.scale),
+        let scale = match units::of_pointer(&drive.pointer) {
+            Some(unit) => table.scale(column, unit.si, &drive.pointer)?,
+            None => unnamed(&table.columns[column], &drive.pointer).map_err(wrong)?,
         };
         let values = table.all_numbers(column, scale)?;
         let chosen: Vec<f64> = rows.iter().map(|row| values[*row]).collect();
@@ -299,6 +300,35 @@ fn driven(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result<V
         with(case, &changes)?;
     }
     Ok(all)
+}
+
+/// How many units of a number of the case a column's are, where the key has none that is known (`_pa_s_m3`, or none at all): one, in the
+/// key's own unit or without any.
+fn unnamed(column: &Heading, pointer: &str) -> std::result::Result<f64, String> {
+    let key = pointer
+        .rsplit('/')
+        .find(|key| key.parse::<usize>().is_err())
+        .unwrap_or("");
+    let told = match (&column.unit, &column.unknown) {
+        (None, None) => return Ok(1.0),
+        (Some(unit), _) => unit.name,
+        (None, Some(unknown)) => unknown,
+    };
+    let same = column.unknown.as_ref().is_some_and(|unit| {
+        let end = unit.to_ascii_lowercase().replace('^', "").replace([' ', '/'], "_");
+        let end = format!("_{end}");
+        format!("_{key}").ends_with(&end)
+    });
+    let share = column.unit.filter(|unit| unit.si == "1");
+    match share {
+        Some(share) => Ok(share.scale),
+        None if same => Ok(1.0),
+        None => Err(format!(
+            "the column {} is in {}, which is not known of {key}; convert it to the unit of the case and leave its unit out",
+            visible(&column.heading),
+            visible(told)
+        )),
+    }
 }
 
 /// Standard deviations of each column in the unit of its quantity, row by row, where they are given.
@@ -329,9 +359,10 @@ fn sigmas(table: &Table, matched: &[Matched], asked: &Asked) -> Result<Vec<Optio
         let Some(beside) = beside.or_else(|| table.find(&format!("{}_sd", own.name))) else {
             return Ok(None);
         };
-        let scale = match table.columns[beside].unit {
-            Some(_) => table.scale(beside, &one.unit, &one.name)?,
-            None => one.scale,
+        let own = &table.columns[beside];
+        let scale = match own.unit.is_some() || own.unknown.is_some() {
+            true => table.scale(beside, &one.unit, &one.name)?,
+            false => one.scale,
         };
         let all = table.numbers(beside, scale)?;
         let wrong = |row: &usize| one.values[*row].is_some() && all[*row].is_none_or(|sigma| sigma <= 0.0);

@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::path::Path;
 
-use crate::case::{Source, nearest};
+use crate::case::heading::Heading;
+use crate::case::{Source, nearest, units};
 use crate::error::{Code, Result, Violation};
-use crate::study::data::units;
 
 /// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -168,19 +168,10 @@ pub(in crate::study) fn fault(span: Range<usize>, what: String) -> Violation {
 /// Place and scale of the column of a quantity.
 fn column(names: &[(&str, Range<usize>)], header: &Line, quantity: Quantity) -> Read<(usize, f64)> {
     let (name, unit) = (quantity.name(), quantity.unit());
-    let split = |cell: &str| {
-        let (name, unit) = cell.split_once('[').unwrap_or((cell, ""));
-        (
-            name.trim().to_lowercase(),
-            unit.trim_end_matches(']')
-                .trim()
-                .replace('µ', "u")
-                .replace(['²', '³'], "^3"),
-        )
-    };
-    let of_name = names.iter().position(|(cell, _)| split(cell).0 == name);
-    let Some(at) = of_name else {
-        let there: Vec<String> = names.iter().map(|(cell, _)| split(cell).0).collect();
+    let headings: Vec<Heading> = names.iter().map(|(cell, _)| Heading::of(cell)).collect();
+    let mut of_name = (0..headings.len()).filter(|k| headings[*k].name.to_lowercase() == name);
+    let Some(at) = of_name.next() else {
+        let there: Vec<String> = headings.iter().map(|heading| heading.name.to_lowercase()).collect();
         let span = header.start..header.start + header.text.len();
         let what = format!("no column is named {name}");
         let fault = fault(span, what).allowed(format!("{name} [{unit}]"));
@@ -189,17 +180,18 @@ fn column(names: &[(&str, Range<usize>)], header: &Line, quantity: Quantity) -> 
             ..fault
         }));
     };
-    if let Some((_, again)) = names[at + 1..].iter().find(|(cell, _)| split(cell).0 == name) {
+    if let Some(again) = of_name.next() {
         let what = format!("a second column named {name}");
-        return Err(Box::new(fault(again.clone(), what).allowed("one, that which is meant")));
+        return Err(Box::new(
+            fault(names[again].1.clone(), what).allowed("one, that which is meant"),
+        ));
     }
-    let given = split(names[at].0).1;
-    let known = units::of_dimension(unit).find(|unit| unit.is_written(&given));
-    known.map(|unit| (at, unit.scale)).ok_or_else(|| {
-        let what = match given.as_str() {
-            "" => format!("the column {name} has no unit"),
-            _ => format!("the unit {given} of {name} is not known"),
-        };
+    let heading = &headings[at];
+    let scale = match (&heading.unit, &heading.unknown) {
+        (None, None) => Err(format!("the column {name} has no unit")),
+        _ => heading.scale(unit, &format!("{name}")),
+    };
+    scale.map(|scale| (at, scale)).map_err(|what| {
         let all: Vec<&str> = units::of_dimension(unit).map(|unit| unit.name).collect();
         Box::new(fault(names[at].1.clone(), what).allowed(format!("{name} [{}]", all.join(" | "))))
     })

@@ -126,7 +126,9 @@ impl Vary {
 pub fn check_pointer(pointer: &str) -> std::result::Result<(), String> {
     let zeros = |part: &str| part.len() > 1 && part.starts_with('0') && part.bytes().all(|b| b.is_ascii_digit());
     let other_name = |part: &&str| part.starts_with('+') || zeros(part);
-    if let Some(part) = pointer.split('/').find(other_name) {
+    if pointer.split('/').any(|part| part == "*") {
+        Err("a pointer names one number; what changes in several places at once has a column for each in a table: slcbeam sweep --designs".into())
+    } else if let Some(part) = pointer.split('/').find(other_name) {
         Err(format!(
             "`{part}` is no place of an array: 0, 1, 2 and so on, without sign or zeros in front"
         ))

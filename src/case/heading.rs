@@ -1,0 +1,129 @@
+//! Headings of tables: `angle_deg`, `pressure [kPa]`, `volume (ml)`.
+
+use super::units::{self, Suffix, Unit};
+use crate::error::visible;
+
+/// What a column is called, and in which unit it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Heading {
+    /// As it stands there.
+    pub heading: String,
+    /// Without its unit.
+    pub name: String,
+    /// The unit that it names, as far as one is known.
+    pub unit: Option<Unit>,
+    /// What seems to be a unit and is none that is known.
+    pub unknown: Option<String>,
+    /// Whether the unit stands between brackets.
+    bracketed: bool,
+}
+
+impl Heading {
+    /// Of a text.
+    pub fn of(heading: &str) -> Self {
+        let brackets = [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
+            let (name, unit) = heading.trim_end().strip_suffix(close)?.rsplit_once(open)?;
+            Some((name.trim(), unit.trim()))
+        });
+        let column = |name: &str, unit, unknown: Option<&str>| Self {
+            heading: heading.into(),
+            name: name.into(),
+            unit,
+            unknown: unknown.map(String::from),
+            bracketed: brackets.is_some(),
+        };
+        match brackets {
+            Some((name, unit)) => match units::bracketed(unit) {
+                Some(known) => column(name, Some(known), None),
+                None => column(name, None, Some(unit)),
+            },
+            None => match units::suffix(heading, None) {
+                Suffix::Known(name, unit) => column(name, Some(unit), None),
+                Suffix::Unknown(name, unit) => column(name, None, Some(unit)),
+                Suffix::None => column(heading, None, None),
+            },
+        }
+    }
+
+    /// How many SI units of a dimension its numbers are; those without a unit are taken for SI units. `what` is what they are.
+    ///
+    /// # Errors
+    /// It names another dimension, or a unit that is not known.
+    pub fn scale(&self, si: &str, what: &str) -> Result<f64, String> {
+        // an end of a name that may be of two dimensions is of the one that is sought
+        let (unit, unknown) = match units::suffix(&self.heading, Some(si)) {
+            _ if self.bracketed => (self.unit, self.unknown.as_deref()),
+            Suffix::Known(_, unit) => (Some(unit), None),
+            Suffix::Unknown(_, unit) => (None, Some(unit)),
+            Suffix::None => (None, None),
+        };
+        let heading = visible(&self.heading);
+        let known = || {
+            let names: Vec<&str> = units::of_dimension(si).map(|unit| unit.name).collect();
+            names.join(", ")
+        };
+        if let Some(unknown) = unknown {
+            let unknown = visible(unknown);
+            return Err(match self.bracketed {
+                true => format!(
+                    "the unit [{unknown}] of the column {heading} is not known; for {what} there are {}",
+                    known()
+                ),
+                false => format!(
+                    "the unit {unknown} at the end of {heading} is not known; for {what} there are {}",
+                    known()
+                ),
+            });
+        }
+        match unit {
+            None => Ok(1.0),
+            Some(unit) if unit.si == si => Ok(unit.scale),
+            Some(unit) => Err(format!(
+                "the column {heading} is in {}, but {what} is in {}",
+                unit.name,
+                if si == "1" { "no unit".into() } else { known() }
+            )),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Heading;
+
+    #[test]
+    fn brackets_and_ends_of_names_follow_one_rule() {
+        let scale = |heading: &str, si| Heading::of(heading).scale(si, "it");
+        for (heading, si, factor) in [
+            ("p_kpa", "Pa", 1e3),
+            ("p [kPa]", "Pa", 1e3),
+            ("p", "Pa", 1.0),
+            ("pressure_in", "Pa", 1.0),
+            ("q_n_mm", "N/m", 1e3),
+            ("m_n_mm", "N m", 1e-3),
+            ("opening (%)", "1", 0.01),
+            ("opening_percent", "1", 0.01),
+            ("flow_ml_h", "m^3/s", 1e-6 / 3600.0),
+        ] {
+            assert_eq!(scale(heading, si), Ok(factor), "{heading}");
+        }
+        for (heading, si, said) in [
+            (
+                "tip_in",
+                "m",
+                "the unit in at the end of tip_in is not known; for it there are m, cm, mm, um",
+            ),
+            ("tip [in]", "m", "the unit [in] of the column tip [in] is not known"),
+            ("p_torr", "Pa", "the unit torr at the end"),
+            (
+                "flow_ml_s",
+                "Pa",
+                "the column flow_ml_s is in ml/s, but it is in Pa, kPa",
+            ),
+            ("x_n_s_m", "m", "the unit n_s_m at the end"),
+        ] {
+            let found = scale(heading, si).expect_err(heading);
+            assert!(found.contains(said), "{found}");
+        }
+    }
+}

@@ -1,0 +1,391 @@
+//! Units of a laboratory and what each is in SI units; how names tell theirs: `angle_deg`, `flow_ml_min`.
+
+use std::f64::consts::PI;
+
+/// A unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// The SI unit of the same dimension, as columns of results have it; `1` where there is none.
+    pub si: &'static str,
+    /// As a laboratory writes it.
+    pub name: &'static str,
+    /// How many of the SI unit it is.
+    pub scale: f64,
+}
+
+impl Unit {
+    /// As the keys of a case end with its SI unit: `m3_s`.
+    pub fn key(&self) -> String {
+        let key = self.si.to_lowercase().replace('^', "").replace([' ', '/'], "_");
+        key.trim_start_matches('_').to_owned()
+    }
+
+    /// Whether a text names it, with or without the signs of powers.
+    pub fn is_written(&self, text: &str) -> bool {
+        self.name == text || self.name.replace('^', "") == text
+    }
+}
+
+/// SI unit, unit, how many of the one the other is.
+const TABLE: [(&str, &str, f64); 76] = [
+    ("m", "m", 1.0),
+    ("m", "cm", 1e-2),
+    ("m", "mm", 1e-3),
+    ("m", "um", 1e-6),
+    ("m^2", "m^2", 1.0),
+    ("m^2", "cm^2", 1e-4),
+    ("m^2", "mm^2", 1e-6),
+    ("m^4", "m^4", 1.0),
+    ("m^4", "mm^4", 1e-12),
+    ("s", "s", 1.0),
+    ("s", "ms", 1e-3),
+    ("s", "us", 1e-6),
+    ("s", "min", 60.0),
+    ("s", "h", 3600.0),
+    ("Pa", "Pa", 1.0),
+    ("Pa", "kPa", 1e3),
+    ("Pa", "MPa", 1e6),
+    ("Pa", "GPa", 1e9),
+    ("Pa", "mbar", 1e2),
+    ("Pa", "hPa", 1e2),
+    ("Pa", "bar", 1e5),
+    ("Pa", "psi", 6_894.757_293_168_36),
+    ("rad", "rad", 1.0),
+    ("rad", "mrad", 1e-3),
+    ("rad", "deg", PI / 180.0),
+    ("N", "N", 1.0),
+    ("N", "mN", 1e-3),
+    ("N", "kN", 1e3),
+    ("N m", "N m", 1.0),
+    ("N m", "mN m", 1e-3),
+    ("N m", "N cm", 1e-2),
+    ("N m", "N mm", 1e-3),
+    ("N/m", "N/m", 1.0),
+    ("N/m", "N/mm", 1e3),
+    ("J", "J", 1.0),
+    ("J", "mJ", 1e-3),
+    ("J", "uJ", 1e-6),
+    ("W", "W", 1.0),
+    ("W", "mW", 1e-3),
+    ("W", "uW", 1e-6),
+    ("m^3", "m^3", 1.0),
+    ("m^3", "l", 1e-3),
+    ("m^3", "ml", 1e-6),
+    ("m^3", "ul", 1e-9),
+    ("m^3", "cm^3", 1e-6),
+    ("m^3", "mm^3", 1e-9),
+    ("m^3/s", "m^3/s", 1.0),
+    ("m^3/s", "mm^3/s", 1e-9),
+    ("m^3/s", "l/min", 1e-3 / 60.0),
+    ("m^3/s", "ml/s", 1e-6),
+    ("m^3/s", "ml/min", 1e-6 / 60.0),
+    ("m^3/s", "ml/h", 1e-6 / 3600.0),
+    ("m^3/s", "ul/s", 1e-9),
+    ("m^3/s", "ul/min", 1e-9 / 60.0),
+    ("m^3/s", "ul/h", 1e-9 / 3600.0),
+    ("1/m", "1/m", 1.0),
+    ("1/m", "1/cm", 1e2),
+    ("1/m", "1/mm", 1e3),
+    ("m/s", "m/s", 1.0),
+    ("m/s", "mm/s", 1e-3),
+    ("m/s^2", "m/s^2", 1.0),
+    ("rad/s", "rad/s", 1.0),
+    ("Hz", "Hz", 1.0),
+    ("Hz", "kHz", 1e3),
+    ("Hz", "rpm", 1.0 / 60.0),
+    ("kg", "kg", 1.0),
+    ("kg", "g", 1e-3),
+    ("kg/m", "kg/m", 1.0),
+    ("kg/m^3", "kg/m^3", 1.0),
+    ("kg/m^3", "g/cm^3", 1e3),
+    ("Pa s", "Pa s", 1.0),
+    ("Pa s", "mPa s", 1e-3),
+    ("Pa s", "cP", 1e-3),
+    ("1", "%", 1e-2),
+    ("1", "1", 1.0),
+    ("1/s", "1/s", 1.0),
+];
+
+/// Words that are plainly units, of which the table has none: a name that ends with one is no name without a unit.
+const FOREIGN: [&str; 84] = [
+    "inch",
+    "inches",
+    "ft",
+    "feet",
+    "foot",
+    "yd",
+    "mil",
+    "mils",
+    "thou",
+    "nm",
+    "km",
+    "dm",
+    "meter",
+    "meters",
+    "metre",
+    "metres",
+    "millimeter",
+    "millimeters",
+    "millimetre",
+    "millimetres",
+    "micron",
+    "microns",
+    "sec",
+    "secs",
+    "second",
+    "seconds",
+    "msec",
+    "usec",
+    "minute",
+    "minutes",
+    "hour",
+    "hours",
+    "hr",
+    "hrs",
+    "ns",
+    "atm",
+    "mmhg",
+    "cmhg",
+    "inhg",
+    "torr",
+    "mtorr",
+    "cmh2o",
+    "mmh2o",
+    "inh2o",
+    "mh2o",
+    "ksi",
+    "psf",
+    "psia",
+    "psig",
+    "barg",
+    "bara",
+    "pascal",
+    "pascals",
+    "degree",
+    "degrees",
+    "radian",
+    "radians",
+    "arcmin",
+    "lbf",
+    "lb",
+    "lbs",
+    "kgf",
+    "gf",
+    "ozf",
+    "oz",
+    "dyn",
+    "dyne",
+    "newton",
+    "newtons",
+    "liter",
+    "liters",
+    "litre",
+    "litres",
+    "cc",
+    "nl",
+    "dl",
+    "lpm",
+    "slpm",
+    "sccm",
+    "gpm",
+    "cst",
+    "poise",
+    "mg",
+    "kj",
+];
+
+/// What stands before a unit that is only the end of a longer one, such as N s/m, Pa s/m^3 and m^2/Pa.
+const BEGUN: [&str; 14] = [
+    "kg", "pa", "kpa", "mpa", "gpa", "m2", "m3", "mm2", "mm3", "n_s", "n_m", "pa_s", "mpa_s", "per",
+];
+
+/// All of them.
+fn all() -> impl Iterator<Item = Unit> {
+    TABLE.into_iter().map(|(si, name, scale)| Unit { si, name, scale })
+}
+
+/// Those of one dimension, by its SI unit.
+pub fn of_dimension(si: &str) -> impl Iterator<Item = Unit> {
+    all().filter(move |unit| unit.si == si)
+}
+
+/// The unit of a text between brackets.
+pub fn bracketed(text: &str) -> Option<Unit> {
+    let plain = text
+        .trim()
+        .replace(['µ', 'μ'], "u")
+        .replace('²', "^2")
+        .replace('³', "^3");
+    let plain = match plain.as_str() {
+        "°" => "deg",
+        "" | "-" | "–" => "1",
+        other => other,
+    };
+    all().find(|unit| unit.is_written(plain))
+}
+
+/// The ends of names by which a unit is told, behind an underscore.
+fn ends(unit: Unit) -> impl Iterator<Item = String> {
+    let word = unit
+        .name
+        .to_ascii_lowercase()
+        .replace('^', "")
+        .replace(' ', "_")
+        .replace('%', "percent");
+    let per = word
+        .strip_prefix("1/")
+        .map_or_else(|| word.replace('/', "_per_"), |under| format!("per_{under}"));
+    let short = word.replace("1/", "per_").replace('/', "_");
+    [per, short].into_iter().map(|end| format!("_{end}"))
+}
+
+/// What the end of a name tells of its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Suffix<'n> {
+    /// The name without it, and the unit.
+    Known(&'n str, Unit),
+    /// The name without it, and what seems to be a unit and is none of the table's.
+    Unknown(&'n str, &'n str),
+    /// There is none.
+    None,
+}
+
+/// The unit that a name ends with, as keys have it: `angle`, degrees of `angle_deg`. Where an end may be of two dimensions (`_n_m`, `_in`)
+/// it is that of the quantity, as far as this is told by its SI unit.
+pub fn suffix<'n>(name: &'n str, si: Option<&str>) -> Suffix<'n> {
+    let lower = name.to_ascii_lowercase();
+    let cut = |end: &str| {
+        let whole = lower.len() > end.len() && lower.ends_with(end);
+        name.len().checked_sub(end.len()).filter(|_| whole)
+    };
+    // a curvature of `_1_m` is none in metres, and `_n_m` is a moment where nothing else is known
+    let curvature = cut("_1_m").filter(|at| lower[..*at].ends_with("curvature"));
+    let found = all()
+        .filter(|unit| !["1", "l", "g", "h"].contains(&unit.name))
+        .flat_map(|unit| ends(unit).map(move |end| (unit, end)))
+        .filter_map(|(unit, end)| Some((unit, cut(&end)?)))
+        .min_by_key(|(unit, at)| {
+            let per_length = unit.si == "N/m" && !lower.contains("_per_");
+            (*at, si != Some(unit.si), per_length)
+        });
+    let found = match curvature {
+        Some(at) => bracketed("1/m").map(|unit| (unit, at)),
+        None => found,
+    };
+    let Some((unit, at)) = found else {
+        // inches, or an inlet
+        let inches = cut("_in").filter(|_| si == Some("m"));
+        let known = FOREIGN.iter().find_map(|word| cut(&format!("_{word}")));
+        return match inches.or(known) {
+            Some(at) => Suffix::Unknown(&name[..at], &name[at + 1..]),
+            None => Suffix::None,
+        };
+    };
+    let before = |at: usize| {
+        BEGUN.iter().find_map(|word| {
+            let rest = lower[..at].strip_suffix(word)?.strip_suffix('_')?;
+            (!rest.is_empty()).then_some(rest.len())
+        })
+    };
+    let mut begun = at;
+    while let Some(at) = before(begun) {
+        begun = at;
+    }
+    match begun == at {
+        true => Suffix::Known(&name[..at], unit),
+        false => Suffix::Unknown(&name[..begun], &name[begun + 1..]),
+    }
+}
+
+/// A name as keys have it without the unit that it ends with, and that unit.
+pub fn suffixed(name: &str) -> Option<(&str, Unit)> {
+    match suffix(name, None) {
+        Suffix::Known(rest, unit) => Some((rest, unit)),
+        Suffix::Unknown(..) | Suffix::None => None,
+    }
+}
+
+/// The unit in which the numbers below a JSON pointer are, as far as its keys tell.
+pub fn of_pointer(pointer: &str) -> Option<Unit> {
+    let per_length = |key: &str| pointer.starts_with("/loads/") || key.starts_with("stiffness_");
+    pointer.rsplit('/').find_map(|key| {
+        let si = per_length(key).then_some("N/m");
+        match suffix(key, si) {
+            Suffix::Known(_, unit) => Some(Some(unit)),
+            Suffix::Unknown(..) => Some(None),
+            Suffix::None => None,
+        }
+    })?
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Suffix, bracketed, of_pointer, suffix, suffixed};
+
+    #[test]
+    fn headings_tell_their_units() {
+        for (name, rest, unit, scale) in [
+            ("angle_deg", "angle", "rad", std::f64::consts::PI / 180.0),
+            ("tip_u1_m", "tip_u1", "m", 1.0),
+            ("pressure_kPa", "pressure", "Pa", 1e3),
+            ("moment_n_mm", "moment", "N m", 1e-3),
+            ("flow_ml_min", "flow", "m^3/s", 1e-6 / 60.0),
+            ("flow_m3_per_s", "flow", "m^3/s", 1.0),
+            ("curvature_per_m", "curvature", "1/m", 1.0),
+        ] {
+            let (left, found) = suffixed(name).expect(name);
+            assert_eq!((left, found.si, found.scale), (rest, unit, scale), "{name}");
+        }
+        for name in ["angle", "u1", "deg", "area_m2_per_pa", "first_l"] {
+            assert!(suffixed(name).is_none(), "{name}");
+        }
+        assert_eq!(suffixed("rest_curvature_1_m").map(|(_, unit)| unit.si), Some("1/m"));
+        assert_eq!(suffixed("rho_g_cm3").map(|(_, unit)| unit.scale), Some(1e3));
+        assert_eq!(bracketed("°").map(|unit| unit.si), Some("rad"));
+        assert_eq!(bracketed("mm3").map(|unit| unit.scale), Some(1e-9));
+        assert_eq!(bracketed("furlong"), None);
+        assert_eq!(
+            of_pointer("/network/chains/0/ends/0/pressure_pa").map(|u| u.si),
+            Some("Pa")
+        );
+        for (pointer, si) in [
+            ("/ends/tip/free/force_x_n", Some("N")),
+            ("/ends/tip/free/moment_n_m", Some("N m")),
+            ("/loads/0/force_x_n_m/signal", Some("N/m")),
+            ("/loads/0/body_x_m_s2/signal/product/0", Some("m/s^2")),
+            ("/attachments/0/stiffness_x_n_m", Some("N/m")),
+            ("/attachments/0/damping_x_n_s_m", None),
+            ("/attachments/0/stiffness_rotation_n_m_rad", None),
+            ("/network/tubes/0/resistance_pa_s_m3", None),
+            ("/beam/density_kg_m3", Some("kg/m^3")),
+        ] {
+            assert_eq!(of_pointer(pointer).map(|unit| unit.si), si, "{pointer}");
+        }
+    }
+
+    #[test]
+    fn units_that_are_not_known_are_no_part_of_a_name() {
+        for (name, rest, unit) in [
+            ("tip_in", "tip", "in"),
+            ("tip_inch", "tip", "inch"),
+            ("p_mmHg", "p", "mmHg"),
+            ("pressure_1_torr", "pressure_1", "torr"),
+            ("angle_degrees", "angle", "degrees"),
+            ("rate_kpa_s", "rate", "kpa_s"),
+            ("damping_n_s_m", "damping", "n_s_m"),
+        ] {
+            assert_eq!(suffix(name, Some("m")), Suffix::Unknown(rest, unit), "{name}");
+        }
+        // an inlet, a place, a word
+        for name in ["pressure_in", "tip_left", "flow_one", "degrees", "origin"] {
+            assert_eq!(suffix(name, Some("Pa")), Suffix::None, "{name}");
+        }
+        // a force per length, where one is sought
+        let of = |name, si| match suffix(name, si) {
+            Suffix::Known(_, unit) => (unit.name, unit.scale),
+            other => panic!("{name}: {other:?}"),
+        };
+        assert_eq!(of("q_n_mm", Some("N/m")), ("N/mm", 1e3));
+        assert_eq!(of("q_n_mm", None), ("N mm", 1e-3));
+    }
+}
