@@ -173,16 +173,16 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
 fn parse(text: &str) -> Result<(String, Vec<f64>, bool)> {
     let wrong = || {
         Error::Usage(format!(
-            "--sweep {text}: a pointer, its range and how many values, such as /network/permeability_factor=0.01:1:25:log; at most \
+            "--sweep {text}: a pointer, its range, upwards or downwards, and how many values, such as /network/permeability_factor=0.01:1:25:log; at most \
              {MOST_VALUES} values, logarithms of values > 0 alone"
         ))
     };
     let (pointer, rest) = text.rsplit_once('=').ok_or_else(wrong)?;
     let (rest, logarithmic) = rest.strip_suffix(":log").map_or((rest, false), |rest| (rest, true));
     let (range, count) = rest.rsplit_once(':').ok_or_else(wrong)?;
-    let (from, to) = line::range(range).ok_or_else(wrong)?;
+    let (from, to) = line::either_way(range).ok_or_else(wrong)?;
     let count: usize = count.trim().parse().map_err(|_| wrong())?;
-    if !(2..=MOST_VALUES).contains(&count) || (logarithmic && from <= 0.0) {
+    if !(2..=MOST_VALUES).contains(&count) || (logarithmic && from.min(to) <= 0.0) {
         return Err(wrong());
     }
     Ok((pointer.into(), line::spread(from, to, count, logarithmic), logarithmic))

@@ -1,9 +1,9 @@
 //! What the figures of all samples tell.
 
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 
 use super::indices::indices;
+use super::nothing::without_round_off;
 use super::{FirstOrder, Input, Plan, Slopes, Spread, Uncertainty};
 use crate::run::summary::Status;
 use crate::study::sweep::row::{Found, word};
@@ -20,25 +20,6 @@ const MATTERS: f64 = 1.0 / 3.0;
 const ELSEWHERE: f64 = 0.1;
 /// Spread beside the largest value that is none.
 const ROUND_OFF: f64 = 1e-12;
-/// Beside others of its unit a figure of this part is round-off.
-const NOTHING: f64 = 1e-9;
-/// Ends of names that are units, the longer ones first.
-const UNITS: [&str; 14] = [
-    "_m3_s",
-    "_per_m",
-    "_per_s",
-    "_n_m",
-    "_m_s",
-    "_m3",
-    "_rad",
-    "_pa",
-    "_hz",
-    "_m",
-    "_n",
-    "_j",
-    "_w",
-    "damping_ratio",
-];
 /// Figures named in a warning.
 const NAMED: usize = 4;
 
@@ -144,60 +125,6 @@ fn first_order(slopes: &[f64], inputs: &[Input]) -> FirstOrder {
         sd: variance.sqrt(),
         shares: parts.iter().map(share).collect(),
     }
-}
-
-/// The unit of a figure by the end of its name; what has none is beside its likes alone.
-fn unit(name: &str) -> &str {
-    let quantity = name.split('.').next().unwrap_or(name);
-    let own = name.rsplit('.').next().unwrap_or(name);
-    let end = |name: &'static str| {
-        [quantity, own]
-            .into_iter()
-            .any(|one| one.ends_with(name))
-            .then_some(name)
-    };
-    UNITS.iter().find_map(|unit| end(unit)).unwrap_or(own)
-}
-
-/// Figures with nothing in place of what is round-off beside others of their unit, growth beside what swings, and damping that is none.
-fn without_round_off(mut figures: BTreeMap<String, Spread>, own: &Found) -> BTreeMap<String, Spread> {
-    let size = |one: &Spread| {
-        [one.value, one.mean, one.low, one.high]
-            .iter()
-            .fold(one.sd, |s, x| s.max(x.abs()))
-    };
-    let mut largest: BTreeMap<String, f64> = BTreeMap::new();
-    for (name, one) in &figures {
-        let entry = largest.entry(unit(name).to_owned()).or_default();
-        *entry = entry.max(size(one));
-    }
-    let swings = own.figures.iter().filter(|(name, _)| name.ends_with("frequency_hz"));
-    let swings = swings.fold(0.0_f64, |s, (_, hz)| s.max(TAU * hz.abs()));
-    for (name, one) in &mut figures {
-        let beside = match unit(name) {
-            "damping_ratio" => 1.0,
-            "_per_s" => largest["_per_s"].max(swings),
-            unit => largest[unit],
-        };
-        if size(one) <= NOTHING * beside {
-            *one = Spread {
-                numerical_error: None,
-                first_order: one.first_order.is_some().then(|| FirstOrder {
-                    sd: 0.0,
-                    shares: vec![0.0; one.first_order.as_ref().map_or(0, |first| first.shares.len())],
-                }),
-                indices: None,
-                samples: one.samples,
-                value: 0.0,
-                mean: 0.0,
-                sd: 0.0,
-                sd_error: 0.0,
-                low: 0.0,
-                high: 0.0,
-            };
-        }
-    }
-    figures
 }
 
 /// Moments and quantiles; nothing of fewer than two values.
@@ -340,39 +267,6 @@ mod tests {
             "{indices:?}"
         );
         assert!(told.figures.len() == 1);
-    }
-
-    /// Goal: beside 1e4 Pa a pressure of 1e-12 Pa is none, however its samples scatter and its derivatives point; nor is damping of 1e-15.
-    #[test]
-    fn round_off_has_no_spread() {
-        let plan = plan();
-        let names = ["row_pressure_pa", "bladder__8_pressure_pa", "mode_1.damping_ratio"];
-        let figures = |k: usize| {
-            let [one, other] = [1.0 + 0.1 * (k as f64).sin(), (7.0 * k as f64).sin()];
-            let values = [1e4 * one, 1e-12 * other, 1e-15 * other];
-            Found {
-                figures: names.map(String::from).into_iter().zip(values).collect(),
-                ..found(0.0)
-            }
-        };
-        let all: Vec<Found> = (0..plan.count()).map(figures).collect();
-        let slopes = names[1..].iter().map(|name| (name.to_string(), vec![1e-9, 0.0]));
-        let told = judge(
-            ["case", "equilibrium"],
-            &plan,
-            &figures(0),
-            &[Some(2.0), None],
-            &all,
-            Ok(slopes.collect()),
-        );
-        assert_eq!(told.warnings, Vec::<String>::new());
-        assert!(told.figures[names[0]].sd > 100.0);
-        for name in &names[1..] {
-            let Spread {
-                value, sd, low, high, ..
-            } = told.figures[*name];
-            assert_eq!([value, sd, low, high], [0.0; 4], "{name}");
-        }
     }
 
     #[test]
