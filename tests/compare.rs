@@ -196,6 +196,41 @@ fn cubics_are_exact_for_cubics_and_kinks_do_not_ring() {
     }
 }
 
+/// Goal: of results that do not end together figures are of other instants, and a history that was cut off is short: both are told. Of the page, which
+/// quantity of all differs most.
+#[test]
+fn other_ends_and_short_histories_are_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let [short, long] = ["short", "long"].map(|name| dir.path().join(name));
+    let one = run_into(&short, DRY, &["/time/end_s=0.03"]);
+    let other = run_into(&long, DRY, &["/time/end_s=0.06"]);
+    let found = compare::compare(&one, &other);
+    assert_eq!(found.remarks.len(), 1, "{:?}", found.remarks);
+    assert!(
+        found.remarks[0].contains("short ends at t = 0.03 s") && found.remarks[0].ends_with("are of other instants"),
+        "{:?}",
+        found.remarks
+    );
+    let history = std::fs::read_to_string(long.join("history.csv")).unwrap();
+    let cut: Vec<&str> = history.lines().take(21).collect();
+    std::fs::write(long.join("history.csv"), cut.join("\n") + "\n").unwrap();
+    let cut = compare::compare(&one, &reading::read(&long).unwrap());
+    assert!(
+        cut.remarks[1].contains("the history ends at t = 0.0285 s"),
+        "{:?}",
+        cut.remarks
+    );
+    let page = dir.path().join("page");
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_slcbeam"))
+        .args(["compare", "short", "long", "--out", "page"])
+        .current_dir(dir.path())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let page = std::fs::read_to_string(page.join("report.html")).unwrap();
+    assert!(page.contains("Of the quantities that matter most"));
+}
+
 /// Goal: of several results each is compared with the first, or with the one that is named, as two are; nonsense is refused.
 #[test]
 fn several_are_compared_with_one() {
@@ -227,7 +262,8 @@ fn several_are_compared_with_one() {
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         (output.status.code(), text(&output.stdout), text(&output.stderr))
     };
-    let (code, out, _) = said(&["--with", "usual"]);
+    assert!(found.remarks().is_empty());
+    let (code, out, _) = said(&["--with", "./usual/"]);
     assert_eq!(code, Some(0));
     // small deflections: half and three halves of the load, to a percent of that
     let row = out.lines().find(|line| line.starts_with("tip_u1_m.max_abs")).unwrap();

@@ -1,14 +1,20 @@
 //! Steady cycles found by shooting.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use slcbeam::case::parameter::Parameter;
 use slcbeam::case::{self, Case};
 use slcbeam::functions::Signal;
 use slcbeam::functions::signals::Sine;
 use slcbeam::run::drive::{common_period, settled};
 use slcbeam::run::dynamics;
 use slcbeam::run::floquet::{self, Stability};
-use slcbeam::run::periodic::{Scene, record, settle, shoot};
+use slcbeam::run::periodic::{Scene, record, sensitivity, settle, shoot};
 use slcbeam::run::record::Memory;
+use slcbeam::run::stop::Stop;
 use slcbeam::run::summary::Status;
+use slcbeam::study::stability::along;
 
 fn shipped(name: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
@@ -219,6 +225,115 @@ fn saving_over_transients() {
         "all: cycles {} steps, {:.1} s; runs of 2 s {} steps, {:.1} s; runs to 1 % {:.0} s",
         sums[0], sums[1], sums[2], sums[3], sums[4]
     );
+}
+
+/// The published beam at rest but for its fluid and a tip that is pushed to and fro, its upper row behind a valve; a port at the other side of it.
+fn pushed(port: &str, opening: &str) -> Case {
+    let text = format!(
+        r#"{{"name": "pushed", "preset": "matia-gat-beam", "fluid": {{"viscosity_pa_s": 0.001}}, "bladders": {{"coupling": "reciprocal"}},
+        "network": {{"chains": [{{"bladders": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10], "ends": ["connected", "sealed"]}},
+            {{"bladders": [-1, -2, -3, -4, -5, -6, -7, -8, -9, -10], "ends": [{{"pressure_pa": 0}}, {{"pressure_pa": 0}}]}}],
+            "junctions": ["pump"], "ports": [{{"at": {{"junction": "pump"}}, {port}}}],
+            "tubes": [{{"from": {{"junction": "pump"}}, "to": {{"bladder": 1, "end": "inlet"}}, "opening": {opening}}}]}},
+        "ends": {{"root": "clamped", "tip": {{"free": {{"force_x_n": {{"sine": {{"amplitude": 0.1, "frequency_hz": 1}}}}}}}}}},
+        "mesh": {{"cells_per_segment": 1, "cells_per_bladder": 1}}, "time": {{"end_s": 6}}, "effects": {{"solid_inertia": "off"}}}}"#
+    );
+    case::parse(&text, "pushed.json".as_ref(), "".as_ref(), &[]).unwrap()
+}
+
+/// Least and largest value of the largest pressure over the cycle [Pa], and what is warned of.
+fn pressures(case: &Case) -> ([f64; 2], String) {
+    let scene = Scene::new(case, None).unwrap();
+    let cycle = shoot(&scene, None).unwrap();
+    let mut period = Memory::default();
+    let outcome = record::record(case, &scene, &cycle, &mut period).unwrap();
+    let all = period.column("max_pressure").unwrap();
+    let least = all.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = all.iter().copied().fold(0.0, f64::max);
+    ([least, most], outcome.summary.warnings.join("\n"))
+}
+
+/// Goal: a cycle has the fluid that a run of its case comes to. A volume V in the row makes V/(10 l_b a_p) where no moment and no force acts on it, and
+/// the tip's push swings about that; so does V/2 s of a flow for half a second. Tolerance: what the swing is not symmetric by.
+#[test]
+fn a_cycle_has_what_ports_have_let_in() {
+    let volume = r#""volume_m3": {"ramp": {"from": 0, "to": 1e-6, "start_s": 0.5, "duration_s": 0.5}}"#;
+    let flow = r#""flow_m3_s": {"table": {"times_s": [0, 0.5, 0.51, 1, 1.01], "values": [0, 0, 1e-6, 1e-6, 0], "interpolation": "linear"}}"#;
+    let case = pushed(volume, "1");
+    let bladders = case.bladders.as_ref().unwrap();
+    let rests = 1e-6 / (10.0 * bladders.length_m * bladders.area_per_pressure_m2_per_pa);
+    for (case, share) in [(&case, 1.0), (&pushed(flow, "1"), 0.5)] {
+        let ([least, most], _) = pressures(case);
+        let middle = 0.5 * (least + most);
+        assert!(
+            (middle / (share * rests) - 1.0).abs() < 5e-3,
+            "{middle} {}",
+            share * rests
+        );
+        assert!(most - least > 100.0 && most - least < 1000.0, "{least} {most}");
+    }
+    // the derivative knows the volume: what swings does not change with it
+    let parameter = Parameter::find(&case, "/network/ports/0/volume_m3/ramp/to").unwrap();
+    let scene = Scene::new(&case, None).unwrap();
+    let cycle = shoot(&scene, None).unwrap();
+    let mut settled = settle(&case, scene, cycle).unwrap();
+    let outcome = sensitivity::differentiate(&mut settled, &[parameter], &mut Memory::default()).unwrap();
+    let slopes = &outcome.summary.sensitivities["/network/ports/0/volume_m3/ramp/to"].quantities["max_pressure_pa"];
+    let slope = slopes.window_rms.unwrap();
+    assert!((slope * 1e-6 / rests - 1.0).abs() < 0.01, "{slope}");
+}
+
+/// Goal: what a valve has trapped stays in the cycle: it shuts at once under 3 kPa when no force acts, and the pressure swings about that. Without what is
+/// trapped it would about 80 Pa. W030 says of what kind the amount is.
+#[test]
+fn a_cycle_has_what_valves_have_trapped() {
+    let port = r#""pressure_pa": {"ramp": {"from": 3000, "to": 0, "start_s": 3, "duration_s": 1}}"#;
+    let opening = r#"{"ramp": {"from": 1, "to": 0, "start_s": 2, "duration_s": 0}}"#;
+    let ([least, most], warnings) = pressures(&pushed(port, opening));
+    let middle = 0.5 * (least + most);
+    assert!((middle / 3000.0 - 1.0).abs() < 0.02, "{least} {most}");
+    assert!(
+        warnings.contains("W030 fluid is kept behind /network/tubes/0/opening, shut since t = 2 s"),
+        "{warnings}"
+    );
+}
+
+/// Goal: where more goes in than comes out each period there is no cycle, and the command says why.
+#[test]
+fn fluid_that_gathers_has_no_cycle() {
+    let flow = |mean: &str| {
+        let port = format!(r#""flow_m3_s": {{"sum": [{mean}, {{"sine": {{"amplitude": 1e-8, "frequency_hz": 1}}}}]}}"#);
+        Scene::new(&pushed(&port, "1"), None)
+    };
+    let error = flow("1e-9").err().unwrap().to_string();
+    assert!(error.contains("takes in 1.000e-9 m^3 each period"), "{error}");
+    assert!(flow("0").is_ok());
+}
+
+/// Goal: who asks for the end gets what there is: of cycles along a parameter those before, of one that is sought nothing.
+#[test]
+fn searches_end_when_they_are_asked_to() {
+    let flag = Arc::new(AtomicBool::new(false));
+    let stop = Stop::by(Arc::clone(&flag));
+    let case = |n: u32| {
+        shipped(
+            "valves-open",
+            &[
+                "/mesh/cells_per_segment=1",
+                &format!("/network/permeability_factor={n}"),
+            ],
+        )
+    };
+    let cases: Vec<(f64, Case)> = (1..=4).map(|n| (f64::from(n), case(n))).collect();
+    let found = along("/network/permeability_factor", false, &cases, &stop, &|_| {
+        flag.store(true, Ordering::Relaxed)
+    })
+    .unwrap();
+    assert_eq!(found.members.len(), 1);
+    let missing: Vec<_> = (2..=4).map(|n| (f64::from(n), "interrupted".to_string())).collect();
+    assert_eq!(found.missing, missing);
+    let scene = Scene::new(&cases[0].1, None).unwrap().heeding(&stop);
+    assert_eq!(shoot(&scene, None).err().unwrap().what, "interrupted");
 }
 
 #[test]

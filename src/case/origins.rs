@@ -111,6 +111,11 @@ impl Origins {
         Self(known.chain(named(own)).collect())
     }
 
+    /// That the coefficient at a pointer has another value now.
+    pub(super) fn forget(&mut self, pointer: &str) {
+        self.0.remove(pointer);
+    }
+
     /// The origin of the coefficient at a pointer; none where there is no such coefficient.
     pub fn get(&self, pointer: &str) -> Option<Origin> {
         self.0.get(pointer).copied()

@@ -80,7 +80,7 @@ impl Parameter {
     /// [`Error::Usage`] when there is none that is a parameter of the model.
     pub fn number(option: &str, case: &Case, pointer: &str) -> Result<Self> {
         let usage = |what: String| Err(Error::Usage(format!("{option} {pointer}: {what}")));
-        let resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
+        let resolved = written_out(case);
         let part = pointer.split('/').nth(1).unwrap_or_default();
         if pointer.starts_with("/section/") {
             return usage("the numbers of a section are no parameters of the model; its coefficients are".into());
@@ -135,12 +135,24 @@ impl Parameter {
     }
 }
 
+/// A case as JSON with every default filled in, openings of valves that are wide open too: files leave these out.
+fn written_out(case: &Case) -> Value {
+    let mut resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
+    for part in ["/network/tubes", "/network/chains"] {
+        let all = resolved.pointer_mut(part).and_then(Value::as_array_mut);
+        for one in all.into_iter().flatten().filter_map(Value::as_object_mut) {
+            one.entry("opening").or_insert_with(|| 1.0.into());
+        }
+    }
+    resolved
+}
+
 /// A case with other values at JSON pointers, each of something that is there.
 ///
 /// # Errors
 /// The case is not valid with them.
 pub fn with(case: &Case, values: &[(&str, f64)]) -> Result<Case> {
-    let mut resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
+    let mut resolved = written_out(case);
     section::remove(&mut resolved);
     let mut changes = vec![];
     for (pointer, value) in values {
@@ -151,7 +163,13 @@ pub fn with(case: &Case, values: &[(&str, f64)]) -> Result<Case> {
     }
     let name = format!("{} with {}", case.name, changes.join(", "));
     // in lines, of which a fault quotes one
-    parse(&format!("{resolved:#}"), Path::new(&name), Path::new(""), &[])
+    let mut changed = parse(&format!("{resolved:#}"), Path::new(&name), Path::new(""), &[])?;
+    // what the case has from elsewhere is still from there, though all of it is written out here
+    changed.origins = case.origins.clone();
+    for (pointer, _) in values {
+        changed.origins.forget(pointer);
+    }
+    Ok(changed)
 }
 
 /// Pointers of all numbers that are not counts.

@@ -44,7 +44,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     }
     let reference = match &asked.with {
         None => 0,
-        Some(one) => match asked.results.iter().position(|own| own == one) {
+        Some(one) => match asked.results.iter().position(|own| same(own, one)) {
             Some(place) => place,
             None => return usage(format!("--with {}: it is none of the folders", one.display())),
         },
@@ -83,6 +83,12 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Whether two paths name one folder.
+fn same(a: &Path, b: &Path) -> bool {
+    let whole = |path: &Path| std::fs::canonicalize(path).ok();
+    a == b || whole(a).is_some_and(|a| whole(b) == Some(a))
+}
+
 /// Whether a path is that of a picture.
 fn picture(path: &Path) -> bool {
     path.extension()
@@ -116,6 +122,9 @@ fn several(found: &Beside) -> String {
                 changes(&mut text, list);
             }
         }
+    }
+    for remark in found.remarks() {
+        let _ = writeln!(text, "\n{remark}");
     }
     let letters: Vec<String> = (1..=found.comparisons.len()).map(letter).collect();
     let mut lines = vec![[vec!["difference from A, relative, L2".to_string()], letters.clone()].concat()];
@@ -193,6 +202,9 @@ fn table(found: &Comparison) -> String {
         quantity(found.from_s, "s", 4),
         quantity(found.to_s, "s", 4)
     );
+    for remark in &found.remarks {
+        let _ = writeln!(text, "{remark}\n");
+    }
     if !found.physics.is_empty() {
         text += "the two are not the same problem; their difference is no error of either\n";
         changes(&mut text, &found.physics);

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::FloquetArguments;
-use super::{line, size};
+use super::{interrupt, line, size};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::output::floquet as files;
@@ -37,27 +37,30 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     }
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let mut folder = asked.place.claim(case, Kind::Floquet)?;
-    let mut of = |case: &Case| refine::numbers::of_multipliers(case, asked.period, asked.count);
+    let stop = interrupt::stop();
+    let mut of = |case: &Case| refine::numbers::of_multipliers(case, asked.period, asked.count, &stop);
     let refined = accuracy
         .map(|accuracy| refine::refine(case, accuracy, true, &mut of))
-        .transpose()?;
+        .transpose();
+    let refined = interrupt::before_a_cycle(refined, &stop)?;
     let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
-    let scene = Scene::new(case, asked.period)?;
+    let scene = Scene::new(case, asked.period)?.heeding(&stop);
     scene.held(&case.name)?;
     let bar = line::line(asked.quiet);
     bar.set_message("looking for the cycle");
-    let mut cycle = shoot(&scene, None).map_err(fault)?;
+    let mut cycle = interrupt::before_a_cycle(shoot(&scene, None).map_err(fault), &stop)?;
     bar.set_message("carrying disturbances over the period");
     let found = floquet::multipliers(&scene, &mut cycle, asked.count);
     bar.set_message("the same on other meshes");
     let accuracy = refined.as_ref().map(|(_, accuracy)| accuracy.clone());
     let judge = || {
-        let mut of = |case: &Case| refine::numbers::of_growth(case, asked.period, asked.count);
+        let mut of = |case: &Case| refine::numbers::of_growth(case, asked.period, asked.count, &stop);
         refine::meshes::judge(case, &refine::numbers::of_stability(&found), &mut of)
     };
     let meshes = accuracy.is_none().then(judge).transpose()?;
     bar.finish_and_clear();
     let mut warnings = known::without_outputs(case, &scene::system(case)?);
+    warnings.extend(scene.trapped.clone());
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.as_ref().and_then(refine::warning));
     let found = Cycle {
@@ -85,8 +88,9 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
     }
     let plan = plan(asked, tongue::shaking(case)?)?;
     let mut folder = asked.place.claim(case, Kind::Map)?;
+    let stop = interrupt::stop();
     let bar = line::line(asked.quiet);
-    let found = tongue::map(case, &plan, &|done, count| {
+    let found = tongue::map(case, &plan, &stop, &|done, count| {
         bar.set_message(format!("{done} of {count} columns"));
         bar.tick();
     });

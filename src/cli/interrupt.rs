@@ -5,6 +5,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use super::embedded;
+use crate::error::{Error, Result};
+use crate::run::stop::{INTERRUPTED, Stop};
 
 /// Exit codes of shells for a program that a signal ended begin here.
 const SIGNAL: i32 = 128;
@@ -35,6 +37,21 @@ pub fn flag() -> Arc<AtomicBool> {
         asked
     });
     Arc::clone(&asked.raised)
+}
+
+/// The same for work that listens on its way.
+pub fn stop() -> Stop {
+    Stop::by(flag())
+}
+
+/// What there is to say in place of how the search for a cycle failed, where that was because somebody asked for the end.
+pub fn before_a_cycle<T>(found: Result<T>, stop: &Stop) -> Result<T> {
+    match found {
+        Err(_) if stop.raised() => Err(Error::Usage(format!(
+            "{INTERRUPTED} before a cycle was found; nothing is written"
+        ))),
+        other => other,
+    }
 }
 
 /// The exit code of a command that was asked to stop, as shells have it: 130 after Ctrl-C, 143 after a request to terminate.

@@ -66,9 +66,14 @@ pub fn duration(text: &str) -> std::result::Result<f64, String> {
 
 /// `from:to` as two finite numbers, ascending.
 pub fn range(text: &str) -> Option<(f64, f64)> {
+    either_way(text).filter(|(from, to)| from < to)
+}
+
+/// `from:to` as two finite numbers that differ.
+pub fn either_way(text: &str) -> Option<(f64, f64)> {
     let (from, to) = text.split_once(':')?;
     let (from, to): (f64, f64) = (from.trim().parse().ok()?, to.trim().parse().ok()?);
-    (from.is_finite() && to.is_finite() && from < to).then_some((from, to))
+    (from.is_finite() && to.is_finite() && from != to).then_some((from, to))
 }
 
 /// `count` numbers from `from` to `to`, evenly spread, or by their logarithms.

@@ -151,7 +151,7 @@ fn wanted(asked: &OptimizeArguments) -> Result<Asked> {
             .iter()
             .map(|text| Limit::parse(text))
             .collect::<Result<_>>()?,
-        starts: asked.starts as usize,
+        starts: asked.starts.map(|starts| starts as usize),
         jobs: sweep::jobs(asked.jobs)?,
     })
 }

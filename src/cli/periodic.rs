@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use super::arguments::PeriodicArguments;
 use super::uncertain::{self, Uncertain};
-use super::{line, size, terminal};
+use super::{interrupt, line, size, terminal};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::error::{Error, Result};
@@ -60,18 +60,21 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     }
     let result = asked.place.claim(&case, Kind::Cycle)?;
     let out = result.dir().to_path_buf();
+    let stop = interrupt::stop();
     let bar = line::line(asked.quiet);
     bar.set_message("looking for the cycle");
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let asked_for = accuracy
         .map(|accuracy| {
             refine::refine(&case, accuracy, true, &mut |case| {
-                refine::numbers::of_cycle(case, asked.periods)
+                refine::numbers::of_cycle(case, asked.periods, &stop)
             })
         })
-        .transpose()?;
+        .transpose();
+    let asked_for = interrupt::before_a_cycle(asked_for, &stop)?;
     let case = asked_for.as_ref().map_or(&case, |(chosen, _)| chosen);
-    let (scene, cycle, periods) = subharmonic::find(case, asked.periods)?;
+    let found = subharmonic::find_until(case, asked.periods, &stop);
+    let (scene, cycle, periods) = interrupt::before_a_cycle(found, &stop)?;
     let periods = (asked.periods > 1).then_some(periods);
     let mut settled = settle(case, scene, cycle)?;
     let found = floquet::multipliers(&settled.scene, &mut settled.cycle, COUNT);
@@ -96,7 +99,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         bar.set_message("the same on other meshes");
         let mut here = refine::numbers::of_summary(&case, &outcome.summary)?;
         here.extend(refine::numbers::of_stability(&found));
-        let mut of = |case: &Case| refine::numbers::of_cycle_and_multipliers(case, asked.periods, COUNT);
+        let mut of = |case: &Case| refine::numbers::of_cycle_and_multipliers(case, asked.periods, COUNT, &stop);
         Some(refine::meshes::judge(&case, &here, &mut of)?)
     } else {
         None
@@ -151,8 +154,9 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     };
     let mut folder = asked.place.claim(first, Kind::Sweep)?;
     let first = first.clone();
+    let stop = interrupt::stop();
     let bar = line::line(asked.quiet);
-    let found = along(&pointer, logarithmic, &cases, &|done| {
+    let found = along(&pointer, logarithmic, &cases, &stop, &|done| {
         bar.set_message(format!("{done} of {} cycles", cases.len()));
         bar.tick();
     });
@@ -169,16 +173,16 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
 fn parse(text: &str) -> Result<(String, Vec<f64>, bool)> {
     let wrong = || {
         Error::Usage(format!(
-            "--sweep {text}: a pointer, its range and how many values, such as /network/permeability_factor=0.01:1:25:log; at most \
+            "--sweep {text}: a pointer, its range, upwards or downwards, and how many values, such as /network/permeability_factor=0.01:1:25:log; at most \
              {MOST_VALUES} values, logarithms of values > 0 alone"
         ))
     };
     let (pointer, rest) = text.rsplit_once('=').ok_or_else(wrong)?;
     let (rest, logarithmic) = rest.strip_suffix(":log").map_or((rest, false), |rest| (rest, true));
     let (range, count) = rest.rsplit_once(':').ok_or_else(wrong)?;
-    let (from, to) = line::range(range).ok_or_else(wrong)?;
+    let (from, to) = line::either_way(range).ok_or_else(wrong)?;
     let count: usize = count.trim().parse().map_err(|_| wrong())?;
-    if !(2..=MOST_VALUES).contains(&count) || (logarithmic && from <= 0.0) {
+    if !(2..=MOST_VALUES).contains(&count) || (logarithmic && from.min(to) <= 0.0) {
         return Err(wrong());
     }
     Ok((pointer.into(), line::spread(from, to, count, logarithmic), logarithmic))

@@ -4,11 +4,14 @@ use crate::case::schema::Case;
 use crate::error::{Error, Result};
 use crate::functions::signals::{Signal, Sine};
 use crate::model::Model;
+use crate::run::equilibrium::TIGHT;
 
 /// Periods of two signals that fit into a common one this often are told apart.
 const MOST_CYCLES: u32 = 64;
 /// Frequencies count as commensurable when their ratio is within this of a ratio of small integers.
 const COMMENSURABLE: f64 = 1e-9;
+/// Time, over that of the steepest rise of a sigmoid, after which nothing of it is left but round-off: `exp(-37)`.
+const ROUND_OFF: f64 = 37.0;
 
 /// What drives a case in the long run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +90,28 @@ pub fn settled(signal: &Signal) -> Signal {
         Signal::Table(table) => Signal::Constant(table.values.last().copied().unwrap_or(0.0)),
         Signal::Sum(terms) => Signal::Sum(terms.iter().map(settled).collect()),
         Signal::Product(factors) => Signal::Product(factors.iter().map(settled).collect()),
+    }
+}
+
+/// The same of a valve: one that moves and comes to rest as good as shut is shut.
+pub fn settled_opening(opening: &Signal) -> Signal {
+    match settled(opening) {
+        rests if !opening.is_constant() && rests.is_constant() && rests.value(0.0) <= TIGHT => Signal::Constant(0.0),
+        other => other,
+    }
+}
+
+/// Instant from which on a signal is what it is in the long run [s]: to round-off, where it only comes near.
+pub fn settles_at(signal: &Signal) -> f64 {
+    let latest = |times: &mut dyn Iterator<Item = f64>| times.fold(0.0, f64::max);
+    match signal {
+        _ if signal.is_constant() => 0.0,
+        Signal::Constant(_) | Signal::Polynomial(_) => 0.0,
+        Signal::Sine(sine) => sine.ramp_cycles / sine.frequency_hz,
+        Signal::Sigmoid(s) => (s.midpoint_s + ROUND_OFF / s.steepness_per_s.abs()).max(0.0),
+        Signal::Ramp(ramp) => (ramp.start_s + ramp.duration_s).max(0.0),
+        Signal::Table(table) => latest(&mut table.times_s.last().copied().into_iter()),
+        Signal::Sum(parts) | Signal::Product(parts) => latest(&mut parts.iter().map(settles_at)),
     }
 }
 

@@ -27,6 +27,7 @@ pub mod residuals;
 pub mod schedule;
 pub mod sensitivity;
 pub mod step_response;
+pub mod stop;
 pub mod stretch;
 pub mod strides;
 pub mod summary;

@@ -112,6 +112,36 @@ fn what_jumps_as_a_valve_shuts_comes_after() {
     assert!(stays > 3000.0 && (jumps / stays - 1.0).abs() < 1e-9, "{jumps} {stays}");
 }
 
+/// Goal: a run that starts in equilibrium has the fluid of that state, with valves as they stood in it: whatever signals would have done before t = 0 it
+/// never sees. Both rest where a case does in which 3 kPa stood behind the valve when it shut.
+#[test]
+fn a_start_in_equilibrium_has_shut_valves_too() {
+    let stays = filled(&ramp(1.0, 0.0, 1.0, 0.0), &json!(3000), &json!({}));
+    let stays = last(&stays, &Options::at(6.0), "max_pressure");
+    let shut = json!({"table": {"times_s": [-2, -1.9], "values": [1, 0], "interpolation": "linear"}});
+    let falls = |times: &[f64], values: &[f64]| json!({"table": {"times_s": times, "values": values, "interpolation": "linear"}});
+    let started = |pressure: Value, start: Value| filled(&shut, &pressure, &json!({"start": {"equilibrium": start}}));
+    let before = started(
+        falls(&[-2.5, -2.4, -1.0, -0.5], &[3000.0, 1000.0, 1000.0, 0.0]),
+        json!({"loads_at_s": -3}),
+    );
+    let stages = started(
+        falls(&[-1.5, -1.0], &[3000.0, 0.0]),
+        json!({"via_s": [-3], "loads_at_s": 0}),
+    );
+    for case in [before, stages] {
+        let options = Options::at(6.0);
+        let rests = last(&case, &options, "max_pressure");
+        assert!((rests / stays - 1.0).abs() < 1e-6, "{rests} {stays}");
+        let warning = path_of(&case, &options).trapped.expect("a warning");
+        assert!(
+            warning.contains("shut since a start in equilibrium with it open under the loads at t = -3 s"),
+            "{warning}"
+        );
+        assert!(!warning.contains("still flowing"), "{warning}");
+    }
+}
+
 /// Goal: valves that have moved and are open have nothing to tell of the past, nor has one that opens in the end, one that was never open,
 /// or one on the way from a port to a junction that holds nothing.
 #[test]

@@ -302,3 +302,32 @@ fn limits_that_nothing_holds() {
         "{warnings}"
     );
 }
+
+/// Goal: a bound at which the key's own range ends can be reached: the mass that sits anywhere on a cantilever slows its first mode most at the tip,
+/// and no design there is said to have failed.
+#[test]
+fn the_end_of_a_keys_range_is_reached() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let asked = "cases/dry-cantilever.json --minimize mode_1 --command modes --vary /attachments/0/at=0.1:1 --set /mesh/cells_per_segment=1";
+    let mass = r#"/attachments=[{"at": 0.7, "mass_kg": 0.02}]"#;
+    let asked: Vec<&str> = asked.split(' ').chain(["--set", mass]).collect();
+    let found = best(&dir, &asked);
+    assert_eq!(number(&found["variables"][0]["value"]), 1.0, "{found}");
+    assert_eq!(found["variables"][0]["at_bound"], "high");
+    assert_eq!(found["failed"], serde_json::json!({}), "{found}");
+    assert_eq!(found["found"], true, "{found}");
+}
+
+/// Goal: what the plain command warns of at the best is told with the best, that coefficients are those of another beam too, though the case of the
+/// best has them written out.
+#[test]
+fn warnings_of_the_best_are_told() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let asked = "cases/tour-actuator.json --minimize tip_u1_m --command equilibrium --vary /beam/young_modulus_pa=9.9e6:1e7 \
+                 --set /mesh/cells_per_segment=1 --set /mesh/cells_per_bladder=1";
+    let found = best(&dir, &asked.split_whitespace().collect::<Vec<_>>());
+    let warnings = found["warnings"].to_string();
+    for code in ["W002", "W017"] {
+        assert!(warnings.contains(code), "{code}: {warnings}");
+    }
+}

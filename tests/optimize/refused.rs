@@ -73,6 +73,11 @@ fn what_makes_no_sense_is_refused() {
             "--choose '/beam/young_modulus_pa=much'",
         ),
         (
+            with(&[&tip, &["--choose", "/beam/young_modulus_pa=1e6|2e6|1000000"]]),
+            2,
+            "1000000 stands there twice",
+        ),
+        (
             with(&[&tip, &["--choose", "/beam/young_modulus_pa=1e6|-1e6"]]),
             3,
             "--> --choose at /beam/young_modulus_pa",

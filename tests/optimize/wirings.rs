@@ -198,7 +198,7 @@ fn an_interrupted_search_keeps_the_best_so_far() {
             largest: false,
         },
         limits: vec![],
-        starts: 2,
+        starts: Some(2),
         jobs,
     };
     let make = |alternative: &Alternative| {

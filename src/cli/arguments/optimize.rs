@@ -36,9 +36,9 @@ pub struct OptimizeArguments {
     /// What every design goes through
     #[arg(long, value_enum, default_value_t = Through::Run)]
     pub command: Through,
-    /// Searches, from the case's own numbers and from places between the bounds
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    pub starts: u32,
+    /// Searches, from the case's own numbers and from places between the bounds [default: 1, or 8 among many alternatives]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub starts: Option<u32>,
     /// Searches at once [default: one for every core]
     #[arg(long, value_name = "N")]
     pub jobs: Option<usize>,

@@ -47,8 +47,12 @@ pub fn words(found: &Optimum) -> String {
     }
     let failed: usize = found.failed.values().sum();
     text += &format!(
-        "\n{}{}, {}\n",
+        "\n{}{}{}, {}\n",
         several(found.evaluations),
+        match failed {
+            0 => String::new(),
+            n => format!(", {n} of which failed,"),
+        },
         match found.derivatives {
             _ if found.variables.is_empty() => "",
             Derivatives::Exact => " with exact derivatives",
@@ -185,7 +189,13 @@ fn starts(found: &Optimum) -> String {
     others.sort_by(f64::total_cmp);
     others.dedup_by(|a, b| (*a - *b).abs() <= SAME * a.abs());
     let others: Vec<String> = others.iter().map(|value| significant(*value, 5)).collect();
-    let mut text = format!("{same} of {} searches came to it", found.starts.len());
+    // of the alternatives others searched
+    let sought = if found.explored.is_some() {
+        "for its numbers "
+    } else {
+        ""
+    };
+    let mut text = format!("{sought}{same} of {} searches came to it", found.starts.len());
     if !others.is_empty() {
         text += &format!("; others ended at {}", others.join(", "));
     }

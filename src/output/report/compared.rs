@@ -10,6 +10,7 @@ use crate::discrete::quantities::{Observable, Role};
 use crate::error::{Error, Result};
 use crate::output::folder::{REPORT, fault, replace_alike};
 use crate::output::numbers::{percent, quantity};
+use crate::study::compare::difference::Difference;
 use crate::study::compare::many::column_at;
 use crate::study::compare::{Beside, Recording};
 use crate::study::fit::beside::{Beside as Data, Column};
@@ -34,6 +35,7 @@ pub fn compared(dir: &Path, all: &[Recording], reference: usize, found: &Beside)
             .iter()
             .zip(&names)
             .map(|(folder, name)| format!("{name}: {folder}"))
+            .chain(found.remarks().into_iter().map(String::from))
             .collect::<Vec<_>>(),
     );
     let order = || {
@@ -148,23 +150,34 @@ fn names(found: &Beside) -> Vec<String> {
 
 /// Which differs most, of the quantities that matter most.
 fn answer(found: &Beside, names: &[String]) -> String {
-    let headline = |name: &str| Observable::named(name).is_some_and(|one| one.role() == Role::Headline);
-    let all = found.comparisons.iter().zip(&names[1..]).flat_map(|(one, name)| {
-        let histories = one.histories.iter().filter(|d| headline(&d.name));
-        histories.map(move |d| (d, name))
-    });
-    match all.max_by(|a, b| a.0.relative.l2.total_cmp(&b.0.relative.l2)) {
-        None => "The results have no history in common.".into(),
-        Some((most, _)) if most.relative.l2 == 0.0 => format!("No quantity that matters differs from {}.", names[0]),
+    let headline = |d: &&Difference| Observable::named(&d.name).is_some_and(|one| one.role() == Role::Headline);
+    let largest = |of: &dyn Fn(&&Difference) -> bool| {
+        let all = found.comparisons.iter().zip(&names[1..]).flat_map(|(one, name)| {
+            let histories = one.histories.iter().chain(&one.fields).filter(|d| of(d));
+            histories.map(move |d| (d, name))
+        });
+        all.max_by(|a, b| a.0.relative.l2.total_cmp(&b.0.relative.l2))
+    };
+    let mut text = match largest(&headline) {
+        None => "The results have no history in common that matters most.".into(),
+        Some((most, _)) if most.relative.l2 == 0.0 => {
+            format!("No quantity of those that matter most differs from {}.", names[0])
+        }
         Some((most, name)) => format!(
-            "The largest difference from {} is that of {} in {name}: {} of its size over all instants, {} at most, at {}.",
-            names[0],
+            "Of the quantities that matter most {} differs most from {}, in {name}: {} of its size over all instants, {} at most, at {}.",
             most.name,
+            names[0],
             percent(most.relative.l2),
             percent(most.relative.max),
             quantity(most.at_s, "s", 4)
         ),
+    };
+    if let (Some((all, name)), shown) = (largest(&|_| true), largest(&headline))
+        && all.relative.l2 > shown.map_or(0.0, |(most, _)| most.relative.l2)
+    {
+        text += &format!(" Of all {} does, in {name}: {}.", all.name, percent(all.relative.l2));
     }
+    text
 }
 
 /// Histories at the output times of the first.

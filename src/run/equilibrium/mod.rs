@@ -42,7 +42,7 @@ pub use resting::Resting;
 pub use sensitivity::{Derivative, Direction, Sensitivity, along, differentiate};
 pub use stages::follow;
 pub use state::{Stability, State, columns, restate};
-pub use trapped::warning as trapped;
+pub use trapped::{Kept, TIGHT, kept, warning as trapped};
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]

@@ -42,14 +42,19 @@ impl Stage {
 }
 
 impl Options {
-    /// The stages of the path, in order; at least one. Loads jump after a valve has shut where they do so at that instant.
+    /// The stages of the path, in order; at least one. Loads jump after a valve has shut where they do so at that instant; a start in equilibrium
+    /// has both as they are at its own.
     pub(super) fn stages(&self) -> Vec<Stage> {
         let mut from = None;
         let stage = |(k, &t): (usize, &f64)| {
             let valves = self.valves_s.get(k).copied();
             let to = Clock {
                 t,
-                within: valves.map_or(t, |_| t.next_down()),
+                within: if valves.is_some_and(|valves| valves < t) {
+                    t.next_down()
+                } else {
+                    t
+                },
             };
             Stage {
                 from: from.replace(to),
@@ -199,7 +204,7 @@ pub(super) fn follow_of(
         valves = stand;
         let (statics, y) = begin(case, grown, held.as_ref());
         if let Some(inflow) = statics.fed() {
-            let shuts = (options.follows_valves() && number + 1 < stages.len()).then_some(stage.to.t);
+            let shuts = options.valves_s.get(number).map(|_| stage.to.t);
             path.fault = Some(fed(number, inflow, shuts));
             return Ok(path);
         }

@@ -1,14 +1,14 @@
 //! Fluid behind valves that shut before the instant of the loads: how much is there depends on the loads under which they shut.
 
 use super::Options;
-use crate::case::schema::{BladderEnd, Case};
+use crate::case::schema::{BladderEnd, Case, EquilibriumStart};
 use crate::error::{Code, Error, Result};
 use crate::functions::{Clock, Signal};
 use crate::model::network::{Network, Node};
 use crate::numerics::sets::Sets;
 
 /// Opening at or below which a valve that moves counts as shut: what leaks through it takes longer than anything that is simulated.
-pub(super) const TIGHT: f64 = 1e-9;
+pub const TIGHT: f64 = 1e-9;
 /// Instants at which an opening is looked at between two of its breaks, at least and at most, and in its shortest time.
 const LOOKS: [f64; 3] = [32.0, 4096.0, 16.0];
 /// Part of a piece between two breaks, next to one of these, in which an opening is as good as shut.
@@ -25,23 +25,76 @@ impl Options {
     /// [`Error::Usage`]: valves that shut too often; a network that cannot be told.
     pub fn resolved(&self, case: &Case) -> Result<Self> {
         let mut resolved = self.clone();
-        if !self.via_s.is_empty() {
+        if !self.via_s.is_empty() || self.follows_valves() {
             return Ok(resolved);
         }
         let Some(history) = History::of(case, self.at_s)? else {
             return Ok(resolved);
         };
         let stages = history.stages();
-        if stages.len() > MOST {
-            return Err(Error::Usage(format!(
-                "valves shut off fluid {} times before t = {} s, and what is behind them then owes to all of these: more than the {MOST} stages that \
-                 an equilibrium goes through; `slcbeam run` follows it",
-                stages.len(),
-                self.at_s
-            )));
-        }
+        few(stages, self.at_s)?;
         (resolved.via_s, resolved.valves_s) = stages.iter().map(|span| (span.to, span.inside)).unzip();
         Ok(resolved)
+    }
+}
+
+/// What valves that are shut in the long run keep behind them.
+pub struct Kept {
+    /// The path to the state in which the last of them shut.
+    pub options: Options,
+    /// What is to be said of it.
+    pub warning: String,
+}
+
+/// What valves of a case keep behind them once each has come to what it is in the long run (`settled`) before an instant [s]; none where none does.
+///
+/// # Errors
+/// As [`Options::resolved`].
+pub fn kept(case: &Case, at_s: f64, settled: &dyn Fn(&Signal) -> Signal) -> Result<Option<Kept>> {
+    let Some(mut history) = History::of(case, at_s)? else {
+        return Ok(None);
+    };
+    let lasting = history.valves.iter().map(|valve| match settled(&valve.opening) {
+        rests if rests.is_constant() => rests.value(0.0) > least(&valve.opening),
+        _ => true,
+    });
+    let open: Vec<bool> = lasting.collect();
+    history.spans.pop_if(|span| span.open == open);
+    history.spans.push(Span {
+        to: at_s,
+        inside: at_s,
+        open,
+        of_start: false,
+    });
+    let last = history.spans.len() - 1;
+    let instants = history.owes(last).map(|(_, before)| before.to);
+    let Some(shut) = instants.reduce(f64::max) else {
+        return Ok(None);
+    };
+    let Some(end) = history.spans[..last].iter().position(|span| span.to == shut) else {
+        return Ok(None);
+    };
+    let stages = &history.spans[history.first(end)..=end];
+    few(stages, at_s)?;
+    let mut via_s: Vec<f64> = stages.iter().map(|span| span.to).collect();
+    via_s.pop();
+    Ok(Some(Kept {
+        options: Options {
+            via_s,
+            valves_s: stages.iter().map(|span| span.inside).collect(),
+            ..Options::at(shut)
+        },
+        warning: history.words(case).unwrap_or_default(),
+    }))
+}
+
+fn few(stages: &[Span], at_s: f64) -> Result<()> {
+    match stages.len() {
+        0..=MOST => Ok(()),
+        count => Err(Error::Usage(format!(
+            "valves shut off fluid {count} times before t = {at_s} s, and what is behind them then owes to all of these: more than the {MOST} stages \
+             that an equilibrium goes through; `slcbeam run` follows it"
+        ))),
     }
 }
 
@@ -54,14 +107,7 @@ pub fn warning(case: &Case, options: &Options) -> Result<Option<String>> {
         return Ok(None);
     }
     let history = History::of(case, options.at_s)?;
-    let shut: Vec<String> = history.iter().flat_map(|history| history.shut(case)).collect();
-    Ok((!shut.is_empty()).then(|| {
-        Code::Trapped.warning(format!(
-            "fluid is kept behind {}, as much as rests there under the loads of that instant: where it was still flowing then, only a run tells \
-             how much there is",
-            shut.join(", ")
-        ))
-    }))
+    Ok(history.and_then(|history| history.words(case)))
 }
 
 /// A valve between two places of the graph.
@@ -79,6 +125,8 @@ struct Span {
     inside: f64,
     /// Which valves are open.
     open: Vec<bool>,
+    /// Whether it is a state of the path to the one in which a run starts.
+    of_start: bool,
 }
 
 /// How the parts of a network were joined, from the start to an instant.
@@ -101,10 +149,17 @@ impl History {
         let mut openings = written
             .flat_map(|n| n.chains.iter().map(|chain| &chain.opening))
             .chain(tubes);
-        // a run that starts in equilibrium has a past
-        let begin = case.start.equilibrium.as_ref().map_or(0.0, |start| start.loads_at_s);
-        let begin = begin.min(0.0);
-        if at_s <= begin || openings.all(Signal::is_constant) {
+        if openings.all(Signal::is_constant) {
+            return Ok(None);
+        }
+        // a run that starts in equilibrium has a past: the loads of that state, and those before, none of the instants between
+        let start = case.start.equilibrium.as_ref();
+        let past = start.filter(|start| at_s >= 0.0 || at_s == start.loads_at_s);
+        let begin = match past {
+            Some(_) => 0.0,
+            None => start.map_or(0.0, |start| start.loads_at_s).min(0.0),
+        };
+        if at_s <= begin && past.is_none() {
             return Ok(None);
         }
         let Some(network) = Network::of(case)? else {
@@ -134,24 +189,30 @@ impl History {
         }
         let vessels = network.accumulators.iter().map(|one| bladders + one.junction);
         let stores = (0..bladders).chain(vessels).collect();
-        let spans = spans(&valves, begin, at_s);
+        let mut all: Vec<Span> = past.map_or(vec![], |start| of_start(&valves, start, at_s));
+        all.extend(spans(&valves, begin, at_s));
         Ok(Some(Self {
             valves,
             joined,
             places: given + 1,
             stores,
-            spans,
+            spans: all,
         }))
     }
 
     /// The spans whose last states the path goes through, in order.
     fn stages(&self) -> &[Span] {
         let last = self.spans.len() - 1;
-        let mut first = last;
+        &self.spans[self.first(last)..last]
+    }
+
+    /// The last span up to one that owes nothing to those before.
+    fn first(&self, of: usize) -> usize {
+        let mut first = of;
         while first > 0 && self.owes(first).next().is_some() {
             first -= 1;
         }
-        &self.spans[first..last]
+        first
     }
 
     /// Valves that are shut in a span, were open before, and part fluid then that no prescribed pressure reaches from other fluid; with the span in which each
@@ -177,20 +238,31 @@ impl History {
         })
     }
 
-    /// The valves behind which fluid is kept in the end, as the case has them, with the instant at which each shut.
-    fn shut(&self, case: &Case) -> Vec<String> {
-        let mut all: Vec<String> = self
-            .owes(self.spans.len() - 1)
-            .map(|(valve, before)| {
-                format!(
-                    "{}, shut since t = {} s",
-                    pointer(case, &valve.opening),
-                    short(before.to)
-                )
-            })
-            .collect();
-        all.dedup();
-        all
+    /// The valves behind which fluid is kept in the end, as the case has them, with the instant at which each shut, for people; none without.
+    fn words(&self, case: &Case) -> Option<String> {
+        let (mut shut, mut flows) = (vec![], false);
+        for (valve, before) in self.owes(self.spans.len() - 1) {
+            let (place, t) = (pointer(case, &valve.opening), short(before.to));
+            flows |= !before.of_start;
+            let one = match before.of_start {
+                true => format!("{place}, shut since a start in equilibrium with it open under the loads at t = {t} s"),
+                false => format!("{place}, shut since t = {t} s"),
+            };
+            if !shut.contains(&one) {
+                shut.push(one);
+            }
+        }
+        let still = if flows {
+            ": where it was still flowing then, only a run tells how much there is"
+        } else {
+            ""
+        };
+        (!shut.is_empty()).then(|| {
+            Code::Trapped.warning(format!(
+                "fluid is kept behind {}, as much as rests there under the loads of that instant{still}",
+                shut.join(", ")
+            ))
+        })
     }
 }
 
@@ -211,6 +283,18 @@ fn short(t: f64) -> f64 {
     format!("{t:.5e}").parse().unwrap_or(t)
 }
 
+/// The states on the way to the one in which a run starts, that one included where it is not the one asked for.
+fn of_start(valves: &[Valve], start: &EquilibriumStart, at_s: f64) -> Vec<Span> {
+    let own = (at_s > 0.0 || at_s != start.loads_at_s).then_some(start.loads_at_s);
+    let of = |t: f64| Span {
+        to: t,
+        inside: t,
+        open: valves.iter().map(|valve| is_open(&valve.opening, t, t)).collect(),
+        of_start: true,
+    };
+    start.via_s.iter().copied().chain(own).map(of).collect()
+}
+
 /// The spans between the switching of valves, and the instant at the end as the last of them.
 fn spans(valves: &[Valve], begin: f64, end: f64) -> Vec<Span> {
     let mut times: Vec<f64> = valves
@@ -227,7 +311,12 @@ fn spans(valves: &[Valve], begin: f64, end: f64) -> Vec<Span> {
         let inside = 0.5 * (from + to);
         if inside > from && inside < to {
             let open = open(inside);
-            spans.push(Span { to, inside, open });
+            spans.push(Span {
+                to,
+                inside,
+                open,
+                of_start: false,
+            });
         }
         from = to;
     }
@@ -238,13 +327,18 @@ fn spans(valves: &[Valve], begin: f64, end: f64) -> Vec<Span> {
         to: end,
         inside: end,
         open: last,
+        of_start: false,
     });
     spans
 }
 
 fn is_open(opening: &Signal, t: f64, within: f64) -> bool {
-    let value = opening.jet(Clock { t, within }).value;
-    value > if opening.is_constant() { 0.0 } else { TIGHT }
+    opening.jet(Clock { t, within }).value > least(opening)
+}
+
+/// The largest opening of a valve that counts as shut.
+fn least(opening: &Signal) -> f64 {
+    if opening.is_constant() { 0.0 } else { TIGHT }
 }
 
 /// When a valve opens or shuts, between two instants.

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! scene   a case in the long run: what repeats itself, what is conserved, the period map
+//! fluid   how much of what is conserved there is
 //! shoot   Newton's iteration on the period map
 //! subharmonic  cycles that come back after several periods
 //! record  one period of the cycle as a run
@@ -9,6 +10,7 @@
 //! sensitivity  its derivatives by numbers of the case
 //! ```
 
+mod fluid;
 pub mod record;
 pub mod scene;
 pub mod sensitivity;

@@ -17,7 +17,9 @@ const OUTPUTS: f64 = 200.0;
 /// When the recorder fails; a failing solver is an [`Outcome`].
 pub fn record(case: &Case, scene: &Scene, cycle: &Cycle, recorder: &mut dyn Recorder) -> Result<Outcome> {
     let case = one_period(case, scene.drive.period);
-    dynamics::go_on(&case, scene.system.clone(), [&cycle.y, &cycle.yp], None, recorder)
+    let mut outcome = dynamics::go_on(&case, scene.system.clone(), [&cycle.y, &cycle.yp], None, recorder)?;
+    outcome.summary.warnings.extend(scene.trapped.clone());
+    Ok(outcome)
 }
 
 /// The case with times that fit one period [s].

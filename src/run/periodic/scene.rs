@@ -1,5 +1,6 @@
 //! What repeats itself: a case in the long run, as one map of its state over a period.
 
+use super::fluid;
 use super::shoot::Search;
 use crate::case::Translation;
 use crate::case::schema::{Case, Choice, Effects};
@@ -10,7 +11,8 @@ use crate::integrate::{Absolute, IntegrationError, StartOptions, consistent_star
 use crate::model::Model;
 use crate::onestep::step_map::StepError;
 use crate::onestep::{Method, OneStep, OneStepOptions, StepMap};
-use crate::run::drive::{Drive, drive, settled};
+use crate::run::drive::{Drive, drive, settled, settled_opening};
+use crate::run::stop::{INTERRUPTED, Stop};
 
 /// Steps of a period at least: signals are smooth, but a mode that is at rest has no say in the error test.
 const LEAST_STEPS: f64 = 32.0;
@@ -33,8 +35,12 @@ pub struct Scene {
     pub method: Method,
     /// Periods of what drives the case that make up the one of the cycle.
     pub periods: usize,
-    /// State from which the search sets out, scaled: the start of the case, at rest beside its ends.
+    /// State from which the search sets out, scaled: the start of the case, at rest beside its ends, with the fluid that it has in the long run.
     pub guess: Vec<f64>,
+    /// What is to be said of fluid behind valves that have shut, where there is some.
+    pub trapped: Option<String>,
+    /// Who may ask the search to end.
+    pub stop: Stop,
     /// What is conserved: `w · y` of the scaled unknowns does not change. Of norm one, across each other.
     pub conserved: Vec<Vec<f64>>,
 }
@@ -46,26 +52,53 @@ impl Scene {
     /// motion can do without, a disturbance may grow from.
     ///
     /// # Errors
-    /// A case without a period, see [`drive`]; those of [`System::new`].
+    /// A case without a period, see [`drive`]; fluid that gathers from period to period, or of which nobody knows how much there is; those
+    /// of [`System::new`].
     pub fn new(case: &Case, period: Option<f64>) -> Result<Self> {
         let mut model = whole(case)?;
         let drive = drive(case, &model, period)?;
-        model.replace_signals(settled, settled);
+        model.replace_signals(settled, settled_opening);
         Self::of(case, model, drive)
     }
 
     /// Another model of the case, its signals settled; refused as by [`System::new`].
     pub fn of(case: &Case, model: Model, drive: Drive) -> Result<Self> {
         let system = System::with(case, model)?.accepted(case)?;
+        let (guess, trapped) = guess(&system, case, drive.period)?;
         Ok(Self {
-            guess: guess(&system, case),
-            conserved: conserved(&system),
+            guess,
+            trapped,
+            conserved: fluid::conserved(&system),
             system,
             drive,
+            stop: Stop::default(),
             periods: 1,
             rtol: case.solver.rtol,
             method: METHOD,
         })
+    }
+
+    /// With somebody who may ask the search to end.
+    pub fn heeding(mut self, stop: &Stop) -> Self {
+        self.stop = stop.clone();
+        self
+    }
+
+    /// That somebody has asked for the end.
+    fn asked_to_end(&self) -> std::result::Result<(), StepError> {
+        match self.stop.raised() {
+            true => Err(StepError::new(0.0, INTERRUPTED)),
+            false => Ok(()),
+        }
+    }
+
+    /// A disturbance after a period; nothing of it once somebody has asked for the end, whereupon what is sought from it comes to its own.
+    pub(super) fn carry(&self, march: &mut StepMap<BeamDae>, v: &mut [f64]) {
+        if self.stop.raised() {
+            return v.fill(0.0);
+        }
+        march.propagate(v);
+        self.admit(v);
     }
 
     /// The system of a changed case in the long run, with the unknowns and scales of this one; none when the unknowns are then others.
@@ -74,19 +107,22 @@ impl Scene {
     /// The case is not valid.
     pub fn like(&self, case: &Case) -> Result<Option<System>> {
         self.system
-            .like_with(case, |model| model.replace_signals(settled, settled))
+            .like_with(case, |model| model.replace_signals(settled, settled_opening))
     }
 
-    /// What is conserved of a system of the same unknowns, and its amount at the start of its case less that in a state: `w · (y₀ - y)`.
-    pub fn kept(system: &System, case: &Case, y: &[f64]) -> Vec<f64> {
-        let start = guess(system, case);
+    /// What is conserved of a system of the same unknowns, and its amount in the long run of its case less that in a state: `w · (y₀ - y)`.
+    ///
+    /// # Errors
+    /// Where that amount is not known.
+    pub fn kept(system: &System, case: &Case, period: f64, y: &[f64]) -> Result<Vec<f64>> {
+        let (start, _) = guess(system, case, period)?;
         let lost = |w: &Vec<f64>| {
             w.iter()
                 .zip(start.iter().zip(y))
                 .map(|(w, (start, y))| w * (start - y))
                 .sum()
         };
-        conserved(system).iter().map(lost).collect()
+        Ok(fluid::conserved(system).iter().map(lost).collect())
     }
 
     /// The equations, looking at signals as they are in the long run.
@@ -109,6 +145,7 @@ impl Scene {
         let mut times = vec![0.0];
         while solver.time() < end {
             times.push(solver.step(end).map_err(error)?.time);
+            self.asked_to_end()?;
             if times.len() > self.periods * MOST_STEPS {
                 let what = format!("the motion asks for more than {MOST_STEPS} steps a period");
                 return Err(StepError::new(solver.time(), what));
@@ -149,6 +186,7 @@ impl Scene {
             let (end, before) = (self.drive.period * period as f64, solver.steps());
             while solver.time() < end {
                 solver.step(end).map_err(error)?;
+                self.asked_to_end()?;
                 if solver.steps() - before > (self.periods * MOST_STEPS) as u64 {
                     let what = format!("the motion asks for more than {MOST_STEPS} steps a period");
                     return Err(StepError::new(solver.time(), what));
@@ -259,8 +297,8 @@ pub fn fault(error: StepError) -> Error {
     }))
 }
 
-/// The start of the case, as if its ends were at rest where they are.
-fn guess(system: &System, case: &Case) -> Vec<f64> {
+/// The start of the case, as if its ends were at rest where they are, with the fluid that there is in the long run; and what is to be said of that.
+fn guess(system: &System, case: &Case, period: f64) -> Result<(Vec<f64>, Option<String>)> {
     let mut dae = BeamDae::new(system.clone());
     dae.enter_smooth_interval(1.0);
     let (system, now) = dae.instant(0.0);
@@ -275,34 +313,6 @@ fn guess(system: &System, case: &Case) -> Vec<f64> {
             }
         }
     }
-    y
-}
-
-/// The volume of every network whose volumes are unknowns, and change by ports of prescribed volume alone, as a weight of every unknown.
-fn conserved(system: &System) -> Vec<Vec<f64>> {
-    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
-        return vec![];
-    };
-    let l = &system.layout;
-    let keep = (0..wet.network.components).filter(|&c| wet.network.keeps(c));
-    keep.filter_map(|component| {
-        let mut w = vec![0.0; l.len];
-        for (slot, &bladder) in fluid.flowing.iter().enumerate() {
-            if wet.network.component_of_bladder[bladder] == component {
-                let first = l.network.area.start + slot * fluid.cells_per_bladder;
-                let cells = first..first + fluid.cells_per_bladder;
-                w[cells.clone()].fill(l.scales[first] * fluid.ds);
-            }
-        }
-        for one in &fluid.accumulators {
-            if one.component == component {
-                let unknown = l.network.junction.start + one.junction;
-                w[unknown] = l.scales[unknown];
-            }
-        }
-        let size = w.iter().map(|w| w * w).sum::<f64>().sqrt();
-        w.iter_mut().for_each(|w| *w /= size);
-        (size > 0.0).then_some(w)
-    })
-    .collect()
+    let told = fluid::fill(&mut dae, case, period, &mut y)?;
+    Ok((y, told))
 }

@@ -72,7 +72,9 @@ pub fn differentiate(settled: &mut Settled, parameters: &[Parameter], recorder: 
         s: &all,
     };
     let from = [cycle.y.as_slice(), cycle.yp.as_slice()];
-    dynamics::go_on(&case, scene.system.clone(), from, Some(&along), recorder)
+    let mut outcome = dynamics::go_on(&case, scene.system.clone(), from, Some(&along), recorder)?;
+    outcome.summary.warnings.extend(scene.trapped.clone());
+    Ok(outcome)
 }
 
 /// Says before a cycle is sought whether it has derivatives by numbers of its case.
@@ -117,7 +119,7 @@ fn perturbed(case: &Case, scene: &Scene, parameters: &[Parameter]) -> Result<Bea
     Ok(dae.with_perturbed(all))
 }
 
-/// The part of the derivative of a cycle's state along what is conserved, which the start of the case decides.
+/// The part of the derivative of a cycle's state along what is conserved, which the fluid of the case decides.
 fn kept(
     case: &Case,
     scene: &Scene,
@@ -130,7 +132,7 @@ fn kept(
     let [a, b, c, d] = cases;
     let cases = [a?, b?, c?, d?];
     changed.derivative(&mut part, |j, beam, out| {
-        out.copy_from_slice(&Scene::kept(beam.system(), &cases[j], y));
+        out.copy_from_slice(&Scene::kept(beam.system(), &cases[j], scene.drive.period, y)?);
         Ok::<(), Error>(())
     })?;
     let mut s = vec![0.0; y.len()];

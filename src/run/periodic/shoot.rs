@@ -8,6 +8,7 @@ use crate::integrate::{StartOptions, consistent_start};
 use crate::numerics::krylov;
 use crate::onestep::StepMap;
 use crate::onestep::step_map::{StepError, StepMapWork};
+use crate::run::stop::INTERRUPTED;
 
 /// Correction over the tolerance at which a cycle is found.
 const FOUND: f64 = 0.05;
@@ -69,6 +70,7 @@ pub fn shoot(scene: &Scene, from: Option<&[f64]>) -> Result<Cycle, StepError> {
     let begin = from.unwrap_or(&scene.guess);
     match attempt(scene, begin.to_vec(), &mut search) {
         Ok(cycle) => Ok(cycle),
+        Err(error) if scene.stop.raised() => Err(error),
         Err(_) => {
             let later = scene.go_on(&scene.guess, PATIENCE, &mut search)?;
             attempt(scene, later, &mut search)
@@ -84,15 +86,10 @@ pub(super) fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Re
     for _ in 0..ITERATIONS {
         let size = scene.size(&back, &y);
         let most = scene.dimension().min(MOST_DISTURBANCES);
-        let (step, _) = krylov::solve(
-            |v| {
-                march.propagate(v);
-                scene.admit(v);
-            },
-            &back,
-            LINEAR,
-            most,
-        );
+        let (step, _) = krylov::solve(|v| scene.carry(&mut march, v), &back, LINEAR, most);
+        if scene.stop.raised() {
+            return Err(StepError::new(0.0, INTERRUPTED));
+        }
         search.newton_steps += 1;
         let correction = scene.size(&step, &y);
         if correction <= FOUND && fresh {

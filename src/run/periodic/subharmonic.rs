@@ -13,6 +13,7 @@ use crate::discrete::layout::Line;
 use crate::error::{Error, Result};
 use crate::numerics::krylov;
 use crate::onestep::step_map::StepError;
+use crate::run::stop::Stop;
 
 /// Periods of a cycle at most.
 pub const MOST: usize = 64;
@@ -83,10 +84,18 @@ impl Periods {
 /// # Errors
 /// A case without a period, a number of periods out of range, no cycle at all.
 pub fn find(case: &Case, asked: usize) -> Result<(Scene, Cycle, Periods)> {
+    find_until(case, asked, &Stop::default())
+}
+
+/// The same, which somebody may ask to end.
+///
+/// # Errors
+/// As [`find`], and when it was asked to.
+pub fn find_until(case: &Case, asked: usize, stop: &Stop) -> Result<(Scene, Cycle, Periods)> {
     if !(1..=MOST).contains(&asked) {
         return Err(Error::Usage(format!("--periods {asked}: from 1 to {MOST}")));
     }
-    let single = Scene::new(case, None)?;
+    let single = Scene::new(case, None)?.heeding(stop);
     single.held(&case.name)?;
     let of_one = shoot(&single, None);
     let told = |shortest, waited, beside| Periods {
@@ -99,6 +108,10 @@ pub fn find(case: &Case, asked: usize) -> Result<(Scene, Cycle, Periods)> {
         return Ok((single, of_one.map_err(fault)?, told(1, 0, false)));
     }
     let scene = single.over(asked);
+    let of_one = match of_one {
+        Err(error) if stop.raised() => return Err(fault(error)),
+        other => other,
+    };
     let pushed = of_one.ok().and_then(|mut cycle| beside(&single, &mut cycle));
     let off = pushed.is_some();
     let mut y = pushed.unwrap_or_else(|| single.guess.clone());
@@ -110,6 +123,7 @@ pub fn find(case: &Case, asked: usize) -> Result<(Scene, Cycle, Periods)> {
         let waited = tries * PATIENCE * asked;
         y = single.go_on(&y, PATIENCE * asked, &mut search).map_err(fault)?;
         match attempt(&scene, y.clone(), &mut search) {
+            Err(error) if stop.raised() => return Err(fault(error)),
             Err(error) => last = error,
             Ok(cycle) => match shortest(&single, &cycle.y, asked).map_err(fault)? {
                 count if count == asked => return Ok((scene, cycle, told(asked, waited, off))),

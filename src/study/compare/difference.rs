@@ -8,6 +8,7 @@ use super::interpolate::cubic;
 use super::recording::{Array, Recording, Series};
 use crate::discrete::quantities::Observable;
 use crate::run::null;
+use crate::run::schedule::SAME;
 use crate::study::accuracy::Norms;
 
 /// One field or column.
@@ -83,6 +84,9 @@ pub struct Comparison {
     pub costs: Vec<Cost>,
     /// What could not be compared, and why.
     pub left_out: Vec<String>,
+    /// What to know of the two before one believes a number: that they do not end together, that a history is short.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<String>,
 }
 
 /// Smaller than this beside others of the same unit is round-off.
@@ -104,6 +108,7 @@ pub fn compare(a: &Recording, b: &Recording) -> Comparison {
         figures: figures(a, b),
         costs: costs(a, b),
         left_out: vec![],
+        remarks: remarks(a, b),
     };
     let largest = |unit: &str| {
         let alike = [a, b].into_iter().flat_map(|r| &r.columns).filter(|c| c.unit == unit);
@@ -136,6 +141,38 @@ pub fn compare(a: &Recording, b: &Recording) -> Comparison {
         }
     }
     out
+}
+
+/// That figures of the two are of other instants, and that histories end before their runs did.
+fn remarks(a: &Recording, b: &Recording) -> Vec<String> {
+    let short = |one: &Recording| {
+        let (end, run) = (one.times.last().copied().unwrap_or(0.0), one.summary.time_s);
+        let every = one.times.windows(2).map(|t| t[1] - t[0]).fold(0.0, f64::max);
+        (run - end > every * (1.0 + SAME)).then(|| {
+            format!(
+                "{}: the history ends at t = {} s, the run did at {} s; what is missing is not compared",
+                one.label,
+                significant(end),
+                significant(run)
+            )
+        })
+    };
+    let [from, to] = [a, b].map(|one| one.summary.time_s);
+    let apart = ((from - to).abs() > SAME * from.abs().max(to.abs())).then(|| {
+        format!(
+            "{} ends at t = {} s, {} at {} s: figures at the end, of the window and of the whole run are of other instants",
+            a.label,
+            significant(from),
+            b.label,
+            significant(to)
+        )
+    });
+    apart.into_iter().chain([a, b].into_iter().filter_map(short)).collect()
+}
+
+/// Six digits.
+fn significant(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
 }
 
 /// Largest value among the fields of the same unit, which is what follows the first underscore of a name.

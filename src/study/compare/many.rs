@@ -42,6 +42,17 @@ impl Beside {
         std::iter::once(self.reference.as_str()).chain(others).collect()
     }
 
+    /// What to know of all before one believes a number, each once.
+    pub fn remarks(&self) -> Vec<&str> {
+        let mut all: Vec<&str> = vec![];
+        for remark in self.comparisons.iter().flat_map(|one| &one.remarks) {
+            if !all.contains(&remark.as_str()) {
+                all.push(remark);
+            }
+        }
+        all
+    }
+
     /// Figures that the reference shares with one of the others at least.
     pub fn figures(&self) -> Vec<Figure> {
         let mut all: Vec<Figure> = vec![];

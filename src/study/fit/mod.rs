@@ -24,9 +24,11 @@ use std::time::Instant;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::case::Case;
 use crate::error::{Code, Result};
 use crate::numerics::levenberg::{self, Ended, Evaluation};
 use crate::study::span::Span;
+use crate::study::sweep::{Ask, What, compute};
 use found::{Bound, Column, Estimate, Fit, Left, Simulator};
 use identify::{Seen, unseen};
 use problem::{Asked, Drive, Problem, Through};
@@ -141,6 +143,7 @@ pub fn fit(problem: &Problem, asked: &Asked, data: (&str, u32), tell: &(dyn Fn(u
         wall_s: 0.0,
     };
     fit.warnings = warnings(&fit, reached.minimum.ended, known && plain);
+    fit.warnings.extend(of_the_model(problem, &case));
     fit.wall_s = begin.elapsed().as_secs_f64();
     let weights = reached.weights.iter().zip(&reached.sigmas);
     let weights = weights.map(|(weight, sigma)| weight / sigma.powi(2)).collect();
@@ -275,6 +278,20 @@ fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
         ));
     }
     all
+}
+
+/// What the plain command warns of with the estimates.
+fn of_the_model(problem: &Problem, case: &Case) -> Vec<String> {
+    let ask = Ask {
+        what: match problem.through() {
+            Through::Run => What::Run,
+            Through::Equilibrium => What::Equilibrium,
+        },
+        accuracy: None,
+        meshes: false,
+    };
+    let found = compute::found(case, ask, &|| false, &|case| compute::run(case, None, &|| false));
+    found.map_or(vec![], |found| found.told)
 }
 
 /// Residuals and derivatives in standard deviations, as a search wants them.

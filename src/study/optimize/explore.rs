@@ -55,10 +55,7 @@ pub fn explore(
     tell: &(dyn Fn(usize, Option<f64>) + Sync),
 ) -> Result<(Vec<Tried>, Explored)> {
     // numbers that are sought besides take starts for themselves
-    let searches = match asked.spans.is_empty() && asked.starts > 1 {
-        true => asked.starts,
-        false => SEARCHES,
-    };
+    let searches = asked.starts.filter(|_| asked.spans.is_empty()).unwrap_or(SEARCHES);
     let most = (MOST / searches).max(1);
     let all: Mutex<BTreeMap<Vec<usize>, Tried>> = Mutex::new(BTreeMap::new());
     let known = |digits: &[usize]| {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::REACHED;
 use super::problem::{Goal, Limit};
 use super::search::Reached;
 use super::wiring::Alternative;
@@ -153,6 +154,20 @@ pub struct Held {
     pub reached: bool,
     /// What the goal would gain for each unit by which the limit were let go; nothing where it is not held.
     pub gain: Option<f64>,
+}
+
+impl Held {
+    /// Whether the figure lies beyond it.
+    pub fn beyond(&self) -> bool {
+        self.limit.beyond(self.value) > REACHED * self.limit.bound.abs()
+    }
+}
+
+impl Optimum {
+    /// Whether a limit is not held.
+    pub fn beyond_limits(&self) -> bool {
+        self.limits.iter().any(Held::beyond)
+    }
 }
 
 /// Second derivatives.

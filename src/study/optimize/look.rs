@@ -5,6 +5,7 @@ use std::time::Instant;
 use super::found::Derivatives;
 use super::problem::Problem;
 use crate::case::Case;
+use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::error::{Error, Result};
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::Unrecorded;
@@ -44,7 +45,7 @@ pub fn look(
     let begin = Instant::now();
     let values = span::values(&problem.spans, places);
     let mut known = None;
-    if problem.differences.is_none() && !places.is_empty() {
+    if problem.differences.is_none() && !places.is_empty() && !at_an_end(problem, &values) {
         let found = exact(problem, &values, stop);
         let (figures, slopes) = match found {
             Ok((figures, slopes)) => (Ok(figures), slopes),
@@ -95,6 +96,16 @@ pub fn look(
             false => Derivatives::Differences,
         },
     })
+}
+
+/// Whether a number is so near to the end of what its key can be that the steps of its derivatives lie beyond.
+fn at_an_end(problem: &Problem, values: &[f64]) -> bool {
+    let Ok(case) = problem.with(values) else { return false };
+    let beyond = |one: &Parameter| {
+        let to = |(step, _): &(f64, f64)| one.changed(&case, one.value * (1.0 + step * CHANGE)).is_err();
+        STEPS.iter().any(to)
+    };
+    problem.parameters(values).iter().any(beyond)
 }
 
 /// Figures with their derivatives per unit of the numbers, where every figure has them.

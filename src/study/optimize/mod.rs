@@ -10,6 +10,7 @@
 //! choice     all combinations of several sets
 //! explore    a search among more of these than can be computed
 //! found      the result
+//! told       what to know before it is believed
 //! ```
 
 pub mod choice;
@@ -20,6 +21,7 @@ mod look;
 pub mod names;
 pub mod problem;
 mod search;
+mod told;
 pub mod wiring;
 
 use std::collections::BTreeMap;
@@ -37,12 +39,11 @@ use explore::Tried;
 use found::{Compared, Derivatives, Design, Explored, Held, Optimum, Variable};
 use problem::{Asked, Limit, Problem};
 use search::{Reached, Search, better};
+use told::{broken, warnings};
 use wiring::Alternative;
 
 /// A figure over its size that is nearer to a limit lies at it.
-const REACHED: f64 = 1e-4;
-/// What the plain command may differ by without a word.
-const SAME: f64 = 1e-3;
+pub(super) const REACHED: f64 = 1e-4;
 
 /// One of what is chosen from.
 #[derive(Clone, Debug)]
@@ -232,9 +233,13 @@ fn finish(
         wall_s: 0.0,
     };
     optimum.warnings = warnings(problem, &optimum, minimum.ended, stop());
-    optimum
-        .warnings
-        .extend(checked.iter().flat_map(|plain| broken(problem, plain)));
+    // of what holds no limits nothing better can be told by smaller steps
+    if !optimum.beyond_limits() {
+        let broken = checked.iter().flat_map(|plain| broken(problem, plain));
+        optimum.warnings.extend(broken);
+    }
+    let own = checked.into_iter().flat_map(|plain| plain.told);
+    optimum.warnings.extend(own);
     if minimum.at.slope.iter().all(|slope| *slope == 0.0) && !minimum.x.is_empty() {
         let what = format!(
             "{} does not change there with any number that was sought",
@@ -317,79 +322,4 @@ fn held(problem: &Problem, reached: &Reached, i: usize) -> Held {
         gain: (reached.minimum.at.inequalities[i] < REACHED)
             .then(|| reached.minimum.multipliers[i] * reached.sizes[0] / reached.sizes[i + 1]),
     }
-}
-
-/// Limits that the plain command breaks at the best.
-fn broken(problem: &Problem, plain: &Found) -> Vec<String> {
-    let of = |limit: &Limit| {
-        let value = plain.figure(&limit.figure)?;
-        (limit.beyond(value) > REACHED * limit.bound.abs()).then(|| {
-            Code::Optimum.warning(format!(
-                "`slcbeam {}` gives {} {value:.6e} at the best, which does not hold {} {:e}: a smaller /solver/rtol, or a stricter limit, helps",
-                problem.what.word(),
-                limit.figure,
-                limit.sign(),
-                limit.bound
-            ))
-        })
-    };
-    problem.limits.iter().filter_map(of).collect()
-}
-
-fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped: bool) -> Vec<String> {
-    let mut all = vec![];
-    let mut say = |what: String| all.push(Code::Optimum.warning(what));
-    let beyond: Vec<&Held> = found
-        .limits
-        .iter()
-        .filter(|held| held.limit.beyond(held.value) > REACHED * held.limit.bound.abs())
-        .collect();
-    match ended {
-        _ if stopped => say("interrupted; the best is that so far".into()),
-        _ if !beyond.is_empty() => {
-            let names: Vec<String> = beyond
-                .iter()
-                .map(|held| format!("{} {} {}", held.limit.figure, held.limit.sign(), held.limit.bound))
-                .collect();
-            say(format!(
-                "no design was found that holds {}: what is told comes nearest",
-                names.join(" and ")
-            ));
-        }
-        Ended::Found | Ended::Apart => {}
-        Ended::Unfinished => say("the search ran out of steps; the best is where it stood".into()),
-        Ended::Stuck => say(
-            "the search ended where no step makes the figure better, though its derivatives say so: the simulator's own error is larger \
-             than what is left, or the figure has a kink there; a smaller /solver/rtol may help"
-                .into(),
-        ),
-    }
-    if let Some(one) = found.explored.filter(|one| one.came_to_best < 2 && !stopped) {
-        say(format!(
-            "only {} of {} searches among the alternatives came to the best: there may well be better ones; more searches (--starts) look further",
-            one.came_to_best, one.searches
-        ));
-    }
-    if found.derivatives == Derivatives::Differences {
-        let why = match &problem.differences {
-            Some(why) => why.clone(),
-            None => "a figure has no exact ones".into(),
-        };
-        say(format!("derivatives are differences of designs: {why}"));
-    }
-    match found.plain {
-        Some(plain) if (plain - found.value).abs() > SAME * found.value.abs() => say(format!(
-            "`slcbeam {}` gives {} {plain:.6e} at the best, where the search saw {:.6e}: steps of the one or effects of the other are too \
-             coarse to tell them apart; a smaller /solver/rtol may help",
-            problem.what.word(),
-            found.goal.figure,
-            found.value
-        )),
-        None if !stopped => say(format!(
-            "`slcbeam {}` does not come to an end at the best",
-            problem.what.word()
-        )),
-        _ => {}
-    }
-    all
 }

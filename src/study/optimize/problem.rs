@@ -104,8 +104,8 @@ pub struct Asked {
     pub goal: Goal,
     /// What is to be held, likewise.
     pub limits: Vec<Limit>,
-    /// Searches, each from another place.
-    pub starts: usize,
+    /// Searches, each from another place; as many as are usual where nobody says.
+    pub starts: Option<usize>,
     /// Designs at once.
     pub jobs: usize,
 }

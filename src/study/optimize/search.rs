@@ -94,7 +94,7 @@ impl<'a> Search<'a> {
         let starts = if self.problem.spans.is_empty() {
             1
         } else {
-            self.asked.starts
+            self.asked.starts.unwrap_or(1)
         };
         let places = span::places(&self.problem.spans, &self.problem.start, starts)?;
         let numbers: Vec<usize> = (0..places.len()).collect();

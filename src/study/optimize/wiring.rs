@@ -30,6 +30,13 @@ pub fn choices(text: &str) -> Result<Vec<Alternative>> {
     if all.len() < 2 || all.iter().any(|one| one.is_empty()) {
         return Err(wrong("two alternatives at least, with | between them"));
     }
+    // 0.50 is 0.5
+    let read = |text: &str| serde_json::from_str(text).unwrap_or_else(|_| serde_json::Value::from(text));
+    for (k, one) in all.iter().enumerate() {
+        if all[..k].iter().any(|before| read(before) == read(one)) {
+            return Err(wrong(&format!("{one} stands there twice")));
+        }
+    }
     let key = pointer.rsplit('/').next().unwrap_or(pointer);
     let one = |value: &&str| Alternative {
         name: format!("{key} {value}"),

@@ -12,6 +12,7 @@ use crate::run::modes::{self, Kind, Mode, Plan};
 use crate::run::periodic::scene::fault;
 use crate::run::periodic::{Cycle, Scene, record, shoot, subharmonic};
 use crate::run::record::{Column, Control, Unrecorded};
+use crate::run::stop::Stop;
 use crate::run::summary::{Status, Summary};
 use crate::study::counted::{Floors, counted};
 
@@ -116,8 +117,8 @@ fn sort(mode: &Mode) -> &'static str {
 ///
 /// # Errors
 /// Where there is none, or nothing holds the beam.
-pub fn cycle(case: &Case, period: Option<f64>) -> Result<(Scene, Cycle)> {
-    let scene = Scene::new(case, period)?;
+pub fn cycle(case: &Case, period: Option<f64>, stop: &Stop) -> Result<(Scene, Cycle)> {
+    let scene = Scene::new(case, period)?.heeding(stop);
     scene.held(&case.name)?;
     let cycle = shoot(&scene, None).map_err(fault)?;
     Ok((scene, cycle))
@@ -127,8 +128,8 @@ pub fn cycle(case: &Case, period: Option<f64>) -> Result<(Scene, Cycle)> {
 ///
 /// # Errors
 /// As [`cycle`], and where the cycle cannot be followed for a period.
-pub fn of_cycle(case: &Case, periods: usize) -> Result<Numbers> {
-    let (scene, cycle, _) = subharmonic::find(case, periods)?;
+pub fn of_cycle(case: &Case, periods: usize, stop: &Stop) -> Result<Numbers> {
+    let (scene, cycle, _) = subharmonic::find_until(case, periods, stop)?;
     recorded(case, &scene, &cycle)
 }
 
@@ -159,8 +160,8 @@ pub fn of_summary(case: &Case, summary: &Summary) -> Result<Numbers> {
 ///
 /// # Errors
 /// As [`of_cycle`].
-pub fn of_cycle_and_multipliers(case: &Case, periods: usize, count: usize) -> Result<Numbers> {
-    let (scene, mut cycle, _) = subharmonic::find(case, periods)?;
+pub fn of_cycle_and_multipliers(case: &Case, periods: usize, count: usize, stop: &Stop) -> Result<Numbers> {
+    let (scene, mut cycle, _) = subharmonic::find_until(case, periods, stop)?;
     let mut all = recorded(case, &scene, &cycle)?;
     all.extend(of_stability(&floquet::multipliers(&scene, &mut cycle, count)));
     Ok(all)
@@ -170,8 +171,8 @@ pub fn of_cycle_and_multipliers(case: &Case, periods: usize, count: usize) -> Re
 ///
 /// # Errors
 /// As [`cycle`].
-pub fn of_multipliers(case: &Case, period: Option<f64>, count: usize) -> Result<Numbers> {
-    let (scene, mut cycle) = cycle(case, period)?;
+pub fn of_multipliers(case: &Case, period: Option<f64>, count: usize, stop: &Stop) -> Result<Numbers> {
+    let (scene, mut cycle) = cycle(case, period, stop)?;
     Ok(of_floquet(&floquet::multipliers(&scene, &mut cycle, count)))
 }
 
@@ -179,8 +180,8 @@ pub fn of_multipliers(case: &Case, period: Option<f64>, count: usize) -> Result<
 ///
 /// # Errors
 /// As [`cycle`].
-pub fn of_growth(case: &Case, period: Option<f64>, count: usize) -> Result<Numbers> {
-    let (scene, mut cycle) = cycle(case, period)?;
+pub fn of_growth(case: &Case, period: Option<f64>, count: usize, stop: &Stop) -> Result<Numbers> {
+    let (scene, mut cycle) = cycle(case, period, stop)?;
     Ok(of_stability(&floquet::multipliers(&scene, &mut cycle, count)))
 }
 

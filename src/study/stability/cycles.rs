@@ -10,6 +10,7 @@ use crate::run::floquet::{self, Floquet};
 use crate::run::known;
 use crate::run::periodic::{Scene, Search, record, shoot};
 use crate::run::record::{Control, Unrecorded};
+use crate::run::stop::{INTERRUPTED, Stop};
 use crate::run::summary::{Quantity, Status};
 
 /// Multipliers looked at.
@@ -49,11 +50,17 @@ pub struct Along {
     pub warnings: Vec<String>,
 }
 
-/// Finds the cycle of every case; `tell` hears how many of them are done.
+/// Finds the cycle of every case; `tell` hears how many of them are done. Those that are not when somebody asks for the end are missing.
 ///
 /// # Errors
 /// A case without a period, a beam that nothing holds.
-pub fn along(pointer: &str, logarithmic: bool, cases: &[(f64, Case)], tell: &dyn Fn(usize)) -> Result<Along> {
+pub fn along(
+    pointer: &str,
+    logarithmic: bool,
+    cases: &[(f64, Case)],
+    stop: &Stop,
+    tell: &dyn Fn(usize),
+) -> Result<Along> {
     let mut found = Along {
         case: cases.first().map_or(String::new(), |(_, case)| case.name.clone()),
         pointer: pointer.into(),
@@ -67,9 +74,16 @@ pub fn along(pointer: &str, logarithmic: bool, cases: &[(f64, Case)], tell: &dyn
     };
     let mut before: Option<(Scene, Vec<f64>)> = None;
     for (k, (value, case)) in cases.iter().enumerate() {
+        if stop.raised() {
+            found.missing.push((*value, INTERRUPTED.into()));
+            continue;
+        }
         let begin = Instant::now();
-        let scene = Scene::new(case, None)?;
+        let scene = Scene::new(case, None)?.heeding(stop);
         scene.held(&case.name)?;
+        if k == 0 {
+            found.warnings.extend(scene.trapped.clone());
+        }
         let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
         match shoot(&scene, from.as_deref()) {
             Ok(mut cycle) => {

@@ -11,11 +11,12 @@ use crate::error::{Error, Result};
 use crate::functions::Signal;
 use crate::model::Model;
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu};
-use crate::run::drive::{Drive, settled};
+use crate::run::drive::{Drive, settled, settled_opening};
 use crate::run::floquet::{self, Stability};
 use crate::run::known;
 use crate::run::periodic::scene::whole;
 use crate::run::periodic::{Scene, shoot};
+use crate::run::stop::{INTERRUPTED, Stop};
 
 /// Multipliers looked at in a point.
 const COUNT: usize = 2;
@@ -110,11 +111,11 @@ fn axial(ends: &[ResolvedEnd; 2]) -> &Signal {
     }
 }
 
-/// Computes the map; `tell` hears how many of how many columns are done.
+/// Computes the map; `tell` hears how many of how many columns are done. Points that are not when somebody asks for the end have no answer.
 ///
 /// # Errors
 /// A case without shaken root, or with another period besides.
-pub fn map(case: &Case, plan: &Plan, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Map> {
+pub fn map(case: &Case, plan: &Plan, stop: &Stop, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Map> {
     let own = shaking(case)?;
     // another drive beside the shaking would have a period of its own
     crate::run::drive::drive(case, &whole(case)?, None)?;
@@ -133,6 +134,7 @@ pub fn map(case: &Case, plan: &Plan, tell: &(dyn Fn(usize, usize) + Sync)) -> Re
             factors[k / columns],
             plan.frequencies_hz[k % columns],
             &plan.amplitudes_m,
+            stop,
         );
         tell(1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed), count);
         made
@@ -157,7 +159,7 @@ pub fn map(case: &Case, plan: &Plan, tell: &(dyn Fn(usize, usize) + Sync)) -> Re
 }
 
 /// All amplitudes at one frequency, each cycle found from the one before.
-fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64]) -> Result<Vec<Point>> {
+fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64], stop: &Stop) -> Result<Vec<Point>> {
     let mut case = case.clone();
     if let (Some(factor), Some(network)) = (factor, &mut case.network) {
         network.permeability_factor *= factor;
@@ -166,6 +168,12 @@ fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64
     amplitudes
         .iter()
         .map(|&amplitude| {
+            if stop.raised() {
+                return Ok(Point {
+                    words: INTERRUPTED.into(),
+                    ..Point::default()
+                });
+            }
             let scene = Scene::of(
                 &case,
                 shaken(&case, frequency_hz, amplitude)?,
@@ -173,7 +181,8 @@ fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64
                     period: 1.0 / frequency_hz,
                     driven: true,
                 },
-            )?;
+            )?
+            .heeding(stop);
             let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
             Ok(match shoot(&scene, from.as_deref()) {
                 Ok(mut cycle) => {
@@ -198,7 +207,7 @@ fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64
 /// The model with another shaking of the root.
 fn shaken(case: &Case, frequency_hz: f64, amplitude: f64) -> Result<Model> {
     let mut model = whole(case)?;
-    model.replace_signals(settled, settled);
+    model.replace_signals(settled, settled_opening);
     if let Translation::Displacement(Signal::Sine(sine)) = &mut model.ends[0].axial {
         (sine.frequency_hz, sine.amplitude) = (frequency_hz, amplitude);
     }

@@ -15,6 +15,7 @@ use crate::run::floquet::{self, Floquet, Stability};
 use crate::run::modes;
 use crate::run::periodic::{Scene, Settled, record, settle, shoot};
 use crate::run::record::{Column, Control, Progress, Unrecorded};
+use crate::run::stop::Stop;
 use crate::run::summary::{Accuracy, Quantity, Status, Summary};
 use crate::run::{known, periodic};
 use crate::study::refine::{self, meshes, numbers};
@@ -98,6 +99,7 @@ pub fn of_run(summary: &Summary) -> Found {
         steps: Some(summary.solver.steps),
         figures: vec![],
         warnings: vec![],
+        told: vec![],
     };
     found.warn(&summary.warnings);
     // what never began has no figures, and zeros would pass for some
@@ -139,12 +141,13 @@ fn empty() -> Found {
         steps: None,
         figures: vec![],
         warnings: vec![],
+        told: vec![],
     }
 }
 
 /// The steady cycle.
 fn cycle(case: &Case, ask: Ask) -> Result<Found> {
-    let mut of = |case: &Case| numbers::of_cycle(case, 1);
+    let mut of = |case: &Case| numbers::of_cycle(case, 1, &Stop::default());
     let refined = ask
         .accuracy
         .map(|accuracy| refine::refine(case, accuracy, true, &mut of))

@@ -39,6 +39,9 @@ pub struct Found {
     pub figures: Vec<(String, f64)>,
     /// Numbers of the warnings.
     pub warnings: Vec<String>,
+    /// The warnings themselves, which no table has.
+    #[serde(skip)]
+    pub told: Vec<String>,
 }
 
 impl Found {
@@ -58,6 +61,7 @@ impl Found {
             steps: None,
             figures: vec![],
             warnings: vec![],
+            told: vec![],
         }
     }
 
@@ -86,9 +90,12 @@ impl Found {
             .map(|(name, values)| (name.clone(), values))
     }
 
-    /// Keeps the numbers of warnings, each once.
+    /// Keeps warnings and their numbers, each once.
     pub fn warn(&mut self, warnings: &[String]) {
         for warning in warnings {
+            if !self.told.contains(warning) {
+                self.told.push(warning.clone());
+            }
             let code = warning.split(' ').next().unwrap_or_default();
             if !self.warnings.iter().any(|own| own == code) {
                 self.warnings.push(code.into());

@@ -3,6 +3,7 @@
 //! ```text
 //! samples  which values sample number k has
 //! first    derivatives of the figures about the means
+//! nothing  figures that are round-off
 //! spread   what the figures of all samples tell
 //! indices  which share of a variance is whose (Sobol)
 //! ```
@@ -12,6 +13,7 @@
 
 pub mod first;
 pub mod indices;
+mod nothing;
 pub mod samples;
 pub mod spread;
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::indices::indices;
+use super::nothing::without_round_off;
 use super::{FirstOrder, Input, Plan, Slopes, Spread, Uncertainty};
 use crate::run::summary::Status;
 use crate::study::sweep::row::{Found, word};
@@ -78,6 +79,7 @@ pub fn judge(
             Some((name.clone(), spread))
         })
         .collect();
+    let figures = without_round_off(figures, own);
     Uncertainty {
         case: case.into(),
         command: what.into(),
@@ -233,6 +235,7 @@ mod tests {
             steps: None,
             figures: vec![("q.final".into(), q), ("q.error".into(), 1e-3)],
             warnings: vec![],
+            told: vec![],
         }
     }
 

@@ -1,0 +1,255 @@
+//! How much fluid a cycle has: what parts of the network that nothing lets out hold once everything that acts repeats itself.
+//!
+//! A cycle says nothing of it, since any amount comes back after a period. It is what such a part held at the start or when the last valve shut it
+//! off, and what ports have let in since.
+
+use super::scene::whole;
+use crate::case::schema::Case;
+use crate::dae::BeamDae;
+use crate::discrete::fluid_mesh::{FluidMesh, MeshLink, Place};
+use crate::discrete::{System, Workspace, start};
+use crate::error::{Error, Result};
+use crate::functions::Clock;
+use crate::model::LumpedKind;
+use crate::model::network::{Feed, Network, Source};
+use crate::numerics::sets::Sets;
+use crate::run::drive::{settled, settles_at};
+use crate::run::equilibrium::{self, Options};
+
+/// What flows in over a period, over the largest flow for a period, that counts as nothing.
+const NOTHING: f64 = 1e-9;
+
+/// A part of the network that nothing lets out.
+struct Part {
+    stores: Stores,
+    /// Sources of the network that feed it.
+    sources: Vec<usize>,
+}
+
+/// What holds fluid.
+enum Stores {
+    /// Cells, and accumulators by their numbers on the mesh.
+    Of(Vec<usize>, Vec<usize>),
+    /// A network of one pressure that sources feed, by its number.
+    Lumped(usize),
+}
+
+impl Part {
+    /// Volume of a unit of each scaled unknown [m^3].
+    fn weights(&self, system: &System) -> Vec<f64> {
+        let l = &system.layout;
+        let mut w = vec![0.0; l.len];
+        let Some(fluid) = &system.fluid else { return w };
+        let mut put = |unknown: usize, size: f64| w[unknown] = size * l.scales[unknown];
+        match &self.stores {
+            Stores::Of(cells, vessels) => {
+                let k = fluid.cells_per_bladder;
+                for cell in cells {
+                    if let Ok(slot) = fluid.flowing.binary_search(&(cell / k)) {
+                        put(l.network.area.start + slot * k + cell % k, fluid.ds);
+                    }
+                }
+                for vessel in vessels {
+                    put(l.network.junction.start + fluid.accumulators[*vessel].junction, 1.0);
+                }
+            }
+            Stores::Lumped(k) => l.network.lumped_volume[*k]
+                .into_iter()
+                .for_each(|unknown| put(unknown, 1.0)),
+        }
+        w
+    }
+
+    /// What it holds in a state, `y` scaled [m^3].
+    fn amount(&self, system: &System, w: &Workspace<f64>, y: &[f64]) -> f64 {
+        let ds = system.fluid.as_ref().map_or(0.0, |fluid| fluid.ds);
+        let l = &system.layout;
+        match &self.stores {
+            Stores::Of(cells, vessels) => {
+                let in_cells: f64 = cells.iter().map(|cell| w.fluid.area[*cell]).sum();
+                ds * in_cells + vessels.iter().map(|vessel| w.fluid.accumulated[*vessel]).sum::<f64>()
+            }
+            // counted from what ports of prescribed volume let in, which comes and goes with them
+            Stores::Lumped(k) => l.network.lumped_volume[*k].map_or(0.0, |unknown| y[unknown] * l.scales[unknown]),
+        }
+    }
+
+    /// What sources let in from the state at an instant, its signals as they are just before or after, to another instant [m^3].
+    fn let_in(&self, network: &Network, from: Clock, to: f64) -> f64 {
+        let lumped = matches!(self.stores, Stores::Lumped(_));
+        let of = |source: &usize| match &network.sources[*source].feed {
+            Feed::Flow(flow) => flow.integral(to) - flow.integral(from.t),
+            Feed::Volume(_) if lumped => 0.0,
+            Feed::Volume(volume) => volume.value(to) - volume.jet(from).value,
+        };
+        self.sources.iter().map(of).sum()
+    }
+}
+
+/// The parts that nothing lets out, of a system whose valves are what they are in the long run.
+fn parts(system: &System) -> Vec<Part> {
+    let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+        return vec![];
+    };
+    let network = &wet.network;
+    let given = fluid.cells + fluid.junctions.len();
+    let index = |place: Place| place_of(fluid, place);
+    let shut = |link: &MeshLink| link.number.is_some_and(|number| network.links[number].is_shut());
+    let mut sets = Sets::new(given + 1);
+    fluid.faces().for_each(|[a, b]| sets.join(a, b));
+    for link in fluid.links.iter().filter(|link| !shut(link)) {
+        sets.join(index(link.from), index(link.to));
+    }
+    for bridge in &fluid.bridges {
+        sets.join(index(bridge.from), index(bridge.to));
+    }
+    let k = fluid.cells_per_bladder;
+    let flowing = fluid.flowing.iter().flat_map(|bladder| bladder * k..(bladder + 1) * k);
+    let stores = flowing.chain(fluid.accumulators.iter().map(|one| fluid.cells + one.junction));
+    let stores: Vec<usize> = stores.collect();
+    let given = sets.root(given);
+    let mut roots: Vec<usize> = stores.iter().map(|store| sets.root(*store)).collect();
+    roots.sort_unstable();
+    roots.dedup();
+    let mut all = vec![];
+    for root in roots.into_iter().filter(|root| *root != given) {
+        let cells = stores.iter().copied().filter(|store| *store < fluid.cells);
+        let cells = cells.filter(|cell| sets.root(*cell) == root).collect();
+        let vessels = 0..fluid.accumulators.len();
+        let of_vessel = |vessel: &usize| fluid.cells + fluid.accumulators[*vessel].junction;
+        let vessels = vessels.filter(|vessel| sets.root(of_vessel(vessel)) == root).collect();
+        let sources = fluid
+            .sources
+            .iter()
+            .filter(|source| sets.root(index(source.into)) == root);
+        let sources = sources.map(|source| source.number).collect();
+        all.push(Part {
+            stores: Stores::Of(cells, vessels),
+            sources,
+        });
+    }
+    for (k, lumped) in wet.lumped.iter().enumerate() {
+        if let LumpedKind::Fed(sources) = &lumped.kind {
+            all.push(Part {
+                stores: Stores::Lumped(k),
+                sources: sources.clone(),
+            });
+        }
+    }
+    all
+}
+
+/// Number of a place: cells, junctions, then one for every prescribed pressure.
+fn place_of(fluid: &FluidMesh, place: Place) -> usize {
+    match place {
+        Place::Cell(c) => c,
+        Place::Junction(j) => fluid.cells + j,
+        Place::Port(_) => fluid.cells + fluid.junctions.len(),
+    }
+}
+
+/// The fluid of each part that nothing lets out, as a weight of every scaled unknown; of norm one, across each other.
+pub(super) fn conserved(system: &System) -> Vec<Vec<f64>> {
+    let all = parts(system);
+    let all = all.iter().map(|part| part.weights(system));
+    all.filter_map(|mut w| {
+        let size = w.iter().map(|w| w * w).sum::<f64>().sqrt();
+        w.iter_mut().for_each(|w| *w /= size);
+        (size > 0.0).then_some(w)
+    })
+    .collect()
+}
+
+/// Puts into a state of a system in the long run what a run of the case has by then; and what is to be said of that.
+///
+/// # Errors
+/// Fluid that gathers from period to period; valves that shut it off while nothing at rest tells how much it is.
+pub(super) fn fill(dae: &mut BeamDae, case: &Case, period: f64, y: &mut [f64]) -> Result<Option<String>> {
+    let parts = parts(dae.system());
+    if parts.is_empty() {
+        return Ok(None);
+    }
+    gathering(dae.system(), case, &parts, period)?;
+    let model = whole(case)?;
+    let mut latest: f64 = 0.0;
+    model.each_signal(|signal| latest = latest.max(settles_at(signal)));
+    let begins = period * (latest / period).ceil();
+    // those of the case itself, on the way to the long run
+    let sources = model.wet.as_ref().map(|wet| wet.network.clone()).unwrap_or_default();
+    let kept = equilibrium::kept(case, begins, &settled)?;
+    let mut before = BeamDae::new(System::with(case, model)?);
+    let outset = Clock {
+        t: 0.0,
+        within: f64::MIN_POSITIVE,
+    };
+    before.enter_smooth_interval(outset.within);
+    let (system, now) = before.instant(outset.t);
+    let mut z = start::state(system, case, now);
+    let (options, since) = match (&kept, &case.start.equilibrium) {
+        (Some(kept), _) => {
+            let t = kept.options.at_s;
+            let since = if t > 0.0 {
+                Clock {
+                    t,
+                    within: t.next_down(),
+                }
+            } else {
+                outset
+            };
+            (Some(kept.options.clone()), since)
+        }
+        (None, Some(start)) => (Some(Options::of_start(start)), outset),
+        (None, None) => (None, outset),
+    };
+    if let Some(options) = options {
+        z = equilibrium::at_start(case, &options, &mut before, &z).map_err(|mut fault| {
+            if kept.is_some() {
+                fault.what = format!(
+                    "how much fluid is behind valves that have shut is not known: {}",
+                    fault.what
+                );
+            }
+            Error::Solver(Box::new(fault))
+        })?;
+    }
+    let rates = vec![0.0; z.len()];
+    let (system, _, w) = before.evaluate(outset.t, &z, &rates);
+    let amounts = parts
+        .iter()
+        .map(|part| part.amount(system, &w, &z) + part.let_in(&sources, since, begins));
+    let amounts: Vec<f64> = amounts.collect();
+    let (system, _, w) = dae.evaluate(0.0, y, &rates);
+    let lacks: Vec<(Vec<f64>, f64)> = parts
+        .iter()
+        .zip(amounts)
+        .map(|(part, amount)| (part.weights(system), amount - part.amount(system, &w, y)))
+        .collect();
+    for (w, lacks) in lacks {
+        let square: f64 = w.iter().map(|w| w * w).sum();
+        if square > 0.0 {
+            y.iter_mut().zip(w).for_each(|(y, w)| *y += lacks * w / square);
+        }
+    }
+    Ok(kept.map(|kept| kept.warning))
+}
+
+/// Refuses what takes in more than it gives back over a period: each begins with more than the one before.
+fn gathering(system: &System, case: &Case, parts: &[Part], period: f64) -> Result<()> {
+    let Some(wet) = &system.model.wet else { return Ok(()) };
+    let flow = |source: &Source| match &source.feed {
+        Feed::Flow(flow) => [flow.integral(period), flow.largest(period).value * period],
+        Feed::Volume(_) => [0.0; 2],
+    };
+    for part in parts {
+        let all = part.sources.iter().map(|source| flow(&wet.network.sources[*source]));
+        let [net, most] = all.fold([0.0; 2], |[net, most], [more, size]| [net + more, most + size]);
+        if net.abs() > NOTHING * most {
+            let whole = case.name.as_str();
+            return Err(Error::Usage(format!(
+                "{whole} has no cycle: a closed network takes in {net:.3e} m^3 each period, and nothing lets it out; let the flows of its ports sum \
+                 to nothing over a period, or open it by a port with pressure_pa"
+            )));
+        }
+    }
+    Ok(())
+}

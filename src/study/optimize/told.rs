@@ -1,0 +1,93 @@
+//! What to know of a best before it is believed.
+
+use super::REACHED;
+use super::found::{Derivatives, Held, Optimum};
+use super::problem::{Limit, Problem};
+use crate::case::numbers::plain;
+use crate::error::Code;
+use crate::numerics::sqp::Ended;
+use crate::study::sweep::row::Found;
+
+/// What the plain command may differ by without a word.
+const SAME: f64 = 1e-3;
+
+/// Six digits of a number.
+fn six(number: f64) -> String {
+    plain(format!("{number:.5e}").parse().unwrap_or(number))
+}
+
+/// Limits that the plain command breaks at the best.
+pub(super) fn broken(problem: &Problem, plain: &Found) -> Vec<String> {
+    let of = |limit: &Limit| {
+        let value = plain.figure(&limit.figure)?;
+        (limit.beyond(value) > REACHED * limit.bound.abs()).then(|| {
+            Code::Optimum.warning(format!(
+                "`slcbeam {}` gives {} {} at the best, which does not hold {} {}: a smaller /solver/rtol, or a stricter limit, helps",
+                problem.what.word(),
+                limit.figure,
+                six(value),
+                limit.sign(),
+                six(limit.bound)
+            ))
+        })
+    };
+    problem.limits.iter().filter_map(of).collect()
+}
+
+/// What is to be said of where the search ended.
+pub(super) fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped: bool) -> Vec<String> {
+    let mut all = vec![];
+    let mut say = |what: String| all.push(Code::Optimum.warning(what));
+    let beyond: Vec<&Held> = found.limits.iter().filter(|held| held.beyond()).collect();
+    match ended {
+        _ if stopped => say("interrupted; the best is that so far".into()),
+        _ if !beyond.is_empty() => {
+            let names: Vec<String> = beyond
+                .iter()
+                .map(|held| format!("{} {} {}", held.limit.figure, held.limit.sign(), held.limit.bound))
+                .collect();
+            say(format!(
+                "no design was found that holds {}: what is told comes nearest",
+                names.join(" and ")
+            ));
+        }
+        Ended::Found | Ended::Apart => {}
+        Ended::Unfinished => say("the search ran out of steps; the best is where it stood".into()),
+        Ended::Stuck => say(
+            "the search ended where no step makes the figure better, though its derivatives say so: the simulator's own error is larger \
+             than what is left, or the figure has a kink there; a smaller /solver/rtol may help"
+                .into(),
+        ),
+    }
+    if let Some(one) = found.explored.filter(|one| one.came_to_best < 2 && !stopped) {
+        say(format!(
+            "only {} of {} searches among the alternatives came to the best: there may well be better ones; more searches (--starts) look further",
+            one.came_to_best, one.searches
+        ));
+    }
+    if found.derivatives == Derivatives::Differences {
+        let why = match &problem.differences {
+            Some(why) => why.clone(),
+            None => {
+                "a figure has no exact ones, or none where a number stands at the end of what its key can be".into()
+            }
+        };
+        say(format!("derivatives are differences of designs: {why}"));
+    }
+    match found.plain {
+        Some(plain) if (plain - found.value).abs() > SAME * found.value.abs() => say(format!(
+            "`slcbeam {}` gives {} {} at the best, where the search saw {}: steps of the one or effects of the other are too \
+             coarse to tell them apart; a smaller /solver/rtol may help",
+            problem.what.word(),
+            found.goal.figure,
+            six(plain),
+            six(found.value)
+        )),
+        None if !stopped => say(format!(
+            "`slcbeam {}` does not come to an end at the best",
+            problem.what.word()
+        )),
+        _ => {}
+    }
+    all
+}
