@@ -48,6 +48,11 @@ impl Control {
         (self.size, self.last, self.failed) = (size.min(self.largest), None, false);
     }
 
+    /// Tries no more than this as the next step [s].
+    pub fn shorten(&mut self, size: f64) {
+        self.size = self.size.min(size);
+    }
+
     /// The step to try from `t` [s], and its end: not beyond `stop`, which is hit exactly, nor so near to it that a
     /// sliver is left.
     pub fn attempt(&self, t: f64, stop: f64) -> (f64, f64) {

@@ -12,6 +12,9 @@ use crate::integrate::{Counters, IntegrationError, Wall, Worst, request};
 use crate::numerics::kernels;
 use crate::sundials::Step;
 
+/// Failures of a first step after which it begins as short as the rates ask for.
+const BOLD: u16 = 3;
+
 /// Integrator of a system `F(t, y, y') = 0` of index one, with the interface of [`crate::sundials::Ida`].
 pub struct OneStep<D: Dae> {
     pub(super) equations: Equations<D>,
@@ -130,7 +133,11 @@ impl<D: Dae> OneStep<D> {
             self.control.begin(self.first_step(stop));
         }
         self.recoverable = None;
-        for _ in 0..self.options.max_failures {
+        for failures in 0..self.options.max_failures {
+            if failures == BOLD && self.last.h == 0.0 {
+                // what a filtered estimate tells of a transient does not fall with the step until it is as short
+                self.control.shorten(self.first_step(stop));
+            }
             let (h, t1) = self.control.attempt(self.time, stop);
             if h <= 4.0 * f64::EPSILON * self.time.abs() {
                 return Err(self.failure("the step became too small", h, None));

@@ -8,8 +8,13 @@ use crate::model::{audit, characteristic};
 
 /// What stays true whatever a run finds: of the case and its mesh.
 pub fn lasting(case: &Case, system: &System) -> Vec<String> {
+    with_the_mesh(on_any_mesh(case, system), case, system)
+}
+
+/// The part of that which no mesh changes.
+pub fn on_any_mesh(case: &Case, system: &System) -> Vec<String> {
     let numbers = characteristic::numbers(case, &system.model);
-    with_the_mesh(audit::lasting(case, &system.model, &numbers), case, system)
+    audit::lasting(case, &system.model, &numbers)
 }
 
 /// That, and what is expected of it: of what does not run and look for itself.

@@ -5,5 +5,6 @@ mod faults;
 mod orders;
 #[path = "../sundials/problems.rs"]
 mod problems;
+mod simulator;
 mod stepping;
 mod tableau;

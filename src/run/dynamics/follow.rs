@@ -139,21 +139,13 @@ impl Run<'_> {
     pub(super) fn narrow(
         &mut self,
         solver: &mut Integrator<BeamDae>,
-        [mut within, mut beyond]: [f64; 2],
-        mut what: String,
+        between: [f64; 2],
+        what: String,
     ) -> std::result::Result<(f64, String), End> {
-        for _ in 0..HALVINGS {
-            let t = 0.5 * (within + beyond);
-            if t <= within || t >= beyond {
-                break;
-            }
+        narrow(between, what, |t| {
             self.read(solver, t)?;
-            match self.observer.beyond(solver.dae_mut(), t, &self.state, &self.rates) {
-                Some(found) => (beyond, what) = (t, found),
-                None => within = t,
-            }
-        }
-        Ok((beyond, what))
+            Ok(self.observer.beyond(solver.dae_mut(), t, &self.state, &self.rates))
+        })
     }
 
     /// Ends the run where the model was left; the state there is recorded last.
@@ -263,4 +255,24 @@ impl Run<'_> {
 
 fn unread(t: f64, failure: &IntegrationError) -> End {
     End::Stopped(format!("sensitivities at t = {t:.6} s could not be read: {failure}"))
+}
+
+/// The time, and in words, at which the model was left, between a time at which it held and one at which it did not [s]; `beyond` tells of
+/// what lies beyond it at a time.
+pub(super) fn narrow<E>(
+    [mut within, mut left]: [f64; 2],
+    mut what: String,
+    mut beyond: impl FnMut(f64) -> std::result::Result<Option<String>, E>,
+) -> std::result::Result<(f64, String), E> {
+    for _ in 0..HALVINGS {
+        let t = 0.5 * (within + left);
+        if t <= within || t >= left {
+            break;
+        }
+        match beyond(t)? {
+            Some(found) => (left, what) = (t, found),
+            None => within = t,
+        }
+    }
+    Ok((left, what))
 }

@@ -2,6 +2,7 @@
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
+use super::swings::Swings;
 use crate::case::schema::Method;
 use crate::case::{self, Case};
 use crate::discrete::System;
@@ -28,6 +29,10 @@ pub(super) struct Held {
     pub value: f64,
     /// Signals of the system that it is, in the order in which they are visited.
     pub places: Vec<usize>,
+    /// Whether it is the opening of valves.
+    pub opens: bool,
+    /// What it has been through.
+    pub swings: Swings,
 }
 
 /// What tells a case and its inputs from others.
@@ -72,9 +77,16 @@ pub(super) fn taken(case: &Case, inputs: &[Input]) -> Result<(Case, System, Vec<
             return Err(usage("it is there twice".into()));
         }
         let ([low, high], value) = (input.range, signal.value(0.0));
-        if !(low.is_finite() && high.is_finite() && low <= value && value <= high && low < high) {
+        let range = format!("its range, {low} to {high}, must");
+        if !(low.is_finite() && high.is_finite()) {
+            return Err(usage(format!("{range} be of finite numbers")));
+        }
+        if low >= high {
+            return Err(usage(format!("{range} lead from a number to a larger one")));
+        }
+        if !(low..=high).contains(&value) {
             return Err(usage(format!(
-                "its range, {low} to {high}, must hold the value with which the case begins, {value}"
+                "{range} hold the value with which the case begins, {value}"
             )));
         }
         // goes through all of its range within the run, and is like no other signal
@@ -91,12 +103,14 @@ pub(super) fn taken(case: &Case, inputs: &[Input]) -> Result<(Case, System, Vec<
             },
             value,
             places: vec![],
+            swings: Swings::of(value),
+            opens: pointer.contains("/opening"),
         });
     }
     let resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
     let path = &case.source.path;
     let base = path.parent().unwrap_or(path);
-    let marked = case::parse(&resolved.to_string(), path, base, &sets)?;
+    let marked = case::parse(&resolved.to_string(), path, base, &sets).map_err(|error| of_range(error, &held))?;
     let mut system = System::new(&marked)?;
     let marks = case::controls(&marked);
     for one in &mut held {
@@ -111,6 +125,23 @@ pub(super) fn taken(case: &Case, inputs: &[Input]) -> Result<(Case, System, Vec<
         }
     }
     Ok((marked, system, held))
+}
+
+/// Of values that the case cannot have, in the words of their range: what was set in its place nobody has written.
+fn of_range(error: Error, held: &[Held]) -> Error {
+    let Error::Case(fault) = &error else { return error };
+    let told = fault.violations.iter().find_map(|violation| {
+        let input = held.iter().map(|one| &one.input);
+        let mut own = input.filter(|input| violation.pointer.starts_with(&input.pointer));
+        own.next().map(|input| {
+            let [low, high] = input.range;
+            let allowed = violation.allowed.as_ref();
+            let allowed = allowed.map_or_else(String::new, |allowed| format!("; allowed is {allowed}"));
+            let what = format!("{}{allowed}", violation.what);
+            format!("input {}: its range, {low} to {high}, cannot be: {what}", input.pointer)
+        })
+    });
+    told.map_or(error, Error::Usage)
 }
 
 /// Those of the one-step method that the case asks for, else of ESDIRK46: it needs no past.

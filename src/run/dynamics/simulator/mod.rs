@@ -3,6 +3,8 @@
 mod inputs;
 mod snapshot;
 mod spent;
+mod swings;
+mod watch;
 
 use std::time::Instant;
 
@@ -16,7 +18,7 @@ use super::pace::Pace;
 use super::switch::switch;
 use crate::case::Case;
 use crate::dae::{BeamDae, Dae};
-use crate::discrete::start;
+use crate::discrete::{resolution, start};
 use crate::error::{Error, Result, SolverError};
 use crate::functions::{Ramp, RampShape, Signal};
 use crate::integrate::{StartOptions, Starter};
@@ -35,7 +37,8 @@ const CONSISTENT: f64 = 0.1;
 pub struct Simulator {
     /// What tells case and inputs from others.
     of: String,
-    /// What there is to know of the case.
+    case: Box<Case>,
+    /// What there is to know of the case on any mesh.
     known: Vec<String>,
     held: Vec<Held>,
     solver: OneStep<BeamDae>,
@@ -65,7 +68,7 @@ impl Simulator {
     pub fn new(case: &Case, inputs: &[Input]) -> Result<Self> {
         let of = inputs::mark(case, inputs);
         let (case, mut system, held) = inputs::taken(case, inputs)?;
-        let known = known::lasting(&case, &system);
+        let known = known::on_any_mesh(&case, &system);
         for one in &held {
             system.put_signal(&one.places, &Signal::Constant(one.value));
         }
@@ -107,6 +110,7 @@ impl Simulator {
             max_steps: case.solver.max_steps,
             state,
             rates,
+            case: Box::new(case),
             integrals: zeros.clone(),
             carried: zeros,
             spent: Spent::default(),
@@ -151,9 +155,14 @@ impl Simulator {
         self.spent
     }
 
-    /// What to know of the case, with inputs that go through their ranges, and of what has been simulated.
+    /// What to know of the case, with inputs that go through their ranges, and of what has been simulated: of the mesh with inputs as they have been.
     pub fn warnings(&self) -> Vec<String> {
+        let mut system = self.solver.dae().system().clone();
+        for one in &self.held {
+            system.put_signal(&one.places, &one.swings.like());
+        }
         let mut all = self.known.clone();
+        all.extend(resolution::warnings(&self.case, &system));
         all.extend(self.observer.warnings());
         all
     }
@@ -173,22 +182,59 @@ impl Simulator {
             )));
         }
         inputs::admit(&self.held, values)?;
+        let until = self.at_stop(until).min(self.end);
         if self.held.iter().zip(values).any(|(one, value)| one.value != *value) {
             self.set(values)?;
         }
         Spent::add(&mut self.spent.jumps, &mut clock);
-        let done = self.advance(until.min(self.end), ask);
+        let done = self.advance(until, ask);
         let mut clock = Instant::now();
         self.sample()?;
         Spent::add(&mut self.spent.watching, &mut clock);
         done
     }
 
-    /// Inputs jump to other values at the present time.
+    /// A time [s], or that of a stop of the case from which round-off alone keeps it.
+    fn at_stop(&self, until: f64) -> f64 {
+        let near = |stop: &&Stop| (stop.t - until).abs() <= 1e-12 * until && stop.t > self.time();
+        self.stops[self.next..].iter().find(near).map_or(until, |stop| stop.t)
+    }
+
+    /// Whether the simulation stands at a stop that it has not passed: its row is that before, as in a history.
+    fn stands_at_stop(&self) -> bool {
+        self.next + 1 < self.stops.len() && self.time() >= self.stops[self.next].t
+    }
+
+    /// An instant in the smooth interval that leads to a time [s], which no stop has ended.
+    fn behind(&self, t: f64) -> f64 {
+        let last = self.next.checked_sub(1).map_or(0.0, |k| self.stops[k].t);
+        if last < t {
+            0.5 * (last + t)
+        } else {
+            t - 1e-9 * self.end
+        }
+    }
+
+    /// An instant in the smooth interval in which the simulation stands.
+    fn inside(&self) -> f64 {
+        let t = self.time();
+        if self.stands_at_stop() {
+            self.behind(t)
+        } else {
+            0.5 * (t + self.stops[self.next].t)
+        }
+    }
+
+    /// Inputs jump to other values at the present time, and with them whatever the case itself switches there.
     fn set(&mut self, values: &[f64]) -> Result<()> {
         let t = self.time();
         self.leave_stretch()?;
+        let behind = self.behind(t);
+        if self.stands_at_stop() {
+            self.next += 1;
+        }
         let dae = self.solver.dae_mut();
+        let mut valves = false;
         for (one, value) in self.held.iter().zip(values) {
             let jump = Signal::Ramp(Ramp {
                 from: one.value,
@@ -198,13 +244,13 @@ impl Simulator {
                 shape: RampShape::default(),
             });
             dae.put_signal(&one.places, &jump);
+            valves |= one.opens && one.value != *value;
         }
-        if t == 0.0 {
-            dae.enter_smooth_interval(-1e-9 * self.end);
-        }
+        dae.enter_smooth_interval(behind);
         self.switch(t)?;
         let dae = self.solver.dae_mut();
         for (one, value) in self.held.iter_mut().zip(values) {
+            one.swings.jump(t, [one.value, *value]);
             one.value = *value;
             dae.put_signal(&one.places, &Signal::Constant(*value));
         }
@@ -212,7 +258,26 @@ impl Simulator {
         let size = self.solver.size();
         let restarted = self.solver.go_on(t, &self.state, &self.rates);
         restarted.map_err(|failure| solver(fault(&failure)))?;
-        self.solver.propose(size);
+        // but flow through a valve that shuts ends within nanoseconds, and what is lost there is lost in the first of a long step's stages
+        if !valves {
+            self.solver.propose(size);
+        }
+        self.enter()
+    }
+
+    /// Passes the stop at which the simulation stands.
+    fn pass(&mut self) -> Result<()> {
+        let Stop { t, switches, .. } = self.stops[self.next];
+        self.leave_stretch()?;
+        self.next += 1;
+        if switches {
+            self.switch(t)?;
+        } else {
+            let ahead = self.inside();
+            self.solver.dae_mut().enter_smooth_interval(ahead);
+        }
+        let restarted = self.solver.restart(t, &self.state, &self.rates);
+        restarted.map_err(|failure| solver(fault(&failure)))?;
         self.enter()
     }
 
@@ -221,13 +286,17 @@ impl Simulator {
         let (mut pace, mut steps) = (Pace::new(self.time()), 0);
         let mut clock = Instant::now();
         while self.time() < until {
-            let stop = self.stops[self.next];
-            let stride = self.strides.at(self.time());
+            if self.stands_at_stop() {
+                self.pass()?;
+                Spent::add(&mut self.spent.jumps, &mut clock);
+            }
+            let (stop, from) = (self.stops[self.next], self.time());
+            let stride = self.strides.at(from);
             self.solver.limit(stride.largest);
             let target = until.min(stop.t).min(stride.to);
             let step = self.solver.step(target).map_err(|failure| solver(fault(&failure)))?;
             Spent::add(&mut self.spent.integration, &mut clock);
-            self.watch(step.time)?;
+            self.watch(from, step.time)?;
             Spent::add(&mut self.spent.watching, &mut clock);
             steps += 1;
             if steps >= self.max_steps {
@@ -236,39 +305,8 @@ impl Simulator {
             if pace.stalled(steps, step.time, self.end) {
                 return Err(solver(stalled(step.time, step.size)));
             }
-            if step.stopped && step.time >= stop.t && self.next + 1 < self.stops.len() {
-                self.leave_stretch()?;
-                self.next += 1;
-                if stop.switches {
-                    self.switch(step.time)?;
-                } else {
-                    self.solver
-                        .dae_mut()
-                        .enter_smooth_interval(0.5 * (step.time + self.stops[self.next].t));
-                }
-                self.restart(step.time)?;
-                Spent::add(&mut self.spent.jumps, &mut clock);
-            }
             if let Control::Stop(_) = ask() {
                 break;
-            }
-        }
-        Ok(())
-    }
-
-    /// Looks at the end of an accepted step, and inside wherever the model may have been left.
-    fn watch(&mut self, t: f64) -> Result<()> {
-        self.read(t)?;
-        let dae = self.solver.dae_mut();
-        if let Some(what) = self.observer.arrive(dae, t, &self.state, &self.rates, &self.integrals) {
-            return Err(solver(beyond(t, what)));
-        }
-        for k in 0..self.observer.turning().len() {
-            let t = self.observer.turning()[k];
-            self.read(t)?;
-            let dae = self.solver.dae_mut();
-            if let Some(what) = self.observer.look(dae, t, &self.state, &self.rates, &self.integrals) {
-                return Err(solver(beyond(t, what)));
             }
         }
         Ok(())
@@ -304,16 +342,10 @@ impl Simulator {
 
     /// A consistent state behind a jump of signals at the present time, with what is done in no time.
     fn switch(&mut self, t: f64) -> Result<()> {
-        let ahead = 0.5 * (t + self.stops[self.next].t);
+        let ahead = self.inside();
         let values = [&mut self.state[..], &mut self.rates];
         let start = (&mut self.starter, &self.consistent);
         switch(self.solver.dae_mut(), start, [t, ahead], values, &mut self.carried).map_err(solver)
-    }
-
-    fn restart(&mut self, t: f64) -> Result<()> {
-        let restarted = self.solver.restart(t, &self.state, &self.rates);
-        restarted.map_err(|failure| solver(fault(&failure)))?;
-        self.enter()
     }
 
     /// Looks at the beginning of a smooth stretch.

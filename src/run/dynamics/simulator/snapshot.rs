@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Simulator, inputs};
+use super::swings::Swings;
+use super::{Simulator, fault, inputs, solver};
 use crate::dae::Dae as _;
 use crate::error::{Error, Result};
 use crate::functions::Signal;
@@ -24,6 +25,8 @@ pub struct Snapshot {
     yp: Vec<f64>,
     integrals: Vec<f64>,
     observed: Observed,
+    #[serde(default)]
+    swings: Vec<Swings>,
 }
 
 impl Simulator {
@@ -44,6 +47,7 @@ impl Simulator {
             yp: self.rates.clone(),
             integrals: self.integrals.clone(),
             observed: self.observer.seen.clone(),
+            swings: self.held.iter().map(|one| one.swings).collect(),
         };
         self.restore(&snapshot)?;
         Ok(snapshot)
@@ -74,15 +78,21 @@ impl Simulator {
         self.next = snapshot.next;
         self.starter.forget();
         self.observer.seen.clone_from(&snapshot.observed);
-        let ahead = 0.5 * (t + self.stops[self.next].t);
+        let restarted = self.solver.restart(t, &self.state, &self.rates);
+        restarted.map_err(|failure| solver(fault(&failure)))?;
+        let inside = self.inside();
         let dae = self.solver.dae_mut();
         for (one, value) in self.held.iter_mut().zip(&snapshot.values) {
             one.value = *value;
+            one.swings = Swings::of(*value);
             dae.put_signal(&one.places, &Signal::Constant(*value));
         }
-        dae.enter_smooth_interval(ahead);
+        dae.enter_smooth_interval(inside);
+        for (one, swings) in self.held.iter_mut().zip(&snapshot.swings) {
+            one.swings = *swings;
+        }
         dae.approach(0.0);
-        self.restart(t)?;
+        self.enter()?;
         self.solver.propose(snapshot.size);
         Ok(())
     }

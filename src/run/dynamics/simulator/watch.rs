@@ -1,0 +1,42 @@
+//! Looks at accepted steps as a run does, and ends where the model is left.
+
+use super::super::follow::narrow;
+use super::{Simulator, beyond, fault, solver};
+use crate::error::Result;
+
+impl Simulator {
+    /// Looks at the end of an accepted step from a time [s], and inside wherever the model may have been left; where it was, that is where the simulation then
+    /// stands.
+    pub(super) fn watch(&mut self, from: f64, t: f64) -> Result<()> {
+        self.read(t)?;
+        let dae = self.solver.dae_mut();
+        if let Some(what) = self.observer.arrive(dae, t, &self.state, &self.rates, &self.integrals) {
+            return self.leave([from, t], what);
+        }
+        let mut within = from;
+        for k in 0..self.observer.turning().len() {
+            let t = self.observer.turning()[k];
+            self.read(t)?;
+            let dae = self.solver.dae_mut();
+            if let Some(what) = self.observer.look(dae, t, &self.state, &self.rates, &self.integrals) {
+                return self.leave([within, t], what);
+            }
+            within = t;
+        }
+        Ok(())
+    }
+
+    /// Ends where the model was left, between a time at which it held and one at which it did not [s].
+    fn leave(&mut self, between: [f64; 2], what: String) -> Result<()> {
+        let (t, what) = narrow(between, what, |t| {
+            self.read(t)?;
+            let (state, rates) = (&self.state, &self.rates);
+            Ok(self.observer.beyond(self.solver.dae_mut(), t, state, rates))
+        })?;
+        self.read(t)?;
+        self.carried.copy_from_slice(&self.integrals);
+        let restarted = self.solver.restart(t, &self.state, &self.rates);
+        restarted.map_err(|failure| solver(fault(&failure)))?;
+        Err(solver(beyond(t, what)))
+    }
+}
