@@ -107,91 +107,24 @@ const TABLE: [(&str, &str, f64); 76] = [
 ];
 
 /// Words that are plainly units, of which the table has none: a name that ends with one is no name without a unit.
-const FOREIGN: [&str; 84] = [
-    "inch",
-    "inches",
-    "ft",
-    "feet",
-    "foot",
-    "yd",
-    "mil",
-    "mils",
-    "thou",
-    "nm",
-    "km",
-    "dm",
-    "meter",
-    "meters",
-    "metre",
-    "metres",
-    "millimeter",
-    "millimeters",
-    "millimetre",
-    "millimetres",
-    "micron",
-    "microns",
-    "sec",
-    "secs",
-    "second",
-    "seconds",
-    "msec",
-    "usec",
-    "minute",
-    "minutes",
-    "hour",
-    "hours",
-    "hr",
-    "hrs",
-    "ns",
-    "atm",
-    "mmhg",
-    "cmhg",
-    "inhg",
-    "torr",
-    "mtorr",
-    "cmh2o",
-    "mmh2o",
-    "inh2o",
-    "mh2o",
-    "ksi",
-    "psf",
-    "psia",
-    "psig",
-    "barg",
-    "bara",
-    "pascal",
-    "pascals",
-    "degree",
-    "degrees",
-    "radian",
-    "radians",
-    "arcmin",
-    "lbf",
-    "lb",
-    "lbs",
-    "kgf",
-    "gf",
-    "ozf",
-    "oz",
-    "dyn",
-    "dyne",
-    "newton",
-    "newtons",
-    "liter",
-    "liters",
-    "litre",
-    "litres",
-    "cc",
-    "nl",
-    "dl",
-    "lpm",
-    "slpm",
-    "sccm",
-    "gpm",
-    "cst",
-    "poise",
-    "mg",
-    "kj",
+#[rustfmt::skip]
+const FOREIGN: [&str; 79] = [
+    "inch", "inches", "ft", "yd", "mils", "thou", "nm", "km", "dm", "meter", "meters", "metre", "metres",
+    "millimeter", "millimeters", "millimetre", "millimetres", "micron", "microns", "sec", "secs", "msec",
+    "usec", "minute", "minutes", "hour", "hours", "hr", "hrs", "ns", "atm", "mmhg", "cmhg", "inhg", "torr", "mtorr", "cmh2o",
+    "mmh2o", "inh2o", "mh2o", "ksi", "psf", "psia", "psig", "barg", "bara", "pascal", "pascals", "degree", "degrees", "radian",
+    "radians", "arcmin", "lbf", "lb", "lbs", "kgf", "gf", "ozf", "oz", "dyn", "dyne", "newton", "newtons", "liter", "liters",
+    "litre", "litres", "cc", "nl", "dl", "lpm", "slpm", "sccm", "gpm", "cst", "poise", "mg", "kj",
+];
+
+/// Words that are units of one dimension and else may be names: an inlet, a foot, the second of two.
+const ELSE_NAMES: [(&str, &str); 6] = [
+    ("in", "m"),
+    ("foot", "m"),
+    ("feet", "m"),
+    ("mil", "m"),
+    ("second", "s"),
+    ("seconds", "s"),
 ];
 
 /// What stands before a unit that is only the end of a longer one, such as N s/m, Pa s/m^3 and m^2/Pa.
@@ -273,10 +206,10 @@ pub fn suffix<'n>(name: &'n str, si: Option<&str>) -> Suffix<'n> {
         None => found,
     };
     let Some((unit, at)) = found else {
-        // inches, or an inlet
-        let inches = cut("_in").filter(|_| si == Some("m"));
+        let names = ELSE_NAMES.iter().filter(|(_, of)| si == Some(of));
+        let named = names.map(|(word, _)| *word).find_map(|word| cut(&format!("_{word}")));
         let known = FOREIGN.iter().find_map(|word| cut(&format!("_{word}")));
-        return match inches.or(known) {
+        return match named.or(known) {
             Some(at) => Suffix::Unknown(&name[..at], &name[at + 1..]),
             None => Suffix::None,
         };
@@ -377,7 +310,15 @@ mod tests {
             assert_eq!(suffix(name, Some("m")), Suffix::Unknown(rest, unit), "{name}");
         }
         // an inlet, a place, a word
-        for name in ["pressure_in", "tip_left", "flow_one", "degrees", "origin"] {
+        for name in [
+            "pressure_in",
+            "angle_foot",
+            "p_second",
+            "tip_left",
+            "flow_one",
+            "degrees",
+            "origin",
+        ] {
             assert_eq!(suffix(name, Some("Pa")), Suffix::None, "{name}");
         }
         // a force per length, where one is sought

@@ -49,7 +49,9 @@ fn volumes(case: &Case, faults: &mut Violations) {
         if (begins - holds).abs() > 1e-9 * signal.largest(case.time.end_s).value.max(holds.abs()) {
             let what = format!("a volume that begins at {begins} m^3, of which the start holds {holds} m^3");
             let hint = match case.start.equilibrium {
-                None => "begin at 0: bladders begin at their pressures of /start; or give /start/equilibrium",
+                None => {
+                    "begin at 0: bladders begin at their pressures of /start; or give /start/equilibrium: --set '/start/equilibrium={}'"
+                }
                 Some(_) => "give /start/equilibrium with loads_at_s 0, or the same volume at both instants",
             };
             faults.push(Violation::new(Code::Start, pointer, what).hint(hint));
