@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use super::embedded;
+use crate::integrate::halt;
 
 /// Exit codes of shells for a program that a signal ended begin here.
 const SIGNAL: i32 = 128;
@@ -51,5 +52,9 @@ pub fn outlive_limits() {
 
 /// Whether the flag is up.
 pub fn raised(flag: &AtomicBool) -> bool {
-    flag.load(Ordering::Relaxed)
+    let raised = flag.load(Ordering::Relaxed);
+    if raised {
+        halt::see();
+    }
+    raised
 }
