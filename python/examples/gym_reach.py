@@ -12,6 +12,8 @@ import slcbeam
 
 INLET = "/network/chains/0/ends/0/pressure_pa"
 LOOKS = ["tip_u1", "tip_angle"]
+# of the length, above the start: the highest pressure lifts by 0.034 within an episode, and by 0.07 in the end
+REACHED = (0.005, 0.03)
 
 
 class Reach(gymnasium.Env):
@@ -33,7 +35,7 @@ class Reach(gymnasium.Env):
         self.sim.restore(self.start)
         self.done = 0
         self.before = self.sim.row[self.looks[0]]
-        self.target = self.before + self.size_m * self.np_random.uniform(0.02, 0.15)
+        self.target = self.before + self.size_m * self.np_random.uniform(*REACHED)
         return self.observe(self.sim.row), {}
 
     def observe(self, row):
@@ -53,7 +55,7 @@ if __name__ == "__main__":
     seen, _ = env.reset(seed=1)
     action, total, over = np.array([-1.0]), 0.0, False
     while not over:
-        action = np.clip(action + 1.5 * (seen[0] - seen[1]), -1.0, 1.0)
+        action = np.clip(action + 6.0 * (seen[0] - seen[1]), -1.0, 1.0)
         seen, reward, _, over, _ = env.step(action)
         total += reward
-    print(f"off by {abs(seen[0] - seen[1]):.3f} of the length in the end, rewarded by {total:.2f}")
+    print(f"off by {abs(seen[0] - seen[1]):.4f} of the length in the end, rewarded by {total:.2f}")

@@ -60,5 +60,5 @@ pub fn command(py: Python<'_>, words: Vec<OsString>) -> PyResult<Told> {
         other => other.map_err(|error| raised(py, &error))?,
     };
     let fault = answer.fault.as_deref().map(told);
-    Ok((answer.printed, fault, stop.load(Ordering::Relaxed)))
+    Ok((answer.printed, fault, answer.interrupted))
 }

@@ -143,6 +143,53 @@ def test_ctrl_c_ends_a_sweep_with_what_there_is(tmp_path):
     assert 0 < len(next(iter(found.tables["sweep"].values()))) < 5000
 
 
+def stopped(act, after=0.4):
+    """What it answers when Ctrl-C comes meanwhile, nothing where that is raised; ends soon."""
+    threading.Timer(after, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    begin = time.monotonic()
+    try:
+        answer = act()
+    except KeyboardInterrupt:
+        answer = None
+    assert time.monotonic() - begin < 20
+    return answer
+
+
+def test_ctrl_c_ends_what_takes_long_with_what_there_is():
+    for command in (slcbeam.study, slcbeam.effects):
+        found = stopped(lambda: command("tour-actuator", budget="200s"))
+        assert found is None or found.interrupted
+
+
+def test_ctrl_c_is_raised_where_there_is_no_part_of_an_answer():
+    fine = {"/mesh/cells_per_segment": 8, "/solver/rtol": 1e-6}
+    driven = slcbeam.load("tour-harvester", set=fine)
+    for command in (slcbeam.periodic, slcbeam.floquet):
+        assert stopped(lambda: command(driven)) is None
+    measured = {"t_s": np.linspace(0.01, 1.5, 100), "tip_mm": np.linspace(0, 9, 100)}
+    fitted = slcbeam.load("tour-actuator", set=fine)
+    assert stopped(lambda: slcbeam.fit(fitted, measured, {"/fluid/viscosity_pa_s": (0.05, 2)}, {"tip_mm": "tip_u1"})) is None
+
+
+def test_tables_are_frames_of_polars_too():
+    polars = pytest.importorskip("polars")
+    designs = polars.DataFrame({"/loads/0/force_x_n_m/signal/sigmoid/amplitude": [10.0, 20.0]})
+    case = slcbeam.load("bend-wet", set=COARSE | {"/time/end_s": 0.01})
+    table = slcbeam.sweep(case, designs=designs, lean=True).tables["sweep"]
+    assert len(table["status"]) == 2
+
+
+def test_errors_have_numbers():
+    for act, code in (
+        (lambda: slcbeam.load("nofile"), ("E030", "E050")),
+        (lambda: slcbeam.read("nofolder"), ("E050",)),
+        (lambda: slcbeam.Simulator("tour-actuator", {"/network": 5}), ("E030",)),
+    ):
+        with pytest.raises(slcbeam.Error) as raised:
+            act()
+        assert raised.value.code in code
+
+
 def test_parts_are_joined_and_folders_read(tmp_path):
     case = slcbeam.load("tour-actuator", set=COARSE)
     vary = {"/network/chains/0/ends/0/pressure_pa/ramp/to": [1e4, 2e4, 3e4]}

@@ -48,6 +48,14 @@ def test_balances_close_over_jumps(case):
     assert abs(sim["energy_residual"]) < 1e-3 * sim["work_ports"]
 
 
+def test_balances_close_over_valves_that_shut():
+    sim = slcbeam.Simulator("tour-actuator", {"/network/chains/0/opening": (0, 1)})
+    for k in range(12):
+        sim.step(0.01, k % 2)
+    assert abs(sim["energy_residual"]) < 1e-3 * sim["bending_energy"]
+    assert not sim.warnings
+
+
 def test_a_state_goes_on_bit_for_bit(case):
     sim = slcbeam.Simulator(case, RANGE)
     sim.step(0.05, 30e3)
@@ -97,6 +105,13 @@ def test_several_inputs_and_what_is_refused(case):
             slcbeam.Simulator(case, wrong)
     with pytest.raises(slcbeam.UsageError, match="values of the inputs"):
         sim.step(1e-3, np.array([[1.0]]))
+    with pytest.raises(slcbeam.UsageError, match="times are numbers") as refused:
+        sim.step("a")
+    assert refused.value.code == "E030"
+    with pytest.raises(slcbeam.UsageError, match="inputs are"):
+        slcbeam.Simulator(case, {3: (0, 1)})
+    with pytest.raises(slcbeam.UsageError, match="cannot be"):
+        slcbeam.Simulator(case, {"/network/chains/0/opening": (0, 2)})
     with pytest.raises(slcbeam.UsageError, match="no state"):
         slcbeam.State.read(b"garbage")
 
@@ -134,6 +149,12 @@ def test_the_environment_learns_nothing_new_from_reset():
     example = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(example)
     check_env(example.Reach(steps=5), skip_render_check=True)
+    # what is wanted can be reached
+    env = example.Reach()
+    first = env.reset(seed=1)[0][1]
+    for _ in range(env.steps):
+        seen = env.step(np.array([1.0]))[0]
+    assert seen[1] - first > example.REACHED[1]
     env = example.Reach(steps=25)
     assert isinstance(env, gymnasium.Env)
 
@@ -146,6 +167,6 @@ def test_the_environment_learns_nothing_new_from_reset():
             total += reward
         return total
 
-    controlled = episode(1.5)
-    assert controlled == episode(1.5)
+    controlled = episode(6.0)
+    assert controlled == episode(6.0)
     assert controlled > episode(0.0)

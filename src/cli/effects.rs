@@ -9,6 +9,7 @@ use crate::case::schema::Effects;
 use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
+use crate::integrate::halt;
 use crate::output::effects as files;
 use crate::output::folder::replace;
 use crate::output::kind::Kind;
@@ -19,6 +20,7 @@ use crate::study::effects::{Ablation, Event, Plan, ablate};
 
 /// Runs the models, writes the folder, prints the table and the recommendation, writes that into the case when asked.
 pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
+    halt::everywhere();
     let case = size::load(&asked.case)?;
     System::new(&case)?;
     System::new(&with(&case, Effects::Full))?;

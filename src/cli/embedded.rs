@@ -11,6 +11,7 @@ use clap::Parser as _;
 use super::act;
 use super::arguments::Arguments;
 use crate::error::{Error, Result, SolverError};
+use crate::integrate::halt::{self, Halt};
 
 thread_local! {
     /// The command that this thread does for another program.
@@ -29,6 +30,8 @@ pub struct Answer {
     pub printed: String,
     /// Why it could not go on, where it has told what it had until then.
     pub fault: Option<Box<SolverError>>,
+    /// Whether raising the flag made something of it end early.
+    pub interrupted: bool,
 }
 
 /// Does what the words behind the program's name ask for, such as `["modes", "case.json", "--json", "--quiet"]`, on this thread; raising
@@ -48,9 +51,15 @@ pub fn answer<I: IntoIterator<Item = OsString>>(words: I, stop: &Arc<AtomicBool>
         answer: Answer::default(),
     };
     ASKED.replace(Some(asked));
+    let request = Halt::by(stop);
+    request.listen();
     let done = act(&arguments.command, Instant::now());
+    halt::deaf();
     let told = ASKED.take().map(|asked| asked.answer).unwrap_or_default();
-    done.map(|_| told)
+    done.map(|_| Answer {
+        interrupted: request.was_seen(),
+        ..told
+    })
 }
 
 /// The flag of who asks; nothing on the command line.

@@ -6,6 +6,7 @@ use super::arguments::FloquetArguments;
 use super::{interrupt, line, size};
 use crate::case::Case;
 use crate::error::{Error, Result};
+use crate::integrate::halt;
 use crate::output::floquet as files;
 use crate::output::kind::Kind;
 use crate::output::report;
@@ -23,6 +24,7 @@ const MOST_POINTS: usize = 100_000;
 
 /// Finds cycle and multipliers, or the map; writes the folder, prints the words.
 pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
+    halt::everywhere();
     let case = &size::load(&asked.case)?;
     scene::system(case)?;
     match &asked.map.map {

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::embedded;
 use crate::error::{Error, Result};
+use crate::integrate::halt;
 use crate::run::stop::{INTERRUPTED, Stop};
 
 /// Exit codes of shells for a program that a signal ended begin here.
@@ -68,5 +69,9 @@ pub fn outlive_limits() {
 
 /// Whether the flag is up.
 pub fn raised(flag: &AtomicBool) -> bool {
-    flag.load(Ordering::Relaxed)
+    let raised = flag.load(Ordering::Relaxed);
+    if raised {
+        halt::see();
+    }
+    raised
 }

@@ -9,6 +9,7 @@ use super::line::Shown;
 use super::{size, terminal};
 use crate::discrete::System;
 use crate::error::{Error, Result};
+use crate::integrate::halt;
 use crate::output::kind::Kind;
 use crate::output::numbers::duration;
 use crate::output::report;
@@ -18,6 +19,7 @@ use crate::study::accuracy::{Budget, Event, Plan, Scheme, study as run_study};
 
 /// Runs the settings, writes the folder, prints the table and the sentence.
 pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
+    halt::everywhere();
     let case = &size::load(&asked.case)?;
     System::new(case)?;
     let plan = Plan {

@@ -3,25 +3,27 @@
 use super::chain::{self, Chain, LANES};
 use super::trace::Dependence;
 use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds};
-use crate::discrete::{State, System, TimeData, Workspace, kick, ledger, residual, start};
+use crate::discrete::{State, System, TimeData, Workspace, ledger, residual};
 use crate::functions::signals::{Clock, Signal};
 use crate::numerics::Dual;
 
 /// `F(t, y, y') = 0` of a [`System`], each unknown and each equation divided by its characteristic size.
 #[derive(Clone, Debug)]
 pub struct BeamDae {
-    system: System,
-    within: f64,
-    now: TimeData,
+    pub(super) system: System,
+    pub(super) within: f64,
+    pub(super) now: TimeData,
+    /// The side before the last switch.
+    pub(super) before: TimeData,
     pattern: Pattern,
     chain: Chain,
     /// One over the size of each equation.
     per_row: Vec<f64>,
-    plain: Buffers<f64>,
+    pub(super) plain: Buffers<f64>,
     dual: Buffers<Dual<LANES>>,
     perturbed: Vec<PerturbedSystems>,
     /// Time at which the workspace holds everything about a state, its integrands included.
-    held: Option<f64>,
+    pub(super) held: Option<f64>,
 }
 
 #[derive(Clone, Debug)]
@@ -46,7 +48,7 @@ impl<T: crate::numerics::Scalar> Buffers<T> {
 
 impl Buffers<f64> {
     /// Evaluates a scaled state whose rates do not matter: its place and its velocities.
-    fn take_up(&mut self, system: &System, now: &TimeData, state: &[f64]) {
+    pub(super) fn take_up(&mut self, system: &System, now: &TimeData, state: &[f64]) {
         for ((y, state), scale) in self.y.iter_mut().zip(state).zip(&system.layout.scales) {
             *y = state * scale;
         }
@@ -73,7 +75,7 @@ impl Buffers<Dual<LANES>> {
 impl BeamDae {
     /// The system as a DAE; finds the Jacobian's pattern and colours it.
     pub fn new(system: System) -> Self {
-        let mut now = TimeData::new(&system);
+        let (mut now, before) = (TimeData::new(&system), TimeData::new(&system));
         now.update(&system, Clock { t: 0.0, within: 0.0 });
         let per_row: Vec<f64> = system.layout.row_scales.iter().map(|row| 1.0 / row).collect();
         let (pattern, chain) = Chain::new(&system, &Dependence::new(&system, &now), &per_row);
@@ -82,6 +84,7 @@ impl BeamDae {
             per_row,
             system,
             within: 0.0,
+            before,
             now,
             pattern,
             chain,
@@ -97,6 +100,7 @@ impl BeamDae {
         Self {
             plain: Buffers::new(&system, 0),
             now: TimeData::new(&system),
+            before: TimeData::new(&system),
             perturbed: vec![],
             held: None,
             system,
@@ -123,6 +127,7 @@ impl BeamDae {
     pub fn put_signal(&mut self, places: &[usize], given: &Signal) {
         self.system.put_signal(places, given);
         self.now.forget();
+        self.before.forget();
         self.held = None;
     }
 
@@ -131,72 +136,9 @@ impl BeamDae {
         self.within = t;
     }
 
-    /// At a switching time `t` [s]: looks at signals in the smooth interval around `within` from now on, and restates the
-    /// scaled unknowns so that the beam stays where it is and as fast as it is, but for what a driven end whose velocity jumps hands on
-    /// to sections that turn, [`kick`].
-    pub fn switch(&mut self, t: f64, within: f64, y: &mut [f64]) {
-        let before = self.instant(t).1.clone();
-        self.enter_smooth_interval(within);
-        let after = self.instant(t).1.clone();
-        let (system, b) = (&self.system, &mut self.plain);
-        if before.moves_like(&after) {
-            return;
-        }
-        start::change_frame(system, &before, &after, y);
-        b.take_up(system, &after, y);
-        if let Some(jumps) = kick::spread(system, [&before, &after], &b.workspace) {
-            start::speed_up(system, &jumps, y);
-        }
-    }
-
     /// The instant by which the smooth interval is chosen in which signals are looked at [s].
     pub fn within(&self) -> f64 {
         self.within
-    }
-
-    /// Adds to integrals what is done in no time at `t` [s]: from a scaled state of which signals were looked at around another
-    /// instant [s], to one in the present smooth interval. See [`ledger::side`] and [`ledger::strokes`].
-    pub fn jump(&mut self, t: f64, (before, within): (&[f64], f64), after: &[f64], integrals: &mut [f64]) {
-        let ahead = self.within;
-        self.enter_smooth_interval(within);
-        let from = self.instant(t).1.clone();
-        self.enter_smooth_interval(ahead);
-        let to = self.instant(t).1.clone();
-        let (system, b) = (&self.system, &mut self.plain);
-        let l = &system.layout;
-        let unmoved = l.unmoved(before, after);
-        if unmoved && l.unfilled(before, after) && from.works_like(&to) {
-            return;
-        }
-        let mut part = vec![0.0; integrals.len()];
-        for (state, side) in [(before, &from), (after, &to)] {
-            let mut now = side.clone();
-            ledger::travel(&mut now, [&from, &to]);
-            for (k, scale) in l.scales.iter().enumerate() {
-                b.y[k] = state[k] * scale;
-                b.yp[k] = (after[k] - before[k]) * scale;
-            }
-            // Velocities become what displacements jump by, and nothing is accelerated.
-            for (u, v) in l.moved() {
-                if let Some(v) = v {
-                    b.y[v] = b.yp[u];
-                    b.yp[v] = 0.0;
-                }
-            }
-            residual::evaluate(system, &now, &b.y, &b.yp, &mut b.workspace);
-            ledger::side(system, &now, &b.yp, &mut b.workspace, &mut part);
-            for (total, part) in integrals.iter_mut().zip(&part) {
-                *total += 0.5 * part;
-            }
-        }
-        if unmoved && from.moves_like(&to) {
-            return;
-        }
-        let velocities = [(before, &from), (after, &to)].map(|(state, side)| {
-            b.take_up(system, side, state);
-            kick::velocities(&b.workspace)
-        });
-        ledger::strokes(system, [&from, &to], &velocities, &b.workspace, integrals);
     }
 
     /// The values of time alone, of the last evaluation.

@@ -3,6 +3,7 @@
 pub mod beam;
 mod between;
 mod chain;
+mod jumps;
 pub mod perturbed;
 pub mod statics;
 pub mod trace;

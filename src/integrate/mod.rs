@@ -6,10 +6,12 @@
 //! | [`start`], [`sensitivity_start`] | consistent initial values, and those of derivatives by parameters |
 //! | `request` | what is checked before it begins, and before a step |
 //! | [`counters`] | what it did, and where the time went |
+//! | [`halt`] | whether whoever asked wants it to end |
 //! | [`failure`] | why it could not go on |
 
 pub mod counters;
 pub mod failure;
+pub mod halt;
 pub(crate) mod request;
 pub mod sensitivity_start;
 pub mod start;

@@ -12,7 +12,7 @@ use super::equations::{Equations, StageError};
 use super::stages::{add, values};
 use super::tableau::{Method, Tableau};
 use crate::dae::{Dae, Seeds};
-use crate::integrate::{StartOptions, consistent_start};
+use crate::integrate::{StartOptions, consistent_start, halt};
 use crate::sparse::Klu;
 
 /// Correction, relative to 1 + |unknown|, at which a stage counts as solved.
@@ -176,6 +176,9 @@ impl<D: Dae> StepMap<D> {
         }
         for step in 0..self.times.len() - 1 {
             let (t, h) = (self.times[step], self.times[step + 1] - self.times[step]);
+            if halt::asked() {
+                return Err(StepError::new(t, "interrupted"));
+            }
             let begin = y.to_vec();
             for i in 1..s {
                 let mut base = begin.clone();

@@ -83,7 +83,7 @@ class Answer(Mapping[str, Any]):
         self._told, self._kept = told, kept
         #: Its folder; ``None`` for a command that writes none.
         self.folder = folder
-        #: Whether a KeyboardInterrupt ended it with what there is.
+        #: Whether Ctrl-C ended it early, with what there is; not of what was complete when it came.
         self.interrupted = interrupted
 
     def __getitem__(self, key: str) -> Any:

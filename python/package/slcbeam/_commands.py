@@ -62,7 +62,8 @@ def _table(data: Data, folder: Path, name: str = "data.csv") -> str:
     if isinstance(data, (str, os.PathLike)):
         return os.fspath(data)
     try:
-        columns = {str(name): np.atleast_1d(np.asarray(data[name], dtype=float)).tolist() for name in data}
+        # iterating a frame of polars gives its columns, not their names
+        columns = {str(name): np.atleast_1d(np.asarray(data[name], dtype=float)).tolist() for name in getattr(data, "columns", data)}
         rows = list(zip(*columns.values(), strict=True))
     except (TypeError, ValueError, IndexError) as error:
         raise UsageError(f"a table is a CSV file, or columns of numbers of equal length by heading: {error}") from None
@@ -224,6 +225,8 @@ def merge(parts: Iterable[str | os.PathLike[str]], *, out: str | os.PathLike[str
         that compute it.
     :raises UsageError: parts of different sweeps.
     """
+    if isinstance(parts, (str, os.PathLike)):
+        parts = [parts]
     printed, _, interrupted = _slcbeam.command(["merge", *(os.fspath(part) for part in parts), f"--out={os.fspath(out)}", "--json"])
     return Answer(json.loads(printed), Path(out), interrupted=interrupted)
 

@@ -10,13 +10,16 @@ from typing import Any
 class Error(Exception):
     """What every error of the package is."""
 
+    #: Number of its messages, where it is raised before a command could give one.
+    _number: str | None = None
+
     def __init__(self, words: str = "", told: str = "{}") -> None:
         super().__init__(words)
         self._told = told
         #: What scripts read: a dict, as the command line prints it with ``--json``.
         self.told: dict[str, Any] = json.loads(told)
         #: Number of the message; ``slcbeam explain E006`` tells more.
-        self.code: str | None = self.told.get("code")
+        self.code: str | None = self.told.get("code") or self._number
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (type(self), (str(self), self._told))
@@ -25,9 +28,13 @@ class Error(Exception):
 class UsageError(Error, ValueError):
     """A call that makes no sense: no such case, no number at a pointer."""
 
+    _number = "E030"
+
 
 class FileError(Error, OSError):
     """A file or a folder that cannot be read or written."""
+
+    _number = "E050"
 
     def __str__(self) -> str:
         return str(self.args[0]) if self.args else ""

@@ -38,6 +38,8 @@ class Simulator:
         #: Pointers of the inputs, in their order.
         self.inputs = list(inputs)
         try:
+            if not all(isinstance(pointer, str) for pointer in self.inputs):
+                raise TypeError
             ranges = np.array([inputs[pointer] for pointer in self.inputs], dtype=float).reshape(len(self.inputs), 2)
         except (TypeError, ValueError):
             raise UsageError("inputs are a dict of (smallest, largest) by JSON pointer") from None
@@ -58,7 +60,8 @@ class Simulator:
 
         :param values: one for each input, in their order; a number where there is one input; some by pointer; none: as they are.
         :raises UsageError: a value outside of its range, a time beyond the end of the case.
-        :raises SolverError: it could not go on; :attr:`t` tells where it stands, and :meth:`restore` leads back.
+        :raises SolverError: it could not go on; :attr:`t` tells where it stands, and :meth:`restore` leads back; its ``result`` is
+            ``None``, since :attr:`row` and :attr:`warnings` have what there is. Where the model ends, that is at its limit.
         :raises KeyboardInterrupt: after the step in which it came; :attr:`t` tells where it stands.
         """
         return self._step(duration, True, values)
@@ -68,7 +71,11 @@ class Simulator:
         return self._step(t, False, values)
 
     def _step(self, time: float, further: bool, values: Values) -> np.ndarray:
-        row, stopped = self._own.step(float(time), further, self._given(values))
+        try:
+            time = float(time)
+        except (TypeError, ValueError):
+            raise UsageError("times are numbers [s]") from None
+        row, stopped = self._own.step(time, further, self._given(values))
         if stopped:
             raise KeyboardInterrupt
         row.flags.writeable = False
@@ -129,7 +136,8 @@ class Simulator:
 
     @property
     def warnings(self) -> list[str]:
-        """What to know of what has been simulated: balances that do not close, a range that was left."""
+        """What to know of what has been simulated: balances that do not close, a range that was left, and what
+        the mesh does not resolve of inputs as they have been."""
         return self._own.warnings()
 
     def save(self) -> State:

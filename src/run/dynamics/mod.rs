@@ -31,7 +31,7 @@ use crate::case::schema::Case;
 use crate::dae::BeamDae;
 use crate::discrete::{System, start};
 use crate::error::{Result, SolverError};
-use crate::integrate::{StartOptions, consistent_start};
+use crate::integrate::{StartOptions, consistent_start, halt};
 use crate::model::{audit, characteristic};
 
 /// A run that ended, in whatever way; everything up to its end is recorded.
@@ -349,6 +349,9 @@ impl Run<'_> {
                 }
                 if let Control::Stop(reason) = recorder.progress(&progress)? {
                     return Ok(End::Stopped(reason));
+                }
+                if halt::asked() {
+                    return Ok(End::Stopped(format!("interrupted at t = {:.6} s", progress.t)));
                 }
                 if progress.steps >= self.case.solver.max_steps {
                     return Ok(End::Failed(too_many_steps(step.time, step.size)));

@@ -11,6 +11,7 @@ use super::tolerances::ToleranceSequence;
 use super::trial::{self, Allowance, Role, Trial};
 use crate::case::Case;
 use crate::error::Result;
+use crate::integrate::halt;
 
 /// Share of the budget that points may take; references need the rest.
 const POINTS: f64 = 0.5;
@@ -106,8 +107,9 @@ impl Sweep<'_> {
         if !self.plan.parallel || workers < 2 {
             return items.iter().try_for_each(work);
         }
-        let next = AtomicUsize::new(0);
+        let (next, heard) = (AtomicUsize::new(0), halt::heard());
         let worker = || -> Result<()> {
+            heard.listen();
             while let Some(item) = items.get(next.fetch_add(1, Ordering::Relaxed)) {
                 work(item)?;
             }

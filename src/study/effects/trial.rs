@@ -8,6 +8,7 @@ use super::choices::effects;
 use crate::case::Case;
 use crate::discrete::System;
 use crate::error::{Error, Result};
+use crate::integrate::halt;
 use crate::model::effects::EffectSet;
 use crate::run::dynamics;
 use crate::run::null;
@@ -152,6 +153,10 @@ impl<'a> Runs<'a> {
             trial.reason = fault.violations.first().map(|refusal| refusal.what.clone());
             return trial;
         }
+        if halt::asked() {
+            trial.reason = Some("interrupted".into());
+            return trial;
+        }
         let left = self.left_s();
         if left <= 0.0 {
             trial.reason = Some("the budget is used up".into());
@@ -197,7 +202,11 @@ impl<'a> Runs<'a> {
                 if case.solver.rtol < self.all[0].0.solver.rtol {
                     continue;
                 }
-                if trial.summary.is_none() || trial.repeats >= round || 1.2 * trial.wall_s() > self.left_s() {
+                if halt::asked()
+                    || trial.summary.is_none()
+                    || trial.repeats >= round
+                    || 1.2 * trial.wall_s() > self.left_s()
+                {
                     continue;
                 }
                 let (case, what) = (case.clone(), trial.what.clone());

@@ -3,9 +3,11 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use crate::integrate::halt;
+
 /// What `work` makes of every number below `count`, in order; each number is taken up by whoever is free.
 pub fn each<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    let next = AtomicUsize::new(0);
+    let (next, heard) = (AtomicUsize::new(0), halt::heard());
     let done: Mutex<Vec<(usize, T)>> = Mutex::new(Vec::with_capacity(count));
     let workers = std::thread::available_parallelism()
         .map_or(1, usize::from)
@@ -13,6 +15,7 @@ pub fn each<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     std::thread::scope(|scope| {
         for _ in 0..workers {
             scope.spawn(|| {
+                heard.listen();
                 loop {
                     let k = next.fetch_add(1, Ordering::Relaxed);
                     if k >= count {

@@ -4,6 +4,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::error::Result;
+use crate::integrate::halt;
 
 /// Gives every number of a list to whoever of so many threads is free, and what `work` makes of it to `take`, one at a time. Ends
 /// early where `work` makes nothing, or `take` fails.
@@ -16,11 +17,12 @@ pub fn each<T: Send>(
     work: &(dyn Fn(usize) -> Option<T> + Sync),
     take: &mut (dyn FnMut(T) -> Result<()> + Send),
 ) -> Result<()> {
-    let next = AtomicUsize::new(0);
+    let (next, heard) = (AtomicUsize::new(0), halt::heard());
     let taken = Mutex::new((take, Ok(())));
     std::thread::scope(|scope| {
         for _ in 0..jobs.clamp(1, numbers.len().max(1)) {
             scope.spawn(|| {
+                heard.listen();
                 while let Some(number) = numbers.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let made = work(*number);
                     let mut taken = taken.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
