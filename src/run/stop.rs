@@ -3,6 +3,8 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::integrate::halt;
+
 /// Why work ended that was asked to.
 pub const INTERRUPTED: &str = "interrupted";
 
@@ -16,8 +18,12 @@ impl Stop {
         Self(Some(flag))
     }
 
-    /// Whether it is raised.
+    /// Whether it is raised; work is taken to end then.
     pub fn raised(&self) -> bool {
-        self.0.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
+        let raised = self.0.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
+        if raised {
+            halt::see();
+        }
+        raised
     }
 }
