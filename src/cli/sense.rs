@@ -86,7 +86,7 @@ fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
     let profile = loads.iter().any(|load| matches!(load, Basis::Profile(_)));
     if let (Smoothing::Fixed(deviation), true) = (smoothing, asked.dynamic) {
         return Err(Error::Usage(format!(
-            "--smoothing {deviation}: over time there are likelihood, discrepancy and off; several loads have several units"
+            "--smoothing {deviation}: a number is that of a profile at rest; with --dynamic there are likelihood, discrepancy and off"
         )));
     }
     if let Some(how) = asked.smoothing.as_ref().filter(|_| !profile && !asked.dynamic) {

@@ -158,10 +158,10 @@ fn derivatives_by_values_at_knots_are_those_of_differences() {
     let case = sensor(&["/solver/rtol=1e-8"]);
     let amplitudes = basis::amplitudes(&case, &[Basis::TipForce, Basis::Uniform]).unwrap();
     let (probed, names) = probed(&case).unwrap();
-    let knots = Knots::new(4, 0.1);
+    let knots = Knots::new(5, 0.1);
     let instants = [0.02, 0.06, 0.1];
     let mut model = InTime::new(&probed, names[..2].to_vec(), &amplitudes, &knots, &instants, &|| false).unwrap();
-    let at: Vec<f64> = (0..8).map(|k| 0.1 * f64::from(k) - 0.3).collect();
+    let at: Vec<f64> = (0..10).map(|k| 0.08 * f64::from(k) - 0.3).collect();
     let jacobian = model.at(&at).unwrap().1;
     let size = jacobian.amax();
     for k in [0, 3, 6] {
@@ -180,13 +180,18 @@ fn derivatives_by_values_at_knots_are_those_of_differences() {
 #[test]
 fn what_cannot_be_followed_is_refused() {
     let dir = tempfile::tempdir().unwrap();
-    let rows = |last: &str| format!("t_s,pressure_1_pa\n0,1\n0.1,1\n0.2,1\n{last},1\n");
-    let cases: [(String, &[&str], &str); 7] = [
-        ("pressure_1_pa\n1\n1\n1\n1\n".into(), &[], "have no instants"),
+    let rows = |last: &str| format!("t_s,pressure_1_pa\n0,1\n0.1,1\n0.15,1\n0.2,1\n{last},1\n");
+    let cases: [(String, &[&str], &str); 8] = [
+        ("pressure_1_pa\n1\n1\n1\n1\n1\n".into(), &[], "have no instants"),
         ("t_s,pressure_1_pa\n0,1\n0.1,2\n".into(), &[], "2 instants are too few"),
         (rows("0.7"), &[], "--set /time/end_s=0.7"),
-        (rows("0.3"), &["--smoothing", "5"], "several loads have several units"),
+        (
+            rows("0.3"),
+            &["--smoothing", "5"],
+            "a number is that of a profile at rest",
+        ),
         (rows("0.3"), &["--at", "0.2"], "cannot be used with"),
+        (rows("0.3"), &["--load", "tip-force", "--knots", "6"], "at most 5 knots"),
         (rows("0.3"), &["--load", "profile:150"], "150 loads are too many"),
         (
             rows("0.3"),

@@ -24,16 +24,16 @@ pub struct SenseArguments {
     #[arg(long, value_name = "PA")]
     pub noise: Option<f64>,
     /// How smooth a profile, or a load over time, is taken to be: as the data speak for (likelihood), so that they are left their noise (discrepancy), off,
-    /// or the standard deviation of its second differences [N/m]
+    /// or, of a profile at rest, the standard deviation of its second differences [N/m]
     /// [default: likelihood]
     #[arg(long, value_name = "HOW")]
     pub smoothing: Option<String>,
     /// Rows are instants (column t_s) of a run of the case, and the loads change while it lasts: with inertia and flow, by runs
     #[arg(long, conflicts_with_all = ["at", "choose"], requires = "pressures")]
     pub dynamic: bool,
-    /// Equally spaced instants between which a load over time is a smooth curve, from 4 to 200
-    /// [default: as many as rows, at most 41]
-    #[arg(long, value_name = "N", requires = "dynamic", value_parser = clap::value_parser!(u16).range(4..=200))]
+    /// Equally spaced instants between which a load over time is a smooth curve, from 5 to 200, no
+    /// more than rows [default: as many as rows, at most 41]
+    #[arg(long, value_name = "N", requires = "dynamic", value_parser = clap::value_parser!(u16).range(5..=200))]
     pub knots: Option<u16>,
     /// Instant whose own loads of the case act besides [default: the end of the run]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]

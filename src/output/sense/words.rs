@@ -15,13 +15,14 @@ pub fn words(found: &Sensed) -> String {
     if !found.rows.is_empty() {
         let (headings, rows) = table(found);
         let mut lines = vec![headings];
-        let more = rows.len().saturating_sub(ROWS);
         // of a curve some instants from its start to its end, of measurements by themselves the first
         let every = match found.over_time {
             Some(_) => rows.len().div_ceil(ROWS),
             None => 1,
         };
+        let all = rows.len();
         lines.extend(rows.into_iter().step_by(every.max(1)).take(ROWS));
+        let more = all + 1 - lines.len();
         text += &format!("\n{}", aligned(&lines, &[0]));
         if more > 0 {
             text += &format!("{} more rows in sense.csv\n", count(more as u64));
@@ -226,7 +227,7 @@ pub fn about_noise(found: &Sensed) -> String {
         text += &format!(
             "\nover time: {} values of each load, one every {} s, a smooth curve between; the pressures tell {}; {} runs",
             over_time.knots,
-            significant(over_time.until_s / (over_time.knots - 1) as f64, 3),
+            significant(over_time.every_s, 3),
             told.join(", "),
             over_time.runs
         );

@@ -20,6 +20,11 @@ pub trait Forward {
     fn grain(&self) -> f64 {
         CLOSE
     }
+
+    /// Steps of Gauss and Newton's iteration at most, and halvings of a step.
+    fn patience(&self) -> [u32; 2] {
+        [STEPS, HALVINGS]
+    }
 }
 
 /// Measurements that some amplitudes are to explain.
@@ -76,6 +81,8 @@ pub struct Found {
     pub seen: Seen,
     /// Times that values were computed.
     pub runs: u32,
+    /// Whether the last iteration came to an end by itself.
+    pub settled: bool,
 }
 
 /// Amplitudes of all problems, and what they share.
@@ -197,6 +204,7 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
         predicted: state.values,
         jacobian: state.jacobian,
         runs: state.runs,
+        settled: state.settled,
     });
     Ok(Estimate {
         found: found.collect(),
@@ -273,6 +281,7 @@ struct State {
     /// Values that were measured: place, measurement, deviation.
     measured: Vec<(usize, f64, f64)>,
     runs: u32,
+    settled: bool,
 }
 
 impl State {
@@ -286,6 +295,7 @@ impl State {
             jacobian,
             measured: measured.collect(),
             runs: 1,
+            settled: true,
         }
     }
 
@@ -321,7 +331,9 @@ impl State {
             .map(|(_, value, deviation)| (value / deviation).powi(2))
             .sum::<f64>();
         let size = size.sqrt();
-        for _ in 0..STEPS {
+        self.settled = true;
+        let [steps, halvings] = problem.forward.patience();
+        for _ in 0..steps {
             let posterior = self.linear().posterior(before);
             let whole = &posterior.x - &self.at;
             let change = (self.weighted() * &whole).norm().max((before * &whole).norm());
@@ -334,7 +346,7 @@ impl State {
             let now = cost(&self.at, &self.values);
             let mut share = 1.0;
             let (mut taken, mut runs) = (None, 0);
-            for _ in 0..HALVINGS {
+            for _ in 0..halvings {
                 let there = &self.at + &whole * share;
                 runs += 1;
                 match problem.forward.at(there.as_slice()) {
@@ -354,6 +366,7 @@ impl State {
                 None => return Ok(posterior),
             }
         }
+        self.settled = false;
         Ok(self.linear().posterior(before))
     }
 }

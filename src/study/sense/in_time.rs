@@ -15,7 +15,8 @@ use crate::run::sensitivity::forward::By;
 use crate::study::followed::Followed;
 use crate::study::slopes;
 
-/// Equally spaced instants from the start on, between which a load is a natural cubic spline.
+/// Equally spaced instants between which a load is a natural cubic spline: one before the start and one after the end, since a natural spline has no
+/// curvature at its ends, which a load may have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Knots {
     /// The instants [s].
@@ -25,9 +26,10 @@ pub struct Knots {
 }
 
 impl Knots {
-    /// So many up to an instant.
+    /// So many for the time up to an instant; at least [`Knots::FEWEST`].
     pub fn new(count: usize, end: f64) -> Self {
-        let at: Vec<f64> = (0..count).map(|m| end * m as f64 / (count - 1) as f64).collect();
+        let every = end / (count - 3) as f64;
+        let at: Vec<f64> = (0..count).map(|m| (m as f64 - 1.0) * every).collect();
         let one = |m: usize| {
             let values = (0..count).map(|k| f64::from(u8::from(k == m)));
             Table::new(at.clone(), values.collect(), Interpolation::Cubic)
@@ -36,6 +38,14 @@ impl Knots {
             each: (0..count).map(one).collect(),
             at,
         }
+    }
+
+    /// Knots at least: start, middle, end and those beyond.
+    pub const FEWEST: usize = 5;
+
+    /// Time between two [s].
+    pub fn every(&self) -> f64 {
+        self.at[1] - self.at[0]
     }
 
     /// How much the value at each knot counts at an instant.
@@ -161,6 +171,10 @@ impl Forward for InTime<'_> {
 
     fn grain(&self) -> f64 {
         self.case.solver.rtol
+    }
+
+    fn patience(&self) -> [u32; 2] {
+        [12, 4]
     }
 }
 

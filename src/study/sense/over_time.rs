@@ -25,8 +25,6 @@ use crate::error::{Code, Error, Result};
 use crate::numerics::inverse::{Seen, second_differences};
 use crate::run::known;
 
-/// Knots at least: a spline with fewer is hardly one.
-const FEWEST: usize = 4;
 /// Knots where nothing else is asked for, at most.
 const USUAL: usize = 41;
 /// Amplitudes of all loads at all knots, at most: every one of them is differentiated by in each run.
@@ -100,7 +98,7 @@ pub(super) fn find(
     let correlation = correlation(&left);
     found.over_time = Some(OverTime {
         knots: knots.at.len(),
-        until_s: instants[instants.len() - 1],
+        every_s: knots.every(),
         told: resolved(one, &problems[0], &estimate, amplitudes.len()),
         correlation,
         runs: one.runs,
@@ -113,6 +111,12 @@ pub(super) fn find(
     let coloured = coloured(&found, correlation, left.len(), knots.at.len());
     found.warnings.extend(off);
     found.warnings.extend(coloured);
+    if !one.settled {
+        found.warnings.push(Code::UnexplainedPressures.warning(format!(
+            "the search ended before it settled, after {} runs: the loads told are not those that fit best; fewer knots, or more smoothing, make it sure",
+            one.runs
+        )));
+    }
     Ok(found)
 }
 
@@ -124,10 +128,11 @@ fn instants(case: &Case, measured: &Measured) -> Result<Vec<f64>> {
             "the measurements have no instants; they stand in a column t_s, from the start of the run on".into(),
         ));
     };
-    if times.len() < FEWEST {
+    if times.len() < Knots::FEWEST {
         return Err(usage(format!(
-            "{} instants are too few to follow a load by; {FEWEST} are the fewest",
-            times.len()
+            "{} instants are too few to follow a load by; {} are the fewest",
+            times.len(),
+            Knots::FEWEST
         )));
     }
     let end = case.time.end_s;
@@ -151,10 +156,16 @@ fn knot_count(asked: Option<usize>, rows: usize, loads: usize) -> Result<usize> 
             count * loads
         )));
     }
-    match count >= FEWEST {
+    if count > rows {
+        return Err(Error::Usage(format!(
+            "--knots {count}: the measurements have {rows} instants, and what is between them would be told by nothing; at most {rows} knots"
+        )));
+    }
+    match count >= Knots::FEWEST {
         true => Ok(count),
         false => Err(Error::Usage(format!(
-            "--dynamic: {loads} loads are too many: each needs {FEWEST} knots, and {ALL} values is the most"
+            "--dynamic: {loads} loads are too many: each needs {} knots, and {ALL} values is the most",
+            Knots::FEWEST
         ))),
     }
 }

@@ -126,8 +126,8 @@ pub struct Smoothed {
 pub struct OverTime {
     /// Equally spaced instants between which each load is a natural cubic spline.
     pub knots: usize,
-    /// The last of them; the first is the start of the run [s].
-    pub until_s: f64,
+    /// Time between two of them; the first lies as much before the start of the run, the last as much after the last measurement [s].
+    pub every_s: f64,
     /// Of each load how many of the values at knots the pressures tell; the others are known by its smoothness.
     pub told: Vec<f64>,
     /// Correlation of what is left of a pressure with what is left of it an instant before: about nothing, where that is noise.

@@ -39,7 +39,11 @@ pub(super) fn noise(asked: &Asked, measured: &Measured, estimate: &Estimate) -> 
         from,
         sd_pa,
         freedom: estimate.freedom,
-        chi_square: estimate.left / (estimate.noise * estimate.noise),
+        // pressures that all are what the loads make of them have no noise at all
+        chi_square: match estimate.noise > 0.0 {
+            true => estimate.left / (estimate.noise * estimate.noise),
+            false => 0.0,
+        },
         quantile: estimate.quantile,
     }
 }
