@@ -213,17 +213,19 @@ impl<'a> Walk<'a> {
             .filter(|name| written.is_none_or(|members| members.get(*name).is_none()));
         // one that is there already may be meant by what is set besides
         let names = || properties.keys().map(String::as_str);
-        let slip = slips::unit(key, value, absent.clone()).or_else(|| slips::unit(key, value, names()));
+        let full = self.faults.is_full();
+        let there = || (!full).then(names).into_iter().flatten();
+        let slip = slips::unit(key, value, absent.clone()).or_else(|| slips::unit(key, value, there()));
         let (nearest, hint) = match slip {
             Some((meant, hint)) => (Some(meant), Some(hint)),
-            None => (nearest(key, absent).or_else(|| nearest(key, names())), None),
+            None => (nearest(key, absent).or_else(|| nearest(key, there())), None),
         };
         let fault = Violation::new(
             Code::Key,
             child(pointer, key),
             format!("unknown key \"{}\"", short(key)),
         );
-        if self.faults.is_full() {
+        if full {
             self.faults.push_unknown_key(fault);
             return nearest;
         }
