@@ -132,59 +132,6 @@ fn a_wrong_key_beside_a_preset_and_with_another_unit_is_offered() {
     }
 }
 
-/// Goal: a pressure, flow or volume of an end in another unit is told with its number; what is set besides a key that is there, too. Before, the key
-/// alone was named: to follow it was a factor of a thousand.
-#[test]
-fn forms_and_what_is_set_are_told_with_their_factor() {
-    let of = |set: &str| match case::parse(WIRING, Path::new("good.json"), Path::new("cases"), &[set.into()]) {
-        Err(Error::Case(fault)) => {
-            let [found] = &fault.violations[..] else {
-                panic!("{}", case::render(&fault, false, 100))
-            };
-            (
-                found.nearest.clone().unwrap_or_default(),
-                found.hint.clone().unwrap_or_default(),
-            )
-        }
-        other => panic!("{set}: {:?}", other.err()),
-    };
-    for (set, meant, hint) in [
-        (
-            r#"/network/chains/1/ends/0={"pressure_kpa": 60}"#,
-            "pressure_pa",
-            r#"write "pressure_pa": 60000, which is 60 kPa"#,
-        ),
-        (
-            r#"/network/chains/1/ends/0={"pressure_bar": 2}"#,
-            "pressure_pa",
-            r#"write "pressure_pa": 200000, which is 2 bar"#,
-        ),
-        (
-            r#"/network/chains/1/ends/0={"flow_ml_min": 6}"#,
-            "flow_m3_s",
-            r#"write "flow_m3_s": 1e-7, which is 6 ml/min"#,
-        ),
-        (
-            r#"/network/chains/1/ends/0={"volume_ml": 2}"#,
-            "volume_m3",
-            r#"write "volume_m3": 2e-6, which is 2 ml"#,
-        ),
-        (
-            "/fluid/viscosity_cp=300",
-            "viscosity_pa_s",
-            r#"write "viscosity_pa_s": 0.3, which is 300 cP"#,
-        ),
-        ("/fluid/viscosity=300", "viscosity_pa_s", ""),
-        (
-            r#"/ends/root={"clamped": {"angle_deg": 180}}"#,
-            "slope_rad",
-            r#"write "slope_rad": 3.14159265359, which is 180 deg"#,
-        ),
-    ] {
-        assert_eq!(of(set), (meant.to_owned(), hint.to_owned()), "{set}");
-    }
-}
-
 /// Goal: what is wrong with a number is told of the number, not of a text; what stands in an array that has fewer places is told of the array.
 #[test]
 fn remedies_are_of_what_is_wrong() {

@@ -16,6 +16,9 @@ const RARE: [&str; 4] = ["rad", "pa_s", "hz", "kg_m3"];
 /// The key that one with another unit means, and what to write there.
 pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> + Clone) -> Option<(String, String)> {
     let key = key.to_lowercase();
+    if !key.contains('_') && key != "omega" {
+        return None;
+    }
     let of = |unit: &str| {
         let end = format!("_{unit}");
         known.clone().filter(move |name| name.ends_with(&end))

@@ -1,6 +1,7 @@
 //! Units of a laboratory and what each is in SI units; how names tell theirs: `angle_deg`, `flow_ml_min`.
 
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// A unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -169,8 +170,14 @@ fn ends(unit: Unit) -> impl Iterator<Item = String> {
         .strip_prefix("1/")
         .map_or_else(|| word.replace('/', "_per_"), |under| format!("per_{under}"));
     let short = word.replace("1/", "per_").replace('/', "_");
-    [per, short].into_iter().map(|end| format!("_{end}"))
+    [per, short].into_iter()
 }
+
+/// All ends: a case may have very many keys that are none.
+static ENDS: LazyLock<Vec<(Unit, String)>> = LazyLock::new(|| {
+    let told = all().filter(|unit| !["1", "l", "g", "h"].contains(&unit.name));
+    told.flat_map(|unit| ends(unit).map(move |end| (unit, end))).collect()
+});
 
 /// What the end of a name tells of its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -188,15 +195,14 @@ pub enum Suffix<'n> {
 pub fn suffix<'n>(name: &'n str, si: Option<&str>) -> Suffix<'n> {
     let lower = name.to_ascii_lowercase();
     let cut = |end: &str| {
-        let whole = lower.len() > end.len() && lower.ends_with(end);
-        name.len().checked_sub(end.len()).filter(|_| whole)
+        let rest = lower.strip_suffix(end)?.strip_suffix('_')?;
+        (!rest.is_empty()).then_some(rest.len())
     };
     // a curvature of `_1_m` is none in metres, and `_n_m` is a moment where nothing else is known
-    let curvature = cut("_1_m").filter(|at| lower[..*at].ends_with("curvature"));
-    let found = all()
-        .filter(|unit| !["1", "l", "g", "h"].contains(&unit.name))
-        .flat_map(|unit| ends(unit).map(move |end| (unit, end)))
-        .filter_map(|(unit, end)| Some((unit, cut(&end)?)))
+    let curvature = cut("1_m").filter(|at| lower[..*at].ends_with("curvature"));
+    let found = ENDS
+        .iter()
+        .filter_map(|(unit, end)| Some((*unit, cut(end)?)))
         .min_by_key(|(unit, at)| {
             let per_length = unit.si == "N/m" && !lower.contains("_per_");
             (*at, si != Some(unit.si), per_length)
@@ -207,8 +213,8 @@ pub fn suffix<'n>(name: &'n str, si: Option<&str>) -> Suffix<'n> {
     };
     let Some((unit, at)) = found else {
         let names = ELSE_NAMES.iter().filter(|(_, of)| si == Some(of));
-        let named = names.map(|(word, _)| *word).find_map(|word| cut(&format!("_{word}")));
-        let known = FOREIGN.iter().find_map(|word| cut(&format!("_{word}")));
+        let named = names.map(|(word, _)| *word).find_map(cut);
+        let known = FOREIGN.into_iter().find_map(cut);
         return match named.or(known) {
             Some(at) => Suffix::Unknown(&name[..at], &name[at + 1..]),
             None => Suffix::None,

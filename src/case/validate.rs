@@ -213,10 +213,12 @@ impl<'a> Walk<'a> {
             .filter(|name| written.is_none_or(|members| members.get(*name).is_none()));
         // one that is there already may be meant by what is set besides
         let names = || properties.keys().map(String::as_str);
-        let slip = slips::unit(key, value, absent.clone()).or_else(|| slips::unit(key, value, names()));
+        let full = self.faults.is_full();
+        let there = || (!full).then(names).into_iter().flatten();
+        let slip = slips::unit(key, value, absent.clone()).or_else(|| slips::unit(key, value, there()));
         let (nearest, hint) = match slip {
             Some((meant, hint)) => (Some(meant), Some(hint)),
-            None => (nearest(key, absent).or_else(|| nearest(key, names())), None),
+            None => (nearest(key, absent).or_else(|| nearest(key, there())), None),
         };
         if let Some(meant) = &nearest {
             self.faults.doubt(child(pointer, meant));
@@ -226,7 +228,7 @@ impl<'a> Walk<'a> {
             child(pointer, key),
             format!("unknown key \"{}\"", short(key)),
         );
-        if self.faults.is_full() {
+        if full {
             self.faults.push_unknown_key(fault);
             return nearest;
         }
