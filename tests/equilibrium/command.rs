@@ -129,7 +129,12 @@ fn command_says_what_cannot_be() {
             "nothing holds",
         ),
         (
-            vec!["check", "cases/tour-actuator.json", "--set", "/ends/root=\"free\""],
+            vec![
+                "equilibrium",
+                "cases/tour-actuator.json",
+                "--set",
+                "/ends/root=\"free\"",
+            ],
             3,
             "nothing holds the beam along and across",
         ),
