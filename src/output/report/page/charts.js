@@ -128,6 +128,9 @@ function showBars(part) {
   return { card, draw: null };
 }
 
+/** How lines go that share a colour, eight colours to each: forty are told apart. */
+const DASHES = [null, [8, 4], [2, 3], [12, 3, 2, 3], [5, 2, 1, 2, 1, 2]];
+
 /** Histories of several runs over each other: a panel for each quantity that is chosen. */
 function showOverlay(part) {
   const body = section("histories", "Over time", "The runs over each other; quantities are chosen by their buttons.");
@@ -140,7 +143,7 @@ function showOverlay(part) {
   const paint = () => {
     group.clear();
     for (const q of all.filter((one) => chosen.has(one.name))) {
-      group.add(q.runs.map((values, k) => ({ label: part.runs[k], unit: q.unit, values, colour: named(k), dash: k % 8 === k ? null : [6, 4] })), 230, q.label);
+      group.add(q.runs.map((values, k) => ({ label: part.runs[k], unit: q.unit, values, colour: named(k), dash: DASHES[Math.floor(k / 8) % DASHES.length] })), 230, q.label);
     }
     setTimeout(group.mark, 0);
   };

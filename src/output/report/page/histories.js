@@ -48,7 +48,7 @@ function onePanel(host, group, times, series, height, title) {
   const ylabel = `${heading}${unit ? `[${unit}]` : ""}`.trim() || title.slice(0, Math.floor((height - 50) / 6.6));
   const options = {
     width: Math.max(holder.clientWidth, 240), height, cursor: { sync: { key: group.key }, drag: { x: true, y: false, uni: 20 }, points: { size: 6 } },
-    legend: { live: true }, scales: { x: { time: false, min: group.range?.[0], max: group.range?.[1] } },
+    legend: { live: true, markers: { dash: (u, k) => (u.series[k].dash ? "dashed" : "solid") } }, scales: { x: { time: false, min: group.range?.[0], max: group.range?.[1] } },
     axes: [{ ...axis, values: minus, label: "time [s]", labelSize: 18, labelFont: axis.font, size: 32 }, { ...axis, values: minus, size: 62, label: ylabel, labelSize: 18, labelFont: axis.font }],
     series: [{ label: "t [s]", value: shown }, ...series.map((s) => ({ label: `${s.label}${unit ? ` [${unit}]` : ""}`, stroke: s.colour, width: 1.6, value: shown, points: { show: false }, dash: s.dash }))],
     hooks: { setScale: [(u, key) => key === "x" && !group.busy && group.plots.some((p) => p.plot === u) && group.zoom(u.scales.x.min, u.scales.x.max)] },
