@@ -31,10 +31,10 @@ pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> +
         let hint = told(&meant, value, GRAVITY, "g");
         return Some((meant, hint));
     }
-    if key == "omega" || key.starts_with("omega_") || key.ends_with("_rad_s") {
-        if let Some(meant) = known.clone().find(|name| *name == "frequency_hz") {
-            return Some((meant.to_owned(), told(meant, value, 1.0 / TAU, "rad/s")));
-        }
+    let turning = key == "omega" || key.starts_with("omega_") || key.ends_with("_rad_s");
+    let mut frequency = known.clone().filter(|name| turning && *name == "frequency_hz");
+    if let Some(meant) = frequency.next() {
+        return Some((meant.to_owned(), told(meant, value, 1.0 / TAU, "rad/s")));
     }
     if let Some(meant) = key
         .strip_suffix("_cst")

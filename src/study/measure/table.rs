@@ -189,7 +189,7 @@ fn column(names: &[(&str, Range<usize>)], header: &Line, quantity: Quantity) -> 
     let heading = &headings[at];
     let scale = match (&heading.unit, &heading.unknown) {
         (None, None) => Err(format!("the column {name} has no unit")),
-        _ => heading.scale(unit, &format!("{name}")),
+        _ => heading.scale(unit, name),
     };
     scale.map(|scale| (at, scale)).map_err(|what| {
         let all: Vec<&str> = units::of_dimension(unit).map(|unit| unit.name).collect();
