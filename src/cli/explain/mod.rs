@@ -72,7 +72,7 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
     }
     // a word may be a key and mean others too: flow is an effect, and a port has flow_m3_s
     let known = found.len();
-    let also = synonyms::of(name).into_iter().flat_map(|key| named(key)).take(MOST);
+    let also = synonyms::of(name).into_iter().flat_map(named).take(MOST);
     let also: Vec<&Meaning> = also.filter(|m| !found.contains(m)).collect();
     found.extend(also);
     for (k, m) in found.iter().enumerate() {

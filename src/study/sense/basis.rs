@@ -45,7 +45,7 @@ pub fn own(case: &Case, at_s: f64) -> Vec<String> {
         }
     }
     for (i, attachment) in case.attachments.iter().enumerate() {
-        let forces = attachment.forces().into_iter().filter(|(_, signal)| acts(signal));
+        let forces = attachment.forces().filter(|(_, signal)| acts(signal));
         all.extend(forces.map(|(key, _)| format!("/attachments/{i}/{key}")));
     }
     for (end, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
