@@ -9,6 +9,7 @@ use super::scheme::Scheme;
 use super::signals::{Keep, Limit, Signal};
 use crate::case::Case;
 use crate::error::Result;
+use crate::integrate::halt;
 use crate::run::dynamics;
 use crate::run::null;
 use crate::run::summary::{Counters, Status};
@@ -112,6 +113,9 @@ pub struct Allowance {
 ///
 /// The first run warms up. It counts when there is no allowance for others: a long run needs no warming.
 pub fn run(case: &Case, setting: Setting, role: Role, budget: Budget, allowed: Allowance) -> Result<(Trial, f64)> {
+    if halt::asked() {
+        return Ok((Trial::skipped(setting, role, "interrupted".into()), 0.0));
+    }
     let variant = setting.case(case);
     let once = |most: f64| -> Result<(Trial, f64)> {
         let begin = Instant::now();

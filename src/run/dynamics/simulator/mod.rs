@@ -14,6 +14,7 @@ pub use snapshot::Snapshot;
 pub use spent::Spent;
 
 use super::faults::{beyond, fault, inconsistent, stalled, too_many_steps};
+use super::follow::narrow;
 use super::pace::Pace;
 use super::switch::switch;
 use crate::case::Case;
@@ -197,7 +198,9 @@ impl Simulator {
     /// A time [s], or that of a stop of the case from which round-off alone keeps it.
     fn at_stop(&self, until: f64) -> f64 {
         let near = |stop: &&Stop| (stop.t - until).abs() <= 1e-12 * until && stop.t > self.time();
-        self.stops[self.next..].iter().find(near).map_or(until, |stop| stop.t)
+        let ahead = self.stops[self.next..].iter();
+        let mut ahead = ahead.take_while(|stop| stop.t <= until * (1.0 + 1e-12));
+        ahead.find(near).map_or(until, |stop| stop.t)
     }
 
     /// Whether the simulation stands at a stop that it has not passed: its row is that before, as in a history.

@@ -1,7 +1,6 @@
 //! Looks at accepted steps as a run does, and ends where the model is left.
 
-use super::super::follow::narrow;
-use super::{Simulator, beyond, fault, solver};
+use super::{Simulator, beyond, fault, narrow, solver};
 use crate::error::Result;
 
 impl Simulator {
