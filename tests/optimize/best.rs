@@ -125,10 +125,10 @@ fn a_limit_holds_the_pump() {
             "equilibrium",
         ],
     );
-    assert!(
-        found["found"] == true && found["warnings"].as_array().is_some_and(Vec::is_empty),
-        "{found}"
-    );
+    // the search has nothing to say; the plain command has, of coefficients of a softer beam
+    let warnings = found["warnings"].as_array().expect("warnings");
+    let codes: Vec<&str> = warnings.iter().filter_map(|one| one.as_str()?.get(..4)).collect();
+    assert!(found["found"] == true && codes == ["W002", "W017"], "{found}");
     let by = |pointer: &str| {
         let all = found["variables"].as_array().expect("numbers");
         all.iter()

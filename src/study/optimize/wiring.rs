@@ -1,5 +1,7 @@
 //! Wirings, or anything else of a case, as something that is chosen.
 
+use serde_json::Value;
+
 use crate::case::Case;
 use crate::error::{Error, Result};
 
@@ -31,7 +33,11 @@ pub fn choices(text: &str) -> Result<Vec<Alternative>> {
         return Err(wrong("two alternatives at least, with | between them"));
     }
     // 0.50 is 0.5
-    let read = |text: &str| serde_json::from_str(text).unwrap_or_else(|_| serde_json::Value::from(text));
+    let read = |text: &str| match serde_json::from_str::<Value>(text) {
+        Ok(number) if number.is_number() => number.as_f64().into(),
+        Ok(other) => other,
+        Err(_) => Value::from(text),
+    };
     for (k, one) in all.iter().enumerate() {
         if all[..k].iter().any(|before| read(before) == read(one)) {
             return Err(wrong(&format!("{one} stands there twice")));
