@@ -97,6 +97,7 @@ codes! {
     StateAside = "W033", "Loads whose path leads to another state.";
     ModesExchanged = "W034", "Modes that change places from one design to the next.";
     Optimum = "W035", "A best that may be none.";
+    FastLoad = "W036", "A load that may change faster than it is followed.";
 }
 
 impl Code {

@@ -172,7 +172,7 @@ fn what_is_wrong_is_refused() {
             one,
             &["--load", "tip-force", "--noise", "1", "--smoothing", "likelihood"],
             2,
-            "only a profile is smooth",
+            "only a profile, or a load over time, is smooth",
         ),
         (one, &["--smoothing", "5"], 2, "--load profile:10"),
         (one, &["--smoothing", "much"], 2, "likelihood, discrepancy, off"),

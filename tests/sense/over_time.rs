@@ -108,6 +108,7 @@ fn a_force_over_time_comes_back_out_of_its_pressures() {
         "5",
     ];
     let said = found(&dir, &few)["warnings"].to_string();
+    assert!(said.contains("W036 tip_force"), "{said}");
     assert!(said.contains("neighbours in time go together"), "{said}");
 }
 

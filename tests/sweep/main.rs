@@ -9,5 +9,6 @@ mod program;
 mod cluster;
 mod common;
 mod going_on;
+mod neighbours;
 mod refused;
 mod rows;

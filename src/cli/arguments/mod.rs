@@ -72,7 +72,7 @@ pub enum Command {
     Merge(MergeArguments),
     /// Fit numbers of a case to measured data between bounds, with errors, and with what the data do not tell
     Fit(FitArguments),
-    /// Find loads from measured pressures of bladders at rest, with bands; what pressures tell, which to measure
+    /// Find loads from measured pressures of bladders, at rest or over time, with bands; what pressures tell, which to measure
     Sense(SenseArguments),
     /// Find the numbers of a case between bounds with which a figure is largest or least, under limits to others
     Optimize(OptimizeArguments),

@@ -25,10 +25,14 @@ use crate::error::{Code, Error, Result};
 use crate::numerics::inverse::{Seen, second_differences};
 use crate::run::known;
 
+/// Knots at most.
+const MOST: usize = 200;
 /// Knots where nothing else is asked for, at most.
 const USUAL: usize = 41;
 /// Amplitudes of all loads at all knots, at most: every one of them is differentiated by in each run.
 const ALL: usize = 400;
+/// Share of the values at knots, told by the pressures themselves, from which on nothing shows that there are enough of them.
+const ALL_TOLD: f64 = 0.9;
 /// Standard errors of a correlation, above which what is left is not noise.
 const UNLIKELY: f64 = 4.0;
 
@@ -111,6 +115,10 @@ pub(super) fn find(
     let coloured = coloured(&found, correlation, left.len(), knots.at.len());
     found.warnings.extend(off);
     found.warnings.extend(coloured);
+    if let Some(over_time) = &found.over_time {
+        let fast = fast(&found, over_time, instants.len());
+        found.warnings.extend(fast);
+    }
     if !one.settled {
         found.warnings.push(Code::UnexplainedPressures.warning(format!(
             "the search ended before it settled, after {} runs: the loads told are not those that fit best; fewer knots, or more smoothing, make it sure",
@@ -248,6 +256,26 @@ fn correlation(left: &[Left]) -> f64 {
         }
     }
     products / squares.max(f64::MIN_POSITIVE)
+}
+
+/// What is said where the pressures tell every value at the knots: what is between them may be another curve.
+fn fast(found: &Sensed, over_time: &OverTime, rows: usize) -> Option<String> {
+    let told = found.amplitudes.iter().zip(&over_time.told);
+    let names = told.filter(|(_, told)| **told > ALL_TOLD * over_time.knots as f64);
+    let names: Vec<&str> = names.map(|(a, _)| a.name.as_str()).collect();
+    let remedy = match over_time.knots < rows.min(MOST) {
+        true => "more knots (--knots) show it",
+        false => "measurements at more instants would show it",
+    };
+    (!names.is_empty()).then(|| {
+        Code::FastLoad.warning(format!(
+            "{}: the pressures tell as good as every value at the {} knots, one every {:.3e} s, so that nothing shows whether the load changes faster; bands \
+             hold it only if it does not; {remedy}",
+            names.join(", "),
+            over_time.knots,
+            over_time.every_s
+        ))
+    })
 }
 
 /// What is said where neighbours in time go together in what is left.
