@@ -145,12 +145,14 @@ def test_ctrl_c_ends_a_sweep_with_what_there_is(tmp_path):
 
 def stopped(act, after=0.4):
     """What it answers when Ctrl-C comes meanwhile, nothing where that is raised; ends soon."""
-    threading.Timer(after, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    press = threading.Timer(after, lambda: os.kill(os.getpid(), signal.SIGINT))
+    press.start()
     begin = time.monotonic()
     try:
         answer = act()
     except KeyboardInterrupt:
         answer = None
+    press.cancel()
     assert time.monotonic() - begin < 20
     return answer
 
@@ -162,13 +164,18 @@ def test_ctrl_c_ends_what_takes_long_with_what_there_is():
 
 
 def test_ctrl_c_is_raised_where_there_is_no_part_of_an_answer():
-    fine = {"/mesh/cells_per_segment": 8, "/solver/rtol": 1e-6}
+    # what was complete before is not called interrupted
+    def whole(answer):
+        return answer is None or not answer.interrupted
+
+    fine = {"/mesh/cells_per_segment": 16, "/solver/rtol": 1e-8}
     driven = slcbeam.load("tour-harvester", set=fine)
     for command in (slcbeam.periodic, slcbeam.floquet):
-        assert stopped(lambda: command(driven)) is None
+        assert whole(stopped(lambda: command(driven)))
     measured = {"t_s": np.linspace(0.01, 1.5, 100), "tip_mm": np.linspace(0, 9, 100)}
     fitted = slcbeam.load("tour-actuator", set=fine)
-    assert stopped(lambda: slcbeam.fit(fitted, measured, {"/fluid/viscosity_pa_s": (0.05, 2)}, {"tip_mm": "tip_u1"})) is None
+    fit = lambda: slcbeam.fit(fitted, measured, {"/fluid/viscosity_pa_s": (0.05, 2)}, {"tip_mm": "tip_u1"})  # noqa: E731
+    assert whole(stopped(fit))
 
 
 def test_tables_are_frames_of_polars_too():

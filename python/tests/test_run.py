@@ -37,7 +37,8 @@ def test_arrays_and_folders_are_those_of_the_command_line(program, quick, tmp_pa
     theirs = commanded(program, tmp_path / "theirs", sets=SETS | more)
     result = slcbeam.run(quick.set(more), out=tmp_path / "ours")
     ours = tmp_path / "ours"
-    assert sorted(p.name for p in ours.iterdir()) == sorted(p.name for p in theirs.iterdir())
+    # the program alone says of which file of a case a result is
+    assert sorted(p.name for p in ours.iterdir()) == sorted(p.name for p in theirs.iterdir() if p.name != ".slcbeam.case")
     for name in ("history.csv", "case.json", "history.svg", "deflection.svg"):
         assert (ours / name).read_bytes() == (theirs / name).read_bytes(), name
     assert told(ours) == told(theirs)
