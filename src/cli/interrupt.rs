@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::embedded;
 use crate::error::{Error, Result};
-use crate::integrate::halt;
+pub use crate::integrate::halt::raised;
 use crate::run::stop::{INTERRUPTED, Stop};
 
 /// Exit codes of shells for a program that a signal ended begin here.
@@ -65,13 +65,4 @@ pub fn code() -> Option<ExitCode> {
 pub fn outlive_limits() {
     let told = Arc::new(AtomicBool::new(false));
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, told);
-}
-
-/// Whether the flag is up.
-pub fn raised(flag: &AtomicBool) -> bool {
-    let raised = flag.load(Ordering::Relaxed);
-    if raised {
-        halt::see();
-    }
-    raised
 }

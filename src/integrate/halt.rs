@@ -77,6 +77,15 @@ pub fn see() {
     });
 }
 
+/// Whether a flag is up; whoever asks is taken to end then.
+pub fn raised(flag: &AtomicBool) -> bool {
+    let raised = flag.load(Ordering::Relaxed);
+    if raised {
+        see();
+    }
+    raised
+}
+
 /// Whether a computation is to end; it is taken to do so.
 pub fn asked() -> bool {
     let asked = HEARD.with_borrow(|heard| {

@@ -1,7 +1,7 @@
 //! What asks work to end soon.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use crate::integrate::halt;
 
@@ -20,10 +20,6 @@ impl Stop {
 
     /// Whether it is raised; work is taken to end then.
     pub fn raised(&self) -> bool {
-        let raised = self.0.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
-        if raised {
-            halt::see();
-        }
-        raised
+        self.0.as_ref().is_some_and(|flag| halt::raised(flag))
     }
 }

@@ -10,7 +10,7 @@ use super::pressures::Measured;
 use super::rest::{AtRest, labels, probed};
 use super::sensed::{Chosen, Row, Sensed, Smoothed};
 use super::sight::{over_sizes, sight};
-use super::told::{self, Left, banded, left, unexplained};
+use super::told::{self, Left, alone, banded, left, unexplained};
 use crate::case::schema::Case;
 use crate::error::{Code, Error, Result};
 use crate::numerics::inverse::{Seen, second_differences};
@@ -134,11 +134,6 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
             .iter()
             .map(|one| over_sizes(one, &amplitudes))
             .collect();
-        let alone = |j: usize| {
-            let mut factors = vec![0.0; amplitudes.len()];
-            factors[j] = amplitudes[j].size;
-            factors
-        };
         found.rows = measured
             .rows
             .iter()
@@ -148,7 +143,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
                 line: measured.lines[k],
                 t_s: measured.times.as_ref().map(|times| times[k]),
                 amplitudes: (0..amplitudes.len())
-                    .map(|j| banded(&all_found, one, &alone(j)))
+                    .map(|j| banded(&all_found, one, &alone(&amplitudes, j)))
                     .collect(),
                 together: combinations.iter().map(|sum| banded(&all_found, one, sum)).collect(),
                 measured_pa: row.clone(),

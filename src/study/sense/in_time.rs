@@ -22,7 +22,7 @@ pub struct Knots {
     /// The instants [s].
     pub at: Vec<f64>,
     /// Splines that are 1 at a knot and 0 at the others.
-    each: Vec<Table>,
+    each: Vec<Signal>,
 }
 
 impl Knots {
@@ -32,7 +32,7 @@ impl Knots {
         let at: Vec<f64> = (0..count).map(|m| (m as f64 - 1.0) * every).collect();
         let one = |m: usize| {
             let values = (0..count).map(|k| f64::from(u8::from(k == m)));
-            Table::new(at.clone(), values.collect(), Interpolation::Cubic)
+            curve(&at, values.collect())
         };
         Self {
             each: (0..count).map(one).collect(),
@@ -50,13 +50,13 @@ impl Knots {
 
     /// How much the value at each knot counts at an instant.
     pub fn weights(&self, t: f64) -> Vec<f64> {
-        let of = |one: &Table| Signal::Table(one.clone()).value(t);
-        self.each.iter().map(of).collect()
+        self.each.iter().map(|one| one.value(t)).collect()
     }
+}
 
-    fn curve(&self, values: Vec<f64>) -> Signal {
-        Signal::Table(Table::new(self.at.clone(), values, Interpolation::Cubic))
-    }
+/// The spline through values at instants.
+fn curve(at: &[f64], values: Vec<f64>) -> Signal {
+    Signal::Table(Table::new(at.to_vec(), values, Interpolation::Cubic))
 }
 
 /// Pressures at instants, row by row, over the values of loads at knots in their sizes: knot by knot all loads.
@@ -127,7 +127,7 @@ fn with(case: &Case, amplitudes: &[Amplitude], knots: &Knots, values: &[f64]) ->
     let count = amplitudes.len();
     let signals = amplitudes.iter().enumerate().map(|(k, amplitude)| {
         let own = (0..knots.at.len()).map(|m| values[m * count + k] * amplitude.size);
-        knots.curve(own.collect())
+        curve(&knots.at, own.collect())
     });
     loaded(case, amplitudes, signals)
 }

@@ -19,7 +19,7 @@ use super::pressures::Measured;
 use super::rest::{labels, probed};
 use super::sensed::{OverTime, Row, Sensed, Smoothed};
 use super::sight::{over_sizes, sight};
-use super::told::{self, Left, banded, left, unexplained};
+use super::told::{self, Left, alone, banded, left, unexplained};
 use crate::case::schema::Case;
 use crate::error::{Code, Error, Result};
 use crate::numerics::inverse::{Seen, second_differences};
@@ -217,15 +217,10 @@ fn rows(
             let whole = weights.iter().flat_map(|w| factors.iter().map(move |f| w * f));
             banded(estimate, one, &whole.collect::<Vec<_>>())
         };
-        let alone = |j: usize| {
-            let mut factors = vec![0.0; loads];
-            factors[j] = amplitudes[j].size;
-            of(&factors)
-        };
         Row {
             line: measured.lines[k],
             t_s: Some(*t),
-            amplitudes: (0..loads).map(alone).collect(),
+            amplitudes: (0..loads).map(|j| of(&alone(amplitudes, j))).collect(),
             together: sums.iter().map(|sum| of(sum)).collect(),
             measured_pa: measured.rows[k].clone(),
             modelled_pa: one.predicted.as_slice()[k * each..(k + 1) * each].to_vec(),

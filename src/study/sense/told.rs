@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::basis::Amplitude;
 use super::estimate::{Estimate, Found, Problem};
 use super::find::Asked;
 use super::pressures::Measured;
@@ -12,6 +13,13 @@ use crate::numerics::normal;
 
 /// Chance of a sum of squares above which the model does not explain the data.
 const UNLIKELY: f64 = 1e-3;
+
+/// One amplitude as a sum of them over their sizes.
+pub(super) fn alone(amplitudes: &[Amplitude], which: usize) -> Vec<f64> {
+    let mut factors = vec![0.0; amplitudes.len()];
+    factors[which] = amplitudes[which].size;
+    factors
+}
 
 /// A sum of amplitudes over their sizes, if it is told.
 pub(super) fn banded(estimate: &Estimate, found: &Found, factors: &[f64]) -> Option<Banded> {
