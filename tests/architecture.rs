@@ -36,10 +36,13 @@ const LINES: usize = 400;
 /// Longer files, each with the reason.
 const LONG: [(&str, &str); 4] = [
     ("tests/architecture.rs", "the rules of the house, one test each"),
-    ("tests/cli.rs", "the command line from outside, one small run a test"),
+    (
+        "tests/commands/cli.rs",
+        "the command line from outside, one small run a test",
+    ),
     ("tests/equations.rs", "the index of equations, and one test each"),
     (
-        "tests/output.rs",
+        "tests/commands/output.rs",
         "one invented run serves all tests of a result folder",
     ),
 ];

@@ -1,6 +1,6 @@
 //! Every choice of effects on a scene in which everything acts at once: derivatives and balances.
 //!
-//! Tolerances: those of `tests/jacobian.rs` and `tests/physics/ledger.rs`, for the same reasons.
+//! Tolerances: those of `tests/laws/jacobian.rs` and `tests/physics/ledger.rs`, for the same reasons.
 
 use slcbeam::case::Case;
 use slcbeam::dae::BeamDae;

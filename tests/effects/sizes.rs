@@ -129,7 +129,7 @@ fn count(cells: i64, segments: i64, volumes: i64, effects: &str) -> (i64, i64) {
     (dae.len() as i64, dae.pattern().entries() as i64)
 }
 
-/// Flow in tubes creeps: what it brings otherwise is counted in `tests/tubes.rs`.
+/// Flow in tubes creeps: what it brings otherwise is counted in `tests/laws/tubes.rs`.
 fn creeping(effects: &str) -> String {
     let off = r#""tube_inertia":"off","tube_losses":"off""#;
     match effects {

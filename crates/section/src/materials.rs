@@ -112,7 +112,7 @@ macro_rules! presets {
 }
 
 /// Tension of dumbbells (ASTM D412, 450 mm/min, strain from the crosshead). The constants are a fit to its data by least squares with equal
-/// weights; `tests/materials.rs` holds them against points of the data.
+/// weights; `tests/case/materials.rs` holds them against points of the data.
 const MARECHAL: &str = "fit to the tension test in the Soft Robotics Materials Database, Marechal et al. 2021, Soft Robotics 8(3), doi:10.1089/soro.2019.0115";
 
 presets! {

@@ -129,7 +129,7 @@ pub struct Klu {
     /// Growth below which old pivots are dropped; 0 turns the guard off.
     ///
     /// At the default 1e-6 the factors still stand for a matrix within about ε / 1e-6 = 2e-10 of the given one, which
-    /// Newton's iteration does not notice; over the runs of `tests/sundials` the growth stays between 0.5 and 1.
+    /// Newton's iteration does not notice; over the runs of `tests/solvers/sundials` the growth stays between 0.5 and 1.
     pub smallest_growth: f64,
     /// Numerical factorisations, refactorisations included.
     pub factorizations: u64,

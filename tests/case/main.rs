@@ -1,0 +1,17 @@
+//! Cases: what ships, what may be written, what is made of it, and how every fault is told.
+
+#[path = "../common/chance.rs"]
+mod chance;
+mod comfort;
+mod faults;
+mod faulty;
+mod materials;
+mod measure;
+mod origins;
+mod robust;
+mod rules;
+mod section;
+mod shipped;
+mod signals;
+mod strength;
+mod units;

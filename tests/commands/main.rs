@@ -1,0 +1,15 @@
+//! The program from outside: commands, streams, files and pages.
+
+mod cli;
+mod compare;
+mod effects;
+mod interruption;
+mod output;
+#[path = "../common/program.rs"]
+mod program;
+mod report;
+mod study;
+mod sweep;
+mod uncertain;
+mod verify;
+mod words;

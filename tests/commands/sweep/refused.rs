@@ -1,0 +1,194 @@
+//! What is refused, and what stays as it is.
+
+use std::fs;
+use std::path::Path;
+
+use tempfile::TempDir;
+
+use super::common::{AREA, CASE, path, say, swept, table, well};
+
+/// Goal: what cannot be a sweep is refused before anything is computed or written, with the code and the place.
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let dir = TempDir::new().expect("a folder");
+    let (out, list) = (path(&dir, "out"), path(&dir, "list.csv"));
+    for (text, word) in [
+        ("", "no columns"),
+        ("beam\n1\n", "starts with `/`"),
+        ("/beam/length_m\n", "no designs"),
+        (
+            "/beam/length_m,/beam/width_m\n0.1,\n",
+            "design 0 (row 2 of the table) has no /beam/width_m",
+        ),
+        ("/beam/length_m\nNaN\n", "no JSON value"),
+        ("/beam/length_m,/beam/width_m\n0.1\n", "fields"),
+    ] {
+        fs::write(&list, text).expect("written");
+        let said = swept(&out, &["--designs", &list]);
+        assert!(
+            said.code == 2 && said.err.contains(word),
+            "{text:?}: {} {}",
+            said.code,
+            said.err
+        );
+    }
+    for (more, code, word) in [
+        (vec![], 2, "nothing varied"),
+        (
+            vec!["--vary", "/beam/length_m=uniform:2:1", "--design", "latin:3"],
+            2,
+            "2 is not below 1",
+        ),
+        (
+            vec!["--vary", "/beam/length_m=uniform:1:2"],
+            2,
+            "--design latin:N or sobol:N",
+        ),
+        (vec!["--vary", "/beam/length_m=0.1 m"], 2, "without units"),
+        (
+            vec!["--vary", "/beam/length_m=0.1", "--design", "latin:0"],
+            2,
+            "latin:100",
+        ),
+        (
+            vec!["--vary", "/time/end_s=0.001,0.002"],
+            2,
+            "without effect, since /time/end_s is varied",
+        ),
+        (
+            vec![
+                "--vary",
+                "/start/pressures/0/pressure_pa=1,2",
+                "--vary",
+                "/start/pressures/00/pressure_pa=5",
+            ],
+            2,
+            "`00` is no place of an array",
+        ),
+        (
+            vec!["--vary", "/solver/rtol=1e-3,1e-5", "--accuracy", "0.05"],
+            2,
+            "so that /solver/rtol would be without effect",
+        ),
+        (vec!["--vary", "/beam/lenght_m=0.1"], 3, "E004"),
+        (vec!["--vary", "/beam/length_m=0.1,-0.1"], 3, "/beam/length_m"),
+        (
+            vec!["--vary", "/beam/length_m=0.1,100"],
+            3,
+            "design 1 of 2 (/beam/length_m = 100)",
+        ),
+        (
+            vec!["--vary", "/beam/length_m=0.1", "--shard", "3/2"],
+            2,
+            "I from 1 to N",
+        ),
+        (vec!["--vary", "/beam/length_m=0.1", "--jobs", "0"], 2, "from 1 to 1024"),
+        (
+            vec!["--vary", "/beam/length_m=0.1", "--command", "periodic"],
+            2,
+            "period",
+        ),
+        (
+            vec!["--vary", "/beam/length_m=0.1", "--command", "modes", "--keep-folders"],
+            2,
+            "--keep-cases",
+        ),
+    ] {
+        let said = swept(&out, &more);
+        assert!(
+            said.code == code && said.err.contains(word),
+            "{more:?}: {} {}",
+            said.code,
+            said.err
+        );
+    }
+    assert!(!Path::new(&out).exists());
+}
+
+/// Goal: a folder of another sweep, or with something else, is left as it is until it is said otherwise.
+#[test]
+fn folders_of_others_stay() {
+    let dir = TempDir::new().expect("a folder");
+    let (out, other) = (path(&dir, "out"), path(&dir, "other"));
+    let [first, second] = ["2e-10", "3e-10"].map(|value| format!("{AREA}={value}"));
+    well(&swept(&out, &["--vary", &first, "--keep-cases"]));
+    let before = table(&out);
+    let said = swept(&out, &["--vary", &second]);
+    assert!(
+        said.code == 2 && said.err.contains("holds another sweep: --vary is"),
+        "{}",
+        said.err
+    );
+    assert_eq!(table(&out), before);
+    well(&swept(&out, &["--vary", &second, "--restart"]));
+    assert_ne!(table(&out), before);
+    assert!(!Path::new(&out).join("cases").exists(), "the cases of the sweep before");
+    fs::create_dir(&other).expect("a folder");
+    fs::write(Path::new(&other).join("letter.txt"), "mine").expect("written");
+    let said = swept(&other, &["--vary", &first]);
+    assert!(said.code == 5 && said.err.contains("no slcbeam result"), "{}", said.err);
+    // a sweep is no run, and a run no sweep
+    let said = say(&["run", CASE, "--quiet", "--out", &out]);
+    assert!(said.code == 5 && said.err.contains("slcbeam sweep"), "{}", said.err);
+}
+
+/// Goal: a part is not written over by the whole that is made of it, not even by force.
+#[test]
+fn a_part_is_no_place_for_the_whole() {
+    let dir = TempDir::new().expect("a folder");
+    let parts = ["1", "2"].map(|k| path(&dir, k));
+    for (part, shard) in parts.iter().zip(["1/2", "2/2"]) {
+        well(&swept(
+            part,
+            &["--vary", &format!("{AREA}=1e-10,2e-10,3e-10"), "--shard", shard],
+        ));
+    }
+    let before = table(&parts[0]);
+    let said = say(&["merge", &parts[0], &parts[1], "--out", &parts[0], "--force"]);
+    assert!(
+        said.code == 2 && said.err.contains("is one of the shards"),
+        "{} {}",
+        said.code,
+        said.err
+    );
+    assert_eq!(table(&parts[0]), before);
+}
+
+/// Goal: parts that have one design with other figures are refused, with the design, the figure and the folders, and nothing is written; a row
+/// that finished takes the place of one that did not, whichever comes first.
+#[test]
+fn parts_that_differ_are_not_merged() {
+    let dir = TempDir::new().expect("a folder");
+    let [one, two, whole] = ["one", "two", "whole"].map(|name| path(&dir, name));
+    for part in [&one, &two] {
+        well(&swept(part, &["--vary", &format!("{AREA}=1e-10,2e-10")]));
+    }
+    let merge = |whole: &str| say(&["merge", &one, &two, "--lean", "--out", whole]);
+    well(&merge(&whole));
+    let journal = Path::new(&two).join("designs.jsonl");
+    let text = fs::read_to_string(&journal).expect("rows");
+    let mut lines: Vec<serde_json::Value> = text.lines().map(|l| serde_json::from_str(l).expect("a row")).collect();
+    let second = lines.iter_mut().find(|row| row["number"] == 1).expect("the second");
+    let figure = second["figures"][0].clone();
+    let put = |rows: &[serde_json::Value]| {
+        let text: String = rows.iter().map(|row| format!("{row}\n")).collect();
+        fs::write(&journal, text).expect("written");
+    };
+    second["figures"][0][1] = (1.01 * figure[1].as_f64().expect("a number") + 1.0).into();
+    put(&lines);
+    let other = path(&dir, "other");
+    let said = merge(&other);
+    let name = figure[0].as_str().expect("a name");
+    assert_eq!(said.code, 2, "{}", said.err);
+    for part in ["design 1 is there twice", name, &one, &two] {
+        assert!(said.err.contains(part), "{part}: {}", said.err);
+    }
+    assert!(!Path::new(&other).join("sweep.csv").exists());
+    // one that did not finish is no conflict, and gives way
+    let second = lines.iter_mut().find(|row| row["number"] == 1).expect("the second");
+    second["status"] = "failed".into();
+    put(&lines);
+    let turned = path(&dir, "turned");
+    well(&say(&["merge", &two, &one, "--lean", "--out", &turned]));
+    assert_eq!(table(&turned), table(&whole));
+}

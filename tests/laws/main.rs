@@ -1,0 +1,23 @@
+//! Laws of beam, bladders and network, each against what it was derived from, closed forms, balances and differences.
+
+mod around;
+mod attachments;
+#[path = "../common/balances.rs"]
+mod balances;
+#[path = "../common/chance.rs"]
+mod chance;
+mod closing;
+#[path = "../differences/mod.rs"]
+mod differences;
+mod jacobian;
+#[path = "../common/kinematics.rs"]
+mod kinematics;
+mod nonlinear;
+mod reactions;
+#[path = "../common/scene.rs"]
+mod scene;
+#[path = "../common/secant.rs"]
+mod secant;
+mod sloshing;
+mod surroundings;
+mod tubes;

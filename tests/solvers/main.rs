@@ -1,0 +1,7 @@
+//! Mathematics and solvers that know nothing of beams, and the beam through them.
+
+mod bounds;
+mod numerics;
+mod onestep;
+mod problems;
+mod sundials;

@@ -1,0 +1,7 @@
+//! The solver room alone: problems with published answers, the protocol of faults, the guard of the factors.
+
+mod faults;
+mod klu;
+mod published;
+mod start;
+mod stepping;

@@ -1,8 +1,0 @@
-//! The solver room alone: problems with published answers, the protocol of faults, the guard of the factors.
-
-mod faults;
-mod klu;
-mod problems;
-mod published;
-mod start;
-mod stepping;
