@@ -167,7 +167,9 @@ fn random_cases_finish_or_are_diagnosed() {
         .unwrap_or(1);
     let count = wanted.unwrap_or(200);
     let wordy = std::env::var("SLCBEAM_FUZZ_WORDY").is_ok();
-    let seeds: Vec<u64> = REGRESSIONS.into_iter().chain(first..first + count).collect();
+    let range = first..first + count;
+    let others = REGRESSIONS.into_iter().filter(|seed| !range.contains(seed));
+    let seeds: Vec<u64> = others.chain(range.clone()).collect();
     let next = AtomicU64::new(0);
     let tally = Mutex::new((BTreeMap::<&'static str, u64>::new(), Vec::<String>::new()));
     std::thread::scope(|scope| {
