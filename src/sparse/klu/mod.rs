@@ -6,12 +6,14 @@
 //! by which the rounding error is enlarged. When it falls below [`Klu::smallest_growth`] the pivots are chosen anew.
 
 pub mod complex;
+mod rows;
 
 use std::ptr;
 
 use crate::sparse::Pattern;
 
 use super::c;
+use rows::Rows;
 
 /// How rows are scaled before factoring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,6 +127,8 @@ impl Drop for Analysis {
 pub struct Klu {
     analysis: Analysis,
     numeric: *mut c::klu_l_numeric,
+    /// The same by rows; none without factors, or where they are too many.
+    rows: Option<Rows>,
     growth_when_fresh: f64,
     /// Growth below which old pivots are dropped; 0 turns the guard off.
     ///
@@ -148,6 +152,7 @@ impl Klu {
         Ok(Self {
             analysis: Analysis::new(pattern, scaling)?,
             numeric: ptr::null_mut(),
+            rows: None,
             growth_when_fresh: 1.0,
             smallest_growth: 1e-6,
             factorizations: 0,
@@ -172,6 +177,7 @@ impl Klu {
         assert_eq!(values.len(), self.entries(), "values of another pattern");
         if !self.numeric.is_null() {
             if self.refactor(values) {
+                self.take_rows();
                 return Ok(());
             }
             self.pivot_refreshes += 1;
@@ -238,7 +244,17 @@ impl Klu {
         if self.smallest_growth > 0.0 {
             self.growth_when_fresh = self.growth(values);
         }
+        // SAFETY: KLU has made both for this matrix, and has factored it.
+        self.rows = unsafe { Rows::new(&*self.analysis.symbolic, &*self.numeric) };
+        self.take_rows();
         Ok(())
+    }
+
+    fn take_rows(&mut self) {
+        if let Some(rows) = &mut self.rows {
+            // SAFETY: rows are of the last fresh factors, whose pivots these have.
+            unsafe { rows.take(&*self.numeric) };
+        }
     }
 
     /// `min_j max_i |aᵢⱼ| / max_i |uᵢⱼ|` of the present factors: 1 is good, ε is useless.
@@ -302,7 +318,13 @@ impl Klu {
     /// Replaces `b` by the solution of `A x = b`; false without factors. Panics when `b` has another length.
     pub fn solve(&mut self, b: &mut [f64]) -> bool {
         assert_eq!(b.len(), self.columns(), "right-hand side of another size");
-        self.solve_block(b)
+        match &mut self.rows {
+            Some(rows) => {
+                rows.solve(b);
+                true
+            }
+            None => self.solve_block(b),
+        }
     }
 
     /// As [`Klu::solve`] for several right-hand sides, one after the other in `b`.
@@ -319,6 +341,7 @@ impl Klu {
     }
 
     fn free_numeric(&mut self) {
+        self.rows = None;
         if !self.numeric.is_null() {
             // SAFETY: made by `klu_l_factor`; KLU sets the pointer to null.
             unsafe { c::klu_l_free_numeric(&mut self.numeric, &mut *self.analysis.common) };

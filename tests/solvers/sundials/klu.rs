@@ -3,6 +3,8 @@
 use slcbeam::sparse::Pattern;
 use slcbeam::sparse::{Klu, KluError, RowScaling};
 
+use super::chance::Random;
+
 /// Dense 2 by 2.
 fn small() -> Pattern {
     Pattern::from_columns(&[vec![0, 1], vec![0, 1]])
@@ -83,4 +85,54 @@ fn all_scalings_solve_badly_scaled_rows() {
         );
         assert!(klu.condition(&values).unwrap() >= 1.0);
     }
+}
+
+/// A solution by rows is KLU's own: with many blocks and what stands above them, with one, scaled or not, fresh factors or old pivots.
+///
+/// Goal: solve and solve_block agree, and find what the right-hand side was made of. Tolerance: rounding of dominant diagonals.
+#[test]
+fn rows_solve_as_klu_does() {
+    let mut chance = Random(7);
+    let mut blocks = [0, 0];
+    for trial in 0..60 {
+        let n = 1 + chance.below(30);
+        // above the diagonal alone every unknown is a block of its own; a few entries below join some
+        let below = trial % 3 * n / 2;
+        let mut columns: Vec<Vec<usize>> = (0..n).map(|j| vec![j]).collect();
+        for k in 0..3 * n + below {
+            let (a, b) = (chance.below(n), chance.below(n));
+            columns[if k < 3 * n { a.max(b) } else { a.min(b) }].push(if k < 3 * n { a.min(b) } else { a.max(b) });
+        }
+        let pattern = Pattern::from_columns(&columns);
+        let scaling = [RowScaling::None, RowScaling::Sum, RowScaling::Max][trial % 3];
+        let mut klu = Klu::with_scaling(&pattern, scaling).unwrap();
+        blocks[usize::from(below > 0)] += 1;
+        for _ in 0..3 {
+            let mut values = vec![0.0; pattern.entries()];
+            let x: Vec<f64> = (0..n).map(|_| chance.between(-1.0, 1.0)).collect();
+            let mut b = vec![0.0; n];
+            for j in 0..n {
+                for p in pattern.column(j) {
+                    let row = pattern.rows[p] as usize;
+                    values[p] = if row == j {
+                        8.0 * n as f64
+                    } else {
+                        chance.between(-1.0, 1.0)
+                    };
+                    b[row] += values[p] * x[j];
+                }
+            }
+            klu.factor(&values).unwrap();
+            let mut own = b.clone();
+            assert!(klu.solve(&mut own) && klu.solve_block(&mut b));
+            for k in 0..n {
+                assert!(
+                    (own[k] - x[k]).abs() < 1e-14 && (b[k] - x[k]).abs() < 1e-14,
+                    "{trial} {k}: {own:?} {b:?}"
+                );
+            }
+        }
+        assert_eq!(klu.pivot_refreshes, 0);
+    }
+    assert!(blocks.iter().all(|count| *count > 10), "{blocks:?}");
 }
