@@ -213,7 +213,7 @@ impl System {
     }
 
     fn of(case: &Case, model: Model) -> Self {
-        let mesh = Mesh::new(model.length, case.segments(), case.mesh.cells_per_segment).of_order(case.mesh.order);
+        let mesh = Mesh::new(model.length, case.segments(), case.mesh.cells_per_segment).of_order(case.mesh.order());
         let fluid = model
             .wet
             .as_ref()

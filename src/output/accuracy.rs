@@ -25,11 +25,11 @@ pub fn words(found: &Accuracy) -> String {
             _ => format!("{name} unknown"),
         });
     format!(
-        "accuracy {} {}; estimated relative errors: {}\nwith {} cells a segment, {} a bladder, rtol {}, after {} computations\n",
+        "accuracy {} {}; estimated relative errors: {}\nwith {}, {} a bladder, rtol {}, after {} computations\n",
         significant(found.asked, 2),
         if found.reached { "reached" } else { "not reached" },
         told.collect::<Vec<_>>().join("; "),
-        found.cells_per_segment,
+        found.cells(),
         found.cells_per_bladder,
         significant(found.rtol, 1),
         count(found.pilots.len() as u64)

@@ -188,6 +188,9 @@ pub struct Accuracy {
     pub cells_per_segment: usize,
     /// Mesh chosen: fluid cells per bladder.
     pub cells_per_bladder: usize,
+    /// Order of the mesh.
+    #[serde(default = "second")]
+    pub order: u8,
     /// Tolerance chosen.
     pub rtol: f64,
     /// What is judged: every figure, or statistics alone where the motion cannot be followed that far.
@@ -200,6 +203,19 @@ pub struct Accuracy {
     pub quantities: BTreeMap<String, Estimate>,
     /// The runs that led there, the result's own not among them.
     pub pilots: Vec<Pilot>,
+}
+
+/// Order of meshes before it was said.
+fn second() -> u8 {
+    2
+}
+
+impl Accuracy {
+    /// The mesh of the beam in words.
+    pub fn cells(&self) -> String {
+        let order = if self.order == 4 { " of fourth order" } else { "" };
+        format!("{} cells a segment{order}", self.cells_per_segment)
+    }
 }
 
 /// `summary.json`; see the README for its keys.

@@ -52,8 +52,12 @@ fn finished(last: f64) -> Summary {
 }
 
 fn runs(all: &[(Way, At, f64)]) -> Runs {
+    of_order(2, all)
+}
+
+fn of_order(order: u8, all: &[(Way, At, f64)]) -> Runs {
     let pushed = beam("1e6", r#"{"free": {"force_x_n": 1e-3}}"#);
-    let mut runs = Runs::new(Floors::of(&pushed).expect("a model"));
+    let mut runs = Runs::new(Floors::of(&pushed).expect("a model"), order);
     for &(way, at, last) in all {
         runs.take(way, at, &finished(last));
     }
@@ -108,6 +112,25 @@ fn differences_that_no_order_explains_take_the_safe_side() {
     near(full.effects, 0.03);
     near(full.total, UNSEEN * 0.04 + 0.03);
     assert_eq!(of(&[same, looser]).total, None);
+}
+
+/// Goal: at fourth order a sum of a part of fourth and one of second order is not underestimated, whatever its shares, nor one of either
+/// alone by more than eight times overestimated.
+#[test]
+fn sums_of_both_orders_are_not_underestimated() {
+    let exact = 1e3;
+    for share in (0..=100).map(|k| f64::from(k) / 100.0) {
+        let value = |h: f64| exact + (1.0 - share) * h.powi(4) + share * h.powi(2);
+        let run = |cells: usize| (Way::Candidate, (cells, 4), value(1.0 / cells as f64));
+        let looser = (Way::Candidate, (16, 3), value(1.0 / 16.0));
+        let known = of_order(4, &[run(16), run(8), run(4), looser]);
+        let told = known.estimates((16, 4))["tip_u1_m"].space.expect("three runs");
+        let error = (value(1.0 / 16.0) - exact).abs() / value(1.0 / 16.0);
+        assert!(
+            told >= 0.999 * error && told < 8.5 * error,
+            "{share}: {told:e} of {error:e}"
+        );
+    }
 }
 
 /// Goal: while a mesh does not resolve what is given, or what grows beside a port, no order of differences is believed. Middle of a

@@ -199,6 +199,9 @@ impl Tally {
     }
 }
 
+/// Cells a segment of a reference: on many more round-off grows to what is asked.
+const FINEST: usize = 32;
+
 /// What random scenes came to.
 #[derive(Default)]
 struct Promises {
@@ -212,9 +215,13 @@ struct Promises {
 
 impl Promises {
     /// Asks for accuracies of a scene and compares what is reached with all effects on twice the finest mesh, by a method of
-    /// order 5 at a hundredth of the tightest tolerance, extrapolated from that mesh and the one half as fine.
+    /// order 5 at 1e-4 of the tightest tolerance (where a load of 16 waves leaves little of a motion a hundredth is not enough),
+    /// extrapolated from that mesh and the one half as fine. Every second scene is on meshes of second order; of the others, whose
+    /// order the program chooses, estimates are on the safe side, and it is not asked how near they are.
     fn ask(&mut self, number: u64, accuracies: &[f64], time: Duration) {
-        let (kind, case) = scenes::scene(number);
+        let (kind, mut case) = scenes::scene(number);
+        let sharp = number % 2 == 1;
+        case.mesh.order = sharp.then_some(2);
         let mut runs: Vec<(f64, Summary)> = vec![];
         for &asked in accuracies {
             let until = Instant::now() + time;
@@ -237,10 +244,10 @@ impl Promises {
             .map(|r| found(&r.1).cells_per_segment)
             .max()
             .unwrap_or(1)
-            .max(4);
+            .clamp(4, FINEST);
         let tightest = runs.iter().map(|r| found(&r.1).rtol).fold(1e-4, f64::min);
         let best = |cells: usize| {
-            let mut case = plan::refined(&case, cells, (0.01 * tightest).max(1e-9));
+            let mut case = plan::refined(&case, cells, (1e-4 * tightest).max(1e-9));
             (case.solver.method, case.effects) = (Method::Esdirk57, Effects::Full);
             let run = record(&case, Instant::now() + 4 * time).summary;
             (run.status == Status::Finished).then_some(run)
@@ -260,10 +267,10 @@ impl Promises {
                     "{number} {kind}: {name} {total} is said to be within {asked}"
                 );
                 let error = beyond(name, summary, [&coarse, &fine], found.judged_by);
-                self.quantities += 1;
+                self.quantities += usize::from(sharp);
                 let near = error <= 5.0 * total && total <= 5.0 * error || total.max(error) < 0.1 * asked;
-                self.near += usize::from(near);
-                if !near {
+                self.near += usize::from(near && sharp);
+                if !near && sharp {
                     println!("{number} {kind} at {asked}: {name} off by {error:.1e}, estimate {total:.1e}");
                 }
                 if error > *asked {

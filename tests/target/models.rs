@@ -7,7 +7,7 @@ use slcbeam::case::schema::Effect;
 use slcbeam::discrete::System;
 use slcbeam::study::effects::choices::effects;
 use slcbeam::study::target::first::{LEAST, least_cells};
-use slcbeam::study::target::models::{full, more, tighter};
+use slcbeam::study::target::models::{full, more, of_best_order, tighter};
 
 fn case(more: &str) -> Case {
     let text = format!(
@@ -39,6 +39,21 @@ fn the_full_case_has_what_was_left_to_the_program() {
         let effects = |case: &Case| effects(case).expect("effects");
         assert!(!more(&effects(&case("")), &effects(&tighter)).is_empty());
     }
+}
+
+/// Goal: meshes are of fourth order where the case does not say otherwise, but not where it, or an effect that it leaves out, is of second order: that
+/// would not be judged.
+#[test]
+fn the_order_is_the_fourth_where_nothing_asks_for_the_second() {
+    let order = |more: &str| of_best_order(case(more)).expect("effects").mesh.order;
+    assert_eq!(order(""), Some(4));
+    assert_eq!(order(r#", "mesh": {"order": 2}"#), Some(2));
+    assert_eq!(order(r#", "attachments": [{"at": 0.5, "mass_kg": 0.01}]"#), None);
+    let mut slender = case("");
+    slender.beam.shear_stiffness_n = Some(3e3);
+    let left_out = full(&slender).expect("effects").expect("something left out").left_out;
+    assert!(left_out.contains(&Effect::Shear), "{left_out:?}");
+    assert_eq!(of_best_order(slender).expect("effects").mesh.order, None);
 }
 
 /// Goal: a pad of a hundredth of the length beside a broad load is right on any mesh; twenty waves over ten segments want

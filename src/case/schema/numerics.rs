@@ -45,14 +45,21 @@ pub struct Mesh {
     #[schemars(range(min = 1, max = 1000))]
     pub cells_per_bladder: usize,
     /// Order of what the beam's cells leave out, 2 or 4: halved cells leave a quarter, or a sixteenth. On fewer than
-    /// six cells it is 2.
-    #[serde(default = "second", skip_serializing_if = "is_second")]
+    /// six cells it is 2. Absent: 2, and with `--accuracy` 4 where the beam has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("enum" = [2, 4]))]
-    pub order: u8,
+    pub order: Option<u8>,
     /// Segments of a dry beam; with bladders it is their number per row. Absent: 10.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 100000))]
     pub segments: Option<usize>,
+}
+
+impl Mesh {
+    /// [`Mesh::order`], or what stands for it.
+    pub fn order(&self) -> u8 {
+        self.order.unwrap_or(2)
+    }
 }
 
 impl Default for Mesh {
@@ -60,7 +67,7 @@ impl Default for Mesh {
         Self {
             cells_per_segment: 4,
             cells_per_bladder: 2,
-            order: 2,
+            order: None,
             segments: None,
         }
     }
@@ -246,14 +253,6 @@ pub enum MaxOrder {
 
 fn two() -> usize {
     2
-}
-
-fn second() -> u8 {
-    2
-}
-
-fn is_second(order: &u8) -> bool {
-    *order == 2
 }
 
 fn four() -> usize {

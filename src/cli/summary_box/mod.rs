@@ -264,10 +264,10 @@ fn accuracy(summary: &Summary) -> Option<String> {
         _ => format!("{name} unknown"),
     });
     Some(format!(
-        "asked {}, estimated errors: {} · with {} cells a segment, rtol {}, after {} pilot runs",
+        "asked {}, estimated errors: {} · with {}, rtol {}, after {} pilot runs",
         significant(found.asked, 2),
         shown.collect::<Vec<_>>().join(" · "),
-        found.cells_per_segment,
+        found.cells(),
         significant(found.rtol, 1),
         found.pilots.len()
     ))

@@ -249,8 +249,8 @@ fn remarks(summary: &Summary) -> Vec<Value> {
             .filter_map(|(name, e)| Some(format!("{name} {}", percent(e.total?))));
         all.push(json!({"title": if found.reached { "The accuracy asked for is reached" } else { "The accuracy asked for is not reached" },
             "text": format!(
-                "Asked for were {}; the estimated errors are {}. Used were {} cells a segment and a tolerance of {}.",
-                percent(found.asked), errors.collect::<Vec<_>>().join(", "), found.cells_per_segment, significant(found.rtol, 2)
+                "Asked for were {}; the estimated errors are {}. Used were {} and a tolerance of {}.",
+                percent(found.asked), errors.collect::<Vec<_>>().join(", "), found.cells(), significant(found.rtol, 2)
             )}));
     }
     for (pointer, s) in &summary.sensitivities {

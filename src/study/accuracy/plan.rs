@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::scheme::Scheme;
 use crate::case::schema::{Case, Method};
+use crate::discrete::System;
 use crate::error::{Error, Result};
 
 /// One way to compute a case.
@@ -29,6 +30,17 @@ pub fn refined(case: &Case, cells: usize, rtol: f64) -> Case {
     case.mesh.cells_per_bladder = fluid_cells(cells);
     case.solver.rtol = rtol;
     case
+}
+
+/// The case on meshes of fourth order, where it does not name an order and can be computed so.
+pub fn of_best_order(case: &Case) -> Case {
+    let mut fourth = case.clone();
+    fourth.mesh.order.get_or_insert(4);
+    if System::new(&fourth).is_ok() {
+        fourth
+    } else {
+        case.clone()
+    }
 }
 
 impl Setting {

@@ -114,6 +114,7 @@ pub fn refine(
     in_time: bool,
     compute: &mut dyn FnMut(&Case) -> Result<Numbers>,
 ) -> Result<(Case, Accuracy)> {
+    let case = &plan::of_best_order(case);
     let along = has_cells_along_bladders(case)?;
     let mut search = Search {
         case,
@@ -153,6 +154,7 @@ pub fn refine(
         reached: largest(&estimates) <= asked,
         cells_per_segment: case.mesh.cells_per_segment,
         cells_per_bladder: case.mesh.cells_per_bladder,
+        order: case.mesh.order(),
         rtol: case.solver.rtol,
         judged_by: Judged::Figures,
         effects: String::new(),
@@ -177,9 +179,9 @@ pub fn warning(found: &Accuracy) -> Option<String> {
     let short: Vec<String> = short.collect();
     (!found.reached).then(|| {
         Code::Accuracy.warning(format!(
-            "accuracy: {:e} is not reached with {} cells a segment, {} a bladder and rtol {:e}: {}",
+            "accuracy: {:e} is not reached with {}, {} a bladder and rtol {:e}: {}",
             found.asked,
-            found.cells_per_segment,
+            found.cells(),
             found.cells_per_bladder,
             found.rtol,
             short.join(", ")

@@ -16,7 +16,8 @@
 //! counts, nearly twice what second order makes of it, so that the difference itself is below what is asked where the estimate
 //! fills no more of it than it may. Ratios that no order explains are not believed: of differences that hardly
 //! fall ρ is at most 0.7, and one that is small by accident counts as a tenth of the one before. Differences are the largest of
-//! a quantity's figures, relative to its largest figure. What relatives of a run all miss they do not show; another method, and
+//! a quantity's figures, relative to its largest figure. Meshes of fourth order hold figures of second order too, such as pressures, and sums of
+//! both, which are up to 1.8 times what ρ says: so much more counts. What relatives of a run all miss they do not show; another method, and
 //! the effects that were left out, are no relatives.
 //!
 //! Where finer runs go on to differ by a good part of the quantity, the motion is one of many that start nearly alike: it grows
@@ -31,6 +32,8 @@ use crate::study::counted::{Floors, counted};
 /// Expected ratio of one difference to the one before, where it is not seen: halved cells at second order, and a decade of
 /// tolerance between orders 2 and 4.
 pub const EXPECTED_RATIO: f64 = 0.25;
+/// The same of halved cells at fourth order, beside fluid whose order is lower.
+const EXPECTED_OF_FOURTH: f64 = 0.125;
 /// Ratios that are believed when seen: beyond them differences happen to be small or large.
 const BELIEVED: std::ops::RangeInclusive<f64> = 0.1..=0.7;
 /// Part of the last difference that counts where no third run shows how differences fall.
@@ -68,6 +71,8 @@ pub struct Runs {
     /// Of meshes, in cells a segment: whether they leave out so much of a shape that no order of differences is to be seen on them.
     unresolved: BTreeMap<usize, bool>,
     floors: Floors,
+    /// Whether meshes are of fourth order.
+    fourth: bool,
     /// Every figure, until that proves to be too much.
     pub judged_by: Judged,
     /// Why not by every figure.
@@ -84,10 +89,11 @@ struct Looked {
 }
 
 impl Runs {
-    /// None yet, of a case with these sizes of round-off.
-    pub fn new(floors: Floors) -> Self {
+    /// None yet, of a case with these sizes of round-off, on meshes of an order.
+    pub fn new(floors: Floors, order: u8) -> Self {
         Self {
             floors,
+            fourth: order == 4,
             ..Self::default()
         }
     }
@@ -120,6 +126,15 @@ impl Runs {
         if all_effects {
             let full = std::mem::take(&mut self.all).into_iter();
             self.all = full.map(|((_, at), run)| ((Way::Candidate, at), run)).collect();
+        }
+    }
+
+    /// Expected ratio of one difference of meshes to the one before.
+    pub fn expected(&self) -> f64 {
+        if self.fourth {
+            EXPECTED_OF_FOURTH
+        } else {
+            EXPECTED_RATIO
         }
     }
 
@@ -190,7 +205,7 @@ impl Runs {
     }
 
     /// What is left over after the last difference of three runs, coarse to fine: see the top of the file.
-    fn series(&self, quantity: &str, [coarsest, coarse, fine]: [At; 3]) -> Option<f64> {
+    fn series(&self, quantity: &str, [coarsest, coarse, fine]: [At; 3], left_over: fn(f64, f64) -> f64) -> Option<f64> {
         let last = self.difference(quantity, fine, coarse)?;
         Some(match self.difference(quantity, coarse, coarsest) {
             None => UNSEEN * last,
@@ -267,7 +282,11 @@ impl Runs {
             let time = [(cells, decades - 2), (cells, decades - 1), at];
             let space = [(cells / 4, decades), (cells / 2, decades), at];
             let method = method.and_then(|at| self.apart(quantity, (Way::Method, at), (Way::Candidate, at)));
-            let (time, space) = (self.series(quantity, time), self.series(quantity, space));
+            let of_meshes = if self.fourth { left_over_of_fourth } else { left_over };
+            let (time, space) = (
+                self.series(quantity, time, left_over),
+                self.series(quantity, space, of_meshes),
+            );
             let last = self.difference(quantity, at, (cells / 2, decades));
             let last = last.filter(|_| self.unresolved.get(&cells) == Some(&true));
             let space = space.map(|space| last.map_or(space, |last| space.max(slowly(last))));
@@ -295,6 +314,14 @@ fn left_over(last: f64, before: f64) -> f64 {
     }
     let ratio = (last / before).min(*BELIEVED.end());
     last * ratio / (1.0 - ratio)
+}
+
+/// The same of meshes of fourth order: a sum of parts of fourth and of second order, whose ratio is between a sixteenth and a quarter, is
+/// up to 1.8 times what this ratio says.
+fn left_over_of_fourth(last: f64, before: f64) -> f64 {
+    let ratio = if before > 0.0 { last / before } else { 1.0 }.min(*BELIEVED.end());
+    let mixed = (1.8 - 8.0 * (ratio - 0.15)).clamp(1.0, 1.8);
+    (mixed * last * ratio / (1.0 - ratio)).max(left_over(0.0, before))
 }
 
 /// What is left over after a difference, where the next hardly fall.

@@ -43,7 +43,7 @@ pub type Record<'a> = &'a mut dyn FnMut(&Case) -> Result<Outcome>;
 pub fn reach(case: &Case, asked: f64, hook: Hook, record: Record) -> Result<Outcome> {
     let mut case = case.clone();
     case.effects_tolerance.get_or_insert(EFFECTS * asked);
-    let mut search = Search::new(case, asked, hook)?;
+    let mut search = Search::new(models::of_best_order(case)?, asked, hook)?;
     let mut at: At = (first::least_cells(&search.case)?, LOOSEST);
     let mut outcome = record(&search.variant(at))?;
     if outcome.summary.status == Status::Failed && search.take_all_effects() {

@@ -5,6 +5,7 @@ use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
 use crate::discrete::System;
 use crate::error::Result;
 use crate::model::effects::EffectSet;
+use crate::study::accuracy::plan;
 use crate::study::effects::choices::{effects, with};
 
 /// Decades by which the tolerance of effects is tightened, each a candidate.
@@ -42,6 +43,17 @@ pub fn full(case: &Case) -> Result<Option<Full>> {
     let case = with(case, Effects::Chosen(choices));
     let left_out = more(&auto, &effects(&case)?);
     Ok((!left_out.is_empty()).then_some(Full { case, left_out }))
+}
+
+/// The case on meshes of fourth order, where it can be computed so with everything that it leaves to the program.
+pub fn of_best_order(case: Case) -> Result<Case> {
+    let fourth = plan::of_best_order(&case);
+    let left_out = |case: &Case| Ok(full(case)?.map(|full| full.left_out));
+    Ok(if fourth == case || left_out(&fourth)? == left_out(&case)? {
+        fourth
+    } else {
+        case
+    })
 }
 
 /// The case with tighter tolerances of effects, as far as that makes a difference to it and to the full one.

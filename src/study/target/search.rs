@@ -61,7 +61,7 @@ impl<'a> Search<'a> {
     /// Nothing known yet.
     pub fn new(case: Case, asked: f64, hook: Hook<'a>) -> Result<Self> {
         Ok(Self {
-            runs: Runs::new(Floors::of(&case)?),
+            runs: Runs::new(Floors::of(&case)?, case.mesh.order()),
             full: models::full(&case)?,
             case,
             asked,
@@ -199,11 +199,12 @@ impl<'a> Search<'a> {
             _ => 1.0,
         };
         let predicted = |refinements: i32, tighter: i32| {
-            let part = |error: Option<f64>, steps: i32, known: bool| {
-                error.unwrap_or(1.0) * EXPECTED_RATIO.powi(steps) * summed(known, steps)
+            let part = |error: Option<f64>, ratio: f64, steps: i32, known: bool| {
+                error.unwrap_or(1.0) * ratio.powi(steps) * summed(known, steps)
             };
             let total = |e: &Estimate| {
-                part(e.space, refinements, thirds[0]) + part(e.time, tighter, thirds[1] || e.method.is_some())
+                part(e.space, self.runs.expected(), refinements, thirds[0])
+                    + part(e.time, EXPECTED_RATIO, tighter, thirds[1] || e.method.is_some())
             };
             estimates.values().map(total).fold(0.0, f64::max) / self.asked
         };

@@ -64,6 +64,7 @@ impl Search<'_> {
             reached,
             cells_per_segment: cells,
             cells_per_bladder: plan::fluid_cells(cells),
+            order: self.case.mesh.order(),
             rtol: 10_f64.powi(-decades),
             judged_by: self.runs.judged_by,
             effects: self.effects_in_words(at),
