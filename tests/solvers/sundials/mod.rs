@@ -1,6 +1,6 @@
 //! The solver room alone: problems with published answers, the protocol of faults, the guard of the factors.
 
-#[path = "../common/chance.rs"]
+#[path = "../../common/chance.rs"]
 mod chance;
 mod faults;
 mod klu;
