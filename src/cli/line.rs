@@ -51,10 +51,13 @@ impl Drop for Shown {
     }
 }
 
-/// A time span [s] that a clock can wait for.
+/// A time span [s] that a clock can wait for; its unit may stand behind it.
 pub fn duration(text: &str) -> std::result::Result<f64, String> {
+    let text = text.trim();
     let seconds: f64 = text
-        .trim()
+        .strip_suffix('s')
+        .unwrap_or(text)
+        .trim_end()
         .parse()
         .map_err(|_| "a number of seconds is wanted".to_string())?;
     if seconds.is_finite() && seconds >= 0.0 {

@@ -472,7 +472,7 @@ fn a_failing_solver_leaves_the_result_so_far() {
 fn a_wall_time_limit_stops_with_what_there_is() {
     let dir = TempDir::new().unwrap();
     let folder = dir.path().join("result");
-    let said = run(&folder, &["--max-wall", "0"]);
+    let said = run(&folder, &["--max-wall", "0 s"]);
     assert_eq!(said.code, 0, "{}", said.err);
     let summary = json(&folder.join("summary.json"));
     assert_eq!(summary["status"], "stopped");
