@@ -8,6 +8,7 @@ use super::{State, System, TimeData, Workspace, ledger, touching};
 use crate::discrete::residual::solid::node_stretch;
 use crate::discrete::residual::{nonlinear, relaxation};
 use crate::model::Kinematics;
+use crate::numerics::Planar;
 
 /// A value and its rate in time.
 pub type Moving = [f64; 2];
@@ -171,7 +172,8 @@ fn extremes(values: &[f64]) -> (usize, usize) {
     (low, high)
 }
 
-/// The displacement that is largest in size, with its rate.
+/// The displacement that is largest in size, with its rate: of the parabola through the largest of a node and its neighbours, since nodes of
+/// meshes within each other agree about what is between them.
 fn largest(motion: &Motion<f64>, axis: usize) -> Moving {
     let mut most = 0;
     for (i, u) in motion.u.iter().enumerate() {
@@ -179,7 +181,21 @@ fn largest(motion: &Motion<f64>, axis: usize) -> Moving {
             most = i;
         }
     }
-    [motion.u[most][axis], motion.v[most][axis]]
+    let at = |field: &[Planar<f64>], from_node: f64| {
+        let [a, b, c] = [most - 1, most, most + 1].map(|node| field[node][axis]);
+        b + from_node * (0.5 * (c - a) + 0.5 * from_node * (a - 2.0 * b + c))
+    };
+    if most == 0 || most + 1 == motion.u.len() {
+        return [motion.u[most][axis], motion.v[most][axis]];
+    }
+    let [a, b, c] = [most - 1, most, most + 1].map(|node| motion.u[node][axis]);
+    let bent = a - 2.0 * b + c;
+    let top = if bent == 0.0 {
+        0.0
+    } else {
+        (0.5 * (a - c) / bent).clamp(-0.5, 0.5)
+    };
+    [at(&motion.u, top), at(&motion.v, top)]
 }
 
 /// Largest deflection across and largest motion of a node against the root [m].

@@ -38,9 +38,14 @@ impl Mesh {
     #[must_use]
     pub fn of_order(self, order: u8) -> Self {
         Self {
-            fourth: order == 4 && self.cells >= 6,
+            fourth: order == 4 && self.cells >= Self::fewest(4),
             ..self
         }
+    }
+
+    /// Fewest cells of a beam that are of an order.
+    pub fn fewest(order: u8) -> usize {
+        if order == 4 { 6 } else { 1 }
     }
 
     /// Length that belongs to a node: `h`, at the ends `h/2`.

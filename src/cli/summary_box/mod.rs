@@ -264,12 +264,12 @@ fn accuracy(summary: &Summary) -> Option<String> {
         _ => format!("{name} unknown"),
     });
     Some(format!(
-        "asked {}, estimated errors: {} · with {}, rtol {}, after {} pilot runs",
+        "asked {}, with {}, rtol {}, after {} pilot runs · estimated errors: {}",
         significant(found.asked, 2),
-        shown.collect::<Vec<_>>().join(" · "),
         found.cells(),
         significant(found.rtol, 1),
-        found.pilots.len()
+        found.pilots.len(),
+        shown.collect::<Vec<_>>().join(" · ")
     ))
 }
 

@@ -6,7 +6,7 @@ use std::collections::{BinaryHeap, HashMap};
 use std::f64::consts::TAU;
 
 use crate::case::schema::{BladderEnd, Case};
-use crate::functions::signals::Signal;
+use crate::functions::signals::{Clock, Signal};
 use crate::model::Wet;
 use crate::model::network::{Feed, Node, PressurePort, Source};
 
@@ -76,6 +76,32 @@ pub fn ports(case: &Case, wet: &Wet) -> Vec<Port> {
         falls,
     })
     .collect()
+}
+
+/// Ports of a pressure that jumps, each with the first instant at which it does [s]: at the start where nothing says that bladders begin with
+/// it. What runs into a bladder then is thinner than any cell.
+pub fn jumps(case: &Case, wet: &Wet) -> Vec<(String, f64)> {
+    let at_rest = case.start.equilibrium.is_none() && case.start.pressures.is_empty();
+    let first = |signal: &Signal| {
+        let intervals = signal.smooth_intervals(case.time.end_s);
+        let value = |t: f64, (from, to): (f64, f64)| {
+            let within = 0.5 * (from + to);
+            signal.jet(Clock { t, within }).value
+        };
+        if at_rest && value(0.0, intervals[0]) != 0.0 {
+            return Some(0.0);
+        }
+        let little = 1e-9 * signal.largest(case.time.end_s).value;
+        let jump = intervals.windows(2).find(|both| {
+            let t = both[1].0;
+            (value(t, both[1]) - value(t, both[0])).abs() > little
+        });
+        jump.map(|both| both[1].0)
+    };
+    let ports = wet.network.ports.iter();
+    ports
+        .filter_map(|port| Some((port.name.clone(), first(&port.pressure)?)))
+        .collect()
 }
 
 /// Of every port, those of pressure first, the largest fall along the bladder behind it, over the largest pressure: from a port of

@@ -19,7 +19,7 @@ use std::time::Instant;
 use super::accuracy::plan;
 use crate::case::Case;
 use crate::case::schema::Effect;
-use crate::discrete::System;
+use crate::discrete::{Mesh, System};
 use crate::error::{Code, Result};
 use crate::model::Model;
 use crate::run::summary::{Accuracy, Estimate, Judged, Pilot};
@@ -127,14 +127,18 @@ pub fn refine(
         known: vec![],
         pilots: vec![],
     };
+    let segments = System::with(case, Model::whole(case, true)?)?.mesh.segments;
+    // a quarter of the cells is of the same order
+    let cells = (4 * Mesh::fewest(case.mesh.order())).div_ceil(segments);
     let mut at = At {
         along: along.then_some(FIRST_ALONG_BLADDERS),
+        cells: FIRST.cells.max(cells.next_power_of_two()),
         ..FIRST
     };
     // a coarse mesh may have no answer at all: fewer modes than are asked for, no equilibrium
     let settled = SETTLED * asked;
     while let Err(fault) = search.look(at, settled, compute) {
-        if at.cells >= LAST_FIRST {
+        if at.cells >= LAST_FIRST.max(cells) {
             return Err(fault);
         }
         at.cells *= 2;

@@ -1,14 +1,12 @@
 //! The mesh that a search begins with: it resolves everything that is given along the beam.
 
 use crate::case::Case;
-use crate::discrete::{System, resolution};
+use crate::discrete::{Mesh, System, resolution};
 use crate::error::Result;
 use crate::study::accuracy::plan;
 
-/// Cells a segment to begin with where nothing asks for more, and with bladders, so that half of them have fewer cells along a
-/// bladder as well.
-pub const LEAST: usize = 2;
-const LEAST_WET: usize = 4;
+/// Cells a segment to begin with where nothing asks for more: a quarter of them is a mesh too, without which nothing is promised.
+pub const LEAST: usize = 4;
 /// Cells of the whole beam: two meshes of fewer may agree by chance about what neither has.
 const LEAST_IN_ALL: usize = 8;
 /// And where much does.
@@ -21,8 +19,8 @@ pub fn least_cells(case: &Case) -> Result<usize> {
     let system = System::new(&coarse)?;
     let [along, in_bladders] = resolution::cells_that_resolve(&coarse, &system);
     let both = (1..=MOST).find(|cells| *cells >= along && plan::fluid_cells(*cells) >= in_bladders);
-    let least = if case.bladders.is_some() { LEAST_WET } else { LEAST };
-    let least = least.max(LEAST_IN_ALL.div_ceil(system.mesh.segments));
+    let of_order = 4 * Mesh::fewest(case.mesh.order());
+    let least = LEAST.max(LEAST_IN_ALL.max(of_order).div_ceil(system.mesh.segments));
     let cells = both.unwrap_or(MOST).next_power_of_two();
     Ok(cells.clamp(least.next_power_of_two(), MOST))
 }
