@@ -111,7 +111,7 @@ fn rows_solve_as_klu_does() {
             let mut values = vec![0.0; pattern.entries()];
             let x: Vec<f64> = (0..n).map(|_| chance.between(-1.0, 1.0)).collect();
             let mut b = vec![0.0; n];
-            for j in 0..n {
+            for (j, x) in x.iter().enumerate() {
                 for p in pattern.column(j) {
                     let row = pattern.rows[p] as usize;
                     values[p] = if row == j {
@@ -119,7 +119,7 @@ fn rows_solve_as_klu_does() {
                     } else {
                         chance.between(-1.0, 1.0)
                     };
-                    b[row] += values[p] * x[j];
+                    b[row] += values[p] * x;
                 }
             }
             klu.factor(&values).unwrap();
