@@ -181,21 +181,20 @@ fn largest(motion: &Motion<f64>, axis: usize) -> Moving {
             most = i;
         }
     }
-    let at = |field: &[Planar<f64>], from_node: f64| {
-        let [a, b, c] = [most - 1, most, most + 1].map(|node| field[node][axis]);
-        b + from_node * (0.5 * (c - a) + 0.5 * from_node * (a - 2.0 * b + c))
-    };
     if most == 0 || most + 1 == motion.u.len() {
         return [motion.u[most][axis], motion.v[most][axis]];
     }
-    let [a, b, c] = [most - 1, most, most + 1].map(|node| motion.u[node][axis]);
-    let bent = a - 2.0 * b + c;
-    let top = if bent == 0.0 {
+    let parabola = |field: &[Planar<f64>]| {
+        let [a, b, c] = [most - 1, most, most + 1].map(|node| field[node][axis]);
+        [b, 0.5 * (c - a), a - 2.0 * b + c]
+    };
+    let (u, v) = (parabola(&motion.u), parabola(&motion.v));
+    let top = if u[2] == 0.0 {
         0.0
     } else {
-        (0.5 * (a - c) / bent).clamp(-0.5, 0.5)
+        (-u[1] / u[2]).clamp(-0.5, 0.5)
     };
-    [at(&motion.u, top), at(&motion.v, top)]
+    [u, v].map(|[value, slope, bent]| value + top * (slope + 0.5 * top * bent))
 }
 
 /// Largest deflection across and largest motion of a node against the root [m].

@@ -64,6 +64,23 @@ impl Signal {
         times.windows(2).map(|w| (w[0], w[1])).collect()
     }
 
+    /// When the value first jumps until `end` [s], and what it is on both sides.
+    pub fn first_jump(&self, end: f64) -> Option<[f64; 3]> {
+        let mut last: Option<f64> = None;
+        for (start, stop) in self.smooth_intervals(end) {
+            let at = |t: f64| {
+                let within = 0.5 * (start + stop);
+                self.jet(Clock { t, within }).value
+            };
+            let first = at(start);
+            if let Some(before) = last.filter(|before| (first - before).abs() > 1e-9 * (first.abs() + before.abs())) {
+                return Some([start, before, first]);
+            }
+            last = Some(at(stop));
+        }
+        None
+    }
+
     /// Shortest time scale [s]: period or start of a sine, duration of a ramp, `4/steepness` of a sigmoid, smallest spacing
     /// of a table. The frequencies of the factors of a product add.
     pub fn fastest_period_s(&self) -> Option<f64> {

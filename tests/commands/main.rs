@@ -10,6 +10,7 @@ mod program;
 mod report;
 mod study;
 mod sweep;
+mod swung;
 mod uncertain;
 mod verify;
 mod words;

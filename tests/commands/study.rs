@@ -1,8 +1,5 @@
 //! Studies of what accuracy costs. Work is counted in steps: no clock decides.
 
-use std::path::Path;
-
-use slcbeam::case::{self, Case};
 use slcbeam::output::ResultFolder;
 use slcbeam::output::kind::Kind;
 use slcbeam::output::study as files;
@@ -11,38 +8,7 @@ use slcbeam::study::accuracy::study::Study;
 use slcbeam::study::accuracy::trial::{Ending, Role};
 use slcbeam::study::accuracy::{Budget, Plan, Scheme, study};
 
-/// A dry cantilever swung by a load on it.
-const DRY: &str = r#"{
-  "name": "dry",
-  "beam": {"length_m": 0.1, "height_m": 0.02, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 950},
-  "loads": [{"force_x_n_m": {"signal": {"sine": {"amplitude": 10, "frequency_hz": 10, "ramp_cycles": 1}}}}],
-  "ends": {"root": "clamped", "tip": "free"},
-  "mesh": {"segments": 3},
-  "time": {"end_s": 0.15, "output_interval_s": 0.0015}
-}"#;
-
-/// Two bladders and a tube in a beam swung by a load.
-const WET: &str = r#"{
-  "name": "wet",
-  "beam": {"length_m": 0.1, "height_m": 0.02, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 950},
-  "fluid": {"density_kg_m3": 1000, "viscosity_pa_s": 1e-3},
-  "bladders": {
-    "per_row": 1, "length_m": 0.046, "height_m": 0.008, "width_m": 0.008, "permeability_m4": 1.5e-12,
-    "area_per_pressure_m2_per_pa": 1.75e-10,
-    "area_per_moment_m2_per_n_m": {"opening": 5e-6, "closing": 5e-6},
-    "area_per_force_m2_per_n": {"tension": 5e-8, "compression": 5e-8}
-  },
-  "tubes": {"length_m": 0.02, "radius_m": 0.001},
-  "network": {"tubes": [{"from": {"bladder": 1, "end": "outlet"}, "to": {"bladder": -1, "end": "inlet"}}]},
-  "loads": [{"force_x_n_m": {"signal": {"sine": {"amplitude": 20, "frequency_hz": 5, "ramp_cycles": 1}}}}],
-  "ends": {"root": "clamped", "tip": "free"},
-  "time": {"end_s": 0.3, "output_interval_s": 0.003}
-}"#;
-
-fn parsed(text: &str, sets: &[&str]) -> Case {
-    let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-    case::parse(text, Path::new("case.json"), Path::new("."), &sets).unwrap()
-}
+use super::swung::{DRY, WET, parsed};
 
 fn plan(rtols: &[f64], cells: &[usize], orders: &[u8], budget: Budget) -> Plan {
     let plan = Plan {

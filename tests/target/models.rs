@@ -84,8 +84,8 @@ fn jumps_of_ports_are_found() {
         );
         let case = slcbeam::case::parse(&text, Path::new("jump.json"), Path::new("."), &[]);
         let case = case.unwrap_or_else(|error| panic!("{error}: {error:?}"));
-        let found = resolution::jumps(&case, &System::new(&case).expect("a system"));
-        found.first().map(|(_, t)| *t)
+        let found = resolution::first_jump(&case, &System::new(&case).expect("a system").model);
+        found.map(|(_, t)| t)
     };
     assert_eq!(jumps("3000", ""), Some(0.0));
     assert_eq!(jumps("3000", r#", "start": {"equilibrium": {}}"#), None);

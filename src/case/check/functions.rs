@@ -7,7 +7,7 @@ use crate::case::numbers::plain;
 use crate::case::schema::{Case, ChainEnd, Formulation};
 use crate::error::{Code, Violation};
 use crate::functions::profile::Profile;
-use crate::functions::signals::{Clock, Signal};
+use crate::functions::signals::Signal;
 
 /// Beyond this a beam does not move [Hz].
 const HIGHEST_FREQUENCY: f64 = 1e6;
@@ -246,7 +246,7 @@ fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mu
 /// pulse passes between two looks.
 fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Violations) {
     if let Some([moves, infinite]) = role.of_jumps()
-        && let Some([t, before, after]) = jump(signal, end)
+        && let Some([t, before, after]) = signal.first_jump(end)
     {
         let what = format!("the {moves} jumps from {before} to {after} at {t} s: infinite {infinite}");
         faults
@@ -265,21 +265,4 @@ fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Vio
         let what = format!("an opening of {} at {} s", excess.value, excess.t);
         faults.push(Violation::new(Code::Function, pointer, what).allowed("0 (closed) to 1 (open)"));
     }
-}
-
-/// When a signal first jumps [s], and its values on both sides.
-fn jump(signal: &Signal, end: f64) -> Option<[f64; 3]> {
-    let mut last: Option<f64> = None;
-    for (start, stop) in signal.smooth_intervals(end) {
-        let at = |t: f64| {
-            let within = 0.5 * (start + stop);
-            signal.jet(Clock { t, within }).value
-        };
-        let first = at(start);
-        if let Some(before) = last.filter(|before| (first - before).abs() > 1e-9 * (first.abs() + before.abs())) {
-            return Some([start, before, first]);
-        }
-        last = Some(at(stop));
-    }
-    None
 }

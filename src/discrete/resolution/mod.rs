@@ -89,14 +89,13 @@ fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Findin
     all
 }
 
-/// Ports whose pressure jumps, with the first instant [s], where pressures along bladders and inertia follow it: by how much pressures go
-/// beyond it no mesh of few cells shows.
-pub fn jumps(case: &Case, system: &System) -> Vec<(String, f64)> {
+/// A port whose pressure jumps, and when [s], where pressures along bladders and inertia follow it: by how much pressures go beyond it no
+/// mesh of few cells shows.
+pub fn first_jump(case: &Case, model: &Model) -> Option<(String, f64)> {
     let follows = [Effect::FlowAlongBladders, Effect::SolidInertia];
-    match &system.model.wet {
-        Some(wet) if follows.iter().all(|effect| system.model.effects.has(*effect)) => ports::jumps(case, wet),
-        _ => vec![],
-    }
+    let wet = model.wet.as_ref()?;
+    let all = follows.iter().all(|effect| model.effects.has(*effect));
+    all.then(|| ports::first_jump(case, wet)).flatten()
 }
 
 /// What the mesh leaves out by more than [`LIMIT`].

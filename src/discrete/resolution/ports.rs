@@ -78,30 +78,20 @@ pub fn ports(case: &Case, wet: &Wet) -> Vec<Port> {
     .collect()
 }
 
-/// Ports of a pressure that jumps, each with the first instant at which it does [s]: at the start where nothing says that bladders begin with
-/// it. What runs into a bladder then is thinner than any cell.
-pub fn jumps(case: &Case, wet: &Wet) -> Vec<(String, f64)> {
-    let at_rest = case.start.equilibrium.is_none() && case.start.pressures.is_empty();
-    let first = |signal: &Signal| {
-        let intervals = signal.smooth_intervals(case.time.end_s);
-        let value = |t: f64, (from, to): (f64, f64)| {
-            let within = 0.5 * (from + to);
-            signal.jet(Clock { t, within }).value
-        };
-        if at_rest && value(0.0, intervals[0]) != 0.0 {
-            return Some(0.0);
-        }
-        let little = 1e-9 * signal.largest(case.time.end_s).value;
-        let jump = intervals.windows(2).find(|both| {
-            let t = both[1].0;
-            (value(t, both[1]) - value(t, both[0])).abs() > little
-        });
-        jump.map(|both| both[1].0)
+/// The first port of a pressure that jumps, and when [s]: at the start where bladders do not begin with it. What runs into a bladder then is
+/// thinner than any cell.
+pub fn first_jump(case: &Case, wet: &Wet) -> Option<(String, f64)> {
+    let end = case.time.end_s;
+    let begins = |signal: &Signal| {
+        let within = 0.5 * signal.smooth_intervals(end)[0].1;
+        let first = signal.jet(Clock { t: 0.0, within }).value;
+        case.start.pressures.is_empty() && first != case.held_at_start(signal)
     };
-    let ports = wet.network.ports.iter();
-    ports
-        .filter_map(|port| Some((port.name.clone(), first(&port.pressure)?)))
-        .collect()
+    wet.network.ports.iter().find_map(|port| {
+        let later = || port.pressure.first_jump(end).map(|[t, ..]| t);
+        let t = if begins(&port.pressure) { 0.0 } else { later()? };
+        Some((port.name.clone(), t))
+    })
 }
 
 /// Of every port, those of pressure first, the largest fall along the bladder behind it, over the largest pressure: from a port of

@@ -127,9 +127,8 @@ pub fn refine(
         known: vec![],
         pilots: vec![],
     };
-    let segments = System::with(case, Model::whole(case, true)?)?.mesh.segments;
     // a quarter of the cells is of the same order
-    let cells = (4 * Mesh::fewest(case.mesh.order())).div_ceil(segments);
+    let cells = (4 * Mesh::fewest(case.mesh.order())).div_ceil(case.segments());
     let mut at = At {
         along: along.then_some(FIRST_ALONG_BLADDERS),
         cells: FIRST.cells.max(cells.next_power_of_two()),

@@ -95,8 +95,8 @@ impl Search<'_> {
         if present && self.runs.method(at).is_none() {
             all.push(format!("no other method was compared{}", why(Way::Method)));
         }
-        let system = System::new(&self.variant(at)).ok();
-        if let Some((port, t)) = system.and_then(|system| resolution::jumps(&self.case, &system).into_iter().next()) {
+        let system = System::new(&self.case).ok();
+        if let Some((port, t)) = system.and_then(|system| resolution::first_jump(&self.case, &system.model)) {
             all.push(format!(
                 "the pressure of the port \"{port}\" jumps at t = {t} s, and meshes of few cells a bladder agree about pressures that do not go \
                  beyond it: how far max_pressure_pa does is not judged. Give it the time that it takes, a ramp, or begin with it (/start)"
