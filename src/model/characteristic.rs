@@ -286,14 +286,16 @@ pub fn mathieu(model: &Model) -> Option<Mathieu> {
 }
 
 /// Growth rate of `q'' + [w2 - a sin(Ω t)] q = 0` [1/s] from the trace of its monodromy matrix, by the classical
-/// Runge-Kutta method; 0 when stable.
+/// Runge-Kutta method; 0 when stable. Of `n` steps over a period T its error is about `(ωT)⁵/(120 n⁴)`, with ω the largest frequency: 1e-12
+/// where no more than 4000 are needed for it.
 pub fn mathieu_growth(w2: f64, a: f64, omega: f64) -> f64 {
-    const STEPS: u32 = 4000;
     let period = 2.0 * PI / omega;
-    let h = period / f64::from(STEPS);
+    let turns = (w2.abs() + a.abs()).sqrt() * period;
+    let steps = (300.0 * turns.powf(1.25)).clamp(400.0, 4000.0) as u32;
+    let h = period / f64::from(steps);
     let rate = |t: f64, state: &Matrix2<f64>| Matrix2::new(0.0, 1.0, a * (omega * t).sin() - w2, 0.0) * state;
     let mut monodromy = Matrix2::identity();
-    for k in 0..STEPS {
+    for k in 0..steps {
         let t = h * f64::from(k);
         let k1 = rate(t, &monodromy);
         let k2 = rate(t + 0.5 * h, &(monodromy + 0.5 * h * k1));

@@ -96,10 +96,10 @@ impl ArraysWriter {
             .collect()
     }
 
-    /// Appends one instant of all fields, in the order of the header.
-    pub fn append(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()> {
-        let fits = arrays.len() == self.fields.len() && arrays.iter().zip(&self.fields).all(|(a, f)| a.len() == f.len);
-        if !fits {
+    /// Appends one instant: its time and all fields, one after the other in the order of the header.
+    pub fn append(&mut self, instant: &[f64]) -> Result<()> {
+        let announced = 1 + self.fields.iter().map(|f| f.len).sum::<usize>();
+        if instant.len() != announced {
             let why = "the arrays do not have the lengths announced";
             return Err(fault(
                 "write",
@@ -107,10 +107,13 @@ impl ArraysWriter {
                 io::Error::new(io::ErrorKind::InvalidInput, why),
             ));
         }
-        for (raw, array) in self.raw.iter_mut().zip(arrays) {
+        let (time, mut rest) = instant.split_at(1);
+        for (raw, field) in self.raw.iter_mut().zip(&self.fields) {
+            let (array, behind) = rest.split_at(field.len);
             raw.append(array)?;
+            rest = behind;
         }
-        self.times.append(&[t])?;
+        self.times.append(time)?;
         self.instants += 1;
         if self.flushed.elapsed() >= FLUSH {
             self.flush()?;

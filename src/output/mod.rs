@@ -7,6 +7,7 @@
 //! history   history.csv, row by row
 //! envelope  a history of any length, read back in bounded memory
 //! arrays    fields.npz, streamed through raw files
+//! behind    the files that grow with a run, written by a thread of their own
 //! npz       arrays back from such a file, checked against it
 //! checkpoint  where an interrupted run goes on
 //! recorder  the Recorder that ties them together
@@ -37,6 +38,7 @@
 
 pub mod accuracy;
 pub mod arrays;
+pub mod behind;
 pub mod checkpoint;
 pub mod columns;
 pub mod comparison;

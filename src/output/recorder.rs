@@ -1,9 +1,12 @@
 //! The recorder that fills a result folder.
 
+use std::panic;
 use std::path::PathBuf;
+use std::thread;
 use std::time::Instant;
 
 use super::arrays::ArraysWriter;
+use super::behind::{Behind, Growing, Secured};
 use super::checkpoint::{self, Saved};
 use super::envelope::Envelope;
 use super::folder::{
@@ -11,7 +14,7 @@ use super::folder::{
     SENSITIVITIES, SUMMARY,
 };
 use super::history::HistoryWriter;
-use super::pictures::{self, STRETCHES};
+use super::pictures::{self, Picture, STRETCHES};
 use super::stream::Stream;
 use super::summary;
 use crate::case::{Case, Written};
@@ -56,9 +59,7 @@ pub struct FolderRecorder {
     labels: Labels,
     hook: Hook,
     lean: bool,
-    open: Option<(HistoryWriter, ArraysWriter)>,
-    envelope: Option<HistoryWriter>,
-    sensitivities: Option<HistoryWriter>,
+    open: Option<Behind>,
 }
 
 impl FolderRecorder {
@@ -70,8 +71,6 @@ impl FolderRecorder {
             hook,
             lean: false,
             open: None,
-            envelope: None,
-            sensitivities: None,
         }
     }
 
@@ -104,10 +103,14 @@ impl FolderRecorder {
             let path = folder.path(name);
             mark.map(|mark| HistoryWriter::reopen(&path, mark)).transpose()
         });
-        Ok(Self {
-            open: Some((history, arrays)),
+        let files = Growing {
+            history,
+            arrays,
             envelope: envelope?,
             sensitivities: sensitivities?,
+        };
+        Ok(Self {
+            open: Some(Behind::new(files)),
             ..Self::new(folder, labels, hook)
         })
     }
@@ -121,19 +124,14 @@ impl FolderRecorder {
         let began = self.open.is_some();
         let aside = if began { None } else { self.folder.set_aside()? };
         let mut drawn = vec![];
-        // the pictures are drawn from the envelope, too
-        let mut besides = Ok(());
-        for mut rows in [self.envelope.take(), self.sensitivities.take()].into_iter().flatten() {
-            besides = besides.and(rows.secure().map(|_| ()));
-        }
         let completed = match self.open.take() {
-            Some((history, arrays)) => self.complete(history, arrays, &mut drawn, &mut laps, &mut spent),
+            Some(open) => self.complete(open, summary.status, &mut drawn, &mut laps, &mut spent),
             None => Ok(()),
         };
         // The summary matters most: it is tried whatever could not be written before.
         let cased = self.folder.write_case(&self.labels.case);
         let told = summary::write(&self.folder, summary);
-        completed.and(besides).and(cased).and(told.map(|_| ()))?;
+        completed.and(cased).and(told.map(|_| ()))?;
         self.folder.secure()?;
         if self.lean {
             // of a run that is gone on with
@@ -155,24 +153,40 @@ impl FolderRecorder {
         })
     }
 
+    /// Brings the tables to the disk, draws pictures of them and packs the arrays, both at once.
     fn complete(
         &self,
-        mut history: HistoryWriter,
-        mut arrays: ArraysWriter,
-        drawn: &mut Vec<pictures::Picture>,
+        open: Behind,
+        status: Status,
+        drawn: &mut Vec<Picture>,
         laps: &mut Laps,
         spent: &mut Spent,
     ) -> Result<()> {
-        history.secure()?;
-        drop(history);
-        spent.files += laps.lap();
-        if !self.lean {
-            let case = &self.labels.case_name;
-            *drawn = pictures::over_time(case, &Envelope::read(self.folder.dir(), STRETCHES)?);
-            drawn.extend(pictures::over_space(case, self.labels.frequency_hz, &mut arrays)?);
+        let mut files = open.close()?;
+        if !(self.lean && status == Status::Finished) {
+            files.secure_tables()?;
         }
-        spent.pictures += laps.lap();
-        arrays.finish(&self.folder.path(FIELDS))
+        let mut arrays = files.arrays;
+        spent.files += laps.lap();
+        if self.lean {
+            return arrays.finish(&self.folder.path(FIELDS));
+        }
+        let (case, dir) = (&self.labels.case_name, self.folder.dir());
+        let over_time = || Ok(pictures::over_time(case, &Envelope::read(dir, STRETCHES)?));
+        thread::scope(|scope| {
+            let over_time = scope.spawn(over_time);
+            let over_space = pictures::over_space(case, self.labels.frequency_hz, &mut arrays);
+            spent.pictures += laps.lap();
+            let packed = arrays.finish(&self.folder.path(FIELDS));
+            spent.files += laps.lap();
+            let over_time: Result<_> = over_time
+                .join()
+                .unwrap_or_else(|panicked| panic::resume_unwind(panicked));
+            spent.pictures += laps.lap();
+            drawn.extend(over_time?);
+            drawn.extend(over_space?);
+            packed
+        })
     }
 }
 
@@ -240,34 +254,37 @@ impl Recorder for FolderRecorder {
         let history = HistoryWriter::create(&self.folder.path(HISTORY), &header.columns)?;
         let arrays = ArraysWriter::create(&self.folder.path(RAW_FIELDS), header)?;
         self.folder.write_case(&self.labels.case)?;
-        if !header.envelope.is_empty() {
-            let path = self.folder.path(ENVELOPE);
-            self.envelope = Some(HistoryWriter::with_names(&path, header.envelope.clone())?);
-        }
-        if !header.sensitivities.is_empty() {
-            let path = self.folder.path(SENSITIVITIES);
-            self.sensitivities = Some(HistoryWriter::with_names(&path, header.sensitivities.clone())?);
-        }
-        self.open = Some((history, arrays));
+        let table = |file: &str, names: &[String]| {
+            let path = self.folder.path(file);
+            let wanted = !names.is_empty();
+            wanted
+                .then(|| HistoryWriter::with_names(&path, names.to_vec()))
+                .transpose()
+        };
+        let files = Growing {
+            history,
+            arrays,
+            envelope: table(ENVELOPE, &header.envelope)?,
+            sensitivities: table(SENSITIVITIES, &header.sensitivities)?,
+        };
+        self.open = Some(Behind::new(files));
         Ok(())
     }
 
     fn history(&mut self, row: &[f64]) -> Result<()> {
-        self.open.as_mut().map_or(Ok(()), |(history, _)| history.row(row))
+        self.open.as_mut().map_or(Ok(()), |open| open.history(row))
     }
 
     fn envelope(&mut self, row: &[f64]) -> Result<()> {
-        self.envelope.as_mut().map_or(Ok(()), |rows| rows.row(row))
+        self.open.as_mut().map_or(Ok(()), |open| open.envelope(row))
     }
 
     fn sensitivities(&mut self, row: &[f64]) -> Result<()> {
-        self.sensitivities.as_mut().map_or(Ok(()), |rows| rows.row(row))
+        self.open.as_mut().map_or(Ok(()), |open| open.sensitivities(row))
     }
 
     fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()> {
-        self.open
-            .as_mut()
-            .map_or(Ok(()), |(_, writer)| writer.append(t, arrays))
+        self.open.as_mut().map_or(Ok(()), |open| open.fields(t, arrays))
     }
 
     fn progress(&mut self, progress: &Progress) -> Result<Control> {
@@ -275,15 +292,15 @@ impl Recorder for FolderRecorder {
     }
 
     fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<()> {
-        let Some((history, arrays)) = self.open.as_mut() else {
+        let Some(open) = self.open.as_mut() else {
             return Ok(());
         };
-        let secured = |rows: &mut Option<HistoryWriter>| rows.as_mut().map(HistoryWriter::secure).transpose();
+        let Secured { tables, arrays } = open.secure()?;
         let saved = Saved {
-            history: history.secure()?,
-            envelope: secured(&mut self.envelope)?,
-            sensitivities: secured(&mut self.sensitivities)?,
-            fields: arrays.secure()?,
+            history: tables.history,
+            envelope: tables.envelope,
+            sensitivities: tables.sensitivities,
+            fields: arrays,
             run: checkpoint.clone(),
         };
         checkpoint::write(&self.folder, &saved)

@@ -77,6 +77,15 @@ pub struct Observed {
     stretch: Stretch,
 }
 
+/// What became of a sample: it is in the figures, is written as well, or lies beyond the model, in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Sampled {
+    Taken,
+    Written,
+    Beyond(String),
+}
+
 /// Watches a run, samples it for its recorder and keeps what the summary needs.
 pub struct Observer {
     cell_order: Vec<usize>,
@@ -293,8 +302,8 @@ impl Observer {
         self.turning.dedup_by(|next, kept| *next - *kept < APART * h);
     }
 
-    /// Takes a scaled state into the figures, in order of time, and records it as the output of a number, if it is one. Whether it
-    /// was written.
+    /// Takes a scaled state into the figures, in order of time, and records it as the output of a number, if it is one. Of what lies beyond the
+    /// model nothing is kept, but where the run ends there.
     #[allow(clippy::too_many_arguments)]
     pub fn sample(
         &mut self,
@@ -304,11 +313,15 @@ impl Observer {
         y: &[f64],
         yp: &[f64],
         integrals: &[f64],
+        last: bool,
         recorder: &mut dyn Recorder,
-    ) -> Result<bool> {
+    ) -> Result<Sampled> {
         let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
         let glance = Glance::new(system, now, t, half_height, w);
+        if let Some(what) = self.limits.beyond(&glance).filter(|_| !last) {
+            return Ok(Sampled::Beyond(what));
+        }
         let balance = self.watch(system, now, w, &glance, integrals);
         // The last step's end is later, but where the run ends within the step.
         let before = self.before.filter(|before| before.t < t);
@@ -329,7 +342,7 @@ impl Observer {
         seen.probes.take(t, seen.row.at_probes());
         seen.energies.take(&seen.row);
         let Some(number) = output else {
-            return Ok(false);
+            return Ok(Sampled::Taken);
         };
         if self.thinning != Thinning::All {
             let stretch = self.stretches.of(t);
@@ -337,7 +350,7 @@ impl Observer {
                 recorder.envelope(&row)?;
             }
             if stretch.is_some() && !self.thinning.keeps(number) {
-                return Ok(false);
+                return Ok(Sampled::Taken);
             }
         }
         recorder.history(self.seen.row.values())?;
@@ -352,7 +365,7 @@ impl Observer {
             let arrays: Vec<&[f64]> = ordered.iter().map(AsRef::as_ref).collect();
             recorder.fields(t, &arrays)?;
         }
-        Ok(true)
+        Ok(Sampled::Written)
     }
 
     /// Records what a run that ends has not yet.

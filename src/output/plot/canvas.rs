@@ -207,8 +207,19 @@ fn fine(p: (f64, f64)) -> (f64, f64) {
 }
 
 fn listed(points: &[(f64, f64)]) -> String {
-    let points: Vec<String> = points.iter().map(|(x, y)| format!("{x},{y}")).collect();
-    points.join(" ")
+    let mut text = String::with_capacity(12 * points.len());
+    let mut buffer = zmij::Buffer::new();
+    let mut put = |x: f64, end: char| {
+        let number = buffer.format(x);
+        text.push_str(number.strip_suffix(".0").unwrap_or(number));
+        text.push(end);
+    };
+    for (x, y) in points {
+        put(*x, ',');
+        put(*y, ' ');
+    }
+    text.pop();
+    text
 }
 
 /// Cuts a line into dashes of equal length.

@@ -8,6 +8,7 @@ use crate::dae::BeamDae;
 use crate::error::Result;
 use crate::integrate::IntegrationError;
 use crate::run::method::Integrator;
+use crate::run::observe::Sampled;
 use crate::run::record::{Control, Progress, Recorder};
 use crate::run::schedule::Due;
 
@@ -159,10 +160,10 @@ impl Run<'_> {
         if let Err(end) = self.read(solver, t) {
             return Ok(end);
         }
-        if let Some(end) = self.record(solver, Some(0), t, recorder)? {
-            return Ok(end);
+        match self.record(solver, Some(0), t, true, recorder)? {
+            Recorded::Ends(end) => Ok(end),
+            _ => Ok(End::Left(beyond(t, what))),
         }
-        Ok(End::Left(beyond(t, what)))
     }
 
     /// Takes every sample that is due, the ends of the window among them, up to a time `until` [s] within the last step, which began at `from` [s].
@@ -208,16 +209,16 @@ impl Run<'_> {
             if let Err(end) = self.read(solver, t.max(from)) {
                 return Ok(Some(end));
             }
-            let left = self.observer.beyond(solver.dae_mut(), t, &self.state, &self.rates);
-            if let Some(what) = left {
-                let (t, what) = match self.narrow(solver, [within, t], what) {
-                    Ok(found) => found,
-                    Err(end) => return Ok(Some(end)),
-                };
-                return self.leave(solver, t, what, recorder).map(Some);
-            }
-            if let Some(end) = self.record(solver, output, t, recorder)? {
-                return Ok(Some(end));
+            match self.record(solver, output, t, false, recorder)? {
+                Recorded::On => {}
+                Recorded::Ends(end) => return Ok(Some(end)),
+                Recorded::Beyond(what) => {
+                    let (t, what) = match self.narrow(solver, [within, t], what) {
+                        Ok(found) => found,
+                        Err(end) => return Ok(Some(end)),
+                    };
+                    return self.leave(solver, t, what, recorder).map(Some);
+                }
             }
             within = t;
             due = self.outputs.due(until);
@@ -225,32 +226,48 @@ impl Run<'_> {
         Ok(None)
     }
 
-    /// Takes the state that has been read into all figures, and records it where it is an output.
+    /// Takes the state that has been read into all figures, and records it where it is an output; of what lies beyond the model nothing, unless it
+    /// is the last.
     pub(super) fn record(
         &mut self,
         solver: &mut Integrator<BeamDae>,
         output: Option<u64>,
         t: f64,
+        last: bool,
         recorder: &mut dyn Recorder,
-    ) -> Result<Option<End>> {
-        let written = self.observer.sample(
+    ) -> Result<Recorded> {
+        let sampled = self.observer.sample(
             solver.dae_mut(),
             output,
             t,
             &self.state,
             &self.rates,
             &self.integrals,
+            last,
             recorder,
         )?;
+        if let Sampled::Beyond(what) = sampled {
+            return Ok(Recorded::Beyond(what));
+        }
         if let (Some(forward), Some(ida)) = (&mut self.forward, solver.ida_mut()) {
             match forward.sample(ida, t, [&self.state, &self.rates], self.observer.row()) {
-                Ok(row) if written => recorder.sensitivities(row)?,
+                Ok(row) if sampled == Sampled::Written => recorder.sensitivities(row)?,
                 Ok(_) => {}
-                Err(failure) => return Ok(Some(unread(t, &failure))),
+                Err(failure) => return Ok(Recorded::Ends(unread(t, &failure))),
             }
         }
-        Ok(None)
+        Ok(Recorded::On)
     }
+}
+
+/// What follows from a state that was to be recorded.
+pub(super) enum Recorded {
+    /// The run goes on.
+    On,
+    /// It ends.
+    Ends(End),
+    /// The model was left before it, in words.
+    Beyond(String),
 }
 
 fn unread(t: f64, failure: &IntegrationError) -> End {

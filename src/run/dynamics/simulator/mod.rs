@@ -369,7 +369,9 @@ impl Simulator {
         let [y, yp, integrals] = [&self.state, &self.rates, &self.integrals];
         let nobody = &mut Unrecorded(|_: &_| Control::Continue);
         let dae = self.solver.dae_mut();
-        self.observer.sample(dae, None, t, y, yp, integrals, nobody).map(|_| ())
+        self.observer
+            .sample(dae, None, t, y, yp, integrals, true, nobody)
+            .map(|_| ())
     }
 }
 
