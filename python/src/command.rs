@@ -1,6 +1,7 @@
 //! Every command of the program, on a thread of its own beside which Python stays able to stop it.
 
 use std::ffi::OsString;
+use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -9,9 +10,20 @@ use std::time::Duration;
 
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
-use slcbeam::cli::embedded;
+use slcbeam::cli::{self, embedded};
 
 use crate::errors::{broken, raised, told};
+
+/// The program itself, with words of the command line behind its name: it prints and is stopped as in a shell. Gives its exit code.
+#[pyfunction]
+pub fn program(py: Python<'_>, words: Vec<OsString>) -> u8 {
+    let all = std::iter::once("slcbeam".into()).chain(words);
+    let code = py.detach(|| cli::main_of(all));
+    // no code tells its number
+    (0..=u8::MAX)
+        .find(|&number| ExitCode::from(number) == code)
+        .unwrap_or(1)
+}
 
 /// How often Python is asked for a signal.
 const OFTEN: Duration = Duration::from_millis(50);

@@ -18,6 +18,8 @@ fn _slcbeam(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<simulator::Simulator>()?;
     module.add_class::<simulator::State>()?;
     module.add_function(wrap_pyfunction!(command::command, module)?)?;
+    module.add_function(wrap_pyfunction!(command::program, module)?)?;
+    module.add_function(wrap_pyfunction!(run::claimable, module)?)?;
     module.add_function(wrap_pyfunction!(run::run, module)?)?;
     module.add_function(wrap_pyfunction!(run::again, module)?)
 }

@@ -303,3 +303,11 @@ impl Recorded {
         Ok(complete())
     }
 }
+
+/// Asks whether a result may come into a folder, before hours are spent on it; what is there stays as it is.
+#[pyfunction]
+pub fn claimable(py: Python<'_>, dir: PathBuf) -> PyResult<()> {
+    ResultFolder::claim(&dir, Kind::Run, false)
+        .map(drop)
+        .map_err(|error| raised(py, &error))
+}

@@ -4,6 +4,8 @@ import json
 import os
 import pickle
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -239,3 +241,44 @@ def test_designs_of_a_table_go_on_and_are_told_from_others(tmp_path):
         slcbeam.sweep(case, designs={pointer: [1e4, 3e4]}, **how)
     with pytest.raises(slcbeam.UsageError, match="columns of numbers"):
         slcbeam.sweep(case, designs={pointer: ["much"]}, **how)
+
+
+def test_words_are_explained():
+    assert slcbeam.explain("buckling")[0]["meaning"].startswith("slcbeam equilibrium")
+    with pytest.raises(slcbeam.UsageError, match="did you mean tip_angle"):
+        slcbeam.explain("tip_angel")
+
+
+def test_sections_and_specimens_have_coefficients():
+    found = slcbeam.coefficients("section-actuator")
+    assert len(found["compliance"]) == 4
+    volumes = {"pressure_kpa": [0, 10, 20, 30], "volume_ml": [0, 0.11, 0.19, 0.3]}
+    measured = slcbeam.measure(volumes, of="section-actuator", as_="pressure-volume")
+    assert measured["coefficients"]["/bladders/area_per_pressure_m2_per_pa"]["value"] == pytest.approx(7e-11)
+
+
+def test_results_are_compared_and_exported(tmp_path):
+    for name, length in [("a", 0.1), ("b", 0.11)]:
+        slcbeam.run(slcbeam.load("bend-wet", set={"/beam/length_m": length, "/time/end_s": 0.01}), out=tmp_path / name)
+    told = slcbeam.compare(tmp_path / "a", tmp_path / "b")
+    assert told["format"]
+    slcbeam.export(tmp_path / "a", format="csv", every=5)
+    assert (tmp_path / "a/csv/u1_m.csv").is_file()
+
+
+def test_the_program_comes_with_the_package(tmp_path):
+    def say(*words):
+        return subprocess.run([sys.executable, "-m", "slcbeam", *words], capture_output=True, text=True, cwd=tmp_path)
+
+    assert "transverse displacement" in say("explain", "tip_u1").stdout
+    nothing = say("check", "nothing.json")
+    assert nothing.returncode == 2 and "nothing.json" in nothing.stderr
+    (tmp_path / "bad.json").write_text("{}")
+    assert say("check", "bad.json").returncode == 3
+
+
+def test_a_name_that_is_not_there_is_told_with_the_nearest():
+    found = slcbeam.equilibrium("bend-wet")
+    for where, name, meant in [(found, "quantitis", "quantities"), (found.tables, "pat", "path"), (found.tables["path"], "tip_u", "tip_u")]:
+        with pytest.raises(KeyError, match=f"did you mean '{meant}"):
+            where[name]

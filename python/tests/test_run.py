@@ -227,3 +227,23 @@ def test_a_name_that_is_none_is_told_with_the_nearest(quick):
     assert result.quantities.get("tip_u1") is None
     tip = result.quantities["tip_u1_m"]
     assert abs(tip["extreme"]) == tip["max_abs"]
+
+
+def test_a_folder_that_is_taken_is_told_before_the_run(tmp_path):
+    (tmp_path / "notes.txt").write_text("kept")
+    called = []
+    with pytest.raises(slcbeam.Error, match="notes.txt|holds something else|not empty|own"):
+        slcbeam.run("bend-wet", out=tmp_path, progress=lambda *where: called.append(where))
+    assert not called and (tmp_path / "notes.txt").read_text() == "kept"
+
+
+def test_a_result_that_cannot_be_written_is_not_lost(tmp_path):
+    out = tmp_path / "out"
+
+    def take(*_):
+        out.mkdir(exist_ok=True)
+        (out / "notes.txt").write_text("kept")
+
+    with pytest.raises(slcbeam.Error) as told:
+        slcbeam.run("bend-wet", out=out, progress=take)
+    assert told.value.result.status == "finished" and told.value.result.history["t"].size > 10

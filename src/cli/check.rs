@@ -13,7 +13,8 @@ use crate::error::Result;
 use crate::model::{audit, characteristic};
 use crate::output::columns::aligned;
 use crate::output::machine;
-use crate::output::numbers::{duration, significant};
+use crate::output::numbers::{duration, pretty_unit, significant};
+use crate::output::report::facts;
 use crate::run::needs::Needs;
 use crate::run::{known, method};
 
@@ -63,11 +64,15 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         let _ = write!(text, "\n{}", case.about);
     }
     text += "\n\ncharacteristic numbers\n";
-    text += &listed(
-        numbers
-            .iter()
-            .map(|(name, value)| [name.to_string(), significant(*value, 6)]),
-    );
+    text += &listed(numbers.iter().map(|(name, value)| {
+        let [unit, about] = facts::meaning(name).unwrap_or(["1", ""]);
+        [
+            name.to_string(),
+            significant(*value, 6),
+            pretty_unit(unit),
+            about.to_string(),
+        ]
+    }));
     if !findings.is_empty() {
         text += "\ncoupling\n";
         text += &listed(findings.iter().map(|f| {

@@ -36,6 +36,7 @@ mod terminal;
 mod uncertain;
 mod verify;
 
+use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -47,8 +48,14 @@ use arguments::{Arguments, Command};
 
 /// Reads the arguments, does what they ask, reports what went wrong, and gives the exit code.
 pub fn main() -> ExitCode {
+    main_of(std::env::args_os())
+}
+
+/// [`main`] of words, the first of them the program's name.
+pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let began = Instant::now();
-    let arguments = match Arguments::try_parse() {
+    let words: Vec<OsString> = words.into_iter().collect();
+    let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
         Err(answer) => {
             // Help and version are answers, everything else is a usage error; clap prints both.
@@ -56,7 +63,7 @@ pub fn main() -> ExitCode {
             if !answer.use_stderr() {
                 return ExitCode::SUCCESS;
             }
-            if std::env::args_os().skip(1).any(|argument| argument == "--json") {
+            if words.iter().skip(1).any(|argument| argument == "--json") {
                 let words = answer.render().to_string();
                 let error = Error::Usage(words.trim().trim_start_matches("error: ").to_owned());
                 let _ = print(&format!("{:#}\n", terminal::json(&error)));

@@ -5,6 +5,7 @@ use nalgebra::Complex;
 use super::fluid_mesh::Place;
 use super::{FluidMesh, System};
 use crate::case::schema::{Case, MaxOrder, Method};
+use crate::error::numbers::significant;
 use crate::error::{Code, Violation};
 
 /// Damping ratio from which on high orders are taken: measured, 5 % nearly removes the trap, 0.5 % does not.
@@ -21,14 +22,18 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
     let ratio = least_damping_ratio(system);
     (ratio < ENOUGH).then(|| {
         Violation::new(
-            Code::Order, "/solver/max_order",
+            Code::Order,
+            "/solver/max_order",
             format!(
-                "BDF of order {order} is unstable for the waves of this scene, whose least damping ratio is {ratio:.1e}: \
-                 steps become tiny or rates become garbage"
+                "BDF of order {order} is unstable for the waves of this scene, whose least damping ratio is {}: \
+                 steps become tiny or rates become garbage",
+                significant(ratio, 2)
             ),
         )
         .allowed("\"auto\", 1, 2, or 5 for errors below about 1e-5")
-        .hint(format!("use \"auto\"; to see what happens, force it with {{\"forced\": {order}}}"))
+        .hint(format!(
+            "use \"auto\"; to see what happens, force it with {{\"forced\": {order}}}"
+        ))
     })
 }
 

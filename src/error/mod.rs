@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 mod code;
+pub mod numbers;
 mod visible;
 
 pub use code::Code;

@@ -7,6 +7,7 @@ use crate::case::numbers::digits;
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
 use crate::case::{inherited, overshoots};
+use crate::error::numbers::{quantity, significant};
 use crate::error::{Code, Violation};
 
 /// One audited number.
@@ -187,9 +188,10 @@ fn convexity(model: &Model, bladders: &Bladders, wet: &Wet) -> Vec<Finding> {
         wanted: "above the pressures expected",
         good: value > expected,
         consequence: format!(
-            "expected p_u + p_d is {expected:.3e} Pa: the kinked potential loses convexity there and the \
-                 equations lose index one; widen bladders/kink_width (now {:.1e}) or use \"reciprocal\"",
-            bladders.kink_width
+            "expected p_u + p_d is {}: the kinked potential loses convexity there and the \
+                 equations lose index one; widen bladders/kink_width (now {}) or use \"reciprocal\"",
+            quantity(expected, "Pa", 4),
+            significant(bladders.kink_width, 2)
         ),
     })
     .collect()
@@ -211,7 +213,7 @@ pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
             Violation::new(
                 Code::Convexity,
                 "/bladders/coupling",
-                format!("the kinked potential is {}: {:.3e}", f.name, f.value),
+                format!("the kinked potential is {}: {}", f.name, significant(f.value, 4)),
             )
             .allowed(f.wanted)
             .hint(f.consequence)
@@ -225,22 +227,36 @@ pub fn warnings(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> 
     let mut all = lasting(case, model, numbers);
     if !model.effects.has(Effect::TubeLosses) {
         let what = "flow in the tubes may not be creeping";
-        all.extend(over(numbers, Code::FastFlow, "reynolds_estimate", 100.0, what));
+        all.extend(over(
+            numbers,
+            Code::FastFlow,
+            ["reynolds_estimate", "the Reynolds number expected in the tubes"],
+            100.0,
+            what,
+        ));
     }
     all.extend(over(
         numbers,
         Code::Strain,
-        "largest_strain_estimate",
+        ["largest_strain_estimate", "the strain expected"],
         0.5,
         "local strains may not be small",
     ));
     all
 }
 
-fn over(numbers: &BTreeMap<String, f64>, code: Code, name: &str, limit: f64, what: &str) -> Option<String> {
+/// A warning of a number, by name and in words, that is above its limit.
+fn over(
+    numbers: &BTreeMap<String, f64>,
+    code: Code,
+    [name, words]: [&str; 2],
+    limit: f64,
+    what: &str,
+) -> Option<String> {
     let value = numbers.get(name).filter(|value| **value > limit)?;
     Some(code.warning(format!(
-        "range of the model: {name} = {value:.3} is above {limit}: {what}"
+        "range of the model: {words} is {}, above {limit}: {what}",
+        significant(*value, 3)
     )))
 }
 
@@ -281,7 +297,13 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
     }
     if !model.effects.has(Effect::TubeInertia) {
         let what = "oscillating flow in the tubes is not creeping; their inertia is left out";
-        all.extend(over(numbers, Code::FastFlow, "womersley", 1.0, what));
+        all.extend(over(
+            numbers,
+            Code::FastFlow,
+            ["womersley", "the Womersley number of the tubes"],
+            1.0,
+            what,
+        ));
     }
     all.extend(stream(model));
     if let Some(&f) = numbers.get("forcing_frequency_hz") {

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix4, SymmetricEigen};
 
 use super::{Coupling, Model, Wet};
+use crate::error::numbers::quantity;
 
 /// What the local law does with the work put into it.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,7 +102,14 @@ impl Passivity {
             self.least
         );
         let [m, n, upper, lower] = self.direction;
-        let worst = format!("at M {m:.3e} N m, N {n:.3e} N, p_u {upper:.3e} Pa, p_d {lower:.3e} Pa");
+        let size = |value: f64, unit: &str| quantity(value, unit, 4);
+        let worst = format!(
+            "by M {}, N {}, p_u {}, p_d {}",
+            size(m, "N m"),
+            size(n, "N"),
+            size(upper, "Pa"),
+            size(lower, "Pa")
+        );
         match (self.least > 0.0, self.reciprocal()) {
             (true, true) => format!("the {name} coupling is passive: {least}, {worst}"),
             (true, false) => format!(

@@ -56,7 +56,7 @@ pub mod kind;
 pub mod machine;
 pub mod modes;
 pub mod npz;
-pub mod numbers;
+pub use crate::error::numbers;
 pub mod optimum;
 pub mod periodic;
 pub mod pictures;

@@ -22,6 +22,7 @@ use super::summary::Quantity;
 use crate::case::schema::Case;
 use crate::discrete::quantities::{Group, Interest, Row};
 use crate::error::Code;
+use crate::error::numbers::quantity;
 
 /// Open by more than this part of a figure: it is warned of.
 const OPEN: f64 = 0.1;
@@ -174,8 +175,9 @@ impl Energies {
                     && value.abs() > (REMAINDER * self.largest_stored).max(self.floor)
                 {
                     all.push(format!(
-                        "the {} {when}, {value:.3e} J, is open by {:.0} % of it",
+                        "the {} {when}, {}, is open by {:.0} % of it",
                         of.words(),
+                        quantity(value, "J", 4),
                         100.0 * error
                     ));
                 }
@@ -227,13 +229,17 @@ pub fn too_open(error: f64) -> bool {
 fn why(gained: &Parts) -> String {
     if gained.added.abs() > ROUND_OFF * gained.harvested.abs() {
         return format!(
-            "the published coupling or formulation added {:.2e} J, with {:.2e} J put in; it means something with the reciprocal \
+            "the published coupling or formulation added {}, with {} put in; it means something with the reciprocal \
              coupling and the conservative formulation",
-            gained.added, gained.input
+            quantity(gained.added, "J", 3),
+            quantity(gained.input, "J", 3)
         );
     }
     if gained.stored < 0.0 {
-        return format!("{:.2e} J that were stored before were taken out", -gained.stored);
+        return format!(
+            "{} that were stored before were taken out",
+            quantity(-gained.stored, "J", 3)
+        );
     }
     "no coupling adds energy here, so that this is the integration's error".into()
 }

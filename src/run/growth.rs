@@ -6,6 +6,7 @@ use super::fit;
 use crate::discrete::TimeData;
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::time_data::PointForces;
+use crate::error::numbers::quantity;
 use crate::model::Model;
 use crate::model::characteristic::Mathieu;
 use crate::numerics::Planar;
@@ -252,9 +253,10 @@ impl Growth {
         let largest = self.windows.iter().map(|w| w.deflection).fold(0.0, f64::max);
         (self.compression > euler && largest < 1e-6 * length).then(|| {
             format!(
-                "buckling: compression reached {:.3e} N, above Euler's load {euler:.3e} N, and the beam without inertia stayed \
+                "buckling: compression reached {}, above Euler's load {}, and the beam without inertia stayed \
                  straight, an unstable equilibrium; a load across of a thousandth would show the bent one",
-                self.compression
+                quantity(self.compression, "N", 4),
+                quantity(euler, "N", 4)
             )
         })
     }
@@ -285,8 +287,9 @@ impl Growth {
             all.push(driver(
                 "buckling",
                 format!(
-                    "compression reached {:.3e} N, above Euler's load {euler:.3e} N",
-                    self.compression
+                    "compression reached {}, above Euler's load {}",
+                    quantity(self.compression, "N", 4),
+                    quantity(euler, "N", 4)
                 ),
             ));
         }
@@ -310,7 +313,11 @@ impl Growth {
             if work > 0.3 * gained {
                 all.push(driver(
                     name,
-                    format!("{what} added {work:.3e} J while the bending energy rose by {gained:.3e} J"),
+                    format!(
+                        "{what} added {} while the bending energy rose by {}",
+                        quantity(work, "J", 4),
+                        quantity(gained, "J", 4)
+                    ),
                 ));
             }
         }
@@ -318,8 +325,8 @@ impl Growth {
             all.push(driver(
                 "loads",
                 format!(
-                    "no instability is known: loads, driven ends and ports have done {:.3e} J of work",
-                    last.work
+                    "no instability is known: loads, driven ends and ports have done {} of work",
+                    quantity(last.work, "J", 4)
                 ),
             ));
         }

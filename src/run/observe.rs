@@ -21,7 +21,7 @@ use super::floors::Floors;
 use super::growth::Growth;
 use super::range::{Limits, Range};
 use super::readings::{self, ProbeFigures, Readings};
-use super::record::{Axis, Column, Field, Header, Recorder};
+use super::record::{Axis, Column, Field, Header, Recorder, Sampled};
 use super::residuals::Residuals;
 use super::step_response::StepResponses;
 use super::stretch::{self, Stretch, Stretches};
@@ -75,15 +75,6 @@ pub struct Observed {
     /// Outputs before the window that are not written one by one.
     #[serde(default)]
     stretch: Stretch,
-}
-
-/// What became of a sample: it is in the figures, is written as well, or lies beyond the model, in words.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum Sampled {
-    Taken,
-    Written,
-    Beyond(String),
 }
 
 /// Watches a run, samples it for its recorder and keeps what the summary needs.

@@ -7,6 +7,7 @@
 use crate::case::schema::{Case, MaxOrder};
 use crate::discrete::System;
 use crate::discrete::waves::{ENOUGH, carries, highest_frequency, least_damping_ratio};
+use crate::error::numbers::{quantity, significant};
 
 /// Highest order, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,12 +33,16 @@ pub fn choose(case: &Case, system: &System) -> OrderChoice {
             ratio if ratio < ENOUGH => chosen(
                 2,
                 format!(
-                    "the least damped wave has a damping ratio of {ratio:.1e} < {ENOUGH}: BDF beyond order 2 is unstable for it"
+                    "the least damped wave has a damping ratio of {}, below {ENOUGH}: BDF beyond order 2 is unstable for it",
+                    significant(ratio, 2)
                 ),
             ),
             ratio => chosen(
                 5,
-                format!("every wave has a damping ratio of {ratio:.1e} >= {ENOUGH} or more"),
+                format!(
+                    "every wave has a damping ratio of {} or more, {ENOUGH} are enough",
+                    significant(ratio, 2)
+                ),
             ),
         },
     }
@@ -54,9 +59,9 @@ pub fn held_by_stability(system: &System, order: u8, time: f64, steps: u64, reje
     let limited = ratio < ENOUGH && reach < 10.0;
     limited.then(|| {
         format!(
-            "the steps ({:.1e} s on average, {reach:.2} over the highest frequency of the mesh, {rejected} rejected) are \
+            "the steps ({} on average, {reach:.2} over the highest frequency of the mesh, {rejected} rejected) are \
              held down by the stability of BDF order {order} and not by accuracy: set /solver/max_order to 2",
-            time / steps as f64
+            quantity(time / steps as f64, "s", 2)
         )
     })
 }

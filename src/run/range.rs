@@ -7,6 +7,7 @@ use crate::case::schema::{Case, Effect};
 use crate::discrete::System;
 use crate::discrete::glance::{Glance, Watched};
 use crate::error::Code;
+use crate::error::numbers::quantity;
 use crate::model::audit;
 
 /// Fibre strain above which a run warns.
@@ -167,7 +168,7 @@ impl Limits {
             return None;
         }
         let at = match g.t {
-            t if t.abs() < 1e-3 => format!("t = {t:.3e} s"),
+            t if t.abs() < 1e-3 => format!("t = {}", quantity(t, "s", 4)),
             t => format!("t = {t:.6} s"),
         };
         self.beyond_at(g, &at)
@@ -199,7 +200,8 @@ impl Limits {
         if swelling > self.swelling {
             return Some(format!(
                 "a bladder has outgrown its segment at {at}: its cross-section h_b w_b + a1 has reached the half \
-                 section l_seg h_s/2 that holds it (a1 = {swelling:.3e} m^2)"
+                 section l_seg h_s/2 that holds it (a1 = {})",
+                quantity(swelling, "m^2", 4)
             ));
         }
         if value(Watched::Outermost) > 1.0 {
@@ -219,12 +221,13 @@ impl Limits {
         let pressure = value(Watched::High).abs().max(value(Watched::Low).abs());
         if pressure > PRESSURE_ENDS * self.modulus {
             return Some(format!(
-                "a pressure has reached {PRESSURE_ENDS} times Young's modulus at {at} ({pressure:.3e} Pa)"
+                "a pressure has reached {PRESSURE_ENDS} times Young's modulus at {at} ({})",
+                quantity(pressure, "Pa", 4)
             ));
         }
         Some(format!(
-            "a node has reached {MOTION_ENDS} lengths of the beam against the root at {at} ({:.3e} m)",
-            g.moved
+            "a node has reached {MOTION_ENDS} lengths of the beam against the root at {at} ({})",
+            quantity(g.moved, "m", 4)
         ))
     }
 
@@ -286,23 +289,25 @@ impl Range {
         }
         if self.begun > 0.0 {
             all.push(Code::DeepContact.warning(format!(
-                "contact: the beam begins {:.3e} m behind the face of a wall, and is thrown off; begin in front of it, or with \
+                "contact: the beam begins {} behind the face of a wall, and is thrown off; begin in front of it, or with \
                  /start/equilibrium",
-                self.begun
+                quantity(self.begun, "m", 4)
             )));
         }
         if let Some(began) = self.touched.began {
             all.push(Code::DeepContact.warning(format!(
-                "contact: the beam is pressed {:.3e} m into a wall at t = {:.4} s, by more than half its height from t = {began:.4} s on; a \
+                "contact: the beam is pressed {} into a wall at t = {:.4} s, by more than half its height from t = {began:.4} s on; a \
                  stiffer wall holds it",
-                self.touched.largest, self.touched.t
+                quantity(self.touched.largest, "m", 4),
+                self.touched.t
             )));
         }
         if let Some(began) = self.pressed.began {
             all.push(Code::LostConvexity.warning(format!(
-                "the kinked reciprocal potential lost convexity at t = {began:.4} s: p_u + p_d reached {:.3e} Pa, above {:.3e} \
-                 Pa; results from then on are not to be trusted (use \"reciprocal\" or a larger kink_width)",
-                self.pressed.largest, limits.convex_up_to
+                "the kinked reciprocal potential lost convexity at t = {began:.4} s: p_u + p_d reached {}, above \
+                 {}; results from then on are not to be trusted (use \"reciprocal\" or a larger kink_width)",
+                quantity(self.pressed.largest, "Pa", 4),
+                quantity(limits.convex_up_to, "Pa", 4)
             )));
         }
         all

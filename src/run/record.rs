@@ -113,6 +113,17 @@ pub enum Control {
     Stop(String),
 }
 
+/// What became of a sample.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Sampled {
+    /// It is in the figures.
+    Taken,
+    /// It is recorded as well.
+    Written,
+    /// It lies beyond the model, in words, and nothing is kept of it.
+    Beyond(String),
+}
+
 /// Receives what a run produces, in order of time.
 pub trait Recorder {
     /// Called once, before the first row.

@@ -7,6 +7,7 @@ use crate::discrete::ledger::EnergyBalance;
 use crate::discrete::ledger::{self, EnergyRate, Invariants};
 use crate::discrete::{State, System, TimeData};
 use crate::error::Code;
+use crate::error::numbers::significant;
 
 /// Above this the run warns that a balance does not close.
 const OPEN: f64 = 0.01;
@@ -177,24 +178,31 @@ impl Residuals {
         let open = self.energy_relative();
         if open > OPEN {
             all.push(Code::EnergyOpen.warning(format!(
-                "energy balance: it stays open by {open:.1e} of the largest energy; tighten solver/rtol \
-                 until answers no longer change (a jump to which a beam without inertia answers far from linearly leaves it open at any tolerance)"
+                "energy balance: it stays open by {} of the largest energy; tighten solver/rtol \
+                 until answers no longer change (a jump to which a beam without inertia answers far from linearly leaves it open at any tolerance)",
+                significant(open, 2)
             )));
         }
         let missed = self.port_flow_relative();
         if missed > OPEN {
             all.push(Code::PortFlow.warning(format!(
-                "flow through ports: what the ports' law lets through and what the network stores differ by {missed:.1e} of the \
+                "flow through ports: what the ports' law lets through and what the network stores differ by {} of the \
                  volume passed: the pressures that drive it are last digits of pressures. Flows and volumes of ports are told from what is \
-                 stored; only how several ports of one network share them is not sure: tighten solver/rtol until that no longer changes"
+                 stored; only how several ports of one network share them is not sure: tighten solver/rtol until that no longer changes",
+                significant(missed, 2)
             )));
         }
         let (momentum, angular) = (self.momentum_relative(), self.angular_relative());
         if momentum > OPEN || angular > OPEN {
+            let open = |share: f64| significant(share, 2);
             let which = match (momentum > OPEN, angular > OPEN) {
-                (true, true) => format!("momentum by {momentum:.1e} and angular momentum by {angular:.1e}"),
-                (true, false) => format!("momentum by {momentum:.1e}"),
-                _ => format!("angular momentum by {angular:.1e}"),
+                (true, true) => format!(
+                    "momentum by {} and angular momentum by {}",
+                    open(momentum),
+                    open(angular)
+                ),
+                (true, false) => format!("momentum by {}", open(momentum)),
+                _ => format!("angular momentum by {}", open(angular)),
             };
             all.push(Code::MomentumOpen.warning(format!(
                 "balance of momentum: it stays open, {which} of the largest that the beam has or was given; tighten \

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cubic::Cubic;
 use super::readings::Readings;
+use crate::error::numbers::quantity;
 
 /// Shares of the way between which the rise is timed.
 const RISE: [f64; 2] = [0.1, 0.9];
@@ -238,10 +239,10 @@ impl StepResponses {
             let stays = self.end - left >= STAYS * (self.end - self.at);
             stays.then_some(left - self.at).ok_or_else(|| {
                 format!(
-                    "it leaves the band of {:.0} % about its final value {:.3e} s before the end; settled is what stays in the band \
+                    "it leaves the band of {:.0} % about its final value {} before the end; settled is what stays in the band \
                      for the last tenth of the time",
                     100.0 * band,
-                    self.end - left
+                    quantity(self.end - left, "s", 4)
                 )
             })
         });

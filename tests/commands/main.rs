@@ -4,6 +4,7 @@ mod cli;
 mod compare;
 mod effects;
 mod interruption;
+mod names;
 mod output;
 #[path = "../common/program.rs"]
 mod program;

@@ -187,7 +187,7 @@ fn a_long_path_is_not_cut() {
 }
 
 /// Exit code, standard output and standard error of the program.
-fn slcbeam(here: &Path, arguments: &[&str]) -> (i32, String, String) {
+pub fn slcbeam(here: &Path, arguments: &[&str]) -> (i32, String, String) {
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_slcbeam"));
     let output = command
         .current_dir(here)

@@ -22,7 +22,25 @@ from importlib import metadata as _metadata
 
 from ._answer import Answer, Columns, read
 from ._case import Case, load, shipped
-from ._commands import check, effects, equilibrium, fit, floquet, merge, modes, optimize, periodic, sense, study, sweep
+from ._commands import (
+    check,
+    coefficients,
+    compare,
+    effects,
+    equilibrium,
+    explain,
+    export,
+    fit,
+    floquet,
+    measure,
+    merge,
+    modes,
+    optimize,
+    periodic,
+    sense,
+    study,
+    sweep,
+)
 from ._errors import CaseError, Error, Fault, FileError, SolverError, UsageError
 from ._page import Report
 from ._result import Fields, Result, Table
@@ -52,11 +70,16 @@ __all__ = [
     "Table",
     "UsageError",
     "check",
+    "coefficients",
+    "compare",
     "effects",
     "equilibrium",
+    "explain",
+    "export",
     "fit",
     "floquet",
     "load",
+    "measure",
     "merge",
     "modes",
     "optimize",

@@ -15,7 +15,7 @@ import numpy as np
 from . import _page
 from ._errors import FileError, UsageError
 from ._page import Report
-from ._result import split
+from ._result import Named, split, unknown
 
 if TYPE_CHECKING:
     import os
@@ -36,6 +36,8 @@ class Columns(Mapping[str, np.ndarray]):
         self._rows = len(rows)
 
     def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._columns:
+            raise unknown(name, self._columns)
         return self._columns[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -87,6 +89,8 @@ class Answer(Mapping[str, Any]):
         self.interrupted = interrupted
 
     def __getitem__(self, key: str) -> Any:
+        if key not in self._told:
+            raise unknown(key, self._told)
         return self._told[key]
 
     def __iter__(self) -> Iterator[str]:
@@ -104,7 +108,7 @@ class Answer(Mapping[str, Any]):
     @property
     def tables(self) -> dict[str, Columns]:
         """Tables of the folder by the names of their files: ``answer.tables["path"]`` of ``path.csv``; read anew at every call."""
-        found = {}
+        found: dict[str, Columns] = Named()
         for path in sorted(self._folder().glob("*.csv")):
             with path.open(newline="", encoding="utf-8") as file:
                 headings, *rows = csv.reader(file)

@@ -305,3 +305,60 @@ def sense(
     :returns: ``sense.json``; ``tables``.
     """
     return _do("sense", [case], pressures, out=out, progress=progress, options={"load": [load] if isinstance(load, str) else list(load), **options})
+
+
+def coefficients(case: CaseLike, **options: Any) -> Answer:
+    """Coefficients of a section from its geometry, with errors (``slcbeam coefficients``).
+
+    :param case: a case with ``/section``.
+    :param options: ``three_d=True``.
+    """
+    return _do("coefficients", [case], writes=False, options=options)
+
+
+def measure(data: Data, of: CaseLike, as_: str, **options: Any) -> Answer:
+    """Coefficients from measurements of a specimen, with errors (``slcbeam measure``).
+
+    :param data: a CSV file, a dict of columns, or a frame of pandas; headings with units: ``pressure_kpa``, ``volume_ml``.
+    :param of: the case whose sizes, modulus and fluid are those of the specimen.
+    :param as_: what was measured: ``"pressure-volume"``, ``"moment-curvature"``, ``"flow-pressure"``, ..
+    :param options: ``bladders``, ``through_zero=True``, ``cubic=True``, ``plot=FILE``, ..
+    """
+    case = load(of)
+    with tempfile.TemporaryDirectory(prefix="slcbeam-") as folder:
+        given = Path(folder)
+        words = ["measure", _table(data, given), f"--of={_file(case, given / 'given')}", f"--as={as_}"]
+        words += [f"--set={change}" for change in case._sets] + _words(options)
+        printed, _, interrupted = _slcbeam.command([*words, "--json"])
+    return Answer(json.loads(printed), None, interrupted=interrupted)
+
+
+def compare(*results: str | os.PathLike[str], **options: Any) -> Answer:
+    """Result folders beside each other, or one and measured data (``slcbeam compare``).
+
+    :param results: folders, two or more; or one and a CSV file, with ``match``.
+    :param options: ``match={COLUMN: QUANTITY}``, ``time=COLUMN``, ``out=FOLDER`` for a page.
+    """
+    words = ["compare", *(os.fspath(one) for one in results), *_words(options)]
+    printed, _, interrupted = _slcbeam.command([*words, "--json"])
+    return Answer(json.loads(printed), None, interrupted=interrupted)
+
+
+def export(folder: str | os.PathLike[str], **options: Any) -> None:
+    """Writes the folder of a run in other formats: tables (CSV), surfaces for ParaView (VTK) (``slcbeam export``).
+
+    :param options: ``format="csv"``, ``times="0.1,0.45:0.5"``, ``every=10``, ``out=FOLDER``.
+    """
+    _slcbeam.command(["export", os.fspath(folder), *_words(options)])
+
+
+def explain(what: str) -> list[dict[str, Any]]:
+    """What a message, a key, a column, a figure, a word or a symbol means (``slcbeam explain``).
+
+    >>> import slcbeam
+    >>> slcbeam.explain("tip_u1")[0]["meaning"]
+    'transverse displacement of the tip [m], a column of history.csv'
+    """
+    printed, _, _ = _slcbeam.command(["explain", what, "--json"])
+    told = json.loads(printed)
+    return told if isinstance(told, list) else [told]

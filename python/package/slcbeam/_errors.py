@@ -35,6 +35,8 @@ class FileError(Error, OSError):
     """A file or a folder that cannot be read or written."""
 
     _number = "E050"
+    #: The result of a run that had ended but could not be written into ``out``; ``None`` otherwise.
+    result: Any = None
 
     def __str__(self) -> str:
         return str(self.args[0]) if self.args else ""

@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 from . import _slcbeam
 from ._case import CaseLike, load
-from ._errors import SolverError, UsageError
+from ._errors import FileError, SolverError, UsageError
 from ._result import Result
 
 #: Called some 20 times a second with the simulated time [s], its end [s] and the steps so far.
@@ -35,9 +36,10 @@ def run(
     :param accuracy: relative error below which every figure is wanted; mesh and tolerance are then chosen.
     :param sensitivity: JSON pointers of numbers by which figures and history are differentiated.
     :param progress: ``True`` for a bar on standard error, or a function ``f(t, end, steps)``; what it raises ends the run.
-    :param out: a folder for the result, written when the run has ended.
+    :param out: a folder for the result, written when the run has ended; one that holds something else is refused before it begins.
     :returns: the result; its ``status`` is ``stopped`` after a KeyboardInterrupt.
     :raises SolverError: the run could not go on; its ``result`` holds what there is.
+    :raises FileError: ``out`` could not be written; where the run had ended, its ``result`` is that of the run.
 
     The lock of Python is free during a run, so that others go on in other threads.
 
@@ -50,13 +52,20 @@ def run(
     if accuracy is not None and sensitivity:
         raise UsageError("accuracy and sensitivity do not go together; take the mesh and tolerance that an accuracy led to from the summary")
     asked = load(case)
+    if out is not None:
+        _slcbeam.claimable(Path(out))
     told = _bar if progress is True else (progress or None)
     recorded, arrays = _slcbeam.run(asked._own, accuracy, sensitivity, told)
     if progress is True:
         sys.stderr.write("\n")
     result = Result(asked, recorded, arrays)
     if out is not None:
-        result.save(out)
+        try:
+            result.save(out)
+        except FileError as error:
+            # what took hours is not lost with the folder
+            error.result = result
+            raise
     fault = recorded.fault()
     if fault is not None:
         raise SolverError(*fault, result=result)

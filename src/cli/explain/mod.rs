@@ -58,14 +58,20 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
         found = named(&format!("{name}s"));
     }
     let told = pages::of(name);
+    let elsewhere = synonyms::elsewhere(name);
     let mut text = String::new();
     if found.is_empty() && told.is_empty() {
         let (how, others) = likely(&all, name);
-        if others.is_empty() {
+        if others.is_empty() && elsewhere.is_empty() {
             return Err(unknown(&all, what, name));
         }
-        let _ = writeln!(text, "{name} is no key; {how}");
+        if !others.is_empty() {
+            let _ = writeln!(text, "{name} is no key; {how}");
+        }
         found = others;
+    }
+    for place in &elsewhere {
+        let _ = writeln!(text, "{name}: {place}");
     }
     for one in &told {
         let _ = writeln!(text, "{} ({}): {}", one.name, one.kind, one.meaning);
@@ -95,7 +101,8 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
         row[one.kind] = one.name.as_str().into();
         row
     });
-    answer(asked, keys.chain(others).collect(), text)
+    let places = elsewhere.iter().map(|place| json!({"word": name, "meaning": place}));
+    answer(asked, keys.chain(others).chain(places).collect(), text)
 }
 
 /// Keys that a word may mean, and how they come to be meant: those of which it is a synonym, in whose names it stands, or in whose meanings.

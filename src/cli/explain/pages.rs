@@ -1,16 +1,39 @@
 //! What pages say of words, symbols and columns of results: rows of their tables.
 
 use crate::discrete::quantities::{Field, Interest, Observable};
+use crate::output::report::facts;
 
 /// Words and symbols.
 const GLOSSARY: &str = include_str!("../../../docs/glossary.md");
 /// Files of results, with their columns and keys.
-const DATA: &str = include_str!("../../../docs/data.md");
+const RESULTS: [(&str, &str); 2] = [
+    ("docs/data.md", include_str!("../../../docs/data.md")),
+    ("docs/names.md", include_str!("../../../docs/names.md")),
+];
+/// Letters of equations as they are typed.
+const GREEK: &[(&str, &str)] = &[
+    ("alpha", "α"),
+    ("gamma", "γ"),
+    ("delta", "Δ"),
+    ("epsilon", "ε"),
+    ("zeta", "ζ"),
+    ("eta", "η"),
+    ("theta", "θ"),
+    ("kappa", "κ"),
+    ("lambda", "λ"),
+    ("mu", "μ"),
+    ("rho", "ρ"),
+    ("sigma", "σ"),
+    ("tau", "τ"),
+    ("phi", "φ"),
+    ("psi", "ψ"),
+    ("omega", "Ω"),
+];
 
 /// What something is called where it is not a key of a case, and what it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Told {
-    /// What kind of thing it is: `symbol`, `word`, `column`, `figure`, `field`, `result`.
+    /// What kind of thing it is: `symbol`, `word`, `column`, `figure`, `field`, `number`, `result`.
     pub kind: &'static str,
     /// Its name.
     pub name: String,
@@ -28,13 +51,39 @@ impl Told {
     }
 }
 
-/// Everything of a name.
+/// Everything of a name, of a figure by its quantity and its kind: `tip_u1_m.max_abs`.
 pub fn of(name: &str) -> Vec<Told> {
-    let mut found = quantities(name);
-    if found.is_empty() {
-        found = rows(DATA).filter_map(|row| of_results(&row, name)).collect();
+    let mut found = exactly(name);
+    if found.is_empty()
+        && let Some((quantity, kind)) = name.rsplit_once('.')
+    {
+        found = exactly(quantity);
+        found.extend(exactly(kind));
     }
-    found.extend(rows(GLOSSARY).filter_map(|row| of_glossary(&row, name)));
+    if found.is_empty() {
+        // a column of a table as a key of a file has it, with its unit behind
+        let ends = ["_pa", "_j", "_w", "_m", "_m3", "_m^3", "_N", "_N m", "_rad"];
+        let mut without = ends.iter().filter_map(|end| name.strip_suffix(end)).map(exactly);
+        found = without.find(|told| !told.is_empty()).unwrap_or_default();
+    }
+    found.extend(rows(GLOSSARY).flat_map(|row| of_glossary(&row, name)));
+    found
+}
+
+fn exactly(name: &str) -> Vec<Told> {
+    let mut found = quantities(name);
+    if found.is_empty()
+        && let Some([unit, about]) = facts::meaning(name)
+    {
+        let what = format!("{about} [{unit}], a characteristic number: slcbeam check, summary.json");
+        found.push(Told::new("number", name, what));
+    }
+    if found.is_empty() {
+        let pages = RESULTS.into_iter();
+        found = pages
+            .flat_map(|(page, text)| rows(text).filter_map(move |row| of_results(page, &row, name)))
+            .collect();
+    }
     found
 }
 
@@ -78,9 +127,24 @@ fn rows(page: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
     })
 }
 
-fn of_glossary(row: &[&str], name: &str) -> Option<Told> {
-    let names: Vec<&str> = row.first()?.split([',', ';']).map(str::trim).collect();
-    let place = names.iter().position(|one| *one == name)?;
+/// What a row of the glossary tells of a name, or of a symbol whose letter it spells.
+fn of_glossary(row: &[&str], name: &str) -> Vec<Told> {
+    let Some(first) = row.first() else { return vec![] };
+    let names: Vec<&str> = first.split([',', ';']).map(str::trim).collect();
+    let letter = GREEK.iter().find(|(spelled, _)| name.eq_ignore_ascii_case(spelled));
+    let asked = |one: &str| match letter {
+        None => one == name || one.contains(' ') && one.eq_ignore_ascii_case(name),
+        Some((_, letter)) => one
+            .strip_prefix(letter)
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with(['_', '\'', '*'])),
+    };
+    let places = names.iter().enumerate().filter(|(_, one)| asked(one));
+    places
+        .filter_map(|(place, one)| of_symbol(row, &names, place, one))
+        .collect()
+}
+
+fn of_symbol(row: &[&str], names: &[&str], place: usize, name: &str) -> Option<Told> {
     match *row {
         [_, meaning] => Some(Told::new("word", name, meaning.into())),
         [_, meaning, unit, tag] => {
@@ -105,7 +169,7 @@ fn of_glossary(row: &[&str], name: &str) -> Option<Told> {
     }
 }
 
-fn of_results(row: &[&str], name: &str) -> Option<Told> {
+fn of_results(page: &str, row: &[&str], name: &str) -> Option<Told> {
     let [first, rest @ ..] = row else { return None };
     let quoted = first.split('`').skip(1).step_by(2);
     let own = quoted
@@ -120,13 +184,13 @@ fn of_results(row: &[&str], name: &str) -> Option<Told> {
         format!(" [{}]", own.1)
     };
     let meaning = rest.join("; ").replace('`', "");
-    Some(Told::new("result", own.0, format!("{meaning}{unit}, see docs/data.md")))
+    Some(Told::new("result", own.0, format!("{meaning}{unit}, see {page}")))
 }
 
 /// Whether a name is that of a row, in which words of capitals stand for names and numbers.
 fn fits(pattern: &str, name: &str) -> bool {
     let wild = pattern
-        .split('_')
+        .split(['_', ' '])
         .find(|part| !part.is_empty() && part.chars().all(|c| c.is_ascii_uppercase()));
     let Some(wild) = wild else { return pattern == name };
     let Some((begin, end)) = pattern.split_once(wild) else {
@@ -143,6 +207,20 @@ mod tests {
     fn names_stand_for_others() {
         assert!(fits("port_NAME_flow", "port_inlet_of_bladder_1_flow") && !fits("port_NAME_flow", "port_flow"));
         assert!(fits("max_pressure", "max_pressure") && !fits("max_pressure", "min_pressure"));
+    }
+
+    /// Goal: every name of the pages on results is explained.
+    #[test]
+    fn names_of_results_are_found() {
+        for (page, text) in RESULTS {
+            for row in rows(text) {
+                for quoted in row[0].split('`').skip(1).step_by(2) {
+                    let name = quoted.split(" [").next().unwrap_or_default();
+                    let file = name.contains(['.', '/']) || name.contains("--");
+                    assert!(file || !of(name).is_empty(), "{page}: {name}");
+                }
+            }
+        }
     }
 
     /// Goal: every symbol and word of the glossary is explained.

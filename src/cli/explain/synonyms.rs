@@ -86,14 +86,94 @@ const MEANT: &[(&str, &[&str])] = &[
     ("hinge", &["pinned", "ends"]),
     ("wiring", &["network", "chains"]),
     ("coefficient", &["bladders", "section"]),
+    ("bending", &["bending_stiffness_factor", "height_m"]),
+    ("serpentine", &["chains", "bladders"]),
+    ("torque", &["moment_x_n", "moment_z_n", "ends"]),
+    ("moment", &["moment_x_n", "moment_z_n", "ends"]),
 ];
 
-/// Keys that a word means; words of several stand with `_` or blanks between.
+/// Words that are no keys, and where what they mean is found.
+const ELSEWHERE: &[(&str, &str)] = &[
+    (
+        "frequency",
+        "slcbeam modes tells natural frequencies, docs/modes.md; what a drive does near them, docs/frequency-response.md",
+    ),
+    ("eigenvalue", "slcbeam modes, docs/modes.md"),
+    ("eigenfrequency", "slcbeam modes, docs/modes.md"),
+    ("resonance", "slcbeam modes and docs/frequency-response.md"),
+    ("damping", "slcbeam modes tells damping ratios, docs/modes.md"),
+    (
+        "buckling",
+        "slcbeam equilibrium follows loads to where a state gives way, docs/equilibrium.md",
+    ),
+    (
+        "stability",
+        "docs/stability.md; of cycles slcbeam floquet, docs/stability-maps.md",
+    ),
+    ("multiplier", "slcbeam floquet, docs/stability-maps.md"),
+    ("uncertainty", "--uncertain of a command, docs/uncertainty.md"),
+    ("sensitivity", "--sensitivity of a command, docs/sensitivity.md"),
+    (
+        "rise_time",
+        "/step_response, and rise_time_s in summary.json, docs/data.md",
+    ),
+    (
+        "pressure_drop",
+        "tube_resistance_pa_s_m3 times the flow; docs/model.md, section 6",
+    ),
+    ("calibration", "slcbeam fit, docs/fit.md"),
+    ("optimisation", "slcbeam optimize, docs/optimize.md"),
+    ("optimization", "slcbeam optimize, docs/optimize.md"),
+    (
+        "harvest",
+        "turbines; slcbeam periodic tells energy and power of a cycle, docs/tour-harvester.md",
+    ),
+    (
+        "convergence",
+        "--accuracy of a command, and slcbeam study, docs/accuracy.md",
+    ),
+];
+
+/// Where what a word means is found, if it is no key.
+pub fn elsewhere(word: &str) -> Vec<&'static str> {
+    let pieces = pieces(word);
+    let own = |one: &&(&str, &str)| pieces.iter().any(|piece| piece == one.0);
+    ELSEWHERE.iter().filter(own).map(|one| one.1).collect()
+}
+
+/// A word as the tables have it, and where it is of several, each of these.
+fn pieces(word: &str) -> Vec<String> {
+    let whole = word.to_lowercase().replace([' ', '-'], "_");
+    let plain = |text: &str| {
+        let text = text
+            .strip_suffix("'s")
+            .or_else(|| text.strip_suffix("’s"))
+            .unwrap_or(text);
+        text.strip_suffix('s').unwrap_or(text).to_owned()
+    };
+    let parts = whole.split('_').map(plain);
+    let mut all = vec![whole.clone(), plain(&whole)];
+    all.extend(parts);
+    all
+}
+
+/// Keys that a word means; of several words the whole, or else what each means.
 pub fn of(word: &str) -> Vec<&'static str> {
-    let word = word.to_lowercase().replace([' ', '-'], "_");
-    let single = word.strip_suffix('s').unwrap_or(&word);
-    let own = |one: &&(&str, &[&str])| one.0 == word || one.0 == single;
-    MEANT.iter().filter(own).flat_map(|one| one.1.iter().copied()).collect()
+    let keys = |piece: &String| {
+        MEANT
+            .iter()
+            .filter(|one| one.0 == *piece)
+            .flat_map(|one| one.1.iter().copied())
+            .collect::<Vec<_>>()
+    };
+    let pieces = pieces(word);
+    let (whole, parts) = pieces.split_at(2);
+    let mut own: Vec<&'static str> = whole.iter().flat_map(keys).collect();
+    own.dedup();
+    if !own.is_empty() {
+        return own;
+    }
+    parts.iter().flat_map(keys).collect()
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::fmt::{self, Display, Formatter};
 
 use super::obstacles::Obstacle;
 use crate::case::schema::Effect;
+use crate::error::numbers::significant;
 
 /// What decided on an effect.
 #[derive(Clone, Debug, PartialEq)]
@@ -181,7 +182,8 @@ impl Display for Cause {
             Self::Weighed(weighed) => weighed.fmt(f),
             Self::Straight(pressed) => write!(
                 f,
-                "nothing acts across, the rows mirror each other, {pressed:.1e} of the buckling load"
+                "nothing acts across, the rows mirror each other, {} of the buckling load",
+                significant(*pressed, 2)
             ),
             Self::Sealed(all) => write!(f, "all {all} bladders are sealed: exact without unknowns"),
             Self::PartlySealed { sealed, all, leaks } => write!(f, "{sealed} of {all} bladders are sealed; {leaks}"),
@@ -191,8 +193,12 @@ impl Display for Cause {
 
 impl Display for Weighed {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        let sign = if self.on() { ">=" } else { "<" };
-        write!(f, "{}: {:.1e} {sign} {:.0e}", self.what, self.value, self.tolerance)
+        let value = match self.value.is_finite() {
+            true => significant(self.value, 2),
+            false => "without bound".into(),
+        };
+        let side = if self.on() { "not below" } else { "below" };
+        write!(f, "{}: {value}, {side} {}", self.what, significant(self.tolerance, 1))
     }
 }
 

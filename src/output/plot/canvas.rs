@@ -112,6 +112,13 @@ impl Canvas {
         let _ = writeln!(self.svg, "{element}");
     }
 
+    /// What is drawn for one thing: words that a pointer over it shows, and the element of a page to which it leads.
+    pub fn thing(&mut self, words: &str, id: &str, draw: impl FnOnce(&mut Self)) {
+        self.put(format_args!("<a href=\"#{id}\"><title>{}</title>", escaped(words)));
+        draw(self);
+        self.put(format_args!("</a>"));
+    }
+
     /// A line through points; broken where a coordinate is not finite.
     pub fn line(&mut self, points: &[(f64, f64)], stroke: Stroke) {
         for piece in points.split(|p| !(p.0.is_finite() && p.1.is_finite())) {
@@ -186,15 +193,20 @@ impl Canvas {
             false => String::new(),
         };
         let weight = if words.bold { " font-weight=\"bold\"" } else { "" };
-        let text = visible(text)
-            .replace('&', "&amp;")
-            .replace('<', "&lt;")
-            .replace('>', "&gt;");
+        let text = escaped(text);
         self.put(format_args!(
             "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-size=\"{}\" fill=\"{}\"{weight}{turned}>{text}</text>",
             words.size, words.colour
         ));
     }
+}
+
+/// Words as they stand in an element.
+fn escaped(text: &str) -> String {
+    visible(text)
+        .replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
 }
 
 /// To a tenth of a point; nothing in a picture is finer.

@@ -4,9 +4,10 @@ use serde_json::{Value, json};
 
 use super::{Found, Kind, MOST_ROWS, Page, Place, capital};
 use crate::error::Result;
+use crate::output::folder::REPORT;
 use crate::output::numbers::count;
 use crate::output::sweep::words::several;
-use crate::output::sweep::{JOURNAL, Survey, TABLE, about, exchanged, table};
+use crate::output::sweep::{CASES, FOLDERS, JOURNAL, Survey, TABLE, about, exchanged, numbered, table};
 use crate::results::sweep::{Plan, Sweep};
 
 /// Columns of the page's table at most; the file has the rest.
@@ -76,16 +77,18 @@ pub fn data(place: &Place) -> Result<Page> {
         ),
     ];
     page.put("figures", figures.into_iter().flatten().collect::<Vec<_>>());
-    page.put("table", rows(&found, &survey)?);
+    page.put("table", rows(place, &found, &survey)?);
     let command = plan.command_line(&[]);
     page.put("command", command);
     Ok(page)
 }
 
-fn rows(found: &Sweep, survey: &Survey) -> Result<Value> {
+/// The table, with where each design leads: to its page or case where they are kept, and to the command that does it alone.
+fn rows(place: &Place, found: &Sweep, survey: &Survey) -> Result<Value> {
     let plan = &found.plan;
     let columns = found.columns.len().min(MOST_COLUMNS);
     let mut rows: Vec<Vec<Value>> = vec![];
+    let mut leads = serde_json::Map::new();
     survey.each(|row| {
         if rows.len() < MOST_ROWS {
             let cells = table::cells(plan, survey, &row)
@@ -97,6 +100,11 @@ fn rows(found: &Sweep, survey: &Survey) -> Result<Value> {
                 None => Value::from(text),
             };
             rows.push(cells.map(value).collect());
+            let name = numbered(plan, row.number);
+            let kept = [format!("{FOLDERS}/{name}/{REPORT}"), format!("{CASES}/{name}.json")];
+            let file = kept.into_iter().find(|file| place.path(file).is_file());
+            let lead = json!({"file": file, "command": plan.design_line(&row)});
+            leads.insert(row.number.to_string(), lead);
         }
         Ok(())
     })?;
@@ -106,8 +114,11 @@ fn rows(found: &Sweep, survey: &Survey) -> Result<Value> {
     };
     Ok(json!({
         "title": "Every design",
-        "about": format!("Figures as in the result of one case; NAME.error is the estimated error of NAME, relative.{narrow}"),
+        "about": format!(
+            "Figures as in the result of one case; NAME.error is the estimated error of NAME, relative. A number leads to what is kept of its \
+             design, the button beside it copies the command that does it alone.{narrow}"
+        ),
         "headings": found.columns.iter().take(columns).map(|column| &column.name).collect::<Vec<_>>(),
-        "left_out": found.rows - rows.len(), "rows": rows, "file": TABLE,
+        "left_out": found.rows - rows.len(), "rows": rows, "file": TABLE, "leads": leads,
     }))
 }

@@ -61,6 +61,14 @@ fn known() -> impl Iterator<Item = [&'static str; 3]> {
     CHARACTERISTIC.lines().map(cells)
 }
 
+/// Unit and meaning of a characteristic number.
+pub fn meaning(name: &str) -> Option<[&'static str; 2]> {
+    let fits = |key: &str| name == key || key.ends_with('_') && name.starts_with(key);
+    known()
+        .find(|[key, ..]| fits(key))
+        .map(|[_, unit, about]| [unit, about])
+}
+
 /// Characteristic numbers of a case that was not run; none where it has no model.
 pub fn characteristic_of(case: &Case) -> Vec<Value> {
     Model::new(case).map_or(vec![], |model| characteristic(&characteristic::numbers(case, &model)))
@@ -69,8 +77,7 @@ pub fn characteristic_of(case: &Case) -> Vec<Value> {
 /// Rows: name, value, meaning.
 pub fn characteristic(numbers: &BTreeMap<String, f64>) -> Vec<Value> {
     let row = |(name, value): (&String, &f64)| {
-        let known = known().find(|[key, ..]| name == key || key.ends_with('_') && name.starts_with(key));
-        let [_, unit, about] = known.unwrap_or(["", "1", ""]);
+        let [unit, about] = meaning(name).unwrap_or(["1", ""]);
         let text = format!("{} {}", significant(*value, 4), pretty_unit(unit));
         json!({"name": name, "value": text.trim_end(), "about": about})
     };

@@ -31,7 +31,7 @@ mod cycles;
 mod designs;
 mod energy_balance;
 mod equilibrium;
-mod facts;
+pub mod facts;
 mod fit;
 mod frames;
 mod history;

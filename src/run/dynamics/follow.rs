@@ -8,8 +8,7 @@ use crate::dae::BeamDae;
 use crate::error::Result;
 use crate::integrate::IntegrationError;
 use crate::run::method::Integrator;
-use crate::run::observe::Sampled;
-use crate::run::record::{Control, Progress, Recorder};
+use crate::run::record::{Control, Progress, Recorder, Sampled};
 use crate::run::schedule::Due;
 
 /// Wall time after which a recorder is asked whether to go on, however many samples a step has.

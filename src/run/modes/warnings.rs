@@ -3,6 +3,7 @@
 use super::{Modes, meshes};
 use crate::case::schema::Effect;
 use crate::error::Code;
+use crate::error::numbers::significant;
 
 /// Error of a tube's impedance from which on it is told.
 const FORGOTTEN: f64 = 0.01;
@@ -13,9 +14,10 @@ impl Modes {
         let state = &self.about;
         let moving = state.moving().then(|| {
             Code::NotAtRest.warning(format!(
-                "{about} is no equilibrium under the loads at t = {} s: unknowns would change at up to {:.2e} of their size a second; \
+                "{about} is no equilibrium under the loads at t = {} s: unknowns would change at up to {} of their size a second; \
                  the modes are those of the state held where it is",
-                state.at, state.rate
+                state.at,
+                significant(state.rate, 3)
             ))
         });
         let by_mesh = meshes::warning(self).into_iter().chain(self.forgotten());

@@ -8,6 +8,7 @@ use crate::case::schema::Case;
 use crate::dae::BeamDae;
 use crate::discrete::fluid_mesh::{FluidMesh, MeshLink, Place};
 use crate::discrete::{System, Workspace, start};
+use crate::error::numbers::quantity;
 use crate::error::{Error, Result};
 use crate::functions::Clock;
 use crate::model::LumpedKind;
@@ -246,8 +247,9 @@ fn gathering(system: &System, case: &Case, parts: &[Part], period: f64) -> Resul
         if net.abs() > NOTHING * most {
             let whole = case.name.as_str();
             return Err(Error::Usage(format!(
-                "{whole} has no cycle: a closed network takes in {net:.3e} m^3 each period, and nothing lets it out; let the flows of its ports sum \
-                 to nothing over a period, or open it by a port with pressure_pa"
+                "{whole} has no cycle: a closed network takes in {} each period, and nothing lets it out; let the flows of its ports sum \
+                 to nothing over a period, or open it by a port with pressure_pa",
+                quantity(net, "m^3", 4)
             )));
         }
     }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::designs::Designs;
+use super::row::Row;
 use super::vary::Draw;
 
 /// Which command each design goes through.
@@ -224,6 +225,21 @@ impl Plan {
             .chain(options)
             .chain(more.iter().map(|word| (*word).to_owned()));
         words.map(|word| quoted(&word)).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The command that does one design alone, as a shell takes it.
+    pub fn design_line(&self, row: &Row) -> String {
+        let mut words = vec!["slcbeam".to_owned(), self.command.word().to_owned()];
+        words.extend(self.cases.get(row.case).map(|case| case.file.clone()));
+        let varied = self.axes.iter().zip(&row.values);
+        let varied = varied.map(|(axis, value)| format!("{}={value}", axis.pointer));
+        for set in self.sets.iter().cloned().chain(varied) {
+            words.extend(["--set".to_owned(), set]);
+        }
+        if let Some(accuracy) = self.accuracy {
+            words.extend(["--accuracy".to_owned(), accuracy.to_string()]);
+        }
+        words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
     }
 
     /// JSON pointers of what is varied.

@@ -214,10 +214,36 @@ fn designs_stand_in_a_table() {
         all.extend(varied.iter().flat_map(|one| ["--vary", one]));
         let page = made(&folder.path().join(k.to_string()), &all);
         sound(&mut browser, &page, &["answer", "table", "scene", "case"]);
-        assert!(browser.number("document.querySelector('.plate img').naturalWidth") > 100.0);
+        assert!(browser.number("document.querySelector('.plate svg').clientWidth") > 100.0);
         let rows = browser.number("document.querySelectorAll('#table tbody tr').length");
         assert_eq!(rows, [3.0, 6.0, 12.0][k]);
+        // every point says what it is and leads to its row
+        let led = "[...document.querySelectorAll('.plate a')].filter(a => document.getElementById(a.getAttribute('href').slice(1)) && \
+                   a.querySelector('title').textContent.startsWith(a.getAttribute('href').slice(1).replace('-', ' ') + ': /start/')).length";
+        assert!(browser.number(led) >= rows, "{k}");
+        let command = browser.text("document.querySelector('#design-1 button').title");
+        assert!(
+            command.starts_with(
+                "slcbeam run cases/two-bladders.json --set /time/end_s=0.0005 --set /start/pressures/0/pressure_pa="
+            ),
+            "{command}"
+        );
     }
+    let kept = made(
+        &folder.path().join("kept"),
+        &[
+            "sweep",
+            "cases/two-bladders.json",
+            "--set",
+            "/time/end_s=0.0005",
+            "--vary",
+            pressed,
+            "--keep-cases",
+        ],
+    );
+    browser.open(&kept);
+    let link = browser.text("document.querySelector('#design-1 a').getAttribute('href')");
+    assert_eq!(link, "cases/00001.json");
     sorted_both_ways(&mut browser);
 }
 
@@ -240,7 +266,7 @@ fn loads_from_pressures_stand_with_their_bands() {
     for (k, (asked, rows)) in [(measured, 2.0), (beam.to_vec(), 20.0)].into_iter().enumerate() {
         let page = made(&folder.path().join(k.to_string()), &asked);
         sound(&mut browser, &page, &["answer", "table", "scene", "case"]);
-        assert!(browser.number("document.querySelector('.plate img').naturalWidth") > 100.0);
+        assert!(browser.number("document.querySelector('.plate svg').clientWidth") > 100.0);
         let found = browser.number("document.querySelectorAll('#table tbody tr').length");
         assert_eq!(found, rows);
     }
@@ -258,7 +284,7 @@ fn the_cell_of_a_section_is_drawn_under_its_loads() {
     let mut browser = Browser::start();
     sound(&mut browser, &page, &["scene", "motion", "cell", "case"]);
     let drawn =
-        "[...document.querySelectorAll('#cell img')].filter(i => i.naturalWidth > 50 && i.naturalHeight > 50).length";
+        "[...document.querySelectorAll('#cell svg')].filter(i => i.clientWidth > 50 && i.clientHeight > 50).length";
     assert_eq!(browser.number(drawn), 4.0);
     let words = browser.text("document.querySelector('#cell .caption').textContent");
     assert!(words.starts_with("1 N, displacements × "), "{words}");

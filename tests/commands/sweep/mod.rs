@@ -6,6 +6,7 @@
 mod cluster;
 mod common;
 mod going_on;
+mod large;
 mod neighbours;
 mod refused;
 mod rows;

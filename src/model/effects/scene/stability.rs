@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use super::Scene;
 use super::pace::Pace;
 use crate::case::Translation;
+use crate::error::numbers::significant;
 use crate::functions::Signal;
 use crate::model::Attachment;
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
@@ -76,7 +77,8 @@ impl Scene<'_> {
         let compression = self.compression();
         if compression > SAFE_COMPRESSION {
             return Some(format!(
-                "normal forces may reach {compression:.1e} of the buckling load"
+                "normal forces may reach {} of the buckling load",
+                significant(compression, 2)
             ));
         }
         if self.ends.iter().any(|e| e.follower.is_some()) || self.attachments.iter().any(Attachment::follows) {
@@ -92,13 +94,16 @@ impl Scene<'_> {
             return Some(why);
         }
         if let Some(growth) = self.pulsates() {
-            return Some(format!("forces along pulsate and may grow bending by e^{growth:.1e}"));
+            return Some(format!(
+                "forces along pulsate and may make bending grow by a factor e^{}",
+                significant(growth, 2)
+            ));
         }
         let excess = self.wet.map_or(0.0, |wet| {
             let sum = wet.coupling.curvature(&wet.area, 0.0, 1.0, 0.0) * self.section.bending_stiffness;
             2.0 * sum * wet.area.moment_mean / self.compliances(wet)[0]
         });
-        (excess > 0.5).then(|| format!("pressure feeds {excess:.1e} of a bending moment back"))
+        (excess > 0.5).then(|| format!("pressure feeds {} of a bending moment back", significant(excess, 2)))
     }
 
     /// Whether shaking along the beam may make it bend: Mathieu's equation, with margin in size, frequency and stiffness.

@@ -10,8 +10,8 @@ function sortable(headings, rows, options = {}) {
   const wordy = headings.map((_, k) => rows.some((r) => String(r[k] ?? "").length > 40));
   const body = el("tbody");
   const kinds = new Set(["needed", "on", "off"]);
-  const fill = (list) => body.replaceChildren(...list.map((r) => el("tr", { class: options.dim?.(r) ? "off" : null }, r.map((x, k) =>
-    kinds.has(x) ? el("td", {}, el("span", { class: `pill ${x}`, text: x })) : el("td", { class: numeric[k] ? "n" : wordy[k] ? "why" : null, text: shown(x, k) })))));
+  const fill = (list) => body.replaceChildren(...list.map((r) => el("tr", { class: options.dim?.(r) ? "off" : null, id: options.leads ? `design-${r[0]}` : null }, r.map((x, k) =>
+    k === 0 && options.leads ? el("td", { class: "n" }, lead(shown(x, k), options.leads[x])) : kinds.has(x) ? el("td", {}, el("span", { class: `pill ${x}`, text: x })) : el("td", { class: numeric[k] ? "n" : wordy[k] ? "why" : null, text: shown(x, k) })))));
   const cells = headings.map((heading, k) => {
     const cell = el("th", { scope: "col", class: numeric[k] ? "n" : null, "aria-sort": "none" });
     cell.append(el("button", { type: "button", text: heading.startsWith("/") ? heading : heading.replace(/ \[1\]$/, "").replace(/_/g, " "), on: { click: () => sort(k) } }));
@@ -34,6 +34,17 @@ function sortable(headings, rows, options = {}) {
   return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": options.label || "Table", "data-keys": "" }, el("table", {}, el("thead", {}, el("tr", {}, cells)), body));
 }
 
+/** The number of a design with what it leads to. */
+function lead(number, to) {
+  if (!to) return [number];
+  const copy = copyButton("Copy", to.command);
+  copy.title = to.command;
+  copy.className = "small";
+  copy.setAttribute("aria-label", `Copy the command of design ${number}`);
+  const file = to.file && !data.elsewhere;
+  return [file ? el("a", { href: to.file.split("/").map(encodeURIComponent).join("/"), text: number }) : number, " ", copy];
+}
+
 /** Four figures, without zeros that say nothing. */
 function shortest(x) {
   const text = significant(x, 4);
@@ -44,13 +55,28 @@ function shortest(x) {
 /** A table of the data with title, sentence and the file that has all of it. */
 function tableCard(table) {
   const file = table.file ? el("p", { class: "caption" }, "All of it: ", fileLink(table.file)) : null;
-  return figure(table.title, null, table.about ? el("p", { class: "caption", text: table.about }) : null, sortable(table.headings, table.rows, { label: table.title }), table.left_out ? el("p", { class: "caption", text: `${count(table.left_out)} more rows are in the file.` }) : null, file);
+  return figure(table.title, null, table.about ? el("p", { class: "caption", text: table.about }) : null, sortable(table.headings, table.rows, { label: table.title, leads: table.leads }), table.left_out ? el("p", { class: "caption", text: `${count(table.left_out)} more rows are in the file.` }) : null, file);
+}
+
+const DRAWN = new Set(["svg", "g", "a", "title", "rect", "polyline", "polygon", "text"]);
+
+/** A drawing of the program as a part of the page: its words are text, its points say what they are and lead to their rows. What is no
+ * drawing of the program's is shown as an image, which runs nothing. */
+function drawing(source, title) {
+  const bytes = Uint8Array.from(atob(source.split(",")[1]), (c) => c.charCodeAt(0));
+  const svg = new DOMParser().parseFromString(new TextDecoder().decode(bytes), "image/svg+xml").documentElement;
+  const plain = (a) => !a.name.startsWith("on") && a.name !== "style" && (!a.name.endsWith("href") || a.value.startsWith("#"));
+  const all = [svg, ...svg.querySelectorAll("*")];
+  if (!all.every((e) => DRAWN.has(e.localName) && [...e.attributes].every(plain))) return el("img", { src: source, alt: title });
+  svg.setAttribute("role", svg.querySelector("a") ? "group" : "img");
+  svg.setAttribute("aria-label", title);
+  return document.importNode(svg, true);
 }
 
 /** A picture made by the program, on white. */
 function pictureCard(part) {
   if (!part.picture) return null;
-  const plate = el("div", { class: "plate" }, el("img", { src: part.picture, alt: part.title }));
+  const plate = el("div", { class: "plate" }, drawing(part.picture, part.title || part.about || "Picture"));
   // On a narrow screen the whole picture is seen first, its words when it is asked for.
   const enlarge = el("button", { type: "button", class: "enlarge", text: "Enlarge", "aria-pressed": "false" });
   enlarge.addEventListener("click", () => enlarge.setAttribute("aria-pressed", String(plate.classList.toggle("large"))));
