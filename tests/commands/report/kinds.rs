@@ -217,6 +217,9 @@ fn designs_stand_in_a_table() {
         assert!(browser.number("document.querySelector('.plate svg').clientWidth") > 100.0);
         let rows = browser.number("document.querySelectorAll('#table tbody tr').length");
         assert_eq!(rows, [3.0, 6.0, 12.0][k]);
+        // the page's own letters are not the picture's
+        let ink = browser.text("getComputedStyle(document.querySelector('.plate text')).fill");
+        assert_eq!(ink, "rgb(34, 38, 43)");
         // every point says what it is and leads to its row
         let led = "[...document.querySelectorAll('.plate a')].filter(a => document.getElementById(a.getAttribute('href').slice(1)) && \
                    a.querySelector('title').textContent.startsWith(a.getAttribute('href').slice(1).replace('-', ' ') + ': /start/')).length";

@@ -70,6 +70,7 @@ function drawing(source, title) {
   if (!all.every((e) => DRAWN.has(e.localName) && [...e.attributes].every(plain))) return el("img", { src: source, alt: title });
   svg.setAttribute("role", svg.querySelector("a") ? "group" : "img");
   svg.setAttribute("aria-label", title);
+  svg.setAttribute("class", "drawing");
   return document.importNode(svg, true);
 }
 
