@@ -25,6 +25,7 @@ pub fn complete(schema: &mut Value, ending: &str) {
         .flatten()
     {
         alternatives(definition);
+        branches(definition, name);
         // what needs nothing else is an example of what a preset brings the rest of
         example(definition, name.trim_end_matches(ending));
     }
@@ -34,6 +35,22 @@ pub fn complete(schema: &mut Value, ending: &str) {
 fn example(schema: &mut Value, name: &str) {
     if let Some(example) = EXAMPLES.get(name) {
         schema["examples"] = json!([example]);
+    }
+}
+
+/// An example for every alternative that is an object of one key: its own, `Signal/sum`, or that of what stands at the key.
+fn branches(schema: &mut Value, name: &str) {
+    let forms = schema.get_mut("oneOf").and_then(Value::as_array_mut);
+    for branch in forms.into_iter().flatten() {
+        let Some((key, form)) = members(branch).next() else {
+            continue;
+        };
+        let of_form = form["$ref"].as_str().and_then(|at| at.rsplit('/').next());
+        let own = EXAMPLES.get(&format!("{name}/{key}"));
+        if let Some(example) = own.or_else(|| EXAMPLES.get(of_form?)) {
+            let example = json!({key.as_str(): example});
+            branch["examples"] = json!([example]);
+        }
     }
 }
 

@@ -29,10 +29,17 @@ const MOST: usize = 40;
 
 /// Reads the folders, compares, draws when asked, prints.
 pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
+    let usage = |what: String| Err(Error::Usage(what));
+    if let Some(page) = asked.out.as_deref().filter(|path| ends(path, "html") && !path.is_dir()) {
+        return usage(format!(
+            "--out {}: a page is report.html in a folder of its own; name the folder, such as {}",
+            page.display(),
+            page.with_extension("").display()
+        ));
+    }
     if !asked.matches.is_empty() {
         return with_data(asked);
     }
-    let usage = |what: String| Err(Error::Usage(what));
     if let Some(file) = asked.results.iter().find(|one| one.is_file()) {
         return usage(format!(
             "{} is a file; data are compared with --match COLUMN=QUANTITY[@PLACE], such as angle_deg=tip_angle",
@@ -91,8 +98,11 @@ fn same(a: &Path, b: &Path) -> bool {
 
 /// Whether a path is that of a picture.
 fn picture(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("svg"))
+    ends(path, "svg")
+}
+
+fn ends(path: &Path, with: &str) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(with))
 }
 
 /// A column a result.

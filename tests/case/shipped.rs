@@ -247,6 +247,18 @@ fn the_schema_has_words_for_everything() {
         if name.trim_end_matches("OverPreset") == "StrainEnergy" {
             continue;
         }
+        // an object among alternatives has one of its own, which is valid there and nowhere else
+        for branch in definition["oneOf"].as_array().into_iter().flatten() {
+            let title = branch["title"].as_str().unwrap_or_default();
+            if branch["properties"].is_null() {
+                continue;
+            }
+            let own = json!({"oneOf": [branch], "$defs": definitions});
+            let valid = |example| jsonschema::is_valid(&own, example);
+            if !branch["examples"].get(0).is_some_and(valid) {
+                silent.push(format!("{name}, {title}: a valid example"));
+            }
+        }
         let Some(example) = definition["examples"].get(0) else {
             silent.push(format!("{name}: an example"));
             continue;

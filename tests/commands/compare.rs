@@ -259,6 +259,7 @@ fn several_are_compared_with_one() {
     for (more, words) in [
         (&["--with", "other"][..], "it is none of the folders"),
         (&["--out", "picture.svg"], "a picture is of two"),
+        (&["--out", "page.html"], "name the folder, such as page"),
         (&["--out", "usual"], "it holds a result"),
         (
             &["--match", "a=tip_u1"],
