@@ -33,8 +33,7 @@ class Reach(gymnasium.Env):
     def reset(self, *, seed=None, options=None):
         super().reset(seed=seed)
         self.sim.restore(self.start)
-        self.done = 0
-        self.before = self.sim.row[self.looks[0]]
+        self.done, self.before = 0, self.sim.row[self.looks[0]]
         self.target = self.before + self.size_m * self.np_random.uniform(*REACHED)
         return self.observe(self.sim.row), {}
 

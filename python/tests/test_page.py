@@ -13,7 +13,7 @@ import slcbeam
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
-@pytest.mark.parametrize("page, least", [("python.md", 8), ("python-clusters.md", 6), ("measured-data.md", 1)])
+@pytest.mark.parametrize("page, least", [("python.md", 8), ("python-clusters.md", 6), ("measured-data.md", 1), ("roles.md", 1)])
 def test_the_page_runs(page, least, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", (DOCS / page).read_text(encoding="utf-8"), re.S)
