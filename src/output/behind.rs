@@ -20,8 +20,8 @@ use crate::error::{Error, Result};
 const BATCH: usize = 1 << 13;
 /// Wall time after which a batch is handed over however small it is.
 const WAIT: Duration = Duration::from_millis(100);
-/// Batches that may wait to be written.
-const WAITING: usize = 4;
+/// Batches that may wait to be written: of a large beam one holds a whole instant.
+const WAITING: usize = 1;
 
 /// The files of a folder that grow with a run.
 #[derive(Debug)]
