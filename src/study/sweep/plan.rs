@@ -146,7 +146,7 @@ impl Plan {
         };
         let axes = |plan: &Self| {
             let spec = |axis: &Axis| format!("{}={}", axis.pointer, axis.spec.as_deref().unwrap_or(".."));
-            plan.axes.iter().map(spec).collect::<Vec<_>>().join(" ")
+            optional_list(&plan.axes.iter().map(spec).collect::<Vec<_>>())
         };
         let optional = |text: Option<String>| text.unwrap_or_else(|| "none".into());
         let changed = self.cases.iter().zip(&other.cases).find(|(a, b)| a.crc32 != b.crc32);
