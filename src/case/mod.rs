@@ -3,6 +3,7 @@
 //! text -> [`parse`](mod@parse) -> JSON with places -> `--set` -> [`presets`] -> [`validate`] against the schema -> CSV tables ->
 //! [`schema::Case`] -> [`check`], which finds what the network names: [`wiring`]
 
+pub mod amounts;
 mod check;
 mod choices;
 mod computed;

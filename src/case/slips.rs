@@ -4,11 +4,9 @@ use std::f64::consts::TAU;
 
 use serde_json::Value;
 
+use super::amounts::GRAVITY;
 use super::units::{self, Suffix};
 use super::wording::nearest;
-
-/// Standard gravity [m/s^2].
-const GRAVITY: f64 = 9.806_65;
 
 /// Units of which an object rarely has more than one key, so that this one is meant whatever it is called.
 const RARE: [&str; 4] = ["rad", "pa_s", "hz", "kg_m3"];
@@ -75,7 +73,7 @@ fn told(meant: &str, value: &Value, size: f64, name: &str) -> String {
 }
 
 /// A number without the round-off of the product that gave it.
-fn number_of(number: f64) -> String {
+pub(super) fn number_of(number: f64) -> String {
     let number = format!("{number:.12e}").parse().unwrap_or(number);
     match number.abs() {
         1e-4..1e6 | 0.0 => format!("{number}"),

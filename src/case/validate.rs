@@ -6,6 +6,7 @@
 
 use serde_json::{Map, Value};
 
+use super::amounts;
 use super::counts;
 use super::faults::Violations;
 use super::locate::child;
@@ -83,7 +84,6 @@ impl<'a> Walk<'a> {
                     let fault = fault.allowed(kinds(branches));
                     let hint = match value {
                         Value::Null => Some("leave the key out".to_owned()),
-                        Value::String(text) if text.parse::<f64>().is_ok() => Some("numbers have no quotes".to_owned()),
                         _ => None,
                     };
                     self.faults.push(Violation { hint, ..fault });
@@ -117,8 +117,12 @@ impl<'a> Walk<'a> {
             fault.what = format!("unknown name \"{}\"", short(text));
             fault.nearest = nearest(text, words.iter().chain(&tags).copied());
             fault.hint = called_otherwise(text, &words, &tags);
-        } else if text.parse::<f64>().is_ok() {
-            fault.hint = Some("numbers have no quotes".to_owned());
+        }
+        if numeric(all) {
+            fault.hint = match text.trim().parse::<f64>() {
+                Ok(number) if number.is_finite() => Some(format!("numbers have no quotes: write {}", text.trim())),
+                _ => amounts::remedy(pointer, text).or(fault.hint),
+            };
         }
         self.faults.push(fault.allowed(kinds(all)));
         None
@@ -295,6 +299,12 @@ fn tag(branch: &Value) -> Option<&str> {
 fn words(branch: &Value) -> impl Iterator<Item = &str> {
     let several = branch.get("enum").and_then(Value::as_array).into_iter().flatten();
     several.chain(branch.get("const")).filter_map(Value::as_str)
+}
+
+/// Whether one of the alternatives is a number.
+fn numeric(branches: &[&Value]) -> bool {
+    let mut kinds = branches.iter().filter_map(|branch| branch.get("type")?.as_str());
+    kinds.any(|kind| kind == "number" || kind == "integer")
 }
 
 fn words_free(branch: &Value) -> bool {

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::case::amounts;
 use crate::error::{Error, Result};
 use crate::numerics::normal::quantile;
 
@@ -109,7 +110,9 @@ impl Vary {
         Ok(Self {
             pointer: pointer.into(),
             spec: spec.into(),
-            values: Values::parse(spec).map_err(wrong)?,
+            values: Values::parse(spec)
+                .map_err(|why| amounts::rewritten(option, pointer, spec).unwrap_or(why))
+                .map_err(wrong)?,
         })
     }
 
