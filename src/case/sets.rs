@@ -6,6 +6,7 @@ use super::amounts;
 use super::faults::SetValue;
 use super::locate::{child, tokens};
 use super::parse::{DEEPEST, misread, parse_below};
+use super::unknown;
 use super::wording::short;
 use crate::error::{Error, Result, Violation};
 
@@ -24,7 +25,7 @@ fn apply_one(value: &mut Value, argument: &str) -> Result<SetValue> {
     if !pointer.starts_with('/') {
         return Err(usage(format!(
             "a JSON pointer starts with `/`: {}",
-            pointer.replace('.', "/")
+            unknown::whole(pointer)
         )));
     }
     if pointer.matches('/').count() > DEEPEST {
