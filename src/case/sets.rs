@@ -133,22 +133,16 @@ fn insert(value: &mut Value, pointer: &str, given: Value) -> std::result::Result
             Value::Array(items) => {
                 let count = items.len();
                 let index = if token == "-" { Some(count) } else { token.parse().ok() };
-                let Some(index) = index.filter(|i| *i <= count) else {
-                    return Err(format!(
-                        "{here} is an array of {count}; `{token}` is not one of its places (0 to {count}, or `-` to add)"
-                    ));
-                };
-                // an array inside of what is not there is nobody's to guess
-                if index == count && token != "-" && parts.clone().any(|part| part.parse::<usize>().is_ok()) {
+                let Some(index) = index.filter(|i| *i < count || token == "-") else {
                     let there = match count {
-                        0 => "is empty".to_owned(),
-                        1 => "has one item, 0".to_owned(),
-                        _ => format!("has {count} items, 0 to {}", count - 1),
+                        0 => "an empty array".to_owned(),
+                        1 => "an array of 1, 0".to_owned(),
+                        _ => format!("an array of {count}, 0 to {}", count - 1),
                     };
                     return Err(format!(
-                        "{here} {there}; there is no {here}/{index} to set something in"
+                        "{here} is {there}; `{token}` is none of these: {here}/- adds one"
                     ));
-                }
+                };
                 if index == count {
                     items.push(absent);
                 }

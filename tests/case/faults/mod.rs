@@ -151,7 +151,7 @@ fn remedies_are_of_what_is_wrong() {
         ("/name=mine", "a text needs double quotes"),
         (
             "/network/chains/2/ends/0/pressure_pa=0",
-            "/network/chains has 2 items, 0 to 1; there is no /network/chains/2",
+            "/network/chains is an array of 2, 0 to 1; `2` is none of these: /network/chains/- adds one",
         ),
     ] {
         let found = set(given);
