@@ -22,6 +22,8 @@ pub struct Violations {
     /// Those found after so many that nobody reads them: counted, not kept.
     more: usize,
     unknown_keys: Vec<String>,
+    /// Objects in which a key is a slip of one that is known: what these lack is no fault of their own.
+    slipped: HashSet<String>,
     overfull: bool,
     /// Whether [`Code::Implausible`] is no fault.
     all_plausible: bool,
@@ -97,6 +99,12 @@ impl Violations {
         self.push_at_key(violation);
     }
 
+    /// From now on takes what the object around a pointer lacks for what follows from the key at this pointer.
+    pub fn slip(&mut self, pointer: &str) {
+        let around = pointer.rsplit_once('/').map_or("", |(around, _)| around);
+        self.slipped.insert(around.to_owned());
+    }
+
     /// Whether a key was found not to be known.
     pub fn is_unknown_key(&self, pointer: &str) -> bool {
         self.unknown_keys.iter().any(|known| known == pointer)
@@ -141,9 +149,12 @@ impl Violations {
     /// All faults with their places, in the order of the text; of very many the first, and how many there are besides.
     pub fn placed(self, source: &Source) -> Vec<Violation> {
         let more = self.more;
+        let slipped = self.slipped;
+        let follows = |fault: &Violation, mark: Mark| mark == Mark::Value && slipped.contains(&fault.pointer);
         let mut placed: Vec<_> = self
             .list
             .into_iter()
+            .filter(|(fault, mark)| !follows(fault, *mark))
             .map(|(fault, mark)| source.place(fault, mark))
             .collect();
         sort(&mut placed);

@@ -40,7 +40,8 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Case> {
 /// [`Error::Usage`] when it cannot be read, [`Error::Case`] when it is too large or no UTF-8.
 pub fn text(path: &Path) -> Result<String> {
     let unreadable = |e| {
-        let meant = nearest_file(path).map_or_else(String::new, |name| format!("; did you mean {}?", name.display()));
+        let meant =
+            nearest_file(path, ".json").map_or_else(String::new, |name| format!("; did you mean {}?", name.display()));
         Error::Usage(format!("cannot read {}: {e}{meant}", path.display()))
     };
     let bytes = if path == Path::new(STANDARD_INPUT) {
@@ -65,8 +66,8 @@ pub fn text(path: &Path) -> Result<String> {
     String::from_utf8(bytes).map_err(|e| not_utf8(path, e.as_bytes(), e.utf8_error().valid_up_to()))
 }
 
-/// The case in the same folder that is named most alike.
-fn nearest_file(path: &Path) -> Option<PathBuf> {
+/// The file in the same folder with this ending that is named most alike.
+pub(super) fn nearest_file(path: &Path, ending: &str) -> Option<PathBuf> {
     let folder = path
         .parent()
         .filter(|p| !p.as_os_str().is_empty())
@@ -74,7 +75,7 @@ fn nearest_file(path: &Path) -> Option<PathBuf> {
     let names: Vec<String> = std::fs::read_dir(folder)
         .ok()?
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter(|name| name.ends_with(".json"))
+        .filter(|name| name.ends_with(ending))
         .collect();
     let meant = nearest(path.file_name()?.to_str()?, names.iter().map(String::as_str))?;
     Some(path.with_file_name(meant))
@@ -100,6 +101,9 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         }));
     };
     let mut value = file.to_value();
+    if let Some(fault) = result(&value, path) {
+        return Err(source.error(vec![fault]));
+    }
     if section::is_one(&value) {
         return Err(source.error(vec![section::no_case()]));
     }
@@ -160,6 +164,21 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
             Err(source.error(violations))
         }
     }
+}
+
+/// The fault that a file is one of a result, which says by what program it was made.
+fn result(value: &Value, path: &Path) -> Option<Violation> {
+    if value.get("provenance")?.get("program").is_none() || value.get("ends").is_some() {
+        return None;
+    }
+    let fault = Violation::new(Code::Text, "", "this is a result, not a case");
+    let own = path.with_file_name("case.json");
+    Some(match own.is_file() {
+        true => fault.hint(format!("its case is {}", own.display())),
+        false => {
+            fault.hint("a case has \"ends\", \"time\" and what is simulated; `slcbeam new` writes one to start from")
+        }
+    })
 }
 
 /// The case, with the rules checked as far as its structure allows: unknown keys are left out, and a section that

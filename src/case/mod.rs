@@ -3,6 +3,7 @@
 //! text -> [`parse`](mod@parse) -> JSON with places -> `--set` -> [`presets`] -> [`validate`] against the schema -> CSV tables ->
 //! [`schema::Case`] -> [`check`], which finds what the network names: [`wiring`]
 
+pub mod amounts;
 mod check;
 mod choices;
 mod computed;
@@ -15,6 +16,7 @@ pub mod inherited;
 mod load;
 pub mod locate;
 mod meanings;
+mod mistyped;
 pub(crate) mod numbers;
 mod origins;
 mod own_cell;
@@ -31,8 +33,10 @@ mod schema_words;
 pub mod section;
 mod sets;
 mod slips;
+pub mod synonyms;
 mod tables;
 pub mod units;
+pub mod unknown;
 mod validate;
 pub mod wiring;
 mod wording;

@@ -32,6 +32,11 @@ pub fn complete(schema: &mut Value, ending: &str) {
     example(schema, "Case");
 }
 
+/// The example for a definition.
+pub fn example_of(name: &str) -> Option<Value> {
+    EXAMPLES.get(name).cloned()
+}
+
 fn example(schema: &mut Value, name: &str) {
     if let Some(example) = EXAMPLES.get(name) {
         schema["examples"] = json!([example]);

@@ -2,11 +2,13 @@
 
 use serde_json::{Map, Value};
 
+use super::amounts;
 use super::faults::SetValue;
 use super::locate::{child, tokens};
-use super::parse::{DEEPEST, parse};
+use super::parse::{DEEPEST, misread, parse_below};
+use super::unknown;
 use super::wording::short;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Violation};
 
 /// Puts the arguments into `value`, in order; `null` removes a member.
 pub fn apply(value: &mut Value, arguments: &[String]) -> Result<Vec<SetValue>> {
@@ -22,34 +24,17 @@ fn apply_one(value: &mut Value, argument: &str) -> Result<SetValue> {
     };
     if !pointer.starts_with('/') {
         return Err(usage(format!(
-            "a JSON pointer starts with `/`: /{}",
-            pointer.replace('.', "/")
+            "a JSON pointer starts with `/`: {}",
+            unknown::whole(pointer)
         )));
     }
     if pointer.matches('/').count() > DEEPEST {
         return Err(usage(format!("a pointer of more than {DEEPEST} parts")));
     }
-    let (node, faults) = parse(json);
+    let (node, faults) = parse_below(json, pointer);
     let node = match (node, faults.first()) {
         (Some(node), None) => node,
-        (_, fault) => {
-            let why = fault.map_or("not JSON", |f| f.what.as_str());
-            if let Some((number, behind)) = begun(json) {
-                return Err(usage(match behind.starts_with(',') {
-                    true => format!(
-                        "decimals stand behind a point: --set '{pointer}={}'",
-                        json.replacen(',', ".", 1)
-                    ),
-                    false => {
-                        format!("{why}; a number has no unit behind it, the key names it: --set '{pointer}={number}'")
-                    }
-                }));
-            }
-            let text = Value::from(json);
-            return Err(usage(format!(
-                "{why}; a text needs double quotes inside single ones: --set '{pointer}={text}'"
-            )));
-        }
+        (_, fault) => return Err(usage(unreadable(pointer, json, fault))),
     };
     let new = node.to_value();
     let json_at = pointer.len() + 1;
@@ -68,17 +53,47 @@ fn apply_one(value: &mut Value, argument: &str) -> Result<SetValue> {
     })
 }
 
-/// The number that a text begins with, and what stands behind it: a unit, or decimals behind a comma.
-fn begun(text: &str) -> Option<(&str, &str)> {
-    let ends = (1..text.len()).rev().filter(|end| text.is_char_boundary(*end));
-    let (number, behind) = ends
-        .map(|end| text.split_at(end))
-        .find(|(number, _)| serde_json::from_str::<f64>(number).is_ok())?;
-    let unit = behind
-        .trim_start()
-        .starts_with(|c: char| c.is_alphabetic() || "%°".contains(c));
-    let decimals = behind.strip_prefix(',').is_some_and(|rest| rest.parse::<u64>().is_ok());
-    (unit || decimals).then_some((number.trim(), behind))
+/// What is wrong with a value that is no JSON, and what to write.
+fn unreadable(pointer: &str, json: &str, fault: Option<&Violation>) -> String {
+    let why = fault.map_or("not JSON", |f| f.what.as_str());
+    match amounts::at(pointer, json) {
+        Some(amounts::Here::Number(number, _)) => {
+            return format!(
+                "{why}; {} is {number} here: --set '{pointer}={number}'",
+                short(json.trim())
+            );
+        }
+        Some(amounts::Here::Not(what)) => return format!("{why}; {what}"),
+        None => {}
+    }
+    if is_decimal_comma(json) {
+        return format!(
+            "decimals stand behind a point: --set '{pointer}={}'",
+            json.replacen(',', ".", 1)
+        );
+    }
+    if let Some((_, joined)) = misread::grouped(json).filter(|(bytes, _)| *bytes == json.len()) {
+        return format!("{why}; nothing stands between digits: --set '{pointer}={joined}'");
+    }
+    // a word without quotes is a text; what is more has its own remedy
+    let text = "text needs double quotes";
+    match fault
+        .and_then(|fault| fault.hint.as_deref())
+        .filter(|hint| *hint != text)
+    {
+        Some(hint) => format!("{why}; {hint}"),
+        None => format!(
+            "{why}; a text needs double quotes inside single ones: --set '{pointer}={}'",
+            Value::from(json)
+        ),
+    }
+}
+
+/// A number and, behind a comma, digits.
+fn is_decimal_comma(text: &str) -> bool {
+    text.split_once(',').is_some_and(|(number, decimals)| {
+        serde_json::from_str::<f64>(number).is_ok() && decimals.parse::<u64>().is_ok()
+    })
 }
 
 /// Takes out the member or item at a pointer.
@@ -118,22 +133,16 @@ fn insert(value: &mut Value, pointer: &str, given: Value) -> std::result::Result
             Value::Array(items) => {
                 let count = items.len();
                 let index = if token == "-" { Some(count) } else { token.parse().ok() };
-                let Some(index) = index.filter(|i| *i <= count) else {
-                    return Err(format!(
-                        "{here} is an array of {count}; `{token}` is not one of its places (0 to {count}, or `-` to add)"
-                    ));
-                };
-                // an array inside of what is not there is nobody's to guess
-                if index == count && token != "-" && parts.clone().any(|part| part.parse::<usize>().is_ok()) {
+                let Some(index) = index.filter(|i| *i < count || token == "-") else {
                     let there = match count {
-                        0 => "is empty".to_owned(),
-                        1 => "has one item, 0".to_owned(),
-                        _ => format!("has {count} items, 0 to {}", count - 1),
+                        0 => "an empty array".to_owned(),
+                        1 => "an array of 1, 0".to_owned(),
+                        _ => format!("an array of {count}, 0 to {}", count - 1),
                     };
                     return Err(format!(
-                        "{here} {there}; there is no {here}/{index} to set something in"
+                        "{here} is {there}; `{token}` is none of these: {here}/- adds one"
                     ));
-                }
+                };
                 if index == count {
                     items.push(absent);
                 }

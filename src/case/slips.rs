@@ -4,11 +4,9 @@ use std::f64::consts::TAU;
 
 use serde_json::Value;
 
-use super::units::{self, Suffix};
+use super::amounts::{self, GRAVITY};
+use super::units::{self, Suffix, Unit};
 use super::wording::nearest;
-
-/// Standard gravity [m/s^2].
-const GRAVITY: f64 = 9.806_65;
 
 /// Units of which an object rarely has more than one key, so that this one is meant whatever it is called.
 const RARE: [&str; 4] = ["rad", "pa_s", "hz", "kg_m3"];
@@ -43,7 +41,7 @@ pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> +
         let hint = "cSt is of a viscosity over the density: times 1e-6 and density_kg_m3 it is in Pa s";
         return Some((meant, hint.to_owned()));
     }
-    [None, Some("N/m")].into_iter().find_map(|si| {
+    let of_table = [None, Some("N/m")].into_iter().find_map(|si| {
         let Suffix::Known(stem, unit) = units::suffix(&key, si) else {
             return None;
         };
@@ -60,6 +58,19 @@ pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> +
             let hint = told(&meant, value, unit.scale, unit.name);
             (meant, hint)
         })
+    });
+    of_table.or_else(|| {
+        let (stem, word) = key.rsplit_once('_')?;
+        let (si, scale) = match word {
+            "g" => ("kg", 1e-3),
+            "l" => ("m^3", 1e-3),
+            "h" => ("s", 3600.0),
+            _ => amounts::other(word)?,
+        };
+        let end = Unit { si, name: si, scale }.key();
+        let meant = nearest(&format!("{stem}_{end}"), of(&end))?;
+        let hint = told(&meant, value, scale, word);
+        Some((meant, hint))
     })
 }
 
@@ -75,7 +86,7 @@ fn told(meant: &str, value: &Value, size: f64, name: &str) -> String {
 }
 
 /// A number without the round-off of the product that gave it.
-fn number_of(number: f64) -> String {
+pub(super) fn number_of(number: f64) -> String {
     let number = format!("{number:.12e}").parse().unwrap_or(number);
     match number.abs() {
         1e-4..1e6 | 0.0 => format!("{number}"),

@@ -6,6 +6,7 @@ use serde_json::{Map, Value};
 
 use super::faults::Violations;
 use super::heading::Heading;
+use super::load::nearest_file;
 use super::locate::child;
 use super::units;
 use super::wording::nearest;
@@ -75,8 +76,19 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         };
         return Err(at("csv", format!("{} is {why}", base.join(&name).display())));
     }
-    let text_of = std::fs::read(base.join(&name))
-        .map_err(|e| at("csv", format!("cannot read {}: {e}", base.join(&name).display())))?;
+    let text_of = std::fs::read(base.join(&name)).map_err(|e| {
+        let path = base.join(&name);
+        let fault = at("csv", format!("cannot read {}: {e}", path.display()));
+        let ending = path
+            .extension()
+            .map_or(String::new(), |x| format!(".{}", x.to_string_lossy()));
+        let meant = nearest_file(&path, &ending)
+            .map(|meant| Path::new(&name).with_file_name(meant.file_name().unwrap_or_default()));
+        Box::new(Violation {
+            nearest: meant.map(|meant| meant.display().to_string()),
+            ..*fault
+        })
+    })?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))

@@ -134,7 +134,7 @@ const BEGUN: [&str; 14] = [
 ];
 
 /// All of them.
-fn all() -> impl Iterator<Item = Unit> {
+pub(super) fn all() -> impl Iterator<Item = Unit> {
     TABLE.into_iter().map(|(si, name, scale)| Unit { si, name, scale })
 }
 
@@ -244,17 +244,22 @@ pub fn suffixed(name: &str) -> Option<(&str, Unit)> {
     }
 }
 
+/// What the keys of a JSON pointer tell of the unit of the numbers below it.
+pub fn told_by(pointer: &str) -> Suffix<'_> {
+    let per_length = |key: &str| pointer.starts_with("/loads/") || key.starts_with("stiffness_");
+    let mut ends = pointer.rsplit('/').map(|key| {
+        let si = per_length(key).then_some("N/m");
+        suffix(key, si)
+    });
+    ends.find(|end| *end != Suffix::None).unwrap_or(Suffix::None)
+}
+
 /// The unit in which the numbers below a JSON pointer are, as far as its keys tell.
 pub fn of_pointer(pointer: &str) -> Option<Unit> {
-    let per_length = |key: &str| pointer.starts_with("/loads/") || key.starts_with("stiffness_");
-    pointer.rsplit('/').find_map(|key| {
-        let si = per_length(key).then_some("N/m");
-        match suffix(key, si) {
-            Suffix::Known(_, unit) => Some(Some(unit)),
-            Suffix::Unknown(..) => Some(None),
-            Suffix::None => None,
-        }
-    })?
+    match told_by(pointer) {
+        Suffix::Known(_, unit) => Some(unit),
+        Suffix::Unknown(..) | Suffix::None => None,
+    }
 }
 
 #[cfg(test)]

@@ -6,11 +6,14 @@
 
 use serde_json::{Map, Value};
 
+use super::amounts;
 use super::counts;
 use super::faults::Violations;
 use super::locate::child;
+use super::mistyped;
 use super::numbers;
 use super::slips;
+use super::unknown::{self, Meant};
 use super::wording::{found, found_text, nearest, quoted, short};
 use crate::error::{Code, Violation};
 
@@ -30,7 +33,7 @@ impl<'a> Walk<'a> {
     fn check(&mut self, value: &Value, schema: &'a Value, pointer: &str) {
         let mut branches = vec![];
         self.branches(schema, &mut branches);
-        let Some(branch) = self.choose(value, &branches, pointer) else {
+        let Some(branch) = self.choose(value, schema, &branches, pointer) else {
             return;
         };
         match value {
@@ -68,10 +71,13 @@ impl<'a> Walk<'a> {
     }
 
     /// The alternative the user meant; none, with a fault, when there is no such.
-    fn choose(&mut self, value: &Value, branches: &[&'a Value], pointer: &str) -> Option<&'a Value> {
+    fn choose(&mut self, value: &Value, schema: &Value, branches: &[&'a Value], pointer: &str) -> Option<&'a Value> {
         let fitting: Vec<&'a Value> = branches.iter().copied().filter(|b| type_fits(value, b)).collect();
         match value {
-            Value::String(text) => self.choose_word(text, &fitting, branches, pointer),
+            Value::String(text) => {
+                let other = || mistyped::hint(last(pointer), value, schema, branches);
+                self.choose_word(text, &fitting, branches, pointer, other)
+            }
             // what has no alternative has no form to be named by, however few its keys are
             Value::Object(members) if branches.len() > 1 && fitting.iter().any(|b| tag(b).is_some()) => {
                 self.choose_tag(members, &fitting, branches, pointer)
@@ -81,11 +87,7 @@ impl<'a> Walk<'a> {
                 None => {
                     let fault = Violation::new(Code::Kind, pointer, format!("found {}", found(value)));
                     let fault = fault.allowed(kinds(branches));
-                    let hint = match value {
-                        Value::Null => Some("leave the key out".to_owned()),
-                        Value::String(text) if text.parse::<f64>().is_ok() => Some("numbers have no quotes".to_owned()),
-                        _ => None,
-                    };
+                    let hint = mistyped::hint(last(pointer), value, schema, branches);
                     self.faults.push(Violation { hint, ..fault });
                     None
                 }
@@ -99,6 +101,7 @@ impl<'a> Walk<'a> {
         fitting: &[&'a Value],
         all: &[&'a Value],
         pointer: &str,
+        other: impl FnOnce() -> Option<String>,
     ) -> Option<&'a Value> {
         let words: Vec<&str> = fitting.iter().flat_map(|b| words(b)).collect();
         if let Some(branch) = fitting
@@ -117,8 +120,15 @@ impl<'a> Walk<'a> {
             fault.what = format!("unknown name \"{}\"", short(text));
             fault.nearest = nearest(text, words.iter().chain(&tags).copied());
             fault.hint = called_otherwise(text, &words, &tags);
-        } else if text.parse::<f64>().is_ok() {
-            fault.hint = Some("numbers have no quotes".to_owned());
+        }
+        if fault.code == Code::Kind && fault.hint.is_none() {
+            fault.hint = other();
+        }
+        if numeric(all) {
+            fault.hint = match text.trim().parse::<f64>() {
+                Ok(number) if number.is_finite() => Some(format!("numbers have no quotes: write {}", text.trim())),
+                _ => amounts::remedy(pointer, text).or(fault.hint),
+            };
         }
         self.faults.push(fault.allowed(kinds(all)));
         None
@@ -198,39 +208,30 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Returns the key that was probably meant.
-    fn unknown_key(
-        &mut self,
-        key: &str,
-        value: &Value,
-        properties: &Map<String, Value>,
-        pointer: &str,
-    ) -> Option<String> {
-        let written = self.own.pointer(pointer);
-        let absent = properties
-            .keys()
-            .map(String::as_str)
-            .filter(|name| written.is_none_or(|members| members.get(*name).is_none()));
-        // one that is there already may be meant by what is set besides
-        let names = || properties.keys().map(String::as_str);
+    /// Returns the keys of which one was probably meant.
+    fn unknown_key(&mut self, key: &str, value: &Value, properties: &Map<String, Value>, pointer: &str) -> Vec<String> {
         let full = self.faults.is_full();
-        let there = || (!full).then(names).into_iter().flatten();
-        let slip = slips::unit(key, value, absent.clone()).or_else(|| slips::unit(key, value, there()));
-        let (nearest, hint) = match slip {
-            Some((meant, hint)) => (Some(meant), Some(hint)),
-            None => (nearest(key, absent).or_else(|| nearest(key, there())), None),
+        let known = unknown::Known {
+            properties,
+            written: self.own.pointer(pointer),
+            pointer,
         };
-        if let Some(meant) = &nearest {
-            self.faults.doubt(child(pointer, meant));
+        let meant = if full {
+            Meant::default()
+        } else {
+            known.meant(key, value)
+        };
+        let at = child(pointer, key);
+        for name in &meant.keys {
+            self.faults.doubt(child(pointer, name));
         }
-        let fault = Violation::new(
-            Code::Key,
-            child(pointer, key),
-            format!("unknown key \"{}\"", short(key)),
-        );
+        if !meant.keys.is_empty() {
+            self.faults.slip(&at);
+        }
+        let fault = Violation::new(Code::Key, at, format!("unknown key \"{}\"", short(key)));
         if full {
             self.faults.push_unknown_key(fault);
-            return nearest;
+            return vec![];
         }
         let names: Vec<&str> = properties.keys().map(String::as_str).collect();
         let allowed = if names.is_empty() {
@@ -239,11 +240,11 @@ impl<'a> Walk<'a> {
             names.join(", ")
         };
         self.faults.push_unknown_key(Violation {
-            nearest: nearest.clone(),
-            hint,
+            nearest: meant.nearest,
+            hint: meant.hint,
             ..fault.allowed(allowed)
         });
-        nearest
+        meant.keys
     }
 
     fn array(&mut self, items: &[Value], schema: &'a Value, pointer: &str) {
@@ -270,6 +271,11 @@ impl<'a> Walk<'a> {
     }
 }
 
+/// The last part of a pointer.
+fn last(pointer: &str) -> &str {
+    pointer.rsplit('/').next().unwrap_or_default()
+}
+
 /// What other programs call otherwise.
 fn called_otherwise(text: &str, words: &[&str], tags: &[&str]) -> Option<String> {
     match text {
@@ -279,6 +285,11 @@ fn called_otherwise(text: &str, words: &[&str], tags: &[&str]) -> Option<String>
         "closed" | "plugged" if words.contains(&"sealed") => Some("it is called \"sealed\"".into()),
         "fixed" | "built-in" | "encastre" if words.contains(&"clamped") => Some("it is called \"clamped\"".into()),
         "hinged" | "simply supported" if words.contains(&"pinned") => Some("it is called \"pinned\"".into()),
+        "none" | "off" | "uncoupled" if words.contains(&"reciprocal") => Some(
+            "a beam without coupling has the effects off: \"effects\": {\"pressure_to_curvature\": \"off\", \"pressure_to_stretch\": \"off\", \
+             \"moment_to_area\": \"off\", \"force_to_area\": \"off\"}"
+                .into(),
+        ),
         _ => None,
     }
 }
@@ -295,6 +306,12 @@ fn tag(branch: &Value) -> Option<&str> {
 fn words(branch: &Value) -> impl Iterator<Item = &str> {
     let several = branch.get("enum").and_then(Value::as_array).into_iter().flatten();
     several.chain(branch.get("const")).filter_map(Value::as_str)
+}
+
+/// Whether one of the alternatives is a number.
+fn numeric(branches: &[&Value]) -> bool {
+    let kinds = branches.iter().filter_map(|branch| branch.get("type")?.as_str());
+    kinds.into_iter().any(|kind| kind == "number" || kind == "integer")
 }
 
 fn words_free(branch: &Value) -> bool {

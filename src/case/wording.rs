@@ -4,14 +4,26 @@ use serde_json::Value;
 
 /// The most similar name, if similar enough to be what was meant.
 pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
+    all_nearest(name, names).pop().map(|(_, known)| known.to_owned())
+}
+
+/// The most similar names, several where they are equally similar, each with how similar it is, up to 1.
+pub fn all_nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Vec<(f64, &'n str)> {
+    let mut best = vec![];
     if name.len() > 100 {
-        return None;
+        return best;
     }
-    let similarity = |known: &str| strsim::jaro_winkler(&name.to_lowercase(), known);
-    let best = names
-        .map(|known| (similarity(known), known))
-        .max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best.0 > 0.8).then(|| best.1.to_owned())
+    let name = name.to_lowercase();
+    for known in names {
+        let similarity = strsim::jaro_winkler(&name, known);
+        let most = best.first().map_or(0.8, |(most, _)| *most);
+        match similarity > most + 1e-9 {
+            true => best = vec![(similarity, known)],
+            false if !best.is_empty() && similarity > most - 1e-9 => best.push((similarity, known)),
+            false => {}
+        }
+    }
+    best
 }
 
 /// At most 40 characters of what the user wrote.

@@ -1,7 +1,7 @@
 //! `slcbeam compare`: results side by side, or a run over measured data.
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use serde_json::Value;
@@ -12,6 +12,7 @@ use crate::case;
 use crate::error::{Error, Result};
 use crate::output::columns::aligned;
 use crate::output::folder::{CASE, replace_alike};
+use crate::output::kind::Kind;
 use crate::output::numbers::{percent, quantity, significant};
 use crate::output::{comparison, fit, reading, report};
 use crate::results;
@@ -40,11 +41,15 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     if !asked.matches.is_empty() {
         return with_data(asked);
     }
-    if let Some(file) = asked.results.iter().find(|one| one.is_file()) {
+    let other = |one: &&PathBuf| one.is_file() && one.extension().is_none_or(|x| x != "json");
+    if let Some(file) = asked.results.iter().find(other) {
         return usage(format!(
             "{} is a file; data are compared with --match COLUMN=QUANTITY[@PLACE], such as angle_deg=tip_angle",
             file.display()
         ));
+    }
+    if let Some(what) = asked.results.iter().find_map(|one| Kind::no_run(one)) {
+        return usage(what);
     }
     if asked.results.len() > MOST {
         return usage(format!("{} folders: at most {MOST} at once", asked.results.len()));

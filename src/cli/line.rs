@@ -4,6 +4,7 @@ use std::io::IsTerminal as _;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
+use crate::case::amounts::{self, Here};
 use crate::error::{Error, Result};
 use crate::study::refine;
 
@@ -65,6 +66,43 @@ pub fn duration(text: &str) -> std::result::Result<f64, String> {
     } else {
         Err("a number of seconds, 0 or more, is wanted".into())
     }
+}
+
+/// A number where a key of a case would have its unit, with or without a unit behind it.
+fn number(key: &str, text: &str, wanted: &str) -> std::result::Result<f64, String> {
+    let plain = match amounts::at(key, text) {
+        Some(Here::Number(number, _)) => number,
+        Some(Here::Not(why)) => return Err(format!("{wanted}; {why}")),
+        None => text.trim().to_owned(),
+    };
+    let number = plain.parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| wanted.to_owned())
+}
+
+/// An instant [s]; a unit may stand behind it.
+pub fn instant(text: &str) -> std::result::Result<f64, String> {
+    number("/time/end_s", text, "a number of seconds is wanted")
+}
+
+/// A frequency [Hz]; a unit may stand behind it.
+pub fn frequency(text: &str) -> std::result::Result<f64, String> {
+    number("/frequency_hz", text, "a number of Hz is wanted")
+}
+
+/// A share, as a number or in per cent.
+pub fn ratio(text: &str) -> std::result::Result<f64, String> {
+    number("/solver/rtol", text, "a number such as 0.01, or 1%, is wanted")
+}
+
+/// How many.
+pub fn count(text: &str) -> std::result::Result<usize, String> {
+    let read = |_| match text.trim().parse::<f64>() {
+        Ok(number) if number.fract() == 0.0 && (0.0..1e15).contains(&number) => {
+            format!("a whole number is wanted: {number}")
+        }
+        _ => "a whole number is wanted, 0 or more".to_owned(),
+    };
+    text.trim().parse().map_err(read)
 }
 
 /// `from:to` as two finite numbers, ascending.

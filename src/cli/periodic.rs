@@ -5,8 +5,8 @@ use std::process::ExitCode;
 use super::arguments::PeriodicArguments;
 use super::uncertain::{self, Uncertain};
 use super::{interrupt, line, size, terminal};
-use crate::case::Case;
 use crate::case::parameter::Parameter;
+use crate::case::{Case, amounts};
 use crate::error::{Error, Result};
 use crate::integrate::halt;
 use crate::output::floquet as stability;
@@ -180,6 +180,9 @@ fn parse(text: &str) -> Result<(String, Vec<f64>, bool)> {
         ))
     };
     let (pointer, rest) = text.rsplit_once('=').ok_or_else(wrong)?;
+    if let Some(said) = amounts::rewritten("--sweep", pointer, rest) {
+        return Err(Error::Usage(format!("--sweep '{text}': {said}")));
+    }
     let (rest, logarithmic) = rest.strip_suffix(":log").map_or((rest, false), |rest| (rest, true));
     let (range, count) = rest.rsplit_once(':').ok_or_else(wrong)?;
     let (from, to) = line::either_way(range).ok_or_else(wrong)?;

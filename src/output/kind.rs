@@ -123,6 +123,21 @@ impl Kind {
         found.or_else(|| dir.join(HISTORY).is_file().then_some(Self::Run))
     }
 
+    /// Why a path is not the folder of a run, where this can be told: it is a case or another file, or the folder of another command.
+    pub fn no_run(path: &Path) -> Option<String> {
+        if path.is_file() {
+            return Some(format!("{} {}", path.display(), file(path)));
+        }
+        match Self::within(path) {
+            None | Some(Self::Run | Self::Cycle) => None,
+            Some(kind) => Some(format!(
+                "{} holds the result of `slcbeam {}`, and one of run or periodic is wanted here",
+                path.display(),
+                kind.command()
+            )),
+        }
+    }
+
     /// Looks at the files of a folder.
     ///
     /// # Errors
@@ -131,6 +146,13 @@ impl Kind {
     pub fn find(dir: &Path) -> Result<Self> {
         if let Some(kind) = Self::within(dir) {
             return Ok(kind);
+        }
+        if dir.is_file() {
+            return Err(fault(
+                "report on",
+                dir,
+                io::Error::new(io::ErrorKind::NotADirectory, format!("it {}", file(dir))),
+            ));
         }
         let exists = dir.is_dir();
         let what = if exists {
@@ -149,6 +171,18 @@ impl Kind {
             io::ErrorKind::NotFound
         };
         Err(fault("report on", dir, io::Error::new(kind, format!("{what}{hint}"))))
+    }
+}
+
+/// What a file is where a folder is wanted.
+fn file(path: &Path) -> String {
+    let around = path.parent().filter(|dir| Kind::within(dir).is_some());
+    match around {
+        Some(dir) => format!("is a file of the result in {}: name this folder", dir.display()),
+        None if path.extension().is_some_and(|x| x == "json") => {
+            "is a file, a case perhaps, and no result folder: `slcbeam run CASE --out DIR` makes one".into()
+        }
+        None => "is a file and no result folder".into(),
     }
 }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::sweep::vary::{check_pointer, numbers};
 use crate::case::parameter::{Parameter, with};
-use crate::case::{Case, is_below};
+use crate::case::{Case, amounts, is_below};
 use crate::error::{Error, Result};
 use crate::numerics::sobol::{self, Sobol};
 
@@ -45,6 +45,9 @@ impl Span {
         let wanted = "a JSON pointer and two bounds are wanted, such as /fluid/viscosity_pa_s=1e-4:1e-2";
         let (pointer, bounds) = text.split_once('=').ok_or_else(|| wrong(wanted.into()))?;
         check_pointer(pointer).map_err(wrong)?;
+        if let Some(said) = amounts::rewritten(OPTION, pointer, bounds) {
+            return Err(wrong(said));
+        }
         if bounds.contains(',') {
             let what = format!(
                 "POINTER=LOW:HIGH, two bounds and a colon between them: {pointer}={}",

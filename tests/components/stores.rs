@@ -113,7 +113,7 @@ fn a_syringe_presses_its_volume_in() {
         {"ramp": {"from": 0, "to": 1e-8, "start_s": 0.2, "duration_s": 0.3, "shape": "smooth"}}}]"#;
     let vessel = r#"/network/accumulators=[{"name": "vessel", "at": {"junction": "a"}, "kind": {"elastic": {"compliance_m3_pa": 1e-12}}}]"#;
     let shut = "/network/tubes/0/opening=0";
-    let far = r#"/network/ports/1={"at": {"junction": "b"}, "pressure_pa": 0}"#;
+    let far = r#"/network/ports/-={"at": {"junction": "b"}, "pressure_pa": 0}"#;
     let (memory, summary) = run(RIG, &[syringe, vessel, shut, far]);
     let exact: Vec<f64> = memory
         .column("t")

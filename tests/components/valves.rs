@@ -69,7 +69,7 @@ fn inertia_shuts_a_valve_late() {
 #[test]
 fn a_pump_works_against_a_relief_valve() {
     let pump = r#"/network/tubes/0/pump={"pressure_pa": 2000, "resistance_pa_s_m3": 3e9}"#;
-    let back = r#"/network/tubes/1={"from": {"junction": "b"}, "to": {"junction": "a"}, "length_m": 0.1,
+    let back = r#"/network/tubes/-={"from": {"junction": "b"}, "to": {"junction": "a"}, "length_m": 0.1,
         "cross_section": {"circle": {"radius_m": 1e-3}}, "loss_coefficient": 0,
         "check_valve": {"cracking_pressure_pa": 900, "forward_conductance_m3_s_pa": 2e-9, "reverse_conductance_m3_s_pa": 1e-14, "smoothing_pa": 50}}"#;
     let drain = r#"/network/ports=[{"name": "tank", "at": {"junction": "a"}, "pressure_pa": 0}]"#;

@@ -105,7 +105,7 @@ fn what_cannot_be_is_refused() {
         "begins at",
     );
     let twice =
-        r#"/network/accumulators/1={"at": {"junction": "line"}, "kind": {"elastic": {"compliance_m3_pa": 1e-12}}}"#;
+        r#"/network/accumulators/-={"at": {"junction": "line"}, "kind": {"elastic": {"compliance_m3_pa": 1e-12}}}"#;
     refused(FINGER, twice, "/network/accumulators/1/at", "a second accumulator");
     let held = r#"/network/accumulators/0/at={"junction": "tank"}"#;
     refused(FINGER, held, "/network/accumulators/0/at", "a port gives the pressure");

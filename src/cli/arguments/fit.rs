@@ -67,7 +67,7 @@ pub struct FitArguments {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub starts: u32,
     /// Simulations at once [default: one for every core]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = crate::cli::line::count)]
     pub jobs: Option<usize>,
     /// Where its result goes.
     #[command(flatten)]
@@ -96,7 +96,7 @@ pub struct CompareArguments {
     #[arg(long, value_name = "COLUMN", requires = "matches")]
     pub time: Option<String>,
     /// A page of tables and of histories over each other, report.html in this folder; or a picture of two, where it ends in .svg
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(short, long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
     /// Print as JSON
     #[arg(long)]

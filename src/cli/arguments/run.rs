@@ -17,7 +17,7 @@ pub struct RunArguments {
     #[command(flatten)]
     pub place: PlaceArguments,
     /// Choose mesh and tolerance so that the estimated relative error of every quantity is below this, such as 0.01
-    #[arg(long, value_name = "REL", conflicts_with = "resume")]
+    #[arg(long, value_name = "REL", conflicts_with = "resume", value_parser = crate::cli::line::ratio)]
     pub accuracy: Option<f64>,
     /// Give derivatives with respect to this number of the case too, repeatable: a JSON pointer, such as /fluid/viscosity_pa_s
     #[arg(long = "sensitivity", value_name = "POINTER", conflicts_with = "accuracy")]

@@ -2,11 +2,9 @@
 //!
 //! ```text
 //! pages       what pages say of words, symbols and columns
-//! synonyms    words that people look for
 //! ```
 
 mod pages;
-mod synonyms;
 
 use std::fmt::Write as _;
 use std::process::ExitCode;
@@ -14,7 +12,7 @@ use std::process::ExitCode;
 use clap::Args;
 use serde_json::{Value, json};
 
-use crate::case::{Meaning, meanings, nearest};
+use crate::case::{Meaning, meanings, nearest, synonyms};
 use crate::error::{Code, Error, Result};
 
 /// Keys that are told of a word at most.

@@ -15,6 +15,7 @@ pub mod vtk;
 use std::path::{Path, PathBuf};
 
 use super::folder::{CASE, FIELDS, RAW_FIELDS};
+use super::kind::Kind;
 use super::reading;
 use crate::error::{Error, Result};
 use crate::study::compare::Recording;
@@ -51,6 +52,9 @@ impl Written {
 /// [`Error::Usage`] when it is none, or when its run has not come to an end; [`Error::Output`] when a file cannot be read.
 pub fn read(dir: &Path) -> Result<Recording> {
     let usage = |what: &str| Err(Error::Usage(format!("{} {what}", dir.display())));
+    if let Some(what) = Kind::no_run(dir) {
+        return Err(Error::Usage(what));
+    }
     if !dir.join(CASE).is_file() {
         return usage("is no result folder: it has no case.json; `slcbeam run CASE --out DIR` makes one");
     }

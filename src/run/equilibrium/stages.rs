@@ -71,6 +71,9 @@ impl Options {
     }
 }
 
+/// Share of the largest value of a signal below which what is left of it at an instant is round-off: a sine at its zero.
+const ROUND_OFF: f64 = 1e-12;
+
 /// A system whose signals go along with a stage while t goes from 0 to 1.
 pub(super) struct Grown {
     /// The system.
@@ -100,8 +103,7 @@ pub(super) fn grow(case: &Case, stage: &Stage) -> error::Result<Grown> {
 /// The same of a model of the case.
 pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Result<Grown> {
     let at = |signal: &Signal, clock: Clock| signal.jet(clock).value;
-    let growing = |signal: &Signal| {
-        let [from, to] = [stage.from.map_or(0.0, |from| at(signal, from)), at(signal, stage.to)];
+    let between = |from: f64, to: f64| {
         if from == to {
             Signal::Constant(to)
         } else {
@@ -110,6 +112,8 @@ pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Re
             })
         }
     };
+    let before = |signal: &Signal| stage.from.map_or(0.0, |from| at(signal, from));
+    let growing = |signal: &Signal| between(before(signal), at(signal, stage.to));
     let sources = model.wet.iter().flat_map(|wet| &wet.network.sources);
     let pumped = sources.map(|source| match &source.feed {
         Feed::Volume(_) => [0.0; 2],
@@ -119,6 +123,15 @@ pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Re
         ],
     });
     let pumped = pumped.collect();
+    let sources = model.wet.iter().flat_map(|wet| &wet.network.sources);
+    let still = sources.map(|source| match &source.feed {
+        Feed::Flow(flow) => {
+            let (to, most) = (at(flow, stage.to), flow.largest(stage.to.t.max(case.time.end_s)).value);
+            (to != 0.0 && to.abs() <= ROUND_OFF * most).then(|| between(before(flow), 0.0))
+        }
+        Feed::Volume(_) => None,
+    });
+    let still: Vec<Option<Signal>> = still.collect();
     let stands = |opening: &Signal| {
         let valves = Clock {
             t: stage.valves,
@@ -129,6 +142,12 @@ pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Re
         Signal::Constant(if shut { 0.0 } else { value })
     };
     model.replace_signals(growing, stands);
+    let sources = model.wet.iter_mut().flat_map(|wet| &mut wet.network.sources);
+    for (source, still) in sources.zip(still) {
+        if let (Feed::Flow(flow), Some(still)) = (&mut source.feed, still) {
+            *flow = still;
+        }
+    }
     model.relaxation.clear();
     let section = &mut model.section;
     (section.drag, section.axial_damping_time, section.bending_damping_time) = (0.0, 0.0, 0.0);

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::case::{amounts, unknown};
 use crate::error::{Error, Result};
 use crate::numerics::normal::quantile;
 
@@ -109,7 +110,9 @@ impl Vary {
         Ok(Self {
             pointer: pointer.into(),
             spec: spec.into(),
-            values: Values::parse(spec).map_err(wrong)?,
+            values: Values::parse(spec)
+                .map_err(|why| amounts::rewritten(option, pointer, spec).unwrap_or(why))
+                .map_err(wrong)?,
         })
     }
 
@@ -135,8 +138,10 @@ pub fn check_pointer(pointer: &str) -> std::result::Result<(), String> {
     } else if pointer.starts_with('/') && pointer.len() > 1 {
         Ok(())
     } else {
-        let guess = pointer.trim_matches('/').replace('.', "/");
-        Err(format!("a JSON pointer starts with `/` and names a key: /{guess}"))
+        Err(format!(
+            "a JSON pointer starts with `/` and names a key: {}",
+            unknown::whole(pointer)
+        ))
     }
 }
 

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::faulty::{WIRING, assert_fault, fault_of, one, replaced};
 use slcbeam::case;
-use slcbeam::error::Error;
+use slcbeam::error::{Code, Error};
 
 #[test]
 fn a_wrong_key_names_the_nearest() {
@@ -142,7 +142,7 @@ fn remedies_are_of_what_is_wrong() {
     for (given, said) in [
         (
             "/fluid/viscosity_pa_s=0.5Pas",
-            "a number has no unit behind it, the key names it: --set '/fluid/viscosity_pa_s=0.5'",
+            "`0.5Pas` is not a JSON value; 0.5Pas is 0.5 here: --set '/fluid/viscosity_pa_s=0.5'",
         ),
         (
             "/fluid/viscosity_pa_s=0,5",
@@ -151,17 +151,19 @@ fn remedies_are_of_what_is_wrong() {
         ("/name=mine", "a text needs double quotes"),
         (
             "/network/chains/2/ends/0/pressure_pa=0",
-            "/network/chains has 2 items, 0 to 1; there is no /network/chains/2",
+            "/network/chains is an array of 2, 0 to 1; `2` is none of these: /network/chains/- adds one",
         ),
     ] {
         let found = set(given);
         assert!(found.contains(said), "{found}");
     }
     let hint = |text: &str, name: &str| match case::parse(text, Path::new(name), Path::new(""), &[]) {
-        Err(Error::Case(fault)) => (
-            fault.violations[0].what.clone(),
-            fault.violations[0].hint.clone().unwrap_or_default(),
-        ),
+        // what is missing besides stands before it
+        Err(Error::Case(fault)) => {
+            let found = fault.violations.iter().find(|found| found.code == Code::Text);
+            let found = found.expect("a fault of the text");
+            (found.what.clone(), found.hint.clone().unwrap_or_default())
+        }
         other => panic!("{:?}", other.err()),
     };
     assert_eq!(
@@ -171,7 +173,7 @@ fn remedies_are_of_what_is_wrong() {
     assert!(
         hint(r#"{"time": {"end_s": 3s}}"#, "a.json")
             .1
-            .contains("no unit behind it")
+            .contains("3s is 3 here: write the number alone")
     );
     let (what, remedy) = hint("# of a pump\nt_s,p_kpa\n0,1\n", "pump.csv");
     assert!(

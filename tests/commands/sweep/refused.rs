@@ -44,7 +44,7 @@ fn what_makes_no_sense_is_refused() {
             2,
             "--design latin:N or sobol:N",
         ),
-        (vec!["--vary", "/beam/length_m=0.1 m"], 2, "without units"),
+        (vec!["--vary", "/beam/length_m=0.1 m"], 2, "0.1 m is 0.1 here"),
         (
             vec!["--vary", "/beam/length_m=0.1", "--design", "latin:0"],
             2,

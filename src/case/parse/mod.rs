@@ -1,11 +1,18 @@
 //! A strict JSON reader that keeps places, goes on after numbers that are none, and says in words what is wrong.
+//!
+//! ```text
+//! misread     what people write that is no JSON, and what they mean
+//! told        faults of a text
+//! ```
+
+pub(super) mod misread;
+mod told;
 
 use std::collections::HashMap;
-use std::ops::Range;
 
 use super::locate::{Kind, Member, Node, child};
 use super::wording::short;
-use crate::error::{Code, Violation};
+use crate::error::Violation;
 
 /// Deepest nesting that is read; a case needs about ten.
 pub(super) const DEEPEST: usize = 100;
@@ -15,10 +22,15 @@ const MOST_FAULTS: usize = 100;
 /// Reads one JSON value. Violations that leave the structure readable (numbers that are not finite, keys given twice)
 /// come with a value, others without. Members whose key begins with `//` are remarks and left out.
 pub fn parse(text: &str) -> (Option<Node>, Vec<Violation>) {
+    parse_below(text, "")
+}
+
+/// The same of a value that stands at a pointer.
+pub fn parse_below(text: &str, pointer: &str) -> (Option<Node>, Vec<Violation>) {
     let mut parser = Parser {
         text,
         at: 0,
-        pointer: String::new(),
+        pointer: pointer.to_owned(),
         depth: 0,
         faults: vec![],
     };
@@ -56,12 +68,24 @@ impl Parser<'_> {
         }
         let node = self.value()?;
         self.space();
-        if self.peek().is_some() {
-            let what = format!("{} after the end of the JSON value", self.found());
-            let fault = self.fault(self.here(), what);
-            return self.fail(fault);
+        match self.peek() {
+            None => Some(node),
+            Some(b'}' | b']') => {
+                let what = format!("{} closes nothing: one too many", self.found());
+                let fault = self.fault(self.here(), what);
+                self.fail(fault.hint("remove it, or one before it"))
+            }
+            Some(b',' | b'"') if matches!(node.kind, Kind::Object(_)) => {
+                let what = "`}` closes the whole object, and more follows: one too many";
+                let fault = self.fault(node.span.end - 1..node.span.end, what);
+                self.fail(fault.hint("remove it, or one before it"))
+            }
+            Some(_) => {
+                let what = format!("{} after the end of the JSON value", self.found());
+                let fault = self.fault(self.here(), what);
+                self.fail(fault)
+            }
         }
-        Some(node)
     }
 
     fn value(&mut self) -> Option<Node> {
@@ -69,8 +93,12 @@ impl Parser<'_> {
         let kind = match self.peek() {
             Some(b'{') => self.nested(Self::object)?,
             Some(b'[') => self.nested(Self::array)?,
-            Some(b'"') => Kind::String(self.string()?),
-            Some(b) if b.is_ascii_alphanumeric() || b"+-.".contains(&b) => self.word()?,
+            Some(b'"') => {
+                let text = self.string()?;
+                self.ends_before_a_word(start)?;
+                Kind::String(text)
+            }
+            Some(b) if b.is_ascii_alphanumeric() || b"+-.".contains(&b) || self.is_minus() => self.word()?,
             Some(_) => return self.unexpected("a value"),
             None => return self.ends_early(start, "a value"),
         };
@@ -110,6 +138,7 @@ impl Parser<'_> {
                 None => return self.ends_early(start, "a key"),
             }
             let key = self.string()?;
+            self.ends_before_a_word(key_start)?;
             let key_span = key_start..self.at;
             let length = self.pointer.len();
             self.pointer = child(&self.pointer, &key);
@@ -126,7 +155,12 @@ impl Parser<'_> {
             self.space();
             match self.peek() {
                 Some(b':') => self.at += 1,
-                Some(_) => return self.unexpected("`:`"),
+                Some(b',' | b'}') => return self.unexpected("`:`"),
+                Some(b'=') => {
+                    let fault = self.fault(self.here(), "`=` between a key and its value");
+                    return self.fail(fault.hint("write `:` in its place"));
+                }
+                Some(_) => return self.missing(":"),
                 None => return self.ends_early(start, "`:`"),
             }
             self.space();
@@ -192,14 +226,10 @@ impl Parser<'_> {
                 Some(b'"') => break,
                 Some(b'\\') => end += 2,
                 Some(b) if *b < 0x20 => {
-                    let fault = self.fault(start..end, "text that is not closed in its line");
-                    return self.fail(fault.hint("end it with a double quote"));
+                    return self.unclosed(start, end);
                 }
                 Some(_) => end += 1,
-                None => {
-                    self.at = self.text.len();
-                    return self.ends_early(start, "`\"`");
-                }
+                None => return self.unclosed(start, self.text.trim_end().len().max(start + 1)),
             }
         }
         self.at = end + 1;
@@ -214,12 +244,9 @@ impl Parser<'_> {
 
     fn word(&mut self) -> Option<Kind> {
         let start = self.at;
-        let rest = &self.text.as_bytes()[start..];
-        let length = rest
-            .iter()
-            .take_while(|b| b.is_ascii_alphanumeric() || b"+-._".contains(b))
-            .count();
-        self.at += length;
+        let of_word = |c: char| c.is_ascii_alphanumeric() || "+-._".contains(c) || misread::MINUS.contains(&c);
+        let rest = &self.text[start..];
+        self.at += rest.find(|c| !of_word(c)).unwrap_or(rest.len());
         let word = &self.text[start..self.at];
         match word {
             "true" => return Some(Kind::Bool(true)),
@@ -227,97 +254,43 @@ impl Parser<'_> {
             "null" => return Some(Kind::Null),
             _ => {}
         }
-        if let Ok(number) = serde_json::from_str(word) {
+        let number = serde_json::from_str(word).ok();
+        let like = number.is_some() || word.ends_with(|c: char| c.is_ascii_digit());
+        if let Some(slip) = misread::behind_number(word, rest, &self.pointer).filter(|_| like) {
+            return self.slip(start, slip).map(|()| Kind::Null);
+        }
+        if let Some(number) = number {
             return Some(Kind::Number(number));
         }
         if self.at == self.text.len() && self.depth > 0 {
             return self.ends_early(start, "the rest of it");
         }
-        let fault = match word.parse::<f64>() {
+        let fault = match word.replace(misread::MINUS, "-").parse::<f64>() {
             Ok(number) if number.is_finite() => self
                 .fault(
                     start..self.at,
                     format!("{} is not how JSON writes a number", short(word)),
                 )
-                .hint(format!("write {number:?}")),
+                .hint(match word.contains(misread::MINUS) {
+                    true => format!("write {number:?}, with the minus sign of the keyboard"),
+                    false => format!("write {number:?}"),
+                }),
             Ok(_) => self
                 .fault(start..self.at, format!("{} is not a finite number", short(word)))
                 .allowed("finite numbers of magnitude up to 1.797e308"),
             Err(_) => {
-                let fault = self.fault(start..self.at, format!("`{}` is not a JSON value", short(word)));
-                let number = word.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
-                return self.fail(fault.hint(match number {
-                    true => "a number has no unit behind it; the key names it",
-                    false => "text needs double quotes",
-                }));
+                let whole = misread::words(rest, word.len());
+                self.at = start + whole.len();
+                self.fault(start..self.at, format!("`{}` is not a JSON value", short(whole)))
+                    .hint(misread::word(whole, &self.pointer))
             }
         };
         self.report(fault);
         Some(Kind::Null)
     }
 
-    fn unexpected<T>(&mut self, wanted: &str) -> Option<T> {
-        let fault = self.fault(self.here(), format!("expected {wanted}, found {}", self.found()));
-        let fault = match self.peek() {
-            Some(b'/') | Some(b'#') => {
-                fault.hint("JSON has no comments; write a member whose key begins with //, such as \"// why\": \"...\"")
-            }
-            Some(b'\'') => fault.hint("text needs double quotes"),
-            Some(b) if b.is_ascii_digit() && self.is_behind_decimal_comma() => {
-                fault.hint("decimals stand behind a point")
-            }
-            _ => fault,
-        };
-        self.fail(fault)
-    }
-
-    /// Whether what is here stands at once behind a digit and a comma: `0,3`.
-    fn is_behind_decimal_comma(&self) -> bool {
-        matches!(self.text.as_bytes()[..self.at], [.., digit, b','] if digit.is_ascii_digit())
-    }
-
-    /// The next member follows without one: told behind the last, where it belongs, not in the line below.
-    fn missing_comma<T>(&mut self) -> Option<T> {
-        let end = self.text[..self.at].trim_end().len();
-        let fault = self.fault(end..end, format!("a comma is missing before {}", self.found()));
-        self.fail(fault.hint("write `,` here"))
-    }
-
-    fn trailing_comma<T>(&mut self) -> Option<T> {
-        let comma = self.text[..self.at].rfind(',').unwrap_or(self.at);
-        let fault = self.fault(comma..comma + 1, format!("a comma before {}", self.found()));
-        self.fail(fault.hint("remove the comma"))
-    }
-
-    /// The text breaks off inside what starts at `start`.
-    fn ends_early<T>(&mut self, start: usize, wanted: &str) -> Option<T> {
-        let end = self.text.trim_end().len();
-        let inside = match self.text.as_bytes().get(start) {
-            Some(b'{') => format!("the object that opens in line {}", self.line(start)),
-            Some(b'[') => format!("the array that opens in line {}", self.line(start)),
-            Some(b'"') => format!("the text that starts in line {}", self.line(start)),
-            _ => format!("the value that starts in line {}", self.line(start)),
-        };
-        let fault = self.fault(end..end, format!("the text ends inside {inside}: expected {wanted}"));
-        self.fail(fault.hint("the file is cut off, or a closing bracket or quote is missing"))
-    }
-
-    fn fault(&self, span: Range<usize>, what: impl Into<String>) -> Violation {
-        Violation {
-            span: Some(span),
-            ..Violation::new(Code::Text, self.pointer.clone(), what)
-        }
-    }
-
-    fn report(&mut self, fault: Violation) {
-        if self.faults.len() < MOST_FAULTS {
-            self.faults.push(fault);
-        }
-    }
-
-    fn fail<T>(&mut self, fault: Violation) -> Option<T> {
-        self.faults.push(fault);
-        None
+    fn is_minus(&self) -> bool {
+        self.text[self.at..].starts_with(misread::MINUS)
     }
 
     fn peek(&self) -> Option<u8> {
@@ -327,22 +300,5 @@ impl Parser<'_> {
     fn space(&mut self) {
         let rest = &self.text.as_bytes()[self.at..];
         self.at += rest.iter().take_while(|b| b" \t\r\n".contains(b)).count();
-    }
-
-    fn here(&self) -> Range<usize> {
-        let length = self.text[self.at..].chars().next().map_or(0, char::len_utf8);
-        self.at..self.at + length
-    }
-
-    fn found(&self) -> String {
-        match self.text[self.at..].chars().next() {
-            Some(c) if c.is_control() => format!("the control character U+{:04X}", u32::from(c)),
-            Some(c) => format!("`{c}`"),
-            None => "the end".to_owned(),
-        }
-    }
-
-    fn line(&self, at: usize) -> usize {
-        1 + self.text.as_bytes()[..at].iter().filter(|b| **b == b'\n').count()
     }
 }

@@ -23,6 +23,11 @@ const MEANT: &[(&str, &[&str])] = &[
     ),
     ("modulus", &["young_modulus_pa"]),
     ("young", &["young_modulus_pa"]),
+    ("youngs_modulus", &["young_modulus_pa"]),
+    ("elastic_modulus", &["young_modulus_pa"]),
+    ("dynamic_viscosity", &["viscosity_pa_s"]),
+    ("depth", &["height_m"]),
+    ("freq", &["frequency_hz"]),
     ("elasticity", &["young_modulus_pa", "viscoelasticity"]),
     ("compliance", &["area_per_pressure_m2_per_pa", "compliance_m3_pa"]),
     ("friction", &["permeability_m4", "contacts", "unsteady_friction"]),
@@ -64,13 +69,30 @@ const MEANT: &[(&str, &[&str])] = &[
     ("diameter", &["radius_m"]),
     ("radius", &["radius_m"]),
     ("duration", &["end_s", "duration_s"]),
+    ("t_end", &["end_s"]),
+    ("tend", &["end_s"]),
+    ("end_time", &["end_s"]),
+    ("stop_time", &["end_s"]),
+    ("final_time", &["end_s"]),
     ("tolerance", &["rtol"]),
+    ("tol", &["rtol"]),
+    ("reltol", &["rtol"]),
+    ("relative_tolerance", &["rtol"]),
+    ("sampling_interval", &["output_interval_s"]),
+    ("sample_interval", &["output_interval_s"]),
+    ("dt_out", &["output_interval_s"]),
     ("accuracy", &["rtol", "mesh"]),
     ("step", &["output_interval_s", "ramp", "sigmoid"]),
     ("timestep", &["output_interval_s", "max_step_s"]),
     ("resolution", &["cells_per_segment", "cells_per_bladder"]),
     ("element", &["cells_per_segment", "segments"]),
     ("node", &["cells_per_segment", "segments"]),
+    ("cell", &["cells_per_segment", "cells_per_bladder"]),
+    ("n_elements", &["cells_per_segment", "segments"]),
+    ("num_elements", &["cells_per_segment", "segments"]),
+    ("number_of_elements", &["cells_per_segment", "segments"]),
+    ("n_nodes", &["cells_per_segment", "segments"]),
+    ("n_cells", &["cells_per_segment", "cells_per_bladder"]),
     ("sensor", &["probes"]),
     ("gauge", &["probes"]),
     ("channel", &["bladders", "tubes"]),
@@ -157,23 +179,93 @@ fn pieces(word: &str) -> Vec<String> {
     all
 }
 
+/// Symbols that people take for names of keys; of a result they may mean more.
+const SYMBOLS: &[(&str, &[&str])] = &[
+    ("e", &["young_modulus_pa"]),
+    ("ei", &["bending_stiffness_factor"]),
+    ("ea", &["axial_stiffness_factor"]),
+    ("rho", &["density_kg_m3"]),
+    ("eta", &["viscosity_pa_s"]),
+    ("mu", &["viscosity_pa_s"]),
+    ("b", &["width_m"]),
+    ("h", &["height_m"]),
+    ("l", &["length_m"]),
+    ("r", &["radius_m"]),
+    ("d", &["radius_m"]),
+    ("f", &["frequency_hz"]),
+    ("p", &["pressure_pa"]),
+    ("q", &["flow_m3_s"]),
+];
+
+/// Words of other programs and textbooks for which a case has no key, and what there is instead.
+const INSTEAD: &[(&[&str], &str)] = &[
+    (
+        &["poisson_ratio", "poissons_ratio", "poisson", "nu"],
+        "a beam takes no Poisson's ratio: /beam/shear_stiffness_n has the shear, and a section by its geometry takes it, /section/material/poisson_ratio",
+    ),
+    (
+        &["dt", "time_step", "timestep", "step_size", "delta_t"],
+        "steps follow from the tolerance, /solver/rtol; /time/output_interval_s says how often is written, and /solver/max_step_s is the longest step",
+    ),
+    (
+        &["damping_ratio", "zeta", "xi", "damping_factor"],
+        "damping is a time: of a ratio zeta of the mode at f Hz /beam/damping/bending_time_s is zeta/(pi f)",
+    ),
+    (
+        &["rayleigh_alpha", "alpha", "mass_damping"],
+        "damping by the mass is drag along the beam: alpha times the mass per length, /beam/damping/drag_n_s_m2",
+    ),
+    (
+        &["rayleigh_beta", "beta", "stiffness_damping"],
+        "damping by the stiffness is a time, /beam/damping/bending_time_s and axial_time_s: beta itself",
+    ),
+    (
+        &["shear_modulus", "g_modulus"],
+        "a case has shear by /beam/shear_stiffness_n, of a full rectangle 5/6 of its area times the shear modulus",
+    ),
+    (
+        &["second_moment", "second_moment_of_area", "area_moment"],
+        "it follows from /beam/height_m and width_m; /beam/bending_stiffness_factor multiplies it",
+    ),
+    (
+        &["atol", "abstol", "absolute_tolerance"],
+        "there is one tolerance, /solver/rtol, relative to the scale of each unknown",
+    ),
+];
+
+/// What to use instead of what a key of this name would be, where a case has none.
+pub fn instead(word: &str) -> Option<&'static str> {
+    let word = word.to_lowercase();
+    let (_, said) = INSTEAD.iter().find(|(words, _)| words.contains(&word.as_str()))?;
+    Some(said)
+}
+
+/// Keys that a symbol means where it stands for one.
+pub fn of_symbol(symbol: &str) -> Vec<&'static str> {
+    let symbol = symbol.to_lowercase();
+    let own = SYMBOLS.iter().filter(|one| one.0 == symbol);
+    own.flat_map(|one| one.1.iter().copied()).collect()
+}
+
 /// Keys that a word means; of several words the whole, or else what each means.
 pub fn of(word: &str) -> Vec<&'static str> {
-    let keys = |piece: &String| {
-        MEANT
-            .iter()
-            .filter(|one| one.0 == *piece)
-            .flat_map(|one| one.1.iter().copied())
-            .collect::<Vec<_>>()
-    };
-    let pieces = pieces(word);
-    let (whole, parts) = pieces.split_at(2);
-    let mut own: Vec<&'static str> = whole.iter().flat_map(keys).collect();
-    own.dedup();
+    let own = of_whole(word);
     if !own.is_empty() {
         return own;
     }
-    parts.iter().flat_map(keys).collect()
+    pieces(word).iter().flat_map(keys).collect()
+}
+
+/// Keys that a word means as a whole; blanks and `_` are the same.
+pub fn of_whole(word: &str) -> Vec<&'static str> {
+    let mut own: Vec<&'static str> = pieces(word).iter().take(2).flat_map(keys).collect();
+    own.dedup();
+    own
+}
+
+fn keys(piece: &String) -> impl Iterator<Item = &'static str> + use<'_> {
+    let own = MEANT.iter().filter(move |one| one.0 == *piece);
+    own.flat_map(|one| one.1.iter().copied())
 }
 
 #[cfg(test)]
@@ -186,7 +278,14 @@ mod tests {
     fn words_lead_to_keys() {
         let all = meanings();
         let known = |name: &str| all.iter().any(|meaning| meaning.name == name);
-        for (word, keys) in MEANT {
+        for (_, said) in super::INSTEAD {
+            let pointers = said.split([' ', ',', ':', ';']).filter(|word| word.starts_with('/'));
+            for pointer in pointers {
+                let key = pointer.rsplit('/').next().unwrap_or_default();
+                assert!(known(key), "{pointer}");
+            }
+        }
+        for (word, keys) in MEANT.iter().chain(SYMBOLS) {
             for key in *keys {
                 assert!(known(key), "{word}: {key}");
             }

@@ -1,0 +1,260 @@
+//! Numbers with a unit behind them, where the key has the unit: what they are there.
+
+use std::f64::consts::{PI, TAU};
+
+use super::slips::number_of;
+use super::units::{self, Suffix, Unit};
+use super::wording::short;
+
+/// Longer texts are no number with its unit.
+const LONGEST: usize = 60;
+
+/// Standard gravity [m/s^2].
+pub(super) const GRAVITY: f64 = 9.806_65;
+
+/// Units that no heading of a table may have, as some have several meanings there, but of which the factor is known: SI unit, words, how
+/// many of the one the other is.
+const OTHERS: [(&str, &[&str], f64); 37] = [
+    ("m", &["in", "inch", "inches", "\""], 0.0254),
+    ("m", &["ft", "foot", "feet"], 0.3048),
+    ("m", &["yd"], 0.9144),
+    ("m", &["mil", "mils", "thou"], 2.54e-5),
+    ("m", &["nm"], 1e-9),
+    ("m", &["km"], 1e3),
+    ("m", &["dm"], 0.1),
+    ("m", &["meter", "meters", "metre", "metres"], 1.0),
+    ("m", &["millimeter", "millimeters", "millimetre", "millimetres"], 1e-3),
+    ("m", &["micron", "microns"], 1e-6),
+    ("s", &["sec", "secs", "second", "seconds"], 1.0),
+    ("s", &["msec"], 1e-3),
+    ("s", &["usec"], 1e-6),
+    ("s", &["ns"], 1e-9),
+    ("s", &["minute", "minutes"], 60.0),
+    ("s", &["hr", "hrs", "hour", "hours"], 3600.0),
+    ("Pa", &["pascal", "pascals"], 1.0),
+    ("Pa", &["atm"], 101_325.0),
+    ("Pa", &["torr", "mmhg"], 133.322),
+    ("Pa", &["inhg"], 3386.39),
+    ("Pa", &["cmh2o"], 98.0665),
+    ("Pa", &["mmh2o"], 9.806_65),
+    ("Pa", &["inh2o"], 249.089),
+    ("Pa", &["ksi"], 6.894_757_293_168_36e6),
+    ("Pa", &["psf"], 47.880_26),
+    ("rad", &["degree", "degrees"], PI / 180.0),
+    ("rad", &["radian", "radians"], 1.0),
+    ("rad", &["arcmin"], PI / 10_800.0),
+    ("N", &["newton", "newtons"], 1.0),
+    ("N", &["lbf"], 4.448_221_615_260_5),
+    ("N", &["kgf", "kp"], GRAVITY),
+    ("N", &["gf"], 1e-3 * GRAVITY),
+    ("N", &["dyn", "dyne"], 1e-5),
+    ("kg", &["lb", "lbs"], 0.453_592_37),
+    ("kg", &["oz"], 0.028_349_523_125),
+    ("kg", &["mg"], 1e-6),
+    ("Pa s", &["poise"], 0.1),
+];
+
+/// More of them, of volumes and flows.
+const LIQUIDS: [(&str, &[&str], f64); 6] = [
+    ("m^3", &["cc"], 1e-6),
+    ("m^3", &["nl"], 1e-12),
+    ("m^3", &["liter", "liters", "litre", "litres"], 1e-3),
+    ("m^3/s", &["lpm"], 1e-3 / 60.0),
+    ("m^3/s", &["gpm"], 6.309_02e-5),
+    ("m^3/s", &["m3/h"], 1.0 / 3600.0),
+];
+
+/// SI unit and factor of a word that names a unit which the table of units has not.
+pub(super) fn other(word: &str) -> Option<(&'static str, f64)> {
+    let word = word.to_lowercase();
+    let mut all = OTHERS.iter().chain(&LIQUIDS);
+    let (si, _, scale) = all.find(|(_, words, _)| words.contains(&word.as_str()))?;
+    Some((*si, *scale))
+}
+
+/// The number that a text begins with, and the unit behind it.
+fn split(text: &str) -> Option<(f64, &str)> {
+    let text = text.trim();
+    if text.len() > LONGEST || !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
+        return None;
+    }
+    // a number alone, such as 1e-6, has no unit
+    if text.parse::<f64>().is_ok() {
+        return None;
+    }
+    let mut ends = (1..text.len()).rev().filter(|end| text.is_char_boundary(*end));
+    let (number, unit) = ends.find_map(|end| {
+        let (number, unit) = text.split_at(end);
+        // decimals behind a comma are told elsewhere where no unit follows
+        let number = number.trim_end().replacen(',', ".", 1).parse::<f64>().ok()?;
+        number.is_finite().then_some((number, unit.trim()))
+    })?;
+    unit.starts_with(|c: char| c.is_alphabetic() || "%°\"".contains(c))
+        .then_some((number, unit))
+}
+
+/// Without what writers of units differ in.
+fn squeezed(unit: &str) -> String {
+    let plain = unit.replace(['µ', 'μ'], "u").replace('²', "2").replace('³', "3");
+    plain.chars().filter(|c| !" ^·*.".contains(*c)).collect()
+}
+
+/// Whether two units are written alike; of `m` and `M` at the beginning the one is a millionth of a thousandth of the other.
+fn alike(written: &str, name: &str) -> bool {
+    if written == name || written.replace('L', "l") == name {
+        return true;
+    }
+    let first = |text: &str| text.chars().next();
+    let prefix = first(written) != first(name) && first(name).is_some_and(|c| "mM".contains(c));
+    written.len() > 1 && !prefix && written.eq_ignore_ascii_case(name)
+}
+
+/// How many of an SI unit a written one is; or the SI unit that it belongs to instead.
+fn size(written: &str, si: &str) -> Result<f64, Option<&'static str>> {
+    let word = match squeezed(written) {
+        degree if degree == "°" => "deg".to_owned(),
+        other => other,
+    };
+    match (si, word.as_str()) {
+        ("m/s^2", "g") => return Ok(GRAVITY),
+        ("Hz", "rad/s") => return Ok(1.0 / TAU),
+        ("Hz", "1/s") => return Ok(1.0),
+        ("Pa", "mPa") => return Ok(1e-3),
+        _ => {}
+    }
+    let of = |unit: &Unit| alike(&word, &squeezed(unit.name));
+    if let Some(unit) = units::of_dimension(si).find(of) {
+        return Ok(unit.scale);
+    }
+    match other(&word) {
+        Some((own, scale)) if own == si => Ok(scale),
+        Some((own, _)) => Err(Some(own)),
+        None => Err(units::all().find(of).map(|unit| unit.si)),
+    }
+}
+
+/// What a number with a unit behind it is where a pointer leads.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Here {
+    /// This number, and the unit it is in there.
+    Number(String, String),
+    /// Nothing, for this reason.
+    Not(String),
+}
+
+/// What a text is at a pointer, if it is a number with a unit behind it.
+pub fn at(pointer: &str, text: &str) -> Option<Here> {
+    let (number, unit) = split(text)?;
+    let same = |of: String| Here::Number(number_of(number), of);
+    if pointer.ends_with("/temperature_c") && ["°C", "degC", "C"].contains(&unit) {
+        return Some(same("°C".into()));
+    }
+    Some(match units::told_by(pointer) {
+        Suffix::Known(_, of) => match size(unit, of.si) {
+            Ok(scale) => Here::Number(number_of(number * scale / of.scale), of.name.into()),
+            Err(Some(_)) => Here::Not(format!(
+                "{} is no unit of what is wanted here, which is in {}",
+                short(unit),
+                of.name
+            )),
+            Err(None) => Here::Not(format!(
+                "the unit {} is not known; the number here is in {}",
+                short(unit),
+                of.name
+            )),
+        },
+        Suffix::Unknown(_, end)
+            if squeezed(unit)
+                .replace('/', "")
+                .eq_ignore_ascii_case(&end.replace('_', "")) =>
+        {
+            same(unit.into())
+        }
+        Suffix::Unknown(_, end) => Here::Not(format!(
+            "the number here is in the unit that the key ends with, {end}, which {} is not",
+            short(unit)
+        )),
+        Suffix::None => match size(unit, "1") {
+            Ok(scale) => Here::Number(number_of(number * scale), "1".into()),
+            Err(_) => Here::Not(format!("what is wanted here has no unit, and {} is one", short(unit))),
+        },
+    })
+}
+
+/// What to do about a text at a pointer, if it is a number with a unit behind it.
+pub fn remedy(pointer: &str, text: &str) -> Option<String> {
+    Some(match at(pointer, text)? {
+        Here::Number(number, _) => format!(
+            "{} is {number} here: write the number alone, the key has the unit",
+            short(text.trim())
+        ),
+        Here::Not(why) => why,
+    })
+}
+
+/// What to do about numbers with units in a text with `,` and `:` between them, the values of an option at a pointer: the option with the numbers
+/// alone, or why there is none.
+pub fn rewritten(option: &str, pointer: &str, spec: &str) -> Option<String> {
+    if spec.len() > 20 * LONGEST {
+        return None;
+    }
+    let mut told = vec![];
+    let mut new = String::new();
+    for part in spec.split_inclusive([',', ':']) {
+        let own = part.trim_end_matches([',', ':']);
+        match at(pointer, own) {
+            None => new += part,
+            Some(Here::Not(why)) => return Some(why),
+            Some(Here::Number(number, _)) => {
+                told.push(format!("{} is {number} here", own.trim()));
+                new += &number;
+                new += &part[own.len()..];
+            }
+        }
+    }
+    (!told.is_empty()).then(|| format!("{}: {option} '{pointer}={new}'", told.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Here, at};
+
+    #[test]
+    fn numbers_with_units_are_those_of_the_key() {
+        for (pointer, text, number) in [
+            ("/network/chains/0/ends/0/pressure_pa", "60kPa", "60000"),
+            ("/network/chains/0/ends/0/pressure_pa/ramp/to", "60 kpa", "60000"),
+            ("/beam/young_modulus_pa", "2MPa", "2e6"),
+            ("/time/end_s", "500ms", "0.5"),
+            ("/beam/length_m", "10cm", "0.1"),
+            ("/beam/length_m", "1.5 inch", "0.0381"),
+            ("/fluid/viscosity_pa_s", "1 mPa·s", "0.001"),
+            ("/fluid/viscosity_pa_s", "0.5Pas", "0.5"),
+            ("/network/ports/0/flow_m3_s", "6 mL/min", "1e-7"),
+            ("/loads/0/gravity/x_m_s2", "1 g", "9.80665"),
+            ("/attachments/0/mass_kg", "5 g", "0.005"),
+            ("/solver/rtol", "1%", "0.01"),
+            ("/attachments/0/damping_x_n_s_m", "5 N s/m", "5"),
+            ("/fluid/temperature_c", "20 °C", "20"),
+            ("/beam/young_modulus_pa", "0,5 MPa", "500000"),
+            // no megapascal
+            ("/beam/young_modulus_pa", "2 mPa", "0.002"),
+        ] {
+            let Some(Here::Number(found, _)) = at(pointer, text) else {
+                panic!("{pointer}: {text}")
+            };
+            assert_eq!(found, number, "{pointer}: {text}");
+        }
+        for (pointer, text) in [
+            ("/beam/length_m", "60 kPa"),
+            ("/beam/length_m", "6 furlongs"),
+            ("/beam/length_m", "3 Mm"),
+            ("/solver/rtol", "1 mm"),
+        ] {
+            assert!(matches!(at(pointer, text), Some(Here::Not(_))), "{text}");
+        }
+        for text in ["60", "sealed", "1e3", "5e5", "1E-6", "1e400", "", "1:2", "-", "2/3"] {
+            assert_eq!(at("/beam/length_m", text), None, "{text}");
+        }
+    }
+}

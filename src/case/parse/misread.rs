@@ -1,0 +1,208 @@
+//! What people write that is no JSON, and what they mean: of numbers, words and quotes.
+
+use crate::case::amounts;
+use crate::case::slips::number_of;
+use crate::case::wording::short;
+
+/// Minus signs and dashes of typesetters.
+pub const MINUS: [char; 2] = ['−', '–'];
+
+/// Quotes of typesetters, each with those that close it.
+const QUOTES: [(char, &str); 8] = [
+    ('“', "”“\""),
+    ('”', "”“\""),
+    ('„', "“”\""),
+    ('«', "»\""),
+    ('»', "«\""),
+    ('‘', "’‘"),
+    ('’', "’‘"),
+    ('‚', "‘’"),
+];
+
+/// Spaces that people set between the digits of long numbers, and a quote.
+const BETWEEN: [char; 6] = [' ', '\u{a0}', '\u{2009}', '\u{202f}', '\'', '’'];
+
+/// What is wrong with so many bytes of a text, and what to do.
+pub struct Slip {
+    /// How many.
+    pub bytes: usize,
+    /// What is wrong.
+    pub what: String,
+    /// What to do.
+    pub hint: String,
+}
+
+/// The line that a text begins with, up to what ends a value.
+fn value(text: &str) -> &str {
+    let end = text.find([',', '}', ']', '{', '[', ':', '\n', '\r', '\t']);
+    text[..end.unwrap_or(text.len())].trim_end()
+}
+
+/// A word of so many bytes at least, and those behind it in its value.
+pub fn words(text: &str, least: usize) -> &str {
+    let whole = value(text);
+    if whole.len() < least { &text[..least] } else { whole }
+}
+
+/// A number followed by what no number has: a unit, more digits, an operation. `text` begins with the number.
+pub fn behind_number(number: &str, text: &str, pointer: &str) -> Option<Slip> {
+    let whole = value(text);
+    let rest = whole.get(number.len()..)?;
+    let behind = rest.trim_start().chars().next()?;
+    let slip = |bytes: usize, what: String, hint: String| Some(Slip { bytes, what, hint });
+    let last = pointer.rsplit('/').next().filter(|part| !part.is_empty());
+    if let Some((bytes, joined)) = grouped(whole) {
+        return slip(
+            bytes,
+            format!("{} is not how JSON writes a number", short(&whole[..bytes])),
+            match last.is_some_and(|part| part.bytes().all(|b| b.is_ascii_digit())) {
+                true => format!("write commas between numbers, or {joined}: nothing stands between digits"),
+                false => format!("write {joined}: nothing stands between digits"),
+            },
+        );
+    }
+    if "/*".contains(behind) && !rest.trim_start().starts_with("//") && !rest.trim_start().starts_with("/*") {
+        let operand = rest.trim_start()[1..].trim();
+        let what = format!("`{}`: JSON does not calculate", short(whole));
+        let result = match (number.parse::<f64>(), operand.parse::<f64>()) {
+            (Ok(a), Ok(b)) if behind == '/' && b != 0.0 => Some(a / b),
+            (Ok(a), Ok(b)) if behind == '*' => Some(a * b),
+            _ => None,
+        };
+        let hint = result.map_or("write the result".into(), |x| format!("write {}", number_of(x)));
+        return slip(whole.len(), what, hint);
+    }
+    let unit = behind.is_alphabetic() || "%°".contains(behind);
+    unit.then(|| {
+        let hint = amounts::remedy(pointer, whole);
+        let hint = hint.unwrap_or_else(|| "a number has no unit behind it; the key names it".into());
+        Slip {
+            bytes: whole.len(),
+            what: format!("`{}` is not a JSON value", short(whole)),
+            hint,
+        }
+    })
+}
+
+/// A number whose digits stand in groups of three: how long it is, and the number without what stands between.
+pub fn grouped(text: &str) -> Option<(usize, String)> {
+    let sign = text.len() - text.trim_start_matches(['-', '+']).len();
+    let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
+    let first = digits(&text[sign..]);
+    if !(1..=3).contains(&first) {
+        return None;
+    }
+    let mut end = sign + first;
+    let mut joined = text[..end].to_owned();
+    while let Some(between) = text[end..].chars().next().filter(|c| BETWEEN.contains(c) || *c == '_') {
+        let start = end + between.len_utf8();
+        if digits(&text[start..]) != 3 {
+            break;
+        }
+        joined += &text[start..start + 3];
+        end = start + 3;
+    }
+    if joined.len() == sign + first {
+        return None;
+    }
+    // decimals behind it
+    if text[end..].starts_with('.') {
+        let decimals = 1 + digits(&text[end + 1..]);
+        joined += &text[end..end + decimals];
+        end += decimals;
+    }
+    Some((end, joined.trim_start_matches('+').to_owned()))
+}
+
+/// What a word that is no JSON value is meant to be.
+pub fn word(word: &str, pointer: &str) -> String {
+    if let Some((_, joined)) = grouped(word).filter(|(bytes, _)| *bytes == word.len()) {
+        return format!("write {joined}: nothing stands between digits");
+    }
+    if let Some(hint) = amounts::remedy(pointer, word) {
+        return hint;
+    }
+    match word.to_lowercase().as_str() {
+        "true" => "write true, in small letters".into(),
+        "false" => "write false, in small letters".into(),
+        "none" | "null" | "nil" | "undefined" => "write null, or leave the key out".into(),
+        _ if word.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) => {
+            "a number has no unit behind it; the key names it".into()
+        }
+        _ => "text needs double quotes".into(),
+    }
+}
+
+/// A text between quotes that are not those of JSON.
+pub fn quoted(text: &str) -> Option<Slip> {
+    let open = text.chars().next()?;
+    let (_, closing) = QUOTES.iter().find(|(quote, _)| *quote == open)?;
+    let line = text.lines().next().unwrap_or(text);
+    let inner = &line[open.len_utf8()..];
+    let close = inner.find(|c| closing.contains(c));
+    let text = &inner[..close.unwrap_or(0)];
+    let last = close
+        .and_then(|at| inner[at..].chars().next())
+        .map_or(0, char::len_utf8);
+    Some(Slip {
+        bytes: open.len_utf8() + text.len() + last,
+        what: format!("`{open}` is no double quote of JSON"),
+        hint: match close {
+            Some(_) => format!("write \"{}\" in straight quotes", short(text)),
+            None => "write straight quotes, \"".into(),
+        },
+    })
+}
+
+/// Whether a text has a quote that is not JSON's, so that it seems to be closed.
+pub fn closed_otherwise(text: &str) -> Option<char> {
+    text.chars().find(|c| QUOTES.iter().any(|(quote, _)| quote == c))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{behind_number, grouped};
+
+    #[test]
+    fn groups_of_digits_are_numbers() {
+        for (text, bytes, joined) in [
+            ("60 000", 6, "60000"),
+            ("-1 234 567.5", 12, "-1234567.5"),
+            ("60_000", 6, "60000"),
+            ("60\u{202f}000 ", 8, "60000"),
+        ] {
+            assert_eq!(grouped(text), Some((bytes, joined.to_owned())), "{text}");
+        }
+        for text in ["60", "60 00", "6000 000", "", "-", "60,000"] {
+            assert_eq!(grouped(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_follows_a_number_is_told() {
+        for (number, text, bytes, hint) in [
+            ("1", "1/10, 2", 4, "write 0.1"),
+            ("2", "2 * 1e-3}", 8, "write 0.002"),
+            (
+                "60",
+                "60 kPa}",
+                6,
+                "60 kPa is 60000 here: write the number alone, the key has the unit",
+            ),
+        ] {
+            let slip = behind_number(number, text, "/a/pressure_pa").expect(text);
+            assert_eq!((slip.bytes, slip.hint.as_str()), (bytes, hint), "{text}");
+        }
+        // of an array several numbers may be meant
+        let slip = behind_number("100", "100 200]", "/a/values/0").expect("a slip");
+        assert!(slip.hint.contains("commas between numbers"), "{}", slip.hint);
+        for (number, text) in [
+            ("1", "1, 2"),
+            ("1", "1"),
+            ("1", "1 // a remark"),
+            ("1", "1 /* a remark */"),
+        ] {
+            assert!(behind_number(number, text, "").is_none(), "{text}");
+        }
+    }
+}

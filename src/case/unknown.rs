@@ -1,0 +1,278 @@
+//! What is meant by a key that its object has not.
+
+use std::collections::{HashMap, VecDeque};
+use std::sync::LazyLock;
+
+use serde_json::{Map, Value};
+
+use super::locate::child;
+use super::units::{self, Suffix};
+use super::wording::all_nearest;
+use super::{schema_json, slips, synonyms};
+
+/// Places of a key that are told at most.
+const MOST: usize = 3;
+
+/// Similarity from which on one name is a slip of the pen of another, whatever else has a name like it.
+const CLOSE: f64 = 0.93;
+
+/// Deepest place of a key that is looked for.
+const DEEPEST: usize = 9;
+
+/// What an object may have and has.
+pub struct Known<'a> {
+    /// Its keys, with their schemas.
+    pub properties: &'a Map<String, Value>,
+    /// What the user wrote of it: a key that only a preset brings may be what a wrong one meant.
+    pub written: Option<&'a Value>,
+    /// Where it stands.
+    pub pointer: &'a str,
+}
+
+/// What a key means.
+#[derive(Default)]
+pub struct Meant {
+    /// Keys of the same object, one of which it is.
+    pub keys: Vec<String>,
+    /// The one, if there is one alone.
+    pub nearest: Option<String>,
+    /// What to do.
+    pub hint: Option<String>,
+}
+
+impl Meant {
+    fn one(key: String, hint: Option<String>) -> Self {
+        Self {
+            keys: vec![key.clone()],
+            nearest: Some(key),
+            hint,
+        }
+    }
+
+    fn elsewhere(hint: String) -> Self {
+        Self {
+            hint: Some(hint),
+            ..Self::default()
+        }
+    }
+}
+
+impl<'a> Known<'a> {
+    /// What a key that is none of these is meant to be: one with another unit, a slip of the pen, a key of another object, a word of others.
+    pub fn meant(&self, key: &str, value: &Value) -> Meant {
+        let absent = self.absent();
+        // one that is there already may be meant by what is set besides
+        if let Some((meant, hint)) =
+            slips::unit(key, value, absent.clone()).or_else(|| slips::unit(key, value, self.names()))
+        {
+            return Meant::one(meant, Some(hint));
+        }
+        let lower = key.to_lowercase();
+        let stem = match units::suffix(&lower, None) {
+            Suffix::Known(stem, _) | Suffix::Unknown(stem, _) => stem,
+            Suffix::None => &lower,
+        };
+        if let Some(said) = [lower.as_str(), stem].into_iter().find_map(synonyms::instead) {
+            return Meant::elsewhere(said.to_owned());
+        }
+        let fits = |name: &&str| self.takes(name, value);
+        let mut near = all_nearest(key, absent.clone().filter(fits));
+        if near.is_empty() {
+            near = all_nearest(key, self.names().filter(fits));
+        }
+        let close = near.first().is_some_and(|(similarity, _)| *similarity >= CLOSE);
+        let homes = self.homes(key);
+        if close {
+            let mut meant = self.of_near(&near);
+            if !homes.is_empty() {
+                meant.hint = meant.hint.or_else(|| Some(belongs(&homes)));
+            }
+            return meant;
+        }
+        if !homes.is_empty() {
+            return Meant::elsewhere(belongs(&homes));
+        }
+        let called = |word: &str| match synonyms::of_whole(word) {
+            none if none.is_empty() => synonyms::of_symbol(word),
+            some => some,
+        };
+        let meant = match called(&lower) {
+            none if none.is_empty() => called(stem),
+            some => some,
+        };
+        let own: Vec<(f64, &str)> = absent
+            .filter(|name| meant.contains(name))
+            .map(|name| (1.0, name))
+            .collect();
+        if !own.is_empty() {
+            return self.of_near(&own);
+        }
+        if !near.is_empty() {
+            return self.of_near(&near);
+        }
+        let places: Vec<&str> = meant
+            .iter()
+            .filter_map(|key| self.homes(key).first().copied())
+            .collect();
+        match places.is_empty() {
+            true => Meant::default(),
+            false => Meant::elsewhere(format!(
+                "what has to do with it: {}",
+                places[..places.len().min(MOST)].join(", ")
+            )),
+        }
+    }
+
+    fn names(&self) -> impl Iterator<Item = &'a str> + Clone {
+        self.properties.keys().map(String::as_str)
+    }
+
+    fn absent(&self) -> impl Iterator<Item = &'a str> + Clone {
+        let written = self.written;
+        self.names()
+            .filter(move |name| written.is_none_or(|members| members.get(*name).is_none()))
+    }
+
+    /// Whether a value may be meant for a key: a number is for none that takes objects alone.
+    fn takes(&self, name: &str, value: &Value) -> bool {
+        let object = |schema: &Value| match schema["$ref"].as_str() {
+            Some(name) => !takes_numbers(name),
+            None => kind(schema) == "object",
+        };
+        !value.is_number() || !self.properties.get(name).is_some_and(object)
+    }
+
+    /// The one that is nearest; of several all, with what they are.
+    fn of_near(&self, near: &[(f64, &str)]) -> Meant {
+        let keys: Vec<String> = near.iter().map(|(_, key)| (*key).to_owned()).collect();
+        if let [key] = &keys[..] {
+            return Meant::one(key.clone(), None);
+        }
+        let told = keys.iter().map(|key| {
+            if let Some(direction) = direction(key) {
+                return format!("\"{key}\" ({direction})");
+            }
+            let meaning = self.properties[key.as_str()]["description"]
+                .as_str()
+                .unwrap_or_default();
+            let meaning = meaning.split(['.', ';']).next().unwrap_or_default();
+            format!("\"{key}\" ({meaning})")
+        });
+        let hint = format!("either {}", told.collect::<Vec<_>>().join(" or "));
+        Meant {
+            keys,
+            nearest: None,
+            hint: Some(hint),
+        }
+    }
+
+    /// Pointers to a key in other objects.
+    fn homes(&self, key: &str) -> Vec<&'static str> {
+        let own = child(self.pointer, key);
+        let all = HOMES.get(key).into_iter().flatten().map(String::as_str);
+        all.filter(|home| *home != own).collect()
+    }
+}
+
+/// Where a component points, by the name of its key.
+fn direction(key: &str) -> Option<&'static str> {
+    key.split('_').find_map(|part| match part {
+        "x" | "u1" => Some("x, across the beam at rest"),
+        "z" | "u3" => Some("z, along the beam at rest"),
+        _ => None,
+    })
+}
+
+/// A JSON pointer for a name without the `/` that begins one: what is written with points between, or the places of a key.
+pub fn whole(name: &str) -> String {
+    let guess = name.trim_matches('/').replace('.', "/");
+    let homes = HOMES.get(&guess).map(Vec::as_slice).unwrap_or_default();
+    match homes {
+        [] => format!("/{guess}"),
+        _ => homes[..homes.len().min(MOST)].join(" or "),
+    }
+}
+
+fn belongs(homes: &[&str]) -> String {
+    let told = homes[..homes.len().min(MOST)].join(", ");
+    match homes {
+        [one] => {
+            let around = one.rsplit_once('/').map_or("", |(around, _)| around);
+            match around {
+                "" => format!("it belongs to the case itself: {one}"),
+                _ => format!("it belongs to {around}: {one}"),
+            }
+        }
+        _ if homes.len() > MOST => format!("it belongs elsewhere: {told} and others"),
+        _ => format!("it belongs elsewhere: {told}"),
+    }
+}
+
+fn kind(schema: &Value) -> &str {
+    schema["type"].as_str().unwrap_or_default()
+}
+
+pub(super) fn resolved<'s>(schema: &'s Value) -> &'s Value
+where
+    'static: 's,
+{
+    let name = schema["$ref"].as_str().unwrap_or_default();
+    match name.is_empty() {
+        true => schema,
+        false => schema_json::CASE
+            .pointer(name.trim_start_matches('#'))
+            .unwrap_or(schema),
+    }
+}
+
+/// Whether something by its name in the schema may be a number.
+fn takes_numbers(name: &str) -> bool {
+    let Some(schema) = schema_json::CASE.pointer(name.trim_start_matches('#')) else {
+        return true;
+    };
+    let branches = ["anyOf", "oneOf"]
+        .iter()
+        .filter_map(|key| schema[*key].as_array())
+        .flatten();
+    let mut all = branches.chain([schema]);
+    all.any(|one| ["number", "integer"].contains(&kind(resolved(one))))
+}
+
+/// Pointers of all keys, the shortest first; arrays by their first place.
+static HOMES: LazyLock<HashMap<String, Vec<String>>> = LazyLock::new(|| {
+    let mut homes: HashMap<String, Vec<String>> = HashMap::new();
+    let mut queue = VecDeque::from([(&*schema_json::CASE, String::new(), vec![])]);
+    while let Some((part, pointer, above)) = queue.pop_front() {
+        let mut above: Vec<&str> = above;
+        if let Some(name) = part["$ref"].as_str() {
+            // a signal may stand in a signal
+            if above.contains(&name) {
+                continue;
+            }
+            above.push(name);
+        }
+        let part = resolved(part);
+        if pointer.matches('/').count() >= DEEPEST {
+            continue;
+        }
+        for (key, inner) in part["properties"].as_object().into_iter().flatten() {
+            let at = child(&pointer, key);
+            let known = homes.entry(key.clone()).or_default();
+            if !known.contains(&at) {
+                known.push(at.clone());
+            }
+            queue.push_back((inner, at, above.clone()));
+        }
+        if part["items"].is_object() {
+            queue.push_back((&part["items"], child(&pointer, 0), above.clone()));
+        }
+        for one in ["anyOf", "oneOf"]
+            .iter()
+            .filter_map(|key| part[*key].as_array())
+            .flatten()
+        {
+            queue.push_back((one, pointer.clone(), above.clone()));
+        }
+    }
+    homes
+});
