@@ -19,6 +19,9 @@ use crate::study::optimize::problem::{Asked, Goal, Limit, Problem};
 use crate::study::optimize::wiring::{Alternative, Crossing, choices};
 use crate::study::span::Span;
 
+/// Exit code where no design holds the limits: that of a computation without the result that was asked for.
+const NOTHING_HOLDS: u8 = 4;
+
 /// Searches, writes the folder, prints.
 pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     let case = size::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
@@ -49,7 +52,10 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     let optimum = &found.optimum;
     let (text, words) = (|| results::text(optimum), || files::words(optimum));
     super::tell(asked.json, folder.dir(), text, words)?;
-    Ok(ExitCode::SUCCESS)
+    Ok(match optimum.beyond_limits() {
+        true => ExitCode::from(NOTHING_HOLDS),
+        false => ExitCode::SUCCESS,
+    })
 }
 
 /// What is to be chosen from.
