@@ -98,29 +98,7 @@ fn problem(asked: &OptimizeArguments, case: &Case, wanted: &Asked, alternative: 
     }
     let sets = [&asked.case.sets[..], &alternative.sets].concat();
     let with = size::load_with(&asked.case.case, &sets, asked.vary.len());
-    Problem::new(&with.map_err(|error| by_choice(error, alternative))?, wanted)
-}
-
-/// An error of what is chosen names the option that chooses.
-fn by_choice(error: Error, alternative: &Alternative) -> Error {
-    let own = |set: &str| alternative.sets.iter().any(|one| one == set);
-    match error {
-        Error::Case(mut fault) => {
-            let of_choice = |set: &Option<String>| set.as_deref().is_some_and(own);
-            let chosen = fault.violations.iter_mut().filter(|one| of_choice(&one.set));
-            chosen.for_each(|one| one.option = "--choose");
-            Error::Case(fault)
-        }
-        Error::Usage(text) => {
-            let pointers = alternative.sets.iter().filter_map(|set| set.split_once('='));
-            let mut text = text;
-            for (pointer, _) in pointers {
-                text = text.replace(&format!("--set '{pointer}="), &format!("--choose '{pointer}="));
-            }
-            Error::Usage(text)
-        }
-        other => other,
-    }
+    Problem::new(&with.map_err(|error| error.by("--choose", &alternative.sets))?, wanted)
 }
 
 /// What is chosen and what is sought are different parts of the case.

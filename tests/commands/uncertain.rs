@@ -166,6 +166,12 @@ fn what_makes_no_sense_is_refused() {
             3,
             "so that the distribution reaches where the model does not",
         ),
+        // the option that was typed is pointed at
+        (
+            vec!["run", CASE, "--uncertain", negative],
+            3,
+            "--> --uncertain at /beam/young_modulus_pa",
+        ),
         (
             vec!["run", CASE, "--uncertain", MODULUS, "--samples", "4"],
             2,

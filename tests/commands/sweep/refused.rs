@@ -32,6 +32,8 @@ fn what_makes_no_sense_is_refused() {
             said.err
         );
     }
+    let negative = path(&dir, "negative.csv");
+    fs::write(&negative, "/beam/length_m\n-0.1\n").expect("written");
     for (more, code, word) in [
         (vec![], 2, "nothing varied"),
         (
@@ -71,7 +73,12 @@ fn what_makes_no_sense_is_refused() {
             "so that /solver/rtol would be without effect",
         ),
         (vec!["--vary", "/beam/lenght_m=0.1"], 3, "E004"),
-        (vec!["--vary", "/beam/length_m=0.1,-0.1"], 3, "/beam/length_m"),
+        (
+            vec!["--vary", "/beam/length_m=0.1,-0.1"],
+            3,
+            "--> --vary at /beam/length_m",
+        ),
+        (vec!["--designs", &negative], 3, "--> --designs at /beam/length_m"),
         (
             vec!["--vary", "/beam/length_m=0.1,100"],
             3,
