@@ -15,7 +15,7 @@ use crate::case::schema::Case;
 use crate::error::{Code, Error, Result};
 use crate::numerics::inverse::{Seen, second_differences};
 use crate::run::equilibrium::{self, Options};
-use crate::run::known;
+use crate::run::{known, slow};
 
 /// What is asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -80,7 +80,9 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
     let seen = Seen::of(&own);
     // about which the best bladders are looked for: the largest loads that are found
     let mut about = first.1.clone();
-    let mut warnings = known::at_rest(case, &equilibrium::system(case, asked.at_s)?);
+    let system = equilibrium::system(case, asked.at_s)?;
+    let mut warnings = known::at_rest(case, &system);
+    warnings.extend(slow::warning(case, &system, asked.at_s));
     warnings.extend(equilibrium::trapped(case, &options)?);
     let mut found = Sensed {
         case: case.name.clone(),

@@ -16,7 +16,7 @@ use crate::run::periodic::{Scene, Settled, record, settle, shoot};
 use crate::run::record::{Column, Control, Progress, Unrecorded};
 use crate::run::stop::Stop;
 use crate::run::summary::{Accuracy, Quantity, Status, Summary};
-use crate::run::{known, periodic};
+use crate::run::{known, periodic, slow};
 use crate::study::refine::{self, meshes, numbers};
 use crate::study::target;
 
@@ -273,6 +273,7 @@ fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
         off(&mut found, &by_mesh, &key);
     }
     found.warn(&known::at_rest(case, &system));
+    found.warn(slow::warning(case, &system, options.at_s).as_slice());
     found.warn(&path.warnings());
     Ok(found)
 }
