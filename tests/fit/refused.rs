@@ -91,6 +91,13 @@ fn data_and_options_that_do_not_go_together() {
             2,
             "the result has no quantity tip_u2; nearest is tip_u",
         ),
+        // where nothing is near, what there is
+        (
+            good,
+            [&vary[..], &["--match", "u_mm=volume_let_in"]].concat(),
+            2,
+            "the result has no quantity volume_let_in; there are tip_u1, tip_u3",
+        ),
         (
             good,
             [&vary[..], &["--match", "u_mm=tip_angle"]].concat(),

@@ -48,6 +48,16 @@ fn what_makes_no_sense_is_refused() {
         ),
         (vec!["--vary", "/beam/length_m=0.1 m"], 2, "without units"),
         (
+            vec!["--vary", "/beam/length_m=lognormal:1:2", "--design", "latin:3"],
+            2,
+            "there is no `lognormal:`, but lin:LOW:HIGH:COUNT",
+        ),
+        (
+            vec!["--vary", "/beam/length_m=unifrom:1:2"],
+            2,
+            "did you mean uniform:..?",
+        ),
+        (
             vec!["--vary", "/beam/length_m=0.1", "--design", "latin:0"],
             2,
             "latin:100",
