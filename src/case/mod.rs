@@ -55,5 +55,5 @@ pub use render::render;
 pub use rewrite::{rewrite, spaced};
 pub use schema::Case;
 pub use schema_json::schema_json;
-pub use wording::nearest;
+pub use wording::{nearest, short};
 pub use written::{Written, is_table};

@@ -16,7 +16,7 @@ use crate::output::machine;
 use crate::output::numbers::{duration, pretty_unit, significant};
 use crate::output::report::facts;
 use crate::run::needs::Needs;
-use crate::run::{known, method};
+use crate::run::{known, method, slow};
 
 /// Prints characteristic numbers, coupling audit, chosen effects and warnings.
 pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
@@ -24,7 +24,8 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     let system = System::new(case)?;
     let numbers = characteristic::numbers(case, &system.model);
     let findings = audit::coupling(case, &system.model);
-    let warnings = known::warnings(case, &system);
+    let mut warnings = known::warnings(case, &system);
+    warnings.extend(slow::warning(case, &system, case.time.end_s));
     let chosen = method::choose(case, &system);
     let (order, why) = (chosen.order.order, &chosen.order.reason);
     let needs = Needs::of(case, 0);

@@ -18,7 +18,7 @@ use crate::output::{comparison, fit, reading, report};
 use crate::results;
 use crate::study::compare::changes::Change;
 use crate::study::compare::difference::Difference;
-use crate::study::compare::{Beside, Comparison};
+use crate::study::compare::{Beside, Comparison, Recording};
 use crate::study::data::{Match, Table};
 use crate::study::fit::beside;
 
@@ -64,7 +64,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     let all = asked
         .results
         .iter()
-        .map(|dir| Ok(reading::read(dir)?.without_gaps()))
+        .map(|dir| recording(dir))
         .collect::<Result<Vec<_>>>()?;
     let found = Beside::of(&all, reference);
     if let Some(path) = &asked.out {
@@ -93,6 +93,12 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
         (_, false) => several(&found),
     })?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The result of a run, or of a cycle, which is one of a period.
+fn recording(dir: &Path) -> Result<Recording> {
+    Kind::wanted("compare", dir, &[Kind::Run, Kind::Cycle])?;
+    Ok(reading::read(dir)?.without_gaps())
 }
 
 /// Whether two paths name one folder.
@@ -181,7 +187,7 @@ fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
         )));
     };
     let table = Table::read(data)?;
-    let run = reading::read(folder)?.without_gaps();
+    let run = recording(folder)?;
     let case = case::load(&folder.join(CASE), &[]).ok();
     let name = data.display().to_string();
     let found = beside::compare(&run, case.as_ref(), &table, &name, &matches, asked.time.as_deref())?;

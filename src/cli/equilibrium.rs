@@ -14,8 +14,8 @@ use crate::output::kind::Kind;
 use crate::output::report;
 use crate::output::uncertainty as spread;
 use crate::run::equilibrium::{self, Options};
-use crate::run::known;
 use crate::run::record::Control;
+use crate::run::{known, slow};
 use crate::study::refine::{self, meshes::Meshes};
 use crate::study::sweep::What;
 
@@ -68,6 +68,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     };
     let mut warnings = known::at_rest(case, &system);
     warnings.extend(known::instant(case, asked.at));
+    warnings.extend(slow::warning(case, &system, at_s));
     warnings.extend(path.warnings());
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.and_then(refine::warning));

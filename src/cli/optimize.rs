@@ -19,6 +19,9 @@ use crate::study::optimize::problem::{Asked, Goal, Limit, Problem};
 use crate::study::optimize::wiring::{Alternative, Crossing, choices};
 use crate::study::span::Span;
 
+/// Exit code where no design holds the limits: that of a computation without the result that was asked for.
+const NOTHING_HOLDS: u8 = 4;
+
 /// Searches, writes the folder, prints.
 pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     let case = size::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
@@ -49,7 +52,10 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     let optimum = &found.optimum;
     let (text, words) = (|| results::text(optimum), || files::words(optimum));
     super::tell(asked.json, folder.dir(), text, words)?;
-    Ok(ExitCode::SUCCESS)
+    Ok(match optimum.beyond_limits() {
+        true => ExitCode::from(NOTHING_HOLDS),
+        false => ExitCode::SUCCESS,
+    })
 }
 
 /// What is to be chosen from.
@@ -92,29 +98,7 @@ fn problem(asked: &OptimizeArguments, case: &Case, wanted: &Asked, alternative: 
     }
     let sets = [&asked.case.sets[..], &alternative.sets].concat();
     let with = size::load_with(&asked.case.case, &sets, asked.vary.len());
-    Problem::new(&with.map_err(|error| by_choice(error, alternative))?, wanted)
-}
-
-/// An error of what is chosen names the option that chooses.
-fn by_choice(error: Error, alternative: &Alternative) -> Error {
-    let own = |set: &str| alternative.sets.iter().any(|one| one == set);
-    match error {
-        Error::Case(mut fault) => {
-            let of_choice = |set: &Option<String>| set.as_deref().is_some_and(own);
-            let chosen = fault.violations.iter_mut().filter(|one| of_choice(&one.set));
-            chosen.for_each(|one| one.option = "--choose");
-            Error::Case(fault)
-        }
-        Error::Usage(text) => {
-            let pointers = alternative.sets.iter().filter_map(|set| set.split_once('='));
-            let mut text = text;
-            for (pointer, _) in pointers {
-                text = text.replace(&format!("--set '{pointer}="), &format!("--choose '{pointer}="));
-            }
-            Error::Usage(text)
-        }
-        other => other,
-    }
+    Problem::new(&with.map_err(|error| error.by("--choose", &alternative.sets))?, wanted)
 }
 
 /// What is chosen and what is sought are different parts of the case.

@@ -129,7 +129,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     report::write(&out, None)?;
     finished.close()?;
     let words = || {
-        let figures = files::figures(&outcome.summary);
+        let figures = files::figures(&outcome.summary, told.floquet.period_s, &|name| told.error(name));
         let (search, words) = (files::search(&told.cycle), stability::words(&told));
         let slopes = files::slopes(&outcome.summary);
         let spread = uncertain::below(uncertainty.as_ref());

@@ -73,14 +73,10 @@ impl Uncertain {
         Ok(Some(one))
     }
 
-    fn case(&self, sets: Vec<String>) -> Result<Case> {
-        let sets: Vec<String> = self.sets.iter().cloned().chain(sets).collect();
-        case::parse(
-            &self.text,
-            &self.path,
-            self.path.parent().unwrap_or(Path::new("")),
-            &sets,
-        )
+    fn case(&self, own: Vec<String>) -> Result<Case> {
+        let sets = [&self.sets[..], &own].concat();
+        let beside = self.path.parent().unwrap_or(Path::new(""));
+        case::parse(&self.text, &self.path, beside, &sets).map_err(|error| error.by("--uncertain", &own))
     }
 
     fn check(&self) -> Result<()> {

@@ -98,6 +98,7 @@ codes! {
     ModesExchanged = "W034", "Modes that change places from one design to the next.";
     Optimum = "W035", "A best that may be none.";
     FastLoad = "W036", "A load that may change faster than it is followed.";
+    LateRest = "W037", "Fluid that comes to rest later than the run lasts.";
 }
 
 impl Code {

@@ -159,6 +159,26 @@ impl Error {
         }
     }
 
+    /// The same where some arguments of `--set` were made of another option: that is the one to point at.
+    #[must_use]
+    pub fn by(self, option: &'static str, sets: &[String]) -> Self {
+        match self {
+            Self::Case(mut fault) => {
+                let own = |one: &&mut Violation| one.set.as_ref().is_some_and(|set| sets.contains(set));
+                let all = fault.violations.iter_mut().filter(own);
+                all.for_each(|one| one.option = option);
+                Self::Case(fault)
+            }
+            Self::Usage(mut text) => {
+                for (pointer, _) in sets.iter().filter_map(|set| set.split_once('=')) {
+                    text = text.replace(&format!("--set '{pointer}="), &format!("{option} '{pointer}="));
+                }
+                Self::Usage(text)
+            }
+            other => other,
+        }
+    }
+
     /// Exit code of the process.
     pub fn exit_code(&self) -> u8 {
         match self {

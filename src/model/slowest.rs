@@ -3,7 +3,8 @@
 use nalgebra::DMatrix;
 
 use super::Wet;
-use super::network::{Component, Network, Node};
+use super::network::{Component, Link, Network, Node};
+use crate::case::wiring::bladder_label;
 use crate::functions::signals::Clock;
 
 /// `[E20]` Slowest relaxation time of each component of the network [s], each bladder one volume; `None` for a
@@ -14,10 +15,52 @@ use crate::functions::signals::Clock;
 /// ```
 pub fn times(wet: &Wet) -> Vec<Option<f64>> {
     let parts = Component::all(&wet.network);
-    parts.iter().map(|part| time(wet, part)).collect()
+    parts.iter().map(|part| time(wet, part, 0.0)).collect()
 }
 
-fn time(wet: &Wet, component: &Component) -> Option<f64> {
+/// The slowest of all components.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slowest {
+    /// Its relaxation time [s].
+    pub time: f64,
+    /// Where most resists: the ends of a link.
+    pub between: [String; 2],
+}
+
+impl Slowest {
+    /// Of all components, with valves as they stand at an instant [s].
+    pub fn at(wet: &Wet, t: f64) -> Option<Self> {
+        let parts = Component::all(&wet.network);
+        let times = parts.iter().filter_map(|part| Some((time(wet, part, t)?, part)));
+        let (time, part) = times.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let links = part.links.iter().map(|&link| &wet.network.links[link]);
+        let open = links.filter_map(|link| Some((conductance(wet, link, t), link)).filter(|(g, _)| *g > 0.0));
+        let (_, tightest) = open.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let name = |node: Node| match node {
+            Node::Cell { bladder, end } => format!("{end} of bladder {}", bladder_label(bladder, wet.per_row)),
+            Node::Junction(j) => wet.network.junctions[j].clone(),
+            Node::Port(port) => wet.network.ports[port].name.clone(),
+        };
+        Some(Self {
+            time,
+            between: [tightest.from, tightest.to].map(name),
+        })
+    }
+}
+
+/// What a link lets through at an instant, without a pump.
+fn conductance(wet: &Wet, link: &Link, t: f64) -> f64 {
+    let half = 0.5 * wet.bladder_length / wet.network.bladder_mobility;
+    let cells = [link.from, link.to]
+        .iter()
+        .filter(|n| matches!(n, Node::Cell { .. }))
+        .count() as f64;
+    let clock = Clock { t, within: t };
+    let opening = link.opening.as_ref().map_or(1.0, |o| o.jet(clock).value);
+    opening / (opening * half * cells + link.resistance)
+}
+
+fn time(wet: &Wet, component: &Component, t: f64) -> Option<f64> {
     const LARGEST: usize = 400;
     let network: &Network = &wet.network;
     let Component {
@@ -30,26 +73,19 @@ fn time(wet: &Wet, component: &Component) -> Option<f64> {
     if nb == 0 || nb + nj > LARGEST {
         return None;
     }
-    let half = 0.5 * wet.bladder_length / network.bladder_mobility;
     let slot = |node: Node| match node {
         Node::Cell { bladder, .. } => bladders.binary_search(&bladder).ok(),
         Node::Junction(j) => junctions.binary_search(&j).ok().map(|k| nb + k),
         Node::Port(_) => None,
     };
     let mut laplacian = DMatrix::<f64>::zeros(nb + nj, nb + nj);
-    let clock = Clock { t: 0.0, within: 0.0 };
     let mut grounded = false;
     for link in links.iter().map(|&link| &network.links[link]) {
         let (a, b) = (slot(link.from), slot(link.to));
         if a.is_none() && b.is_none() {
             continue;
         }
-        let cells = [link.from, link.to]
-            .iter()
-            .filter(|n| matches!(n, Node::Cell { .. }))
-            .count() as f64;
-        let opening = link.opening.as_ref().map_or(1.0, |o| o.jet(clock).value);
-        let g = opening / (opening * half * cells + link.resistance);
+        let g = conductance(wet, link, t);
         grounded |= a.is_none() || b.is_none();
         for (i, j) in [(a, b), (b, a)] {
             if let Some(i) = i {

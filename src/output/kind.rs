@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::folder::{HISTORY, RUN_FILES, SUMMARY, entries, fault, name_of};
 use super::uncertainty::UNCERTAINTY;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Which command filled a folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,23 +154,38 @@ impl Kind {
                 io::Error::new(io::ErrorKind::NotADirectory, format!("it {}", file(dir))),
             ));
         }
-        let exists = dir.is_dir();
-        let what = if exists {
-            let signs: Vec<String> = Self::ALL
-                .iter()
-                .map(|kind| format!("{} ({})", kind.sign(), kind.command()))
-                .collect();
-            format!("it holds no result, which would be one of {}", signs.join(", "))
-        } else {
-            "there is no such folder".into()
+        let what = match dir.is_dir() {
+            true => {
+                let signs: Vec<String> = Self::ALL
+                    .iter()
+                    .map(|kind| format!("{} ({})", kind.sign(), kind.command()))
+                    .collect();
+                format!("it holds no result, which would be one of {}", signs.join(", "))
+            }
+            false => NOWHERE.into(),
         };
-        let hint = near(dir).map_or(String::new(), |found| format!("; did you mean {found}?"));
-        let kind = if exists {
-            io::ErrorKind::InvalidData
-        } else {
-            io::ErrorKind::NotFound
+        Err(unfit("report on", dir, what, &|_| true))
+    }
+
+    /// Looks in a folder for the result of one of some commands, for `action`.
+    ///
+    /// # Errors
+    ///
+    /// There is no such folder, or it holds something else; the message says what is wanted and what is there, and names a result nearby that would do.
+    pub fn wanted(action: &'static str, dir: &Path, kinds: &[Self]) -> Result<Self> {
+        let commands: Vec<String> = kinds
+            .iter()
+            .map(|kind| format!("`slcbeam {}`", kind.command()))
+            .collect();
+        let wanted = format!("a result of {} is wanted", commands.join(" or "));
+        let what = match Self::within(dir) {
+            Some(kind) if kinds.contains(&kind) => return Ok(kind),
+            Some(kind) => format!("it holds a result of `slcbeam {}`; {wanted}", kind.command()),
+            None if dir.is_dir() => format!("it holds no result; {wanted}"),
+            None if dir.exists() => format!("it {}; {wanted}", file(dir)),
+            None => format!("{NOWHERE}; {wanted}"),
         };
-        Err(fault("report on", dir, io::Error::new(kind, format!("{what}{hint}"))))
+        Err(unfit(action, dir, what, &|kind| kinds.contains(&kind)))
     }
 }
 
@@ -186,11 +201,23 @@ fn file(path: &Path) -> String {
     }
 }
 
+const NOWHERE: &str = "there is no such folder";
+
+/// The fault of a folder in which something else is wanted, with a result nearby that would do.
+fn unfit(action: &'static str, dir: &Path, what: String, fits: &dyn Fn(Kind) -> bool) -> Error {
+    let hint = near(dir, fits).map_or(String::new(), |found| format!("; did you mean {found}?"));
+    let kind = match dir.is_dir() {
+        true => io::ErrorKind::InvalidData,
+        false => io::ErrorKind::NotFound,
+    };
+    fault(action, dir, io::Error::new(kind, format!("{what}{hint}")))
+}
+
 /// A result in the folder, or else the one beside it whose name is most like it.
-fn near(dir: &Path) -> Option<String> {
+fn near(dir: &Path, fits: &dyn Fn(Kind) -> bool) -> Option<String> {
     let results = |of: &Path| -> Vec<PathBuf> {
         let mut all = entries(of).unwrap_or_default();
-        all.retain(|p| Kind::within(p).is_some());
+        all.retain(|p| Kind::within(p).is_some_and(fits));
         all
     };
     if let Some(inside) = results(dir).first() {

@@ -37,6 +37,19 @@ pub struct Cycle {
     pub meshes: Option<Meshes>,
 }
 
+impl Cycle {
+    /// The relative error of a figure that an accuracy reached, or that meshes make, where it is known.
+    pub fn error(&self, name: &str) -> Option<f64> {
+        match &self.accuracy {
+            Some(accuracy) => accuracy.quantities.get(name)?.total,
+            None => {
+                let share = self.meshes.as_ref()?.quantities.get(name)?;
+                (share.beam.is_some() || share.bladders.is_some()).then(|| share.total())
+            }
+        }
+    }
+}
+
 /// The method of all cycles.
 fn shooting() -> Option<Integrator> {
     Some(Integrator {

@@ -26,6 +26,7 @@ pub mod record;
 pub mod residuals;
 pub mod schedule;
 pub mod sensitivity;
+pub mod slow;
 pub mod step_response;
 pub mod stop;
 pub mod stretch;

@@ -5,8 +5,9 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use super::sweep::compute::{POWERS, at_the_end, lowest, of_cycle, of_modes, of_path, of_run, swinging};
+use super::sweep::compute::{at_the_end, lowest, of_cycle, of_modes, of_path, of_run, swinging};
 use super::sweep::plan::What;
+use super::sweep::power::POWERS;
 use super::sweep::row::Found;
 use crate::case::Case;
 use crate::case::parameter::Parameter;

@@ -151,6 +151,31 @@ pub fn begin<'a>(case: &Case, spans: &'a [Span], set: impl Iterator<Item = &'a s
     spans.iter().map(start).collect()
 }
 
+/// Looks at what a case would be at every bound, with the other numbers at their values to begin with: a bound that the case cannot take is
+/// none. `begin` is the case at these values. Where others may follow (`alone`) faults of the number itself count, not of what else stands in
+/// the case beside it.
+///
+/// # Errors
+/// Those of the case, and of `check`.
+pub fn check(begin: &Case, spans: &[Span], alone: bool, check: &dyn Fn(&Case) -> Result<()>) -> Result<()> {
+    check(begin)?;
+    for span in spans {
+        let counts = |error: &Error| match error {
+            Error::Case(fault) if alone => fault.violations.iter().any(|one| is_below(&one.pointer, &span.pointer)),
+            _ => true,
+        };
+        for bound in [0.0, 1.0] {
+            let value = values(std::slice::from_ref(span), &[bound])[0];
+            let found = with(begin, &[(&span.pointer, value)]).and_then(|case| check(&case));
+            match found {
+                Err(error) if counts(&error) => return Err(error),
+                _ => {}
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Places between the bounds from which to search: that of the values to begin with, then those of Sobol's sequence.
 ///
 /// # Errors

@@ -121,6 +121,8 @@ fn every_command_with_figures_tells_its_spread() {
                     number(one, "/sd") > 0.0 && number(one, "/samples") == 16.0,
                     "{command}: {one}"
                 );
+                // a mean power has the error of its energy
+                assert!(command != "periodic" || number(one, "/numerical_error") > 0.0, "{one}");
                 let (sd, error) = (number(one, "/first_order/sd"), number(one, "/sd_error"));
                 assert!((number(one, "/sd") - sd).abs() < 4.0 * error, "{command}: {one}");
                 fs::read_to_string(format!("{out}/uncertainty.json")).expect("a file")
@@ -163,6 +165,12 @@ fn what_makes_no_sense_is_refused() {
             vec!["run", CASE, "--uncertain", negative],
             3,
             "so that the distribution reaches where the model does not",
+        ),
+        // the option that was typed is pointed at
+        (
+            vec!["run", CASE, "--uncertain", negative],
+            3,
+            "--> --uncertain at /beam/young_modulus_pa",
         ),
         (
             vec!["run", CASE, "--uncertain", MODULUS, "--samples", "4"],

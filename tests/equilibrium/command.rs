@@ -103,6 +103,55 @@ fn command_refines_until_it_is_accurate() {
     );
 }
 
+/// Goal: fluid that comes to rest later than the run lasts is told by every command of states at rest, with its time constant, which is that of the
+/// slowest mode: 5.54 s with valves open, 1e7 times that nearly shut. A longer run needs no word.
+#[test]
+fn fluid_that_comes_to_rest_late_is_told() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let say = |command: &str, more: &[&str]| {
+        let out = dir.path().join(command);
+        let coarse = [
+            "--set",
+            "/mesh/cells_per_segment=1",
+            "--set",
+            "/mesh/cells_per_bladder=1",
+        ];
+        let mut asked = assert_cmd::Command::cargo_bin("slcbeam").expect("built");
+        asked
+            .args([command, "cases/tour-actuator.json"])
+            .args(coarse)
+            .args(more);
+        if command != "check" {
+            asked.args(["--quiet", "--force", "--out"]).arg(out);
+        }
+        let said = asked.output().expect("runs");
+        assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+        String::from_utf8_lossy(&said.stdout).into_owned()
+    };
+    let shut = ["--set", "/network/permeability_factor=1e-7"];
+    for command in ["equilibrium", "check"] {
+        let told = say(command, &shut);
+        assert!(
+            told.contains("W037 fluid comes to rest with a time constant of 641 days (most resists between ")
+                && told.contains("within the 1.5 s of the run"),
+            "{told}"
+        );
+        assert!(say(command, &[]).contains("W037 fluid comes to rest with a time constant of 5.54 s"));
+        assert!(
+            !say(command, &["--set", "/time/end_s=10"]).contains("W037"),
+            "{command}"
+        );
+    }
+    let vary = "/network/permeability_factor=1e-7,10";
+    say(
+        "sweep",
+        &["--command", "equilibrium", "--no-mesh-errors", "--lean", "--vary", vary],
+    );
+    let table = std::fs::read_to_string(dir.path().join("sweep/sweep.csv")).expect("a table");
+    let late: Vec<bool> = table.lines().skip(1).map(|row| row.contains("W037")).collect();
+    assert_eq!(late, [true, false], "{table}");
+}
+
 /// Goal: mistakes get one message and the house's exit codes; a path that ends early keeps its states.
 #[test]
 fn command_says_what_cannot_be() {

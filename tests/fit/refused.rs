@@ -5,6 +5,25 @@ use crate::common::*;
 const CASE: &str = "cases/two-bladders.json";
 const VARY: &str = "/tubes/permeability_m4=1e-13:1e-11";
 
+/// Goal: bounds that no case can take are refused before anything is computed, of runs and of equilibria.
+#[test]
+fn bounds_that_no_case_takes() {
+    let run = "t_s,u_mm\n0.0005,1\n0.001,1\n0.0015,1\n";
+    let rest = "p_kpa,u_mm\n1,1\n2,2\n3,3\n";
+    let drive = ["--drive", "p_kpa=/start/pressures/0/pressure_pa"];
+    for (bounds, key) in [
+        ("/beam/young_modulus_pa=-1e6:1e7", "young_modulus_pa"),
+        ("/beam/length_m=-1:1", "length_m"),
+        ("/tubes/permeability_m4=-1e-13:1e-11", "permeability_m4"),
+    ] {
+        for (text, more) in [(run, &[][..]), (rest, &drive)] {
+            let asked = [&["--vary", bounds, "--match", "u_mm=tip_u1"], more].concat();
+            let (code, told) = refused(text, &asked);
+            assert!(code == 3 && told.contains(key), "{bounds}: {code}: {told}");
+        }
+    }
+}
+
 /// Says what is wrong with a table and options besides; the exit code and the words.
 fn refused(text: &str, more: &[&str]) -> (i32, String) {
     let dir = tempfile::tempdir().expect("a folder");
@@ -71,6 +90,13 @@ fn data_and_options_that_do_not_go_together() {
             [&vary[..], &["--match", "u_mm=tip_u2"]].concat(),
             2,
             "the result has no quantity tip_u2; nearest is tip_u",
+        ),
+        // where nothing is near, what there is
+        (
+            good,
+            [&vary[..], &["--match", "u_mm=volume_let_in"]].concat(),
+            2,
+            "the result has no quantity volume_let_in; there are tip_u1, tip_u3",
         ),
         (
             good,

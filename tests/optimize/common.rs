@@ -7,6 +7,11 @@ pub use crate::program::say;
 
 /// The best that is found, by what is asked besides the folder.
 pub fn best(dir: &TempDir, arguments: &[&str]) -> Value {
+    ended(dir, arguments, 0)
+}
+
+/// What is found by a command that ends with an exit code.
+pub fn ended(dir: &TempDir, arguments: &[&str], code: i32) -> Value {
     let out = path(dir, "out");
     let said = say(&[
         &["optimize"],
@@ -14,7 +19,7 @@ pub fn best(dir: &TempDir, arguments: &[&str]) -> Value {
         &["--out", &out, "--force", "--quiet", "--json"],
     ]
     .concat());
-    assert_eq!(said.code, 0, "{}\n{}", said.out, said.err);
+    assert_eq!(said.code, code, "{}\n{}", said.out, said.err);
     serde_json::from_str(&said.out).expect("JSON")
 }
 

@@ -180,6 +180,71 @@ fn periodic_leaves_a_result_folder_and_a_sweep_a_table() {
     );
 }
 
+/// Goal: one cycle, cycles along a number and the table of designs tell harvested energy, mean power and efficiency alike, each with its error.
+#[test]
+fn cycles_of_a_harvester_tell_energy_power_and_efficiency() {
+    let dir = TempDir::new().unwrap();
+    let coarse = [&COARSE[..], &["--set", "/mesh/cells_per_bladder=1"]].concat();
+    let asked = |more: &[&'static str]| {
+        [
+            &["periodic", "cases/harvester-parallel-uniform.json"],
+            &coarse[..],
+            more,
+        ]
+        .concat()
+    };
+    let beside = dir.path().join("sweep");
+    let said = say(&asked(&["--sweep", "/network/permeability_factor=0.5:1:2"]), &beside);
+    assert_eq!(said.code, 0, "{}", said.err);
+    for heading in ["harvested [J]", "mean power [W]", "efficiency", "±"] {
+        assert!(said.out.contains(heading), "{heading}: {}", said.out);
+    }
+    let rows: Vec<std::collections::BTreeMap<String, String>> = csv::Reader::from_path(beside.join("sweep.csv"))
+        .unwrap()
+        .deserialize()
+        .collect::<Result<_, _>>()
+        .unwrap();
+    let members = &json(&beside.join("sweep.json"))["members"];
+    for (row, member) in rows.iter().zip(members.as_array().unwrap()) {
+        let number = |name: &str| row[name].parse::<f64>().unwrap();
+        let energy = number("harvested_energy_j.window");
+        let period = member["floquet"]["period_s"].as_f64().unwrap();
+        assert_eq!(number("harvested_power_w.mean"), energy / period);
+        assert!(energy > 0.0 && number("efficiency.window") > 0.0);
+        // no figure is told that its balance does not carry: a tenth of it, as for one cycle
+        for name in [
+            "harvested_energy_j.window",
+            "harvested_power_w.mean",
+            "efficiency.window",
+        ] {
+            assert!(
+                (0.0..0.1).contains(&number(&format!("{name}_error"))),
+                "{name}: {row:?}"
+            );
+        }
+        let kept = &member["quantities"]["harvested_energy_j"];
+        assert_eq!(kept["window"].as_f64(), Some(energy));
+        assert_eq!(
+            kept["window_error"].as_f64(),
+            Some(number("harvested_energy_j.window_error"))
+        );
+    }
+    let page = std::fs::read_to_string(beside.join("report.html")).unwrap();
+    assert!(page.contains("mean power [W]"), "the page");
+    let said = say(&asked(&[]), &dir.path().join("one"));
+    assert_eq!(said.code, 0, "{}", said.err);
+    let line = said
+        .out
+        .lines()
+        .find(|line| line.starts_with("mean power "))
+        .unwrap_or_default();
+    assert!(
+        line.contains("W (balance open by ") && line.contains("estimated error "),
+        "{}",
+        said.out
+    );
+}
+
 #[test]
 fn what_makes_no_sense_is_a_usage_error() {
     let dir = TempDir::new().unwrap();

@@ -3,5 +3,6 @@
 mod command;
 mod common;
 mod coverage;
+mod doubts;
 mod over_time;
 mod rest;

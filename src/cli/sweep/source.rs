@@ -141,8 +141,10 @@ impl Source {
 }
 
 fn parse(path: &Path, text: &str, sets: &[String], designs: &Designs, design: &Design) -> Result<Case> {
-    let sets: Vec<String> = sets.iter().cloned().chain(design.sets(designs.pointers())).collect();
-    case::parse(text, path, path.parent().unwrap_or(Path::new("")), &sets)
+    let own: Vec<String> = design.sets(designs.pointers()).collect();
+    let sets = [sets, &own].concat();
+    let found = case::parse(text, path, path.parent().unwrap_or(Path::new("")), &sets);
+    found.map_err(|error| error.by(designs.option(), &own))
 }
 
 /// Says which design it was that had an error.

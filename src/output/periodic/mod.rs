@@ -1,11 +1,15 @@
 //! What cycles leave behind besides a result folder: `cycle.json`; `sweep.csv`, `sweep.json`, `sweep.svg`; and their words.
 
+mod energies;
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+pub use energies::{energies, headings as energy_headings, shown as energy_shown};
+
 use super::columns::aligned;
 use super::folder::ResultFolder;
-use super::numbers::{count, percent, quantity, shortest, significant};
+use super::numbers::{count, quantity, shortest, significant};
 use super::plot::cycles::{self, Cycles, Quantity};
 use super::records;
 use crate::discrete::quantities::Interest;
@@ -32,16 +36,19 @@ fn short(one: Interest) -> &'static str {
     one.columns().first().map_or(one.name(), |column| column.name())
 }
 
-/// The text of `sweep.csv`: one row a cycle.
+/// The text of `sweep.csv`: one row a cycle. Energies, mean powers and the efficiency are named as in the table of `slcbeam sweep`.
 pub fn csv(found: &Along) -> String {
     let parameter = format!("{} [as in the case]", found.pointer);
-    let headings = "largest |tip_u1| [m],largest |tip_u3| [m],largest pressure [Pa],growth rate [1/s],multiplier real part [1],\
-                    multiplier imaginary part [1],steps [1],unknowns [1],wall time [s],verdict";
+    let motion = "largest |tip_u1| [m],largest |tip_u3| [m],largest pressure [Pa]".split(',');
+    let stability = "growth rate [1/s],multiplier real part [1],multiplier imaginary part [1],steps [1],unknowns [1],wall time [s],verdict";
+    let names = energies::columns(found);
     let rows = found.members.iter().map(|m| {
         let first = m.floquet.multipliers.first();
         let number = |x: Option<f64>| x.map_or(String::new(), shortest);
         let mut row = vec![shortest(m.value)];
         row.extend(SHOWN.map(|one| number(largest(m, one))));
+        let told = energies(m);
+        row.extend(names.iter().map(|name| number(energies::column(&told, name))));
         row.extend([first.map(|f| f.growth_per_s), first.map(|f| f.re), first.map(|f| f.im)].map(number));
         row.extend([
             m.search.work.steps.to_string(),
@@ -51,19 +58,22 @@ pub fn csv(found: &Along) -> String {
         row.push(m.floquet.verdict.words.clone());
         row
     });
-    records::text([parameter.as_str()].into_iter().chain(headings.split(',')), rows)
+    let headings = motion
+        .chain(names.iter().map(String::as_str))
+        .chain(stability.split(','));
+    records::text([parameter.as_str()].into_iter().chain(headings), rows)
 }
 
 /// The table, and what it took.
 pub fn words(found: &Along) -> String {
-    let headings = [
-        "",
-        &found.pointer,
-        "largest |u1| [m]",
-        "largest pressure [Pa]",
-        "verdict",
-    ];
-    let mut lines = vec![headings.map(String::from).to_vec()];
+    let harvested = energies::harvested(found);
+    let mut headings = ["", &found.pointer, "largest |u1| [m]", "largest pressure [Pa]"]
+        .map(String::from)
+        .to_vec();
+    headings.extend(energy_headings(&harvested));
+    headings.push("verdict".into());
+    let left = [1, headings.len() - 1];
+    let mut lines = vec![headings];
     lines.extend(found.members.iter().map(|m| {
         let number = |one| largest(m, one).map_or("–".into(), |x| significant(x, 4));
         let numbers = [
@@ -72,9 +82,18 @@ pub fn words(found: &Along) -> String {
             number(Interest::MaxPressure),
         ];
         let words = m.floquet.verdict.words.clone();
-        [String::new()].into_iter().chain(numbers).chain([words]).collect()
+        let energies = energy_shown(m, &harvested);
+        [String::new()]
+            .into_iter()
+            .chain(numbers)
+            .chain(energies)
+            .chain([words])
+            .collect()
     }));
-    let mut text = aligned(&lines, &[1, 4]);
+    let mut text = aligned(&lines, &left);
+    if !harvested.is_empty() {
+        text += "  ±: how far the balance of energy is open beside a figure; what meshes do to it, `slcbeam periodic` tells of each value\n";
+    }
     for (value, why) in &found.missing {
         let _ = writeln!(text, "  {}: {why}", significant(*value, 4));
     }
@@ -114,6 +133,7 @@ pub fn write(folder: &mut ResultFolder, found: &Along) -> Result<Vec<PathBuf>> {
             .map(|m| m.floquet.verdict.stability != Stability::Unstable)
             .collect(),
         quantities: quantities
+            .chain(energies::panels(found))
             .chain([Quantity {
                 name: "growth".into(),
                 unit: "1/s".into(),
@@ -126,8 +146,9 @@ pub fn write(folder: &mut ResultFolder, found: &Along) -> Result<Vec<PathBuf>> {
     folder.fill(files)
 }
 
-/// Largest values and energies over the period, in words; energies with how far their balance is open beside them.
-pub fn figures(summary: &Summary) -> String {
+/// Largest values and energies over the period, in words; energies with how far their balance is open beside them, and with what is
+/// known of their relative errors otherwise, by the names of figures.
+pub fn figures(summary: &Summary, period: f64, error: &dyn Fn(&str) -> Option<f64>) -> String {
     let quantities = &summary.quantities;
     let mut lines = vec![];
     for one in SHOWN {
@@ -135,24 +156,7 @@ pub fn figures(summary: &Summary) -> String {
             lines.push([format!("largest {}", short(one)), quantity(value, one.unit(), 4)]);
         }
     }
-    for (one, words) in [
-        (Interest::InputEnergy, "put in over the cycle"),
-        (Interest::HarvestedEnergy, "harvested"),
-        (Interest::Efficiency, "efficiency"),
-    ] {
-        let Some((value, q)) = quantities.get(one.name()).and_then(|q| Some((q.window?, q))) else {
-            continue;
-        };
-        let shown = if one == Interest::Efficiency {
-            percent(value)
-        } else {
-            quantity(value, "J", 4)
-        };
-        let open = q
-            .window_error
-            .map_or(String::new(), |e| format!(" (balance open by {} of it)", percent(e)));
-        lines.push([words.into(), shown + &open]);
-    }
+    lines.extend(energies::lines(quantities, period, error));
     aligned(&lines, &[0, 1])
 }
 

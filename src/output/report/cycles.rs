@@ -6,7 +6,7 @@ use super::{Found, Kind, MOST_ROWS, Page, Place, capital};
 use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::numbers::{count, significant};
-use crate::output::periodic::{SHOWN, largest};
+use crate::output::periodic::{SHOWN, energies, largest};
 use crate::results::cycles::{Along, Cycle, Map, Stability};
 use crate::run::floquet::Multiplier;
 use crate::run::floquet::shape::Part;
@@ -173,16 +173,29 @@ pub fn sweep(place: &Place) -> Result<Page> {
             "about": "What the steady cycle does for each value of the parameter, each found from the one before, without its transient.",
         }]),
     );
+    // every cycle of one case has the same figures of energy
+    let told = members.first().map_or(vec![], energies);
+    let mut headings = vec![pointer.clone()];
+    headings.extend(["tip u₁ [m]", "tip u₃ [m]", "pressure [Pa]"].map(String::from));
+    headings.extend(
+        told.iter()
+            .flat_map(|f| [format!("{} [{}]", f.words, f.unit), "± of it".into()]),
+    );
+    headings.extend(["growth [1/s]", "verdict"].map(String::from));
     let row = |m: &Member| {
         let verdict = &m.floquet.verdict;
-        let [u1, u3, pressure] = SHOWN.map(|one| largest(m, one));
-        json!([m.value, u1, u3, pressure, verdict.growth_per_s, verdict.words])
+        let mut row = vec![json!(m.value)];
+        row.extend(SHOWN.map(|one| json!(largest(m, one))));
+        row.extend(energies(m).into_iter().flat_map(|f| [json!(f.value), json!(f.open)]));
+        row.extend([json!(verdict.growth_per_s), json!(verdict.words)]);
+        row
     };
     page.put(
         "table",
         json!({
-            "title": "Every cycle", "about": "Largest values within the cycle, and how fast the slowest disturbance grows (below 0: dies away).",
-            "headings": [pointer, "tip u₁ [m]", "tip u₃ [m]", "pressure [Pa]", "growth [1/s]", "verdict"],
+            "title": "Every cycle", "about": "Largest values within the cycle, its energies with how far their balance is open beside them, and how fast the slowest \
+                      disturbance grows (below 0: dies away).",
+            "headings": headings,
             "left_out": members.len().saturating_sub(MOST_ROWS),
             "rows": members.iter().take(MOST_ROWS).map(row).collect::<Vec<_>>(), "file": "sweep.csv",
         }),

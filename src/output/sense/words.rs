@@ -13,6 +13,10 @@ const MANY: usize = 6;
 pub fn words(found: &Sensed) -> String {
     let mut text = about_sight(found);
     if !found.rows.is_empty() {
+        let doubts: String = found.doubts.iter().map(|doubt| format!("warning: {doubt}\n")).collect();
+        if !doubts.is_empty() {
+            text += &format!("\n{doubts}");
+        }
         let (headings, rows) = table(found);
         let mut lines = vec![headings];
         // of a curve some instants from its start to its end, of measurements by themselves the first
@@ -35,7 +39,7 @@ pub fn words(found: &Sensed) -> String {
     if !found.left_alone.is_empty() {
         text += &format!("columns left alone: {}\n", found.left_alone.join(", "));
     }
-    for warning in &found.warnings {
+    for warning in found.warnings.iter().filter(|one| !found.doubts.contains(one)) {
         text += &format!("warning: {warning}\n");
     }
     text
@@ -202,10 +206,19 @@ pub fn about_noise(found: &Sensed) -> String {
         NoiseFrom::Table => "noise: as the measurements give it".to_owned(),
     };
     if noise.from != NoiseFrom::Estimated {
-        text += &format!(
-            "; what is left has χ² = {} on {freedom} of freedom",
-            significant(noise.chi_square, 3)
-        );
+        let sum = significant(noise.chi_square, 3);
+        text += &match found.smoothing {
+            None => format!("; what is left has χ² = {sum} on {freedom} of freedom"),
+            Some(_) => {
+                let values = found.rows.iter().flat_map(|row| &row.measured_pa).flatten().count();
+                format!(
+                    "; what is left of {} pressures has χ² = {}, the roughness of the loads adds {}: {sum} on {freedom} of freedom",
+                    count(values as u64),
+                    significant(noise.misfit, 3),
+                    significant(noise.roughness, 3)
+                )
+            }
+        };
     }
     if let Some(smoothed) = &found.smoothing {
         text += &format!(
@@ -280,6 +293,11 @@ pub fn answer(found: &Sensed) -> String {
                 .collect();
             match told.is_empty() {
                 true => "These pressures tell no load by itself, only loads together.".into(),
+                false if !found.doubts.is_empty() => format!(
+                    "Nothing to rely on: {}. What comes nearest is {}.",
+                    found.doubts.join("; "),
+                    told.join(", ")
+                ),
                 false => format!("The pressures are those of {}.", told.join(", ")),
             }
         }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::{JOURNAL, Journal, PLAN, Survey};
 use crate::error::{Error, Result};
 use crate::output::folder::{ResultFolder, result};
+use crate::output::kind::Kind;
 use crate::output::numbers::significant;
 use crate::results::sweep::{Plan, Shard};
 use crate::run::summary::Status;
@@ -43,12 +44,7 @@ pub fn read(dirs: &[PathBuf]) -> Result<Vec<Part>> {
     let mut all: Vec<Part> = vec![];
     for dir in dirs {
         let path = dir.join(PLAN);
-        if dir.is_dir() && !path.exists() {
-            return Err(Error::Usage(format!(
-                "{}: it holds no sweep (no {PLAN})",
-                dir.display()
-            )));
-        }
+        Kind::wanted("merge", dir, &[Kind::Designs])?;
         let plan = result::<Plan>(&path)?.result;
         if let Some(first) = all.first()
             && let Some(why) = plan.whole().difference(&first.plan.whole())

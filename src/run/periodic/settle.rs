@@ -31,6 +31,18 @@ pub struct Settled {
     pub refined: Option<Refined>,
 }
 
+impl Settled {
+    /// A cycle at the tolerance at which it was found.
+    pub fn as_found(case: &Case, scene: Scene, cycle: Cycle) -> Self {
+        Self {
+            case: case.clone(),
+            scene,
+            cycle,
+            refined: None,
+        }
+    }
+}
+
 /// That a cycle was found again.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Refined {
@@ -61,12 +73,7 @@ impl Refined {
 /// # Errors
 /// As a run's, when it cannot be recorded; a tolerance at which no cycle is found, or not followed, leaves the one before.
 pub fn settle(case: &Case, scene: Scene, cycle: Cycle) -> Result<Settled> {
-    let mut now = Settled {
-        case: case.clone(),
-        scene,
-        cycle,
-        refined: None,
-    };
+    let mut now = Settled::as_found(case, scene, cycle);
     let Some(mut open) = open(&now)? else { return Ok(now) };
     let first = open;
     for _ in 0..DECADES {

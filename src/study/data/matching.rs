@@ -10,6 +10,9 @@ use crate::case::units::suffixed;
 use crate::discrete::quantities::probes;
 use crate::error::{Error, Result};
 
+/// Quantities that are listed at most.
+const LISTED: usize = 60;
+
 /// What was asked for.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Match {
@@ -118,7 +121,7 @@ pub fn resolve(table: &Table, matches: &[Match], names: &[String], columns: &[Na
                 let whole = known.clone().find(|known| known.ends_with(&format!("_{plain}")));
                 whole.map(str::to_owned).or_else(|| nearest(plain, known))
             });
-            let meant = meant.map_or(String::new(), |meant| format!("; nearest is {meant}"));
+            let meant = meant.map_or_else(|| available(columns), |meant| format!("; nearest is {meant}"));
             wrong(format!("the result has no quantity {name}{meant}"))
         })?;
         let (name, unit) = &columns[index];
@@ -144,6 +147,20 @@ pub fn resolve(table: &Table, matches: &[Match], names: &[String], columns: &[Na
         });
     }
     Ok(found)
+}
+
+/// What there is, where nothing is near; of very many the first.
+fn available(columns: &[Named]) -> String {
+    let names: Vec<&str> = columns
+        .iter()
+        .map(|(name, _)| name.as_str())
+        .filter(|name| !["t", "load_factor"].contains(name))
+        .collect();
+    let more = match names.len().saturating_sub(LISTED) {
+        0 => String::new(),
+        n => format!(" and {n} more"),
+    };
+    format!("; there are {}{more}", names[..names.len().min(LISTED)].join(", "))
 }
 
 /// The column of a name, with or without its unit.

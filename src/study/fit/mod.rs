@@ -28,7 +28,7 @@ use crate::case::Case;
 use crate::error::{Code, Result};
 use crate::numerics::levenberg::{self, Ended, Evaluation};
 use crate::study::span::Span;
-use crate::study::sweep::{Ask, What, compute};
+use crate::study::sweep::{Ask, compute};
 use found::{Bound, Column, Estimate, Fit, Left, Simulator};
 use identify::{Seen, unseen};
 use problem::{Asked, Drive, Problem, Through};
@@ -283,10 +283,7 @@ fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
 /// What the plain command warns of with the estimates.
 fn of_the_model(problem: &Problem, case: &Case) -> Vec<String> {
     let ask = Ask {
-        what: match problem.through() {
-            Through::Run => What::Run,
-            Through::Equilibrium => What::Equilibrium,
-        },
+        what: problem.through().command(),
         accuracy: None,
         meshes: false,
     };

@@ -15,6 +15,7 @@ use crate::run::observe::Observer;
 use crate::study::data::matching::Named;
 use crate::study::data::{Match, Matched, Table, matching};
 use crate::study::span::{self, Span};
+use crate::study::sweep::{What, compute};
 
 /// What the case goes through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -24,6 +25,16 @@ pub enum Through {
     Run,
     /// Equilibria: a row is a case.
     Equilibrium,
+}
+
+impl Through {
+    /// The command.
+    pub fn command(self) -> What {
+        match self {
+            Self::Run => What::Run,
+            Self::Equilibrium => What::Equilibrium,
+        }
+    }
 }
 
 /// `COLUMN=POINTER`: a number of the case that every row sets.
@@ -175,14 +186,18 @@ impl Problem {
                 }
             )));
         }
-        Ok(Self {
+        let problem = Self {
             case,
             spans: asked.spans.clone(),
             start,
             matched,
             abscissa,
             observations,
-        })
+        };
+        let begin = problem.with(&problem.start)?;
+        let what = through.command();
+        span::check(&begin, &problem.spans, true, &|case| compute::check(case, what))?;
+        Ok(problem)
     }
 
     /// Measured values of a column, with their numbers.

@@ -284,9 +284,9 @@ fn check(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Option<Foun
 /// The estimated error of a figure, absolute.
 fn error(found: &Found, figure: &str) -> Option<f64> {
     let quantity = figure.split('.').next().unwrap_or_default();
-    let energy = compute::POWERS.iter().find(|(_, power)| *power == figure);
-    let names = [figure, energy.map_or(quantity, |(energy, _)| energy.name())];
-    let relative = names.iter().find_map(|name| found.figure(&format!("{name}.error")))?;
+    let relative = [figure, quantity]
+        .iter()
+        .find_map(|name| found.figure(&format!("{name}.error")))?;
     Some(relative * found.figure(figure)?.abs())
 }
 

@@ -6,7 +6,8 @@ use crate::discrete::quantities::{Interest, Source, probes};
 use crate::error::{Error, Result};
 use crate::run::equilibrium;
 use crate::study::sweep::What;
-use crate::study::sweep::compute::{MODES, POWERS};
+use crate::study::sweep::compute::MODES;
+use crate::study::sweep::power::POWERS;
 
 /// Which figure of a quantity is meant where none is named, the first that there is.
 const MEANT: [&str; 7] = [

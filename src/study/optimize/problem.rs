@@ -165,15 +165,9 @@ impl Problem {
             differences: None,
         };
         let begin = problem.with(&problem.start)?;
-        compute::check(&begin, problem.what)?;
-        // a bound that the case cannot take is none
-        for span in &problem.spans {
-            for bound in [0.0, 1.0] {
-                let value = span::values(std::slice::from_ref(span), &[bound])[0];
-                let case = with(&begin, &[(&span.pointer, value)])?;
-                compute::check(&case, problem.what)?;
-            }
-        }
+        span::check(&begin, &problem.spans, false, &|case| {
+            compute::check(case, problem.what)
+        })?;
         let found = slopes::check(&begin, problem.what, &problem.parameters(&problem.start));
         problem.differences = found.err().map(|error| error.to_string().replace("--sensitivity ", ""));
         Ok(problem)

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
+use super::misfit::Misfit;
 use super::weight::{choose, heaviest};
 use crate::error::{Error, Result};
 use crate::numerics::inverse::{Linear, Posterior, Seen};
@@ -92,10 +93,10 @@ pub struct Estimate {
     pub found: Vec<Found>,
     /// Deviation of the noise over that which was given: 1 where it is known.
     pub noise: f64,
-    /// Degrees of freedom of the noise: values less what was taken from them.
-    pub freedom: f64,
-    /// Sum of squares of what is left, over the noise that was given.
-    pub left: f64,
+    /// What is left of all values.
+    pub misfit: Misfit,
+    /// By how much bands are wider than the noise makes them, since more is left than it explains; 1 where it is not known.
+    pub widened: f64,
     /// Half of a band of 95 %, in deviations.
     pub quantile: f64,
     /// Deviation of the differences that was used; none where nothing is known before.
@@ -168,7 +169,7 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
             if sums.freedom < 0.5 {
                 return Err(few(&states));
             }
-            let last = std::mem::replace(&mut noise, (sums.left / sums.freedom).sqrt());
+            let last = std::mem::replace(&mut noise, (sums.left() / sums.freedom).sqrt());
             let fixed = rank > 0 && matches!(ask.smoothing, Smoothing::Fixed(_));
             if fixed && (noise / last).ln().abs() > 1e-3 && round + 1 < ROUNDS {
                 continue;
@@ -195,8 +196,15 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
     }
     let sums = Sums::of(&posteriors, rank, &states);
     if !ask.noise_known {
-        noise = (sums.left / sums.freedom).sqrt();
+        noise = (sums.left() / sums.freedom).sqrt();
     }
+    let misfit = Misfit {
+        data: sums.misfit,
+        rough: sums.rough,
+        values: states.iter().map(|state| state.measured.len()).sum(),
+        freedom: sums.freedom,
+        by_discrepancy: rank > 0 && ask.smoothing == Smoothing::Discrepancy,
+    };
     let found = states.into_iter().zip(posteriors).map(|(state, posterior)| Found {
         seen: Seen::of(&stacked(&state.weighted(), &before(own))),
         mean: state.at,
@@ -209,8 +217,8 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
     Ok(Estimate {
         found: found.collect(),
         noise,
-        freedom: sums.freedom,
-        left: sums.left,
+        widened: misfit.beyond_chance().filter(|_| ask.noise_known).unwrap_or(1.0),
+        misfit,
         quantile: match ask.noise_known {
             true => normal::quantile(0.975),
             false => student::quantile(0.05, sums.freedom),
@@ -256,18 +264,24 @@ fn few(states: &[State]) -> Error {
 
 /// What problems add up to.
 struct Sums {
-    left: f64,
+    misfit: f64,
+    rough: f64,
     freedom: f64,
 }
 
 impl Sums {
+    fn left(&self) -> f64 {
+        self.misfit + self.rough
+    }
+
     fn of(posteriors: &[Posterior], rank: usize, states: &[State]) -> Self {
         let freedom = posteriors.iter().zip(states).map(|(posterior, state)| {
             let free = posterior.rank.saturating_sub(rank);
             state.measured.len() as f64 - free as f64
         });
         Self {
-            left: posteriors.iter().map(|p| p.misfit + p.rough).sum(),
+            misfit: posteriors.iter().map(|p| p.misfit).sum(),
+            rough: posteriors.iter().map(|p| p.rough).sum(),
             freedom: freedom.sum(),
         }
     }

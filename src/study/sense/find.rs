@@ -10,12 +10,12 @@ use super::pressures::Measured;
 use super::rest::{AtRest, labels, probed};
 use super::sensed::{Chosen, Row, Sensed, Smoothed};
 use super::sight::{over_sizes, sight};
-use super::told::{self, Left, alone, banded, left, unexplained};
+use super::told::{self, Left, alone, banded, doubts, left};
 use crate::case::schema::Case;
 use crate::error::{Code, Error, Result};
 use crate::numerics::inverse::{Seen, second_differences};
 use crate::run::equilibrium::{self, Options};
-use crate::run::known;
+use crate::run::{known, slow};
 
 /// What is asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -80,7 +80,9 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
     let seen = Seen::of(&own);
     // about which the best bladders are looked for: the largest loads that are found
     let mut about = first.1.clone();
-    let mut warnings = known::at_rest(case, &equilibrium::system(case, asked.at_s)?);
+    let system = equilibrium::system(case, asked.at_s)?;
+    let mut warnings = known::at_rest(case, &system);
+    warnings.extend(slow::warning(case, &system, asked.at_s));
     warnings.extend(equilibrium::trapped(case, &options)?);
     let mut found = Sensed {
         case: case.name.clone(),
@@ -155,12 +157,11 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
             deviation_n_m: Some(deviation * spread(&amplitudes)),
         });
         found.noise = Some(told::noise(asked, measured, &all_found));
-        if ask.noise_known {
-            let places: Vec<usize> = (0..all.len()).collect();
-            let rows = problems.iter().zip(&all_found.found);
-            let left: Vec<Left> = rows.flat_map(|(problem, one)| left(problem, one, &places)).collect();
-            warnings.extend(unexplained(&found, &left, all.len(), &all_found));
-        }
+        let places: Vec<usize> = (0..all.len()).collect();
+        let rows = problems.iter().zip(&all_found.found);
+        let left: Vec<Left> = rows.flat_map(|(problem, one)| left(problem, one, &places)).collect();
+        found.doubts = doubts(&found, &left, all.len(), &all_found);
+        warnings.extend(found.doubts.clone());
         if let Some(largest) = largest(&all_found) {
             warnings.extend(aside(&model, largest)?);
             about.clone_from(&largest.jacobian);

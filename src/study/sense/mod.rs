@@ -5,6 +5,7 @@
 //! pressures  what was measured
 //! rest       pressures at rest under loads
 //! estimate   amplitudes from measurements, with bands
+//! misfit     whether what they leave is noise
 //! weight     that of what is known before
 //! choose     which bladders to measure
 //! sight      what pressures tell at all
@@ -20,6 +21,7 @@ pub mod choose;
 pub mod estimate;
 pub mod find;
 pub mod in_time;
+pub mod misfit;
 mod over_time;
 pub mod pressures;
 pub mod rest;

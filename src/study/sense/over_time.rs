@@ -19,7 +19,7 @@ use super::pressures::Measured;
 use super::rest::{labels, probed};
 use super::sensed::{OverTime, Row, Sensed, Smoothed};
 use super::sight::{over_sizes, sight};
-use super::told::{self, Left, alone, banded, left, unexplained};
+use super::told::{self, Left, alone, banded, doubts, left};
 use crate::case::schema::Case;
 use crate::error::{Code, Error, Result};
 use crate::numerics::inverse::{Seen, second_differences};
@@ -108,12 +108,9 @@ pub(super) fn find(
         runs: one.runs,
     });
     found.warnings = warnings;
-    let off = ask
-        .noise_known
-        .then(|| unexplained(&found, &left, all.len(), &estimate))
-        .flatten();
+    found.doubts = doubts(&found, &left, all.len(), &estimate);
     let coloured = coloured(&found, correlation, left.len(), knots.at.len());
-    found.warnings.extend(off);
+    found.warnings.extend(found.doubts.clone());
     found.warnings.extend(coloured);
     if let Some(over_time) = &found.over_time {
         let fast = fast(&found, over_time, instants.len());

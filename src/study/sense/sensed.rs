@@ -44,6 +44,9 @@ pub struct Sensed {
     pub choice: Vec<Chosen>,
     /// Noise of their pressures [Pa].
     pub choice_noise_pa: f64,
+    /// What to know before any number: pressures that the loads do not explain. They stand among the warnings too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub doubts: Vec<String>,
     /// What to know first.
     pub warnings: Vec<String>,
 }
@@ -96,6 +99,11 @@ pub enum NoiseFrom {
     Estimated,
 }
 
+/// Of results before bands were widened.
+fn one() -> f64 {
+    1.0
+}
+
 /// Noise.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
@@ -105,8 +113,17 @@ pub struct Noise {
     pub sd_pa: Option<f64>,
     /// Degrees of freedom: pressures less what was taken from them.
     pub freedom: f64,
-    /// Sum of the squares of what is left, over the noise: about `freedom` where the model holds.
+    /// Sum of `misfit` and `roughness`: about `freedom` where the model holds.
     pub chi_square: f64,
+    /// Sum of the squares of what is left of the pressures, over their noise.
+    #[serde(default)]
+    pub misfit: f64,
+    /// Sum of the squares of second differences of the loads, over what was known of them.
+    #[serde(default)]
+    pub roughness: f64,
+    /// By how much bands are wider than the noise makes them, since more is left than it explains by chance.
+    #[serde(default = "one")]
+    pub widened: f64,
     /// Half of a band of 95 % in standard errors: of the normal distribution, or Student's where the noise is estimated.
     pub quantile: f64,
 }

@@ -9,10 +9,11 @@ use super::pressures::Measured;
 use super::sensed::{Banded, Noise, NoiseFrom, Sensed};
 use crate::case::wiring::bladder_label;
 use crate::error::Code;
-use crate::numerics::normal;
 
-/// Chance of a sum of squares above which the model does not explain the data.
-const UNLIKELY: f64 = 1e-3;
+/// Part of the pressures, root mean square, that no answer leaves.
+const NO_ANSWER: f64 = 0.25;
+/// Times a size that bends the beam by about its length: no such load is meant.
+const NO_LOAD: f64 = 30.0;
 
 /// One amplitude as a sum of them over their sizes.
 pub(super) fn alone(amplitudes: &[Amplitude], which: usize) -> Vec<f64> {
@@ -26,7 +27,7 @@ pub(super) fn banded(estimate: &Estimate, found: &Found, factors: &[f64]) -> Opt
     found.seen.tells(factors).then(|| {
         let factors = DVector::from_column_slice(factors);
         let value = factors.dot(&found.mean);
-        let sd = factors.dot(&(&found.covariance * &factors)).max(0.0).sqrt();
+        let sd = estimate.widened * factors.dot(&(&found.covariance * &factors)).max(0.0).sqrt();
         let half = estimate.quantile * sd;
         Banded {
             value,
@@ -43,15 +44,20 @@ pub(super) fn noise(asked: &Asked, measured: &Measured, estimate: &Estimate) -> 
         (None, Some(given)) => (NoiseFrom::Given, Some(given)),
         (None, None) => (NoiseFrom::Estimated, Some(estimate.noise)),
     };
+    let misfit = &estimate.misfit;
+    // pressures that all are what the loads make of them have no noise at all
+    let over_noise = |sum: f64| match estimate.noise > 0.0 {
+        true => sum / (estimate.noise * estimate.noise),
+        false => 0.0,
+    };
     Noise {
         from,
         sd_pa,
-        freedom: estimate.freedom,
-        // pressures that all are what the loads make of them have no noise at all
-        chi_square: match estimate.noise > 0.0 {
-            true => estimate.left / (estimate.noise * estimate.noise),
-            false => 0.0,
-        },
+        freedom: misfit.freedom,
+        chi_square: over_noise(misfit.sum()),
+        misfit: over_noise(misfit.data),
+        roughness: over_noise(misfit.rough),
+        widened: estimate.widened,
         quantile: estimate.quantile,
     }
 }
@@ -62,6 +68,8 @@ pub(super) struct Left {
     /// The bladder, by its place among all.
     pub bladder: usize,
     pub over_noise: f64,
+    /// What was measured, likewise.
+    pub measured: f64,
 }
 
 /// What is left of the values of a problem, whose places are those of `bladders`, again and again.
@@ -72,42 +80,75 @@ pub(super) fn left<'a>(
 ) -> impl Iterator<Item = Left> + 'a {
     let data = problem.data.iter().zip(&problem.deviation).enumerate();
     data.filter_map(move |(k, (value, deviation))| {
+        let value = (*value)?;
         Some(Left {
             bladder: bladders[k % bladders.len()],
-            over_noise: ((*value)? - found.predicted[k]) / deviation,
+            over_noise: (value - found.predicted[k]) / deviation,
+            measured: value / deviation,
         })
     })
 }
 
-/// What is said where pressures are further from the model than their noise, which is known, explains, with the bladder that is worst.
-pub(super) fn unexplained(found: &Sensed, left: &[Left], bladders: usize, estimate: &Estimate) -> Option<String> {
-    // Wilson and Hilferty's quantile of the sum of squares
-    let f = estimate.freedom;
-    if f < 0.5 {
-        return None;
+/// What is to be known before any number: pressures that are further from the model than their noise, which is known, explains, with the bladder
+/// that is worst, and loads that no beam bears.
+pub(super) fn doubts(found: &Sensed, left: &[Left], bladders: usize, estimate: &Estimate) -> Vec<String> {
+    let mut all = vec![];
+    let sizes = estimate.found.iter().map(|one| one.mean.amax());
+    let times = sizes.fold(0.0, f64::max);
+    if let (NoiseFrom::Given | NoiseFrom::Table, Some(factor)) = (
+        found.noise.as_ref().map_or(NoiseFrom::Estimated, |noise| noise.from),
+        estimate.misfit.beyond_chance(),
+    ) {
+        let mut sums = vec![(0, 0.0); bladders];
+        let mut squares = [0.0; 2];
+        for one in left {
+            let (count, sum) = &mut sums[one.bladder];
+            *count += 1;
+            *sum += one.over_noise.powi(2);
+            squares[0] += one.over_noise.powi(2);
+            squares[1] += one.measured.powi(2);
+        }
+        let share = (squares[0] / squares[1].max(f64::MIN_POSITIVE)).sqrt();
+        let means = sums
+            .iter()
+            .map(|(count, sum)| (sum / f64::from((*count).max(1))).sqrt());
+        let worst = means.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
+        let answer = match share > NO_ANSWER {
+            true => {
+                "; the numbers are no answer: other loads act, the units or signs of the pressures are others, or the case is"
+            }
+            false => "",
+        };
+        all.push(format!(
+            "the pressures do not fit {}: what is left of them is {} times their noise, root mean square over {:.0} {}, {} % of what was measured; \
+             furthest off is bladder {}, by {} times its noise; bands are widened by as much{answer}",
+            names(found),
+            three(factor),
+            estimate.misfit.judged()[1],
+            if estimate.misfit.by_discrepancy { "pressures" } else { "degrees of freedom" },
+            three(100.0 * share),
+            bladder_label(worst.0, bladders / 2),
+            three(worst.1)
+        ));
     }
-    let share = 2.0 / (9.0 * f);
-    let limit = f * (1.0 - share - normal::quantile(UNLIKELY) * share.sqrt()).powi(3);
-    if estimate.left <= limit {
-        return None;
+    if times > NO_LOAD {
+        all.push(format!(
+            "the loads are {} times what bends the beam by about its length: look at the units of the pressures, and at the case",
+            three(times)
+        ));
     }
-    let mut sums = vec![(0, 0.0); bladders];
-    for one in left {
-        let (count, sum) = &mut sums[one.bladder];
-        *count += 1;
-        *sum += one.over_noise.powi(2);
+    all.into_iter()
+        .map(|one| Code::UnexplainedPressures.warning(one))
+        .collect()
+}
+
+/// Three digits of a number.
+fn three(number: f64) -> String {
+    match number {
+        x if x >= 100.0 => format!("{x:.0}"),
+        x if x >= 10.0 => format!("{x:.1}"),
+        x => format!("{x:.2}"),
     }
-    let means = sums
-        .iter()
-        .map(|(count, sum)| (sum / f64::from((*count).max(1))).sqrt());
-    let worst = means.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let label = bladder_label(worst.0, bladders / 2);
-    Some(Code::UnexplainedPressures.warning(format!(
-        "{} leaves {:.1} times the noise of the pressures, mean square over {f:.0} degrees of freedom; furthest off is bladder {label}, by {:.1} times its noise: bands are too narrow",
-        names(found),
-        (estimate.left / f).sqrt(),
-        worst.1
-    )))
 }
 
 /// The loads that are looked for.

@@ -5,10 +5,11 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::case::schema::Case;
-use crate::error::Result;
+use crate::error::{Code, Result};
 use crate::run::floquet::{self, Floquet};
 use crate::run::known;
-use crate::run::periodic::{Scene, Search, record, shoot};
+use crate::run::periodic::settle::Refined;
+use crate::run::periodic::{Scene, Search, Settled, record, settle, shoot};
 use crate::run::record::{Control, Unrecorded};
 use crate::run::stop::{INTERRUPTED, Stop};
 use crate::run::summary::{Quantity, Status};
@@ -29,6 +30,9 @@ pub struct Member {
     pub floquet: Floquet,
     /// Quantities over the period.
     pub quantities: std::collections::BTreeMap<String, Quantity>,
+    /// Why the tolerance of the cycle is not the case's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refined: Option<Refined>,
     /// Wall time of search and stability [s].
     pub wall_s: f64,
 }
@@ -51,6 +55,7 @@ pub struct Along {
 }
 
 /// Finds the cycle of every case; `tell` hears how many of them are done. Those that are not when somebody asks for the end are missing.
+/// Where turbines harvest, tolerances are tightened until the energies of each cycle add up, as for one cycle.
 ///
 /// # Errors
 /// A case without a period, a beam that nothing holds.
@@ -73,6 +78,7 @@ pub fn along(
         },
     };
     let mut before: Option<(Scene, Vec<f64>)> = None;
+    let mut open: Vec<(f64, String)> = vec![];
     for (k, (value, case)) in cases.iter().enumerate() {
         if stop.raised() {
             found.missing.push((*value, INTERRUPTED.into()));
@@ -86,17 +92,36 @@ pub fn along(
         }
         let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
         match shoot(&scene, from.as_deref()) {
-            Ok(mut cycle) => {
+            Ok(cycle) => {
+                let harvests = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
+                let Settled {
+                    case,
+                    scene,
+                    mut cycle,
+                    refined,
+                } = match harvests {
+                    true => settle(case, scene, cycle)?,
+                    false => Settled::as_found(case, scene, cycle),
+                };
                 let floquet = floquet::multipliers(&scene, &mut cycle, COUNT);
                 let wall_s = begin.elapsed().as_secs_f64();
-                let run = record::record(case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?;
+                let run = record::record(&case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?;
                 if run.summary.status == Status::Finished {
+                    let mark = Code::EnergyFigure.id();
+                    open.extend(
+                        run.summary
+                            .warnings
+                            .into_iter()
+                            .find(|w| w.starts_with(mark))
+                            .map(|w| (*value, w)),
+                    );
                     found.members.push(Member {
                         value: *value,
                         unknowns: scene.system.layout.len,
                         search: cycle.search,
                         floquet,
                         quantities: run.summary.quantities,
+                        refined,
                         wall_s,
                     });
                 } else {
@@ -108,6 +133,15 @@ pub fn along(
             Err(impasse) => found.missing.push((*value, impasse.what)),
         }
         tell(k + 1);
+    }
+    if let Some((value, warning)) = open.first() {
+        let others = match open.len() - 1 {
+            0 => String::new(),
+            n => format!("; so it is in kind at {n} of the other values"),
+        };
+        found
+            .warnings
+            .push(format!("{warning} (at {pointer} = {value}{others})"));
     }
     Ok(found)
 }

@@ -3,11 +3,10 @@
 use std::cell::Cell;
 
 use super::plan::What;
+use super::power::{self, POWERS};
 use super::row::Found;
 use crate::case::Case;
 use crate::discrete::System;
-
-use crate::discrete::quantities::Interest;
 use crate::error::{Code, Result};
 use crate::run::dynamics::{self, Outcome};
 use crate::run::equilibrium::{self, Options, Path};
@@ -17,7 +16,7 @@ use crate::run::periodic::{Scene, Settled, record, settle, shoot};
 use crate::run::record::{Column, Control, Progress, Unrecorded};
 use crate::run::stop::Stop;
 use crate::run::summary::{Accuracy, Quantity, Status, Summary};
-use crate::run::{known, periodic};
+use crate::run::{known, periodic, slow};
 use crate::study::refine::{self, meshes, numbers};
 use crate::study::target;
 
@@ -165,20 +164,16 @@ fn cycle(case: &Case, ask: Ask) -> Result<Found> {
     let mut found = of_cycle(summary, scene.drive.period, cycle.search.work.steps, Some(&stability));
     if let Some((_, accuracy)) = &refined {
         reached(&mut found, accuracy, &|name| name.into());
+        power::share_errors(&mut found);
     } else if ask.meshes && summary.status == Status::Finished {
         let here = numbers::of_summary(&case, summary)?;
         let by_mesh = meshes::judge(&case, &here, &mut of)?;
         off(&mut found, &by_mesh, &|name| name.into());
+        power::share_errors(&mut found);
     }
     found.warn(&summary.warnings);
     Ok(found)
 }
-
-/// Energies whose mean powers over a cycle are told.
-pub const POWERS: [(Interest, &str); 2] = [
-    (Interest::HarvestedEnergy, "harvested_power_w.mean"),
-    (Interest::InputEnergy, "input_power_w.mean"),
-];
 
 /// What the summary of a cycle tells, over its period [s], and its stability, where that is known.
 pub fn of_cycle(summary: &Summary, period: f64, steps: u64, stability: Option<&Floquet>) -> Found {
@@ -200,10 +195,14 @@ pub fn of_cycle(summary: &Summary, period: f64, steps: u64, stability: Option<&F
         }
         found.put(format!("{name}.window_error"), quantity.window_error);
     }
-    for (energy, power) in POWERS {
-        let quantity = summary.quantities.get(energy.name());
-        found.put(power, quantity.and_then(|q| Some(q.window? / period)));
-        found.put(format!("{power}_error"), quantity.and_then(|q| q.window_error));
+    for (_, power) in POWERS {
+        if let Some(figure) = power::figures(&summary.quantities, period)
+            .iter()
+            .find(|f| f.name == power)
+        {
+            found.put(power, figure.value);
+            found.put(figure.open_name(), figure.open);
+        }
     }
     found
 }
@@ -274,6 +273,7 @@ fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
         off(&mut found, &by_mesh, &key);
     }
     found.warn(&known::at_rest(case, &system));
+    found.warn(slow::warning(case, &system, options.at_s).as_slice());
     found.warn(&path.warnings());
     Ok(found)
 }

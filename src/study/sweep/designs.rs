@@ -84,6 +84,14 @@ impl Designs {
         })
     }
 
+    /// The option that says what varies.
+    pub fn option(&self) -> &'static str {
+        match self.made {
+            Made::Table(_) => "--designs",
+            Made::Crossed(..) => "--vary",
+        }
+    }
+
     /// Of what is varied, every listed value with every other and with every sample of those drawn, with each of so many cases.
     ///
     /// # Errors

@@ -7,6 +7,7 @@
 //! plan     everything that decides what the rows are
 //! row      what came out of a design
 //! compute  the row of a case, by each command
+//! power    what a cycle puts in and harvests
 //! exchanged modes that change places from one design to the next
 //! pool     designs on all cores
 //! ```
@@ -19,6 +20,7 @@ pub mod designs;
 pub mod exchanged;
 pub mod plan;
 pub mod pool;
+pub mod power;
 pub mod row;
 pub mod table;
 pub mod vary;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::case::{amounts, unknown};
+use crate::case::{amounts, short, unknown};
 use crate::error::{Error, Result};
 use crate::numerics::normal::quantile;
 
@@ -239,13 +239,19 @@ fn listed(text: &str) -> std::result::Result<Vec<Value>, String> {
     }
     let all: Vec<Value> = serde_json::from_str(&format!("[{text}]")).map_err(|_| {
         let kinds = ["lin", "log", "uniform", "normal"];
-        let kind = text.split(':').next().filter(|_| text.contains(':'));
-        let meant = kind.and_then(|kind| crate::case::nearest(kind, kinds.into_iter()));
-        match meant {
-            Some(meant) => format!("did you mean {meant}:..?"),
-            None => "JSON values with commas between are wanted, numbers without units, a text in double quotes inside single ones; or \
-                     lin:LOW:HIGH:COUNT, log:LOW:HIGH:COUNT, uniform:LOW:HIGH, normal:MEAN:SD"
-                .into(),
+        let kind = text.split(':').next().filter(|_| text.contains(':')).map(str::trim);
+        let forms = "lin:LOW:HIGH:COUNT, log:LOW:HIGH:COUNT, uniform:LOW:HIGH, normal:MEAN:SD";
+        match kind {
+            Some(kind) if kind.bytes().all(|b| b.is_ascii_alphabetic() || b == b'-' || b == b'_') => {
+                // a slip of the finger, not another word
+                let slip = |known: &&str| strsim::damerau_levenshtein(&kind.to_lowercase(), known) <= 2;
+                let meant = kinds.into_iter().filter(slip).min_by_key(|known| strsim::damerau_levenshtein(kind, known));
+                match meant {
+                    Some(meant) => format!("did you mean {meant}:..?"),
+                    None => format!("there is no `{}:`, but {forms}; designs drawn otherwise go in as a table, slcbeam sweep --designs", short(kind)),
+                }
+            }
+            _ => format!("JSON values with commas between are wanted, numbers without units, a text in double quotes inside single ones; or {forms}"),
         }
     })?;
     Ok(all.into_iter().map(plain).collect())

@@ -75,6 +75,19 @@ fn shards_and_threads_make_the_same_table() {
     assert!(said.err.contains("different sweeps: --vary is"), "{}", said.err);
     let said = merge(&[&path(&dir, "nowhere")]);
     assert_eq!(said.code, 5, "{}", said.err);
+    assert!(
+        said.err.contains("there is no such folder") && said.err.contains("a result of `slcbeam sweep` is wanted"),
+        "{}",
+        said.err
+    );
+    // what is wanted and what is there, the other way round
+    let said = say(&["compare", &whole, &whole]);
+    assert_eq!(said.code, 5, "{}", said.err);
+    assert!(
+        said.err.contains("it holds a result of `slcbeam sweep`") && said.err.contains("`slcbeam run`"),
+        "{}",
+        said.err
+    );
 }
 
 /// Goal: what is killed goes on after what is there, as does what was cut in the middle of a line, and ends with the same table.

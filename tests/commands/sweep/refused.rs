@@ -32,6 +32,8 @@ fn what_makes_no_sense_is_refused() {
             said.err
         );
     }
+    let negative = path(&dir, "negative.csv");
+    fs::write(&negative, "/beam/length_m\n-0.1\n").expect("written");
     for (more, code, word) in [
         (vec![], 2, "nothing varied"),
         (
@@ -45,6 +47,16 @@ fn what_makes_no_sense_is_refused() {
             "--design latin:N or sobol:N",
         ),
         (vec!["--vary", "/beam/length_m=0.1 m"], 2, "0.1 m is 0.1 here"),
+        (
+            vec!["--vary", "/beam/length_m=lognormal:1:2", "--design", "latin:3"],
+            2,
+            "there is no `lognormal:`, but lin:LOW:HIGH:COUNT",
+        ),
+        (
+            vec!["--vary", "/beam/length_m=unifrom:1:2"],
+            2,
+            "did you mean uniform:..?",
+        ),
         (
             vec!["--vary", "/beam/length_m=0.1", "--design", "latin:0"],
             2,
@@ -71,7 +83,12 @@ fn what_makes_no_sense_is_refused() {
             "so that /solver/rtol would be without effect",
         ),
         (vec!["--vary", "/beam/lenght_m=0.1"], 3, "E004"),
-        (vec!["--vary", "/beam/length_m=0.1,-0.1"], 3, "/beam/length_m"),
+        (
+            vec!["--vary", "/beam/length_m=0.1,-0.1"],
+            3,
+            "--> --vary at /beam/length_m",
+        ),
+        (vec!["--designs", &negative], 3, "--> --designs at /beam/length_m"),
         (
             vec!["--vary", "/beam/length_m=0.1,100"],
             3,

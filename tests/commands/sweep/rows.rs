@@ -193,6 +193,26 @@ fn cycles_tell_what_is_harvested() {
     }
 }
 
+/// Goal: the error of a mean power is that of its energy, relative to it.
+#[test]
+fn mean_powers_have_the_errors_of_their_energies() {
+    let dir = TempDir::new().expect("a folder");
+    let out = path(&dir, "powers");
+    let asked = "sweep cases/harvester-parallel-uniform.json --quiet --lean --command periodic --vary /network/permeability_factor=1 \
+                 --set /mesh/cells_per_segment=1 --set /mesh/cells_per_bladder=1 --out";
+    let asked: Vec<&str> = asked.split_whitespace().chain([out.as_str()]).collect();
+    well(&say(&asked));
+    for row in rows(&out) {
+        for (power, energy) in [
+            ("harvested_power_w.mean.error", "harvested_energy_j.window.error"),
+            ("input_power_w.mean.error", "input_energy_j.window.error"),
+        ] {
+            assert!(row[energy].parse::<f64>().is_ok_and(|error| error > 0.0), "{row:?}");
+            assert_eq!(row[power], row[energy]);
+        }
+    }
+}
+
 /// Goal: what fails while it is computed is a row with its reason, and the others are there.
 #[test]
 fn failures_are_rows() {

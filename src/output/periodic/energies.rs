@@ -1,0 +1,99 @@
+//! Energies, mean powers and the efficiency of cycles, with their errors.
+
+use std::collections::BTreeMap;
+
+use crate::output::numbers::{percent, quantity, significant};
+use crate::output::plot::cycles::Quantity as Panel;
+use crate::results::cycles::Along;
+use crate::results::run::Quantity;
+use crate::study::stability::Member;
+use crate::study::sweep::power::{self, Figure};
+
+/// Figures of the cycle of one value.
+pub fn energies(member: &Member) -> Vec<Figure> {
+    power::figures(&member.quantities, member.floquet.period_s)
+}
+
+/// Columns of the table: every figure that a cycle has, its error behind it.
+pub fn columns(found: &Along) -> Vec<String> {
+    let all = found.members.first().map_or(vec![], energies);
+    all.iter().flat_map(|f| [f.name.clone(), f.open_name()]).collect()
+}
+
+/// A figure or its error, by the name of the column.
+pub fn column(told: &[Figure], name: &str) -> Option<f64> {
+    told.iter().find_map(|f| match name == f.name {
+        true => Some(f.value),
+        false => f.open.filter(|_| name == f.open_name()),
+    })
+}
+
+/// Names of what is shown where turbines harvest: energy, mean power, efficiency; nothing elsewhere.
+pub fn harvested(found: &Along) -> Vec<Figure> {
+    let all = found.members.first().map_or(vec![], energies);
+    let put_in = |f: &Figure| f.name.starts_with("input");
+    all.into_iter().filter(|f| !put_in(f)).collect()
+}
+
+/// Their headings, unit included.
+pub fn headings(shown: &[Figure]) -> impl Iterator<Item = String> + use<'_> {
+    shown.iter().map(|f| match f.unit {
+        "1" => f.words.into(),
+        unit => format!("{} [{unit}]", f.words),
+    })
+}
+
+/// Their values in one cycle, with errors.
+pub fn shown(member: &Member, shown: &[Figure]) -> Vec<String> {
+    let told = energies(member);
+    let cell = |name: &str| {
+        let f = told.iter().find(|f| f.name == name)?;
+        let value = match f.unit {
+            "1" => percent(f.value),
+            _ => significant(f.value, 4),
+        };
+        Some(value + &f.open.map_or(String::new(), |e| format!(" ± {}", percent(e))))
+    };
+    shown.iter().map(|f| cell(&f.name).unwrap_or("–".into())).collect()
+}
+
+/// Panels of the picture: mean power and efficiency, where every cycle has them.
+pub fn panels(found: &Along) -> Vec<Panel> {
+    let drawn = harvested(found).into_iter().filter(|f| matches!(f.unit, "W" | "1"));
+    let panel = |f: Figure| {
+        let value = |m: &Member| column(&energies(m), &f.name);
+        Some(Panel {
+            values: found.members.iter().map(value).collect::<Option<_>>()?,
+            name: f.words.into(),
+            unit: f.unit.into(),
+        })
+    };
+    drawn.filter_map(panel).collect()
+}
+
+/// Lines of words about one cycle: name and value, how far the balance is open beside it, and what else is known of its error.
+pub fn lines(
+    quantities: &BTreeMap<String, Quantity>,
+    period: f64,
+    error: &dyn Fn(&str) -> Option<f64>,
+) -> Vec<[String; 2]> {
+    let all = power::figures(quantities, period);
+    // what is put in is told as an energy; its mean power is in the table of a sweep
+    let told = all.iter().filter(|f| !f.name.starts_with("input_power"));
+    let line = |f: &Figure| {
+        let value = match f.unit {
+            "1" => percent(f.value),
+            unit => quantity(f.value, unit, 4),
+        };
+        let of = power::energy_of(&f.name).unwrap_or(f.name.clone());
+        let open = f.open.map(|e| format!("balance open by {} of it", percent(e)));
+        let error = error(&of).map(|e| format!("estimated error {}", percent(e)));
+        let known: Vec<String> = open.into_iter().chain(error).collect();
+        let known = match known.is_empty() {
+            true => String::new(),
+            false => format!(" ({})", known.join("; ")),
+        };
+        [f.words.into(), value + &known]
+    };
+    told.map(line).collect()
+}

@@ -1,0 +1,75 @@
+//! Whether what loads leave of measured pressures is their noise.
+
+use crate::numerics::normal;
+
+/// Chance of a sum of squares above which the loads do not explain the data.
+const UNLIKELY: f64 = 1e-3;
+
+/// What is left of all values.
+#[derive(Clone, Copy, Debug)]
+pub struct Misfit {
+    /// Sum of the squares of what is left of the values, over the noise that was given.
+    pub data: f64,
+    /// What the roughness of the loads adds, over what was known of it.
+    pub rough: f64,
+    /// Values.
+    pub values: usize,
+    /// Degrees of freedom of both together: values less what was taken from them.
+    pub freedom: f64,
+    /// Whether smoothing was chosen so that the values keep just their noise: roughness then is no draw of what was known.
+    pub by_discrepancy: bool,
+}
+
+impl Misfit {
+    /// Both together.
+    pub fn sum(&self) -> f64 {
+        self.data + self.rough
+    }
+
+    /// The sum that is chi-square where the loads explain the data, and its degrees of freedom.
+    pub fn judged(&self) -> [f64; 2] {
+        match self.by_discrepancy {
+            true => [self.data, self.values as f64],
+            false => [self.sum(), self.freedom],
+        }
+    }
+
+    /// How many times the noise is left, root mean square over the degrees of freedom, where that is more than chance explains: one
+    /// time in a thousand.
+    pub fn beyond_chance(&self) -> Option<f64> {
+        let [sum, f] = self.judged();
+        if f < 0.5 {
+            return None;
+        }
+        // Wilson and Hilferty's quantile of the sum of squares
+        let share = 2.0 / (9.0 * f);
+        let limit = f * (1.0 - share - normal::quantile(UNLIKELY) * share.sqrt()).powi(3);
+        (sum > limit).then(|| (sum / f).sqrt())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(data: f64, rough: f64, by_discrepancy: bool) -> Misfit {
+        Misfit {
+            data,
+            rough,
+            values: 5,
+            freedom: 3.0,
+            by_discrepancy,
+        }
+    }
+
+    /// Source: tables of chi-square: 99.9 % lie below 16.27 on 3 degrees of freedom, below 20.52 on 5. Tolerance: Wilson and Hilferty's, 1 %.
+    #[test]
+    fn one_in_a_thousand_is_beyond_chance() {
+        assert!(of(16.0, 0.0, false).beyond_chance().is_none());
+        let beyond = of(10.0, 6.6, false).beyond_chance();
+        assert_eq!(beyond, Some((16.6_f64 / 3.0).sqrt()));
+        // by discrepancy the values keep their noise, whatever roughness that takes
+        assert!(of(5.0, 40.0, true).beyond_chance().is_none());
+        assert!(of(20.8, 0.0, true).beyond_chance().is_some());
+    }
+}
