@@ -211,10 +211,8 @@ impl Behind {
     }
 
     fn send(&mut self, work: Work) -> Result<()> {
-        match self.work.as_ref().map(|to| to.send(work)) {
-            Some(Ok(())) => Ok(()),
-            _ => self.broken(),
-        }
+        let taken = self.work.as_ref().is_some_and(|to| to.send(work).is_ok());
+        if taken { Ok(()) } else { self.broken() }
     }
 
     /// Why the thread has ended.

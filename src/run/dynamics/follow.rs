@@ -166,7 +166,7 @@ impl Run<'_> {
     }
 
     /// Ends the run where it was stopped; the state there is recorded last: what is told of the end is that of the stop, however far the output times
-    /// are apart. A run that goes on from a checkpoint drops what was recorded behind it.
+    /// are apart, but of a run at instants of its own. A run that goes on from a checkpoint drops what was recorded behind it.
     pub(super) fn stop(
         &mut self,
         solver: &mut Integrator<BeamDae>,
@@ -174,7 +174,7 @@ impl Run<'_> {
         recorder: &mut dyn Recorder,
     ) -> Result<End> {
         let t = solver.time();
-        if self.written == Some(t) {
+        if self.written == Some(t) || self.outputs.are_given() {
             return Ok(End::Stopped(reason));
         }
         if let Err(end) = self.read(solver, t) {
