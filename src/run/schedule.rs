@@ -115,6 +115,11 @@ impl Outputs {
         time.min(self.end)
     }
 
+    /// Whether they are not those of a case: whoever gave them wants no others.
+    pub fn are_given(&self) -> bool {
+        self.own.is_some()
+    }
+
     /// Number of the next output.
     pub fn next(&self) -> u64 {
         self.next

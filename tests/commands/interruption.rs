@@ -10,7 +10,10 @@ use std::time::{Duration, Instant};
 
 use slcbeam::case;
 use slcbeam::discrete::System;
-use slcbeam::run::{dynamics, record::Memory};
+use slcbeam::run::checkpoint::Checkpoint;
+use slcbeam::run::dynamics;
+use slcbeam::run::record::{Control, Header, Memory, Progress, Recorder};
+use slcbeam::run::summary::Status;
 
 const CASE: &str = "cases/wiring-2.json";
 const SETS: [&str; 5] = [
@@ -59,6 +62,58 @@ fn resumed_run_repeats_the_uninterrupted_one_in_memory() {
         assert_eq!(whole_outcome.summary.balances, outcome.summary.balances);
         assert_eq!(whole_outcome.summary.solver, outcome.summary.solver);
     }
+}
+
+/// Keeps everything, and asks to stop behind a time [s].
+struct Until(f64, Memory);
+
+impl Recorder for Until {
+    fn begin(&mut self, header: &Header) -> slcbeam::error::Result<()> {
+        self.1.begin(header)
+    }
+    fn history(&mut self, row: &[f64]) -> slcbeam::error::Result<()> {
+        self.1.history(row)
+    }
+    fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> slcbeam::error::Result<()> {
+        self.1.fields(t, arrays)
+    }
+    fn progress(&mut self, progress: &Progress) -> slcbeam::error::Result<Control> {
+        Ok(match progress.t > self.0 {
+            true => Control::Stop("enough".into()),
+            false => Control::Continue,
+        })
+    }
+    fn checkpoint(&mut self, checkpoint: &Checkpoint) -> slcbeam::error::Result<()> {
+        self.1.checkpoint(checkpoint)
+    }
+}
+
+/// Goal: a run that is stopped between two outputs records the state there, so that what is told of its end is that of the stop and not of the start;
+/// one that goes on from its checkpoint repeats the whole. Before, the only row was that of t = 0: nothing had moved, no energy was put in.
+#[test]
+fn a_run_that_is_stopped_records_where_it_stands() {
+    let more = ["/time/output_interval_s=0.15", "/time/fields_interval_s=0.15"];
+    let sets: Vec<String> = SETS.iter().chain(&more).map(|s| s.to_string()).collect();
+    let case = case::load(Path::new(CASE), &sets).unwrap();
+    let system = || System::new(&case).unwrap();
+    let mut whole = Memory::default();
+    let all = dynamics::run(&case, &mut whole).unwrap().summary;
+    assert_eq!(whole.rows.len(), 2);
+    let mut stopped = Until(0.07, Memory::default());
+    let told = dynamics::run(&case, &mut stopped).unwrap().summary;
+    let Until(_, stopped) = stopped;
+    assert_eq!((told.status, stopped.rows.len()), (Status::Stopped, 2));
+    assert_eq!(stopped.rows[0], whole.rows[0]);
+    assert_eq!((stopped.rows[1][0], stopped.field_times[1]), (told.time_s, told.time_s));
+    assert!(told.time_s > 0.07 && told.time_s < 0.15);
+    assert!(told.quantities["tip_u1_m"].last.unwrap().abs() > 0.0);
+    let checkpoint = stopped.checkpoints.last().unwrap();
+    let mut rest = Memory::default();
+    let resumed = dynamics::resume(&case, system(), checkpoint, &mut rest)
+        .unwrap()
+        .summary;
+    assert_eq!(rest.rows[..], whole.rows[1..]);
+    assert_eq!((resumed.quantities, resumed.balances), (all.quantities, all.balances));
 }
 
 /// A window that begins between two outputs, before one checkpoint and after another, and steps that a steep step in time makes short.

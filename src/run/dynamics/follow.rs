@@ -166,6 +166,27 @@ impl Run<'_> {
         }
     }
 
+    /// Ends the run where it was stopped; the state there is recorded last: what is told of the end is that of the stop, however far the output times
+    /// are apart, but of a run at instants of its own. A run that goes on from a checkpoint drops what was recorded behind it.
+    pub(super) fn stop(
+        &mut self,
+        solver: &mut Integrator<BeamDae>,
+        reason: String,
+        recorder: &mut dyn Recorder,
+    ) -> Result<End> {
+        let t = solver.time();
+        if self.written == Some(t) || self.outputs.are_given() {
+            return Ok(End::Stopped(reason));
+        }
+        if let Err(end) = self.read(solver, t) {
+            return Ok(end);
+        }
+        match self.record(solver, Some(0), t, true, recorder)? {
+            Recorded::Ends(end) => Ok(end),
+            _ => Ok(End::Stopped(reason)),
+        }
+    }
+
     /// Takes every sample that is due, the ends of the window among them, up to a time `until` [s] within the last step, which began at `from` [s].
     /// Of very many the recorder is asked in between whether to go on.
     pub(super) fn sample(
@@ -248,6 +269,9 @@ impl Run<'_> {
         )?;
         if let Sampled::Beyond(what) = sampled {
             return Ok(Recorded::Beyond(what));
+        }
+        if sampled == Sampled::Written {
+            self.written = Some(t);
         }
         if let (Some(forward), Some(ida)) = (&mut self.forward, solver.ida_mut()) {
             match forward.sample(ida, t, [&self.state, &self.rates], self.observer.row()) {

@@ -100,6 +100,8 @@ struct Run<'a> {
     laps: Laps,
     /// Where the last step ended.
     latest: Progress,
+    /// Time of the last output that was recorded [s].
+    written: Option<f64>,
     state: Vec<f64>,
     rates: Vec<f64>,
     integrals: Vec<f64>,
@@ -209,6 +211,7 @@ impl<'a> Run<'a> {
                 step: 0.0,
                 order: 0,
             },
+            written: None,
             state: vec![],
             rates: vec![],
             integrals: vec![],
@@ -348,10 +351,11 @@ impl Run<'_> {
                     return Ok(end);
                 }
                 if let Control::Stop(reason) = recorder.progress(&progress)? {
-                    return Ok(End::Stopped(reason));
+                    return self.stop(solver, reason, recorder);
                 }
                 if halt::asked() {
-                    return Ok(End::Stopped(format!("interrupted at t = {:.6} s", progress.t)));
+                    let reason = format!("interrupted at t = {:.6} s", progress.t);
+                    return self.stop(solver, reason, recorder);
                 }
                 if progress.steps >= self.case.solver.max_steps {
                     return Ok(End::Failed(too_many_steps(step.time, step.size)));
