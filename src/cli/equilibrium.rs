@@ -67,6 +67,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         None
     };
     let mut warnings = known::at_rest(case, &system);
+    warnings.extend(known::instant(case, asked.at));
     warnings.extend(path.warnings());
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.and_then(refine::warning));

@@ -66,6 +66,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         None => (modes::linearise(case, 0.0, None)?, About::Start),
     };
     let mut known = known::at_rest(case, &system);
+    known.extend(known::instant(case, asked.at));
     if let Some(at) = asked.at {
         known.extend(equilibrium::trapped(case, &equilibrium::Options::at(at))?);
     }

@@ -39,6 +39,11 @@ pub fn at_rest(case: &Case, system: &System) -> Vec<String> {
     all
 }
 
+/// What there is to say of an instant that a command is asked about [s].
+pub fn instant(case: &Case, at: Option<f64>) -> Option<String> {
+    Some(Code::Seldom.warning(seldom::instant(case, at?)?))
+}
+
 fn told(seldom: Vec<(String, String)>) -> Vec<String> {
     let told = |(at, what)| Code::Seldom.warning(format!("{at}: {what}"));
     seldom.into_iter().map(told).collect()
@@ -47,6 +52,10 @@ fn told(seldom: Vec<(String, String)>) -> Vec<String> {
 fn with_the_mesh(mut all: Vec<String>, case: &Case, system: &System) -> Vec<String> {
     all.extend(told(seldom::sizes(case)));
     all.extend(told(seldom::late(case)));
+    let numbers = characteristic::numbers(case, &system.model);
+    let first = numbers.get("first_bending_frequency_hz").copied();
+    all.extend(told(seldom::damping(case, first)));
+    all.extend(told(seldom::unheld(case, &system.model.unheld()).into_iter().collect()));
     all.extend(resolution::warnings(case, system));
     all
 }

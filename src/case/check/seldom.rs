@@ -2,8 +2,9 @@
 
 use super::functions::controls;
 use crate::case::locate::child;
-use crate::case::numbers::plain;
+use crate::case::numbers::{digits, plain};
 use crate::case::schema::Case;
+use crate::case::schema::Load;
 use crate::functions::signals::Signal;
 
 /// Density of the solid below which grams per cubic centimetre are suspected [kg/m^3]; silicones and rubbers have a thousand.
@@ -11,6 +12,9 @@ const LIGHT: f64 = 100.0;
 
 /// Viscosity above which millipascal seconds are suspected [Pa s]; honey has ten.
 const THICK: f64 = 100.0;
+
+/// Gravity beyond which millimetres are suspected [m/s^2]; that of the earth is 9.81.
+const HEAVY: f64 = 100.0;
 
 /// Numbers of a unit that is seldom meant, each with its pointer and what there is to say.
 pub fn sizes(case: &Case) -> Vec<(String, String)> {
@@ -33,6 +37,21 @@ pub fn sizes(case: &Case) -> Vec<(String, String)> {
         );
         all.push(("/fluid/viscosity_pa_s".to_owned(), what));
     }
+    for (k, load) in case.loads.iter().enumerate() {
+        let Load::Gravity { x_m_s2, z_m_s2 } = load else {
+            continue;
+        };
+        for (key, size) in [("x_m_s2", *x_m_s2), ("z_m_s2", *z_m_s2)] {
+            if size.abs() > HEAVY {
+                let what = format!(
+                    "a gravity of {} m/s^2 is {} times that of the earth, 9.81: is this in mm/s^2?",
+                    plain(size),
+                    digits(size.abs() / 9.81)
+                );
+                all.push((format!("/loads/{k}/gravity/{key}"), what));
+            }
+        }
+    }
     let length = case.beam.length_m;
     for (pointer, _, signal) in controls(case) {
         let moves = pointer.starts_with("/ends/") && ["/u1_m", "/u3_m"].iter().any(|key| pointer.ends_with(key));
@@ -47,6 +66,55 @@ pub fn sizes(case: &Case) -> Vec<(String, String)> {
         }
     }
     all
+}
+
+/// Damping times that are longer than the period of the first bending mode of this frequency [Hz]: nothing swings.
+pub fn damping(case: &Case, first: Option<f64>) -> Vec<(String, String)> {
+    let Some(frequency) = first.filter(|_| case.plausibility.is_on()) else {
+        return vec![];
+    };
+    let damping = &case.beam.damping;
+    let times = [
+        ("bending_time_s", damping.bending_time_s),
+        ("axial_time_s", damping.axial_time_s),
+    ];
+    let told = times.into_iter().filter(|(_, time)| time * frequency > 1.0);
+    let told = told.map(|(key, time)| {
+        let what = format!(
+            "a damping time of {} s is longer than the period of the first bending mode, {} s, so that nothing swings: is this in ms?",
+            plain(time),
+            digits(1.0 / frequency)
+        );
+        (format!("/beam/damping/{key}"), what)
+    });
+    told.collect()
+}
+
+/// That nothing holds the beam in some directions.
+pub fn unheld(case: &Case, directions: &[&str]) -> Option<(String, String)> {
+    if directions.is_empty() || !case.plausibility.is_on() {
+        return None;
+    }
+    let what = format!(
+        "nothing holds the beam {}: what pushes it makes it fly off as a whole; hold an end, or attach a spring to ground, unless it is to fly",
+        directions.join(" and ")
+    );
+    Some(("/ends".to_owned(), what))
+}
+
+/// What there is to say of an instant that is asked about outside the run [s].
+pub fn instant(case: &Case, at: f64) -> Option<String> {
+    let end = case.time.end_s;
+    let side = match at {
+        _ if at < 0.0 => "before the run begins at 0 s",
+        _ if at > end * (1.0 + 1e-9) => "after it ends",
+        _ => return None,
+    };
+    Some(format!(
+        "--at {}: this is {side}; the run of the case is from 0 to {} s, and what acts is taken as its signals go on",
+        plain(at),
+        plain(end)
+    ))
 }
 
 /// Ramps and tables that begin when the run has ended, each with its pointer and what there is to say.
