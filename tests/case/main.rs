@@ -7,7 +7,10 @@ mod faults;
 mod faulty;
 mod materials;
 mod measure;
+mod mistakes;
 mod origins;
+#[path = "../common/program.rs"]
+mod program;
 mod robust;
 mod rules;
 mod section;

@@ -1,0 +1,266 @@
+//! Mistakes in the text of a case.
+
+/// A case without a fault.
+pub const GOOD: &str = r#"{
+  "name": "good",
+  "preset": "matia-gat-beam",
+  "ends": {"root": "clamped", "tip": "free"},
+  "loads": [{"gravity": {"x_m_s2": -9.81}}, {"gravity": {"z_m_s2": 1}}],
+  "network": {"chains": [{"bladders": [1, 2, 3], "ends": [{"pressure_pa": 60000}, "sealed"]}]},
+  "time": {"end_s": 0.5, "output_interval_s": 0.001}
+}"#;
+
+/// What its port prescribes.
+pub const PUMP: &str = "/network/chains/0/ends/0/pressure_pa";
+
+/// What is replaced by what; the pointer of the fault, the text that is marked (of a place between two letters what stands before it, behind `|`),
+/// and what is said to do.
+pub const OF_TEXT: [(&str, &str, &str, &str, &str); 48] = [
+    // numbers with units
+    ("60000", "60kPa", PUMP, "60kPa", "60kPa is 60000 here"),
+    ("60000", "60 kPa", PUMP, "60 kPa", "60 kPa is 60000 here"),
+    ("60000", "\"60 kPa\"", PUMP, "\"60 kPa\"", "60 kPa is 60000 here"),
+    ("60000", "\"0,6 bar\"", PUMP, "\"0,6 bar\"", "0,6 bar is 60000 here"),
+    (
+        "60000",
+        "\"60 mm\"",
+        PUMP,
+        "\"60 mm\"",
+        "mm is no unit of what is wanted here, which is in Pa",
+    ),
+    (
+        "60000",
+        "\"60000\"",
+        PUMP,
+        "\"60000\"",
+        "numbers have no quotes: write 60000",
+    ),
+    ("0.5,", "500ms,", "/time/end_s", "500ms", "500ms is 0.5 here"),
+    // what is no JSON
+    ("60000", "60 000", PUMP, "60 000", "write 60000"),
+    ("60000", "60_000", PUMP, "60_000", "write 60000"),
+    ("0.5,", "1/2,", "/time/end_s", "1/2", "write 0.5"),
+    (
+        "-9.81",
+        "−9.81",
+        "/loads/0/gravity/x_m_s2",
+        "−9.81",
+        "write -9.81, with the minus sign of the keyboard",
+    ),
+    (
+        "\"sealed\"",
+        "None",
+        "/network/chains/0/ends/1",
+        "None",
+        "write null, or leave the key out",
+    ),
+    ("0.5,", "True,", "/time/end_s", "True", "write true, in small letters"),
+    (
+        "\"good\"",
+        "“good”",
+        "/name",
+        "“good”",
+        "write \"good\" in straight quotes",
+    ),
+    ("\"name\"", "“name”", "", "“name”", "write \"name\" in straight quotes"),
+    ("\"good\"", "\"good”", "/name", "\"good”,", "it ends with ”"),
+    ("\"name\"", "name", "", "name", "write \"name\""),
+    (
+        "\"end_s\": 0.5",
+        "\"end_s\" 0.5",
+        "/time/end_s",
+        "|\"end_s\"",
+        "write `:` here",
+    ),
+    (
+        "\"end_s\": 0.5",
+        "\"end_s\" = 0.5",
+        "/time/end_s",
+        "=",
+        "write `:` in its place",
+    ),
+    (
+        "\"matia-gat-beam\",",
+        "\"matia-gat-beam,",
+        "/preset",
+        "\"matia-gat-beam,",
+        "end it with a double quote",
+    ),
+    (
+        "\"end_s\": 0.5",
+        "\"end_s: 0.5",
+        "/time",
+        "\"end_s: 0.5, \"",
+        "write \"end_s\"",
+    ),
+    (
+        "\"clamped\",",
+        "\"clamped,",
+        "/ends/root",
+        "\"clamped, \"",
+        "write \"clamped\"",
+    ),
+    ("\"free\"},", "\"free\"}},", "", "}", "remove it"),
+    ("0.001}\n}", "0.001}\n}}", "", "}", "remove it"),
+    ("0.5,", "0.5;", "/time", ";", "`,` between them"),
+    // keys of other programs, of other objects, with other units
+    (
+        "\"ends\": {",
+        "\"beam\": {\"E\": 2e6}, \"ends\": {",
+        "/beam/E",
+        "\"E\"",
+        "young_modulus_pa;",
+    ),
+    (
+        "\"ends\": {",
+        "\"beam\": {\"thickness_m\": 0.02}, \"ends\": {",
+        "/beam/thickness_m",
+        "\"thickness_m\"",
+        "height_m;",
+    ),
+    (
+        "\"ends\": {",
+        "\"mesh\": {\"elements\": 20}, \"ends\": {",
+        "/mesh/elements",
+        "\"elements\"",
+        "\"cells_per_segment\" (",
+    ),
+    (
+        "\"ends\": {",
+        "\"elements\": 20, \"ends\": {",
+        "/elements",
+        "\"elements\"",
+        "/mesh/cells_per_segment",
+    ),
+    (
+        "\"ends\": {",
+        "\"beam\": {\"poisson_ratio\": 0.5}, \"ends\": {",
+        "/beam/poisson_ratio",
+        "\"poisson_ratio\"",
+        "/beam/shear_stiffness_n has the shear",
+    ),
+    (
+        "\"end_s\": 0.5",
+        "\"end_s\": 0.5, \"dt\": 1e-4",
+        "/time/dt",
+        "\"dt\"",
+        "/solver/rtol",
+    ),
+    (
+        "\"ends\": {",
+        "\"beam\": {\"damping_ratio\": 0.1}, \"ends\": {",
+        "/beam/damping_ratio",
+        "\"damping_ratio\"",
+        "zeta/(pi f)",
+    ),
+    (
+        "\"ends\": {",
+        "\"beam\": {\"viscosity_pa_s\": 1}, \"ends\": {",
+        "/beam/viscosity_pa_s",
+        "\"viscosity_pa_s\"",
+        "it belongs to /fluid: /fluid/viscosity_pa_s",
+    ),
+    (
+        "\"time\"",
+        "\"end_s\": 1, \"time\"",
+        "/end_s",
+        "\"end_s\"",
+        "it belongs to /time: /time/end_s",
+    ),
+    (
+        "\"ends\": {",
+        "\"beam\": {\"length_in\": 4}, \"ends\": {",
+        "/beam/length_in",
+        "\"length_in\"",
+        "write \"length_m\": 0.1016, which is 4 in",
+    ),
+    // of two that are equally near both
+    (
+        "{\"z_m_s2\": 1}",
+        "{\"y_m_s2\": 1}",
+        "/loads/1/gravity/y_m_s2",
+        "\"y_m_s2\"",
+        "either \"x_m_s2\" (x, across the beam at rest) or \"z_m_s2\" (z, along the beam at rest)",
+    ),
+    (
+        "\"ends\": {",
+        "\"attachments\": [{\"at\": 1, \"force_n\": 1}], \"ends\": {",
+        "/attachments/0/force_n",
+        "\"force_n\"",
+        "either \"force_x_n\" (x, across the beam at rest) or \"force_z_n\"",
+    ),
+    // a slip alone, without what an object lacks because of it
+    (
+        "\"ends\": {",
+        "\"attachments\": [{\"at\": 1, \"mass_g\": 5}], \"ends\": {",
+        "/attachments/0/mass_g",
+        "\"mass_g\"",
+        "write \"mass_kg\": 0.005, which is 5 g",
+    ),
+    (
+        "\"ends\": {",
+        "\"attachments\": [{\"at\": 1, \"force_x_kn\": 1}], \"ends\": {",
+        "/attachments/0/force_x_kn",
+        "\"force_x_kn\"",
+        "write \"force_x_n\": 1000",
+    ),
+    (
+        "60000",
+        "{\"table\": {\"times_ms\": [0, 1], \"values\": [0, 1]}}",
+        "/network/chains/0/ends/0/pressure_pa/table/times_ms",
+        "\"times_ms\"",
+        "0.001 times those in ms",
+    ),
+    // values of another kind
+    (
+        "{\"x_m_s2\": -9.81}",
+        "9.81",
+        "/loads/0/gravity",
+        "9.81",
+        "such as {\"x_m_s2\": -9.81}",
+    ),
+    (
+        "\"ends\": {",
+        "\"fluid\": \"water\", \"ends\": {",
+        "/fluid",
+        "\"water\"",
+        "write {\"preset\": \"water\"}",
+    ),
+    (
+        "\"ends\": {",
+        "\"effects\": {\"shear\": false}, \"ends\": {",
+        "/effects/shear",
+        "false",
+        "write \"off\"",
+    ),
+    (
+        "[1, 2, 3]",
+        "\"1-3\"",
+        "/network/chains/0/bladders",
+        "\"1-3\"",
+        "write [1, 2, 3]",
+    ),
+    ("[1, 2, 3]", "1", "/network/chains/0/bladders", "1", "write [1]"),
+    (
+        "\"ends\": {",
+        "\"bladders\": {\"coupling\": \"none\"}, \"ends\": {",
+        "/bladders/coupling",
+        "\"none\"",
+        "\"pressure_to_curvature\": \"off\"",
+    ),
+    (
+        "\"ends\": {",
+        "\"beam\": {\"damping\": 0.1}, \"ends\": {",
+        "/beam/damping",
+        "0.1",
+        "such as {\"bending_time_s\": 0.002",
+    ),
+    // files
+    (
+        "60000",
+        "{\"table\": {\"csv\": \"network-tuor.csv\"}}",
+        "/network/chains/0/ends/0/pressure_pa/table/csv",
+        "\"network-tuor.csv\"",
+        "network-tour.csv",
+    ),
+];
