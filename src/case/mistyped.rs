@@ -43,9 +43,11 @@ pub fn hint(key: &str, value: &Value, schema: &Value, branches: &[&Value]) -> Op
                 return Some(format!("write {word}, without quotes"));
             }
         }
-        Value::Array(items) if items.len() == 1 && kinds("number") => {
-            if items[0].is_number() {
-                return Some(format!("a single number stands without brackets: write {}", items[0]));
+        Value::Array(items) if kinds("number") => {
+            if let [one] = &items[..]
+                && one.is_number()
+            {
+                return Some(format!("a single number stands without brackets: write {one}"));
             }
         }
         _ => {}

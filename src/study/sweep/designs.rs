@@ -330,7 +330,7 @@ mod tests {
             ("/a=normal:1:nan", "no finite number"),
             ("/a=NaN", "JSON values"),
             ("/a=", "no values"),
-            ("/a=0.1 m", "without units"),
+            ("/a_m=0.1 m", "0.1 m is 0.1 here"),
             ("/a=unifrom:1:2", "did you mean uniform"),
             ("/a=lin:1:2", "lin:LOW:HIGH:COUNT"),
             ("a=1", "starts with `/`"),
