@@ -159,7 +159,7 @@ fn bad_input_is_told() {
         (&["--count", "0"][..], 2, "--count 0"),
         (&["--count", "1001"], 2, "from 1 to 1000"),
         (&["--near", "-1"], 2, "--near -1: a frequency [Hz] is 0 or more"),
-        (&["--near", "nan"], 2, "--near NaN"),
+        (&["--near", "nan"], 2, "a number of Hz is wanted"),
         (&["--at", "-0.5"], 2, "--at -0.5: a time [s] is 0 or more"),
         (&["--set", "/beam/length_m=-1"], 3, "length"),
     ] {

@@ -306,7 +306,7 @@ fn fluid_that_gathers_has_no_cycle() {
         Scene::new(&pushed(&port, "1"), None)
     };
     let error = flow("1e-9").err().unwrap().to_string();
-    assert!(error.contains("takes in 1.000e-9 m^3 each period"), "{error}");
+    assert!(error.contains("takes in 1.000·10⁻⁹ m³ each period"), "{error}");
     assert!(flow("0").is_ok());
 }
 
