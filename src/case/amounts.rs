@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::parse::misread::loose;
 use super::slips::number_of;
 use super::units::{self, Suffix, Unit};
 use super::wording::short;
@@ -72,8 +73,8 @@ pub(super) fn other(word: &str) -> Option<(&'static str, f64)> {
     Some((*si, *scale))
 }
 
-/// The number that a text begins with, and the unit behind it.
-fn split(text: &str) -> Option<(f64, &str)> {
+/// The number that a text begins with, as what it may be read, and the unit behind it.
+fn split(text: &str) -> Option<(Vec<f64>, &str)> {
     let text = text.trim();
     if text.len() > LONGEST || !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
         return None;
@@ -85,12 +86,14 @@ fn split(text: &str) -> Option<(f64, &str)> {
     let mut ends = (1..text.len()).rev().filter(|end| text.is_char_boundary(*end));
     let (number, unit) = ends.find_map(|end| {
         let (number, unit) = text.split_at(end);
-        // decimals behind a comma are told elsewhere where no unit follows
-        let number = number.trim_end().replacen(',', ".", 1).parse::<f64>().ok()?;
-        number.is_finite().then_some((number, unit.trim()))
+        let number = number.trim_end();
+        let loose = || loose(number).iter().filter_map(|one| one.parse().ok()).collect();
+        let readings: Vec<f64> = number.parse::<f64>().map_or_else(|_| loose(), |one| vec![one]);
+        (!readings.is_empty() && readings.iter().all(|x| x.is_finite())).then_some((readings, unit.trim()))
     })?;
-    unit.starts_with(|c: char| c.is_alphabetic() || "%°\"".contains(c))
-        .then_some((number, unit))
+    // the power of a number with a comma is no unit
+    let power = unit.len() > 1 && unit.starts_with(['e', 'E']) && unit[1..].parse::<i32>().is_ok();
+    (!power && unit.starts_with(|c: char| c.is_alphabetic() || "%°\"".contains(c))).then_some((number, unit))
 }
 
 /// Without what writers of units differ in.
@@ -144,7 +147,18 @@ pub enum Here {
 
 /// What a text is at a pointer, if it is a number with a unit behind it.
 pub fn at(pointer: &str, text: &str) -> Option<Here> {
-    let (number, unit) = split(text)?;
+    let (readings, unit) = split(text)?;
+    let &[number] = &readings[..] else {
+        let all: Vec<String> = readings
+            .iter()
+            .map(|one| format!("{} {unit}", number_of(*one)))
+            .collect();
+        return Some(Here::Not(format!(
+            "{} may be {}: write the one that is meant",
+            short(text.trim()),
+            all.join(" or ")
+        )));
+    };
     let same = |of: String| Here::Number(number_of(number), of);
     if pointer.ends_with("/temperature_c") && ["°C", "degC", "C"].contains(&unit) {
         return Some(same("°C".into()));
@@ -200,8 +214,17 @@ pub fn rewritten(option: &str, pointer: &str, spec: &str) -> Option<String> {
     }
     let mut told = vec![];
     let mut new = String::new();
+    let mut before = "";
     for part in spec.split_inclusive([',', ':']) {
         let own = part.trim_end_matches([',', ':']);
+        if let Some(joined) = thousands(before, own) {
+            return Some(format!(
+                "commas stand between values here: write {joined} if {}{} is one number",
+                before.trim(),
+                own.trim()
+            ));
+        }
+        before = part;
         match at(pointer, own) {
             None => new += part,
             Some(Here::Not(why)) => return Some(why),
@@ -215,9 +238,37 @@ pub fn rewritten(option: &str, pointer: &str, spec: &str) -> Option<String> {
     (!told.is_empty()).then(|| format!("{}: {option} '{pointer}={new}'", told.join(", ")))
 }
 
+/// The number of two parts that a comma between thousands has taken apart, `60,` and `000 Pa`.
+fn thousands(before: &str, part: &str) -> Option<String> {
+    let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
+    let (first, rest) = (before.strip_suffix(',')?.trim(), part.trim());
+    let whole = (1..=3).contains(&first.len()) && digits(first) == first.len();
+    let unit = digits(rest) == 3 && rest[3..].trim_start().starts_with(char::is_alphabetic);
+    (whole && unit).then(|| format!("{first}{rest}"))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Here, at};
+    use super::{Here, at, rewritten};
+
+    /// Goal: a comma between thousands makes no number a thousandth, and none out of three digits.
+    #[test]
+    fn commas_between_thousands_are_told() {
+        let pointer = "/network/chains/0/ends/0/pressure_pa";
+        let Some(Here::Not(what)) = at(pointer, "60,000 Pa") else {
+            panic!("no number")
+        };
+        assert!(what.contains("60 Pa or 60000 Pa"), "{what}");
+        assert_eq!(
+            at(pointer, "1,234,567 Pa"),
+            Some(Here::Number("1.234567e6".into(), "Pa".into()))
+        );
+        assert_eq!(at("/beam/young_modulus_pa", "1,5e6"), None);
+        let told = rewritten("--vary", pointer, "60,000 Pa").expect("a remedy");
+        assert!(told.contains("write 60000 Pa if 60,000 Pa is one number"), "{told}");
+        let told = rewritten("--vary", pointer, "20,000 Pa:80,000 Pa").expect("a remedy");
+        assert!(told.contains("20000 Pa"), "{told}");
+    }
 
     #[test]
     fn numbers_with_units_are_those_of_the_key() {

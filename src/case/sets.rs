@@ -66,11 +66,19 @@ fn unreadable(pointer: &str, json: &str, fault: Option<&Violation>) -> String {
         Some(amounts::Here::Not(what)) => return format!("{why}; {what}"),
         None => {}
     }
-    if is_decimal_comma(json) {
-        return format!(
-            "decimals stand behind a point: --set '{pointer}={}'",
-            json.replacen(',', ".", 1)
-        );
+    match &misread::loose(json.trim())[..] {
+        [one] => {
+            let rule = match *one == json.trim().replacen(',', ".", 1) {
+                true => "decimals stand behind a point",
+                false => "nothing stands between digits but a point before decimals",
+            };
+            return format!("{rule}: --set '{pointer}={one}'");
+        }
+        [one, other] => {
+            let json = json.trim();
+            return format!("{json} may be --set '{pointer}={one}' or --set '{pointer}={other}'");
+        }
+        _ => {}
     }
     if let Some((_, joined)) = misread::grouped(json).filter(|(bytes, _)| *bytes == json.len()) {
         return format!("{why}; nothing stands between digits: --set '{pointer}={joined}'");
@@ -87,13 +95,6 @@ fn unreadable(pointer: &str, json: &str, fault: Option<&Violation>) -> String {
             Value::from(json)
         ),
     }
-}
-
-/// A number and, behind a comma, digits.
-fn is_decimal_comma(text: &str) -> bool {
-    text.split_once(',').is_some_and(|(number, decimals)| {
-        serde_json::from_str::<f64>(number).is_ok() && decimals.parse::<u64>().is_ok()
-    })
 }
 
 /// Takes out the member or item at a pointer.

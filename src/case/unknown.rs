@@ -67,6 +67,10 @@ impl<'a> Known<'a> {
         {
             return Meant::one(meant, Some(hint));
         }
+        let whole = |name: &&str| matches!(units::suffix(name, None), Suffix::Known(stem, _) if stem == key);
+        if let Some(one) = absent.clone().find(whole) {
+            return Meant::one(one.to_owned(), None);
+        }
         let lower = key.to_lowercase();
         let stem = match units::suffix(&lower, None) {
             Suffix::Known(stem, _) | Suffix::Unknown(stem, _) => stem,

@@ -54,14 +54,8 @@ impl Drop for Shown {
 
 /// A time span [s] that a clock can wait for; its unit may stand behind it.
 pub fn duration(text: &str) -> std::result::Result<f64, String> {
-    let text = text.trim();
-    let seconds: f64 = text
-        .strip_suffix('s')
-        .unwrap_or(text)
-        .trim_end()
-        .parse()
-        .map_err(|_| "a number of seconds is wanted".to_string())?;
-    if seconds.is_finite() && seconds >= 0.0 {
+    let seconds = number("/time/end_s", text, "a number of seconds is wanted")?;
+    if seconds >= 0.0 {
         Ok(seconds.min(1e9))
     } else {
         Err("a number of seconds, 0 or more, is wanted".into())

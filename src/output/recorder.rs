@@ -119,6 +119,10 @@ impl FolderRecorder {
     /// pictures. What a run could go on from stays until [`Finished::close`], so that all of this can be repeated.
     ///
     /// A run that failed before it began leaves case and summary, and moves an older result aside.
+    ///
+    /// # Errors
+    ///
+    /// A file cannot be written; the summary then says `failed`, and why.
     pub fn finish(mut self, summary: &Summary) -> Result<Finished> {
         let (mut laps, mut spent) = (Laps::since(Instant::now()), Spent::default());
         let began = self.open.is_some();
@@ -130,7 +134,18 @@ impl FolderRecorder {
         };
         // The summary matters most: it is tried whatever could not be written before.
         let cased = self.folder.write_case(&self.labels.case);
-        let told = summary::write(&self.folder, summary);
+        let told = match &completed {
+            Ok(()) => summary::write(&self.folder, summary),
+            // arrays or tables are not whole: nothing may say that they are
+            Err(error) => summary::write(
+                &self.folder,
+                &Summary {
+                    status: Status::Failed,
+                    reason: Some(error.to_string()),
+                    ..summary.clone()
+                },
+            ),
+        };
         completed.and(cased).and(told.map(|_| ()))?;
         self.folder.secure()?;
         if self.lean {

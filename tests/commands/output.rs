@@ -582,3 +582,20 @@ fn a_short_history_is_kept_as_it_is() {
     assert_eq!(points.len(), 3);
     assert!(points[1].1.is_nan());
 }
+
+/// Goal: what could not be written whole is not said to be: the summary says that it failed, and why.
+#[test]
+fn a_folder_that_could_not_be_completed_says_so() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut open = recorder(dir.path());
+    open.begin(&header()).expect("begun");
+    fs::remove_dir_all(dir.path().join(folder::RAW_FIELDS)).expect("taken away");
+    let failed = open
+        .finish(&summary_of(Status::Finished))
+        .expect_err("no arrays")
+        .to_string();
+    let told = summary::read(dir.path()).expect("a summary");
+    assert_eq!(told.status, Status::Failed);
+    assert!(told.reason.is_some_and(|reason| reason == failed), "{failed}");
+    assert!(!dir.path().join(folder::FIELDS).exists());
+}

@@ -114,6 +114,55 @@ pub fn grouped(text: &str) -> Option<(usize, String)> {
     Some((end, joined.trim_start_matches('+').to_owned()))
 }
 
+/// What a number with commas, or with several points, may be: `1,5`, `60,000`, `1,234,567`, `60.000,5`. Two readings where a comma may stand before
+/// decimals or between thousands.
+pub fn loose(text: &str) -> Vec<String> {
+    let unsigned = text.trim_start_matches(['-', '+']);
+    let sign = if text.starts_with('-') { "-" } else { "" };
+    let groups = |text: &str, between: char| {
+        let mut parts = text.split(between);
+        let first = parts.next().unwrap_or_default();
+        let three = |part: &str| part.len() == 3 && part.bytes().all(|b| b.is_ascii_digit());
+        let whole = (1..=3).contains(&first.len()) && first.bytes().all(|b| b.is_ascii_digit());
+        (whole && text.contains(between) && parts.all(three)).then(|| text.replace(between, ""))
+    };
+    let number = |text: String| {
+        text.parse::<f64>()
+            .is_ok_and(f64::is_finite)
+            .then(|| format!("{sign}{text}"))
+    };
+    let readings: Vec<Option<String>> = match unsigned.rsplit_once([',', '.']) {
+        // one sign before decimals, another between thousands
+        Some((before, decimals)) if before.contains([',', '.']) && !decimals.is_empty() => {
+            let last = unsigned.as_bytes()[before.len()] as char;
+            let other = if last == ',' { '.' } else { ',' };
+            match before.contains(last) {
+                true => vec![groups(unsigned, last)],
+                false => vec![groups(before, other).map(|joined| format!("{joined}.{decimals}"))],
+            }
+        }
+        Some(_) if unsigned.contains(',') => {
+            let decimal = unsigned.replacen(',', ".", 1);
+            let leads = !unsigned.starts_with("0,");
+            vec![Some(decimal), groups(unsigned, ',').filter(|_| leads)]
+        }
+        _ => vec![],
+    };
+    readings.into_iter().flatten().filter_map(number).collect()
+}
+
+/// What to do about a number as [`loose`] reads it.
+pub fn loosely(text: &str) -> Option<String> {
+    match &loose(text)[..] {
+        [one] => Some(match *one == text.replacen(',', ".", 1) {
+            true => format!("write {one}: decimals stand behind a point"),
+            false => format!("write {one}: nothing stands between digits"),
+        }),
+        [one, other] => Some(format!("{text} may be {one} or {other}: write the one that is meant")),
+        _ => None,
+    }
+}
+
 /// What a word that is no JSON value is meant to be.
 pub fn word(word: &str, pointer: &str) -> String {
     if let Some((_, joined)) = grouped(word).filter(|(bytes, _)| *bytes == word.len()) {
@@ -161,7 +210,7 @@ pub fn closed_otherwise(text: &str) -> Option<char> {
 
 #[cfg(test)]
 mod tests {
-    use super::{behind_number, grouped};
+    use super::{behind_number, grouped, loose};
 
     #[test]
     fn groups_of_digits_are_numbers() {
@@ -175,6 +224,27 @@ mod tests {
         }
         for text in ["60", "60 00", "6000 000", "", "-", "60,000"] {
             assert_eq!(grouped(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn commas_have_the_readings_that_they_may_have() {
+        for (text, readings) in [
+            ("1,5", &["1.5"][..]),
+            ("1,5e6", &["1.5e6"]),
+            ("0,125", &["0.125"]),
+            ("60,000", &["60.000", "60000"]),
+            ("-60,000", &["-60.000", "-60000"]),
+            ("1,234,567", &["1234567"]),
+            ("2.000.000", &["2000000"]),
+            ("60.000,5", &["60000.5"]),
+            ("60,000.5", &["60000.5"]),
+            ("60000", &[]),
+            ("1.5", &[]),
+            ("1,2,3", &[]),
+            ("1,x", &[]),
+        ] {
+            assert_eq!(loose(text), readings, "{text}");
         }
     }
 

@@ -67,7 +67,8 @@ impl Parser<'_> {
             Some(b'\'') => fault.hint("text needs double quotes"),
             Some(b';') => fault.hint("members and entries have `,` between them"),
             Some(b) if b.is_ascii_digit() && self.is_behind_decimal_comma() => {
-                fault.hint("decimals stand behind a point")
+                let hint = misread::loosely(self.around());
+                fault.hint(hint.unwrap_or_else(|| "decimals stand behind a point".into()))
             }
             _ => fault,
         };
@@ -77,6 +78,15 @@ impl Parser<'_> {
     /// Whether what is here stands at once behind a digit and a comma: `0,3`.
     pub(super) fn is_behind_decimal_comma(&self) -> bool {
         matches!(self.text.as_bytes()[..self.at], [.., digit, b','] if digit.is_ascii_digit())
+    }
+
+    /// The digits, commas and points about what is here.
+    fn around(&self) -> &str {
+        let of_number = |c: char| c.is_ascii_digit() || "+-.,eE".contains(c);
+        let begin = self.text[..self.at].trim_end_matches(of_number).len();
+        let rest = &self.text[self.at..];
+        let behind = rest.len() - rest.trim_start_matches(of_number).len();
+        self.text[begin..self.at + behind].trim_end_matches(',')
     }
 
     /// The next member follows without one: told behind the last, where it belongs, not in the line below.

@@ -47,7 +47,9 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
             format!("{} {}\n\n{}\n", code.id(), code.title(), code.text().replace("**", "")),
         );
     }
-    let name = what.rsplit('/').next().unwrap_or(what);
+    // a heading as a table has it, a pointer as a case has it
+    let name = what.split(" [").next().unwrap_or(what);
+    let name = name.rsplit('/').next().unwrap_or(name);
     let all = meanings();
     let named = |name: &str| all.iter().filter(|m| m.name == name).collect::<Vec<_>>();
     let mut found = named(name);

@@ -7,8 +7,8 @@ use crate::output::report::facts;
 const GLOSSARY: &str = include_str!("../../../docs/glossary.md");
 /// Files of results, with their columns and keys.
 const RESULTS: [(&str, &str); 2] = [
-    ("docs/data.md", include_str!("../../../docs/data.md")),
     ("docs/names.md", include_str!("../../../docs/names.md")),
+    ("docs/data.md", include_str!("../../../docs/data.md")),
 ];
 /// Letters of equations as they are typed.
 const GREEK: &[(&str, &str)] = &[
@@ -78,11 +78,11 @@ fn exactly(name: &str) -> Vec<Told> {
         let what = format!("{about} [{unit}], a characteristic number: slcbeam check, summary.json");
         found.push(Told::new("number", name, what));
     }
-    if found.is_empty() {
-        let pages = RESULTS.into_iter();
-        found = pages
-            .flat_map(|(page, text)| rows(text).filter_map(move |row| of_results(page, &row, name)))
-            .collect();
+    // rows of the first page are of one name or few
+    for (page, text) in RESULTS {
+        if found.is_empty() {
+            found = rows(text).filter_map(|row| of_results(page, &row, name)).collect();
+        }
     }
     found
 }
@@ -196,7 +196,9 @@ fn fits(pattern: &str, name: &str) -> bool {
     let Some((begin, end)) = pattern.split_once(wild) else {
         return false;
     };
-    name.len() > begin.len() + end.len() && name.starts_with(begin) && name.ends_with(end)
+    let middle = name.strip_prefix(begin).and_then(|rest| rest.strip_suffix(end));
+    // a figure of a quantity is told by its parts
+    middle.is_some_and(|middle| !middle.is_empty() && !middle.contains('.'))
 }
 
 #[cfg(test)]

@@ -168,7 +168,7 @@ fn remedies_are_of_what_is_wrong() {
     };
     assert_eq!(
         hint(r#"{"time": {"end_s": 0,3}}"#, "a.json").1,
-        "decimals stand behind a point"
+        "write 0.3: decimals stand behind a point"
     );
     assert!(
         hint(r#"{"time": {"end_s": 3s}}"#, "a.json")

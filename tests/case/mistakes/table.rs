@@ -15,7 +15,7 @@ pub const PUMP: &str = "/network/chains/0/ends/0/pressure_pa";
 
 /// What is replaced by what; the pointer of the fault, the text that is marked (of a place between two letters what stands before it, behind `|`),
 /// and what is said to do.
-pub const OF_TEXT: [(&str, &str, &str, &str, &str); 48] = [
+pub const OF_TEXT: [(&str, &str, &str, &str, &str); 50] = [
     // numbers with units
     ("60000", "60kPa", PUMP, "60kPa", "60kPa is 60000 here"),
     ("60000", "60 kPa", PUMP, "60 kPa", "60 kPa is 60000 here"),
@@ -36,6 +36,14 @@ pub const OF_TEXT: [(&str, &str, &str, &str, &str); 48] = [
         "numbers have no quotes: write 60000",
     ),
     ("0.5,", "500ms,", "/time/end_s", "500ms", "500ms is 0.5 here"),
+    (
+        "60000",
+        "\"60,000 Pa\"",
+        PUMP,
+        "\"60,000 Pa\"",
+        "60,000 Pa may be 60 Pa or 60000 Pa: write the one that is meant",
+    ),
+    ("\"end_s\": 0.5", "\"end\": 0.5", "/time/end", "\"end\"", "end_s"),
     // what is no JSON
     ("60000", "60 000", PUMP, "60 000", "write 60000"),
     ("60000", "60_000", PUMP, "60_000", "write 60000"),
