@@ -54,7 +54,7 @@ impl Drop for Shown {
 
 /// A time span [s] that a clock can wait for; its unit may stand behind it.
 pub fn duration(text: &str) -> std::result::Result<f64, String> {
-    let seconds = number("/time/end_s", text, "a number of seconds is wanted")?;
+    let seconds = instant(text)?;
     if seconds >= 0.0 {
         Ok(seconds.min(1e9))
     } else {

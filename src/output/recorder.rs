@@ -134,18 +134,13 @@ impl FolderRecorder {
         };
         // The summary matters most: it is tried whatever could not be written before.
         let cased = self.folder.write_case(&self.labels.case);
-        let told = match &completed {
-            Ok(()) => summary::write(&self.folder, summary),
-            // arrays or tables are not whole: nothing may say that they are
-            Err(error) => summary::write(
-                &self.folder,
-                &Summary {
-                    status: Status::Failed,
-                    reason: Some(error.to_string()),
-                    ..summary.clone()
-                },
-            ),
-        };
+        // where arrays or tables are not whole nothing may say that they are
+        let failed = completed.as_ref().err().map(|error| Summary {
+            status: Status::Failed,
+            reason: Some(error.to_string()),
+            ..summary.clone()
+        });
+        let told = summary::write(&self.folder, failed.as_ref().unwrap_or(summary));
         completed.and(cased).and(told.map(|_| ()))?;
         self.folder.secure()?;
         if self.lean {

@@ -1,5 +1,7 @@
 //! Every figure over two varied numbers, as colours.
 
+use std::slice;
+
 use super::{Drawn, LEFT, Numbers, TOP, name, shade};
 use crate::output::numbers::quantity;
 use crate::output::plot::canvas::{Anchor, Canvas, Words, picture};
@@ -59,7 +61,9 @@ pub fn over_two(data: &Drawn) -> Option<String> {
                         (to.1 + 0.4).min(place.bottom() + most),
                     );
                     let colour = shade(*value, low, high);
-                    data.thing(canvas, n, &[figure], |canvas| canvas.rectangle(from, to, colour));
+                    data.thing(canvas, n, slice::from_ref(figure), |canvas| {
+                        canvas.rectangle(from, to, colour)
+                    });
                 }
                 panel.axes(canvas, Some(&x.name), &y.name);
                 name(canvas, place, &figure.name);

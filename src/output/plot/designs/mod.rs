@@ -3,6 +3,8 @@
 mod map;
 mod parallel;
 
+use std::slice;
+
 use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words, picture};
 use super::colour::{Colour, PALETTE, of_time};
 use super::extent;
@@ -60,14 +62,16 @@ impl Drawn {
         mode.is_some_and(|mode| all.any(|found| found.all.contains(&mode)))
     }
 
-    /// Draws what stands for a design, which says its numbers and leads to its row.
-    fn thing(&self, canvas: &mut Canvas, n: usize, figures: &[&Numbers], draw: impl FnOnce(&mut Canvas)) {
-        let said = |one: &&Numbers| {
+    /// Draws what stands for a design. Where there are few it says its numbers and leads to its row.
+    fn thing(&self, canvas: &mut Canvas, n: usize, figures: &[Numbers], draw: impl FnOnce(&mut Canvas)) {
+        if self.designs.len() * self.figures.len() > SAID {
+            return draw(canvas);
+        }
+        let said = |one: &Numbers| {
             let unit = if one.unit.is_empty() { "1" } else { &one.unit };
             format!("{} {}", one.name, quantity(one.values[n], unit, 4))
         };
-        let varied: Vec<&Numbers> = self.varied.iter().collect();
-        let all: Vec<String> = varied.iter().chain(figures).map(said).collect();
+        let all: Vec<String> = self.varied.iter().chain(figures).map(said).collect();
         let number = self.designs[n];
         let words = format!("design {number}: {}", all.join(", "));
         canvas.thing(&words, &format!("design-{number}"), draw);
@@ -89,6 +93,8 @@ const HEIGHT: f64 = 170.0;
 const GAP: f64 = 36.0;
 /// Designs whose numbers stand beside their rings at most.
 const NUMBERED: usize = 40;
+/// Points that say what they are at most: words are some 300 bytes each, and a page leaves pictures that are too large to their files.
+const SAID: usize = 1000;
 /// Curves told apart by colours.
 const TOLD: usize = 8;
 
@@ -168,7 +174,9 @@ pub fn along(data: &Drawn) -> Option<String> {
                     }
                     let at = panel.at(*point);
                     let stroke = Stroke::solid(PALETTE[curve % PALETTE.len()], 1.3);
-                    data.thing(canvas, n, &[figure], |canvas| canvas.ring(at, 3.0, stroke));
+                    data.thing(canvas, n, slice::from_ref(figure), |canvas| {
+                        canvas.ring(at, 3.0, stroke)
+                    });
                     if k == 0 && points.len() <= NUMBERED {
                         let words = Words::new(9.0, Anchor::Centre).coloured(FAINT_INK);
                         canvas.text((at.0, at.1 - 9.0), &number.to_string(), words);
@@ -255,6 +263,32 @@ mod tests {
         }
         assert_eq!(edges(&[11.0, 12.3, 14.0]), [10.35, 11.65, 13.15, 14.85]);
         assert_eq!(around(&[0.0, 1.0, 3.0], 1.0), (0.5, 2.0));
+        // so many would be more than a page takes
+        let many = Drawn {
+            designs: (0..=SAID).collect(),
+            varied: data
+                .varied
+                .iter()
+                .map(|one| Numbers {
+                    values: vec![1.0; SAID + 1],
+                    ..one.clone()
+                })
+                .collect(),
+            figures: data
+                .figures
+                .iter()
+                .map(|one| Numbers {
+                    values: vec![0.5; SAID + 1],
+                    ..one.clone()
+                })
+                .collect(),
+            curve: vec![0; SAID + 1],
+            ..data.clone()
+        };
+        for picture in [along(&many), over_two(&many), beside(&many)] {
+            let picture = picture.expect("a picture");
+            assert!(!picture.contains("<a ") && picture.len() < 400_000, "{}", picture.len());
+        }
         data.of = 2;
         assert!(!along(&data).expect("a picture").contains("of 2"));
         data.figures.clear();

@@ -9,7 +9,6 @@ use crate::output::plot::panel::title;
 /// A line a design through all numbers, coloured by the last of them; `None` when there is nothing to draw.
 pub fn beside(data: &Drawn) -> Option<String> {
     let all: Vec<&Numbers> = data.varied.iter().chain(&data.figures).collect();
-    let figures: Vec<&Numbers> = data.figures.iter().collect();
     let last = data.figures.last()?;
     let (low, high) = extent(last.values.iter().copied())?;
     let ranges: Vec<(f64, f64)> = all
@@ -38,7 +37,7 @@ pub fn beside(data: &Drawn) -> Option<String> {
                 .map(|(k, one)| at(k, one.shown(one.values[n])))
                 .collect();
             let stroke = Stroke::solid(shade(*value, low, high), 1.0);
-            data.thing(canvas, n, &figures, |canvas| canvas.line(&points, stroke));
+            data.thing(canvas, n, &data.figures, |canvas| canvas.line(&points, stroke));
         }
         for (k, one) in all.iter().enumerate() {
             let (lo, hi) = ranges[k];
