@@ -3,21 +3,63 @@
 use crate::case::schema::{Case, Effect};
 use crate::discrete::System;
 use crate::error::Code;
+use crate::functions::signals::Signal;
 use crate::model::slowest::Slowest;
 
-/// What is said of a state at rest where fluid needs longer than the run to come there, with valves as they stand at an instant [s]: the slowest decay
-/// of a network lasts longer than the run, so that more than a third of what has to flow by it is still to flow at its end.
+/// How far the slowest decay may lag behind what acts.
+const LEFT: f64 = 0.05;
+
+/// Instants at which a signal is looked at: a lag is told to a thousandth or so.
+const LOOKS: u16 = 2000;
+
+/// What is said of a state at rest under the loads of an instant [s] where fluid needs longer than the run has until then, with valves as they stand at
+/// it: how far the slowest decay of a network lags behind.
 pub fn warning(case: &Case, system: &System, at_s: f64) -> Option<String> {
     let model = &system.model;
     let wet = model.wet.as_ref().filter(|_| model.effects.has(Effect::Flow))?;
-    let slowest = Slowest::at(wet, at_s).filter(|one| one.time > case.time.end_s)?;
+    let slowest = Slowest::at(wet, at_s)?;
+    let until = if at_s > 0.0 { at_s } else { case.time.end_s };
+    // what is there from the begin on has moved nothing where the run begins at rest under it
+    let mut share = match case.start.equilibrium {
+        None => (-until / slowest.time).exp(),
+        Some(_) => 0.0,
+    };
+    model.each_signal(|signal| share = share.max(lag(signal, slowest.time, until)));
     let [from, to] = &slowest.between;
-    Some(Code::LateRest.warning(format!(
-        "fluid comes to rest with a time constant of {} (most resists between {from} and {to}); within the {} of the run pressures are others than those at \
-         rest: a longer /time/end_s, wider tubes or valves, or `slcbeam run` for what is there by then",
-        span(slowest.time),
-        span(case.time.end_s)
-    )))
+    (share > LEFT).then(|| {
+        Code::LateRest.warning(format!(
+            "fluid comes to rest with a time constant of {} (most resists between {from} and {to}): in the run, what flows so slowly lags behind by {:.0} % at {}, \
+             and pressures are others there than those at rest. A longer or slower run, wider tubes or valves, or `slcbeam run` for what is there by then",
+            span(slowest.time),
+            100.0 * share,
+            span(until)
+        ))
+    })
+}
+
+/// How far what follows a signal with a time constant [s] is behind it at an instant [s], over all that the signal has changed by: 1 of a late jump.
+///
+/// ```text
+/// T dy/dt = s - y      y(0) = s(0)
+/// ```
+fn lag(signal: &Signal, time_constant: f64, until: f64) -> f64 {
+    if signal.is_constant() {
+        return 0.0;
+    }
+    let step = until / f64::from(LOOKS);
+    let kept = (-step / time_constant).exp();
+    // of s on a straight line between two instants
+    let mean = (1.0 - kept) * time_constant / step;
+    let first = signal.value(0.0);
+    let (mut lag, mut last, mut reach) = (0.0, first, [first; 2]);
+    for k in 1..=LOOKS {
+        let value = signal.value(f64::from(k) * step);
+        lag = kept * lag + mean * (value - last);
+        last = value;
+        reach = [reach[0].min(value), reach[1].max(value)];
+    }
+    let reach = reach[1] - reach[0];
+    if reach > 0.0 { (lag / reach).abs() } else { 0.0 }
 }
 
 /// A time with a unit in which it is read.
@@ -41,7 +83,33 @@ fn span(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::span;
+    use super::{lag, span};
+    use crate::functions::signals::{Ramp, RampShape, Signal, Sine};
+
+    /// Of a ramp and of a sine there are formulas.
+    #[test]
+    fn what_follows_lags_as_first_order_does() {
+        let ramp = Signal::Ramp(Ramp {
+            from: 1.0,
+            to: 3.0,
+            start_s: 0.5,
+            duration_s: 1.0,
+            shape: RampShape::Linear,
+        });
+        let expected = 0.4 * (1.0 - (-1.0_f64 / 0.4).exp()) * (-0.5_f64 / 0.4).exp();
+        assert!((lag(&ramp, 0.4, 2.0) - expected).abs() < 1e-3 * expected);
+        let sine = Signal::Sine(Sine {
+            amplitude: 2.0,
+            frequency_hz: 10.0,
+            phase_rad: 0.0,
+            ramp_cycles: 0.0,
+        });
+        // s - y of amplitude ωT/√(1 + (ωT)²) over a reach of two, ahead by its phase
+        let turns = std::f64::consts::TAU * 10.0 * 0.01;
+        let expected = 0.5 * turns / (1.0 + turns * turns);
+        assert!((lag(&sine, 0.01, 3.0) - expected).abs() < 1e-2 * expected);
+        assert!(lag(&Signal::Constant(5.0), 1.0, 1.0) == 0.0);
+    }
 
     #[test]
     fn times_have_units_of_their_size() {

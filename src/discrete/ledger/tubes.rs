@@ -1,8 +1,10 @@
 //! Energy of the fluid in tubes and along bladders where it does not creep, [E51] [E74].
 
+use std::ops::Range;
+
 use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
 use crate::discrete::{System, Workspace};
-use crate::model::network::BRANCHES;
+use crate::model::network::Ladder;
 
 /// A valve that is open by less than this tells what it dissipates by the pressure drop over it: its flow is too small to.
 const NEARLY_SHUT: f64 = 0.01;
@@ -30,12 +32,14 @@ pub fn dissipation(
     k: usize,
     w: &Workspace<f64>,
 ) -> [f64; 3] {
-    let of_tube = flow.law.in_tube.map_or(0, |_| BRANCHES);
-    let mut slips = [0.0; 2];
-    for (i, (resistance, slip, ..)) in self::slips(flow, w).enumerate() {
-        slips[usize::from(i < of_tube)] += resistance * slip * slip;
-    }
-    let [in_bladders, slips] = slips.map(|lost| w.fluid.at_mean_density(k, lost));
+    let moving = w.fluid.moving[flow.number];
+    let slipping = |(at, ladder): (Range<usize>, Ladder)| {
+        let branches = ladder.branches().zip(&w.fluid.branch[at]);
+        let each = branches.map(|((resistance, _), j)| resistance * (moving - j) * (moving - j));
+        w.fluid.at_mean_density(k, each.sum())
+    };
+    let ladders = flow.law.ladders(flow.branch);
+    let [slips, in_bladders] = ladders.map(|ladder| ladder.map_or(0.0, slipping));
     let lost = w.fluid.at_mean_density(k, flow.law.loss(w.fluid.flow[k]));
     let left = driven - q * (link.half_cells + link.of_pump);
     let nearly_shut = NEARLY_SHUT * resistance > link.resistance;
@@ -60,21 +64,15 @@ pub fn dissipation(
     [in_valve, in_bladders, q * q * link.of_pump + steady + q * lost + slips]
 }
 
-/// Of each branch of friction, those of a tube first: resistance, `y - k` of [E66], rate, and `k`.
-fn slips(flow: &MeshFlow, w: &Workspace<f64>) -> impl Iterator<Item = (f64, f64, f64, f64)> {
-    let moving = w.fluid.moving[flow.number];
-    let laws = flow.law.branches();
-    laws.zip(&w.fluid.branch[flow.branch..])
-        .map(move |((resistance, rate), &j)| (resistance, moving - j, rate, j))
-}
-
 /// Kinetic energy of the fluid in tubes and along bladders: `Σ I y²/2`, y = q without compression, and what the branches of friction store, [E51] [E66].
 pub fn kinetic(system: &System, w: &Workspace<f64>) -> f64 {
     let Some(fluid) = &system.fluid else { return 0.0 };
     let each = fluid.links.iter().filter_map(|link| link.flow).map(|flow| {
         let moving = w.fluid.moving[flow.number];
-        let branches = slips(&flow, w).map(|(resistance, _, rate, j)| resistance / rate * j * j);
-        0.5 * (flow.law.inertance * moving * moving + branches.sum::<f64>())
+        let ladders = flow.law.ladders(flow.branch).into_iter().flatten();
+        let branches = ladders.flat_map(|(at, ladder)| ladder.branches().zip(&w.fluid.branch[at]));
+        let stored = branches.map(|((resistance, rate), j)| resistance / rate * j * j);
+        0.5 * (flow.law.inertance * moving * moving + stored.sum::<f64>())
     });
     each.sum()
 }

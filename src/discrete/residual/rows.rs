@@ -335,9 +335,12 @@ pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &m
             continue;
         };
         let moving = w.fluid.moving[number];
-        for (i, (_, rate)) in (branch..).zip(law.branches()) {
-            let pulled = w.fluid.at_mean_density(k, (moving - w.fluid.branch[i]) * rate);
-            r[own.branch.start + i] = w.fluid.branch_rate[i] - pulled;
+        for (at, ladder) in law.ladders(branch).into_iter().flatten() {
+            let own = own.branch.start + at.start..own.branch.start + at.end;
+            let slips = w.fluid.branch_rate[at.clone()].iter().zip(&w.fluid.branch[at]);
+            for ((row, (_, rate)), (&slips, &slipped)) in r[own].iter_mut().zip(ladder.branches()).zip(slips) {
+                *row = slips - w.fluid.at_mean_density(k, (moving - slipped) * rate);
+            }
         }
         let driven = driven(link, now, w, k);
         let volume = w.fluid.root_of_density(k).map_or(moving, |root| moving / root);
@@ -365,8 +368,10 @@ pub fn driven<T: Scalar>(link: &MeshLink, now: &TimeData, w: &Workspace<T>, k: u
         left -= root.map_or(accelerates, |root| accelerates * root);
     }
     let mut lags = T::zero();
-    for (i, (resistance, _)) in (branch..).zip(law.branches()) {
-        lags += (w.fluid.moving[number] - w.fluid.branch[i]) * resistance;
+    for (at, ladder) in law.ladders(branch).into_iter().flatten() {
+        for ((resistance, _), &slipped) in ladder.branches().zip(&w.fluid.branch[at]) {
+            lags += (w.fluid.moving[number] - slipped) * resistance;
+        }
     }
     left - root.map_or(lags, |root| lags / root)
 }

@@ -39,18 +39,15 @@ impl<D: Dae> Newton<'_, D> {
             let mut correction = std::mem::take(&mut self.room.correction);
             correction.copy_from_slice(&self.room.residual);
             self.room.klu.solve(&mut correction);
-            let mut size: f64 = 0.0;
-            for (i, correction) in correction.iter().enumerate() {
-                let z = self.unknown_mut(i);
-                let relative = (correction / (1.0 + z.abs())).abs();
-                // written so that what is no number is kept
-                size = if relative <= size { size } else { relative };
-                *z -= correction;
+            let finite = kernels::all_finite(&correction);
+            if finite {
+                self.correct(&mut correction);
             }
+            let size = kernels::max_abs(&correction);
             self.room.correction = correction;
             self.iterations += 1;
             let rate = size / last;
-            if !(size.is_finite() && rate <= SLOW) {
+            if !(finite && rate <= SLOW) {
                 return None;
             }
             // before there is a rate the worst that is let pass is taken for it
@@ -66,5 +63,16 @@ impl<D: Dae> Newton<'_, D> {
             last = size;
         }
         None
+    }
+    /// Takes a correction, which becomes relative to 1 + |z|. Masks of 0 and 1 in place of a choice let this go several at a time.
+    fn correct(&mut self, correction: &mut [f64]) {
+        let masks = self.room.y_seeds.iter().zip(&self.room.yp_seeds);
+        let values = self.y.iter_mut().zip(self.yp.iter_mut());
+        for ((correction, (algebraic, differential)), (y, yp)) in correction.iter_mut().zip(masks).zip(values) {
+            let z = algebraic * *y + differential * *yp;
+            *y -= algebraic * *correction;
+            *yp -= differential * *correction;
+            *correction /= 1.0 + z.abs();
+        }
     }
 }

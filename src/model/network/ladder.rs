@@ -1,7 +1,7 @@
 //! Friction with a memory: a passive network of resistances beside inertances.
 
 /// Rates `n_i` and weights `m_i` of Kagawa et al. (Trans. JSME B 49, 1983) for Zielke's weighting function, `W(τ) = Σ m_i exp(-n_i τ)`.
-const KAGAWA: [(f64, f64); BRANCHES] = [
+static KAGAWA: [(f64, f64); BRANCHES] = [
     (26.3744, 1.0),
     (72.8033, 1.16725),
     (187.424, 2.20064),
@@ -60,7 +60,7 @@ impl Ladder {
     /// Resistances [Pa s/m^3] and rates [1/s] of its branches.
     pub fn branches(self) -> impl Iterator<Item = (f64, f64)> {
         KAGAWA
-            .into_iter()
+            .iter()
             .map(move |(n, m)| (0.5 * m * self.resistance, n * self.rate))
     }
 }

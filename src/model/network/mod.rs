@@ -28,7 +28,7 @@ pub use accumulator::{Accumulator, AccumulatorLaw};
 pub use along::AlongBladder;
 pub use check_valve::CheckValve;
 pub use components::Component;
-pub use ladder::BRANCHES;
+pub use ladder::{BRANCHES, Ladder};
 pub use tube::{FlowLaw, TubeFlow};
 
 /// A point of the graph.

@@ -1,8 +1,9 @@
 //! What flow in a round tube needs beyond the resistance of creeping flow: inertia, friction with a memory, turbulence, losses.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
-use super::ladder::Ladder;
+use super::ladder::{BRANCHES, Ladder};
 use super::{Link, LinkKind, Network};
 use crate::case::schema::{Effect, Fluid};
 use crate::case::wiring::Tube;
@@ -162,8 +163,19 @@ impl FlowLaw {
 
     /// Resistances `r_i` [Pa s/m^3] and rates `n_i ν/r²` [1/s] of all branches, those of the tube first.
     pub fn branches(&self) -> impl Iterator<Item = (f64, f64)> {
-        let ladders = self.in_tube.into_iter().chain(self.in_bladders);
-        ladders.flat_map(Ladder::branches)
+        self.ladders(0)
+            .into_iter()
+            .flatten()
+            .flat_map(|(_, ladder)| ladder.branches())
+    }
+
+    /// The ladders of tube and bladders, with where their branches are among all, the first of which has this number: what goes through branches in
+    /// every residual does so ladder by ladder.
+    #[inline]
+    pub fn ladders(&self, first: usize) -> [Option<(Range<usize>, Ladder)>; 2] {
+        let behind = first + self.in_tube.map_or(0, |_| BRANCHES);
+        let own = |ladder: Option<Ladder>, at| ladder.map(|ladder| (at..at + BRANCHES, ladder));
+        [own(self.in_tube, first), own(self.in_bladders, behind)]
     }
 
     /// `Δp_loss(q)` [Pa].
@@ -179,7 +191,7 @@ impl Losses {
     fn at(&self, q: f64) -> (f64, f64) {
         let (ratio, slope) = friction_ratio(self.reynolds_per_flow * q.abs(), self.roughness);
         let slow = SLOW / self.reynolds_per_flow;
-        let root = q.hypot(slow);
+        let root = (q * q + slow * slow).sqrt();
         let friction = self.laminar * (ratio - 1.0);
         let value = q * (friction + self.local * (root - slow));
         let steeper = self.laminar * slope * self.reynolds_per_flow * q.abs();
