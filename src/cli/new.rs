@@ -23,6 +23,9 @@ pub struct NewArguments {
     /// Which section, of `new section` [default: honeycomb]; the others have one row, which `coefficients` takes and a case does not
     #[arg(long, value_name = "NAME")]
     pub of: Option<SectionKind>,
+    /// Write over a file that is there
+    #[arg(long)]
+    pub force: bool,
     /// Print as JSON which files were written
     #[arg(long)]
     pub json: bool,
@@ -82,7 +85,7 @@ impl Kind {
     }
 }
 
-/// Writes the case, named as its file, and the schema beside it, or a section alone; nothing is written over.
+/// Writes the case, named as its file, and the schema beside it, or a section alone; nothing is written over without `--force`.
 pub fn new(asked: &NewArguments) -> Result<ExitCode> {
     let named = asked
         .kind
@@ -119,9 +122,9 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
         .filter(|_| !alone)
         .try_fold(text.to_owned(), |text, (key, value)| rewrite(&text, key, &value.into()))
         .unwrap_or_default();
-    if path.exists() {
+    if path.exists() && !asked.force {
         return Err(Error::Usage(format!(
-            "{} is there already and is not written over; give another file: slcbeam new {named} FILE",
+            "{} is there already and is not written over; give another file, slcbeam new {named} FILE, or --force",
             path.display()
         )));
     }

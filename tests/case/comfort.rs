@@ -146,6 +146,7 @@ fn a_starting_case_is_valid_for_editors_and_named_as_its_file() {
         assert!(jsonschema::is_valid(&schema, &written), "{kind}");
         let (code, _, err) = slcbeam(folder.path(), &["new", kind, &file]);
         assert!(code == 2 && err.contains("not written over"), "{err}");
+        assert_eq!(slcbeam(folder.path(), &["new", kind, &file, "--force"]).0, 0);
     }
 }
 

@@ -57,6 +57,12 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
         // a turbine stands under turbines
         found = named(&format!("{name}s"));
     }
+    if found.is_empty() {
+        // and so does what the schema calls a Turbine
+        let snake = snake(name);
+        found = named(&snake);
+        found.extend(named(&format!("{snake}s")));
+    }
     let told = pages::of(name);
     let elsewhere = synonyms::elsewhere(name);
     let mut text = String::new();
@@ -103,6 +109,20 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
     });
     let places = elsewhere.iter().map(|place| json!({"word": name, "meaning": place}));
     answer(asked, keys.chain(others).chain(places).collect(), text)
+}
+
+/// The name of a type as one of a key: check_valve of CheckValve; empty of what is no such name.
+fn snake(name: &str) -> String {
+    if !name.starts_with(char::is_uppercase) || !name.chars().all(char::is_alphanumeric) || name.len() < 3 {
+        return String::new();
+    }
+    name.char_indices().fold(String::new(), |mut all, (k, c)| {
+        if k > 0 && c.is_uppercase() {
+            all.push('_');
+        }
+        all.extend(c.to_lowercase());
+        all
+    })
 }
 
 /// Keys that a word may mean, and how they come to be meant: those of which it is a synonym, in whose names it stands, or in whose meanings.
