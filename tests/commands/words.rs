@@ -243,8 +243,8 @@ fn messages_and_keys_are_explained() {
         ),
         ("Re", ["Reynolds number of a tube", "E52"]),
         ("drained", ["(word): bladders whose pressure", "drained"]),
-        ("Probe", ["/probes: ", "/probes/0/at"]),
-        ("CheckValve", ["check_valve", "leak"]),
+        ("Probe", ["/probes: ", "Probe/at"]),
+        ("CheckValve", ["Tube/check_valve", "Leakage conductance"]),
         ("dashpot", ["in whose meanings it stands", "damping_x_n_s_m"]),
     ] {
         let (code, said, err) = slcbeam(here, &["explain", asked]);

@@ -75,7 +75,7 @@ pub struct Floquet {
 pub fn multipliers(scene: &Scene, cycle: &mut Cycle, count: usize) -> Floquet {
     let mut start = krylov::everything(cycle.y.len());
     scene.admit(&mut start);
-    let modes = Modes::new(&scene.system);
+    let modes = Modes::new(&scene.system, &cycle.y);
     let most = scene.dimension().min(MOST_VECTORS);
     let found = krylov::largest(
         |v| {

@@ -1,10 +1,14 @@
 //! What a disturbance is made of: bending modes of the dry beam, motion along it, fluid.
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
-use crate::case::{Rotation, Translation};
+use crate::case::Rotation;
 use crate::discrete::System;
+use crate::discrete::layout::Line;
+use crate::model::Kinematics;
 
 /// Bending modes looked at.
 const MODES: usize = 8;
@@ -40,12 +44,14 @@ pub struct Modes {
     shapes: Vec<Vec<f64>>,
     /// Mass of the free nodes [kg].
     masses: Vec<f64>,
+    /// Where the beam points that is disturbed, across and along, in every cell.
+    tangents: Vec<[f64; 2]>,
 }
 
 impl Modes {
     /// The lowest modes of a system: stiffness `Σ EI κ² length` of the curvatures at nodes, mass at nodes. Empty where nothing
-    /// can move across.
-    pub fn new(system: &System) -> Self {
+    /// can move across. Disturbances are those of a state of the scaled unknowns.
+    pub fn new(system: &System, state: &[f64]) -> Self {
         let (mesh, free) = (&system.mesh, &system.layout.lines[0].free);
         let (section, h, n) = (&system.model.section, system.mesh.h, free.len());
         let mut stiffness = DMatrix::<f64>::zeros(n, n);
@@ -84,13 +90,14 @@ impl Modes {
                 .map(|&k| (0..n).map(|i| eigen.eigenvectors[(i, k)] / masses[i].sqrt()).collect())
                 .collect(),
             masses,
+            tangents: tangents(system, state),
         }
     }
 
     /// Energies of a small disturbance of the scaled unknowns [J]: of every mode, along the beam, of the fluid.
     fn energies(&self, system: &System, v: &[f64]) -> (Vec<f64>, f64, f64) {
         let (l, s) = (&system.layout, &system.model.section);
-        let [across, along] = &l.lines;
+        let across = &l.lines[0];
         let at = |k: usize| v[k] * l.scales[k];
         let modal = |first: usize, shape: &[f64]| -> f64 {
             let terms = shape.iter().zip(&self.masses).enumerate();
@@ -100,11 +107,9 @@ impl Modes {
             let rate = across.v.as_ref().map_or(0.0, |v| modal(v.start, shape));
             0.5 * ((w * modal(across.u.start, shape)).powi(2) + rate * rate)
         });
-        let (stretch, _) = stretched(system, v);
         let h = system.mesh.h;
-        let speeds = along.v.iter().flat_map(|v| v.clone());
-        let speed: f64 = speeds.map(|k| at(k).powi(2)).sum();
-        let along = 0.5 * (s.axial_stiffness * stretch + s.mass_per_length * h * speed);
+        let [stretch, speed] = [self.stretches(system, v), self.speeds(system, v)];
+        let along = 0.5 * h * (s.axial_stiffness * squares(&stretch) + s.mass_per_length * squares(&speed));
         let fluid = system
             .model
             .wet
@@ -121,7 +126,7 @@ impl Modes {
     /// the fluid.
     pub fn coordinates(&self, system: &System, part: Part, v: &[f64]) -> Vec<f64> {
         let (l, s) = (&system.layout, &system.model.section);
-        let [across, along] = &l.lines;
+        let across = &l.lines[0];
         let at = |k: usize| v[k] * l.scales[k];
         match part {
             Part::Bending(mode) => {
@@ -135,11 +140,10 @@ impl Modes {
             }
             Part::Along => {
                 let h = system.mesh.h;
-                let u3 = displacements(system, v);
-                let stretch = u3.windows(2).map(|u| (u[1] - u[0]) * (s.axial_stiffness / h).sqrt());
-                let speeds = along.v.iter().flat_map(|v| v.clone());
-                stretch
-                    .chain(speeds.map(|k| at(k) * (s.mass_per_length * h).sqrt()))
+                let [stretches, speeds] = [self.stretches(system, v), self.speeds(system, v)];
+                let stretches = stretches.iter().map(|e| e * (s.axial_stiffness * h).sqrt());
+                stretches
+                    .chain(speeds.iter().map(|v| v * (s.mass_per_length * h).sqrt()))
                     .collect()
             }
             Part::Fluid => vec![],
@@ -152,10 +156,12 @@ impl Modes {
         match part {
             Part::Bending(mode) => self.frequencies[mode - 1],
             Part::Along => {
-                let [a, b] = v.each_ref().map(|v| stretched(system, v));
-                let s = &system.model.section;
-                let mass = s.mass_per_length * (a.1 + b.1);
-                (s.axial_stiffness * (a.0 + b.0) / mass.max(f64::MIN_POSITIVE)).sqrt()
+                let (s, sum) = (&system.model.section, |of: &dyn Fn(&[f64]) -> Vec<f64>| -> f64 {
+                    v.iter().map(|v| squares(&of(v))).sum()
+                });
+                let stretch = sum(&|v| self.stretches(system, v));
+                let moved = sum(&|v| self.along(&nodes(system, v, |line| Some(&line.u))));
+                (s.axial_stiffness * stretch / (s.mass_per_length * moved).max(f64::MIN_POSITIVE)).sqrt()
             }
             Part::Fluid => 0.0,
         }
@@ -180,23 +186,60 @@ impl Modes {
             .fold((Part::Fluid, 0.0), |most, p| if p.1 > most.1 { p } else { most });
         (part, if whole > 0.0 { energy / whole } else { 0.0 })
     }
+
+    /// Strains along the disturbed beam, one a cell: a beam that is bent and bends further does not stretch, though it moves along its straight
+    /// axis.
+    fn stretches(&self, system: &System, v: &[f64]) -> Vec<f64> {
+        let u = nodes(system, v, |line| Some(&line.u));
+        let cells = u.windows(2).zip(&self.tangents);
+        let each = cells.map(|(u, t)| t[0] * (u[1][0] - u[0][0]) + t[1] * (u[1][1] - u[0][1]));
+        each.map(|e| e / system.mesh.h).collect()
+    }
+
+    /// Speeds along it [m/s], one a node.
+    fn speeds(&self, system: &System, v: &[f64]) -> Vec<f64> {
+        self.along(&nodes(system, v, |line| line.v.as_ref()))
+    }
+
+    /// Of vectors at nodes what points along it: by the mean direction of the cells beside.
+    fn along(&self, vectors: &[[f64; 2]]) -> Vec<f64> {
+        let (tangents, last) = (&self.tangents, self.tangents.len() - 1);
+        let each = vectors.iter().enumerate().map(|(i, v)| {
+            let sides = [tangents[i.saturating_sub(1)], tangents[i.min(last)]];
+            sides.iter().map(|t| 0.5 * (t[0] * v[0] + t[1] * v[1])).sum()
+        });
+        each.collect()
+    }
 }
 
-/// Displacements along the beam of a disturbance [m] at the free nodes and at held ends.
-fn displacements(system: &System, v: &[f64]) -> Vec<f64> {
+/// What the beam is stretched along in every cell, across and along, [E24] [E26]: `∂e/∂(u1', u3')`.
+fn tangents(system: &System, state: &[f64]) -> Vec<[f64; 2]> {
+    let u = nodes(system, state, |line| Some(&line.u));
+    let cells = u
+        .windows(2)
+        .map(|u| [0, 1].map(|axis| (u[1][axis] - u[0][axis]) / system.mesh.h));
+    let each = cells.map(|[across, along]| match system.model.kinematics {
+        Kinematics::Bar | Kinematics::Linear => [0.0, 1.0],
+        Kinematics::SmallRotation => [across, 1.0],
+        Kinematics::FiniteRotation => {
+            let length = across.hypot(1.0 + along);
+            [across / length, (1.0 + along) / length]
+        }
+    });
+    each.collect()
+}
+
+/// Values of the scaled unknowns across and along at all nodes, in SI units; 0 where they are none.
+fn nodes(system: &System, v: &[f64], unknowns: impl Fn(&Line) -> Option<&Range<usize>>) -> Vec<[f64; 2]> {
     let l = &system.layout;
-    let held = |k: usize| matches!(system.model.ends[k].axial, Translation::Displacement(_));
-    let free = l.lines[1].u.clone().map(|k| v[k] * l.scales[k]);
-    (held(0).then_some(0.0).into_iter())
-        .chain(free)
-        .chain(held(1).then_some(0.0))
-        .collect()
+    let mut all = vec![[0.0; 2]; system.mesh.nodes];
+    for (axis, line) in l.lines.iter().enumerate() {
+        let places = line.free.clone().zip(unknowns(line).cloned().unwrap_or_default());
+        places.for_each(|(node, k)| all[node][axis] = v[k] * l.scales[k]);
+    }
+    all
 }
 
-/// `Σ Δu3²/h` over the cells and `Σ u3² h` over the free nodes of a disturbance.
-fn stretched(system: &System, v: &[f64]) -> (f64, f64) {
-    let h = system.mesh.h;
-    let u3 = displacements(system, v);
-    let squares = u3.iter().map(|u| u * u).sum::<f64>() * h;
-    (u3.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum::<f64>() / h, squares)
+fn squares(values: &[f64]) -> f64 {
+    values.iter().map(|x| x * x).sum()
 }
