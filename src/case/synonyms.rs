@@ -47,6 +47,7 @@ const MEANT: &[(&str, &[&str])] = &[
     ("point_load", &["attachments", "force_x_n"]),
     ("weight", &["gravity", "attachments"]),
     ("mass", &["attachments", "mass_kg", "density_kg_m3"]),
+    ("payload", &["attachments", "mass_kg"]),
     ("spring", &["attachments", "stiffness_x_n_m"]),
     ("wall", &["contacts"]),
     ("obstacle", &["contacts"]),

@@ -148,7 +148,13 @@ fn several(found: &Beside) -> String {
         let _ = writeln!(text, "\n{remark}");
     }
     let letters: Vec<String> = (1..=found.comparisons.len()).map(letter).collect();
-    let mut lines = vec![[vec!["difference from A, relative, L2".to_string()], letters.clone()].concat()];
+    let mut lines = vec![
+        [
+            vec!["root mean square of the difference from A, over that of the larger".to_string()],
+            letters.clone(),
+        ]
+        .concat(),
+    ];
     for (name, norms) in found.norms() {
         let cells = norms
             .iter()

@@ -111,7 +111,9 @@ impl Passivity {
             size(lower, "Pa")
         );
         match (self.least > 0.0, self.reciprocal()) {
-            (true, true) => format!("the {name} coupling is passive: {least}, {worst}"),
+            (true, true) => format!(
+                "the {name} coupling is passive, no loads and pressures get more out of it than they put in: {least}, {worst}"
+            ),
             (true, false) => format!(
                 "the {name} coupling is not passive: it lacks reciprocity (defect {:.3}), so closed cycles of load and pressure gain or \
                  lose work; {least}, {worst}",

@@ -27,7 +27,7 @@ fn a_folder_is_filled_and_a_table_printed() {
         "Hz",
         "undrained",
         "none of the",
-        "coupling is passive",
+        "coupling is passive, no loads",
         out.to_str().unwrap(),
     ] {
         assert!(said.contains(word), "{word}: {said}");

@@ -133,7 +133,9 @@ class Answer(Mapping[str, Any]):
         return Path(dir)
 
     def report(self) -> Report:
-        """The page of the answer."""
+        """The page of the answer; ``lean`` leaves it out."""
+        if not (self._folder() / "report.html").is_file():
+            raise UsageError("this answer has no page: ask for it without lean")
         return Report((self._folder() / "report.html").read_text(encoding="utf-8"))
 
     def _folder(self) -> Path:

@@ -22,7 +22,7 @@ const MOST: usize = 12;
 #[derive(Debug, Args)]
 pub struct ExplainArguments {
     /// Number of a message, or name of a key, an effect, a column of a result, a word or symbol of the glossary [default: list all numbers]
-    pub what: Option<String>,
+    pub what: Vec<String>,
     /// Print as JSON
     #[arg(long)]
     pub json: bool,
@@ -30,7 +30,8 @@ pub struct ExplainArguments {
 
 /// Prints the section of a message or the meaning of a name; without one, all numbers with their headings.
 pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
-    let Some(what) = &asked.what else {
+    let what = asked.what.join(" ");
+    if what.is_empty() {
         let all = Code::ALL.iter();
         return answer(
             asked,
@@ -39,7 +40,8 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
                 .collect(),
             all.fold(String::new(), |text, c| text + c.id() + "  " + c.title() + "\n"),
         );
-    };
+    }
+    let what = what.as_str();
     if let Some(code) = Code::find(what) {
         return answer(
             asked,

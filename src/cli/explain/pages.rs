@@ -132,6 +132,12 @@ fn of_glossary(row: &[&str], name: &str) -> Vec<Told> {
     let Some(first) = row.first() else { return vec![] };
     let names: Vec<&str> = first.split([',', ';']).map(str::trim).collect();
     let letter = GREEK.iter().find(|(spelled, _)| name.eq_ignore_ascii_case(spelled));
+    // alpha_p is α_p
+    let written = name.split_once('_').and_then(|(first, rest)| {
+        let (_, letter) = GREEK.iter().find(|(spelled, _)| first.eq_ignore_ascii_case(spelled))?;
+        Some(format!("{letter}_{rest}"))
+    });
+    let name = written.as_deref().unwrap_or(name);
     let asked = |one: &str| match letter {
         None => one == name || one.contains(' ') && one.eq_ignore_ascii_case(name),
         Some((_, letter)) => one

@@ -83,7 +83,16 @@ impl Report<'_> {
                 Some(sort) => format!("there are no modes of the kind {}", sort.word()),
                 None => "there are no modes".into(),
             },
-            [] => format!("none of the {} modes shown grows", self.found.modes.len()),
+            [] => {
+                let count = self.found.modes.len();
+                let swings = self.found.modes.iter().any(|mode| mode.kind.swings());
+                match self.sort {
+                    None if !swings => format!(
+                        "none of the {count} modes shown grows, and none swings: --kind oscillation shows those that do, if there are any"
+                    ),
+                    _ => format!("none of the {count} modes shown grows"),
+                }
+            }
             all => format!("unstable: {}", all.join("; ")),
         }
     }

@@ -51,16 +51,16 @@ pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -
         (Stability::Unstable, unstable(first, driven))
     } else if growth > -threshold {
         let words = format!(
-            "neutral: {} at {:.4} Hz neither grows nor decays (multiplier of modulus 1 to {:.0e})",
-            first.part,
-            first.frequency_hz,
+            "neutral: {} neither grows nor decays (multiplier of modulus 1 to {:.0e})",
+            at(first),
             (first.modulus - 1.0).abs().max(1e-16)
         );
         (Stability::Neutral, words)
     } else {
         let words = format!(
-            "stable: the slowest disturbance, {} at {:.4} Hz, decays at {:.4} /s",
-            first.part, first.frequency_hz, -growth
+            "stable: the slowest disturbance, {}, decays at {:.4} /s",
+            at(first),
+            -growth
         );
         (Stability::Stable, words)
     };
@@ -68,6 +68,14 @@ pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -
         stability,
         growth_per_s: growth,
         words,
+    }
+}
+
+/// What swings, and how fast; fluid that creeps does not.
+fn at(m: &Multiplier) -> String {
+    match m.frequency_hz > 0.0 {
+        true => format!("{} at {:.4} Hz", m.part, m.frequency_hz),
+        false => format!("{} without swinging", m.part),
     }
 }
 
@@ -90,6 +98,6 @@ fn unstable(m: &Multiplier, driven: bool) -> String {
         (Part::Bending(_), true) => format!("parametric resonance of {} ({kind}) {rate}", m.part),
         (_, true) => format!("instability of {} ({kind}) {rate}", m.part),
         (_, false) if angle < REAL => format!("divergence of {} {rate}", m.part),
-        (_, false) => format!("flutter of {} at {:.4} Hz {rate}", m.part, m.frequency_hz),
+        (_, false) => format!("flutter of {} {rate}", at(m)),
     }
 }

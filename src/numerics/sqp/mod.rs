@@ -3,7 +3,7 @@
 //! ```text
 //! min f(x),  0 <= x <= 1,  c(x) <= 0
 //! min g·d + d·B d/2 + ρ Σ max(0, c + a·d)        g, a the slopes of f and c; the step d, its multipliers λ <= ρ
-//! φ = f + ρ Σ max(0, c)                          falls along x + t d, t = 1, 1/2, ..
+//! φ = f + ρ Σ max(0, c)                          falls along x + t d, t = 1, 1/2, .., or at x + d with d by c(x + d) - a·d in place of c
 //! B                                              of the Lagrangian f + λ·c, by Powell's damped form of BFGS (1978)
 //! ```
 //!
@@ -88,6 +88,8 @@ const WORTH: f64 = 1e-4;
 /// A shortened step, and how often.
 const SHORTER: f64 = 0.5;
 const FAILED: f64 = 0.25;
+/// What is tried beyond the last step, times its length.
+const LONGER: f64 = 2.0;
 const CUTS: usize = 10;
 /// Price of what is not held: at first, and at most.
 const PRICE: [f64; 2] = [10.0, 1e7];
@@ -106,9 +108,9 @@ pub fn minimise(start: &[f64], options: &Options, evaluate: &mut Evaluate<'_>) -
     let mut at = evaluate(&x)?;
     let n = x.len();
     let mut b = DMatrix::identity(n, n) * (at.slope.amax() / FIRST).max(f64::MIN_POSITIVE.sqrt());
-    let (mut fresh, mut steps, mut price) = (true, 0, PRICE[0]);
+    let (mut fresh, mut steps, mut price, mut reach) = (true, 0, PRICE[0], LONGEST);
     loop {
-        let step = Step::of(&x, &at, &b, &mut price);
+        let step = Step::of(&x, &at, &b, &mut price, reach);
         let end = |ended| {
             Some(Minimum {
                 x: x.clone(),
@@ -133,15 +135,28 @@ pub fn minimise(start: &[f64], options: &Options, evaluate: &mut Evaluate<'_>) -
             return end(Ended::Unfinished);
         }
         let merit = |at: &Point| at.value + price * at.violation();
+        let moved = |d: &DVector<f64>, part: f64| -> Vec<f64> {
+            let to = x.iter().zip(d.iter()).map(|(x, d)| snapped(x + part * d));
+            to.collect()
+        };
+        let falls = |there: &Point, part| merit(there) <= merit(&at) - WORTH * part * fall + options.noise;
         let (mut part, mut next) = (1.0, None);
         for _ in 0..CUTS {
-            let moved = x.iter().zip(step.d.iter()).map(|(x, d)| snapped(x + part * d));
-            let to: Vec<f64> = moved.collect();
+            let to = moved(&step.d, part);
             match evaluate(&to) {
                 None => part *= FAILED,
-                Some(there) if merit(&there) <= merit(&at) - WORTH * part * fall + options.noise => {
+                Some(there) if falls(&there, part) => {
                     next = Some((to, there));
                     break;
+                }
+                // along a curved limit the whole step leads beyond it, the nearer to the least value the surer (Maratos)
+                Some(there) if part == 1.0 && there.violation() > step.left + HELD => {
+                    let to = moved(&step.bent(&x, &at, &there, &b, [price, reach]), 1.0);
+                    next = evaluate(&to).filter(|there| falls(there, 1.0)).map(|there| (to, there));
+                    if next.is_some() {
+                        break;
+                    }
+                    part *= SHORTER;
                 }
                 Some(_) => part *= SHORTER,
             }
@@ -155,6 +170,11 @@ pub fn minimise(start: &[f64], options: &Options, evaluate: &mut Evaluate<'_>) -
                 (true, false) => Ended::Found,
                 (false, false) => Ended::Stuck,
             });
+        };
+        // where a part of a step was all that could be gone, the next one need not be tried much longer
+        reach = match part < 1.0 {
+            true => (LONGER * part * length).max(LONGER * options.close),
+            false => reach.max(LONGER * length).min(LONGEST),
         };
         let s = DVector::from_iterator(n, to.iter().zip(&x).map(|(to, x)| to - x));
         let lambda = DVector::from_column_slice(&step.multipliers);
@@ -205,9 +225,9 @@ struct Step {
 impl Step {
     /// The best where `b` is the curvature. The price goes up until inequalities are held by the step, as far as they can be, and above
     /// every multiplier.
-    fn of(x: &[f64], at: &Point, b: &DMatrix<f64>, price: &mut f64) -> Self {
+    fn of(x: &[f64], at: &Point, b: &DMatrix<f64>, price: &mut f64, reach: f64) -> Self {
         loop {
-            let step = Self::at_price(x, at, b, *price);
+            let step = Self::at_price(x, at, b, [*price, reach]);
             let short = step.left > HELD && step.multipliers.iter().any(|l| *l >= *price * (1.0 - 1e-9));
             if !short || *price >= PRICE[1] {
                 return step;
@@ -216,7 +236,7 @@ impl Step {
         }
     }
 
-    fn at_price(x: &[f64], at: &Point, b: &DMatrix<f64>, price: f64) -> Self {
+    fn at_price(x: &[f64], at: &Point, b: &DMatrix<f64>, [price, reach]: [f64; 2]) -> Self {
         let (n, m) = (x.len(), at.inequalities.len());
         let inverse = b.clone().try_inverse().unwrap_or_else(|| DMatrix::identity(n, n));
         let row = |i: usize| match i.checked_sub(m) {
@@ -229,8 +249,8 @@ impl Step {
         };
         let room = |i: usize| match i.checked_sub(m) {
             None => -at.inequalities[i],
-            Some(k) if k % 2 == 0 => (1.0 - x[k / 2]).min(LONGEST),
-            Some(k) => x[k / 2].min(LONGEST),
+            Some(k) if k % 2 == 0 => (1.0 - x[k / 2]).min(reach),
+            Some(k) => x[k / 2].min(reach),
         };
         let rows: Vec<DVector<f64>> = (0..m + 2 * n).map(row).collect();
         let moved: Vec<DVector<f64>> = rows.iter().map(|row| &inverse * row).collect();
@@ -258,7 +278,7 @@ impl Step {
             d[k] = d[k].clamp(-x[k], 1.0 - x[k]);
         }
         // what holds a step back that is as long as any may be is no bound
-        let between = |k: usize| f64::from(u8::from(d[k].abs() < LONGEST));
+        let between = |k: usize| f64::from(u8::from(d[k].abs() < reach));
         let at_bounds = (0..n).map(|k| between(k) * (lambda[m + 2 * k] - lambda[m + 2 * k + 1]));
         let left = (&at.inequalities + &at.slopes * &d).iter().map(|c| c.max(0.0)).sum();
         Self {
@@ -269,6 +289,15 @@ impl Step {
         }
     }
 
+    /// The step anew, with what inequalities are where this one leads to: the correction of second order (Nocedal & Wright, 18.3).
+    fn bent(&self, x: &[f64], at: &Point, there: &Point, b: &DMatrix<f64>, limits: [f64; 2]) -> DVector<f64> {
+        let bent = Point {
+            inequalities: &there.inequalities - &at.slopes * &self.d,
+            ..at.clone()
+        };
+        Self::at_price(x, &bent, b, limits).d
+    }
+
     /// How much the priced value falls along it, to first order.
     fn fall(&self, at: &Point, price: f64) -> f64 {
         -at.slope.dot(&self.d) + price * (at.violation() - self.left)
@@ -276,121 +305,4 @@ impl Step {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const OPTIONS: Options = Options {
-        steps: 200,
-        close: 1e-8,
-        noise: 0.0,
-    };
-
-    fn free(value: f64, slope: &[f64]) -> Point {
-        Point {
-            value,
-            slope: DVector::from_column_slice(slope),
-            inequalities: DVector::zeros(0),
-            slopes: DMatrix::zeros(0, slope.len()),
-        }
-    }
-
-    /// Source: Rosenbrock (1960), whose valley ends at (1, 1), here 0.5 in both.
-    fn rosenbrock(x: &[f64]) -> Point {
-        let [a, b] = [4.0 * x[0] - 1.0, 4.0 * x[1] - 1.0];
-        let [da, db] = [-400.0 * a * (b - a * a) - 2.0 * (1.0 - a), 200.0 * (b - a * a)];
-        free(100.0 * (b - a * a).powi(2) + (1.0 - a).powi(2), &[4.0 * da, 4.0 * db])
-    }
-
-    /// Goal: a curved valley is followed to its end, beside places without a value too.
-    #[test]
-    fn valleys_are_followed_to_their_end() {
-        for wall in [2.0, 0.55] {
-            let mut count = 0;
-            let found = minimise(&[0.0, 0.9], &OPTIONS, &mut |x| {
-                count += 1;
-                (x[0] < wall).then(|| rosenbrock(x))
-            });
-            let found = found.expect("a start");
-            assert!(found.ended == Ended::Found && found.at.value < 1e-12, "{found:?}");
-            assert!(count < 120, "{count}");
-        }
-        assert!(minimise(&[0.0, 0.9], &OPTIONS, &mut |_| None).is_none());
-    }
-
-    /// Source: Rosen & Suzuki (Hock & Schittkowski 43): -44 at (0, 1, 2, -1), two of three inequalities active with multipliers 1 and 2.
-    #[test]
-    fn inequalities_are_held() {
-        let problem = |z: &[f64]| {
-            let y: Vec<f64> = z.iter().map(|z| 10.0 * z - 5.0).collect();
-            let [a, b, c, d] = [y[0], y[1], y[2], y[3]];
-            let slope = [2.0 * a - 5.0, 2.0 * b - 5.0, 4.0 * c - 21.0, 2.0 * d + 7.0];
-            let squares = a * a + b * b + c * c + d * d;
-            Some(Point {
-                value: a * a + b * b + 2.0 * c * c + d * d - 5.0 * a - 5.0 * b - 21.0 * c + 7.0 * d,
-                slope: DVector::from_column_slice(&slope) * 10.0,
-                inequalities: DVector::from_vec(vec![
-                    squares + a - b + c - d - 8.0,
-                    squares + b * b + d * d - a - d - 10.0,
-                    squares + a * a - d * d + 2.0 * a - b - d - 5.0,
-                ]),
-                slopes: DMatrix::from_row_slice(
-                    3,
-                    4,
-                    &[
-                        [2.0 * a + 1.0, 2.0 * b - 1.0, 2.0 * c + 1.0, 2.0 * d - 1.0],
-                        [2.0 * a - 1.0, 4.0 * b, 2.0 * c, 4.0 * d - 1.0],
-                        [4.0 * a + 2.0, 2.0 * b - 1.0, 2.0 * c, -1.0],
-                    ]
-                    .concat(),
-                ) * 10.0,
-            })
-        };
-        for start in [[0.5; 4], [1.0; 4], [0.0, 1.0, 0.0, 1.0]] {
-            let found = minimise(&start, &OPTIONS, &mut |x| problem(x)).expect("a start");
-            assert!(found.ended == Ended::Found, "{start:?}: {found:?}");
-            let off =
-                |of: &[f64], wanted: &[f64]| of.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            assert!(off(&found.x, &[0.5, 0.6, 0.7, 0.4]) < 1e-6, "{start:?}: {found:?}");
-            assert!(off(&found.multipliers, &[1.0, 0.0, 2.0]) < 1e-4, "{start:?}: {found:?}");
-        }
-    }
-
-    /// Goal: what would leave the bounds stays at one, with what that costs; what cannot be held is told.
-    #[test]
-    fn bounds_hold_and_contradictions_are_told() {
-        let plane = |x: &[f64]| free(x[0] + (x[1] - 0.25).powi(2), &[1.0, 2.0 * (x[1] - 0.25)]);
-        let found = minimise(&[0.7, 0.9], &OPTIONS, &mut |x| Some(plane(x))).expect("a start");
-        assert!(found.x[0] == 0.0 && (found.x[1] - 0.25).abs() < 1e-7, "{found:?}");
-        assert!(
-            (found.at_bounds[0] + 1.0).abs() < 1e-9 && found.at_bounds[1].abs() < 1e-6,
-            "{found:?}"
-        );
-        // x0 >= 0.8 and x0 <= 0.2
-        let apart = |x: &[f64]| Point {
-            inequalities: DVector::from_vec(vec![0.8 - x[0], x[0] - 0.2]),
-            slopes: DMatrix::from_row_slice(2, 2, &[-1.0, 0.0, 1.0, 0.0]),
-            ..plane(x)
-        };
-        let found = minimise(&[0.7, 0.9], &OPTIONS, &mut |x| Some(apart(x))).expect("a start");
-        assert!(found.ended == Ended::Apart && found.at.violation() > 0.5, "{found:?}");
-    }
-
-    /// Goal: values with an error of 1e-5 do not keep the search from where the slopes vanish.
-    #[test]
-    fn errors_of_values_are_passed_over() {
-        let options = Options {
-            noise: 2e-5,
-            close: 1e-5,
-            ..OPTIONS
-        };
-        let bowl = |x: &[f64]| {
-            let off = 1e-5 * (1e7 * x[0]).sin();
-            free(1.0 + (x[0] - 0.3).powi(2) + off, &[2.0 * (x[0] - 0.3)])
-        };
-        let found = minimise(&[0.9], &options, &mut |x| Some(bowl(x))).expect("a start");
-        assert!(
-            found.ended == Ended::Found && (found.x[0] - 0.3).abs() < 1e-5,
-            "{found:?}"
-        );
-    }
-}
+mod tests;
